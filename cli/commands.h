@@ -1,0 +1,24 @@
+/// The subcommands of the program. Each adds itself to the parser and leaves its action to be run.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <functional>
+#include <string>
+
+namespace covtrace::cli {
+
+/// The chosen command; returns the exit code of the contract.
+using Action = std::function<int()>;
+
+struct Invocation {
+    std::chrono::steady_clock::time_point start;  ///< of the process: what --time counts from
+    std::string command_line;                     ///< for the image's metadata
+    Action action;
+};
+
+void add_render(CLI::App& app, Invocation& invocation);
+void add_compare(CLI::App& app, Invocation& invocation);
+void add_info(CLI::App& app, Invocation& invocation);
+
+}  // namespace covtrace::cli

@@ -1,0 +1,27 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "cli/commands.h"
+#include "image/image.h"
+#include "scene/read_scene.h"
+#include "scene/summary.h"
+
+namespace covtrace::cli {
+
+void add_info(CLI::App& app, Invocation& invocation) {
+    auto file = std::make_shared<std::string>();
+    CLI::App* c = app.add_subcommand("info", "Tell what a scene or an image holds");
+    c->add_option("FILE", *file, "a pbrt-v4 scene or an image")->required();
+    c->callback([file, &invocation] {
+        invocation.action = [file] {
+            const std::filesystem::path path = *file;
+            const bool is_scene = path.extension() == ".pbrt" || path.string().ends_with(".pbrt.gz");
+            fmt::print("{}", is_scene ? summarize(read_pbrt(path)) : describe(read_image(path)));
+            return 0;
+        };
+    });
+}
+
+}  // namespace covtrace::cli

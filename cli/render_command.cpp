@@ -1,0 +1,260 @@
+#include <fmt/format.h>
+
+#include <csignal>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/progress_line.h"
+#include "cli/values.h"
+#include "core/parallel.h"
+#include "image/image.h"
+#include "render/session.h"
+#include "render/version.h"
+#include "scene/read_scene.h"
+
+namespace covtrace::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RenderArguments {
+    std::string scene, output, png, stats, isa;
+    std::string seconds, resolution, crop, shutter, layers;
+    RenderOptions options;
+    SceneOverrides overrides;
+    ProgressStyle progress = ProgressStyle::automatic;
+    int threads = 0;
+    bool reproducible = false, quiet = false;
+};
+
+/// The monitor that Ctrl-C cancels; a second Ctrl-C ends the process at once.
+Monitor* interrupted_monitor = nullptr;
+
+extern "C" void on_interrupt(int signal) {
+    if (interrupted_monitor && !interrupted_monitor->cancelled()) {
+        interrupted_monitor->cancel();
+        return;
+    }
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+}
+
+class InterruptGuard {
+  public:
+    explicit InterruptGuard(Monitor& monitor) {
+        interrupted_monitor = &monitor;
+        std::signal(SIGINT, on_interrupt);
+        std::signal(SIGTERM, on_interrupt);
+    }
+    ~InterruptGuard() {
+        std::signal(SIGINT, SIG_DFL);
+        std::signal(SIGTERM, SIG_DFL);
+        interrupted_monitor = nullptr;
+    }
+};
+
+fs::path output_path(const RenderArguments& a, const SceneDescription& scene) {
+    if (!a.output.empty()) return a.output;
+    fs::path name = scene.film.filename.empty() ? scene.name + ".exr" : scene.film.filename;
+    // Every output is an EXR: a film that asks for another format keeps its name.
+    if (name.extension() != ".exr") name.replace_extension(".exr");
+    return name;
+}
+
+void require_writable_folder(const fs::path& file) {
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    std::error_code error;
+    if (!fs::is_directory(folder, error))
+        throw Error(ErrorKind::usage, "the folder of the output '" + file.string() + "' does not exist");
+}
+
+std::vector<float> flat(const Matrix4& m) {
+    // OpenEXR's convention: row vectors times matrix.
+    std::vector<float> v;
+    for (size_t c = 0; c < 4; ++c)
+        for (size_t r = 0; r < 4; ++r) v.push_back(static_cast<float>(m.m[r][c]));
+    return v;
+}
+
+void describe_render(Image& image, const RenderArguments& a, const RenderScene& scene, const RenderResult& result,
+                     const Monitor& monitor, const std::string& command) {
+    auto& m = image.metadata;
+    m["covtrace:version"] = std::string(kVersion);
+    m["covtrace:commit"] = std::string(kCommit);
+    m["covtrace:seed"] = std::to_string(a.options.seed);
+    m["covtrace:method"] = std::string(a.options.method == Method::uniform ? "uniform" : "covariance");
+    m["covtrace:isa"] = scene.geometry.isa();
+    m["covtrace:sceneHash"] = fmt::format("{:016x}", scene.description.content_hash);
+    m["spp"] = static_cast<float>(result.statistics.samples_per_pixel);
+    m["complete"] = result.complete ? 1 : 0;
+    m["worldToCamera"] = flat(scene.camera.world_to_camera());
+    m["worldToNDC"] = flat(scene.camera.world_to_ndc());
+    if (a.reproducible) return;
+    m["covtrace:command"] = command;
+    m["covtrace:seconds"] = static_cast<float>(monitor.elapsed());
+    char date[32];
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    std::strftime(date, sizeof date, "%Y:%m:%d %H:%M:%S", &utc);
+    m["capDate"] = std::string(date);
+    m["utcOffset"] = 0.0f;
+}
+
+nlohmann::json statistics_json(const RenderResult& result, const Monitor& monitor) {
+    const auto pass = [](const PassStatistics& s) {
+        nlohmann::json rejected = nlohmann::json::array();
+        for (const RejectedSample& r : s.first_rejected) rejected.push_back({r.x, r.y, r.sample});
+        return nlohmann::json{{"samples", s.samples},         {"rays", s.rays},         {"vertices", s.vertices},
+                              {"black_paths", s.black_paths}, {"rejected", s.rejected}, {"first_rejected", rejected}};
+    };
+    return {{"seconds_total", monitor.elapsed()},
+            {"seconds", result.statistics.seconds},
+            {"spp", result.statistics.samples_per_pixel},
+            {"covariance", pass(result.statistics.covariance)},
+            {"radiance", pass(result.statistics.radiance)},
+            {"complete", result.complete}};
+}
+
+void keep_layers(Image& image, const std::string& wanted) {
+    if (wanted.empty() || wanted == "all") return;
+    const auto layer_of = [](const std::string& channel) {
+        const auto dot = channel.rfind('.');
+        return dot == std::string::npos ? std::string() : channel.substr(0, dot);
+    };
+    std::vector<std::string> names;
+    for (size_t from = 0; from <= wanted.size();) {
+        const size_t to = std::min(wanted.find(',', from), wanted.size());
+        names.push_back(wanted.substr(from, to - from));
+        from = to + 1;
+    }
+    for (const std::string& name : names) {
+        const bool known = std::any_of(image.channels.begin(), image.channels.end(), [&](const Channel& c) {
+            return c.name == name || layer_of(c.name) == name;
+        });
+        if (!known) throw Error(ErrorKind::usage, "--layers: the image has no layer '" + name + "'");
+    }
+    std::erase_if(image.channels, [&](const Channel& c) {
+        const std::string layer = layer_of(c.name);
+        const bool root = layer.empty() && c.name != "Z";
+        return !root && std::find(names.begin(), names.end(), layer.empty() ? c.name : layer) == names.end();
+    });
+}
+
+void print_warnings(const Warnings& warnings) {
+    for (const Warning& w : warnings) {
+        const std::string where = w.where.to_string();
+        fmt::print(stderr, "warning: {}{}{}\n", where, where.empty() ? "" : ": ", w.text);
+    }
+}
+
+int render_scene(RenderArguments a, const Invocation& invocation) {
+    const ThreadLimit threads(a.threads);
+    if (!a.seconds.empty()) a.options.seconds = parse_duration(a.seconds);
+    if (!a.resolution.empty()) a.overrides.resolution = parse_resolution(a.resolution);
+    if (!a.crop.empty()) a.overrides.crop = parse_crop(a.crop);
+    if (!a.shutter.empty()) a.overrides.shutter = parse_pair(a.shutter);
+
+    const ProgressReporter reporter = make_reporter(a.progress);
+    Monitor monitor(reporter.report, reporter.interval, invocation.start);
+    const InterruptGuard guard(monitor);
+
+    SceneDescription description = read_pbrt(a.scene);
+    apply(a.overrides, description);
+    const fs::path output = output_path(a, description);
+    require_writable_folder(output);
+    if (!a.png.empty()) require_writable_folder(a.png);
+
+    RenderScene scene(std::move(description), a.isa);
+    if (!a.quiet) {
+        print_warnings(scene.description.warnings);
+        print_warnings(scene.materials.warnings());
+    }
+    RenderResult result = render(scene, a.options, monitor);
+    finish_line(a.progress);
+    keep_layers(result.image, a.layers);
+    describe_render(result.image, a, scene, result, monitor, invocation.command_line);
+    write_exr(result.image, output, threads.threads());
+    if (!a.png.empty()) write_png(result.image, a.png);
+    if (!a.stats.empty()) {
+        std::ofstream file(a.stats);
+        file << statistics_json(result, monitor).dump(2) << "\n";
+        if (!file.flush()) throw Error(ErrorKind::io, "cannot write '" + a.stats + "'");
+    }
+    const uint64_t rejected = result.statistics.covariance.rejected + result.statistics.radiance.rejected;
+    if (rejected > 0) {
+        const auto& first = result.statistics.covariance.rejected > 0 ? result.statistics.covariance.first_rejected
+                                                                      : result.statistics.radiance.first_rejected;
+        fmt::print(stderr, "warning: {} samples were not finite and count as black; the first at x,y,sample = {},{},{}\n",
+                   rejected, first[0].x, first[0].y, first[0].sample);
+    }
+    if (!a.quiet)
+        fmt::print(stderr, "{}: {:.4g} samples per pixel in {:.1f} s\n", output.string(),
+                   result.statistics.samples_per_pixel, monitor.elapsed());
+    return result.complete ? 0 : 6;
+}
+
+template <typename T>
+void add_choice(CLI::App* c, const std::string& name, T& value, const std::map<std::string, T>& choices,
+                const std::string& help) {
+    c->add_option(name, value, help)->transform(CLI::CheckedTransformer(choices).description(""))->option_text([&] {
+        std::string names;
+        for (const auto& [choice, unused] : choices) names += (names.empty() ? "" : "|") + choice;
+        return names;
+    }());
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Invocation& invocation) {
+    auto a = std::make_shared<RenderArguments>();
+    CLI::App* c = app.add_subcommand("render", "Render a pbrt-v4 scene into an EXR with layers");
+    c->add_option("SCENE", a->scene, "the scene, a pbrt-v4 file")->required();
+    c->add_option("-o,--output", a->output, "the image (default: the film's name, else SCENE.exr)");
+    add_choice<Method>(c, "--method", a->options.method,
+                       {{"uniform", Method::uniform}, {"covariance", Method::covariance}},
+                       "plain path tracer, or covariance tracing (default)");
+    c->add_option("--spp", a->options.spp, "average samples per pixel (default: the scene's)")->check(CLI::PositiveNumber);
+    c->add_option("--time", a->seconds, "wall-clock budget: 2.5, 45s, 3m, 1h30m");
+    c->add_option("--cov-spp", a->options.cov_spp, "covariance paths per pixel (default: spp/4 in [2, 4])")
+        ->check(CLI::Range(1, 1 << 20));
+    add_choice<DensityRule>(c, "--density", a->options.density,
+                            {{"tempered", DensityRule::tempered}, {"thesis", DensityRule::thesis}},
+                            "how counts follow from the prediction");
+    c->add_option("--max-spp", a->options.max_spp, "most samples in any pixel (default: 16 x average)")
+        ->check(CLI::Range(1, 1 << 30));
+    add_choice<FilterRule>(c, "--filter", a->options.filter,
+                           {{"verified", FilterRule::verified}, {"thesis", FilterRule::thesis}},
+                           "the filter's constant: verified, or the thesis' equation 5.7");
+    c->add_option("--resolution", a->resolution, "WxH in place of the scene's");
+    c->add_option("--crop", a->crop, "x0,y0,x1,y1: only these pixels, end exclusive");
+    c->add_option("--max-depth", a->options.max_depth, "most scattering events (default: the scene's)")
+        ->check(CLI::NonNegativeNumber);
+    c->add_option("--seed", a->options.seed, "seed of all random numbers (default 0)");
+    c->add_option("--threads", a->threads, "worker threads (default: all cores)")->check(CLI::Range(1, 4096));
+    c->add_option("--isa", a->isa, "instruction set of the ray tracing")
+        ->check(CLI::IsMember({"sse2", "avx", "avx2", "avx512"}).description(""))
+        ->option_text("sse2|avx|avx2|avx512");
+    c->add_option("--shutter", a->shutter, "T0,T1 in place of the scene's");
+    c->add_option("--focus", a->overrides.focal_distance, "focal distance in place of the scene's")->check(CLI::PositiveNumber);
+    c->add_option("--fstop", a->overrides.f_number, "lens by f-number, for a full-frame sensor and metres")
+        ->check(CLI::PositiveNumber);
+    c->add_option("--png", a->png, "also a tone-mapped sRGB picture");
+    c->add_option("--layers", a->layers, "all, or the names of layers to keep beside the image");
+    add_choice<ProgressStyle>(c, "--progress", a->progress,
+                              {{"auto", ProgressStyle::automatic}, {"bar", ProgressStyle::bar},
+                               {"plain", ProgressStyle::plain}, {"percent", ProgressStyle::percent},
+                               {"json", ProgressStyle::json}, {"none", ProgressStyle::none}},
+                              "how progress is shown on standard error");
+    c->add_option("--stats", a->stats, "counters and phase times as JSON");
+    c->add_flag("--reproducible", a->reproducible, "leave command, seconds and date out of the file");
+    c->add_flag("--quiet", a->quiet, "errors only");
+    c->callback([a, &invocation] { invocation.action = [a, &invocation] { return render_scene(*a, invocation); }; });
+}
+
+}  // namespace covtrace::cli

@@ -1,0 +1,43 @@
+# The renderer's folders as libraries and its tests, with the flags that all of them share.
+
+find_package(TBB REQUIRED)
+
+add_library(covtrace_flags INTERFACE)
+target_compile_features(covtrace_flags INTERFACE cxx_std_20)
+# No contraction: the same expression must round the same way wherever it is inlined.
+target_compile_options(covtrace_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off)
+# g++ 12 reports string concatenation as overlapping copies (GCC bug 105651).
+target_compile_options(covtrace_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+target_include_directories(covtrace_flags INTERFACE "${PROJECT_SOURCE_DIR}/src")
+set(COVTRACE_MARCH "" CACHE STRING "Value of -march; empty leaves the compiler's default")
+if(COVTRACE_MARCH)
+    target_compile_options(covtrace_flags INTERFACE "-march=${COVTRACE_MARCH}")
+endif()
+option(COVTRACE_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
+if(COVTRACE_SANITIZE)
+    target_compile_options(covtrace_flags INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer)
+    target_link_options(covtrace_flags INTERFACE -fsanitize=address,undefined)
+endif()
+option(COVTRACE_WARNINGS_AS_ERRORS "Treat warnings as errors" ${PROJECT_IS_TOP_LEVEL})
+if(COVTRACE_WARNINGS_AS_ERRORS)
+    target_compile_options(covtrace_flags INTERFACE -Werror)
+endif()
+
+# covtrace_library(NAME SOURCES a.cpp … [DEPENDS covtrace_core …] [PRIVATE_DEPENDS embree …])
+# One library per folder; DEPENDS are the arrows of the design and nothing else.
+function(covtrace_library name)
+    cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(${name} PUBLIC covtrace_flags ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
+    set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+endfunction()
+
+# covtrace_tests(NAME LABEL label SOURCES a.cpp … [DEPENDS …]): a GoogleTest program, one ctest per test case.
+function(covtrace_tests name)
+    cmake_parse_arguments(ARG "" "LABEL" "SOURCES;DEPENDS" ${ARGN})
+    find_package(GTest REQUIRED)
+    include(GoogleTest)
+    add_executable(${name} ${ARG_SOURCES})
+    target_link_libraries(${name} PRIVATE covtrace_flags ${ARG_DEPENDS} GTest::gtest_main)
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 600)
+endfunction()

@@ -1,0 +1,112 @@
+// Lobes and windows of surface scattering, as 2x2 covariances in 1/rad^2: what reflection.hpp and
+// refraction.hpp convolve the light with or multiply it by.
+//
+// All lobes have positive spectra, for which Sigma = -Hess f / (4 pi^2 f) at the peak.
+#pragma once
+
+#include <cmath>
+
+#include "covariance/surface.hpp"
+
+namespace covariance {
+
+/// Slope distribution of a Beckmann surface: diag(2/ax^2, 2/ay^2) / (4 pi^2), axes t1, t2.
+template <std::floating_point T>
+[[nodiscard]] constexpr Sym2<T> micro_beckmann(T alpha_x, NonDeduced<T> alpha_y) noexcept {
+    return Sym2<T>::diagonal(2 / (alpha_x * alpha_x * four_pi_sq<T>),
+                             2 / (alpha_y * alpha_y * four_pi_sq<T>));
+}
+
+/// Slope distribution of a GGX surface: diag(4/ax^2, 4/ay^2) / (4 pi^2), axes t1, t2.
+template <std::floating_point T>
+[[nodiscard]] constexpr Sym2<T> micro_ggx(T alpha_x, NonDeduced<T> alpha_y) noexcept {
+    return 2 * micro_beckmann(alpha_x, alpha_y);
+}
+
+/// Slope distribution of a Blinn-Phong surface of exponent e: (e, e) / (4 pi^2).
+template <std::floating_point T>
+[[nodiscard]] constexpr Sym2<T> micro_blinn(T exponent) noexcept {
+    return Sym2<T>::diagonal(exponent / four_pi_sq<T>, exponent / four_pi_sq<T>);
+}
+
+/// A Phong lobe cos^e about the mirror direction: C = e/(4 pi^2) I, in outgoing slopes.
+/// Source: Belcour 2012 thesis, whose B is the inverse, 4 pi^2/e.
+template <std::floating_point T>
+[[nodiscard]] constexpr Sym2<T> phong_cov(T exponent) noexcept {
+    return micro_blinn(exponent);
+}
+
+/// Lobe of a microfacet reflection in outgoing slopes: C = P Cm P^T / (4 (h.Zo)^2).
+///
+/// Shapes   micro: slope covariance in the tangent basis; p_out = [Xo.T1 Xo.T2; Yo.T1 Yo.T2].
+/// Frames   for the mirror pair T1, T2 of the surface and the cosine of incidence; off the mirror
+///          direction T1, T2 turned from n to the half vector h, and h.Zo.
+/// Aligned: diag(Cm11/4, Cm22/(4 cos^2)), a lobe that narrows across the plane towards grazing.
+template <std::floating_point T>
+[[nodiscard]] constexpr Sym2<T> reflection_cov(const Sym2<T>& micro,
+                                               const Mat2<NonDeduced<T>>& p_out,
+                                               NonDeduced<T> cos_h) noexcept {
+    return (1 / (4 * cos_h * cos_h)) * congruence(micro, transpose(p_out));
+}
+
+/// Lobe of a microfacet refraction in outgoing slopes: C = (n2/Gamma)^2 P Cm P^T with
+/// Gamma = n2 cos_t - n1 cos_i.
+///
+/// Units    refractive indices n1 before, n2 after; both cosines positive.
+/// Errors   infinite or NaN where Gamma is 0 (equal indices, a perfectly sharp lobe).
+template <std::floating_point T>
+[[nodiscard]] constexpr Sym2<T> refraction_cov(const Sym2<T>& micro,
+                                               const Mat2<NonDeduced<T>>& p_out,
+                                               NonDeduced<T> cos_i, NonDeduced<T> cos_t,
+                                               NonDeduced<T> n1, NonDeduced<T> n2) noexcept {
+    const T ratio = n2 / (n2 * cos_t - n1 * cos_i);
+    return (ratio * ratio) * congruence(micro, transpose(p_out));
+}
+
+/// Lobe from the local second derivatives of BRDF * cos at the actual pair of directions:
+/// C = |Hess f| / (4 pi^2 f), eigenvalues made positive, never sharper than the peak.
+///
+/// A lobe's curvature at its peak over-estimates far from it; this is the local alternative.
+/// Shapes   hessian: second derivatives of f in outgoing slopes; peak: C at the peak, same axes.
+/// Errors   where f <= 0 the peak is returned.
+/// Source   the idea is in Belcour's 2016 course notes.
+template <std::floating_point T>
+[[nodiscard]] Sym2<T> local_lobe(const Sym2<T>& hessian, NonDeduced<T> value,
+                                 const Sym2<NonDeduced<T>>& peak) noexcept {
+    if (!(value > 0) || !(det(peak) > 0)) return peak;
+    const T scale = 1 / (four_pi_sq<T> * value);
+    const Sym2<T> local = map_eigenvalues(hessian, [=](T l) { return scale * std::abs(l); });
+    // With peak = L L^T: limit the eigenvalues of L^-1 C L^-T to 1.
+    const T l00 = std::sqrt(peak.xx), l10 = peak.xy / l00, l11 = std::sqrt(det(peak)) / l00;
+    const Mat2<T> to_peak{1 / l00, -l10 / (l00 * l11), 0, 1 / l11};  // L^-T
+    const Sym2<T> relative = congruence(local, to_peak);
+    const Sym2<T> limited = clamp_eigenvalues(relative, T(0), T(1));
+    return congruence(limited, Mat2<T>{l00, l10, 0, l11});
+}
+
+/// Smallest cosine of incidence used in `cosine_window`.
+template <std::floating_point T>
+inline constexpr T min_window_cosine = T(0.05);
+
+/// Angular window of Lambert's cosine, in local slopes: a a^T/(pi^2 cos^2 theta_i) + b b^T/pi^2
+/// with a in the plane of incidence and b across it.
+///
+/// At normal incidence the weight is (1 + u^2 + v^2)^-2, whose covariance is exactly 1/pi^2 per
+/// axis. At an angle the horizon is treated as an edge at the slope distance cot theta_i. Frame the
+/// incoming one; to be added between `surface_enter` and the slice, not elsewhere: it
+///          does not commute with curvature.
+/// Errors   none; cosines below 0.05 count as 0.05.
+template <std::floating_point T>
+[[nodiscard]] Sym2<T> cosine_window(const Frame<T>& incoming,
+                                    const Vec3<NonDeduced<T>>& n) noexcept {
+    const T c = std::max(std::abs(dot(incoming.z, n)), min_window_cosine<T>);
+    // The tangential part of Z has the transverse coordinates -(Z.n)(n.X, n.Y).
+    const T nx = dot(incoming.x, n), ny = dot(incoming.y, n);
+    const T size_sq = nx * nx + ny * ny;
+    const T across = 1 / (pi<T> * pi<T>);
+    if (!(size_sq > noise_level<T>)) return Sym2<T>::diagonal(across, across);
+    const T excess = across * (1 / (c * c) - 1) / size_sq;
+    return {across + excess * nx * nx, excess * nx * ny, across + excess * ny * ny};
+}
+
+}  // namespace covariance

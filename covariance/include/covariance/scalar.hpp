@@ -1,0 +1,31 @@
+// Constants and the one tolerance that the other headers share.
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <limits>
+#include <numbers>
+#include <type_traits>
+
+namespace covariance {
+
+/// The circle constant in the scalar type of the caller.
+template <std::floating_point T>
+inline constexpr T pi = std::numbers::pi_v<T>;
+
+/// 4 pi^2, the factor between a frequency covariance and the inverse of a primal one: S = (4 pi^2
+/// Sigma)^-1.
+template <std::floating_point T>
+inline constexpr T four_pi_sq = 4 * std::numbers::pi_v<T>* std::numbers::pi_v<T>;
+
+/// A parameter type that takes no part in template argument deduction, so that `travel(field, 2)`
+/// works for fields of float and of double alike.
+template <typename T>
+using NonDeduced = std::type_identity_t<T>;
+
+/// Relative size below which a difference of covariances counts as rounding noise:
+/// 1e-13 in double, 16 machine epsilons in float.
+template <std::floating_point T>
+inline constexpr T noise_level = std::max(T(1e-13), 16 * std::numeric_limits<T>::epsilon());
+
+}  // namespace covariance

@@ -1,0 +1,167 @@
+// Entering and leaving a surface: projection onto the tangent plane and curvature, in any frame.
+//
+//   P = [X.T1 X.T2; Y.T1 Y.T2]       transverse ray position = P * tangent position
+//   G_j = ((rho_j x Z).X, (rho_j x Z).Y),  rho_j = n x dn_j,  dn_j = kappa_1j T1 + kappa_2j T2
+//
+// G turns the slopes into axes that rotate with the normal, so that a BRDF sees one and the same
+// local frame everywhere. First order: the footprint is small beside the radius of curvature.
+#pragma once
+
+#include <cmath>
+
+#include "covariance/light_field.hpp"
+#include "covariance/matrix5.hpp"
+
+namespace covariance {
+
+/// The surface at a vertex: unit normal, tangent basis and shape operator.
+template <std::floating_point T = double>
+struct Surface {
+    Vec3<T> n{0, 0, 1};   ///< unit normal, on either side
+    Vec3<T> t1{1, 0, 0};  ///< with t2 an orthonormal basis of the tangent plane
+    Vec3<T> t2{0, 1, 0};
+    /// dn = curvature * dq, in the basis t1, t2, in 1/scene unit. Convex as seen from the side of n
+    /// is positive: +1/R for a sphere whose normal points outwards.
+    Sym2<T> curvature{};
+};
+
+/// Smallest |cos theta| with which a projection is inverted.
+template <std::floating_point T>
+inline constexpr T min_surface_cosine = T(0.02);
+
+/// P = [X.T1 X.T2; Y.T1 Y.T2]; its determinant is +-cos theta.
+template <std::floating_point T>
+[[nodiscard]] constexpr Mat2<T> surface_projection(const Frame<T>& f,
+                                                   const Surface<NonDeduced<T>>& s) noexcept {
+    return projection(f, s.t1, s.t2);
+}
+
+/// P^-1, with |cos theta| raised to `min_surface_cosine` at grazing angles.
+template <std::floating_point T>
+[[nodiscard]] Mat2<T> inverse_projection(const Frame<T>& f,
+                                         const Surface<NonDeduced<T>>& surface) noexcept {
+    Mat2<T> p = surface_projection(f, surface);
+    const T c = dot(f.z, surface.n);
+    if (std::abs(c) < min_surface_cosine<T>) {
+        // P has the singular values 1 and |c|. The second belongs to the tangent direction `along`
+        // the ray and its image b, P along = c b; only that one is replaced.
+        const Vec3<T> along = normalized_or(f.z - c * surface.n, surface.t1);
+        const Vec3<T> b = c * along - std::sqrt(1 - c * c) * surface.n;
+        const T lift = std::copysign(min_surface_cosine<T>, c) - c;
+        const T a1 = lift * dot(along, surface.t1), a2 = lift * dot(along, surface.t2);
+        const T bx = dot(b, f.x), by = dot(b, f.y);
+        p = p + Mat2<T>{bx * a1, bx * a2, by * a1, by * a2};
+    }
+    return inverse(p);
+}
+
+/// G: change of slope per tangent displacement between world axes and axes that turn with n.
+template <std::floating_point T>
+[[nodiscard]] constexpr Mat2<T> surface_curvature(const Frame<T>& f,
+                                                  const Surface<NonDeduced<T>>& s) noexcept {
+    // (n x d) x Z = d (n.Z) - n (d.Z)
+    const T nx = dot(f.x, s.n), ny = dot(f.y, s.n), nz = dot(f.z, s.n);
+    const Vec3<T> d1 = s.curvature.xx * s.t1 + s.curvature.xy * s.t2;
+    const Vec3<T> d2 = s.curvature.xy * s.t1 + s.curvature.yy * s.t2;
+    const T z1 = dot(f.z, d1), z2 = dot(f.z, d2);
+    return {nz * dot(f.x, d1) - z1 * nx, nz * dot(f.x, d2) - z2 * nx,  //
+            nz * dot(f.y, d1) - z1 * ny, nz * dot(f.y, d2) - z2 * ny};
+}
+
+/// The shape operator with principal curvatures limited to 1/(2 footprint), where the first order
+/// still means something. Units: footprint radius in scene units.
+template <std::floating_point T>
+[[nodiscard]] Sym2<T> limit_curvature(const Sym2<T>& curvature,
+                                      NonDeduced<T> footprint_radius) noexcept {
+    const T limit = 1 / (2 * footprint_radius);
+    return clamp_eigenvalues(curvature, -limit, limit);
+}
+
+/// Old from new coordinates of the shape [P 0 0; G I 0; 0 0 1].
+template <std::floating_point T>
+[[nodiscard]] constexpr Matrix5<T> position_matrix(const Mat2<T>& p, const Mat2<T>& g) noexcept {
+    return Matrix5<T>::identity().set_block(0, 0, p).set_block(2, 0, g);
+}
+
+/// Applies x_old = P x, u_old = u + G x: the shape that entering and leaving a surface share.
+template <std::floating_point T>
+[[nodiscard]] constexpr SymmetricMatrix5<T> change_positions(
+    SymmetricMatrix5<T> s, const Mat2<NonDeduced<T>>& p, const Mat2<NonDeduced<T>>& g) noexcept {
+    const Mat2<T> xu = s.cross();
+    // Xu' = P^T Xu + G^T Uu;   Xx' = P^T Xx P + P^T Xu G + G^T Xu^T P + G^T Uu G
+    const Mat2<T> mixed = transpose(p) * xu * g;
+    const Sym2<T> both{2 * mixed.m00, mixed.m01 + mixed.m10, 2 * mixed.m11};
+    s.set_spatial(congruence(s.spatial(), p) + both + congruence(s.angular(), g));
+    s.set_cross(transpose(p) * xu + transpose(g) * Mat2<T>(s.angular()));
+    const T xt = s(0, 4), yt = s(1, 4), ut = s(2, 4), vt = s(3, 4);
+    s(0, 4) = p.m00 * xt + p.m10 * yt + g.m00 * ut + g.m10 * vt;
+    s(1, 4) = p.m01 * xt + p.m11 * yt + g.m01 * ut + g.m11 * vt;
+    return s;
+}
+
+/// Old from new coordinates for `surface_enter`: [P 0 0; G I 0; 0 0 1].
+template <std::floating_point T>
+[[nodiscard]] constexpr Matrix5<T> surface_enter_matrix(
+    const Frame<T>& incoming, const Surface<NonDeduced<T>>& surface) noexcept {
+    return position_matrix(surface_projection(incoming, surface),
+                           surface_curvature(incoming, surface));
+}
+
+/// Old from new coordinates for `surface_exit`: [P^-1 0 0; -G P^-1 I 0; 0 0 1].
+template <std::floating_point T>
+[[nodiscard]] Matrix5<T> surface_exit_matrix(const Frame<T>& outgoing,
+                                             const Surface<NonDeduced<T>>& surface) noexcept {
+    const Mat2<T> inv = inverse_projection(outgoing, surface);
+    return position_matrix(inv, T(-1) * (surface_curvature(outgoing, surface) * inv));
+}
+
+/// From ray coordinates to local surface coordinates.
+///
+/// Afterwards x, y are tangent positions along t1, t2, and u, v slopes relative to the incoming X,
+/// Y as they turn with the normal. Undone by `surface_exit` with the same frame. Frame    that of
+/// the arriving ray. Errors: none; NaN in gives NaN out.
+template <std::floating_point T>
+[[nodiscard]] constexpr SymmetricMatrix5<T> surface_enter(
+    const SymmetricMatrix5<T>& s, const Frame<NonDeduced<T>>& incoming,
+    const Surface<NonDeduced<T>>& surface) noexcept {
+    return change_positions(s, surface_projection(incoming, surface),
+                            surface_curvature(incoming, surface));
+}
+
+/// The same on a light field; its frame, to which u and v still refer, is unchanged.
+template <std::floating_point T>
+[[nodiscard]] constexpr LightField<T> surface_enter(
+    const LightField<T>& field, const Surface<NonDeduced<T>>& surface) noexcept {
+    return {surface_enter(field.sigma, field.frame, surface), field.frame};
+}
+
+/// From local surface coordinates to coordinates of the ray that leaves along `outgoing.z`.
+///
+/// Frame    u and v must be relative to the X, Y of `outgoing`.
+/// Errors   none; |cos| of the leaving ray below 0.02 is treated as 0.02.
+template <std::floating_point T>
+[[nodiscard]] SymmetricMatrix5<T> surface_exit(const SymmetricMatrix5<T>& s,
+                                               const Frame<NonDeduced<T>>& outgoing,
+                                               const Surface<NonDeduced<T>>& surface) noexcept {
+    const Mat2<T> inv = inverse_projection(outgoing, surface);
+    return change_positions(s, inv, T(-1) * (surface_curvature(outgoing, surface) * inv));
+}
+
+/// The same on a light field whose frame is the outgoing one, as every reflection and refraction
+/// operator of this library leaves it.
+template <std::floating_point T>
+[[nodiscard]] LightField<T> surface_exit(const LightField<T>& field,
+                                         const Surface<NonDeduced<T>>& surface) noexcept {
+    return {surface_exit(field.sigma, field.frame, surface), field.frame};
+}
+
+/// The same with an outgoing frame of the caller's choice: for light without angular content (after
+/// a diffuse reflection, at a source), where u and v are zero and any X, Y will do.
+template <std::floating_point T>
+[[nodiscard]] LightField<T> surface_exit(const LightField<T>& field,
+                                         const Surface<NonDeduced<T>>& surface,
+                                         const Frame<NonDeduced<T>>& outgoing) noexcept {
+    return {surface_exit(field.sigma, outgoing, surface), outgoing};
+}
+
+}  // namespace covariance

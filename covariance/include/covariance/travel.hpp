@@ -1,0 +1,50 @@
+// Travel through free space: position frequencies flow into slope frequencies, W_u' = W_u - d W_x.
+// Exact, because slopes (not angles) are linear along a ray. Light takes no time.
+#pragma once
+
+#include "covariance/light_field.hpp"
+#include "covariance/matrix5.hpp"
+
+namespace covariance {
+
+/// Old from new coordinates for `travel`: x_old = x - d u, y_old = y - d v.
+template <std::floating_point T>
+[[nodiscard]] constexpr Matrix5<T> travel_matrix(T distance) noexcept {
+    Matrix5<T> a = Matrix5<T>::identity();
+    a(axis::x, axis::u) = a(axis::y, axis::v) = -distance;
+    return a;
+}
+
+/// Carries the light over a distance of free space.
+///
+///     Sxu' = Sxu - d Sxx      Suu' = Suu - 2 d Sxu + d^2 Sxx      Sut' = Sut - d Sxt, and so on
+///
+/// Composes: travel(a) then travel(b) is travel(a + b); travel(-a) undoes travel(a).
+/// Units    distance in scene units, any sign.
+/// Frame    unchanged.
+/// Post     det unchanged, positive semi-definite where the input is.
+/// Errors   none; NaN in gives NaN out.
+template <std::floating_point T>
+[[nodiscard]] constexpr SymmetricMatrix5<T> travel(SymmetricMatrix5<T> s,
+                                                   NonDeduced<T> distance) noexcept {
+    const T d = distance;
+    s(2, 2) += d * (d * s(0, 0) - 2 * s(0, 2));
+    s(2, 3) += d * (d * s(0, 1) - s(0, 3) - s(1, 2));
+    s(3, 3) += d * (d * s(1, 1) - 2 * s(1, 3));
+    s(0, 2) -= d * s(0, 0);
+    s(0, 3) -= d * s(0, 1);
+    s(1, 2) -= d * s(0, 1);
+    s(1, 3) -= d * s(1, 1);
+    s(2, 4) -= d * s(0, 4);
+    s(3, 4) -= d * s(1, 4);
+    return s;
+}
+
+/// The same on a light field; the frame is unchanged.
+template <std::floating_point T>
+[[nodiscard]] constexpr LightField<T> travel(const LightField<T>& field,
+                                             NonDeduced<T> distance) noexcept {
+    return {travel(field.sigma, distance), field.frame};
+}
+
+}  // namespace covariance

@@ -1,0 +1,28 @@
+/// Parallel loops over oneTBB. Results must not depend on which thread runs what.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+namespace covtrace {
+
+/// Limits the worker threads of every parallel loop while it lives; 0: all cores.
+class ThreadLimit {
+  public:
+    explicit ThreadLimit(int threads);
+    ~ThreadLimit();
+    ThreadLimit(const ThreadLimit&) = delete;
+    ThreadLimit& operator=(const ThreadLimit&) = delete;
+    int threads() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Calls body(i) for all i in [0, count), each once; the order is unspecified. An exception thrown
+/// by a body ends the loop and is thrown to the caller.
+void parallel_for(int64_t count, const std::function<void(int64_t)>& body);
+
+}  // namespace covtrace

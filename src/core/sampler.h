@@ -1,0 +1,38 @@
+/// Owen-scrambled Sobol points: every number is a function of (seed, pixel, sample index, dimension).
+#pragma once
+
+#include <cstdint>
+
+#include "core/vec.h"
+
+namespace covtrace {
+
+/// The sample stream of one path. The first five dimensions (film x, y, lens u, v, time) come from
+/// one scrambled five-dimensional Sobol sequence; all later ones are pairs of the two-dimensional
+/// sequence, each pair with a shuffle and a scramble of its own ("padding").
+///
+/// Scrambling by hashing: Burley 2020, "Practical hash-based Owen scrambling" (JCGT 9(4)), with the
+/// hash of Laine and Karras 2011. Every prefix of the sample indices is a usable point set.
+class Sampler {
+  public:
+    Sampler(uint64_t seed, int pixel_x, int pixel_y, uint32_t sample_index);
+
+    /// Position on the film, lens and shutter: the five dimensions at once, in [0, 1).
+    struct CameraSample {
+        Vec2 film, lens;
+        float time = 0;
+    };
+    CameraSample camera();
+
+    float next_1d();  ///< the first number of a fresh pair
+    Vec2 next_2d();   ///< a fresh pair
+    /// Skips to a fixed dimension, so that later events see the same numbers whatever came before.
+    void set_dimension(int pair) { pair_ = static_cast<uint32_t>(pair); }
+
+  private:
+    uint64_t key_;
+    uint32_t index_;
+    uint32_t pair_ = 0;
+};
+
+}  // namespace covtrace

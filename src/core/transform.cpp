@@ -1,0 +1,296 @@
+#include "core/transform.h"
+
+#include <cmath>
+
+namespace covtrace {
+
+namespace {
+
+using Matrix3 = std::array<std::array<double, 3>, 3>;
+
+constexpr double kRadians = 3.14159265358979323846 / 180.0;
+
+Matrix3 to_matrix(Quaternion q) {
+    const double x = q.x, y = q.y, z = q.z, w = q.w;
+    return {{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+             {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+             {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
+}
+
+Quaternion from_matrix(const Matrix3& m) {
+    const double trace = m[0][0] + m[1][1] + m[2][2];
+    Quaternion q;
+    if (trace > 0) {
+        const double s = std::sqrt(trace + 1.0) * 2;
+        q = {(m[2][1] - m[1][2]) / s, (m[0][2] - m[2][0]) / s, (m[1][0] - m[0][1]) / s, 0.25 * s};
+    } else {
+        const size_t i = m[0][0] > m[1][1] ? (m[0][0] > m[2][2] ? 0 : 2) : (m[1][1] > m[2][2] ? 1 : 2);
+        const size_t j = (i + 1) % 3, k = (i + 2) % 3;
+        const double s = std::sqrt(std::max(0.0, m[i][i] - m[j][j] - m[k][k] + 1.0)) * 2;
+        double v[3];
+        v[i] = 0.25 * s;
+        v[j] = (m[j][i] + m[i][j]) / s;
+        v[k] = (m[k][i] + m[i][k]) / s;
+        q = {v[0], v[1], v[2], (m[k][j] - m[j][k]) / s};
+    }
+    const double n = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+    return {q.x / n, q.y / n, q.z / n, q.w / n};
+}
+
+/// Gram-Schmidt: linear part = rotation * upper triangular. A reflection goes into the last scale.
+AnimatedTransform::Decomposition decompose(const Matrix4& a) {
+    AnimatedTransform::Decomposition d;
+    d.translation = {static_cast<float>(a.m[0][3]), static_cast<float>(a.m[1][3]),
+                     static_cast<float>(a.m[2][3])};
+    double q[3][3];  // q[i]: i-th orthonormal column
+    Matrix3 r{};
+    for (size_t c = 0; c < 3; ++c) {
+        double v[3] = {a.m[0][c], a.m[1][c], a.m[2][c]};
+        for (size_t p = 0; p < c; ++p) {
+            r[p][c] = q[p][0] * v[0] + q[p][1] * v[1] + q[p][2] * v[2];
+            for (int i = 0; i < 3; ++i) v[i] -= r[p][c] * q[p][i];
+        }
+        r[c][c] = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        for (int i = 0; i < 3; ++i) q[c][i] = r[c][c] > 0 ? v[i] / r[c][c] : (i == int(c) ? 1.0 : 0.0);
+    }
+    const double det = q[0][0] * (q[1][1] * q[2][2] - q[1][2] * q[2][1]) -
+                       q[0][1] * (q[1][0] * q[2][2] - q[1][2] * q[2][0]) +
+                       q[0][2] * (q[1][0] * q[2][1] - q[1][1] * q[2][0]);
+    if (det < 0) {
+        for (int i = 0; i < 3; ++i) q[2][i] = -q[2][i];
+        r[2][2] = -r[2][2];
+    }
+    const Matrix3 rotation{{{q[0][0], q[1][0], q[2][0]}, {q[0][1], q[1][1], q[2][1]}, {q[0][2], q[1][2], q[2][2]}}};
+    d.rotation = from_matrix(rotation);
+    d.scale = r;
+    return d;
+}
+
+}  // namespace
+
+Matrix4 operator*(const Matrix4& a, const Matrix4& b) {
+    Matrix4 c;
+    for (size_t i = 0; i < 4; ++i)
+        for (size_t j = 0; j < 4; ++j) {
+            double s = 0;
+            for (size_t k = 0; k < 4; ++k) s += a.m[i][k] * b.m[k][j];
+            c.m[i][j] = s;
+        }
+    return c;
+}
+
+Matrix4 transpose(const Matrix4& a) {
+    Matrix4 t;
+    for (size_t i = 0; i < 4; ++i)
+        for (size_t j = 0; j < 4; ++j) t.m[i][j] = a.m[j][i];
+    return t;
+}
+
+std::optional<Matrix4> inverse(const Matrix4& a) {
+    Matrix4 left = a, right;
+    for (size_t c = 0; c < 4; ++c) {
+        size_t pivot = c;
+        for (size_t r = c + 1; r < 4; ++r)
+            if (std::abs(left.m[r][c]) > std::abs(left.m[pivot][c])) pivot = r;
+        const double p = left.m[pivot][c];
+        if (!(std::abs(p) > 1e-300) || !std::isfinite(p)) return std::nullopt;
+        std::swap(left.m[c], left.m[pivot]);
+        std::swap(right.m[c], right.m[pivot]);
+        for (size_t j = 0; j < 4; ++j) {
+            left.m[c][j] /= p;
+            right.m[c][j] /= p;
+        }
+        for (size_t r = 0; r < 4; ++r) {
+            const double f = left.m[r][c];
+            if (r == c || f == 0) continue;
+            for (size_t j = 0; j < 4; ++j) {
+                left.m[r][j] -= f * left.m[c][j];
+                right.m[r][j] -= f * right.m[c][j];
+            }
+        }
+    }
+    for (const auto& row : right.m)
+        for (double v : row)
+            if (!std::isfinite(v)) return std::nullopt;
+    return right;
+}
+
+std::optional<Transform> Transform::from_matrix(const Matrix4& matrix) {
+    const auto inv = covtrace::inverse(matrix);
+    if (!inv) return std::nullopt;
+    return Transform(matrix, *inv);
+}
+
+Transform Transform::translate(Vec3 d) {
+    Matrix4 a, b;
+    for (int i = 0; i < 3; ++i) {
+        a.m[size_t(i)][3] = d[i];
+        b.m[size_t(i)][3] = -d[i];
+    }
+    return {a, b};
+}
+
+Transform Transform::scale(double x, double y, double z) {
+    Matrix4 a, b;
+    a.m[0][0] = x, a.m[1][1] = y, a.m[2][2] = z;
+    b.m[0][0] = 1 / x, b.m[1][1] = 1 / y, b.m[2][2] = 1 / z;
+    return {a, b};
+}
+
+Transform Transform::rotate(double degrees, Vec3 axis) {
+    const double l = std::sqrt(double(axis.x) * axis.x + double(axis.y) * axis.y + double(axis.z) * axis.z);
+    if (!(l > 0)) return {};
+    const double x = axis.x / l, y = axis.y / l, z = axis.z / l;
+    const double s = std::sin(degrees * kRadians), c = std::cos(degrees * kRadians), k = 1 - c;
+    Matrix4 a;
+    a.m[0] = {x * x * k + c, x * y * k - z * s, x * z * k + y * s, 0};
+    a.m[1] = {x * y * k + z * s, y * y * k + c, y * z * k - x * s, 0};
+    a.m[2] = {x * z * k - y * s, y * z * k + x * s, z * z * k + c, 0};
+    return {a, transpose(a)};
+}
+
+std::optional<Transform> Transform::look_at(Vec3 eye, Vec3 look, Vec3 up) {
+    const Vec3 dir = normalize(look - eye);
+    const Vec3 side = cross(normalize(up), dir);
+    if (!(length(dir) > 0) || !(length(side) > 1e-7f)) return std::nullopt;
+    const Vec3 right = normalize(side);
+    const Vec3 new_up = cross(dir, right);
+    Matrix4 camera_to_world;
+    for (int i = 0; i < 3; ++i) {
+        camera_to_world.m[size_t(i)] = {right[i], new_up[i], dir[i], eye[i]};
+    }
+    const auto inv = covtrace::inverse(camera_to_world);
+    if (!inv) return std::nullopt;
+    return Transform(*inv, camera_to_world);
+}
+
+namespace {
+Vec3 apply(const Matrix4& a, Vec3 p, double w) {
+    double r[3];
+    for (size_t i = 0; i < 3; ++i)
+        r[i] = a.m[i][0] * p.x + a.m[i][1] * p.y + a.m[i][2] * p.z + a.m[i][3] * w;
+    return {static_cast<float>(r[0]), static_cast<float>(r[1]), static_cast<float>(r[2])};
+}
+}  // namespace
+
+Vec3 Transform::point(Vec3 p) const {
+    const auto& last = matrix_.m[3];
+    const double w = last[0] * p.x + last[1] * p.y + last[2] * p.z + last[3];
+    const Vec3 r = apply(matrix_, p, 1);
+    return w == 1 ? r : r * static_cast<float>(1 / w);
+}
+
+Vec3 Transform::vector(Vec3 v) const { return apply(matrix_, v, 0); }
+
+Vec3 Transform::normal(Vec3 n) const {
+    const auto& a = inverse_.m;
+    double r[3];
+    for (size_t i = 0; i < 3; ++i) r[i] = a[0][i] * n.x + a[1][i] * n.y + a[2][i] * n.z;
+    return {static_cast<float>(r[0]), static_cast<float>(r[1]), static_cast<float>(r[2])};
+}
+
+bool Transform::swaps_handedness() const {
+    const auto& a = matrix_.m;
+    const double det = a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) -
+                       a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+                       a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+    return det < 0;
+}
+
+Transform operator*(const Transform& a, const Transform& b) {
+    return {a.matrix() * b.matrix(), b.inverse_matrix() * a.inverse_matrix()};
+}
+
+Quaternion slerp(double t, Quaternion a, Quaternion b) {
+    double c = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
+    if (c < 0) {
+        b = {-b.x, -b.y, -b.z, -b.w};
+        c = -c;
+    }
+    double wa = 1 - t, wb = t;
+    if (c < 1 - 1e-12) {
+        const double angle = std::acos(std::min(1.0, c)), s = std::sin(angle);
+        wa = std::sin((1 - t) * angle) / s;
+        wb = std::sin(t * angle) / s;
+    }
+    return {wa * a.x + wb * b.x, wa * a.y + wb * b.y, wa * a.z + wb * b.z, wa * a.w + wb * b.w};
+}
+
+AnimatedTransform::AnimatedTransform(const Transform& start, float start_time, const Transform& end,
+                                     float end_time)
+    : start_(start), end_(end), start_time_(start_time), end_time_(end_time),
+      animated_(!(start == end) && end_time > start_time) {
+    if (!animated_) return;
+    keys_ = {decompose(start.matrix()), decompose(end.matrix())};
+}
+
+Transform AnimatedTransform::at(float time) const {
+    if (!animated_ || time <= start_time_) return start_;
+    if (time >= end_time_) return end_;
+    const double t = (double(time) - start_time_) / (double(end_time_) - start_time_);
+    const Matrix3 rotation = to_matrix(slerp(t, keys_[0].rotation, keys_[1].rotation));
+    Matrix4 m;
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            double s = 0;
+            for (size_t k = 0; k <= j; ++k)
+                s += rotation[i][k] * ((1 - t) * keys_[0].scale[k][j] + t * keys_[1].scale[k][j]);
+            m.m[i][j] = s;
+        }
+        m.m[i][3] = (1 - t) * keys_[0].translation[int(i)] + t * keys_[1].translation[int(i)];
+    }
+    const auto moved = Transform::from_matrix(m);
+    return moved ? *moved : start_;
+}
+
+Vec3 AnimatedTransform::velocity(Vec3 p, float time) const {
+    if (!animated_ || time < start_time_ || time > end_time_) return {};
+    const Vec3 local = at(time).inverse().point(p);
+    const float h = 1e-3f * (end_time_ - start_time_);
+    const float t0 = std::max(start_time_, time - h), t1 = std::min(end_time_, time + h);
+    return (at(t1).point(local) - at(t0).point(local)) / (t1 - t0);
+}
+
+Vec3 AnimatedTransform::angular_velocity(float time) const {
+    if (!animated_ || time < start_time_ || time > end_time_) return {};
+    Quaternion a = keys_[0].rotation, b = keys_[1].rotation;
+    if (a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w < 0) b = {-b.x, -b.y, -b.z, -b.w};
+    // b a^-1 turns the first key into the second; its axis is fixed in the world during a slerp.
+    const Quaternion c{-a.x, -a.y, -a.z, a.w};
+    const double x = b.w * c.x + b.x * c.w + b.y * c.z - b.z * c.y;
+    const double y = b.w * c.y - b.x * c.z + b.y * c.w + b.z * c.x;
+    const double z = b.w * c.z + b.x * c.y - b.y * c.x + b.z * c.w;
+    const double w = b.w * c.w - b.x * c.x - b.y * c.y - b.z * c.z;
+    const double s = std::sqrt(x * x + y * y + z * z);
+    if (!(s > 0)) return {};
+    const double rate = 2 * std::atan2(s, w) / (double(end_time_) - start_time_) / s;
+    return {static_cast<float>(x * rate), static_cast<float>(y * rate), static_cast<float>(z * rate)};
+}
+
+Bounds3 AnimatedTransform::motion_bounds(const Bounds3& b) const {
+    Bounds3 all;
+    const auto corner = [&b](int i) {
+        return Vec3{i & 1 ? b.hi.x : b.lo.x, i & 2 ? b.hi.y : b.lo.y, i & 4 ? b.hi.z : b.lo.z};
+    };
+    const int steps = animated_ ? 64 : 0;
+    float largest_step = 0;
+    std::array<Vec3, 8> previous{};
+    for (int s = 0; s <= steps; ++s) {
+        const float f = steps ? float(s) / float(steps) : 0.0f;
+        const Transform t = at(start_time_ + f * (end_time_ - start_time_));
+        for (int i = 0; i < 8; ++i) {
+            const Vec3 p = t.point(corner(i));
+            if (s > 0) largest_step = std::max(largest_step, distance(p, previous[size_t(i)]));
+            previous[size_t(i)] = p;
+            all.extend(p);
+        }
+    }
+    const float pad = 0.5f * largest_step;
+    if (!all.empty()) {
+        all.lo -= Vec3{pad, pad, pad};
+        all.hi += Vec3{pad, pad, pad};
+    }
+    return all;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,59 @@
+/// Maps from the unit square to the domains that a renderer samples, with their densities.
+#pragma once
+
+#include <cmath>
+
+#include "core/vec.h"
+
+namespace covtrace {
+
+/// Unit disc, concentric (Shirley and Chiu 1997); density 1/pi per area.
+inline Vec2 square_to_disc(Vec2 u) {
+    const float a = 2 * u.x - 1, b = 2 * u.y - 1;
+    if (a == 0 && b == 0) return {};
+    float r, phi;
+    if (std::abs(a) > std::abs(b)) {
+        r = a;
+        phi = (kPi / 4) * (b / a);
+    } else {
+        r = b;
+        phi = kPi / 2 - (kPi / 4) * (a / b);
+    }
+    return {r * std::cos(phi), r * std::sin(phi)};
+}
+
+/// Upper hemisphere about z with density cos(theta)/pi per solid angle.
+inline Vec3 square_to_cosine_hemisphere(Vec2 u) {
+    const Vec2 d = square_to_disc(u);
+    return {d.x, d.y, safe_sqrt(1 - d.x * d.x - d.y * d.y)};
+}
+constexpr float cosine_hemisphere_pdf(float cos_theta) { return cos_theta > 0 ? cos_theta * kInvPi : 0; }
+
+/// Whole sphere, density 1/(4 pi) per solid angle.
+inline Vec3 square_to_sphere(Vec2 u) {
+    const float z = 1 - 2 * u.x, r = safe_sqrt(1 - z * z), phi = 2 * kPi * u.y;
+    return {r * std::cos(phi), r * std::sin(phi), z};
+}
+inline constexpr float kUniformSpherePdf = kInvPi / 4;
+
+/// Directions within `1 - cos_max` of z; density 1/(2 pi one_minus_cos_max) per solid angle. Taking
+/// 1 - cos as the argument keeps tiny cones exact.
+inline Vec3 square_to_cone(Vec2 u, float one_minus_cos_max) {
+    const float h = u.x * one_minus_cos_max;  // 1 - cos(theta)
+    const float sin_theta = safe_sqrt(h * (2 - h)), phi = 2 * kPi * u.y;
+    return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), 1 - h};
+}
+constexpr float cone_pdf(float one_minus_cos_max) { return 1 / (2 * kPi * one_minus_cos_max); }
+
+/// Barycentric coordinates (b0, b1) of a triangle, uniform by area (Heitz 2019, low distortion).
+inline Vec2 square_to_triangle(Vec2 u) {
+    float b0 = u.x * 0.5f, b1 = u.y * 0.5f;
+    const float offset = b1 - b0;
+    if (offset > 0)
+        b1 += offset;
+    else
+        b0 -= offset;
+    return {b0, b1};
+}
+
+}  // namespace covtrace

@@ -1,0 +1,103 @@
+#include "frequency/replay.h"
+
+#include <cmath>
+
+#include "frequency/light_source.h"
+#include "frequency/scatter.h"
+
+namespace covtrace {
+
+namespace cov = covariance;
+
+namespace {
+
+/// Light that arrives at one place from one direction, and how much of it.
+struct Arriving {
+    LightField field;
+    double weight = 0;
+
+    void add(const LightField& other, double other_weight) {
+        if (!(other_weight > 0)) return;
+        field = weight > 0 ? cov::merge(field, weight, other, other_weight) : other;
+        weight += other_weight;
+    }
+};
+
+cov::SymmetricMatrix5<double> to_sensor(const LightField& field, const SensorGeometry& g) {
+    const LightField at_rest = cov::motion_enter(field, {g.velocity, g.angular_velocity});
+    if (g.orthographic)
+        return cov::sensor(at_rest, cov::OrthographicLens<double>{g.right, g.down, g.forward, g.focal_distance,
+                                                                  g.lens_radius, g.pixels_per_x, g.pixels_per_y,
+                                                                  g.shutter});
+    return cov::sensor(at_rest, cov::ThinLens<double>{g.right, g.down, g.forward, g.focal_distance, g.lens_radius,
+                                                      g.pixels_per_x, g.pixels_per_y, g.shutter});
+}
+
+}  // namespace
+
+PathReplay::PathReplay(const RenderScene& scene) : scene_(scene) {
+    const Bounds3 bounds = scene.geometry.bounds();
+    center_ = bounds.center();
+    radius_ = std::max(bounds.radius(), 1e-6f);
+    smallest_ = 1e-4 * radius_;
+}
+
+PathCovariance PathReplay::operator()(const PathRecord& record) const {
+    const SensorGeometry camera = scene_.camera.sensor(record.camera_ray);
+    const auto distance_to_sphere = [&](Vec3 p, Vec3 w) {
+        const Vec3 o = p - center_;
+        const float b = dot(o, w), c = length_squared(o) - sqr(radius_);
+        return double(std::max(0.0f, -b + safe_sqrt(b * b - c)));
+    };
+
+    Arriving light;
+    if (record.escaped > 0) {
+        const SourceSpectrum s = scene_.lights.environment_spectrum(record.escape_direction);
+        light.add(source_field(s, -record.escape_direction, record.escape_seen_sharply, smallest_), record.escaped);
+        const Vec3 last = record.count > 0 ? record.vertices[size_t(record.count - 1)].hit.position
+                                           : record.camera_ray.origin;
+        light.field = cov::travel(light.field, distance_to_sphere(last, record.escape_direction));
+    }
+
+    // Half a pixel's extent grows with the distance travelled from the camera.
+    float distances[PathRecord::kCapacity];
+    Vec3 previous = record.camera_ray.origin;
+    float travelled = 0;
+    for (int i = 0; i < record.count; ++i) {
+        const Vec3 p = record.vertices[size_t(i)].hit.position;
+        travelled += distance(previous, p);
+        distances[i] = travelled;
+        previous = p;
+    }
+
+    for (int i = record.count - 1; i >= 0; --i) {
+        const PathVertex& v = record.vertices[size_t(i)];
+        Arriving leaving;
+        if (light.weight > 0 || v.direct > 0) {
+            const float extent = camera.orthographic ? 1.0f : distances[i];
+            const ScatterPoint point = scatter_point(scene_, v, 0.5f * extent / camera.pixels_per_x);
+            if (light.weight > 0) leaving.add(scatter(light.field, point, v.next_event.lobes), light.weight);
+            if (v.direct > 0) {
+                const SourceSpectrum s = scene_.lights.source_spectrum(v.light, v.hit.time);
+                const double d = std::isfinite(v.light.distance)
+                                     ? double(v.light.distance)
+                                     : distance_to_sphere(v.hit.position, v.light.wi);
+                const LightField source = source_field(s, -v.light.wi, false, smallest_);
+                leaving.add(scatter(cov::travel(source, d), point, v.direct_event.lobes), v.direct);
+            }
+        }
+        if (v.emitted > 0)
+            leaving.add(source_field(scene_.lights.source_spectrum(v.hit), v.wo, v.seen_sharply, smallest_), v.emitted);
+        light = leaving;
+        if (!(light.weight > 0)) continue;
+        const Vec3 next = i > 0 ? record.vertices[size_t(i - 1)].hit.position : record.camera_ray.origin;
+        light.field = cov::travel(light.field, distance(v.hit.position, next));
+    }
+
+    if (!(light.weight > 0)) return {};
+    const PathCovariance result{to_sensor(light.field, camera), light.weight};
+    if (!cov::is_finite(result.sigma) || !std::isfinite(result.weight)) return {};
+    return result;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,32 @@
+/// From a recorded path to its covariance at the sensor: the only place that knows both sides.
+#pragma once
+
+#include "covariance/covariance.hpp"
+#include "integrator/path_record.h"
+#include "integrator/render_scene.h"
+
+namespace covtrace {
+
+/// A path's covariance over (pixel x, pixel y, lens, lens, shutter) and its weight, the luminance
+/// of all light that the record holds. Weight 0: no light, or a matrix that is not finite.
+struct PathCovariance {
+    covariance::SymmetricMatrix5<double> sigma;
+    double weight = 0;
+};
+
+/// Walks the path once from its far end to the sensor. At every vertex the light found there (its
+/// own emission, a sampled light) and the light that arrives from further on are merged by luminance
+/// (an incoherent sum, covariance::merge), so that k vertices cost k steps.
+class PathReplay {
+  public:
+    explicit PathReplay(const RenderScene& scene);
+    PathCovariance operator()(const PathRecord& record) const;
+
+  private:
+    const RenderScene& scene_;
+    double smallest_;      // extent that stands for a point, scene units
+    Vec3 center_;          // bounding sphere of the scene: light from infinity enters there
+    float radius_;
+};
+
+}  // namespace covtrace

@@ -1,0 +1,28 @@
+/// One scattering event: from the light that arrives at a surface to the light that leaves it.
+#pragma once
+
+#include "covariance/covariance.hpp"
+#include "frequency/light_source.h"
+#include "integrator/path_record.h"
+#include "integrator/render_scene.h"
+
+namespace covtrace {
+
+/// A recorded vertex as the operators see it, gathered once for all the light that meets there.
+struct ScatterPoint {
+    covariance::Surface<double> surface;
+    covariance::Motion<double> motion;
+    /// Spectra of the textures that scale the diffuse lobes, along surface.t1, t2, 1 / scene unit^2.
+    covariance::Sym2<double> reflectance, transmittance;
+    Vec3 outgoing;  ///< unit, the direction in which light leaves towards the camera
+};
+
+/// `footprint`: half a pixel's extent at the vertex, in scene units; no texture edge counts as nearer.
+ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, float footprint);
+
+/// Sends `arriving` (its frame's z is the direction of travel towards the surface) through the
+/// lobes of the event and merges them by luminance. The result is in the frame
+/// covariance::frame_along(point.outgoing), so that several of them can be merged.
+LightField scatter(const LightField& arriving, const ScatterPoint& point, const LobeShares& lobes);
+
+}  // namespace covtrace

@@ -1,0 +1,18 @@
+/// Embree instances of a scene, still or moving. Only for .cpp files of this folder.
+#pragma once
+
+#include "geometry/embree_device.h"
+#include "geometry/motion.h"
+
+namespace covtrace {
+
+GeometryHandle new_still_instance(const EmbreeDevice& device, RTCScene scene, const Transform& map);
+
+/// Embree's interpolation keeps within 1e-5 of the extent of `scene` of where `motion` puts it.
+GeometryHandle new_moving_instance(const EmbreeDevice& device, RTCScene scene, const Motion& motion,
+                                   const ShutterClock& clock);
+
+/// The map that Embree uses at a parameter of the clock, from the instanced scene to the world.
+Affine instance_transform(RTCGeometry instance, float parameter);
+
+}  // namespace covtrace

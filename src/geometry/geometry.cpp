@@ -1,0 +1,145 @@
+#include "geometry/geometry.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/embree_shapes.h"
+#include "geometry/geometry_impl.h"
+
+namespace covtrace {
+
+namespace {
+
+void set_ray(RTCRay& out, const Ray& ray, const ShutterClock& clock, unsigned mask) {
+    out.org_x = ray.origin.x, out.org_y = ray.origin.y, out.org_z = ray.origin.z;
+    out.dir_x = ray.direction.x, out.dir_y = ray.direction.y, out.dir_z = ray.direction.z;
+    out.tnear = 0;
+    out.tfar = ray.t_max;
+    out.time = clock.parameter(ray.time);
+    out.mask = mask;
+    out.id = 0;
+    out.flags = 0;
+}
+
+/// Bound on where float arithmetic may put a ray that Embree carries into an instance and back: each
+/// coordinate suffers a few roundings of sums as large as these.
+double instance_error(const Affine& world_from_local, const Affine& local_from_world, Vec3d position) {
+    const Vec3d local = local_from_world.absolute(abs(position) + abs(world_from_local.translation));
+    return 6 * kHalfUlp * length(world_from_local.absolute(local));
+}
+
+/// `point` of the local space that `map` takes to the world; null: it is the world already.
+void fill_hit(SurfacePoint point, const Affine* map, SurfaceHit& hit) {
+    if (map) {
+        point.error *= std::max({length(map->row[0]), length(map->row[1]), length(map->row[2])});
+        point.position = map->point(point.position);
+        point.error += instance_error(*map, map->inverse(), point.position);
+        point.ng = normalize(map->normal(point.ng));
+        point.ns = normalize(map->normal(point.ns));
+        if (dot(point.ng, point.ns) < 0) point.ns = point.ns * -1.0;
+        point.dpdu = map->vector(point.dpdu);
+        point.dpdv = map->vector(point.dpdv);
+    }
+    hit.position = point.position.to_float();
+    hit.ng = point.ng.to_float();
+    hit.ns = point.ns.to_float();
+    hit.dpdu = point.dpdu.to_float();
+    hit.dpdv = point.dpdv.to_float();
+    hit.uv = point.uv;
+    const double rounding = kHalfUlp * dot(abs(point.ng), abs(point.position));
+    hit.position_error = static_cast<float>(point.error + rounding);
+}
+
+}  // namespace
+
+Geometry::Geometry(const SceneDescription& scene, const std::string& isa)
+    : impl_(std::make_unique<Impl>(scene, isa)) {}
+Geometry::~Geometry() = default;
+
+bool Geometry::intersect(const Ray& ray, SurfaceHit& hit) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit query;
+    set_ray(query.ray, ray, impl_->clock, kEveryMask);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(impl_->top.scene.get(), &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+
+    hit.t = query.ray.tfar;
+    hit.time = ray.time;
+    hit.primitive = query.hit.primID;
+    hit.barycentric = {query.hit.u, query.hit.v};
+    const Vec3d near = Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t);
+    if (query.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
+        hit.instance = 0;
+        hit.shape = impl_->top.shape_of_geometry[query.hit.geomID];
+        fill_hit(surface_point(impl_->local[hit.shape], hit.primitive, hit.barycentric, near), nullptr, hit);
+        return true;
+    }
+    hit.instance = query.hit.instID[0] + 1;
+    const EmbreeInstance& instance = impl_->instances[query.hit.instID[0]];
+    hit.shape = impl_->scenes[instance.scene].shape_of_geometry[query.hit.geomID];
+    const Affine map = impl_->world_from_local(instance, ray.time);
+    const LocalShape& shape = impl_->local[hit.shape];
+    const Vec3d local_near = std::holds_alternative<Quadric>(shape) ? map.inverse().point(near) : near;
+    fill_hit(surface_point(shape, hit.primitive, hit.barycentric, local_near), &map, hit);
+    return true;
+}
+
+bool Geometry::occluded(const Ray& ray) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay query;
+    set_ray(query, ray, impl_->clock, kSolidMask);
+    rtcOccluded1(impl_->top.scene.get(), &context, &query);
+    return query.tfar < 0;
+}
+
+Vec3 Geometry::offset_origin(const SurfaceHit& hit, Vec3 direction) {
+    const Vec3 n = dot(direction, hit.ng) < 0 ? -hit.ng : hit.ng;
+    Vec3 origin;
+    for (int i = 0; i < 3; ++i) {
+        const float moved = hit.position[i] + n[i] * hit.position_error;
+        origin[i] = n[i] == 0 ? moved : std::nextafter(moved, n[i] > 0 ? kInfinity : -kInfinity);
+    }
+    return origin;
+}
+
+const std::vector<PlacedShape>& Geometry::shapes() const { return impl_->placed; }
+
+WorldTriangle Geometry::world_triangle(uint32_t shape, uint32_t triangle, float time) const {
+    const LocalShape& local = impl_->local[shape];
+    WorldTriangle w;
+    if (const auto* mesh = std::get_if<TriangleShape>(&local)) {
+        const auto& index = mesh->mesh->triangles[triangle];
+        w = {mesh->positions[index[0]], mesh->positions[index[1]], mesh->positions[index[2]]};
+    } else {
+        const auto& patches = std::get<PatchShape>(local);
+        const auto& i = patches.mesh->patches[triangle / 2];
+        const auto& p = patches.positions;
+        w = triangle % 2 == 0 ? WorldTriangle{p[i[0]], p[i[1]], p[i[2]]}
+                              : WorldTriangle{p[i[3]], p[i[2]], p[i[1]]};
+    }
+    if (!Motion{nullptr, &impl_->placed[shape].object_to_world}.moves(impl_->clock.open(), impl_->clock.close()))
+        return w;
+    const float clamped = std::clamp(time, impl_->clock.open(), impl_->clock.close());
+    const Transform map = impl_->placed[shape].object_to_world.at(clamped);
+    return {map.point(w.p0), map.point(w.p1), map.point(w.p2)};
+}
+
+const std::string& Geometry::isa() const { return impl_->device.isa(); }
+Bounds3 Geometry::bounds() const { return impl_->bounds; }
+
+size_t Geometry::memory() const {
+    size_t bytes = impl_->device.bytes_used() + impl_->placed.capacity() * sizeof(PlacedShape) +
+                   impl_->local.capacity() * sizeof(LocalShape) +
+                   impl_->instances.capacity() * sizeof(EmbreeInstance);
+    for (const LocalShape& shape : impl_->local) {
+        if (const auto* mesh = std::get_if<TriangleShape>(&shape)) bytes += mesh->positions.capacity() * sizeof(Vec3);
+        if (const auto* patches = std::get_if<PatchShape>(&shape)) bytes += patches->positions.capacity() * sizeof(Vec3);
+    }
+    return bytes;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,62 @@
+/// All shapes of a scene behind Embree: intersection, occlusion, and the local geometry of a hit.
+/// Embree's types stay in the .cpp files of this folder.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "geometry/hit.h"
+
+namespace covtrace {
+
+/// A shape as it stands in the scene: its description and where it is over time.
+struct PlacedShape {
+    ShapeDescription description;
+    /// Objects of instances keep their object-to-instance transform here; the instance's comes on top (SurfaceHit::instance).
+    AnimatedTransform object_to_world;
+    bool flip_normal = false;  ///< reverse orientation xor mirrored transform
+    bool is_instanced = false;
+};
+
+/// Corners of a triangle or of half a patch in world space at some time.
+struct WorldTriangle {
+    Vec3 p0, p1, p2;
+};
+
+class Geometry {
+  public:
+    /// Builds the acceleration structures. `isa`: empty, or one of sse2, avx, avx2, avx512.
+    /// Throws Error(limit) where memory runs out.
+    explicit Geometry(const SceneDescription& scene, const std::string& isa = {});
+    ~Geometry();
+    Geometry(const Geometry&) = delete;
+    Geometry& operator=(const Geometry&) = delete;
+
+    /// Nearest hit in (0, ray.t_max); false where there is none. Thread-safe.
+    bool intersect(const Ray& ray, SurfaceHit& hit) const;
+    /// Whether anything but interface surfaces lies in (0, ray.t_max). Thread-safe.
+    bool occluded(const Ray& ray) const;
+    /// `origin` moved off the surface of `hit` to the side of `direction`, so that a ray from there does not meet it again.
+    static Vec3 offset_origin(const SurfaceHit& hit, Vec3 direction);
+
+    DifferentialGeometry differential(const SurfaceHit& hit) const;
+
+    const std::vector<PlacedShape>& shapes() const;
+    /// Of a mesh's triangle (or of a patch: halves 2i and 2i+1), at `time`. Not for instanced shapes.
+    WorldTriangle world_triangle(uint32_t shape, uint32_t triangle, float time) const;
+    /// The instruction set that rays are traced with: as asked for, or what Embree chose ("sse2" to "avx512").
+    const std::string& isa() const;
+    /// Over the whole shutter. Empty scene: a unit box about the origin.
+    Bounds3 bounds() const;
+    /// Bytes held by the shapes and by Embree; meshes of the description are not counted.
+    size_t memory() const;
+
+    /// For the other parts of this folder.
+    struct Impl;
+    const Impl& impl() const { return *impl_; }
+
+  private:
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace covtrace

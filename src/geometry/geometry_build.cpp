@@ -1,0 +1,168 @@
+#include <new>
+
+#include "geometry/embree_instances.h"
+#include "geometry/embree_shapes.h"
+#include "geometry/geometry_impl.h"
+
+namespace covtrace {
+
+namespace {
+
+bool has_interface_material(const SceneDescription& scene, const ShapeDescription& shape) {
+    return shape.material >= 0 && std::holds_alternative<InterfaceMaterial>(
+                                      scene.materials[static_cast<size_t>(shape.material)].value);
+}
+
+/// An interface between nothing and nothing has no effect on any path.
+bool is_left_out(const SceneDescription& scene, const ShapeDescription& shape) {
+    return has_interface_material(scene, shape) && shape.inside < 0 && shape.outside < 0 && shape.area_light < 0;
+}
+
+std::vector<float> key_times(const SceneDescription& scene) {
+    std::vector<float> times;
+    const auto add = [&times](const AnimatedTransform& t) {
+        if (t.is_animated()) times.insert(times.end(), {t.start_time(), t.end_time()});
+    };
+    for (const ShapeDescription& shape : scene.shapes) add(shape.object_to_world);
+    for (const InstanceDescription& instance : scene.instances) add(instance.instance_to_world);
+    for (const ObjectDescription& object : scene.objects)
+        for (const ShapeDescription& shape : object.shapes) add(shape.object_to_world);
+    return times;
+}
+
+}  // namespace
+
+struct Geometry::Impl::Builder {
+    Impl& g;
+    const SceneDescription& scene;
+
+    void place(const ShapeDescription& shape, bool is_instanced) {
+        PlacedShape placed{shape, shape.object_to_world, false, is_instanced};
+        placed.flip_normal =
+            shape.reverse_orientation != shape.object_to_world.start().swaps_handedness();
+        g.placed.push_back(std::move(placed));
+        g.is_interface.push_back(has_interface_material(scene, shape));
+    }
+
+    bool moves(const AnimatedTransform& t) const {
+        return Motion{nullptr, &t}.moves(g.clock.open(), g.clock.close());
+    }
+
+    ShapeScene new_scene() const { return {g.device.new_scene(), {}}; }
+
+    void add(ShapeScene& target, uint32_t shape) const {
+        GeometryHandle geometry = new_shape_geometry(g.device, g.local[shape], g.is_interface[shape]);
+        if (geometry) attach(target, geometry.get(), shape);
+    }
+
+    static void attach(ShapeScene& target, RTCGeometry geometry, uint32_t shape) {
+        rtcAttachGeometryByID(target.scene.get(), geometry,
+                              static_cast<unsigned>(target.shape_of_geometry.size()));
+        target.shape_of_geometry.push_back(shape);
+    }
+
+    /// Keeps `part` as a scene to be instanced; its index.
+    uint32_t keep(ShapeScene part) const {
+        g.device.commit(part.scene.get());
+        g.scenes.push_back(std::move(part));
+        return static_cast<uint32_t>(g.scenes.size() - 1);
+    }
+
+    /// Places scene number `index` in the world. Instances come first in the top scene, so that
+    /// Embree's instance number is the index into `instances`.
+    void instantiate(uint32_t index, const Motion& motion) const {
+        RTCScene part = g.scenes[index].scene.get();
+        EmbreeInstance instance;
+        instance.scene = index;
+        instance.motion = motion;
+        instance.moves = motion.moves(g.clock.open(), g.clock.close());
+        const GeometryHandle handle =
+            instance.moves ? new_moving_instance(g.device, part, motion, g.clock)
+                           : new_still_instance(g.device, part, motion.at(g.clock.open()));
+        instance.handle = handle.get();
+        instance.still = instance_transform(handle.get(), 0);
+        attach(g.top, handle.get(), 0);
+        g.instances.push_back(instance);
+    }
+
+    uint32_t single_shape_scene(uint32_t shape) const {
+        ShapeScene part = new_scene();
+        add(part, shape);
+        return keep(std::move(part));
+    }
+
+    /// An object: its still shapes as one scene, each of its moving shapes as one of its own.
+    struct ObjectScenes {
+        std::vector<std::pair<uint32_t, const AnimatedTransform*>> parts;
+    };
+
+    ObjectScenes build_object(uint32_t first, size_t count) const {
+        ObjectScenes object;
+        ShapeScene still = new_scene();
+        for (uint32_t i = first; i < first + count; ++i) {
+            if (is_left_out(scene, g.placed[i].description)) continue;
+            const AnimatedTransform& motion = g.placed[i].object_to_world;
+            if (moves(motion))
+                object.parts.emplace_back(single_shape_scene(i), &motion);
+            else
+                add(still, i);
+        }
+        if (!still.shape_of_geometry.empty()) object.parts.emplace_back(keep(std::move(still)), nullptr);
+        return object;
+    }
+
+    void run() {
+        for (const ShapeDescription& shape : scene.shapes) place(shape, false);
+        std::vector<uint32_t> first_of_object;
+        for (const ObjectDescription& object : scene.objects) {
+            first_of_object.push_back(static_cast<uint32_t>(g.placed.size()));
+            for (const ShapeDescription& shape : object.shapes) place(shape, true);
+        }
+        g.local.reserve(g.placed.size());
+        for (const PlacedShape& shape : g.placed) {
+            const AnimatedTransform& t = shape.object_to_world;
+            g.local.push_back(
+                make_local_shape(shape.description, moves(t) ? Transform{} : t.at(g.clock.open())));
+        }
+        g.top = new_scene();
+
+        for (const InstanceDescription& instance : scene.instances)
+            g.instance_motions.push_back(instance.instance_to_world);
+        std::vector<ObjectScenes> objects;
+        for (size_t i = 0; i < scene.objects.size(); ++i)
+            objects.push_back(build_object(first_of_object[i], scene.objects[i].shapes.size()));
+        for (size_t i = 0; i < scene.instances.size(); ++i)
+            for (const auto& [part, motion] : objects[static_cast<size_t>(scene.instances[i].object)].parts)
+                instantiate(part, {&g.instance_motions[i], motion});
+        const auto count = static_cast<uint32_t>(scene.shapes.size());
+        for (uint32_t i = 0; i < count; ++i) {
+            const AnimatedTransform& motion = g.placed[i].object_to_world;
+            if (is_left_out(scene, g.placed[i].description) || !moves(motion)) continue;
+            instantiate(single_shape_scene(i), {nullptr, &motion});
+        }
+        for (uint32_t i = 0; i < count; ++i)
+            if (!is_left_out(scene, g.placed[i].description) && !moves(g.placed[i].object_to_world))
+                add(g.top, i);
+        g.device.commit(g.top.scene.get());
+    }
+};
+
+Geometry::Impl::Impl(const SceneDescription& scene, const std::string& isa)
+    : device(isa), clock(scene.camera.shutter_open, scene.camera.shutter_close, key_times(scene)) {
+    try {
+        Builder{*this, scene}.run();
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::limit, "out of memory while building the scene's geometry");
+    }
+    RTCBounds box;
+    rtcGetSceneBounds(top.scene.get(), &box);
+    bounds = {{box.lower_x, box.lower_y, box.lower_z}, {box.upper_x, box.upper_y, box.upper_z}};
+    if (bounds.empty() || !is_finite(bounds.lo) || !is_finite(bounds.hi))
+        bounds = {{-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}};
+}
+
+Affine Geometry::Impl::moving_map(const EmbreeInstance& instance, float time) const {
+    return instance_transform(instance.handle, clock.parameter(time));
+}
+
+}  // namespace covtrace

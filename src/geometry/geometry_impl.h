@@ -1,0 +1,49 @@
+/// What Geometry holds. Only for .cpp files of this folder.
+#pragma once
+
+#include "geometry/embree_device.h"
+#include "geometry/geometry.h"
+#include "geometry/motion.h"
+#include "geometry/surface.h"
+
+namespace covtrace {
+
+/// An Embree scene and the shape behind each of its geometries.
+struct ShapeScene {
+    SceneHandle scene;
+    std::vector<uint32_t> shape_of_geometry;
+};
+
+struct EmbreeInstance {
+    uint32_t scene = 0;             ///< into Geometry::Impl::scenes
+    RTCGeometry handle = nullptr;   ///< kept alive by the top scene
+    bool moves = false;
+    Affine still;                   ///< where it does not move
+    Motion motion;                  ///< where it does; refers to Geometry::Impl's transforms
+};
+
+struct Geometry::Impl {
+    Impl(const SceneDescription& scene, const std::string& isa);
+
+    EmbreeDevice device;
+    ShutterClock clock;
+    std::vector<PlacedShape> placed;
+    std::vector<LocalShape> local;  ///< of the shape of the same index in `placed`
+    std::vector<bool> is_interface;
+    std::vector<AnimatedTransform> instance_motions;
+    std::vector<ShapeScene> scenes;  ///< of objects and of moving shapes
+    std::vector<EmbreeInstance> instances;
+    ShapeScene top;
+    Bounds3 bounds;
+
+    /// The world from the local space of an instance, as Embree has it at `time`.
+    Affine world_from_local(const EmbreeInstance& instance, float time) const {
+        return instance.moves ? moving_map(instance, time) : instance.still;
+    }
+
+  private:
+    struct Builder;
+    Affine moving_map(const EmbreeInstance& instance, float time) const;
+};
+
+}  // namespace covtrace

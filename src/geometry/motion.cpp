@@ -1,0 +1,84 @@
+#include "geometry/motion.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+
+namespace covtrace {
+
+namespace {
+
+bool moves_between(const AnimatedTransform* t, float begin, float end) {
+    return t && t->is_animated() && begin < end && t->start_time() < end && t->end_time() > begin;
+}
+
+}  // namespace
+
+ShutterClock::ShutterClock(float open, float close, const std::vector<float>& key_times)
+    : breaks_{open, close} {
+    for (float key : key_times)
+        if (key > open && key < close) breaks_.push_back(key);
+    std::sort(breaks_.begin(), breaks_.end());
+    if (close > open) breaks_.erase(std::unique(breaks_.begin(), breaks_.end()), breaks_.end());
+    if (segments() > 128)
+        throw Error(ErrorKind::limit, "more than 128 different times at which motions start or stop");
+}
+
+float ShutterClock::parameter(float time) const {
+    if (!(time > open())) return 0;
+    if (time >= close()) return 1;
+    size_t i = 0;
+    while (time >= breaks_[i + 1]) ++i;
+    const float f = (time - breaks_[i]) / (breaks_[i + 1] - breaks_[i]);
+    return (static_cast<float>(i) + f) / static_cast<float>(segments());
+}
+
+float ShutterClock::key_time(unsigned i, unsigned count) const {
+    const unsigned per_segment = count / segments(), segment = i / per_segment;
+    if (segment == segments()) return close();
+    const float f = static_cast<float>(i % per_segment) / static_cast<float>(per_segment);
+    return breaks_[segment] + f * (breaks_[segment + 1] - breaks_[segment]);
+}
+
+Transform Motion::at(float time) const {
+    if (!outer) return inner ? inner->at(time) : Transform{};
+    return inner ? outer->at(time) * inner->at(time) : outer->at(time);
+}
+
+bool Motion::moves(float begin, float end) const {
+    return moves_between(outer, begin, end) || moves_between(inner, begin, end);
+}
+
+Affine Motion::rate(float time, const ShutterClock& clock) const {
+    // The segment between two breaks that holds `time`, without an allocation.
+    float lo = clock.open(), hi = clock.close();
+    for (const AnimatedTransform* t : {outer, inner}) {
+        if (!t || !t->is_animated()) continue;
+        for (float key : {t->start_time(), t->end_time()}) {
+            if (key <= time) lo = std::max(lo, key);
+            if (key > time) hi = std::min(hi, key);
+        }
+    }
+    if (time >= clock.close()) {
+        // The last instant belongs to the movement that it ends.
+        lo = clock.open();
+        for (const AnimatedTransform* t : {outer, inner})
+            if (t && t->is_animated())
+                for (float key : {t->start_time(), t->end_time()})
+                    if (key < clock.close()) lo = std::max(lo, key);
+    }
+    Affine zero;
+    for (Vec3d& row : zero.row) row = {};
+    if (!moves(lo, hi)) return zero;
+    const float h = 1e-4f * (hi - lo);
+    const float t0 = std::max(lo, time - h), t1 = std::min(hi, time + h);
+    if (!(t1 > t0)) return zero;
+    const Affine a = Affine::from_matrix(at(t0).matrix()), b = Affine::from_matrix(at(t1).matrix());
+    const double s = 1 / (double(t1) - t0);
+    Affine r;
+    for (int i = 0; i < 3; ++i) r.row[i] = (b.row[i] - a.row[i]) * s;
+    r.translation = (b.translation - a.translation) * s;
+    return r;
+}
+
+}  // namespace covtrace

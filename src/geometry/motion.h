@@ -1,0 +1,46 @@
+/// Where a shape is over time: up to two animated transforms, one on top of the other, within a shutter.
+#pragma once
+
+#include <vector>
+
+#include "core/transform.h"
+#include "geometry/affine.h"
+
+namespace covtrace {
+
+/// The shutter, and a parameter in [0, 1] over it in which the times where any motion of the scene
+/// starts or stops are equally spaced. Embree's keys are uniform in that parameter, so that every start
+/// and stop falls on a key. (Embree 3.13 can also give each geometry a time range of its own, but then
+/// loses hits where ranges differ.)
+class ShutterClock {
+  public:
+    /// `close` may equal `open`. Throws Error(limit) for more than 128 different key times within.
+    ShutterClock(float open, float close, const std::vector<float>& key_times);
+
+    float open() const { return breaks_.front(); }
+    float close() const { return breaks_.back(); }
+    /// Stretches of time between starts and stops, at least 1.
+    unsigned segments() const { return static_cast<unsigned>(breaks_.size()) - 1; }
+    /// Scene time to the parameter; clamped to the shutter.
+    float parameter(float time) const;
+    /// Scene time of key `i` of `count`, which is a multiple of segments().
+    float key_time(unsigned i, unsigned count) const;
+
+  private:
+    std::vector<float> breaks_;
+};
+
+/// `outer` after `inner`; null stands for the identity. Does not own the transforms.
+struct Motion {
+    const AnimatedTransform* outer = nullptr;
+    const AnimatedTransform* inner = nullptr;
+
+    Transform at(float time) const;
+    /// Whether anything moves between `begin` and `end`.
+    bool moves(float begin, float end) const;
+    /// d/dt of the map at `time`, per unit of scene time; one-sided at the ends of a movement.
+    /// Zero where the motion rests at `time`.
+    Affine rate(float time, const ShutterClock& clock) const;
+};
+
+}  // namespace covtrace

@@ -1,0 +1,38 @@
+/// Any local shape as triangles of bounded size error, for what needs no exact surface.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geometry/surface.h"
+
+namespace covtrace {
+
+/// Triangles over positions; both may belong to the shape itself, which must outlive this.
+class Tessellation {
+  public:
+    /// Curved shapes are cut into pieces of about `piece` scene units, at most 512 along a parameter;
+    /// `scale` is how much longer a local unit may be in the scene.
+    Tessellation(const LocalShape& shape, double piece, double scale);
+
+    size_t size() const { return triangles().size(); }
+    std::array<Vec3, 3> operator[](size_t i) const {
+        const auto& t = triangles()[i];
+        const auto& p = positions();
+        return {p[t[0]], p[t[1]], p[t[2]]};
+    }
+
+  private:
+    const std::vector<Vec3>& positions() const { return mesh_ ? mesh_->positions : positions_; }
+    const std::vector<std::array<uint32_t, 3>>& triangles() const {
+        return mesh_ ? mesh_->mesh->triangles : triangles_;
+    }
+    template <class PointAt>
+    void add_grid(int nu, int nv, PointAt&& point_at);
+
+    const TriangleShape* mesh_ = nullptr;
+    std::vector<Vec3> positions_;
+    std::vector<std::array<uint32_t, 3>> triangles_;
+};
+
+}  // namespace covtrace

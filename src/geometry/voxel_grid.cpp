@@ -1,0 +1,42 @@
+#include "geometry/voxel_grid.h"
+
+#include <bit>
+#include <cmath>
+
+namespace covtrace {
+
+size_t VoxelGrid::memory() const {
+    return top_.capacity() * sizeof(top_[0]) + stored_.capacity() * sizeof(Brick) +
+           voxels_.capacity() * sizeof(Voxel);
+}
+
+VoxelGrid::Cell VoxelGrid::cell_of(Vec3 point) const {
+    const Vec3 p = (point - origin_) / size_;
+    return {static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y)),
+            static_cast<int>(std::floor(p.z))};
+}
+
+const VoxelGrid::Brick* VoxelGrid::brick_of(Cell c) const {
+    const int x = c.x >> 3, y = c.y >> 3, z = c.z >> 3;
+    if (x < 0 || y < 0 || z < 0 || x >= bricks_[0] || y >= bricks_[1] || z >= bricks_[2]) return nullptr;
+    const int32_t index = top_[(static_cast<size_t>(z) * static_cast<size_t>(bricks_[1]) + static_cast<size_t>(y)) *
+                                   static_cast<size_t>(bricks_[0]) +
+                               static_cast<size_t>(x)];
+    return index < 0 ? nullptr : &stored_[static_cast<size_t>(index)];
+}
+
+const Voxel& VoxelGrid::voxel(const Brick& brick, int z, int bit) const {
+    const uint64_t below = brick.occupied[static_cast<size_t>(z)] & ((uint64_t{1} << bit) - 1);
+    return voxels_[brick.first + brick.rank[static_cast<size_t>(z)] +
+                   static_cast<uint32_t>(std::popcount(below))];
+}
+
+const Voxel* VoxelGrid::find(Vec3 point) const {
+    const Cell c = cell_of(point);
+    const Brick* brick = brick_of(c);
+    const int z = c.z & 7, bit = (c.y & 7) * 8 + (c.x & 7);
+    if (!brick || !(brick->occupied[static_cast<size_t>(z)] >> bit & 1)) return nullptr;
+    return &voxel(*brick, z, bit);
+}
+
+}  // namespace covtrace

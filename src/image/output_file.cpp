@@ -1,0 +1,116 @@
+#include "image/output_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "core/error.h"
+
+namespace covtrace {
+
+namespace {
+
+constexpr size_t kBufferSize = size_t(1) << 18;
+
+std::filesystem::path directory_of(const std::filesystem::path& file) {
+    return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+}  // namespace
+
+OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)), final_(target_) {
+    std::error_code ignored;
+    if (std::filesystem::is_symlink(final_, ignored)) {
+        const auto resolved = std::filesystem::weakly_canonical(final_, ignored);
+        if (!ignored) final_ = resolved;
+    }
+    struct stat status {};
+    const bool exists = ::stat(final_.c_str(), &status) == 0;
+    if (exists && S_ISDIR(status.st_mode)) fail(EISDIR);
+    std::filesystem::path opened = final_;
+    int flags = O_WRONLY | O_CLOEXEC;
+    if (!exists || S_ISREG(status.st_mode)) {
+        temporary_ = final_;
+        temporary_ += ".part-" + std::to_string(::getpid());
+        opened = temporary_;
+        flags |= O_CREAT | O_TRUNC;
+    }
+    descriptor_ = ::open(opened.c_str(), flags, 0666);
+    if (descriptor_ < 0) {
+        const int error_number = errno;
+        temporary_.clear();
+        const auto directory = directory_of(final_);
+        if (error_number == ENOENT && !std::filesystem::exists(directory, ignored))
+            throw Error(ErrorKind::io, "cannot write '" + target_.string() + "': the directory '" +
+                                           directory.string() + "' does not exist");
+        fail(error_number);
+    }
+    // Permissions are a comfort: where they cannot be carried over, the file is still right.
+    if (exists && !temporary_.empty() && ::fchmod(descriptor_, status.st_mode & 07777) != 0)
+        errno = 0;
+    buffer_.reserve(kBufferSize);
+}
+
+OutputFile::~OutputFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void OutputFile::write(const void* bytes, size_t count) {
+    buffer_.append(static_cast<const char*>(bytes), count);
+    position_ += count;
+    if (buffer_.size() >= kBufferSize) flush();
+}
+
+void OutputFile::seek(uint64_t position) {
+    if (position == position_) return;
+    flush();
+    if (::lseek(descriptor_, off_t(position), SEEK_SET) < 0) fail(errno);
+    position_ = position;
+}
+
+void OutputFile::flush() {
+    const char* next = buffer_.data();
+    size_t left = buffer_.size();
+    while (left > 0) {
+        const ssize_t written = ::write(descriptor_, next, left);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) fail(errno);
+        if (written == 0) fail(ENOSPC);
+        next += written;
+        left -= size_t(written);
+    }
+    buffer_.clear();
+}
+
+void OutputFile::commit() {
+    // A caller may have lost the exception of an earlier failure, as OpenEXR's destructors do.
+    if (error_ != 0) fail(error_);
+    flush();
+    // Devices and pipes cannot be synchronised and say so with EINVAL.
+    if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(errno);
+    const int descriptor = std::exchange(descriptor_, -1);
+    if (::close(descriptor) != 0) fail(errno);
+    if (temporary_.empty()) return;
+    if (::rename(temporary_.c_str(), final_.c_str()) != 0) fail(errno);
+    temporary_.clear();
+    // Makes the new name last through a power cut; file systems that cannot do it lose nothing
+    // else.
+    const int directory = ::open(directory_of(final_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (directory >= 0) {
+        ::fsync(directory);
+        ::close(directory);
+    }
+}
+
+void OutputFile::fail(int error_number) {
+    if (error_ == 0) error_ = error_number;
+    throw Error(ErrorKind::io, "cannot write '" + target_.string() +
+                                   "': " + std::generic_category().message(error_number));
+}
+
+}  // namespace covtrace

@@ -1,0 +1,53 @@
+/// Private to this folder: decoders of plain pictures, from the bytes of a whole file to pixels.
+///
+/// They throw DecodeError; nothing is printed, nothing large is allocated before the size in the
+/// header has been checked, and pixels are appended while they are decoded, so that a short file
+/// that claims to be large costs little.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+namespace covtrace {
+
+struct DecodeError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Pixels as a file holds them: integers scaled to [0, 1] and not decoded.
+struct PlainImage {
+    int width = 0, height = 0;
+    int channels = 0;           ///< 1: grey, 2: grey and alpha, 3: R G B, 4: R G B A
+    int integer_bits = 0;       ///< 8 or 16; 0: floating point
+    std::vector<float> values;  ///< interleaved, row by row from the top
+    bool has_alpha() const { return channels == 2 || channels == 4; }
+};
+
+/// Throws DecodeError unless an image of this size is reasonable: at least one pixel and channel,
+/// at most 2^28 pixels and 4 GiB as float.
+void check_image_size(int64_t width, int64_t height, int64_t channels);
+
+/// An image without values yet; checks its size and reserves address space.
+PlainImage make_plain_image(int64_t width, int64_t height, int channels, int integer_bits);
+
+/// Mirrors the rows: the first becomes the last.
+void flip_rows(PlainImage& image);
+
+using Bytes = std::span<const uint8_t>;
+
+/// All bit depths and colour types; palettes and transparent colours are expanded.
+PlainImage decode_png(Bytes bytes);
+/// Grey, YCbCr, RGB, CMYK and YCCK, sequential and progressive.
+PlainImage decode_jpeg(Bytes bytes);
+/// Truevision TGA: palette, colour, grey; raw and run-length encoded.
+PlainImage decode_targa(Bytes bytes);
+/// Radiance RGBE: flat, old and new run lengths. EXPOSURE is ignored, as pbrt does.
+PlainImage decode_hdr(Bytes bytes);
+/// PFM of either byte order, scaled by the magnitude of its scale; binary PGM and PPM.
+PlainImage decode_pnm(Bytes bytes);
+/// The "Quite OK Image" format, qoiformat.org, version 1.0.
+PlainImage decode_qoi(Bytes bytes);
+
+}  // namespace covtrace

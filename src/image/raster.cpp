@@ -1,0 +1,74 @@
+#include "image/raster.h"
+
+#include <cmath>
+
+#include "image/read_file.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Planes of the channels that a picture shows: grey, R G B or R G B A.
+std::vector<const Channel*> visible_channels(const Image& image) {
+    const Channel *r = image.find("R"), *g = image.find("G"), *b = image.find("B");
+    if (r && g && b) {
+        const Channel* a = image.find("A");
+        return a ? std::vector{r, g, b, a} : std::vector{r, g, b};
+    }
+    if (const Channel* y = image.find("Y")) return {y};
+    if (image.channels.size() == 1) return {&image.channels.front()};
+    return {};
+}
+
+RasterImage from_exr(const std::filesystem::path& file, const SourceLocation& where) {
+    const Image image = read_exr(file, where);
+    const auto channels = visible_channels(image);
+    if (channels.empty()) throw_unreadable(file, where, "it has no channels R, G, B or Y");
+    RasterImage raster{.width = image.width(),
+                       .height = image.height(),
+                       .channels = int(channels.size()),
+                       .values = {}};
+    raster.values.resize(image.pixel_count() * channels.size());
+    for (size_t c = 0; c < channels.size(); ++c)
+        for (size_t i = 0; i < image.pixel_count(); ++i)
+            raster.values[i * channels.size() + c] = channels[c]->values[i];
+    return raster;
+}
+
+RasterImage from_plain(PlainImage plain) {
+    RasterImage raster{.width = plain.width,
+                       .height = plain.height,
+                       .channels = plain.channels == 2 ? 1 : plain.channels,
+                       .values = std::move(plain.values),
+                       .is_8bit = plain.integer_bits == 8,
+                       .is_16bit = plain.integer_bits == 16};
+    if (plain.channels == 2) {
+        const size_t pixels = raster.values.size() / 2;
+        for (size_t i = 0; i < pixels; ++i) raster.values[i] = raster.values[2 * i];
+        raster.values.resize(pixels);
+    }
+    return raster;
+}
+
+void repair(RasterImage& raster) {
+    float largest = 0;
+    for (float v : raster.values)
+        if (std::isfinite(v)) largest = std::max(largest, std::abs(v));
+    for (float& v : raster.values) {
+        if (std::isfinite(v)) continue;
+        v = std::isnan(v) ? 0.0f : std::copysign(largest, v);
+        ++raster.repaired;
+    }
+}
+
+}  // namespace
+
+RasterImage read_raster(const std::filesystem::path& file, const SourceLocation& where) {
+    const ImageFormat format = detect_image_format(file, where);
+    RasterImage raster = format == ImageFormat::exr ? from_exr(file, where)
+                                                    : from_plain(read_plain(file, format, where));
+    repair(raster);
+    return raster;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,29 @@
+/// Pictures as textures and environment maps use them: interleaved, with the values of the file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "core/error.h"
+
+namespace covtrace {
+
+struct RasterImage {
+    int width = 0, height = 0;
+    int channels = 0;           ///< 1 (grey), 3 (R, G, B) or 4 (R, G, B, A; A not premultiplied)
+    std::vector<float> values;  ///< interleaved, row by row from the top; see read_raster
+    bool is_8bit = false;       ///< 8-bit integers in the file, usually sRGB-encoded
+    bool is_16bit = false;      ///< 16-bit integers in the file, usually sRGB-encoded
+    int64_t repaired = 0;       ///< values that were NaN or infinite in the file
+};
+
+/// Reads the same formats as read_image. Integers are scaled to [0, 1] and left as they are
+/// encoded, palettes expanded, the alpha of grey images dropped. Of an EXR the data window's pixels
+/// are read, of its channels the root layer's R, G, B, A or Y, or else the only channel. NaN
+/// becomes 0, ±Inf the largest finite magnitude of the image with its sign.
+///
+/// Throws Error(scene) at `where` with one line that names the file, as read_image does.
+RasterImage read_raster(const std::filesystem::path& file, const SourceLocation& where = {});
+
+}  // namespace covtrace

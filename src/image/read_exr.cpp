@@ -1,0 +1,186 @@
+#include <ImfChannelList.h>
+#include <ImfDoubleAttribute.h>
+#include <ImfFloatAttribute.h>
+#include <ImfFloatVectorAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputPart.h>
+#include <ImfIntAttribute.h>
+#include <ImfMatrixAttribute.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
+#include <ImfStringAttribute.h>
+#include <ImfTileDescriptionAttribute.h>
+#include <ImfVecAttribute.h>
+
+#include <new>
+#include <set>
+
+#include "image/exr_names.h"
+#include "image/read_file.h"
+
+namespace covtrace {
+
+namespace {
+
+PixelBounds from_imath(const Imath::Box2i& box) {
+    return {box.min.x, box.min.y, box.max.x + 1, box.max.y + 1};
+}
+
+template <class Matrix>
+std::vector<float> matrix_values(const Matrix& matrix, size_t count) {
+    return std::vector<float>(matrix.getValue(), matrix.getValue() + count);
+}
+
+/// False for the types that Metadata has no place for.
+bool convert(const Imf::Attribute& attribute, MetadataValue& value) {
+    if (const auto* i = dynamic_cast<const Imf::IntAttribute*>(&attribute))
+        value = i->value();
+    else if (const auto* f = dynamic_cast<const Imf::FloatAttribute*>(&attribute))
+        value = f->value();
+    else if (const auto* d = dynamic_cast<const Imf::DoubleAttribute*>(&attribute))
+        value = float(d->value());
+    else if (const auto* s = dynamic_cast<const Imf::StringAttribute*>(&attribute))
+        value = s->value();
+    else if (const auto* l = dynamic_cast<const Imf::FloatVectorAttribute*>(&attribute))
+        value = std::vector<float>(l->value());
+    else if (const auto* v2 = dynamic_cast<const Imf::V2fAttribute*>(&attribute))
+        value = std::vector<float>{v2->value().x, v2->value().y};
+    else if (const auto* v3 = dynamic_cast<const Imf::V3fAttribute*>(&attribute))
+        value = std::vector<float>{v3->value().x, v3->value().y, v3->value().z};
+    else if (const auto* m3 = dynamic_cast<const Imf::M33fAttribute*>(&attribute))
+        value = matrix_values(m3->value(), 9);
+    else if (const auto* m4 = dynamic_cast<const Imf::M44fAttribute*>(&attribute))
+        value = matrix_values(m4->value(), 16);
+    else
+        return false;
+    return true;
+}
+
+Metadata read_metadata(const Imf::Header& header) {
+    Metadata metadata;
+    for (auto it = header.begin(); it != header.end(); ++it) {
+        MetadataValue value;
+        if (!is_structural_exr_name(it.name()) && convert(it.attribute(), value))
+            metadata.emplace(it.name(), std::move(value));
+    }
+    return metadata;
+}
+
+/// Reads one part after its header has been found sane.
+class PartReader {
+  public:
+    explicit PartReader(const Image& image) : image_(image) {}
+
+    void check(const Imf::Header& header) const {
+        if (header.hasType() && !Imf::isImage(header.type()))
+            throw DecodeError("deep images are not supported");
+        if (from_imath(header.dataWindow()) != image_.data)
+            throw DecodeError("its parts have different data windows");
+        for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+            if (c.channel().xSampling != 1 || c.channel().ySampling != 1)
+                throw DecodeError(std::string("the subsampled channel '") + c.name() +
+                                  "' is not supported");
+        if (header.hasTileDescription())
+            check_image_size(header.tileDescription().xSize, header.tileDescription().ySize,
+                             channel_count(header));
+    }
+
+    static int channel_count(const Imf::Header& header) {
+        int count = 0;
+        for (auto c = header.channels().begin(); c != header.channels().end(); ++c) ++count;
+        return count;
+    }
+
+    /// The channels of part `index`, in the order of the file.
+    std::vector<Channel> read(Imf::MultiPartInputFile& exr, int index) const {
+        const Imf::Header& header = exr.header(index);
+        const int width = image_.width(), height = image_.height();
+        std::vector<Channel> channels;
+        Imf::FrameBuffer frame;
+        for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+            std::vector<float>& values = channels.emplace_back(Channel{c.name(), {}}).values;
+            // Filled band by band, so that a short file costs no more memory than it has pixels.
+            values.reserve(image_.pixel_count());
+            frame.insert(c.name(), Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow(),
+                                                    sizeof(float), size_t(width) * sizeof(float)));
+        }
+        Imf::InputPart part(exr, index);
+        part.setFrameBuffer(frame);
+        const int band = header.hasTileDescription() ? int(header.tileDescription().ySize) : 64;
+        for (int row = 0; row < height; row += std::min(band, height - row)) {
+            const int end = row + std::min(band, height - row);
+            for (Channel& channel : channels) channel.values.resize(size_t(end) * size_t(width));
+            part.readPixels(image_.data.y0 + row, image_.data.y0 + end - 1);
+        }
+        return channels;
+    }
+
+  private:
+    const Image& image_;
+};
+
+/// The strongest compression (of black PIZ images) stays below this; a file that claims more pixels
+/// has none of them, and would keep the reader busy for long.
+constexpr int64_t kMostPixelBytesPerByte = int64_t(1) << 20;
+
+/// Largest coordinate of a window, so that sums and differences of coordinates stay in an int.
+constexpr int kLargestCoordinate = 1 << 29;
+
+Image read_parts(const std::filesystem::path& file) {
+    Imf::MultiPartInputFile exr(file.c_str(), 0);
+    Image image;
+    for (const Imath::Box2i& box : {exr.header(0).dataWindow(), exr.header(0).displayWindow()})
+        for (int coordinate : {box.min.x, box.min.y, box.max.x, box.max.y})
+            if (std::abs(int64_t(coordinate)) > kLargestCoordinate)
+                throw DecodeError("its windows are out of all bounds");
+    image.data = from_imath(exr.header(0).dataWindow());
+    image.display = from_imath(exr.header(0).displayWindow());
+    image.metadata = read_metadata(exr.header(0));
+
+    const PartReader reader(image);
+    int64_t channels = 0;
+    for (int i = 0; i < exr.parts(); ++i) {
+        channels += PartReader::channel_count(exr.header(i));
+        check_image_size(image.width(), image.height(), channels);
+        reader.check(exr.header(i));
+    }
+    const int64_t pixel_bytes = int64_t(image.pixel_count()) * channels * int64_t(sizeof(float));
+    if (pixel_bytes / kMostPixelBytesPerByte > int64_t(std::filesystem::file_size(file)))
+        throw DecodeError("the file is too short for its size in pixels");
+
+    std::set<std::string> names;
+    for (int i = 0; i < exr.parts(); ++i)
+        for (Channel& channel : reader.read(exr, i)) {
+            if (i > 0 && exr.header(i).hasName()) {
+                const std::string prefix = exr.header(i).name() + ".";
+                if (!channel.name.starts_with(prefix)) channel.name = prefix + channel.name;
+            }
+            if (!names.insert(channel.name).second)
+                throw DecodeError("two channels are called '" + channel.name + "'");
+            image.channels.push_back(std::move(channel));
+        }
+    return image;
+}
+
+/// OpenEXR prefixes its reason with sentences that name the file.
+std::string reason_of(const std::exception& e, const std::filesystem::path& file) {
+    const std::string text = e.what();
+    const std::string prefix = "\"" + file.string() + "\". ";
+    const size_t at = text.rfind(prefix);
+    return at == std::string::npos ? text : text.substr(at + prefix.size());
+}
+
+}  // namespace
+
+Image read_exr(const std::filesystem::path& file, const SourceLocation& where) {
+    try {
+        return read_parts(file);
+    } catch (const std::bad_alloc&) {
+        throw_unreadable(file, where, "not enough memory");
+    } catch (const std::exception& e) {
+        throw_unreadable(file, where, reason_of(e, file));
+    }
+}
+
+}  // namespace covtrace

@@ -1,0 +1,126 @@
+#include "image/read_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <fstream>
+#include <new>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace covtrace {
+
+namespace {
+
+[[noreturn]] void throw_unopenable(const std::filesystem::path& file, const SourceLocation& where,
+                                   int error_number) {
+    throw Error(
+        ErrorKind::scene, where,
+        "cannot open '" + file.string() + "': " + std::generic_category().message(error_number));
+}
+
+std::string first_bytes(const std::filesystem::path& file, const SourceLocation& where) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (error) throw_unopenable(file, where, error.value());
+    if (std::filesystem::is_directory(status)) throw_unopenable(file, where, EISDIR);
+    // A pipe or a device would block or never end.
+    if (!std::filesystem::is_regular_file(status))
+        throw_unreadable(file, where, "it is not a regular file");
+    errno = 0;
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw_unopenable(file, where, errno ? errno : EIO);
+    std::array<char, 16> bytes{};
+    stream.read(bytes.data(), bytes.size());
+    return {bytes.data(), size_t(stream.gcount())};
+}
+
+std::string lower_case_extension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return extension;
+}
+
+}  // namespace
+
+ImageFormat detect_image_format(const std::filesystem::path& file, const SourceLocation& where) {
+    using namespace std::string_view_literals;
+    const std::string bytes = first_bytes(file, where);
+    if (bytes.empty()) throw_unreadable(file, where, "the file is empty");
+    if (bytes.starts_with("\x76\x2f\x31\x01"sv)) return ImageFormat::exr;
+    if (bytes.starts_with("\x89PNG\r\n\x1a\n"sv)) return ImageFormat::png;
+    if (bytes.starts_with("\xff\xd8\xff"sv)) return ImageFormat::jpeg;
+    if (bytes.starts_with("#?RADIANCE"sv) || bytes.starts_with("#?RGBE"sv)) return ImageFormat::hdr;
+    if (bytes.starts_with("qoif"sv)) return ImageFormat::qoi;
+    if (bytes.size() > 2 && bytes[0] == 'P' && "123456fF"sv.find(bytes[1]) != std::string::npos &&
+        std::isspace(static_cast<unsigned char>(bytes[2])))
+        return ImageFormat::pnm;
+    if (lower_case_extension(file) == ".tga") return ImageFormat::targa;
+    throw_unreadable(file, where,
+                     "it is no image of a known format (EXR, PNG, JPEG, TGA, HDR, PFM, QOI)");
+}
+
+namespace {
+
+std::vector<uint8_t> read_bytes(const std::filesystem::path& file) {
+    constexpr std::uintmax_t kLargestFile = std::uintmax_t(1) << 32;
+    const auto size = std::filesystem::file_size(file);
+    if (size > kLargestFile) throw DecodeError("the file is larger than 4 GiB");
+    std::vector<uint8_t> bytes(size);
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size)))
+        throw DecodeError(std::generic_category().message(errno ? errno : EIO));
+    return bytes;
+}
+
+PlainImage decode(Bytes bytes, ImageFormat format) {
+    switch (format) {
+        case ImageFormat::png:
+            return decode_png(bytes);
+        case ImageFormat::jpeg:
+            return decode_jpeg(bytes);
+        case ImageFormat::targa:
+            return decode_targa(bytes);
+        case ImageFormat::hdr:
+            return decode_hdr(bytes);
+        case ImageFormat::pnm:
+            return decode_pnm(bytes);
+        case ImageFormat::qoi:
+            return decode_qoi(bytes);
+        case ImageFormat::exr:
+            break;
+    }
+    throw DecodeError("EXR is not a plain image");
+}
+
+}  // namespace
+
+PlainImage read_plain(const std::filesystem::path& file, ImageFormat format,
+                      const SourceLocation& where) {
+    try {
+        return decode(read_bytes(file), format);
+    } catch (const std::bad_alloc&) {
+        throw_unreadable(file, where, "not enough memory");
+    } catch (const std::exception& e) {
+        throw_unreadable(file, where, e.what());
+    }
+}
+
+void throw_unreadable(const std::filesystem::path& file, const SourceLocation& where,
+                      const std::string& reason) {
+    constexpr size_t kLongestReason = 300;
+    std::string line;
+    // Names in a damaged file may hold any bytes, a terminal and JSON not.
+    for (const char c : reason.substr(0, kLongestReason))
+        if (c >= 0x20 && c <= 0x7e)
+            line += c;
+        else if (!line.empty() && line.back() != ' ')
+            line += ' ';
+    line.erase(line.find_last_not_of(" .") + 1);
+    throw Error(ErrorKind::scene, where, "cannot read '" + file.string() + "': " + line);
+}
+
+}  // namespace covtrace

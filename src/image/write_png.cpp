@@ -1,0 +1,94 @@
+#include <png.h>
+
+#include <csetjmp>
+#include <new>
+
+#include "image/color_encoding.h"
+#include "image/image.h"
+#include "image/output_file.h"
+
+namespace covtrace {
+
+namespace {
+
+/// libpng reports errors by longjmp, over which no C++ object may be destroyed: everything that has
+/// a destructor lives here, outside of the function that calls libpng.
+struct PngWriter {
+    PngWriter() = default;
+    PngWriter(const PngWriter&) = delete;
+    PngWriter& operator=(const PngWriter&) = delete;
+    ~PngWriter() { png_destroy_write_struct(&png, &info); }
+
+    png_structp png = nullptr;
+    png_infop info = nullptr;
+    std::string error;
+    std::string encoded;
+};
+
+void on_error(png_structp png, png_const_charp text) {
+    static_cast<PngWriter*>(png_get_error_ptr(png))->error = text;
+    png_longjmp(png, 1);
+}
+
+void on_warning(png_structp, png_const_charp) {}
+
+void on_write(png_structp png, png_bytep bytes, size_t count) {
+    bool appended = true;
+    try {
+        static_cast<PngWriter*>(png_get_io_ptr(png))
+            ->encoded.append(reinterpret_cast<const char*>(bytes), count);
+    } catch (const std::bad_alloc&) {
+        appended = false;
+    }
+    if (!appended) png_error(png, "not enough memory");
+}
+
+void on_flush(png_structp) {}
+
+bool encode(PngWriter& writer, const uint8_t* rgb, int width, int height) {
+    if (setjmp(png_jmpbuf(writer.png))) return false;
+    png_set_write_fn(writer.png, &writer, on_write, on_flush);
+    png_set_IHDR(writer.png, writer.info, png_uint_32(width), png_uint_32(height), 8,
+                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB_gAMA_and_cHRM(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_write_info(writer.png, writer.info);
+    for (int y = 0; y < height; ++y) png_write_row(writer.png, rgb + size_t(y) * size_t(width) * 3);
+    png_write_end(writer.png, writer.info);
+    return true;
+}
+
+}  // namespace
+
+void write_png_rgb8(std::span<const uint8_t> rgb, int width, int height,
+                    const std::filesystem::path& file) {
+    const std::string problem = "cannot write '" + file.string() + "': ";
+    if (width <= 0 || height <= 0 || rgb.size() != size_t(width) * size_t(height) * 3)
+        throw Error(ErrorKind::internal, problem + "the pixels do not match the image's size");
+    // Opened first: a target that cannot be written is no reason to compress.
+    OutputFile output(file);
+    PngWriter writer;
+    writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning);
+    writer.info = writer.png ? png_create_info_struct(writer.png) : nullptr;
+    if (!writer.info) throw std::bad_alloc();
+    if (!encode(writer, rgb.data(), width, height))
+        throw Error(ErrorKind::io, problem + writer.error);
+    output.write(writer.encoded.data(), writer.encoded.size());
+    output.commit();
+}
+
+void write_png(const Image& image, const std::filesystem::path& file) {
+    const Channel* grey = image.find("Y");
+    const Channel* channels[3] = {image.find("R"), image.find("G"), image.find("B")};
+    const bool colored = channels[0] && channels[1] && channels[2];
+    if (!colored && !grey)
+        throw Error(ErrorKind::internal,
+                    "cannot write '" + file.string() + "': the image has no channels R, G, B");
+    std::vector<uint8_t> rgb(image.pixel_count() * 3);
+    for (size_t i = 0; i < image.pixel_count(); ++i)
+        for (size_t c = 0; c < 3; ++c)
+            rgb[i * 3 + c] = srgb_encode_8bit((colored ? channels[c] : grey)->values[i]);
+    write_png_rgb8(rgb, image.width(), image.height(), file);
+}
+
+}  // namespace covtrace

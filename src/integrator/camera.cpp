@@ -1,0 +1,100 @@
+#include "integrator/camera.h"
+
+#include <cmath>
+
+#include "core/warp.h"
+
+namespace covtrace {
+
+Camera::Camera(const CameraDescription& description, int width, int height)
+    : description_(description),
+      lens_radius_(description.lens_radius),
+      focal_distance_(description.focal_distance),
+      shutter_open_(description.shutter_open),
+      shutter_close_(description.shutter_close) {
+    const float aspect = description.frame_aspect_ratio > 0
+                             ? description.frame_aspect_ratio
+                             : static_cast<float>(width) / static_cast<float>(height);
+    std::array<float, 4> window = aspect > 1 ? std::array<float, 4>{-aspect, aspect, -1, 1}
+                                             : std::array<float, 4>{-1, 1, -1 / aspect, 1 / aspect};
+    if (description.screen_window) window = *description.screen_window;
+    const float scale = description.kind == CameraDescription::Kind::perspective
+                            ? std::tan(description.fov * kPi / 360)
+                            : 1.0f;
+    origin_ = {window[0] * scale, window[3] * scale};
+    per_pixel_ = {(window[1] - window[0]) * scale / static_cast<float>(width),
+                  (window[2] - window[3]) * scale / static_cast<float>(height)};
+}
+
+const Transform& Camera::to_world(float time, Transform& storage) const {
+    if (!description_.camera_to_world.is_animated()) return description_.camera_to_world.start();
+    storage = description_.camera_to_world.at(time);
+    return storage;
+}
+
+Ray Camera::generate_ray(Vec2 film, Vec2 lens, float shutter) const {
+    const Vec2 s{origin_.x + film.x * per_pixel_.x, origin_.y + film.y * per_pixel_.y};
+    Vec3 origin, direction{0, 0, 1};
+    if (description_.kind == CameraDescription::Kind::perspective)
+        direction = {s.x, s.y, 1};
+    else
+        origin = {s.x, s.y, 0};
+    if (lens_radius_ > 0) {
+        const Vec3 focus = origin + direction * focal_distance_;
+        const Vec2 l = square_to_disc(lens) * lens_radius_;
+        origin += Vec3{l.x, l.y, 0};
+        direction = focus - origin;
+    }
+    Ray ray;
+    ray.time = shutter_open_ + shutter * (shutter_close_ - shutter_open_);
+    Transform storage;
+    const Transform& camera_to_world = to_world(ray.time, storage);
+    ray.origin = camera_to_world.point(origin);
+    ray.direction = normalize(camera_to_world.vector(direction));
+    return ray;
+}
+
+SensorGeometry Camera::sensor(const Ray& ray) const {
+    Transform storage;
+    const Transform& camera_to_world = to_world(ray.time, storage);
+    const Vec3 x = camera_to_world.vector({per_pixel_.x, 0, 0});
+    const Vec3 y = camera_to_world.vector({0, per_pixel_.y, 0});
+    const Vec3 z = camera_to_world.vector({0, 0, 1});
+    const float unit = length(z);  // a camera may be scaled as a whole
+    SensorGeometry g;
+    g.right = normalize(x);
+    g.down = normalize(y);
+    g.forward = normalize(z);
+    g.lens_radius = lens_radius_ * unit;
+    g.focal_distance = focal_distance_ * unit;
+    g.orthographic = description_.kind == CameraDescription::Kind::orthographic;
+    g.pixels_per_x = 1 / (g.orthographic ? length(x) : length(x) / unit);
+    g.pixels_per_y = 1 / (g.orthographic ? length(y) : length(y) / unit);
+    g.shutter = shutter_close_ - shutter_open_;
+    g.velocity = description_.camera_to_world.velocity(ray.origin, ray.time);
+    g.angular_velocity = description_.camera_to_world.angular_velocity(ray.time);
+    return g;
+}
+
+Matrix4 Camera::world_to_camera() const {
+    Transform storage;
+    return to_world(shutter_open_, storage).inverse_matrix();
+}
+
+Matrix4 Camera::world_to_ndc() const {
+    // Film fractions in [0, 1], y down, as pbrt and OpenEXR's "worldToNDC" users expect: x' / w', y' / w'.
+    Matrix4 projection;
+    const double width_slope = per_pixel_.x, height_slope = per_pixel_.y;
+    projection.m[0] = {1 / width_slope, 0, -origin_.x / width_slope, 0};
+    projection.m[1] = {0, 1 / height_slope, -origin_.y / height_slope, 0};
+    projection.m[2] = {0, 0, 1, 0};
+    projection.m[3] = {0, 0, 1, 0};
+    if (description_.kind == CameraDescription::Kind::orthographic) {
+        projection.m[0] = {1 / width_slope, 0, 0, -origin_.x / width_slope};
+        projection.m[1] = {0, 1 / height_slope, 0, -origin_.y / height_slope};
+        projection.m[3] = {0, 0, 0, 1};
+    }
+    return projection * world_to_camera();
+}
+
+}  // namespace covtrace

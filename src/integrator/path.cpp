@@ -1,0 +1,226 @@
+#include "integrator/path.h"
+
+#include <cmath>
+
+namespace covtrace {
+
+namespace {
+
+float power_heuristic(float a, float b) {
+    if (std::isinf(a)) return 1;
+    const float a2 = a * a, b2 = b * b;
+    return a2 + b2 > 0 ? a2 / (a2 + b2) : 0;
+}
+
+Rgb transmittance(const RenderScene& scene, MediumId medium, float distance) {
+    if (medium < 0) return Rgb(1);
+    const Rgb sigma = scene.extinction[static_cast<size_t>(medium)];
+    const auto pass = [distance](float s) { return s > 0 ? std::exp(-s * distance) : 1.0f; };
+    return {pass(sigma.r), pass(sigma.g), pass(sigma.b)};
+}
+
+/// The medium that a ray is in after it leaves `hit` in the direction `w`.
+MediumId medium_beyond(const PlacedShape& shape, const SurfaceHit& hit, Vec3 w, MediumId current) {
+    const ShapeDescription& d = shape.description;
+    if (d.inside == d.outside) return current;
+    return dot(w, hit.ng) < 0 ? d.inside : d.outside;
+}
+
+/// One path in the making. The estimate is  sum over vertices of  beta * (emission + direct light),
+/// beta = product of  f |cos| / pdf  so far; each kind of light is found by two strategies whose
+/// weights add to one.
+class PathTracer {
+  public:
+    PathTracer(const RenderScene& scene, Ray ray, Sampler& sampler, int max_depth, PathRecord* record)
+        : scene_(scene), ray_(ray), sampler_(sampler), max_depth_(max_depth), record_(record) {}
+
+    PathResult run() {
+        if (record_) {
+            record_->clear();
+            record_->camera_ray = ray_;
+        }
+        for (int depth = 0;;) {
+            SurfaceHit hit;
+            ++result_.rays;
+            if (!scene_.geometry.intersect(ray_, hit)) {
+                escape();
+                break;
+            }
+            beta_ *= transmittance(scene_, medium_, hit.t);
+            const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
+            const Bsdf bsdf = scene_.materials.bsdf(shape.description.material, hit, scene_.textures);
+            if (std::holds_alternative<InterfaceBsdf>(bsdf)) {
+                medium_ = medium_beyond(shape, hit, ray_.direction, medium_);
+                ray_.origin = Geometry::offset_origin(hit, ray_.direction);
+                if (++passed_interfaces_ > kMostInterfaces) break;
+                continue;
+            }
+            ++result_.vertices;
+            const Vec3 wo = -ray_.direction;
+            PathVertex* vertex = begin_vertex(hit, shape, wo);
+            add_emission(hit, wo, vertex);
+            const Frame frame = shading_frame(hit);
+            const Vec3 wo_local = frame.to_local(wo);
+            if (depth == 0) describe_first_hit(hit, wo, bsdf, wo_local);
+            if (vertex) vertex->shading = frame;
+            if (depth++ == max_depth_) break;
+            sampler_.set_dimension(depth * kPairsPerBounce);
+            const Vec2 u_choice = sampler_.next_2d();
+            const Vec2 u_light = sampler_.next_2d(), u_bsdf = sampler_.next_2d();
+            if (!is_specular(bsdf)) add_direct(hit, shape, bsdf, frame, wo_local, u_choice.x, u_light, vertex);
+            if (!scatter(hit, shape, bsdf, frame, wo_local, u_choice.y, u_bsdf, vertex)) break;
+            if (!survives(depth)) break;
+        }
+        return result_;
+    }
+
+  private:
+    static constexpr int kPairsPerBounce = 4;
+    static constexpr int kMostInterfaces = 1000;  // a ray caught between coincident interfaces must end
+
+    void escape() {
+        if (!scene_.lights.has_environment()) return;
+        const Rgb light = scene_.lights.environment(ray_.direction);
+        float weight = 1;
+        if (!specular_) {
+            const float p = scene_.lights.environment_pdf(previous_position_, previous_normal_, ray_.direction);
+            weight = power_heuristic(pdf_, p);
+        }
+        const Rgb contribution = beta_ * light * weight;
+        result_.radiance += contribution;
+        if (record_ && record_->count == static_cast<int>(result_.vertices)) {
+            record_->escaped = luminance(contribution);
+            record_->escape_direction = ray_.direction;
+            record_->escape_seen_sharply = sharp_so_far_;
+        }
+    }
+
+    PathVertex* begin_vertex(const SurfaceHit& hit, const PlacedShape& shape, Vec3 wo) {
+        if (!record_ || record_->count == PathRecord::kCapacity) return nullptr;
+        PathVertex* v = &record_->vertices[static_cast<size_t>(record_->count++)];
+        v->hit = hit;
+        v->wo = wo;
+        v->material = shape.description.material;
+        v->emitted = v->direct = 0;
+        v->scatters = false;
+        v->seen_sharply = sharp_so_far_;
+        return v;
+    }
+
+    void add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex) {
+        const Rgb light = scene_.lights.emitted(hit, wo);
+        if (is_black(light)) return;
+        float weight = 1;
+        if (!specular_) {
+            const float p = scene_.lights.pdf(previous_position_, previous_normal_, ray_.direction, hit);
+            weight = power_heuristic(pdf_, p);
+        }
+        const Rgb contribution = beta_ * light * weight;
+        result_.radiance += contribution;
+        if (vertex) vertex->emitted = luminance(contribution);
+    }
+
+    void describe_first_hit(const SurfaceHit& hit, Vec3 wo, const Bsdf& bsdf, Vec3 wo_local) {
+        result_.hit = true;
+        result_.albedo = albedo(bsdf, wo_local);
+        result_.normal = face_forward(hit.ns, wo);
+        result_.depth = distance(ray_.origin, hit.position);
+    }
+
+    void add_direct(const SurfaceHit& hit, const PlacedShape& shape, const Bsdf& bsdf, const Frame& frame,
+                    Vec3 wo_local, float u_select, Vec2 u, PathVertex* vertex) {
+        const auto light = scene_.lights.sample(hit.position, hit.ns, hit.time, u_select, u);
+        if (!light || is_black(light->radiance) || !(light->pdf > 0)) return;
+        const Vec3 wi_local = frame.to_local(light->wi);
+        const Rgb f = eval(bsdf, wo_local, wi_local);
+        if (is_black(f)) return;
+        Ray shadow;
+        shadow.origin = Geometry::offset_origin(hit, light->wi);
+        shadow.time = hit.time;
+        shadow.direction = light->wi;
+        if (std::isfinite(light->distance)) {
+            // Aim at the light from the moved origin and stop just short of it.
+            const Vec3 to_light = light->position - shadow.origin;
+            const float d = length(to_light);
+            if (!(d > 0)) return;
+            shadow.direction = to_light / d;
+            shadow.t_max = d * (1 - 1e-4f);
+        }
+        ++result_.rays;
+        if (scene_.geometry.occluded(shadow)) return;
+        const MediumId medium = medium_beyond(shape, hit, light->wi, medium_);
+        const float weight =
+            light->is_delta ? 1.0f : power_heuristic(light->pdf, pdf(bsdf, wo_local, wi_local));
+        const Rgb contribution = beta_ * f * light->radiance * transmittance(scene_, medium, light->distance) *
+                                 (weight / light->pdf);
+        result_.radiance += contribution;
+        if (!vertex) return;
+        vertex->direct = luminance(contribution);
+        vertex->light = *light;
+        vertex->direct_event = {light->wi, lobe_shares(bsdf, wo_local, wi_local)};
+    }
+
+    bool scatter(const SurfaceHit& hit, const PlacedShape& shape, const Bsdf& bsdf, const Frame& frame,
+                 Vec3 wo_local, float u_lobe, Vec2 u, PathVertex* vertex) {
+        const auto s = sample(bsdf, wo_local, u_lobe, u);
+        if (!s || is_black(s->weight)) return false;
+        const Vec3 wi = normalize(frame.to_world(s->wi));
+        beta_ *= s->weight;
+        pdf_ = s->pdf;
+        specular_ = is_specular(s->lobe);
+        sharp_so_far_ = sharp_so_far_ && specular_;
+        if (is_transmission(s->lobe)) eta_scale_ *= s->eta * s->eta;
+        if (vertex) {
+            vertex->scatters = true;
+            vertex->next_event.wi = wi;
+            if (specular_) {
+                vertex->next_event.lobes.count = 1;
+                vertex->next_event.lobes.lobes[0] = {s->lobe, s->weight, 0, 0, s->eta};
+            } else {
+                vertex->next_event.lobes = lobe_shares(bsdf, wo_local, s->wi);
+            }
+        }
+        previous_position_ = hit.position;
+        previous_normal_ = hit.ns;
+        medium_ = medium_beyond(shape, hit, wi, medium_);
+        ray_.origin = Geometry::offset_origin(hit, wi);
+        ray_.direction = wi;
+        ray_.t_max = kInfinity;
+        return true;
+    }
+
+    /// Russian roulette by the throughput without the factor that refraction put on the radiance.
+    bool survives(int depth) {
+        const float carried = max_component(beta_) * eta_scale_;
+        if (!(carried < 1) || depth <= 1) return true;
+        const float end = std::max(0.0f, 1 - carried);
+        if (sampler_.next_1d() < end) return false;
+        beta_ *= 1 / (1 - end);
+        return true;
+    }
+
+    const RenderScene& scene_;
+    Ray ray_;
+    Sampler& sampler_;
+    const int max_depth_;
+    PathRecord* const record_;
+
+    PathResult result_;
+    Rgb beta_{1};
+    float pdf_ = 0;            // of the last sampled direction
+    bool specular_ = true;     // the last lobe (the camera counts as one): no light sampling could find it
+    bool sharp_so_far_ = true;
+    float eta_scale_ = 1;
+    MediumId medium_ = -1;
+    int passed_interfaces_ = 0;
+    Vec3 previous_position_, previous_normal_;
+};
+
+}  // namespace
+
+PathResult trace_path(const RenderScene& scene, Ray ray, Sampler& sampler, int max_depth,
+                      PathRecord* record) {
+    return PathTracer(scene, ray, sampler, max_depth, record).run();
+}
+
+}  // namespace covtrace

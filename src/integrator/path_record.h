@@ -1,0 +1,56 @@
+/// What a path leaves behind when it is asked to: the events that the frequency analysis replays.
+/// Plain data with a fixed capacity; the integrator writes it and knows nothing of covariances.
+#pragma once
+
+#include <array>
+
+#include "geometry/hit.h"
+#include "shading/bsdf.h"
+#include "shading/lights.h"
+
+namespace covtrace {
+
+/// Lobes that take part at a vertex for one pair of directions, with their shares of the scattered light.
+struct ScatterEvent {
+    Vec3 wi;  ///< unit, world, away from the surface, towards where the light comes from
+    LobeShares lobes;
+};
+
+struct PathVertex {
+    SurfaceHit hit;
+    Vec3 wo;        ///< unit, world, towards the previous vertex
+    Frame shading;  ///< frame of the BSDF: anisotropic roughness is along its x and y
+    MaterialId material = -1;
+
+    /// Luminance that reaches the sensor from this vertex' own emission, after multiple importance sampling.
+    float emitted = 0;
+    bool seen_sharply = false;  ///< no lobe but specular ones between the camera and this vertex
+
+    /// Luminance that reaches the sensor by the light sampled here; 0 where there is none.
+    float direct = 0;
+    LightSample light;
+    ScatterEvent direct_event;
+
+    /// Where the path goes on; `scatters` is false at its last vertex.
+    bool scatters = false;
+    ScatterEvent next_event;
+};
+
+struct PathRecord {
+    /// Light from beyond this many vertices is left out of the record (not out of the radiance).
+    static constexpr int kCapacity = 24;
+    std::array<PathVertex, kCapacity> vertices;
+    int count = 0;
+    Ray camera_ray;
+    /// Luminance from the infinite lights where the path left the scene, and the direction it left by.
+    float escaped = 0;
+    Vec3 escape_direction;
+    bool escape_seen_sharply = false;
+
+    void clear() {
+        count = 0;
+        escaped = 0;
+    }
+};
+
+}  // namespace covtrace

@@ -1,0 +1,28 @@
+#include "integrator/render_scene.h"
+
+#include <utility>
+
+namespace covtrace {
+
+RenderScene::RenderScene(SceneDescription scene_description, const std::string& isa)
+    : description(std::move(scene_description)),
+      geometry(description, isa),
+      textures(description),
+      materials(description, textures),
+      lights(description, geometry),
+      camera(description.camera, description.film.width, description.film.height),
+      filter(description.filter) {
+    for (const MediumDescription& m : description.media) {
+        extinction.push_back(m.sigma_a);
+        if (!is_black(m.sigma_s))
+            description.warnings.push_back(
+                {m.where, "medium \"" + m.name + "\" scatters: rendered as if it only absorbed"});
+    }
+}
+
+void RenderScene::prepare_spectra() {
+    textures.prepare_spectra();
+    lights.prepare_spectra();
+}
+
+}  // namespace covtrace

@@ -1,0 +1,39 @@
+/// One 5x5 covariance and its weight per pixel, and the prediction that follows from them.
+#pragma once
+
+#include <vector>
+
+#include "covariance/covariance.hpp"
+
+namespace covtrace {
+
+using Covariance5 = covariance::SymmetricMatrix5<float>;
+using Covariance2 = covariance::Sym2<float>;
+
+/// Radiance-weighted mean covariances over (pixel x, pixel y, lens, lens, shutter), row by row.
+/// Weight 0: no path of the pixel found light, and the covariance is zero.
+struct CovarianceBuffer {
+    CovarianceBuffer(int w, int h)
+        : width(w), height(h), covariance(size_t(w) * size_t(h)), weight(size_t(w) * size_t(h), 0.0f) {}
+    int width, height;
+    std::vector<Covariance5> covariance;
+    std::vector<float> weight;
+};
+
+/// What a pixel needs, seen from its covariance after the integral over lens and shutter.
+struct Prediction {
+    int width = 0, height = 0;
+    std::vector<Covariance2> spectrum;  ///< (cycles/pixel)^2
+    /// N_int = sqrt(det(S_rr + W_rr) / det W_rr) >= 1: variation over lens and shutter.
+    std::vector<float> interior_count;
+};
+
+/// Pre-integrates every pixel as it is, without smoothing: the `spectrum` layer.
+Prediction preintegrate(const CovarianceBuffer& buffer);
+
+/// The buffer with pixels of weight 0 filled from their nearest neighbours that have one, then
+/// averaged by weight over 3x3 pixels: the noise of few paths is larger than what the mean hides.
+/// Where no pixel at all has a weight every covariance is zero.
+CovarianceBuffer smooth(const CovarianceBuffer& buffer);
+
+}  // namespace covtrace

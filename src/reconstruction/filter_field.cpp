@@ -1,0 +1,67 @@
+#include "reconstruction/filter_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace covtrace {
+
+FilterSettings filter_settings(double samples_per_pixel) {
+    const double n = std::max(samples_per_pixel, 1.0 / 64);
+    FilterSettings s;
+    s.c = float(covariance::filter_sharpness(n));
+    s.limits.s_min = 0.4f * 2 / s.c;
+    s.slope = std::clamp(0.1f * float(std::sqrt(16 / n)), 0.05f, 0.1f);
+    return s;
+}
+
+FilterField filter_field(std::span<const covariance::Sym2<float>> spectrum, int width, int height,
+                         FilterRule rule, const FilterSettings& settings) {
+    FilterField f{width, height, std::vector<covariance::Sym2<float>>(spectrum.size())};
+    parallel_for(f.height, [&](int64_t row) {
+        for (size_t i = size_t(row) * size_t(f.width), end = i + size_t(f.width); i < end; ++i) {
+            const auto quadratic =
+                rule == FilterRule::verified
+                    ? covariance::filter_quadratic(spectrum[i], settings.c, settings.limits)
+                    : covariance::thesis_filter_quadratic(spectrum[i], settings.limits);
+            f.covariance[i] = covariance::filter_covariance(quadratic);
+        }
+    });
+    return f;
+}
+
+void limit_by_neighbours(FilterField& field, const FilterSettings& settings) {
+    const int w = field.width, h = field.height;
+    std::vector<float> s(field.covariance.size());
+    for (size_t i = 0; i < s.size(); ++i)
+        s[i] = covariance::filter_size(field.covariance[i]);
+    std::vector<float> limit = s;
+    // Chamfer distance transform with steps 1 and sqrt 2: one pass down, one pass up.
+    const float straight = settings.slope, diagonal = settings.slope * std::sqrt(2.0f);
+    const auto relax = [&](int x, int y, int dx, int dy, float step) {
+        const int px = x + dx, py = y + dy;
+        if (px < 0 || py < 0 || px >= w || py >= h) return;
+        float& here = limit[size_t(y) * size_t(w) + size_t(x)];
+        here = std::min(here, limit[size_t(py) * size_t(w) + size_t(px)] + step);
+    };
+    for (int y = 0; y < h; ++y)
+        for (int x = 0; x < w; ++x) {
+            relax(x, y, -1, 0, straight);
+            relax(x, y, 0, -1, straight);
+            relax(x, y, -1, -1, diagonal);
+            relax(x, y, 1, -1, diagonal);
+        }
+    for (int y = h - 1; y >= 0; --y)
+        for (int x = w - 1; x >= 0; --x) {
+            relax(x, y, 1, 0, straight);
+            relax(x, y, 0, 1, straight);
+            relax(x, y, 1, 1, diagonal);
+            relax(x, y, -1, 1, diagonal);
+        }
+    for (size_t i = 0; i < s.size(); ++i)
+        if (limit[i] < s[i])
+            field.covariance[i] = covariance::resize_filter(field.covariance[i], limit[i], settings.limits);
+}
+
+}  // namespace covtrace

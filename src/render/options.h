@@ -1,0 +1,41 @@
+/// What a render is asked to do. The defaults are those of the command line.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "image/image.h"
+#include "planner/density.h"
+#include "reconstruction/filter_field.h"
+
+namespace covtrace {
+
+enum class Method {
+    uniform,    ///< the plain path tracer: every pixel the same count, the scene's filter
+    covariance  ///< the thesis' method: prediction, counts, Gaussian gather
+};
+
+struct RenderOptions {
+    Method method = Method::covariance;
+    std::optional<double> spp;      ///< average samples per pixel; default: the scene's
+    std::optional<double> seconds;  ///< wall clock, from `start_time` to the finished file
+    std::optional<int> cov_spp;     ///< covariance paths per pixel; default spp/4 in [2, 4]
+    DensityRule density = DensityRule::tempered;
+    FilterRule filter = FilterRule::verified;
+    std::optional<int> max_spp;     ///< most samples in any pixel; default 16 times the average
+    std::optional<int> max_depth;   ///< default: the scene's
+    uint64_t seed = 0;
+};
+
+/// Changes to a scene before it is built.
+struct SceneOverrides {
+    std::optional<std::array<int, 2>> resolution;
+    std::optional<PixelBounds> crop;  ///< pixels, end exclusive
+    std::optional<std::array<float, 2>> shutter;
+    std::optional<float> focal_distance;
+    std::optional<float> f_number;
+};
+
+}  // namespace covtrace

@@ -1,0 +1,166 @@
+#include "scene/light_builder.h"
+
+#include "scene/names.h"
+#include "scene/spectrum_parameter.h"
+#include "scene/version_three.h"
+
+namespace covtrace {
+
+namespace {
+
+float light_scale(Entity& e) {
+    const float scale = e.parameters.number("scale", 1);
+    if (scale < 0)
+        throw Error(ErrorKind::scene, e.parameters.where("scale", e.where),
+                    "parameter \"scale\" of a light must not be negative");
+    return scale;
+}
+
+/// Power or illuminance that the light as a whole is to have. pbrt scales light of luminance 1 to
+/// the given number and then applies the colour and "scale". Empty where it isn't a positive
+/// number, as in pbrt.
+std::optional<float> target(Entity& e, std::string_view name, Rgb colour_and_scale) {
+    const auto v = e.parameters.number(name);
+    if (!v || !(*v > 0)) return std::nullopt;
+    return *v * luminance(colour_and_scale);
+}
+
+/// Unit vector between two points of the light; they must differ.
+Vec3 direction(Vec3 from, Vec3 to, const Entity& e) {
+    const Vec3 d = to - from;
+    if (!(length(d) > 0) || !is_finite(d))
+        throw Error(ErrorKind::scene, e.where,
+                    "\"from\" and \"to\" of the light are the same point");
+    return normalize(d);
+}
+
+PointLight point_light(Entity& e, BuildContext& context) {
+    PointLight light;
+    light.intensity = light_colour(e.parameters, "I", context) * light_scale(e);
+    light.from = e.parameters.triple("from", {});
+    light.power = target(e, "power", light.intensity);
+    return light;
+}
+
+SpotLight spot_light(Entity& e, BuildContext& context) {
+    ParameterList& p = e.parameters;
+    SpotLight light;
+    light.intensity = light_colour(p, "I", context) * light_scale(e);
+    light.from = p.triple("from", {});
+    light.to = p.triple("to", {0, 0, 1});
+    direction(light.from, light.to, e);
+    light.cone_angle = p.number("coneangle", 30);
+    light.cone_delta_angle = p.number("conedeltaangle", 5);
+    if (!(light.cone_angle > 0 && light.cone_angle <= 180))
+        throw Error(ErrorKind::scene, p.where("coneangle", e.where),
+                    "parameter \"coneangle\" must be between 0 and 180 degrees");
+    if (!(light.cone_delta_angle >= 0 && light.cone_delta_angle <= light.cone_angle))
+        throw Error(ErrorKind::scene, p.where("conedeltaangle", e.where),
+                    "parameter \"conedeltaangle\" must be between 0 and coneangle");
+    light.power = target(e, "power", light.intensity);
+    return light;
+}
+
+DistantLight distant_light(Entity& e, BuildContext& context) {
+    DistantLight light;
+    light.radiance = light_colour(e.parameters, "L", context) * light_scale(e);
+    const Vec3 from = e.parameters.triple("from", {}), to = e.parameters.triple("to", {0, 0, 1});
+    light.direction = direction(to, from, e);
+    // Light of luminance 1 already has illuminance 1 on a surface that faces it.
+    if (const auto v = e.parameters.number("illuminance"); v && *v > 0) light.radiance *= *v;
+    return light;
+}
+
+InfiniteLight infinite_light(Entity& e, BuildContext& context) {
+    ParameterList& p = e.parameters;
+    if (p.has("mapname"))
+        throw version_three_error(p.where("mapname", e.where), "parameter \"mapname\"");
+    InfiniteLight light;
+    const bool has_colour = p.has("L");
+    light.radiance = light_colour(p, "L", context) * light_scale(e);
+    const std::string file = p.text("filename");
+    light.illuminance = target(e, "illuminance", light.radiance);
+    if (!file.empty()) {
+        if (has_colour)
+            throw Error(ErrorKind::scene, e.where,
+                        "an infinite light has both \"L\" and \"filename\"; expected one of them");
+        light.image = context.files.find(file, p.where("filename", e.where));
+    }
+    if (p.has("portal"))
+        context.log.add(p.where("portal", e.where),
+                        "portals are not supported; the light is sampled over the whole sky");
+    p.ignore({"portal"});
+    return light;
+}
+
+/// A spot without its picture in place of a slide projector, which looks along +z too.
+SpotLight projector(Entity& e) {
+    SpotLight light;
+    light.intensity = Rgb{light_scale(e)};
+    light.cone_angle = 0.5f * e.parameters.number("fov", 90);
+    if (!(light.cone_angle > 0 && light.cone_angle < 90))
+        throw Error(ErrorKind::scene, e.parameters.where("fov", e.where),
+                    "parameter \"fov\" must be between 0 and 180 degrees");
+    light.cone_delta_angle = 0.1f * light.cone_angle;
+    light.power = target(e, "power", light.intensity);
+    return light;
+}
+
+void replaced(const Entity& e, std::string_view by, BuildContext& context) {
+    context.log.add(e.where, "light " + in_quotes(e.type) + " is not supported; a " +
+                                 std::string(by) + " light without its image takes its place");
+}
+
+}  // namespace
+
+LightDescription build_light(Entity& e, const Transform& light_to_world, BuildContext& context) {
+    LightDescription light;
+    light.light_to_world = light_to_world;
+    light.where = e.where;
+    if (e.type == "point") {
+        light.value = point_light(e, context);
+    } else if (e.type == "spot") {
+        light.value = spot_light(e, context);
+    } else if (e.type == "distant") {
+        light.value = distant_light(e, context);
+    } else if (e.type == "infinite") {
+        light.value = infinite_light(e, context);
+    } else if (e.type == "goniometric") {
+        replaced(e, "point", context);
+        light.value = point_light(e, context);
+        e.parameters.ignore_all();
+    } else if (e.type == "projection") {
+        replaced(e, "spot", context);
+        light.value = projector(e);
+        e.parameters.ignore_all();
+    } else {
+        throw unknown_type_error(
+            e.where, "light", e.type,
+            {"point", "spot", "distant", "infinite", "goniometric", "projection"});
+    }
+    e.parameters.warn_unused(context.log, "light " + in_quotes(e.type));
+    return light;
+}
+
+AreaLightDescription build_area_light(Entity& e, BuildContext& context) {
+    if (e.type != "diffuse") throw unknown_type_error(e.where, "area light", e.type, {"diffuse"});
+    ParameterList& p = e.parameters;
+    AreaLightDescription light;
+    light.where = e.where;
+    const bool has_colour = p.has("L");
+    light.radiance = light_colour(p, "L", context) * light_scale(e);
+    light.two_sided = p.flag("twosided", false);
+    light.power = target(e, "power", light.radiance);
+    if (const std::string file = p.text("filename"); !file.empty()) {
+        const SourceLocation where = p.where("filename", e.where);
+        if (has_colour)
+            throw Error(ErrorKind::scene, e.where,
+                        "an area light has both \"L\" and \"filename\"; expected one of them");
+        context.files.find(file, where);
+        context.log.add(where, "images on area lights are not supported; the light is uniform");
+    }
+    p.warn_unused(context.log, "area light \"diffuse\"");
+    return light;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,239 @@
+#include "scene/material_models.h"
+
+#include <cmath>
+
+#include "scene/named_spectra.h"
+#include "scene/names.h"
+#include "scene/spectrum_parameter.h"
+#include "scene/texture_builder.h"
+#include "scene/version_three.h"
+
+namespace covtrace {
+
+namespace {
+
+using Model = decltype(MaterialDescription::value);
+
+struct Builder {
+    Entity& e;
+    ParameterList& p;
+    TextureBuilder& textures;
+    BuildContext& context;
+
+    void warn(const std::string& text) const { context.log.add(e.where, text); }
+
+    /// u_roughness, v_roughness: their own parameters, else "roughness", else `otherwise`.
+    template <typename Material>
+    void roughness(Material& m, const std::string& prefix = {}, float otherwise = 0) {
+        const auto one = [&](const std::string& name) {
+            const TextureId id = textures.grey_or_none(p, prefix + name);
+            return id >= 0 ? id : textures.grey(p, prefix + "roughness", otherwise);
+        };
+        m.u_roughness = one("uroughness");
+        m.v_roughness = one("vroughness");
+        m.remap_roughness = p.flag("remaproughness", true);
+    }
+
+    /// Roughness given by a single value makes "roughness" beside both of its parts superfluous,
+    /// not unknown.
+    void ignore_shared() { p.ignore({"roughness", "conductor.roughness", "interface.roughness"}); }
+
+    DiffuseMaterial diffuse() { return {textures.reflectance(p, "reflectance", Rgb{0.5f})}; }
+    ConductorMaterial conductor(const std::string& prefix);
+    DielectricMaterial dielectric();
+    CoatedDiffuseMaterial coated_diffuse();
+    DiffuseTransmissionMaterial diffuse_transmission();
+    CoatedDiffuseMaterial subsurface();
+    DiffuseMaterial hair();
+};
+
+/// One of "eta" and "k": a texture or colour as it is, a spectrum as its means per channel.
+TextureId index_texture(Builder& b, const Parameter& p) {
+    if (p.type == ParameterType::texture || p.type == ParameterType::rgb)
+        return b.textures.unbounded(b.p, p.name, Rgb{});
+    const auto s = spectrum_value(p, b.context);
+    return b.textures.constant(s ? channel_means(*s) : factor_colour(p, b.context), true);
+}
+
+ConductorMaterial Builder::conductor(const std::string& prefix) {
+    ConductorMaterial m;
+    roughness(m, prefix);
+    m.reflectance = textures.reflectance_or_none(p, "reflectance");
+    const auto types = {ParameterType::texture, ParameterType::rgb, ParameterType::spectrum,
+                        ParameterType::blackbody};
+    const Parameter* eta = p.find(prefix + "eta", types);
+    const Parameter* k = p.find(prefix + "k", types);
+    if (m.reflectance >= 0) {
+        if (eta || k)
+            throw Error(
+                ErrorKind::scene, e.where,
+                "a conductor has both \"reflectance\" and \"eta\" or \"k\"; expected one of them");
+        return m;
+    }
+    const auto spectral = [&](const Parameter* given,
+                              const char* otherwise) -> std::optional<Spectrum> {
+        if (!given) return material_spectrum(otherwise);
+        if (given->type != ParameterType::spectrum) return std::nullopt;
+        std::optional<Spectrum> s = spectrum_value(*given, context);
+        // An index of 0 outside of the measured range would make a mirror of it.
+        if (s) s->extends = true;
+        return s;
+    };
+    const auto eta_spectrum = spectral(eta, "metal-Cu-eta");
+    const auto k_spectrum = spectral(k, "metal-Cu-k");
+    if (eta_spectrum && k_spectrum) {
+        const ConductorColours c = conductor_colours(*eta_spectrum, *k_spectrum);
+        m.eta = textures.constant(c.eta, true);
+        m.k = textures.constant(c.k, true);
+    } else {
+        m.eta = eta ? index_texture(*this, *eta)
+                    : textures.constant(channel_means(*eta_spectrum), true);
+        m.k = k ? index_texture(*this, *k) : textures.constant(channel_means(*k_spectrum), true);
+    }
+    return m;
+}
+
+DielectricMaterial Builder::dielectric() {
+    DielectricMaterial m;
+    roughness(m);
+    m.eta = refractive_index(p, "eta", 1.5f, context);
+    return m;
+}
+
+CoatedDiffuseMaterial Builder::coated_diffuse() {
+    CoatedDiffuseMaterial m;
+    roughness(m);
+    m.reflectance = textures.reflectance(p, "reflectance", Rgb{0.5f});
+    m.thickness = textures.grey(p, "thickness", 0.01f);
+    m.g = textures.grey(p, "g", 0);
+    m.albedo = textures.reflectance(p, "albedo", Rgb{0});
+    m.eta = refractive_index(p, "eta", 1.5f, context);
+    m.max_depth = p.integer("maxdepth", 10);
+    m.samples = p.integer("nsamples", 1);
+    return m;
+}
+
+DiffuseTransmissionMaterial Builder::diffuse_transmission() {
+    DiffuseTransmissionMaterial m;
+    m.reflectance = textures.reflectance(p, "reflectance", Rgb{0.25f});
+    m.transmittance = textures.reflectance(p, "transmittance", Rgb{0.25f});
+    m.scale = p.number("scale", 1);
+    return m;
+}
+
+/// Albedo of a semi-infinite medium under diffuse light, by van de Hulst's fit (Multiple Light
+/// Scattering, 1980, vol. 2; the constants as in Kulla and Conty, SIGGRAPH course 2017).
+float medium_albedo(float sigma_a, float sigma_s, float g) {
+    const float sigma_t = sigma_a + sigma_s;
+    const float single = sigma_t > 0 ? sigma_s / sigma_t : 0;
+    const float s = std::sqrt(std::max(0.0f, (1 - single) / std::max(1e-6f, 1 - single * g)));
+    return clamp01((1 - s) * (1 - 0.139f * s) / (1 + 1.17f * s));
+}
+
+CoatedDiffuseMaterial Builder::subsurface() {
+    warn(
+        "material \"subsurface\" is not supported; \"coateddiffuse\" of the same colour takes its "
+        "place");
+    CoatedDiffuseMaterial m;
+    roughness(m);
+    m.reflectance = textures.reflectance_or_none(p, "reflectance");
+    if (m.reflectance < 0) {
+        const Rgb a = textures.mean(textures.unbounded(p, "sigma_a", {0.0011f, 0.0024f, 0.014f}));
+        const Rgb s = textures.mean(textures.unbounded(p, "sigma_s", {2.55f, 3.21f, 3.77f}));
+        const float g = p.number("g", 0);
+        m.reflectance = textures.constant(
+            {medium_albedo(a.r, s.r, g), medium_albedo(a.g, s.g, g), medium_albedo(a.b, s.b, g)},
+            true);
+    }
+    m.thickness = textures.constant(Rgb{0.01f}, false);
+    m.g = textures.constant(Rgb{0}, false);
+    m.albedo = textures.constant(Rgb{0}, true);
+    m.eta = refractive_index(p, "eta", 1.33f, context);
+    p.ignore_all();
+    return m;
+}
+
+DiffuseMaterial Builder::hair() {
+    warn("material \"hair\" is not supported; \"diffuse\" of the same colour takes its place");
+    DiffuseMaterial m;
+    m.reflectance = textures.reflectance_or_none(p, "reflectance");
+    if (m.reflectance < 0) m.reflectance = textures.reflectance_or_none(p, "color");
+    if (m.reflectance < 0) {
+        // Absorption of the pigments and its relation to the colour of dense hair: Chiang et al.,
+        // "A Practical and Controllable Hair and Fur Model for Production Path Tracing" (2016), for
+        // azimuthal roughness 0.3.
+        const bool has_pigment = p.has("eumelanin") || p.has("pheomelanin");
+        const float eu = textures.mean(textures.grey(p, "eumelanin", has_pigment ? 0 : 1.3f)).r;
+        const float pheo = textures.mean(textures.grey(p, "pheomelanin", 0)).r;
+        const Rgb pigment = eu * Rgb{0.419f, 0.697f, 1.37f} + pheo * Rgb{0.187f, 0.4f, 1.05f};
+        const Rgb sigma = textures.mean(textures.unbounded(p, "sigma_a", pigment));
+        const auto colour = [](float s) { return std::exp(-5.89f * std::sqrt(std::max(0.0f, s))); };
+        m.reflectance =
+            textures.constant({colour(sigma.r), colour(sigma.g), colour(sigma.b)}, true);
+    }
+    p.ignore_all();
+    return m;
+}
+
+CoatedDiffuseMaterial measured(Builder& b) {
+    b.warn("material \"measured\" is not supported; a grey \"coateddiffuse\" takes its place");
+    b.p.ignore_all();
+    Entity plain{"coateddiffuse", {}, b.e.where, b.e.directive};
+    return Builder{plain, plain.parameters, b.textures, b.context}.coated_diffuse();
+}
+
+}  // namespace
+
+Model material_model(Entity& entity, TextureBuilder& textures, BuildContext& context) {
+    Builder b{entity, entity.parameters, textures, context};
+    const std::string& type = entity.type;
+    Model model;
+    if (type == "diffuse") {
+        model = b.diffuse();
+    } else if (type == "coateddiffuse") {
+        model = b.coated_diffuse();
+    } else if (type == "conductor") {
+        model = b.conductor("");
+    } else if (type == "dielectric") {
+        model = b.dielectric();
+    } else if (type == "diffusetransmission") {
+        model = b.diffuse_transmission();
+    } else if (type == "coatedconductor") {
+        b.warn("material \"coatedconductor\" is rendered without its coat");
+        model = b.conductor("conductor.");
+        b.p.ignore_all();
+    } else if (type == "thindielectric") {
+        // Light leaves a pane parallel to how it came. An index of 1 keeps that; any other would
+        // bend the light once and fill one side of an open pane with glass.
+        b.warn("material \"thindielectric\" is rendered as clear glass without reflection");
+        DielectricMaterial clear = b.dielectric();
+        clear.eta = 1;
+        model = clear;
+        b.p.ignore_all();
+    } else if (type == "subsurface") {
+        model = b.subsurface();
+    } else if (type == "hair") {
+        model = b.hair();
+    } else if (type == "measured") {
+        model = measured(b);
+    } else if (type == "interface" || type.empty() || type == "none") {
+        model = InterfaceMaterial{};
+    } else {
+        throw unknown_type_error(entity.where, "material", type,
+                                 {"diffuse", "coateddiffuse", "conductor", "dielectric",
+                                  "diffusetransmission", "coatedconductor", "thindielectric",
+                                  "subsurface", "hair", "measured", "mix", "interface"});
+    }
+    if (b.p.has("displacement"))
+        context.log.add(b.p.where("displacement", entity.where),
+                        "bump mapping (\"displacement\") is not rendered");
+    if (b.p.has("normalmap"))
+        context.log.add(b.p.where("normalmap", entity.where),
+                        "normal maps (\"normalmap\") are not rendered");
+    b.p.ignore({"displacement", "normalmap"});
+    b.ignore_shared();
+    b.p.warn_unused(context.log, "material " + in_quotes(type));
+    return model;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,93 @@
+/// The parameters of one directive: typed access by name, and a record of what was asked for.
+///
+/// As in pbrt, the last of several parameters of one name counts, and a directive's own parameters
+/// come before those of an earlier `Attribute`. Asking for a name with the wrong type is an error;
+/// what nobody asked for becomes a warning.
+#pragma once
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+#include "core/vec.h"
+#include "scene/colour_space.h"
+
+namespace covtrace {
+
+class WarningLog;
+
+enum class ParameterType {
+    floats,
+    integer,
+    boolean,
+    string,
+    point2,
+    vector2,
+    point3,
+    vector3,
+    normal3,
+    rgb,
+    blackbody,
+    spectrum,
+    texture
+};
+
+struct Parameter {
+    ParameterType type{};
+    std::string name;
+    SourceLocation where;
+    ColourSpace colour_space = ColourSpace::srgb;
+    bool may_be_unused = false;  ///< given by `Attribute`
+    bool looked_up = false;
+    /// One of these holds the values; flags are in `integers`, `spectrum` has numbers or strings.
+    std::vector<float> numbers;
+    std::vector<int> integers;
+    std::vector<std::string> strings;
+};
+
+class ParameterList {
+  public:
+    ParameterList() = default;
+    /// `inherited` are the parameters of the `Attribute` directives in force.
+    ParameterList(std::vector<Parameter> own, const std::vector<Parameter>& inherited);
+
+    /// The one that counts, marked as looked up; null where there is none.
+    /// Errors: Error(scene) where its type is not among `types`.
+    const Parameter* find(std::string_view name, std::initializer_list<ParameterType> types);
+    bool has(std::string_view name) const;
+
+    float number(std::string_view name, float otherwise);
+    std::optional<float> number(std::string_view name);
+    int integer(std::string_view name, int otherwise);
+    bool flag(std::string_view name, bool otherwise);
+    std::string text(std::string_view name, std::string otherwise = {});
+    /// point3, vector3 or normal3.
+    Vec3 triple(std::string_view name, Vec3 otherwise);
+
+    std::vector<float> numbers(std::string_view name);
+    std::vector<int> integers(std::string_view name);
+    std::vector<std::string> texts(std::string_view name);
+    std::vector<Vec2> pairs(std::string_view name);    ///< point2 or vector2
+    std::vector<Vec3> triples(std::string_view name);  ///< point3, vector3 or normal3
+
+    /// Where the parameter stands; `otherwise` where it isn't given.
+    SourceLocation where(std::string_view name, const SourceLocation& otherwise) const;
+    /// Marks parameters that have no effect on the result, so that nothing is said about them.
+    void ignore(std::initializer_list<std::string_view> names);
+    void ignore_all();
+    /// Warns of each parameter that nobody looked up, and of those given twice.
+    void warn_unused(WarningLog& log, const std::string& owner) const;
+
+  private:
+    Parameter* last(std::string_view name);
+    std::vector<Parameter> all_;  ///< inherited first, so that the last one counts
+};
+
+/// The single colour of an `rgb` parameter in linear Rec.709, as given (negative components are
+/// refused).
+Rgb rgb_value(const Parameter& p);
+
+}  // namespace covtrace

@@ -1,0 +1,41 @@
+/// The header of a PLY file: what elements follow and what each is made of.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+
+namespace covtrace {
+
+enum class PlyNumber : uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+size_t size_of(PlyNumber type);
+
+struct PlyProperty {
+    std::string name;
+    PlyNumber type{};
+    bool is_list = false;
+    PlyNumber count_type{};  ///< of lists
+};
+struct PlyElement {
+    std::string name;
+    uint64_t count = 0;
+    std::vector<PlyProperty> properties;
+    SourceLocation where;
+    /// The fewest bytes (binary) or characters (ascii) that one of them takes.
+    uint64_t smallest_size(bool ascii) const;
+};
+struct PlyHeader {
+    enum class Format { ascii, little_endian, big_endian };
+    Format format{};
+    std::vector<PlyElement> elements;
+    size_t size = 0;  ///< bytes up to the data
+    int lines = 0;
+};
+
+/// Errors: Error(scene) with the line.
+PlyHeader read_ply_header(std::string_view bytes, const std::shared_ptr<const std::string>& file);
+
+}  // namespace covtrace

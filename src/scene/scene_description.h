@@ -1,0 +1,263 @@
+/// What a scene file says, as plain data: the reader fills it, the renderer builds from it.
+/// Everything is checked when it gets here: indices are in range, numbers are finite, references
+/// resolved. Lengths are in scene units, angles in degrees, colours linear Rec.709, `-1` means
+/// "none" for every index.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/error.h"
+#include "core/transform.h"
+#include "core/vec.h"
+
+namespace covtrace {
+
+using TextureId = int;   ///< into SceneDescription::textures
+using MaterialId = int;  ///< into SceneDescription::materials
+using MediumId = int;    ///< into SceneDescription::media
+
+// ---- textures. Float textures are grey: r = g = b.
+
+/// How (u, v) of the surface become (s, t) of the texture.
+struct TextureMapping {
+    enum class Kind { uv, spherical, cylindrical, planar };
+    Kind kind = Kind::uv;
+    float scale_u = 1, scale_v = 1, delta_u = 0, delta_v = 0;
+    Vec3 v1{1, 0, 0}, v2{0, 1, 0};  ///< planar only
+    Transform texture_from_world;   ///< all but uv
+};
+
+struct ConstantTexture {
+    Rgb value{1};
+};
+struct ImageTexture {
+    enum class Encoding { srgb, linear, gamma };
+    enum class Wrap { repeat, black, clamp, octahedral_sphere };
+    enum class Filter { point, bilinear, trilinear, ewa };
+    std::filesystem::path file;
+    /// Empty: sRGB for 8-bit files, linear for the others.
+    std::optional<Encoding> encoding;
+    float gamma = 1;
+    Wrap wrap = Wrap::repeat;
+    Filter filter = Filter::bilinear;
+    float scale = 1;
+    bool invert = false;
+    TextureMapping mapping;
+};
+struct CheckerboardTexture {
+    int dimension = 2;  ///< 2: over (s, t); 3: over points in texture space
+    TextureMapping mapping;
+    Transform texture_from_world;
+    TextureId tex1 = -1, tex2 = -1;  ///< tex1 on the squares with an even sum of coordinates
+};
+struct ScaleTexture {
+    TextureId tex = -1, scale = -1;
+};
+struct MixTexture {
+    TextureId tex1 = -1, tex2 = -1, amount = -1;  ///< (1 - amount) tex1 + amount tex2
+};
+struct TextureDescription {
+    std::string name;  ///< empty for values given inline
+    bool is_spectrum = true;
+    std::variant<ConstantTexture, ImageTexture, CheckerboardTexture, ScaleTexture, MixTexture>
+        value;
+    SourceLocation where;
+};
+
+// ---- materials. Roughness textures hold pbrt's "roughness"; `remap_roughness` says that alpha =
+// sqrt(roughness).
+
+struct DiffuseMaterial {
+    TextureId reflectance = -1;
+};
+struct ConductorMaterial {
+    TextureId eta = -1, k = -1;  ///< relative to vacuum; both or neither
+    TextureId reflectance = -1;  ///< in place of eta and k
+    TextureId u_roughness = -1, v_roughness = -1;
+    bool remap_roughness = true;
+};
+struct DielectricMaterial {
+    float eta = 1.5f;
+    TextureId u_roughness = -1, v_roughness = -1;
+    bool remap_roughness = true;
+};
+/// A diffuse base under a dielectric coat with an absorbing-free gap of the given thickness.
+struct CoatedDiffuseMaterial {
+    TextureId reflectance = -1;
+    TextureId u_roughness = -1, v_roughness = -1;
+    TextureId thickness = -1;
+    TextureId g = -1, albedo = -1;
+    float eta = 1.5f;
+    bool remap_roughness = true;
+    int max_depth = 10, samples = 1;
+};
+struct DiffuseTransmissionMaterial {
+    TextureId reflectance = -1, transmittance = -1;
+    float scale = 1;
+};
+/// No surface at all: only separates media.
+struct InterfaceMaterial {};
+struct MaterialDescription {
+    std::string name;
+    std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, CoatedDiffuseMaterial,
+                 DiffuseTransmissionMaterial, InterfaceMaterial>
+        value;
+    SourceLocation where;
+};
+
+// ---- media: parsed, and absorbing ones rendered inside dielectrics.
+
+struct MediumDescription {
+    std::string name;
+    Rgb sigma_a, sigma_s;  ///< per scene unit, scale applied
+    float g = 0;
+    SourceLocation where;
+};
+
+// ---- shapes, in object space
+
+struct TriangleMesh {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals;  ///< empty or one per position
+    std::vector<Vec2> uvs;      ///< empty or one per position
+    std::vector<std::array<uint32_t, 3>> triangles;
+};
+/// Four corners p00, p10, p01, p11 per patch.
+struct BilinearMesh {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals;
+    std::vector<Vec2> uvs;
+    std::vector<std::array<uint32_t, 4>> patches;
+};
+struct Sphere {
+    float radius = 1, z_min = -1, z_max = 1, phi_max = 360;
+};
+struct Disk {
+    float height = 0, radius = 1, inner_radius = 0, phi_max = 360;
+};
+
+/// Diffuse emission of a shape; `radiance` includes every scale of the file.
+struct AreaLightDescription {
+    Rgb radiance{1};
+    std::optional<float> power;  ///< watts over the whole shape, in place of the radiance's size
+    bool two_sided = false;
+    SourceLocation where;
+};
+
+struct ShapeDescription {
+    /// Meshes are shared, so that a description can be copied cheaply.
+    std::variant<std::shared_ptr<const TriangleMesh>, std::shared_ptr<const BilinearMesh>, Sphere,
+                 Disk>
+        geometry;
+    AnimatedTransform object_to_world;
+    bool reverse_orientation = false;
+    MaterialId material = -1;
+    int area_light = -1;  ///< into SceneDescription::area_lights
+    /// Constant 0 on a light that is not seen but lights the scene; other shapes never have that.
+    TextureId alpha = -1;
+    MediumId inside = -1, outside = -1;
+    SourceLocation where;
+};
+
+struct ObjectDescription {
+    std::string name;
+    std::vector<ShapeDescription> shapes;
+};
+struct InstanceDescription {
+    int object = -1;  ///< into SceneDescription::objects
+    AnimatedTransform instance_to_world;
+    SourceLocation where;
+};
+
+// ---- lights that are not shapes
+
+struct PointLight {
+    Rgb intensity{1};
+    std::optional<float> power;  ///< of all directions, in place of the intensity's size
+    Vec3 from;
+};
+struct SpotLight {
+    Rgb intensity{1};
+    std::optional<float> power;  ///< of all directions, in place of the intensity's size
+    Vec3 from, to{0, 0, 1};
+    float cone_angle = 30, cone_delta_angle = 5;
+};
+struct DistantLight {
+    Rgb radiance{1};          ///< irradiance on a surface that faces it
+    Vec3 direction{0, 0, 1};  ///< from the scene towards the light, light space, unit length
+};
+struct InfiniteLight {
+    Rgb radiance{1};  ///< of the uniform light; multiplies the image
+    std::optional<std::filesystem::path>
+        image;  ///< equal-area octahedral square, or lat-long 2:1 with z as the pole
+    /// On a surface that faces +z of light space; scales the whole light, colour and "scale"
+    /// included.
+    std::optional<float> illuminance;
+};
+struct LightDescription {
+    std::variant<PointLight, SpotLight, DistantLight, InfiniteLight> value;
+    Transform light_to_world;  ///< at the start of the shutter
+    SourceLocation where;
+};
+
+// ---- view
+
+struct CameraDescription {
+    enum class Kind { perspective, orthographic };
+    Kind kind = Kind::perspective;
+    AnimatedTransform camera_to_world;  ///< x right, y up, z forward in camera space
+    float fov = 90;                     ///< of the shorter axis, unless the screen window is given
+    float frame_aspect_ratio = 0;       ///< 0: from the resolution
+    std::optional<std::array<float, 4>> screen_window;  ///< x0, x1, y0, y1
+    float lens_radius = 0, focal_distance = 1e6f;
+    float shutter_open = 0, shutter_close = 1;
+    SourceLocation where;
+};
+
+struct FilmDescription {
+    int width = 1280, height = 720;
+    std::array<float, 4> crop_window{0, 1, 0, 1};    ///< x0, x1, y0, y1 as fractions
+    std::optional<std::array<int, 4>> pixel_bounds;  ///< x0, x1, y0, y1 in pixels, end exclusive
+    std::string filename;                            ///< empty: not given
+    float iso = 100;
+    float max_component_value = kInfinity;
+    SourceLocation where;
+};
+
+struct FilterDescription {
+    enum class Kind { box, triangle, gaussian, mitchell, lanczos_sinc };
+    Kind kind = Kind::gaussian;
+    float x_radius = 1.5f, y_radius = 1.5f;
+    float sigma = 0.5f;                ///< gaussian
+    float b = 1.0f / 3, c = 1.0f / 3;  ///< mitchell
+    float tau = 3;                     ///< sinc
+};
+
+struct SceneDescription {
+    std::string name;  ///< the file's name without folder and extension
+    CameraDescription camera;
+    FilmDescription film;
+    FilterDescription filter;
+    int samples_per_pixel = 16;
+    int max_depth = 5;
+    std::vector<TextureDescription> textures;
+    std::vector<MaterialDescription> materials;
+    std::vector<MediumDescription> media;
+    std::vector<AreaLightDescription> area_lights;
+    std::vector<LightDescription> lights;
+    std::vector<ShapeDescription> shapes;
+    std::vector<ObjectDescription> objects;
+    std::vector<InstanceDescription> instances;
+    /// What the file asks for and covtrace replaces or ignores, in file order.
+    Warnings warnings;
+    uint64_t content_hash = 0;  ///< of all bytes read for the description: scene files and meshes
+};
+
+}  // namespace covtrace

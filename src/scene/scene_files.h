@@ -1,0 +1,43 @@
+/// The files that a scene names: finding them, reading them whole, and a hash of everything read.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+
+namespace covtrace {
+
+class WarningLog;
+
+class SceneFiles {
+  public:
+    /// `folder` is the main scene's, which relative names refer to (also those in included files,
+    /// as in pbrt).
+    SceneFiles(std::filesystem::path folder, std::vector<std::filesystem::path> search_paths,
+               WarningLog& log)
+        : folder_(std::move(folder)), search_paths_(std::move(search_paths)), log_(log) {}
+
+    /// An existing regular file: looked for in the scene's folder, the search paths, the working
+    /// folder, then once more with backslashes as slashes and without regard to upper and lower
+    /// case (with a warning). Errors: Error(scene) with the places looked at.
+    std::filesystem::path find(const std::string& name, const SourceLocation& where);
+
+    /// The whole file, decompressed where its name ends in ".gz"; counts in the hash.
+    /// Errors: Error(scene) where it can't be opened, Error(io) where reading fails in the middle.
+    std::string read(const std::filesystem::path& file, const SourceLocation& where);
+
+    void add_to_hash(std::string_view bytes);
+    uint64_t content_hash() const { return hash_; }
+
+  private:
+    std::filesystem::path folder_;
+    std::vector<std::filesystem::path> search_paths_;
+    WarningLog& log_;
+    uint64_t hash_ = 0;
+};
+
+}  // namespace covtrace

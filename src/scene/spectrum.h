@@ -1,0 +1,43 @@
+/// Spectra of scene files and the linear Rec.709 colours that stand for them (docs/colour.md).
+///
+/// Integrals use the CIE 1931 colour matching functions in the analytic fit of Wyman, Sloan and
+/// Shirley (JCGT 2013, single- and multi-lobe fits), from 380 to 780 nm. Every colour is divided by
+/// that of D65 through the same functions, so that a white surface is exactly (1, 1, 1).
+#pragma once
+
+#include <vector>
+
+#include "core/vec.h"
+
+namespace covtrace {
+
+/// Values at increasing wavelengths (nanometres), linear between them.
+struct Spectrum {
+    std::vector<float> wavelengths, values;
+    bool extends = false;  ///< the end values go on outside; otherwise zero there
+    double at(double wavelength) const;
+};
+
+/// Planck's law at this temperature (kelvin, > 0), largest visible value 1.
+Spectrum blackbody_spectrum(double kelvin);
+
+/// Colour of a surface with this reflectance (or of any other factor) under D65.
+Rgb reflectance_colour(const Spectrum& s);
+/// Colour of light with this spectrum, scaled to luminance 1, as pbrt normalises its lights.
+/// Components outside of the Rec.709 gamut are set to 0. Empty light gives black.
+Rgb emission_colour(const Spectrum& s);
+/// The colour of luminance 1 with these CIE 1931 chromaticities.
+Rgb chromaticity_colour(double x, double y);
+
+/// Index of refraction and absorption of a conductor per colour channel.
+struct ConductorColours {
+    Rgb eta{1}, k{0};
+};
+/// eta is the mean over the wavelengths that each channel sees; k is chosen so that the reflectance
+/// at normal incidence is the colour of the spectral one. Where no k >= 0 does that, k is 0 and eta
+/// is chosen instead.
+ConductorColours conductor_colours(const Spectrum& eta, const Spectrum& k);
+/// Mean over the wavelengths that each channel sees (its positive part times D65).
+Rgb channel_means(const Spectrum& s);
+
+}  // namespace covtrace

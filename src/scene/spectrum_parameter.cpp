@@ -1,0 +1,130 @@
+#include "scene/spectrum_parameter.h"
+
+#include <algorithm>
+
+#include "scene/named_spectra.h"
+#include "scene/names.h"
+#include "scene/token_stream.h"
+#include "scene/tokenizer.h"
+#include "scene/version_three.h"
+
+namespace covtrace {
+
+namespace {
+
+Spectrum from_pairs(const std::vector<float>& numbers, const SourceLocation& where) {
+    if (numbers.empty() || numbers.size() % 2 != 0)
+        throw Error(ErrorKind::scene, where,
+                    "a spectrum has " + std::to_string(numbers.size()) +
+                        " values; expected pairs of wavelength and value");
+    Spectrum s;
+    for (size_t i = 0; i < numbers.size(); i += 2) {
+        if (i > 0 && !(numbers[i] > numbers[i - 2]))
+            throw Error(ErrorKind::scene, where,
+                        "the wavelengths of a spectrum must increase; entry " +
+                            std::to_string(i / 2 + 1) + " does not");
+        if (numbers[i + 1] < 0)
+            throw Error(ErrorKind::scene, where, "a spectrum has a negative value");
+        s.wavelengths.push_back(numbers[i]);
+        s.values.push_back(numbers[i + 1]);
+    }
+    return s;
+}
+
+/// A text file of wavelength and value pairs, with "#" comments.
+Spectrum from_file(const std::string& name, const SourceLocation& where, BuildContext& context) {
+    const std::filesystem::path file = context.files.find(name, where);
+    const std::string text = context.files.read(file, where);
+    const auto shared_name = std::make_shared<const std::string>(file.string());
+    Tokenizer tokens(text, shared_name);
+    std::vector<float> numbers;
+    for (Token t = tokens.next(); t.kind != Token::Kind::end; t = tokens.next())
+        numbers.push_back(parse_float(t));
+    return from_pairs(numbers, {shared_name, 0, 0});
+}
+
+constexpr double kHeliumLine = 587.6;
+
+}  // namespace
+
+std::optional<Spectrum> spectrum_value(const Parameter& p, BuildContext& context) {
+    if (p.type == ParameterType::blackbody) {
+        if (p.numbers.size() == 2)
+            throw version_three_error(p.where, "a blackbody with temperature and scale");
+        if (p.numbers.size() != 1 || !(p.numbers[0] > 0))
+            throw Error(
+                ErrorKind::scene, p.where,
+                "parameter " + in_quotes(p.name) + " expects one temperature > 0 in kelvin");
+        return blackbody_spectrum(p.numbers[0]);
+    }
+    if (p.strings.empty()) return from_pairs(p.numbers, p.where);
+    if (p.strings.size() != 1)
+        throw Error(ErrorKind::scene, p.where,
+                    "parameter " + in_quotes(p.name) + " expects one spectrum");
+    const std::string& name = p.strings[0];
+    if (illuminant_colour(name)) return std::nullopt;
+    if (auto known = material_spectrum(name)) return known;
+    const bool looks_like_file = name.find_first_of("./\\") != std::string::npos;
+    if (!looks_like_file)
+        throw Error(ErrorKind::scene, p.where,
+                    "unknown spectrum " + in_quotes(name) + "; expected a file or a name such as " +
+                        "metal-Cu-eta, glass-BK7, stdillum-D65" +
+                        did_you_mean(name, spectrum_names()));
+    return from_file(name, p.where, context);
+}
+
+Rgb factor_colour(const Parameter& p, BuildContext& context) {
+    if (p.type == ParameterType::rgb) return rgb_value(p);
+    const std::optional<Spectrum> s = spectrum_value(p, context);
+    if (!s) {
+        context.log.add(p.where,
+                        "the colour of light " + in_quotes(p.strings[0]) + " is used as a factor");
+        return *illuminant_colour(p.strings[0]);
+    }
+    const Rgb c = reflectance_colour(*s);
+    return {std::max(0.0f, c.r), std::max(0.0f, c.g), std::max(0.0f, c.b)};
+}
+
+Rgb light_colour(ParameterList& parameters, std::string_view name, BuildContext& context) {
+    const Parameter* p = parameters.find(
+        name, {ParameterType::rgb, ParameterType::spectrum, ParameterType::blackbody});
+    if (!p) return Rgb{1};
+    if (p->type == ParameterType::rgb) return rgb_value(*p);
+    const std::optional<Spectrum> s = spectrum_value(*p, context);
+    return s ? emission_colour(*s) : *illuminant_colour(p->strings[0]);
+}
+
+float refractive_index(ParameterList& parameters, std::string_view name, float otherwise,
+                       BuildContext& context) {
+    const Parameter* p =
+        parameters.find(name, {ParameterType::floats, ParameterType::spectrum, ParameterType::rgb});
+    if (!p) return otherwise;
+    float eta = 0;
+    if (p->type == ParameterType::floats) {
+        eta = p->numbers[0];
+    } else if (p->type == ParameterType::rgb) {
+        eta = rgb_value(*p).g;
+        context.log.add(p->where, "dispersion is not rendered; the green index of " +
+                                      in_quotes(p->name) + " is used");
+    } else {
+        const std::optional<Spectrum> s = spectrum_value(*p, context);
+        if (!s)
+            throw Error(ErrorKind::scene, p->where,
+                        in_quotes(p->strings[0]) + " is a light; expected an index of refraction");
+        Spectrum index = *s;
+        index.extends = true;
+        eta = static_cast<float>(index.at(kHeliumLine));
+        const bool varies = is_glass(p->strings.empty() ? "" : p->strings[0]) ||
+                            std::any_of(s->values.begin(), s->values.end(),
+                                        [&](float v) { return v != s->values[0]; });
+        if (varies)
+            context.log.add(p->where, "dispersion is not rendered; parameter " +
+                                          in_quotes(p->name) + " has its value at 587.6 nm");
+    }
+    if (!(eta > 0))
+        throw Error(ErrorKind::scene, p->where,
+                    "parameter " + in_quotes(p->name) + " must be greater than 0");
+    return eta;
+}
+
+}  // namespace covtrace

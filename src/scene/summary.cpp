@@ -1,0 +1,60 @@
+#include "scene/summary.h"
+
+#include <sstream>
+
+namespace covtrace {
+
+namespace {
+
+struct ShapeCounts {
+    size_t shapes = 0, triangles = 0, patches = 0, spheres = 0, disks = 0, emitters = 0, moving = 0;
+
+    void add(const ShapeDescription& s) {
+        ++shapes;
+        emitters += s.area_light >= 0;
+        moving += s.object_to_world.is_animated();
+        if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&s.geometry))
+            triangles += (*mesh)->triangles.size();
+        else if (const auto* quads = std::get_if<std::shared_ptr<const BilinearMesh>>(&s.geometry))
+            patches += (*quads)->patches.size();
+        else if (std::holds_alternative<Sphere>(s.geometry))
+            ++spheres;
+        else
+            ++disks;
+    }
+};
+
+}  // namespace
+
+std::string summarize(const SceneDescription& scene) {
+    ShapeCounts top, objects;
+    for (const ShapeDescription& s : scene.shapes) top.add(s);
+    for (const ObjectDescription& o : scene.objects)
+        for (const ShapeDescription& s : o.shapes) objects.add(s);
+    const CameraDescription& camera = scene.camera;
+    std::ostringstream out;
+    out << "scene      " << scene.name << "\n"
+        << "film       " << scene.film.width << "x" << scene.film.height << ", "
+        << scene.samples_per_pixel << " samples per pixel, depth " << scene.max_depth << "\n"
+        << "camera     "
+        << (camera.kind == CameraDescription::Kind::perspective ? "perspective, field of view "
+                                                                : "orthographic, ")
+        << (camera.kind == CameraDescription::Kind::perspective ? camera.fov : 0.0f)
+        << ", lens radius " << camera.lens_radius << ", focal distance " << camera.focal_distance
+        << ", shutter " << camera.shutter_open << " to " << camera.shutter_close
+        << (camera.camera_to_world.is_animated() ? ", moving" : "") << "\n"
+        << "shapes     " << top.shapes << " (" << top.triangles << " triangles, " << top.patches
+        << " patches, " << top.spheres << " spheres, " << top.disks << " disks; " << top.moving
+        << " moving)\n";
+    if (!scene.objects.empty())
+        out << "objects    " << scene.objects.size() << " of " << objects.shapes << " shapes ("
+            << objects.triangles << " triangles), " << scene.instances.size() << " instances\n";
+    out << "materials  " << scene.materials.size() << ", " << scene.textures.size() << " textures, "
+        << scene.media.size() << " media\n"
+        << "lights     " << scene.lights.size() << " and " << top.emitters << " emitting shapes\n";
+    for (const Warning& w : scene.warnings)
+        out << "warning    " << w.where.to_string() << ": " << w.text << "\n";
+    return out.str();
+}
+
+}  // namespace covtrace

@@ -1,0 +1,242 @@
+#include "scene/view_builder.h"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "scene/names.h"
+#include "scene/version_three.h"
+
+namespace covtrace {
+
+namespace {
+
+constexpr int kLongestSide = 65536;
+constexpr int64_t kMostPixels = int64_t{1} << 30;
+
+[[noreturn]] void refuse(const Entity& e, std::string_view parameter, const std::string& text) {
+    throw Error(ErrorKind::scene, e.parameters.where(parameter, e.where), text);
+}
+
+float positive(Entity& e, std::string_view name, float otherwise) {
+    const float v = e.parameters.number(name, otherwise);
+    if (!(v > 0)) refuse(e, name, "parameter " + in_quotes(name) + " must be greater than 0");
+    return v;
+}
+
+std::string owner(std::string_view kind, const Entity& e) {
+    return std::string(kind) + " " + in_quotes(e.type);
+}
+
+void substitute_camera(Entity& e, CameraDescription& camera, WarningLog& log) {
+    if (e.type == "realistic") {
+        log.add(e.where,
+                "camera \"realistic\" is not supported; a perspective camera with a thin lens and "
+                "fov 40 "
+                "takes its place");
+        camera.fov = 40;
+        camera.focal_distance = positive(e, "focusdistance", 10);
+        constexpr float metres_per_radius_in_millimetres = 0.5e-3f;
+        camera.lens_radius =
+            e.parameters.number("aperturediameter", 1) * metres_per_radius_in_millimetres;
+    } else {
+        log.add(e.where, "camera " + in_quotes(e.type) +
+                             " is not supported; a perspective camera with fov 90 takes its place");
+    }
+}
+
+void build_camera(ViewEntities& view, BuildContext& context) {
+    Entity& e = view.camera;
+    ParameterList& p = e.parameters;
+    CameraDescription& camera = context.scene.camera;
+    camera.where = e.where;
+    camera.camera_to_world = view.camera_to_world;
+    camera.shutter_open = p.number("shutteropen", 0);
+    camera.shutter_close = p.number("shutterclose", 1);
+    if (!(camera.shutter_open < camera.shutter_close))
+        refuse(e, p.has("shutterclose") ? "shutterclose" : "shutteropen",
+               "the shutter never opens: expected shutteropen < shutterclose");
+    if (e.type == "perspective" || e.type == "orthographic") {
+        camera.kind = e.type == "perspective" ? CameraDescription::Kind::perspective
+                                              : CameraDescription::Kind::orthographic;
+        if (e.type == "perspective") camera.fov = p.number("fov", 90);
+        if (!(camera.fov > 0 && camera.fov < 180))
+            refuse(e, "fov", "parameter \"fov\" must be between 0 and 180 degrees");
+        camera.lens_radius = p.number("lensradius", 0);
+        if (camera.lens_radius < 0)
+            refuse(e, "lensradius", "parameter \"lensradius\" must not be negative");
+        camera.focal_distance = positive(e, "focaldistance", 1e6f);
+        if (p.has("frameaspectratio"))
+            camera.frame_aspect_ratio = positive(e, "frameaspectratio", 0);
+        if (const std::vector<float> window = p.numbers("screenwindow"); !window.empty()) {
+            if (window.size() != 4 || !(window[0] < window[1] && window[2] < window[3]))
+                refuse(e, "screenwindow", "parameter \"screenwindow\" expects x0 < x1 and y0 < y1");
+            camera.screen_window = {window[0], window[1], window[2], window[3]};
+        }
+    } else if (e.type == "realistic" || e.type == "spherical") {
+        substitute_camera(e, camera, context.log);
+        p.ignore_all();
+    } else {
+        throw unknown_type_error(e.where, "camera", e.type,
+                                 {"perspective", "orthographic", "realistic", "spherical"});
+    }
+    p.warn_unused(context.log, owner("camera", e));
+}
+
+void set_crop(Entity& e, FilmDescription& film, WarningLog& log) {
+    if (const std::vector<int> b = e.parameters.integers("pixelbounds"); !b.empty()) {
+        if (b.size() != 4)
+            refuse(e, "pixelbounds", "parameter \"pixelbounds\" expects x0 x1 y0 y1");
+        const std::array<int, 4> inside{std::max(b[0], 0), std::min(b[1], film.width),
+                                        std::max(b[2], 0), std::min(b[3], film.height)};
+        if (inside[0] >= inside[1] || inside[2] >= inside[3])
+            refuse(e, "pixelbounds", "parameter \"pixelbounds\" leaves no pixel of the image");
+        if (!std::equal(inside.begin(), inside.end(), b.begin()))
+            log.add(e.parameters.where("pixelbounds", e.where),
+                    "\"pixelbounds\" reach beyond the image; cut to its size");
+        film.pixel_bounds = inside;
+    }
+    if (const std::vector<float> c = e.parameters.numbers("cropwindow"); !c.empty()) {
+        if (c.size() != 4) refuse(e, "cropwindow", "parameter \"cropwindow\" expects x0 x1 y0 y1");
+        const SourceLocation where = e.parameters.where("cropwindow", e.where);
+        film.crop_window = {clamp01(std::min(c[0], c[1])), clamp01(std::max(c[0], c[1])),
+                            clamp01(std::min(c[2], c[3])), clamp01(std::max(c[2], c[3]))};
+        const auto& w = film.crop_window;
+        if (!(w[0] < w[1] && w[2] < w[3]))
+            refuse(e, "cropwindow", "parameter \"cropwindow\" leaves no pixel of the image");
+        if (film.pixel_bounds) {
+            log.add(where, "both \"pixelbounds\" and \"cropwindow\" are given; the latter counts");
+            film.pixel_bounds.reset();
+        }
+    }
+}
+
+void build_film(ViewEntities& view, BuildContext& context) {
+    Entity& e = view.film;
+    ParameterList& p = e.parameters;
+    FilmDescription& film = context.scene.film;
+    film.where = e.where;
+    if (e.type == "gbuffer" || e.type == "spectral") {
+        context.log.add(e.where,
+                        "film " + in_quotes(e.type) + " is not supported; \"rgb\" takes its place");
+        p.ignore({"coordinatesystem", "nbuckets", "lambdamin", "lambdamax"});
+    } else if (e.type != "rgb") {
+        throw unknown_type_error(e.where, "film", e.type, {"rgb", "gbuffer", "spectral"});
+    }
+    film.width = p.integer("xresolution", 1280);
+    film.height = p.integer("yresolution", 720);
+    const bool bad_width = film.width < 1;
+    const std::string resolution = std::to_string(film.width) + "x" + std::to_string(film.height);
+    if (film.width < 1 || film.height < 1)
+        refuse(e, bad_width ? "xresolution" : "yresolution",
+               "the resolution " + resolution + " has no pixels");
+    if (film.width > kLongestSide || film.height > kLongestSide ||
+        int64_t{film.width} * film.height > kMostPixels)
+        throw Error(ErrorKind::limit, p.where("xresolution", e.where),
+                    "the resolution " + resolution + " is too large; at most " +
+                        std::to_string(kLongestSide) + " pixels a side and 2^30 in all");
+    film.filename = p.text("filename");
+    film.iso = positive(e, "iso", 100);
+    film.max_component_value = positive(e, "maxcomponentvalue", kInfinity);
+    set_crop(e, film, context.log);
+    if (const std::string sensor = p.text("sensor", "cie1931"); sensor != "cie1931")
+        context.log.add(
+            p.where("sensor", e.where),
+            "sensor " + in_quotes(sensor) + " is not supported; \"cie1931\" takes its place");
+    if (p.number("whitebalance", 0) != 0)
+        context.log.add(p.where("whitebalance", e.where), "parameter \"whitebalance\" is ignored");
+    if (view.film_colour_space != ColourSpace::srgb)
+        context.log.add(e.where,
+                        "the image is written in linear Rec.709, not in the film's colour space");
+    p.ignore({"diagonal", "savefp16"});
+    p.warn_unused(context.log, owner("film", e));
+}
+
+void build_filter(Entity& e, BuildContext& context) {
+    using Kind = FilterDescription::Kind;
+    struct Default {
+        const char* name;
+        Kind kind;
+        float radius;
+    };
+    constexpr std::array<Default, 5> known{{{"box", Kind::box, 0.5f},
+                                            {"triangle", Kind::triangle, 2},
+                                            {"gaussian", Kind::gaussian, 1.5f},
+                                            {"mitchell", Kind::mitchell, 2},
+                                            {"sinc", Kind::lanczos_sinc, 4}}};
+    const auto it = std::find_if(known.begin(), known.end(),
+                                 [&](const Default& d) { return e.type == d.name; });
+    if (it == known.end())
+        throw unknown_type_error(e.where, "filter", e.type,
+                                 {"box", "triangle", "gaussian", "mitchell", "sinc"});
+    FilterDescription& filter = context.scene.filter;
+    filter.kind = it->kind;
+    filter.x_radius = positive(e, "xradius", it->radius);
+    filter.y_radius = positive(e, "yradius", it->radius);
+    if (filter.kind == Kind::gaussian) filter.sigma = positive(e, "sigma", 0.5f);
+    if (filter.kind == Kind::mitchell) {
+        filter.b = e.parameters.number("B", 1.0f / 3);
+        filter.c = e.parameters.number("C", 1.0f / 3);
+    }
+    if (filter.kind == Kind::lanczos_sinc) filter.tau = positive(e, "tau", 3);
+    e.parameters.warn_unused(context.log, owner("filter", e));
+}
+
+void build_sampler(Entity& e, BuildContext& context) {
+    const std::vector<std::string> known{"zsobol",  "halton",      "sobol",     "paddedsobol",
+                                         "pmj02bn", "independent", "stratified"};
+    if (std::find(known.begin(), known.end(), e.type) == known.end())
+        throw unknown_type_error(e.where, "sampler", e.type, known);
+    ParameterList& p = e.parameters;
+    int64_t samples = 0;
+    if (e.type == "stratified") {
+        const int x = p.integer("xsamples", 4), y = p.integer("ysamples", 4);
+        samples = x < 1 || y < 1 ? 0 : int64_t{x} * y;
+    } else {
+        samples = p.integer("pixelsamples", e.type == "independent" ? 4 : 16);
+    }
+    constexpr int64_t most = int64_t{1} << 30;
+    if (samples < 1 || samples > most)
+        refuse(e, e.type == "stratified" ? "xsamples" : "pixelsamples",
+               "expected from 1 to 2^30 samples per pixel");
+    context.scene.samples_per_pixel = static_cast<int>(samples);
+    p.ignore({"seed", "randomization", "jitter"});
+    p.warn_unused(context.log, owner("sampler", e));
+}
+
+void build_integrator(Entity& e, BuildContext& context) {
+    ParameterList& p = e.parameters;
+    context.scene.max_depth = p.integer("maxdepth", 5);
+    if (context.scene.max_depth < 0)
+        refuse(e, "maxdepth", "parameter \"maxdepth\" must not be negative");
+    const std::vector<std::string> known{
+        "path", "volpath", "simplepath", "simplevolpath",    "lightpath", "bdpt",
+        "mlt",  "sppm",    "randomwalk", "ambientocclusion", "function"};
+    if (std::find(known.begin(), known.end(), e.type) == known.end())
+        throw unknown_type_error(e.where, "integrator", e.type, known);
+    if (e.type != "path" && e.type != "volpath") {
+        context.log.add(e.where, "integrator " + in_quotes(e.type) +
+                                     " is not supported; path tracing takes its place");
+        p.ignore_all();
+    }
+    if (p.flag("regularize", false))
+        context.log.add(p.where("regularize", e.where), "parameter \"regularize\" is ignored");
+    p.ignore({"lightsampler"});
+    p.warn_unused(context.log, owner("integrator", e));
+}
+
+}  // namespace
+
+void build_view(ViewEntities& view, BuildContext& context) {
+    const auto at = [&](const Entity& e) { context.log.set_order(e.directive); };
+    at(view.camera), build_camera(view, context);
+    at(view.film), build_film(view, context);
+    at(view.filter), build_filter(view.filter, context);
+    at(view.sampler), build_sampler(view.sampler, context);
+    at(view.integrator), build_integrator(view.integrator, context);
+    at(view.accelerator);
+    if (const std::string& type = view.accelerator.type; type != "bvh" && type != "kdtree")
+        context.log.add(view.accelerator.where,
+                        "accelerator " + in_quotes(type) + " is not known; ignored");
+}
+
+}  // namespace covtrace

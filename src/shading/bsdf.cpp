@@ -1,0 +1,78 @@
+#include "shading/bsdf.h"
+
+#include "shading/bsdf_models.h"
+
+namespace covtrace {
+namespace {
+
+Rgb eval(const InterfaceBsdf&, Vec3, Vec3) {
+    return {};
+}
+float pdf(const InterfaceBsdf&, Vec3, Vec3) {
+    return 0;
+}
+LobeShares lobe_shares(const InterfaceBsdf&, Vec3, Vec3) {
+    return {};
+}
+
+bool is_specular(const DiffuseBsdf&) {
+    return false;
+}
+bool is_specular(const DiffuseTransmissionBsdf&) {
+    return false;
+}
+bool is_specular(const CoatedDiffuseBsdf&) {
+    return false;
+}
+bool is_specular(const InterfaceBsdf&) {
+    return true;
+}
+bool is_specular(const ConductorBsdf& b) {
+    return b.alpha_x == 0 && b.alpha_y == 0;
+}
+
+Rgb albedo(const DiffuseBsdf& b, Vec3) {
+    return b.reflectance;
+}
+Rgb albedo(const DiffuseTransmissionBsdf& b, Vec3) {
+    return b.reflectance + b.transmittance;
+}
+Rgb albedo(const DielectricBsdf&, Vec3) {
+    return Rgb(1);
+}
+Rgb albedo(const InterfaceBsdf&, Vec3) {
+    return Rgb(1);
+}
+
+}  // namespace
+
+std::optional<BsdfSample> sample(const InterfaceBsdf&, Vec3 wo, float, Vec2) {
+    return BsdfSample{-wo, Rgb(1), 1, LobeKind::specular_transmission};
+}
+
+Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
+    return std::visit([&](const auto& b) { return eval(b, wo, wi); }, bsdf);
+}
+
+float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
+    return std::visit([&](const auto& b) { return pdf(b, wo, wi); }, bsdf);
+}
+
+std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float u_lobe, Vec2 u) {
+    if (wo.z == 0) return {};
+    return std::visit([&](const auto& b) { return sample(b, wo, u_lobe, u); }, bsdf);
+}
+
+bool is_specular(const Bsdf& bsdf) {
+    return std::visit([](const auto& b) { return is_specular(b); }, bsdf);
+}
+
+LobeShares lobe_shares(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
+    return std::visit([&](const auto& b) { return lobe_shares(b, wo, wi); }, bsdf);
+}
+
+Rgb albedo(const Bsdf& bsdf, Vec3 wo) {
+    return std::visit([&](const auto& b) { return albedo(b, wo); }, bsdf);
+}
+
+}  // namespace covtrace

@@ -1,0 +1,96 @@
+/// Scattering at a surface point: a closed set of models behind sample / eval / pdf.
+///
+/// Directions are unit vectors in the local shading frame (z = shading normal) and point away from
+/// the surface. `eval` includes the factor |cos(wi)|; densities are per solid angle of wi.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "core/vec.h"
+
+namespace covtrace {
+
+enum class LobeKind : uint8_t {
+    diffuse_reflection,
+    diffuse_transmission,
+    glossy_reflection,
+    glossy_transmission,
+    specular_reflection,
+    specular_transmission
+};
+constexpr bool is_specular(LobeKind k) {
+    return k == LobeKind::specular_reflection || k == LobeKind::specular_transmission;
+}
+constexpr bool is_transmission(LobeKind k) {
+    return k == LobeKind::diffuse_transmission || k == LobeKind::glossy_transmission ||
+           k == LobeKind::specular_transmission;
+}
+
+struct BsdfSample {
+    Vec3 wi;
+    Rgb weight;     ///< f |cos(wi)| / pdf; for specular lobes the factor on the throughput
+    float pdf = 0;  ///< of the whole model, per solid angle; for specular lobes the probability of
+                    ///< the choice
+    LobeKind lobe{};
+    float eta = 1;  ///< index on wi's side over the index on wo's side
+};
+
+/// One lobe's part in a pair of directions, for the frequency analysis.
+struct LobeShare {
+    LobeKind kind{};
+    Rgb value;  ///< this lobe's part of eval(wo, wi); for a sampled specular lobe its weight
+    float alpha_x = 0, alpha_y = 0;  ///< GGX, along the local x and y; 0 for diffuse and specular
+    float eta = 1;                   ///< index on wi's side over the index on wo's side
+};
+struct LobeShares {
+    std::array<LobeShare, 4> lobes;
+    int count = 0;
+};
+
+struct DiffuseBsdf {
+    Rgb reflectance;
+};
+struct ConductorBsdf {
+    Rgb eta, k;                      ///< relative to the outside
+    float alpha_x = 0, alpha_y = 0;  ///< 0, 0: a perfect mirror
+};
+struct DielectricBsdf {
+    float eta = 1.5f;  ///< inside (-z) over outside (+z)
+    float alpha_x = 0, alpha_y = 0;
+};
+class CoatTable;  // hemispherical transmission of a rough dielectric coat
+/// Lambertian base below a dielectric coat; two-sided. Made by make_coated_diffuse (coat_table.h).
+struct CoatedDiffuseBsdf {
+    Rgb reflectance;  ///< of the base alone
+    Rgb base;         ///< what the base's lobe is beside both transmissions through the coat
+    float eta = 1.5f;
+    float alpha_x = 0, alpha_y = 0;
+    const CoatTable* table = nullptr;
+    float table_row = 0;  ///< of the mean roughness
+};
+struct DiffuseTransmissionBsdf {
+    Rgb reflectance, transmittance;
+};
+/// Lets everything pass: the border between media.
+struct InterfaceBsdf {};
+
+using Bsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, CoatedDiffuseBsdf,
+                          DiffuseTransmissionBsdf, InterfaceBsdf>;
+
+/// f(wo, wi) |cos(wi)|, without specular lobes.
+Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
+/// Density of `sample` to return wi for this wo, without specular lobes.
+float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
+/// Empty where sampling failed: the path ends with no contribution. `u_lobe` chooses the lobe.
+std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float u_lobe, Vec2 u);
+/// True for models whose lobes are all specular: eval is zero for every pair.
+bool is_specular(const Bsdf& bsdf);
+/// The parts of eval(wo, wi), lobe by lobe; their values sum to it. Specular lobes have no part.
+LobeShares lobe_shares(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
+/// Directional albedo for this wo, approximate where no closed form exists; for the albedo layer.
+Rgb albedo(const Bsdf& bsdf, Vec3 wo);
+
+}  // namespace covtrace

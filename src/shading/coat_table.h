@@ -1,0 +1,110 @@
+/// What a dielectric coat does to the light that meets a Lambertian base below it.
+///
+/// The model is pbrt-v4's layered walk: a (rough) dielectric interface, a gap of the given
+/// thickness that weakens light by A(w) = exp(-thickness / |w.z|) at each crossing, and a
+/// Lambertian base of reflectance rho. Since the base forgets directions, the walk has a closed
+/// form:
+///
+/// 1. Let f_t be the interface's BTDF for energy (without the radiance factor). Of the light from
+///    direction w outside, the share T(w) = integral f_t(w, v) |v.z| A(v) dv reaches the base, so
+///    radiance L from wi within dwi gives it the irradiance E = L |wi.z| T(wi) dwi.
+/// 2. The base sends out the radiance rho E / pi in all directions. The share
+///    R_int = (1 / pi) integral |v.z| A(v) integral f_r(v, v') |v'.z| A(v') dv' dv
+///    of that flux comes back from the interface's inside and is reflected again. After n
+///    reflections at the base its radiance is L_b = (rho E / pi) sum_{j<n} (rho R_int)^j.
+/// 3. Outside, along wo, arrives integral f_t'(wo, v) L_b A(v) |v.z| dv, where f_t' transports
+///    radiance. From outside to inside f_t' = f_t / eta^2 (reciprocity of f_t / eta^2: the solid
+///    angle of a bundle is eta^2 times larger outside), hence L_o = L_b T(wo) / eta^2.
+///
+///    f(wo, wi) = f_coat(wo, wi) + T(wo) T(wi) rho / (pi eta^2) sum_{j<n} (rho R_int)^j
+///
+/// which is reciprocal. n is half of pbrt's `maxdepth`, rounded up.
+///
+/// The tables hold isotropic coats. An anisotropic one is looked up, for each direction w, at the
+/// roughness alpha^2 = alpha_x^2 w.x^2 + alpha_y^2 w.y^2 + w.z^2 (alpha_x^2 + alpha_y^2) / 2: that
+/// of the plane of incidence at grazing angles, the mean of both at the normal.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "shading/bsdf.h"
+
+namespace covtrace {
+
+/// T, the coat's own albedo and R_int over roughness and angle, for one (eta, thickness).
+class CoatTable {
+  public:
+    /// Fills the tables by quadrature; takes about 20 ms. `eta`: coat over outside, > 0.
+    CoatTable(float eta, float thickness);
+    float eta() const { return eta_; }
+    float thickness() const { return thickness_; }
+
+    static constexpr int kRows = 24;   ///< over sqrt(alpha) in [0, 1]
+    static constexpr int kNodes = 48;  ///< over sqrt(cos) in [0, 1]
+    /// Coordinate of a roughness alpha among the rows; alphas above 1 are looked up at 1.
+    static float row_of(float alpha) { return std::sqrt(clamp01(alpha)) * (kRows - 1); }
+
+    /// Share of the light from a direction with cosine `cos_theta` > 0 that reaches the base: T.
+    float transmission(float row, float cos_theta) const {
+        return lookup(transmission_, row, cos_theta);
+    }
+    /// Share that the interface reflects from outside.
+    float reflection(float row, float cos_theta) const {
+        return lookup(reflection_, row, cos_theta);
+    }
+    /// Share of the base's flux that the coat sends back to it: R_int.
+    float internal_reflectance(float row) const { return lookup(internal_reflectance_, row); }
+    /// Cosine-weighted mean of T over the hemisphere.
+    float mean_transmission(float row) const { return lookup(mean_transmission_, row); }
+
+  private:
+    using PerRow = std::array<float, kRows>;
+    /// Nodes with one more at either end, for the cubic interpolation.
+    using PerAngle = std::array<std::array<float, kNodes + 2>, kRows>;
+    static float lookup(const PerRow& values, float row);
+    static float lookup(const PerAngle& values, float row, float cos_theta);
+
+    float eta_, thickness_;
+    PerAngle transmission_, reflection_;
+    PerRow internal_reflectance_, mean_transmission_;
+};
+
+/// The tables of all coats of a scene, one for each distinct pair (eta, thickness).
+class CoatTables {
+  public:
+    /// Makes the table where it does not exist yet; the reference lives as long as this object.
+    const CoatTable& get(float eta, float thickness);
+
+  private:
+    std::vector<std::unique_ptr<const CoatTable>> tables_;
+};
+
+/// `bounces`: most reflections at the base. The alphas are both 0 (a smooth coat) or both > 0.
+CoatedDiffuseBsdf make_coated_diffuse(const CoatTable& table, Rgb reflectance, float alpha_x,
+                                      float alpha_y, int bounces);
+
+inline float CoatTable::lookup(const PerRow& values, float row) {
+    const int i = std::min(static_cast<int>(row), kRows - 2);
+    const float t = row - static_cast<float>(i);
+    return values[i] * (1 - t) + values[i + 1] * t;
+}
+
+/// Linear between the rows, Catmull-Rom between the nodes.
+inline float CoatTable::lookup(const PerAngle& values, float row, float cos_theta) {
+    const float x = std::sqrt(clamp01(cos_theta)) * (kNodes - 1);
+    const int i = std::min(static_cast<int>(x), kNodes - 2);
+    const float t = x - static_cast<float>(i), s = 1 - t;
+    const float w0 = -0.5f * t * s * s, w3 = -0.5f * s * t * t;
+    const float w1 = s - 2 * w0 + w3, w2 = t - 2 * w3 + w0;
+    const int j = std::min(static_cast<int>(row), kRows - 2);
+    const float r = row - static_cast<float>(j);
+    const float* a = values[j].data() + i;
+    const float* b = values[j + 1].data() + i;
+    const float at_a = a[0] * w0 + a[1] * w1 + a[2] * w2 + a[3] * w3;
+    const float at_b = b[0] * w0 + b[1] * w1 + b[2] * w2 + b[3] * w3;
+    return at_a * (1 - r) + at_b * r;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,121 @@
+#include "shading/environment.h"
+
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/warp.h"
+#include "shading/light_delta.h"
+#include "shading/light_weight.h"
+
+namespace covtrace {
+
+namespace {
+
+constexpr int kWidestSpectrum = 1024;
+constexpr int kMostTapsPerAxis = 4;
+
+Vec3 from_angles(float theta, float phi) {
+    const float s = std::sin(theta);
+    return {s * std::cos(phi), s * std::sin(phi), std::cos(theta)};
+}
+
+bool preserves_lengths(const Transform& t) {
+    const Vec3 x = t.vector({1, 0, 0}), y = t.vector({0, 1, 0}), z = t.vector({0, 0, 1});
+    const auto is = [](float value, float expected) { return std::abs(value - expected) < 1e-5f; };
+    return is(dot(x, x), 1) && is(dot(y, y), 1) && is(dot(z, z), 1) && is(dot(x, y), 0) &&
+           is(dot(y, z), 0) && is(dot(z, x), 0);
+}
+
+}  // namespace
+
+Environment::Environment(const InfiniteLight& light, const Transform& light_to_world,
+                         const SourceLocation& where)
+    : light_to_world_(light_to_world),
+      world_to_light_(light_to_world.inverse()),
+      is_rigid_(preserves_lengths(light_to_world)),
+      scale_(light.radiance) {
+    determinant_ =
+        std::abs(dot(cross(world_to_light_.vector({1, 0, 0}), world_to_light_.vector({0, 1, 0})),
+                     world_to_light_.vector({0, 0, 1})));
+    if (light.image) map_ = EnvironmentMap::read(*light.image, where);
+    if (light.illuminance) {
+        const Rgb measured = scale_ * (map_ ? map_->irradiance_from_above() : Rgb(kPi));
+        scale_ *= normalisation(*light.illuminance, luminance(measured));
+    }
+}
+
+Rgb Environment::radiance(Vec3 w) const {
+    return map_ ? scale_ * map_->radiance(to_light(w)) : scale_;
+}
+
+Vec3 Environment::sample(Vec3 n, Vec2 u) const {
+    if (map_) return normalize(light_to_world_.vector(map_->sample(u)));
+    if (n == Vec3{}) return square_to_sphere(u);
+    return normalize(Frame::from_z(n).to_world(square_to_cosine_hemisphere(u)));
+}
+
+float Environment::pdf(Vec3 n, Vec3 w) const {
+    if (!map_) return n == Vec3{} ? kUniformSpherePdf : cosine_hemisphere_pdf(dot(n, w));
+    if (is_rigid_) return map_->pdf(to_light(w));
+    const Vec3 stretched = world_to_light_.vector(w);
+    const float l = length(stretched);
+    return map_->pdf(stretched / l) * determinant_ / (l * l * l);
+}
+
+float Environment::irradiance() const {
+    return kPi * choice_weight(scale_) * (map_ ? map_->mean() : 1.0f);
+}
+
+void Environment::prepare_spectrum() {
+    if (!map_ || spectrum_) return;
+    const int full =
+        map_->layout() == EnvironmentMap::Layout::lat_long ? map_->width() : 2 * map_->width();
+    const int width = std::min(full, kWidestSpectrum), height = std::max(1, width / 2);
+    const int taps = std::clamp((full + width - 1) / width, 1, kMostTapsPerAxis);
+    std::vector<float> values(static_cast<size_t>(width) * static_cast<size_t>(height));
+    parallel_for(height, [&](int64_t y) {
+        for (int x = 0; x < width; ++x) {
+            float sum = 0;
+            for (int j = 0; j < taps; ++j)
+                for (int i = 0; i < taps; ++i) {
+                    const float s = (float(x) + (float(i) + 0.5f) / float(taps)) / float(width);
+                    const float t = (float(y) + (float(j) + 0.5f) / float(taps)) / float(height);
+                    sum += luminance(scale_ * map_->radiance(from_angles(kPi * t, 2 * kPi * s)));
+                }
+            values[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)] =
+                sum / float(taps * taps);
+        }
+    });
+    spectrum_.emplace(values, width, height, ImageSpectrum::Wrap::repeat_s);
+    spectrum_height_ = height;
+}
+
+AngularCovariance Environment::spectrum(Vec3 w) const {
+    AngularCovariance a;
+    if (!spectrum_) {
+        a.tangent = Frame::from_z(-w);
+        return a;
+    }
+    const Vec3 local = to_light(w);
+    const float horizontal = std::sqrt(local.x * local.x + local.y * local.y);
+    const float theta = std::atan2(horizontal, local.z);
+    float phi = std::atan2(local.y, local.x);
+    if (phi < 0) phi += 2 * kPi;
+    const Vec3 along_phi{-std::sin(phi), std::cos(phi), 0};
+    const Vec3 along_theta{std::cos(theta) * std::cos(phi), std::cos(theta) * std::sin(phi),
+                           -std::sin(theta)};
+    a.tangent = Frame::from_z_x(-w, light_to_world_.vector(along_phi));
+    const bool mirrored = dot(light_to_world_.vector(along_theta), a.tangent.y) < 0;
+
+    // Two rows next to the poles share one factor: there the map's rows shrink to a point.
+    const float sine =
+        std::max(horizontal, std::sin(std::min(2 * kPi / float(spectrum_height_), kPi / 2)));
+    const float s_per_radian = 1 / (2 * kPi * sine), t_per_radian = 1 / kPi;
+    const SpatialCovariance2 c = spectrum_->at(phi / (2 * kPi), theta / kPi);
+    a.a11 = c.ss * s_per_radian * s_per_radian;
+    a.a12 = c.st * s_per_radian * t_per_radian * (mirrored ? -1.0f : 1.0f);
+    a.a22 = c.tt * t_per_radian * t_per_radian;
+    return a;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,53 @@
+/// An infinite light: the same radiance from everywhere, or an image around the scene.
+#pragma once
+
+#include <optional>
+
+#include "core/frame.h"
+#include "core/transform.h"
+#include "scene/scene_description.h"
+#include "shading/environment_map.h"
+#include "shading/image_spectrum.h"
+
+namespace covtrace {
+
+/// Second moments of the angular amplitude spectrum, (cycles per radian)^2, in the x and y of
+/// `tangent`, whose z is the direction that the light travels in.
+struct AngularCovariance {
+    Frame tangent;
+    float a11 = 0, a12 = 0, a22 = 0;
+};
+
+/// All directions are unit vectors in world space that point away from the scene. Transforms need
+/// not be rigid: light space is looked up along the transformed direction, and densities follow.
+class Environment {
+  public:
+    /// Throws as EnvironmentMap::read.
+    Environment(const InfiniteLight& light, const Transform& light_to_world,
+                const SourceLocation& where);
+
+    Rgb radiance(Vec3 w) const;
+    /// A direction for a surface with the unit normal n, which uniform light is sampled about by
+    /// the cosine; n zero: from all sides.
+    Vec3 sample(Vec3 n, Vec2 u) const;
+    float pdf(Vec3 n, Vec3 w) const;
+    /// Rough irradiance of any surface, mean of the channels: 0 where the light is black.
+    float irradiance() const;
+
+    /// Measures the image, once; without it the light counts as uniform below.
+    void prepare_spectrum();
+    AngularCovariance spectrum(Vec3 w) const;
+
+  private:
+    Vec3 to_light(Vec3 w) const { return normalize(world_to_light_.vector(w)); }
+
+    Transform light_to_world_, world_to_light_;
+    bool is_rigid_ = true;
+    float determinant_ = 1;  // of the map from world to light, absolute value
+    Rgb scale_{1};
+    std::optional<EnvironmentMap> map_;
+    std::optional<ImageSpectrum> spectrum_;
+    int spectrum_height_ = 1;
+};
+
+}  // namespace covtrace

@@ -1,0 +1,254 @@
+#include "shading/environment_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "image/color_encoding.h"
+#include "image/raster.h"
+#include "shading/equal_area.h"
+#include "shading/light_weight.h"
+
+namespace covtrace {
+
+namespace {
+
+constexpr float kLargestBelowOne = 1 - 0x1p-24f;
+
+/// Index of the first entry above u of a cumulated distribution, and u as a number in [0, 1) within
+/// it.
+size_t sample_cdf(const float* cdf, size_t count, float& u) {
+    const size_t i =
+        std::min(static_cast<size_t>(std::upper_bound(cdf, cdf + count, u) - cdf), count - 1);
+    const float lo = i > 0 ? cdf[i - 1] : 0.0f, width = cdf[i] - lo;
+    u = width > 0 ? std::clamp((u - lo) / width, 0.0f, kLargestBelowOne) : u;
+    return i;
+}
+
+/// One of two, the first with probability a / (a + b); u is stretched to be used again.
+bool choose_second(float a, float b, float& u) {
+    const float share = a + b > 0 ? a / (a + b) : 0.5f;
+    const bool second = u >= share;
+    u = second ? (u - share) / (1 - share) : u / share;
+    u = std::min(u, kLargestBelowOne);
+    return second;
+}
+
+/// x in [0, 1] with density proportional to a + (b - a) x.
+float sample_linear(float a, float b, float u) {
+    if (!(a + b > 0)) return u;
+    // Relative to the larger: squares of a very bright sun would overflow.
+    const float largest = std::max(a, b);
+    a /= largest;
+    b /= largest;
+    const float root = std::sqrt(a * a + u * (b * b - a * a));
+    return clamp01(u * (a + b) / (a + root));
+}
+
+int wrap_repeat(int i, int n) {
+    const int r = i % n;
+    return r < 0 ? r + n : r;
+}
+
+}  // namespace
+
+EnvironmentMap EnvironmentMap::read(const std::filesystem::path& file,
+                                    const SourceLocation& where) {
+    const RasterImage raster = read_raster(file, where);
+    if (raster.width < 1 || (raster.width != raster.height && raster.width != 2 * raster.height))
+        throw Error(ErrorKind::scene, where,
+                    "environment image \"" + file.string() + "\" is " +
+                        std::to_string(raster.width) + " x " + std::to_string(raster.height) +
+                        " pixels; expected a square (equal-area map) or twice as wide as high "
+                        "(lat-long map)");
+    const bool encoded = raster.is_8bit || raster.is_16bit;
+    const auto value = [&](size_t i) {
+        const float v = encoded ? srgb_decode(raster.values[i]) : raster.values[i];
+        return v > 0 ? v : 0.0f;
+    };
+    const auto channels = static_cast<size_t>(raster.channels);
+    std::vector<Rgb> texels(static_cast<size_t>(raster.width) * static_cast<size_t>(raster.height));
+    for (size_t i = 0; i < texels.size(); ++i)
+        texels[i] = channels < 3 ? Rgb(value(i * channels))
+                                 : Rgb(value(i * channels), value(i * channels + 1),
+                                       value(i * channels + 2));
+    return EnvironmentMap(std::move(texels), raster.width, raster.height);
+}
+
+EnvironmentMap::EnvironmentMap(std::vector<Rgb> texels, int width, int height)
+    : texels_(std::move(texels)),
+      width_(width),
+      height_(height),
+      layout_(width == height ? Layout::equal_area : Layout::lat_long) {
+    row_sine_.resize(static_cast<size_t>(height_), 1.0f);
+    if (layout_ == Layout::lat_long)
+        for (size_t y = 0; y < row_sine_.size(); ++y)
+            row_sine_[y] = static_cast<float>(std::sin((double(y) + 0.5) * double(kPi) / height_));
+    build_distribution();
+}
+
+const Rgb& EnvironmentMap::texel(int x, int y) const {
+    if (layout_ == Layout::lat_long) {
+        x = wrap_repeat(x, width_);
+        y = std::clamp(y, 0, height_ - 1);
+    } else {
+        // Beyond an edge of the octahedral square its other half continues.
+        const int n = width_;
+        if (x < 0 || x >= n) {
+            x = x < 0 ? -1 - x : 2 * n - 1 - x;
+            y = n - 1 - y;
+        }
+        if (y < 0 || y >= n) {
+            y = y < 0 ? -1 - y : 2 * n - 1 - y;
+            x = n - 1 - x;
+        }
+    }
+    return texels_[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)];
+}
+
+float EnvironmentMap::weight(int x, int y) const {
+    const auto row = static_cast<size_t>(std::clamp(y, 0, height_ - 1));
+    return choice_weight(texel(x, y)) * row_sine_[row];
+}
+
+namespace {
+
+/// Column or row of the texel whose centre lies at or before `s`, and how far beyond it s lies.
+struct Position {
+    int index;
+    float fraction;
+};
+Position position(float s, int n) {
+    const float x = s * static_cast<float>(n) - 0.5f, whole = std::floor(x);
+    return {static_cast<int>(whole), x - whole};
+}
+
+}  // namespace
+
+Rgb EnvironmentMap::radiance(Vec3 w) const {
+    const Vec2 uv = to_square(w);
+    const Position x = position(uv.x, width_), y = position(uv.y, height_);
+    return lerp(y.fraction, lerp(x.fraction, texel(x.index, y.index), texel(x.index + 1, y.index)),
+                lerp(x.fraction, texel(x.index, y.index + 1), texel(x.index + 1, y.index + 1)));
+}
+
+float EnvironmentMap::interpolated_weight(Vec2 uv) const {
+    const Position x = position(uv.x, width_), y = position(uv.y, height_);
+    const auto row = [&](int j) {
+        return weight(x.index, j) * (1 - x.fraction) + weight(x.index + 1, j) * x.fraction;
+    };
+    return row(y.index) * (1 - y.fraction) + row(y.index + 1) * y.fraction;
+}
+
+Vec2 EnvironmentMap::to_square(Vec3 w) const {
+    if (layout_ == Layout::equal_area) return equal_area_sphere_to_square(w);
+    const float phi = std::atan2(w.y, w.x);
+    const float theta = std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
+    return {(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi), theta / kPi};
+}
+
+Vec3 EnvironmentMap::to_direction(Vec2 uv) const {
+    if (layout_ == Layout::equal_area) return equal_area_square_to_sphere(uv);
+    const float phi = 2 * kPi * uv.x, theta = kPi * uv.y, s = std::sin(theta);
+    return {s * std::cos(phi), s * std::sin(phi), std::cos(theta)};
+}
+
+float EnvironmentMap::solid_angle(int y) const {
+    if (layout_ == Layout::equal_area) return 4 * kPi / (float(width_) * float(height_));
+    const float d_theta = kPi / float(height_);
+    return 2 * kPi / float(width_) * 2 * std::sin(d_theta / 2) * row_sine_[static_cast<size_t>(y)];
+}
+
+void EnvironmentMap::build_distribution() {
+    const auto w = static_cast<size_t>(width_), h = static_cast<size_t>(height_);
+    column_cdf_.resize(w * h);
+    row_cdf_.resize(h);
+    std::vector<double> row_sum(h), row_mean(h);
+    parallel_for(height_, [&](int64_t row) {
+        const int y = static_cast<int>(row);
+        const auto r = static_cast<size_t>(row);
+        // The mean over a texel of what bilinear interpolation makes of it and its neighbours.
+        const auto column = [&](int x) {
+            return 0.125 * weight(x, y - 1) + 0.75 * weight(x, y) + 0.125 * weight(x, y + 1);
+        };
+        std::vector<double> cumulated(w);
+        double sum = 0, mean = 0;
+        for (int x = 0; x < width_; ++x) {
+            sum += 0.125 * column(x - 1) + 0.75 * column(x) + 0.125 * column(x + 1);
+            cumulated[static_cast<size_t>(x)] = sum;
+            mean += choice_weight(texel(x, y));
+        }
+        for (size_t x = 0; x < w; ++x)
+            column_cdf_[r * w + x] =
+                static_cast<float>(sum > 0 ? cumulated[x] / sum : double(x + 1) / double(w));
+        row_sum[r] = sum;
+        row_mean[r] = mean * solid_angle(y);
+    });
+    double total = 0, mean = 0;
+    for (size_t y = 0; y < h; ++y) {
+        total += row_sum[y];
+        mean += row_mean[y];
+    }
+    mean_weight_ = static_cast<float>(total / (double(w) * double(h)));
+    mean_ = static_cast<float>(mean / (4 * double(kPi)));
+    double cumulated = 0;
+    for (size_t y = 0; y < h; ++y) {
+        cumulated += row_sum[y];
+        row_cdf_[y] = static_cast<float>(total > 0 ? cumulated / total : double(y + 1) / double(h));
+    }
+}
+
+Vec3 EnvironmentMap::sample(Vec2 u) const {
+    const size_t y = sample_cdf(row_cdf_.data(), row_cdf_.size(), u.y);
+    const auto w = static_cast<size_t>(width_);
+    const size_t x = sample_cdf(column_cdf_.data() + y * w, w, u.x);
+    // Interpolation is bilinear in each quarter of the texel: values at its corners, edges and
+    // centre.
+    std::array<std::array<float, 3>, 3> g;
+    for (int j = -1; j <= 1; ++j) {
+        const auto at = [&](int i) {
+            return weight(static_cast<int>(x) + i, static_cast<int>(y) + j);
+        };
+        const float a = at(-1), b = at(0), c = at(1);
+        g[static_cast<size_t>(j + 1)] = {(a + b) / 2, b, (b + c) / 2};
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        const float a = g[0][i], b = g[1][i], c = g[2][i];
+        g[0][i] = (a + b) / 2;
+        g[2][i] = (b + c) / 2;
+    }
+    const auto quarter = [&g](size_t j, size_t i) {
+        return g[j][i] + g[j][i + 1] + g[j + 1][i] + g[j + 1][i + 1];
+    };
+    const size_t j =
+        choose_second(quarter(0, 0) + quarter(0, 1), quarter(1, 0) + quarter(1, 1), u.y);
+    const size_t i = choose_second(quarter(j, 0), quarter(j, 1), u.x);
+    const float t = sample_linear(g[j][i] + g[j][i + 1], g[j + 1][i] + g[j + 1][i + 1], u.y);
+    const float s = sample_linear(g[j][i] * (1 - t) + g[j + 1][i] * t,
+                                  g[j][i + 1] * (1 - t) + g[j + 1][i + 1] * t, u.x);
+    return to_direction({(float(x) + (float(i) + s) / 2) / float(width_),
+                         (float(y) + (float(j) + t) / 2) / float(height_)});
+}
+
+float EnvironmentMap::pdf(Vec3 w) const {
+    if (!(mean_weight_ > 0)) return 0;
+    const float per_square = interpolated_weight(to_square(w)) / mean_weight_;
+    if (layout_ == Layout::equal_area) return per_square / (4 * kPi);
+    const float sine = std::sqrt(w.x * w.x + w.y * w.y);
+    return sine > 0 ? per_square / (2 * kPi * kPi * sine) : 0.0f;
+}
+
+Rgb EnvironmentMap::irradiance_from_above() const {
+    double sum[3] = {};
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x) {
+            const Vec3 w = to_direction(
+                {(float(x) + 0.5f) / float(width_), (float(y) + 0.5f) / float(height_)});
+            const double projected = double(std::max(0.0f, w.z)) * solid_angle(y);
+            for (int c = 0; c < 3; ++c) sum[c] += projected * texel(x, y)[c];
+        }
+    return {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])};
+}
+
+}  // namespace covtrace

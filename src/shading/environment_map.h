@@ -1,0 +1,67 @@
+/// An image as radiance over all directions: lookup, importance sampling, density.
+///
+/// Light space has z as the pole. Equal-area maps are square (see equal_area.h); lat-long maps are
+/// twice as wide as high, with u = phi / (2 pi), phi = atan2(y, x) from +x towards +y, and
+/// v = theta / pi from +z at the top row's edge down to -z, as pbrt-v4's `imgtool makeequiarea`
+/// reads them. Lookups are bilinear. Directions are sampled with a density proportional to the
+/// interpolated image (mean of the channels) itself, exactly on equal-area maps and up to the sine
+/// of the polar angle between rows on lat-long ones; so a sun of one texel costs no more samples
+/// than a plain sky.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/error.h"
+#include "core/vec.h"
+
+namespace covtrace {
+
+class EnvironmentMap {
+  public:
+    enum class Layout { equal_area, lat_long };
+
+    /// Reads an image; integers are taken as sRGB-encoded, grey as all channels alike, negative and
+    /// NaN texels as black. Throws Error(scene) at `where` if the file can't be read or is neither
+    /// square nor 2:1.
+    static EnvironmentMap read(const std::filesystem::path& file, const SourceLocation& where);
+    /// Texels row by row from the top, finite and not negative; height == width or width / 2.
+    EnvironmentMap(std::vector<Rgb> texels, int width, int height);
+
+    Layout layout() const { return layout_; }
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+    /// Radiance from the unit direction w in light space.
+    Rgb radiance(Vec3 w) const;
+    /// A unit direction with density `pdf`, for u in [0, 1)^2. Not for black maps.
+    Vec3 sample(Vec2 u) const;
+    /// Per solid angle.
+    float pdf(Vec3 w) const;
+
+    /// Mean of radiance's channels over the sphere.
+    float mean() const { return mean_; }
+    /// Irradiance of a surface that faces +z.
+    Rgb irradiance_from_above() const;
+
+  private:
+    Vec2 to_square(Vec3 w) const;
+    Vec3 to_direction(Vec2 uv) const;
+    const Rgb& texel(int x, int y) const;
+    /// What the sampling density is proportional to, at a texel's centre.
+    float weight(int x, int y) const;
+    float interpolated_weight(Vec2 uv) const;
+    float solid_angle(int y) const;  // of one texel of the row
+    void build_distribution();
+
+    std::vector<Rgb> texels_;
+    int width_ = 0, height_ = 0;
+    Layout layout_ = Layout::equal_area;
+    std::vector<float> row_sine_;  // of the polar angle at the rows' centres; 1 on equal-area maps
+    std::vector<float> column_cdf_;  // width_ per row: cumulated shares of the row, the last is 1
+    std::vector<float> row_cdf_;     // height_: cumulated shares of the rows
+    float mean_weight_ = 0;          // over the square
+    float mean_ = 0;
+};
+
+}  // namespace covtrace

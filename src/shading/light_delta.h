@@ -1,0 +1,38 @@
+/// Lights without extent: point and spot lights at a place, distant lights in a direction.
+#pragma once
+
+#include "scene/scene_description.h"
+#include "shading/light_tree.h"
+
+namespace covtrace {
+
+/// A point light, or a spot light: then with an intensity that falls off smoothly towards the rim
+/// of its cone.
+struct PointEmitter {
+    Vec3 position;
+    Rgb intensity;  ///< radiant intensity, of a spot within its inner cone
+    bool is_spot = false;
+    Vec3 axis{0, 0, 1};                    ///< unit; of a spot
+    float cos_inner = -1, cos_outer = -1;  ///< where the fall-off starts and ends
+    float cone_variance = 0;  ///< of a spot: angular variance along one axis, radians^2
+};
+PointEmitter make_point_emitter(const PointLight& light, const Transform& light_to_world);
+/// The transform's scale does not change the cone.
+PointEmitter make_point_emitter(const SpotLight& light, const Transform& light_to_world);
+/// Intensity towards `w` (unit, away from the light).
+Rgb intensity(const PointEmitter& light, Vec3 w);
+LightBounds bounds(const PointEmitter& light);
+
+struct DistantEmitter {
+    Vec3 direction;  ///< unit, towards the light
+    Rgb irradiance;  ///< of a surface that faces it
+};
+DistantEmitter make_distant_emitter(const DistantLight& light, const Transform& light_to_world);
+
+/// Factor that brings `radiance` to `target`, where `measured` is what its luminance amounts to
+/// now; 0 where that is nothing.
+constexpr float normalisation(float target, float measured) {
+    return measured > 0 ? target / measured : 0;
+}
+
+}  // namespace covtrace

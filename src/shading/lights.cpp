@@ -1,0 +1,257 @@
+#include "shading/lights.h"
+
+#include <cmath>
+
+#include "shading/light_weight.h"
+#include "shading/lights_impl.h"
+
+namespace covtrace {
+
+namespace {
+
+constexpr float kLargestBelowOne = 1 - 0x1p-24f;
+/// Neither finite nor infinite lights are trusted to be negligible by an estimate that knows no
+/// shadows.
+constexpr float kSmallestShare = 0.1f;
+
+Emitter make_emitter(const PlacedShape& shape) {
+    const auto& geometry = shape.description.geometry;
+    if (std::holds_alternative<Sphere>(geometry) || std::holds_alternative<Disk>(geometry))
+        return EmissiveQuadric(shape);
+    return EmissiveMesh(shape);
+}
+
+/// Whether alpha hides the whole shape: the customary way to write an invisible light.
+bool is_hidden(const SceneDescription& scene, TextureId alpha) {
+    if (alpha < 0) return false;
+    const auto* constant =
+        std::get_if<ConstantTexture>(&scene.textures[static_cast<size_t>(alpha)].value);
+    return constant && constant->value.r == 0;
+}
+
+}  // namespace
+
+Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry)
+    : geometry(&scene_geometry) {
+    const std::vector<PlacedShape>& shapes = geometry->shapes();
+    area_light_of_shape.assign(shapes.size(), -1);
+    std::vector<LightBounds> finite;
+    for (size_t i = 0; i < shapes.size(); ++i) {
+        const ShapeDescription& shape = shapes[i].description;
+        if (shape.area_light < 0 || shapes[i].is_instanced) continue;
+        const AreaLightDescription& light =
+            scene.area_lights[static_cast<size_t>(shape.area_light)];
+        AreaLight area{.shape = static_cast<uint32_t>(i),
+                       .radiance = light.radiance,
+                       .two_sided = light.two_sided,
+                       .is_visible = !is_hidden(scene, shape.alpha),
+                       .first_light = static_cast<int>(owner.size()),
+                       .emitter = make_emitter(shapes[i]),
+                       .spectrum = {}};
+        std::visit(
+            [&](const auto& emitter) {
+                if (light.power) {
+                    double surface = 0;
+                    for (int k = 0; k < emitter.light_count(); ++k)
+                        surface += double(emitter.area(k));
+                    const float sides = light.two_sided ? 2 : 1;
+                    const float measured =
+                        sides * kPi * static_cast<float>(surface) * luminance(area.radiance);
+                    area.radiance *= normalisation(*light.power, measured);
+                }
+                for (int k = 0; k < emitter.light_count(); ++k) {
+                    LightBounds bounds = emitter.bounds(k);
+                    bounds.intensity *= choice_weight(area.radiance);
+                    bounds.two_sided = bounds.two_sided || light.two_sided;
+                    finite.push_back(bounds);
+                    owner.push_back(static_cast<uint32_t>(area_lights.size()));
+                }
+            },
+            area.emitter);
+        area_light_of_shape[i] = static_cast<int>(area_lights.size());
+        area_lights.push_back(std::move(area));
+    }
+    for (const LightDescription& light : scene.lights) {
+        if (const auto* point = std::get_if<PointLight>(&light.value))
+            points.push_back(make_point_emitter(*point, light.light_to_world));
+        else if (const auto* spot = std::get_if<SpotLight>(&light.value))
+            points.push_back(make_point_emitter(*spot, light.light_to_world));
+        else if (const auto* distant = std::get_if<DistantLight>(&light.value))
+            distants.push_back(make_distant_emitter(*distant, light.light_to_world));
+        else
+            environments.emplace_back(std::get<InfiniteLight>(light.value), light.light_to_world,
+                                      light.where);
+    }
+    for (const PointEmitter& point : points) finite.push_back(bounds(point));
+    tree = LightTree(finite);
+}
+
+float Lights::Impl::infinite_estimate(size_t i, Vec3 n) const {
+    if (i >= distants.size()) return environments[i - distants.size()].irradiance();
+    const float facing = choice_weight(distants[i].irradiance);
+    return n == Vec3{} ? facing : facing * side_weight(dot(distants[i].direction, n));
+}
+
+InfiniteShare Lights::Impl::infinite_share(Vec3 p, Vec3 n) const {
+    InfiniteShare share;
+    for (size_t i = 0; i < infinite_count(); ++i) share.estimate += infinite_estimate(i, n);
+    if (!(share.estimate > 0)) return share;
+    const float finite = tree.irradiance(p, n);
+    share.probability = finite > 0 ? std::clamp(share.estimate / (share.estimate + finite),
+                                                kSmallestShare, 1 - kSmallestShare)
+                                   : 1.0f;
+    return share;
+}
+
+Rgb Lights::Impl::environment(Vec3 w) const {
+    Rgb sum;
+    for (const Environment& e : environments) sum += e.radiance(w);
+    return sum;
+}
+
+float Lights::Impl::environment_pdf(const InfiniteShare& share, Vec3 n, Vec3 w) const {
+    if (!(share.probability > 0)) return 0;
+    float pdf = 0;
+    for (size_t i = 0; i < environments.size(); ++i) {
+        const float estimate = infinite_estimate(distants.size() + i, n);
+        if (estimate > 0) pdf += estimate * environments[i].pdf(n, w);
+    }
+    return share.probability * pdf / share.estimate;
+}
+
+std::optional<LightSample> Lights::Impl::sample_area(int light, float probability, Vec3 p,
+                                                     float time, Vec2 u) const {
+    const AreaLight& area = area_lights[owner[static_cast<size_t>(light)]];
+    const int local = light - area.first_light;
+    const auto point =
+        std::visit([&](const auto& e) { return e.sample(local, p, time, u); }, area.emitter);
+    if (!point || (!area.two_sided && !(dot(point->normal, point->wi) < 0))) return std::nullopt;
+    LightSample s;
+    s.wi = point->wi;
+    s.distance = distance(p, point->position);
+    s.radiance = area.radiance;
+    s.pdf = probability * point->pdf;
+    s.light = light;
+    s.position = point->position;
+    s.normal = point->normal;
+    if (!area.is_visible) {
+        // No other strategy finds the light: like a delta light of the same expected irradiance.
+        s.is_delta = true;
+        s.radiance *= 1 / point->pdf;
+        s.pdf = probability;
+    }
+    return s;
+}
+
+std::optional<LightSample> Lights::Impl::sample_point(int light, float probability, Vec3 p) const {
+    const PointEmitter& point = points[static_cast<size_t>(light - first_point())];
+    const Vec3 to_light = point.position - p;
+    const float distance_squared = length_squared(to_light);
+    if (!(distance_squared > 0)) return std::nullopt;
+    LightSample s;
+    s.distance = std::sqrt(distance_squared);
+    s.wi = to_light / s.distance;
+    s.radiance = intensity(point, -s.wi) * (1 / distance_squared);
+    if (is_black(s.radiance)) return std::nullopt;
+    s.pdf = probability;
+    s.is_delta = true;
+    s.light = light;
+    s.position = point.position;
+    return s;
+}
+
+std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& share, Vec3 n,
+                                                         float u_select, Vec2 u) const {
+    // The last one with any light takes what rounding leaves over.
+    float rest = u_select * share.estimate, chosen_estimate = 0;
+    size_t chosen = 0;
+    for (size_t i = 0; i < infinite_count(); ++i) {
+        const float estimate = infinite_estimate(i, n);
+        if (!(estimate > 0)) continue;
+        chosen = i;
+        chosen_estimate = estimate;
+        if (rest < estimate) break;
+        rest -= estimate;
+    }
+    LightSample s;
+    s.light = first_distant() + static_cast<int>(chosen);
+    if (chosen < distants.size()) {
+        s.wi = distants[chosen].direction;
+        s.radiance = distants[chosen].irradiance;
+        s.pdf = share.probability * chosen_estimate / share.estimate;
+        s.is_delta = true;
+        return s;
+    }
+    s.wi = environments[chosen - distants.size()].sample(n, u);
+    s.radiance = environment(s.wi);
+    s.pdf = environment_pdf(share, n, s.wi);
+    if (!(s.pdf > 0) || is_black(s.radiance)) return std::nullopt;
+    return s;
+}
+
+const AreaLight* Lights::Impl::area_light_of(const SurfaceHit& hit) const {
+    const int index = area_light_of_shape[hit.shape];
+    return index < 0 ? nullptr : &area_lights[static_cast<size_t>(index)];
+}
+
+Lights::Lights(const SceneDescription& scene, const Geometry& geometry)
+    : impl_(std::make_unique<Impl>(scene, geometry)) {}
+Lights::~Lights() = default;
+
+std::optional<LightSample> Lights::sample(Vec3 p, Vec3 n, float time, float u_select,
+                                          Vec2 u) const {
+    const InfiniteShare share = impl_->infinite_share(p, n);
+    if (u_select < share.probability)
+        return impl_->sample_infinite(share, n, u_select / share.probability, u);
+    const float finite = 1 - share.probability;
+    if (!(finite > 0)) return std::nullopt;
+    const float u_tree = std::min((u_select - share.probability) / finite, kLargestBelowOne);
+    const auto choice = impl_->tree.sample(p, n, u_tree);
+    if (!choice) return std::nullopt;
+    const float probability = finite * choice->probability;
+    return choice->light < impl_->first_point()
+               ? impl_->sample_area(choice->light, probability, p, time, u)
+               : impl_->sample_point(choice->light, probability, p);
+}
+
+Rgb Lights::emitted(const SurfaceHit& hit, Vec3 wo) const {
+    const AreaLight* area = impl_->area_light_of(hit);
+    if (!area || !area->is_visible || (!area->two_sided && !(dot(hit.ng, wo) > 0))) return {};
+    return area->radiance;
+}
+
+float Lights::pdf(Vec3 p, Vec3 n, Vec3 wi, const SurfaceHit& hit) const {
+    const AreaLight* area = impl_->area_light_of(hit);
+    if (!area || !area->is_visible || (!area->two_sided && !(dot(hit.ng, wi) < 0))) return 0;
+    return std::visit(
+        [&](const auto& e) {
+            const int local = e.light_of(hit);
+            const float probability = selection_probability(p, n, area->first_light + local);
+            return probability > 0 ? probability * e.pdf(local, p, hit) : 0.0f;
+        },
+        area->emitter);
+}
+
+float Lights::selection_probability(Vec3 p, Vec3 n, int light) const {
+    const InfiniteShare share = impl_->infinite_share(p, n);
+    if (light < impl_->first_distant())
+        return (1 - share.probability) * impl_->tree.probability(p, n, light);
+    if (!(share.probability > 0)) return 0;
+    const auto i = static_cast<size_t>(light - impl_->first_distant());
+    return share.probability * impl_->infinite_estimate(i, n) / share.estimate;
+}
+
+bool Lights::has_environment() const {
+    return !impl_->environments.empty();
+}
+Rgb Lights::environment(Vec3 w) const {
+    return impl_->environment(w);
+}
+float Lights::environment_pdf(Vec3 p, Vec3 n, Vec3 w) const {
+    return impl_->environment_pdf(impl_->infinite_share(p, n), n, w);
+}
+int Lights::count() const {
+    return impl_->first_environment() + static_cast<int>(impl_->environments.size());
+}
+
+}  // namespace covtrace

@@ -1,0 +1,67 @@
+/// The tables behind Lights. Ids: emissive triangles, patch halves and quadrics shape by shape,
+/// then point and spot lights, then distant ones, then infinite ones with extent.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "shading/environment.h"
+#include "shading/light_delta.h"
+#include "shading/light_spectrum.h"
+#include "shading/light_tree.h"
+#include "shading/lights.h"
+
+namespace covtrace {
+
+struct AreaLight {
+    uint32_t shape = 0;
+    Rgb radiance;
+    bool two_sided = false;
+    bool is_visible =
+        true;  ///< shapes that alpha hides altogether light the scene, but no ray finds them
+    int first_light = 0;
+    Emitter emitter;
+    std::optional<EmitterSpectrum> spectrum;
+};
+
+/// All infinite lights or all finite ones against each other at a point.
+struct InfiniteShare {
+    float probability = 0;  ///< of choosing an infinite light
+    float estimate =
+        0;  ///< irradiance by all infinite lights, which they share that probability by
+};
+
+struct Lights::Impl {
+    Impl(const SceneDescription& scene, const Geometry& geometry);
+
+    std::optional<LightSample> sample_area(int light, float probability, Vec3 p, float time,
+                                           Vec2 u) const;
+    std::optional<LightSample> sample_point(int light, float probability, Vec3 p) const;
+    std::optional<LightSample> sample_infinite(const InfiniteShare& share, Vec3 n, float u_select,
+                                               Vec2 u) const;
+
+    InfiniteShare infinite_share(Vec3 p, Vec3 n) const;
+    /// Estimated irradiance by infinite light i (distant ones first), for choosing among them.
+    float infinite_estimate(size_t i, Vec3 n) const;
+    float environment_pdf(const InfiniteShare& share, Vec3 n, Vec3 w) const;
+    Rgb environment(Vec3 w) const;
+    SourceSpectrum environment_spectrum(Vec3 w) const;
+
+    /// Null where the shape does not emit.
+    const AreaLight* area_light_of(const SurfaceHit& hit) const;
+    int first_point() const { return static_cast<int>(owner.size()); }
+    int first_distant() const { return first_point() + static_cast<int>(points.size()); }
+    int first_environment() const { return first_distant() + static_cast<int>(distants.size()); }
+    size_t infinite_count() const { return distants.size() + environments.size(); }
+
+    const Geometry* geometry;
+    std::vector<int> area_light_of_shape;  ///< into area_lights, -1 for shapes that don't emit
+    std::vector<AreaLight> area_lights;
+    std::vector<uint32_t> owner;  ///< of each area light's id: into area_lights
+    std::vector<PointEmitter> points;
+    std::vector<DistantEmitter> distants;
+    std::vector<Environment> environments;
+    LightTree tree;  ///< over the ids of area and point lights
+};
+
+}  // namespace covtrace

@@ -1,0 +1,87 @@
+#include <cassert>
+#include <cmath>
+
+#include "shading/lights_impl.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Stands for "no extent at all" in an angular covariance, (cycles per radian)^2.
+constexpr float kDirectionalCap = 1e8f;
+
+SourceSpectrum directional_spectrum(Vec3 wi) {
+    SourceSpectrum s;
+    s.kind = SourceSpectrum::Kind::directional;
+    s.tangent = Frame::from_z(-wi);
+    s.a11 = s.a22 = kDirectionalCap;
+    return s;
+}
+
+SourceSpectrum point_spectrum(const PointEmitter& point, Vec3 wi) {
+    SourceSpectrum s;
+    s.kind = SourceSpectrum::Kind::point;
+    s.tangent = Frame::from_z(-wi);
+    s.cone_variance = point.cone_variance;
+    return s;
+}
+
+}  // namespace
+
+SourceSpectrum Lights::Impl::environment_spectrum(Vec3 w) const {
+    SourceSpectrum s;
+    s.kind = SourceSpectrum::Kind::environment;
+    s.tangent = Frame::from_z(-w);
+    float total = 0;
+    for (const Environment& e : environments) {
+        const float weight = luminance(e.radiance(w));
+        if (!(weight > 0)) continue;
+        const AngularCovariance a = e.spectrum(w);
+        if (total == 0) s.tangent = a.tangent;
+        // Both frames share z: turn this light's axes into the first one's.
+        const float c = dot(s.tangent.x, a.tangent.x), d = dot(s.tangent.x, a.tangent.y);
+        s.a11 += weight * (c * c * a.a11 + 2 * c * d * a.a12 + d * d * a.a22);
+        s.a12 += weight * (-c * d * a.a11 + (c * c - d * d) * a.a12 + c * d * a.a22);
+        s.a22 += weight * (d * d * a.a11 - 2 * c * d * a.a12 + c * c * a.a22);
+        total += weight;
+    }
+    if (total > 0) {
+        s.a11 /= total;
+        s.a12 /= total;
+        s.a22 /= total;
+    }
+    return s;
+}
+
+void Lights::prepare_spectra() {
+    for (AreaLight& area : impl_->area_lights)
+        if (!area.spectrum)
+            area.spectrum.emplace(impl_->geometry->shapes()[area.shape], area.emitter);
+    for (Environment& e : impl_->environments) e.prepare_spectrum();
+}
+
+SourceSpectrum Lights::source_spectrum(const LightSample& s, float time) const {
+    if (s.light < impl_->first_point()) {
+        const AreaLight& area = impl_->area_lights[impl_->owner[static_cast<size_t>(s.light)]];
+        assert(area.spectrum && "prepare_spectra() comes first");
+        return area.spectrum->at(s.position, s.normal, time);
+    }
+    if (s.light < impl_->first_distant())
+        return point_spectrum(impl_->points[static_cast<size_t>(s.light - impl_->first_point())],
+                              s.wi);
+    if (s.light < impl_->first_environment()) return directional_spectrum(s.wi);
+    return impl_->environment_spectrum(s.wi);
+}
+
+SourceSpectrum Lights::source_spectrum(const SurfaceHit& emitter) const {
+    const AreaLight* area = impl_->area_light_of(emitter);
+    if (!area) return {};
+    assert(area->spectrum && "prepare_spectra() comes first");
+    return area->spectrum->at(emitter.position, emitter.ng, emitter.time);
+}
+
+SourceSpectrum Lights::environment_spectrum(Vec3 w) const {
+    return impl_->environment_spectrum(w);
+}
+
+}  // namespace covtrace

@@ -1,0 +1,200 @@
+#include "shading/material.h"
+
+#include <initializer_list>
+#include <utility>
+
+namespace covtrace {
+namespace {
+
+/// To [0, limit]; what is not a number becomes 0, so that a broken texel can't spread.
+float clamp_to(float v, float limit) {
+    return std::max(0.0f, std::min(v, limit));
+}
+Rgb clamp_to(Rgb c, float limit) {
+    return {clamp_to(c.r, limit), clamp_to(c.g, limit), clamp_to(c.b, limit)};
+}
+
+Rgb sqrt(Rgb c) {
+    return {std::sqrt(c.r), std::sqrt(c.g), std::sqrt(c.b)};
+}
+
+/// Values of a material's textures at one place; `fallback` where the file gives none.
+struct Values {
+    const TextureStore& textures;
+    TexturePoint at;
+    Rgb spectrum(TextureId id, float fallback) const {
+        return id < 0 ? Rgb(fallback) : textures.eval(id, at);
+    }
+    float number(TextureId id, float fallback) const {
+        return id < 0 ? fallback : textures.eval_float(id, at);
+    }
+    template <typename M>
+    Vec2 alphas(const M& m) const {
+        return ggx_alphas(number(m.u_roughness, 0), number(m.v_roughness, 0), m.remap_roughness);
+    }
+};
+
+/// An index of 0 says that the file's spectrum doesn't reach here; pbrt then takes 1.
+float refractive_index(float eta) {
+    return eta > 0 ? eta : 1;
+}
+
+constexpr float kDefaultReflectance = 0.5f;
+constexpr float kDefaultThickness = 0.01f;
+
+Bsdf make(const DiffuseMaterial& m, const Values& v, const CoatTable*) {
+    return DiffuseBsdf{clamp_to(v.spectrum(m.reflectance, kDefaultReflectance), 1)};
+}
+
+Bsdf make(const ConductorMaterial& m, const Values& v, const CoatTable*) {
+    const Vec2 alpha = v.alphas(m);
+    if (m.reflectance < 0)
+        return ConductorBsdf{v.spectrum(m.eta, 1), v.spectrum(m.k, 1), alpha.x, alpha.y};
+    // The k that reflects r at normal incidence where eta = 1.
+    const Rgb r = clamp_to(v.spectrum(m.reflectance, 1), 0.9999f);
+    return ConductorBsdf{Rgb(1), 2 * sqrt(r) / sqrt(Rgb(1) - r), alpha.x, alpha.y};
+}
+
+Bsdf make(const DielectricMaterial& m, const Values& v, const CoatTable*) {
+    const Vec2 alpha = v.alphas(m);
+    return DielectricBsdf{refractive_index(m.eta), alpha.x, alpha.y};
+}
+
+Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const CoatTable* coat) {
+    const Vec2 alpha = v.alphas(m);
+    const Rgb reflectance = clamp_to(v.spectrum(m.reflectance, kDefaultReflectance), 1);
+    // pbrt's walk meets the base at every second of its steps.
+    return make_coated_diffuse(*coat, reflectance, alpha.x, alpha.y, (m.max_depth + 1) / 2);
+}
+
+Bsdf make(const DiffuseTransmissionMaterial& m, const Values& v, const CoatTable*) {
+    constexpr float kDefault = 0.25f;
+    return DiffuseTransmissionBsdf{clamp_to(m.scale * v.spectrum(m.reflectance, kDefault), 1),
+                                   clamp_to(m.scale * v.spectrum(m.transmittance, kDefault), 1)};
+}
+
+Bsdf make(const InterfaceMaterial&, const Values&, const CoatTable*) {
+    return InterfaceBsdf{};
+}
+
+using TextureIds = std::initializer_list<TextureId>;
+
+bool all_constant(const TextureStore& textures, TextureIds ids) {
+    return std::all_of(ids.begin(), ids.end(),
+                       [&](TextureId id) { return id < 0 || textures.is_constant(id); });
+}
+
+bool is_constant(const TextureStore& t, const DiffuseMaterial& m) {
+    return all_constant(t, {m.reflectance});
+}
+bool is_constant(const TextureStore& t, const ConductorMaterial& m) {
+    return all_constant(t, {m.eta, m.k, m.reflectance, m.u_roughness, m.v_roughness});
+}
+bool is_constant(const TextureStore& t, const DielectricMaterial& m) {
+    return all_constant(t, {m.u_roughness, m.v_roughness});
+}
+bool is_constant(const TextureStore& t, const CoatedDiffuseMaterial& m) {
+    return all_constant(t, {m.reflectance, m.u_roughness, m.v_roughness});
+}
+bool is_constant(const TextureStore& t, const DiffuseTransmissionMaterial& m) {
+    return all_constant(t, {m.reflectance, m.transmittance});
+}
+bool is_constant(const TextureStore&, const InterfaceMaterial&) {
+    return true;
+}
+
+MaterialTextures modulating(const DiffuseMaterial& m) {
+    return {m.reflectance, -1};
+}
+MaterialTextures modulating(const ConductorMaterial& m) {
+    return {m.reflectance, -1};
+}
+MaterialTextures modulating(const DielectricMaterial&) {
+    return {};
+}
+MaterialTextures modulating(const CoatedDiffuseMaterial& m) {
+    return {m.reflectance, -1};
+}
+MaterialTextures modulating(const DiffuseTransmissionMaterial& m) {
+    return {m.reflectance, m.transmittance};
+}
+MaterialTextures modulating(const InterfaceMaterial&) {
+    return {};
+}
+
+/// The middle of the texture, for parameters that may not vary.
+constexpr TexturePoint kMiddle{{0.5f, 0.5f}, {}};
+
+void warn_of_gap(const CoatedDiffuseMaterial& m, const SourceLocation& where,
+                 const TextureStore& textures, Warnings& warnings) {
+    if (m.albedo >= 0 &&
+        !(textures.is_constant(m.albedo) && is_black(textures.eval(m.albedo, kMiddle))))
+        warnings.push_back({where,
+                            "coateddiffuse: scattering between coat and base (\"albedo\") is not "
+                            "supported; the gap is rendered clear"});
+    if (m.thickness >= 0 && !textures.is_constant(m.thickness))
+        warnings.push_back({where,
+                            "coateddiffuse: \"thickness\" can't be textured; its value at (u, v) = "
+                            "(0.5, 0.5) is used everywhere"});
+}
+
+}  // namespace
+
+Frame shading_frame(const SurfaceHit& hit) {
+    return Frame::from_z_x(hit.ns, hit.dpdu);
+}
+
+Vec2 ggx_alphas(float u_roughness, float v_roughness, bool remap) {
+    constexpr float kSmoothBelow = 1e-3f, kSmallest = 1e-4f;
+    const Vec2 a = remap ? Vec2{safe_sqrt(u_roughness), safe_sqrt(v_roughness)}
+                         : Vec2{u_roughness, v_roughness};
+    if (!(std::max(a.x, a.y) >= kSmoothBelow)) return {};
+    return {std::max(kSmallest, a.x), std::max(kSmallest, a.y)};
+}
+
+MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& textures) {
+    materials_.reserve(scene.materials.size());
+    textures_.reserve(scene.materials.size());
+    for (const MaterialDescription& description : scene.materials) {
+        Material& material = materials_.emplace_back();
+        material.description = description;
+        if (const auto* m = std::get_if<CoatedDiffuseMaterial>(&description.value)) {
+            const Values at_middle{textures, kMiddle};
+            const float thickness =
+                std::max(0.0f, at_middle.number(m->thickness, kDefaultThickness));
+            material.coat = &coats_.get(refractive_index(m->eta), thickness);
+            warn_of_gap(*m, description.where, textures, warnings_);
+        }
+        std::visit(
+            [&](const auto& m) {
+                material.is_constant = is_constant(textures, m);
+                if (material.is_constant)
+                    material.constant = make(m, Values{textures, kMiddle}, material.coat);
+                MaterialTextures modulators = modulating(m);
+                for (TextureId* id : {&modulators.reflectance, &modulators.transmittance})
+                    if (*id >= 0 && textures.is_constant(*id)) *id = -1;
+                textures_.push_back(modulators);
+            },
+            description.value);
+    }
+}
+
+Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStore& textures) const {
+    if (id < 0) return DiffuseBsdf{Rgb(kDefaultReflectance)};
+    const Material& material = materials_[static_cast<size_t>(id)];
+    if (material.is_constant) return material.constant;
+    const Values values{textures, {hit.uv, hit.position}};
+    return std::visit([&](const auto& m) { return make(m, values, material.coat); },
+                      material.description.value);
+}
+
+MaterialTextures MaterialStore::textures(MaterialId id) const {
+    return id < 0 ? MaterialTextures{} : textures_[static_cast<size_t>(id)];
+}
+
+bool MaterialStore::is_interface(MaterialId id) const {
+    return id >= 0 && std::holds_alternative<InterfaceMaterial>(
+                          materials_[static_cast<size_t>(id)].description.value);
+}
+
+}  // namespace covtrace

@@ -1,0 +1,59 @@
+/// The materials of a scene: texture values at a hit become a BSDF, with pbrt-v4's meaning of every
+/// parameter.
+#pragma once
+
+#include <vector>
+
+#include "core/frame.h"
+#include "geometry/hit.h"
+#include "scene/scene_description.h"
+#include "shading/bsdf.h"
+#include "shading/coat_table.h"
+#include "shading/texture.h"
+
+namespace covtrace {
+
+/// The local frame of a hit's BSDF, right-handed: z = ns, x = dpdu made orthogonal. alpha_x lies
+/// along x.
+Frame shading_frame(const SurfaceHit& hit);
+
+/// pbrt's GGX widths for a pair of roughnesses: alpha = sqrt(roughness) where they are remapped;
+/// (0, 0), a smooth surface, where both are below 1e-3; at least 1e-4 each otherwise.
+Vec2 ggx_alphas(float u_roughness, float v_roughness, bool remap);
+
+/// The textures that modulate what a material's lobes reflect and transmit; -1 where nothing
+/// varies.
+struct MaterialTextures {
+    TextureId reflectance = -1, transmittance = -1;
+};
+
+/// Immutable and thread-safe after construction.
+class MaterialStore {
+  public:
+    /// `textures` must be made from the same scene.
+    MaterialStore(const SceneDescription& scene, const TextureStore& textures);
+    MaterialStore(const MaterialStore&) = delete;
+    MaterialStore& operator=(const MaterialStore&) = delete;
+
+    /// The BSDF at a hit, for directions in `shading_frame(hit)`. Material -1 is pbrt's default:
+    /// diffuse, 0.5.
+    Bsdf bsdf(MaterialId id, const SurfaceHit& hit, const TextureStore& textures) const;
+    MaterialTextures textures(MaterialId id) const;
+    bool is_interface(MaterialId id) const;
+    /// What the scene asks of its materials and is rendered otherwise.
+    const Warnings& warnings() const { return warnings_; }
+
+  private:
+    struct Material {
+        MaterialDescription description;
+        const CoatTable* coat = nullptr;
+        bool is_constant = false;
+        Bsdf constant;  ///< where no texture varies
+    };
+    std::vector<Material> materials_;
+    std::vector<MaterialTextures> textures_;
+    CoatTables coats_;
+    Warnings warnings_;
+};
+
+}  // namespace covtrace

@@ -1,0 +1,216 @@
+#include "shading/texture.h"
+
+#include <cassert>
+#include <exception>
+#include <map>
+#include <tuple>
+
+#include "core/parallel.h"
+#include "shading/texture_graph.h"
+
+namespace covtrace {
+namespace {
+
+/// Evaluation recurses once per level; this keeps it far from the end of any stack.
+constexpr int kMaxNesting = 1000;
+
+using Encoding = ImageTexture::Encoding;
+/// Textures with equal keys share an image. The encoding is empty where the file decides.
+using ImageKey =
+    std::tuple<std::filesystem::path, std::optional<Encoding>, float, ImageTexture::Wrap>;
+
+ImageKey key_of(const ImageTexture& t) {
+    const bool uses_gamma = t.encoding == Encoding::gamma;
+    return {t.file.lexically_normal(), t.encoding, uses_gamma ? t.gamma : 1.0f, t.wrap};
+}
+
+struct ImageRequest {
+    const ImageTexture* texture;
+    const SourceLocation* where;
+};
+
+TextureImage load(const ImageRequest& request) {
+    const ImageTexture& t = *request.texture;
+    const RasterImage raster = read_raster(t.file, *request.where);
+    // Floating-point files are linear by definition, whatever the scene says, as in pbrt-v4.
+    const bool is_encoded = raster.is_8bit || raster.is_16bit;
+    const Encoding encoding = is_encoded ? t.encoding.value_or(Encoding::srgb) : Encoding::linear;
+    return {raster, encoding, t.gamma, t.wrap};
+}
+
+/// In parallel; of several errors the first in the order of the requests is thrown.
+std::vector<TextureImage> load_all(const std::vector<ImageRequest>& requests) {
+    std::vector<std::optional<TextureImage>> loaded(requests.size());
+    std::vector<std::exception_ptr> errors(requests.size());
+    parallel_for(int64_t(requests.size()), [&](int64_t i) {
+        try {
+            loaded[size_t(i)] = load(requests[size_t(i)]);
+        } catch (...) {
+            errors[size_t(i)] = std::current_exception();
+        }
+    });
+    for (const std::exception_ptr& e : errors)
+        if (e) std::rethrow_exception(e);
+    std::vector<TextureImage> images;
+    images.reserve(loaded.size());
+    for (auto& image : loaded) images.push_back(std::move(*image));
+    return images;
+}
+
+/// Turns descriptions into nodes, children first, and folds what is constant.
+class GraphBuilder {
+  public:
+    explicit GraphBuilder(const SceneDescription& scene)
+        : textures_(scene.textures), built_(textures_.size(), false) {
+        graph_.nodes.resize(textures_.size());
+    }
+
+    TextureGraph build() {
+        for (size_t i = 0; i < textures_.size(); ++i) build(TextureId(i), 1);
+        graph_.images = load_all(requests_);
+        return std::move(graph_);
+    }
+
+  private:
+    const TextureNode& build(TextureId id, int depth) {
+        const auto i = size_t(id);
+        if (built_[i]) return graph_.nodes[i];
+        if (depth >= kMaxNesting)
+            throw Error(ErrorKind::limit, textures_[i].where,
+                        "textures are nested too deeply: expected fewer than " +
+                            std::to_string(kMaxNesting) + " levels");
+        TextureNode node = std::visit(
+            [&](const auto& t) { return make_node(t, textures_[i], depth); }, textures_[i].value);
+        built_[i] = true;
+        return graph_.nodes[i] = std::move(node);
+    }
+
+    const Rgb* constant(const TextureNode& node) const {
+        const auto* c = std::get_if<ConstantNode>(&node);
+        return c ? &c->value : nullptr;
+    }
+
+    TextureNode make_node(const ConstantTexture& t, const TextureDescription&, int) {
+        return ConstantNode{t.value};
+    }
+    TextureNode make_node(const ImageTexture& t, const TextureDescription& d, int) {
+        const auto [entry, is_new] = image_ids_.try_emplace(key_of(t), int(requests_.size()));
+        if (is_new) requests_.push_back({&t, &d.where});
+        ImageNode node;
+        node.image = entry->second;
+        node.is_spectrum = d.is_spectrum;
+        node.nearest = t.filter == ImageTexture::Filter::point;
+        node.scale = t.scale;
+        node.invert = t.invert;
+        node.mapping = t.mapping;
+        return node;
+    }
+    TextureNode make_node(const CheckerboardTexture& t, const TextureDescription&, int depth) {
+        const TextureNode& a = build(t.tex1, depth + 1);
+        const TextureNode& b = build(t.tex2, depth + 1);
+        if (constant(a) && constant(b) && *constant(a) == *constant(b)) return a;
+        CheckerboardNode node;
+        node.dimension = t.dimension;
+        node.mapping = t.mapping;
+        node.texture_from_world = t.texture_from_world;
+        node.tex1 = t.tex1;
+        node.tex2 = t.tex2;
+        return node;
+    }
+    TextureNode make_node(const ScaleTexture& t, const TextureDescription&, int depth) {
+        const TextureNode& tex = build(t.tex, depth + 1);
+        const TextureNode& scale = build(t.scale, depth + 1);
+        if (constant(scale)) {
+            if (is_black(*constant(scale))) return ConstantNode{};
+            if (constant(tex)) return ConstantNode{*constant(tex) * *constant(scale)};
+            if (*constant(scale) == Rgb(1)) return tex;
+        }
+        return ScaleNode{t.tex, t.scale};
+    }
+    TextureNode make_node(const MixTexture& t, const TextureDescription&, int depth) {
+        const TextureNode& a = build(t.tex1, depth + 1);
+        const TextureNode& b = build(t.tex2, depth + 1);
+        if (const Rgb* amount = constant(build(t.amount, depth + 1))) {
+            if (*amount == Rgb(0)) return a;
+            if (*amount == Rgb(1)) return b;
+            if (constant(a) && constant(b))
+                return ConstantNode{(Rgb(1) - *amount) * *constant(a) + *amount * *constant(b)};
+        }
+        return MixNode{t.tex1, t.tex2, t.amount};
+    }
+
+    const std::vector<TextureDescription>& textures_;
+    std::vector<bool> built_;
+    std::map<ImageKey, int> image_ids_;
+    std::vector<ImageRequest> requests_;
+    TextureGraph graph_;
+};
+
+ImageSpectrum::Wrap spectrum_wrap(TextureImage::Wrap wrap) {
+    return wrap == TextureImage::Wrap::repeat ? ImageSpectrum::Wrap::repeat
+                                              : ImageSpectrum::Wrap::clamp;
+}
+
+ImageSpectrum analyse(const TextureImage& image, const ImageNode& node) {
+    std::vector<float> values(size_t(image.width()) * size_t(image.height()));
+    for (size_t i = 0; i < values.size(); ++i) {
+        const Rgb decoded = node.is_spectrum ? image.color(i) : Rgb(image.value(i));
+        values[i] = luminance(image_value(node, decoded));
+    }
+    return {values, image.width(), image.height(), spectrum_wrap(image.wrap())};
+}
+
+}  // namespace
+
+struct TextureStore::Impl {
+    TextureGraph graph;
+    bool is_prepared = false;
+};
+
+TextureStore::TextureStore(const SceneDescription& scene)
+    : impl_(std::make_unique<Impl>(Impl{GraphBuilder(scene).build()})) {}
+TextureStore::~TextureStore() = default;
+
+Rgb TextureStore::eval(TextureId id, const TexturePoint& at) const {
+    return covtrace::eval(impl_->graph, id, at);
+}
+
+float TextureStore::eval_float(TextureId id, const TexturePoint& at) const {
+    return covtrace::eval(impl_->graph, id, at).r;
+}
+
+bool TextureStore::is_constant(TextureId id) const {
+    return std::holds_alternative<ConstantNode>(impl_->graph.nodes[size_t(id)]);
+}
+
+void TextureStore::prepare_spectra() {
+    if (impl_->is_prepared) return;
+    TextureGraph& graph = impl_->graph;
+    // The analysis is relative: a scale matters only where it is followed by an inversion.
+    std::map<std::tuple<int, bool, bool, float>, int> ids;
+    for (TextureNode& node : graph.nodes) {
+        auto* n = std::get_if<ImageNode>(&node);
+        if (!n) continue;
+        const auto [entry, is_new] =
+            ids.try_emplace({n->image, n->is_spectrum, n->invert, n->invert ? n->scale : 1.0f},
+                            int(graph.spectra.size()));
+        if (is_new) graph.spectra.push_back(analyse(graph.images[size_t(n->image)], *n));
+        n->spectrum = entry->second;
+    }
+    impl_->is_prepared = true;
+}
+
+SpatialCovariance2 TextureStore::uv_covariance(TextureId id, const TexturePoint& at, Vec3 dpdu,
+                                               Vec3 dpdv, float footprint_uv) const {
+    assert(impl_->is_prepared);
+    return covtrace::uv_covariance(impl_->graph, id, at, dpdu, dpdv, footprint_uv);
+}
+
+size_t TextureStore::memory() const {
+    size_t bytes = 0;
+    for (const TextureImage& image : impl_->graph.images) bytes += image.memory();
+    for (const ImageSpectrum& spectrum : impl_->graph.spectra) bytes += spectrum.memory();
+    return bytes;
+}
+
+}  // namespace covtrace

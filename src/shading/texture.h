@@ -1,0 +1,57 @@
+/// Textures: values over a surface, and how fast they vary there.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "geometry/hit.h"
+#include "scene/scene_description.h"
+#include "shading/image_spectrum.h"
+
+namespace covtrace {
+
+/// Where a texture is looked up.
+struct TexturePoint {
+    Vec2 uv;
+    Vec3 position;  ///< world space
+};
+
+/// All textures of a scene, images loaded once per file, encoding and wrap mode. Thread-safe once
+/// constructed and, where covariances are wanted, prepared.
+///
+/// Values follow pbrt-v4: images are looked up at (s, 1 - t), so that t = 0 is their last row; a
+/// float texture of a colour image is the mean of R, G and B, or alpha where the image has one that
+/// isn't 1 everywhere. Point and bilinear filters read the image as it is. Trilinear and EWA read
+/// it bilinearly as well, and checkerboards aren't filtered: the renderer's many samples per pixel
+/// do what these filters are for, without their bias.
+class TextureStore {
+  public:
+    /// Loads every image. Missing or broken files throw Error(scene) with the place in the scene
+    /// file; textures nested a thousand deep or more throw Error(limit).
+    explicit TextureStore(const SceneDescription& scene);
+    ~TextureStore();
+    TextureStore(const TextureStore&) = delete;
+    TextureStore& operator=(const TextureStore&) = delete;
+
+    Rgb eval(TextureId id, const TexturePoint& at) const;
+    /// The red channel; for float textures, where all channels are equal.
+    float eval_float(TextureId id, const TexturePoint& at) const;
+    bool is_constant(TextureId id) const;
+
+    /// Analyses all images; needed once before `uv_covariance`, and by nothing else.
+    void prepare_spectra();
+    /// Covariance of the texture's amplitude spectrum per unit of the surface's (u, v) around `at`:
+    /// edges by their distance (never closer than `footprint_uv`, half a pixel's footprint in uv
+    /// units), images by windows of all sizes. Textures that are mapped by position are first
+    /// expressed in (u, v) with dpdu, dpdv. Requires `prepare_spectra`.
+    SpatialCovariance2 uv_covariance(TextureId id, const TexturePoint& at, Vec3 dpdu, Vec3 dpdv,
+                                     float footprint_uv) const;
+    /// Bytes held by images and their spectra.
+    size_t memory() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace covtrace

@@ -1,0 +1,124 @@
+/// How fast textures vary: the covariance of their amplitude spectra per unit of (u, v).
+#include "shading/texture_graph.h"
+#include "shading/texture_mapping.h"
+
+namespace covtrace {
+namespace {
+
+/// Frequencies of an edge reach the point at distance e up to 1 / (2 pi beta e).
+constexpr float kEdgeBeta = 0.5f;
+/// Variations below this share of the mean count in proportion: smoothing them away changes less
+/// than the noise that the smoothing removes.
+constexpr float kFullContrast = 0.1f;
+/// Distances below this part of a checkerboard's cell or an image count as this.
+constexpr float kMinEdgeDistance = 1e-5f;
+
+SpatialCovariance2 operator+(SpatialCovariance2 a, SpatialCovariance2 b) {
+    return {a.ss + b.ss, a.st + b.st, a.tt + b.tt};
+}
+SpatialCovariance2 operator*(SpatialCovariance2 a, float w) {
+    return {a.ss * w, a.st * w, a.tt * w};
+}
+
+/// J^T T J with J = d(s, t)/d(u, v).
+SpatialCovariance2 to_uv(SpatialCovariance2 c, const StGradient& g) {
+    const auto form = [&](Vec2 a, Vec2 b) {
+        return a.x * (c.ss * b.x + c.st * b.y) + a.y * (c.st * b.x + c.tt * b.y);
+    };
+    const Vec2 du{g.s.x, g.t.x}, dv{g.s.y, g.t.y};
+    return {form(du, du), form(du, dv), form(dv, dv)};
+}
+
+/// An edge across the coordinate with this gradient, `distance` away in units of the coordinate.
+SpatialCovariance2 edge(float distance, Vec2 gradient, float footprint_uv) {
+    const float e = std::max({distance, footprint_uv * length(gradient), kMinEdgeDistance});
+    const float variance = 1 / sqr(2 * kPi * kEdgeBeta * e);
+    return {variance * gradient.x * gradient.x, variance * gradient.x * gradient.y,
+            variance * gradient.y * gradient.y};
+}
+
+float distance_to_integer(float v) {
+    return std::abs(v - std::round(v));
+}
+
+/// Of a window with a's and b's in equal shares: standard deviation over mean, then saturated.
+float contrast_weight(Rgb a, Rgb b) {
+    const Rgb difference(std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b));
+    const float d = luminance(difference), sum = luminance(a + b);
+    if (!(d > 0)) return 0;
+    return d < kFullContrast * sum ? d / (kFullContrast * sum) : 1;
+}
+
+struct Analyser {
+    const TextureGraph& graph;
+    const TexturePoint& at;
+    Vec3 dpdu, dpdv;
+    float footprint_uv;
+
+    SpatialCovariance2 of(TextureId id) const { return std::visit(*this, graph.nodes[size_t(id)]); }
+
+    SpatialCovariance2 operator()(const ConstantNode&) const { return {}; }
+
+    SpatialCovariance2 operator()(const ImageNode& node) const {
+        const TextureImage& image = graph.images[size_t(node.image)];
+        const StGradient gradient = st_gradient(node.mapping, at, dpdu, dpdv);
+        const Vec2 st = flip_t(map_to_st(node.mapping, at));
+        SpatialCovariance2 c = graph.spectra[size_t(node.spectrum)].at(st.x, st.y);
+        c.st = -c.st;  // the image's rows run against t
+        SpatialCovariance2 result = to_uv(c, gradient);
+        if (image.wrap() == TextureImage::Wrap::black) {
+            // The image ends in hard edges that its own analysis, on clamped values, doesn't see.
+            result = result +
+                     edge(std::min(std::abs(st.x), std::abs(1 - st.x)), gradient.s, footprint_uv) +
+                     edge(std::min(std::abs(st.y), std::abs(1 - st.y)), gradient.t, footprint_uv);
+        }
+        return result;
+    }
+
+    SpatialCovariance2 operator()(const CheckerboardNode& node) const {
+        const float weight =
+            contrast_weight(eval(graph, node.tex1, at), eval(graph, node.tex2, at));
+        SpatialCovariance2 edges;
+        if (node.dimension == 2) {
+            const Vec2 st = map_to_st(node.mapping, at);
+            const StGradient gradient = st_gradient(node.mapping, at, dpdu, dpdv);
+            edges = edge(distance_to_integer(st.x), gradient.s, footprint_uv) +
+                    edge(distance_to_integer(st.y), gradient.t, footprint_uv);
+        } else {
+            const Vec3 p = node.texture_from_world.point(at.position);
+            const Vec3 pu = node.texture_from_world.vector(dpdu);
+            const Vec3 pv = node.texture_from_world.vector(dpdv);
+            for (int axis = 0; axis < 3; ++axis)
+                edges =
+                    edges + edge(distance_to_integer(p[axis]), {pu[axis], pv[axis]}, footprint_uv);
+        }
+        return edges * weight + of(active_texture(node, at));
+    }
+
+    /// A product of signals: their spectra are convolved, their covariances add.
+    SpatialCovariance2 operator()(const ScaleNode& node) const {
+        return of(node.tex) + of(node.scale);
+    }
+
+    /// A sum of two signals, each weighted by what it contributes here. The amount multiplies their
+    /// difference, so it counts as much as an edge between the two would.
+    SpatialCovariance2 operator()(const MixNode& node) const {
+        const Rgb a = eval(graph, node.tex1, at), b = eval(graph, node.tex2, at);
+        const Rgb amount = eval(graph, node.amount, at);
+        const float wa = std::abs(luminance((Rgb(1) - amount) * a));
+        const float wb = std::abs(luminance(amount * b));
+        SpatialCovariance2 result = of(node.amount) * contrast_weight(a, b);
+        if (wa + wb > 0)
+            result = result + of(node.tex1) * (wa / (wa + wb)) + of(node.tex2) * (wb / (wa + wb));
+        return result;
+    }
+};
+
+}  // namespace
+
+SpatialCovariance2 uv_covariance(const TextureGraph& graph, TextureId id, const TexturePoint& at,
+                                 Vec3 dpdu, Vec3 dpdv, float footprint_uv) {
+    return Analyser{graph, at, dpdu, dpdv, footprint_uv}.of(id);
+}
+
+}  // namespace covtrace

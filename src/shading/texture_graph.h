@@ -1,0 +1,64 @@
+/// The textures of a scene as a graph of small nodes, ready for evaluation.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "shading/image_spectrum.h"
+#include "shading/texture.h"
+#include "shading/texture_image.h"
+
+namespace covtrace {
+
+struct ConstantNode {
+    Rgb value;
+};
+struct ImageNode {
+    int image = -1;           ///< into TextureGraph::images
+    int spectrum = -1;        ///< into TextureGraph::spectra, once prepared
+    bool is_spectrum = true;  ///< else the value of a float texture, in all channels
+    bool nearest = false;
+    float scale = 1;
+    bool invert = false;
+    TextureMapping mapping;
+};
+struct CheckerboardNode {
+    int dimension = 2;
+    TextureMapping mapping;
+    Transform texture_from_world;
+    TextureId tex1 = -1, tex2 = -1;
+};
+struct ScaleNode {
+    TextureId tex = -1, scale = -1;
+};
+struct MixNode {
+    TextureId tex1 = -1, tex2 = -1, amount = -1;
+};
+using TextureNode = std::variant<ConstantNode, ImageNode, CheckerboardNode, ScaleNode, MixNode>;
+
+struct TextureGraph {
+    std::vector<TextureNode> nodes;  ///< one per TextureId
+    std::vector<TextureImage> images;
+    std::vector<ImageSpectrum> spectra;
+};
+
+/// Where images are looked up: their first row is at the top, t = 1.
+constexpr Vec2 flip_t(Vec2 st) {
+    return {st.x, 1 - st.y};
+}
+/// What an image texture makes of a decoded value.
+constexpr Rgb image_value(const ImageNode& node, Rgb decoded) {
+    const Rgb v = decoded * node.scale;
+    if (!node.invert) return v;
+    return {std::max(0.0f, 1 - v.r), std::max(0.0f, 1 - v.g), std::max(0.0f, 1 - v.b)};
+}
+/// The checkerboard's texture at this point: tex1 where the sum of the cell's coordinates is even.
+TextureId active_texture(const CheckerboardNode& node, const TexturePoint& at);
+
+Rgb eval(const TextureGraph& graph, TextureId id, const TexturePoint& at);
+
+/// As TextureStore::uv_covariance.
+SpatialCovariance2 uv_covariance(const TextureGraph& graph, TextureId id, const TexturePoint& at,
+                                 Vec3 dpdu, Vec3 dpdv, float footprint_uv);
+
+}  // namespace covtrace

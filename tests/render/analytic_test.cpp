@@ -1,0 +1,119 @@
+// Scenes whose image is known: furnaces, closed-form irradiance, exact sums of interreflection.
+#include <gtest/gtest.h>
+
+#include "tests/render/fixtures.h"
+
+namespace covtrace {
+namespace {
+
+using namespace test;
+
+const std::string kView = R"(
+Integrator "path" "integer maxdepth" 200
+Film "rgb" "integer xresolution" 24 "integer yresolution" 24
+PixelFilter "box"
+LookAt 0 0 -4  0 0 0  0 1 0
+Camera "perspective" "float fov" 30
+WorldBegin
+)";
+
+/// The mean must agree with the known value within 4.5 standard errors (false alarm 7e-6 each) plus `model`.
+void expect_mean(const RenderResult& r, double expected, double model = 1e-3) {
+    const Summary s = summarize_image(r.image);
+    EXPECT_NEAR(s.mean, expected, 4.5 * s.standard_error + model * expected);
+    EXPECT_EQ(s.nonfinite, 0);
+    EXPECT_TRUE(r.complete);
+}
+
+TEST(Analytic, UniformSkyShowsItsRadiance) {
+    expect_mean(render_text(kView + R"(LightSource "infinite" "rgb L" [ 0.3 0.3 0.3 ])", uniform(4)), 0.3, 1e-5);
+}
+
+TEST(Analytic, ImagingScaleFollowsShutterAndIso) {
+    const std::string text = R"(
+Film "rgb" "integer xresolution" 8 "integer yresolution" 8 "float iso" 200
+Camera "perspective" "float shutteropen" 0 "float shutterclose" 0.25
+WorldBegin
+LightSource "infinite" "rgb L" [ 1 1 1 ])";
+    expect_mean(render_text(text, uniform(4)), 0.5, 1e-5);
+}
+
+TEST(Analytic, WhiteDiffuseSphereVanishesInAFurnace) {
+    expect_mean(render_text(kView + R"(LightSource "infinite" "rgb L" [ 0.5 0.5 0.5 ]
+Material "diffuse" "rgb reflectance" [ 1 1 1 ]
+Shape "sphere")", uniform(64)), 0.5);
+}
+
+TEST(Analytic, SmoothGlassSphereVanishesInAFurnace) {
+    expect_mean(render_text(kView + R"(LightSource "infinite" "rgb L" [ 0.5 0.5 0.5 ]
+Material "dielectric" "float eta" 1.5
+Shape "sphere")", uniform(64)), 0.5);
+}
+
+TEST(Analytic, ClosedSphereOfLightSumsAllBounces) {
+    // Inside a sphere that emits L and reflects rho, the radiance is L / (1 - rho) everywhere.
+    const std::string text = R"(
+Integrator "path" "integer maxdepth" 400
+Film "rgb" "integer xresolution" 16 "integer yresolution" 16
+Camera "perspective"
+WorldBegin
+AttributeBegin
+ReverseOrientation
+AreaLightSource "diffuse" "rgb L" [ 0.2 0.2 0.2 ]
+Material "diffuse" "rgb reflectance" [ 0.75 0.75 0.75 ]
+Shape "sphere" "float radius" 3
+AttributeEnd)";
+    expect_mean(render_text(text, uniform(256)), 0.8);
+}
+
+TEST(Analytic, DistantLightOnAFacingPlane) {
+    // Irradiance 2 on an albedo of 0.5: radiance 1/pi.
+    const std::string plane = R"(
+Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
+Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indices" [ 0 1 2 0 2 3 ])";
+    expect_mean(render_text(kView + R"(LightSource "distant" "rgb L" [ 2 2 2 ] "point3 from" [ 0 0 -1 ] "point3 to" [ 0 0 0 ])" + plane,
+                            uniform(4)), 1 / 3.14159265, 1e-4);
+}
+
+TEST(Analytic, DefocusAndMotionKeepTheMeanOfAUniformPlane) {
+    const std::string text = R"(
+Integrator "path" "integer maxdepth" 1
+Film "rgb" "integer xresolution" 16 "integer yresolution" 16
+LookAt 0 0 -4  0 0 0  0 1 0
+Camera "perspective" "float fov" 30 "float lensradius" 0.3 "float focaldistance" 2
+WorldBegin
+LightSource "infinite" "rgb L" [ 1 1 1 ]
+ActiveTransform EndTime
+Translate 0.5 0 0
+ActiveTransform All
+Material "diffuse" "rgb reflectance" [ 0.4 0.4 0.4 ]
+Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indices" [ 0 1 2 0 2 3 ])";
+    expect_mean(render_text(text, uniform(16)), 0.4);
+    expect_mean(render_text(text, covariance_method(16)), 0.4);
+}
+
+TEST(Analytic, AbsorbingGlassFollowsBeer) {
+    // A slab of index 1 and thickness 2 in front of a sky: exp(-sigma d / cos) seen almost head on.
+    const std::string text = R"(
+Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+LookAt 0 0 -40  0 0 0  0 1 0
+Camera "perspective" "float fov" 1
+WorldBegin
+LightSource "infinite" "rgb L" [ 1 1 1 ]
+MakeNamedMedium "dye" "string type" "homogeneous" "rgb sigma_a" [ 0.5 0.5 0.5 ] "rgb sigma_s" [ 0 0 0 ]
+MediumInterface "dye" ""
+Material "interface"
+Shape "trianglemesh" "point3 P" [ -9 -9 -1  9 -9 -1  9 9 -1  -9 9 -1 ] "integer indices" [ 0 2 1 0 3 2 ]
+Shape "trianglemesh" "point3 P" [ -9 -9 1  9 -9 1  9 9 1  -9 9 1 ] "integer indices" [ 0 1 2 0 2 3 ])";
+    expect_mean(render_text(text, uniform(4)), std::exp(-1.0), 1e-3);
+}
+
+TEST(Analytic, MethodsAgreeOnAnUntexturedFurnace) {
+    const std::string text = kView + R"(LightSource "infinite" "rgb L" [ 0.5 0.5 0.5 ]
+Material "diffuse" "rgb reflectance" [ 1 1 1 ]
+Shape "sphere")";
+    expect_mean(render_text(text, covariance_method(32)), 0.5, 2e-3);
+}
+
+}  // namespace
+}  // namespace covtrace

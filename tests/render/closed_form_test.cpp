@@ -1,0 +1,114 @@
+// The thesis' closed form in real renders: a textured plane under a constant sky, out of focus or moving.
+//
+//   (4 pi^2 spectrum)^-1 = (4 pi^2 Sigma_texture)^-1 + r^2/4 I + v v^T/12
+//
+// r the radius of the blur disc in pixels, v the motion in pixels per shutter. Sigma_texture, in pixels,
+// is what a pinhole sees at rest. No constant is fitted.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "core/rng.h"
+#include "covariance/covariance.hpp"
+#include "tests/render/fixtures.h"
+
+namespace covtrace {
+namespace {
+
+using namespace test;
+using Sym2 = covariance::Sym2<double>;
+
+constexpr int kSize = 64;
+constexpr double kDistance = 4, kFov = 40;
+
+/// A texture of random waves with frequencies about (fx, fy) cycles per texture: nearly the same spectrum everywhere.
+std::filesystem::path write_waves() {
+    const auto folder = std::filesystem::path(testing::TempDir());
+    constexpr int n = 512;
+    Image image;
+    image.data = image.display = {0, 0, n, n};
+    Rng rng(5);
+    struct Wave {
+        float kx, ky, phase;
+    };
+    std::vector<Wave> waves;
+    for (int i = 0; i < 64; ++i) {
+        const float angle = 2 * kPi * rng.next_float(), radius = 24 + 8 * rng.next_float();
+        waves.push_back({std::round(radius * std::cos(angle)), std::round(radius * std::sin(angle)), 2 * kPi * rng.next_float()});
+    }
+    std::vector<float> values(size_t(n) * n);
+    for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x) {
+            float sum = 0;
+            for (const Wave& w : waves) sum += std::cos(2 * kPi * (w.kx * float(x) + w.ky * float(y)) / n + w.phase);
+            values[size_t(y) * n + size_t(x)] = 0.5f + 0.02f * sum;
+        }
+    for (const char* name : {"R", "G", "B"}) image.add_channel(name).values = values;
+    write_exr(image, folder / "waves.exr");
+    return folder;
+}
+
+Sym2 mean_spectrum(double lens_radius, double focus, double vx, double vy) {
+    static const std::filesystem::path folder = write_waves();
+    const std::string text = fmt::format(R"(
+Integrator "path" "integer maxdepth" 1
+Film "rgb" "integer xresolution" {0} "integer yresolution" {0}
+LookAt 0 0 -{1}  0 0 0  0 1 0
+Camera "perspective" "float fov" {2} "float lensradius" {3} "float focaldistance" {4}
+WorldBegin
+LightSource "infinite" "rgb L" [ 1 1 1 ]
+Texture "waves" "spectrum" "imagemap" "string filename" "waves.exr"
+Material "diffuse" "texture reflectance" "waves"
+AttributeBegin
+ActiveTransform EndTime
+Translate {5} {6} 0
+ActiveTransform All
+Shape "trianglemesh" "point3 P" [ -6 -6 0  6 -6 0  6 6 0  -6 6 0 ] "point2 uv" [ 0 0 1 0 1 1 0 1 ] "integer indices" [ 0 2 1 0 3 2 ]
+AttributeEnd)",
+                                         kSize, kDistance, kFov, lens_radius, focus, vx, vy);
+    RenderOptions options = covariance_method(32, 1);
+    options.cov_spp = 32;
+    const Image image = render_text(text, options, folder).image;
+    return {middle_mean(image, "spectrum.xx"), middle_mean(image, "spectrum.xy"), middle_mean(image, "spectrum.yy")};
+}
+
+double pixels_per_slope() { return kSize / (2 * std::tan(kFov * 3.14159265358979 / 360)); }
+
+void expect_closed_form(const Sym2& measured, const Sym2& texture, const Sym2& blur) {
+    const double four_pi_sq = covariance::four_pi_sq<double>;
+    const Sym2 primal = covariance::inverse(four_pi_sq * texture) + blur;
+    const Sym2 expected = (1 / four_pi_sq) * covariance::inverse(primal);
+    EXPECT_NEAR(measured.xx / expected.xx, 1, 0.05);
+    EXPECT_NEAR(measured.yy / expected.yy, 1, 0.05);
+    EXPECT_NEAR(measured.xy, expected.xy, 0.05 * std::sqrt(expected.xx * expected.yy));
+}
+
+TEST(ClosedForm, DefocusedTexture) {
+    const Sym2 texture = mean_spectrum(0, kDistance, 0, 0);
+    ASSERT_GT(texture.xx, 1e-3);
+    for (const auto& [lens, focus] : {std::pair{0.05, 3.0}, {0.15, 3.0}, {0.3, 2.5}, {0.2, 8.0}}) {
+        const double r = lens * std::abs(1 / kDistance - 1 / focus) * pixels_per_slope();
+        SCOPED_TRACE(fmt::format("blur radius {} pixels", r));
+        expect_closed_form(mean_spectrum(lens, focus, 0, 0), texture, Sym2::diagonal(r * r / 4, r * r / 4));
+    }
+}
+
+TEST(ClosedForm, MovingTexture) {
+    const Sym2 texture = mean_spectrum(0, kDistance, 0, 0);
+    for (const auto& [vx, vy] : {std::pair{0.3, 0.0}, {0.0, 0.8}, {0.5, -0.7}}) {
+        const double to_pixels = pixels_per_slope() / kDistance;
+        // Seen from -z with y up, world x is pixel x; pixel y points down.
+        const Sym2 blur = (to_pixels * to_pixels / 12) * Sym2{vx * vx, -vx * vy, vy * vy};
+        SCOPED_TRACE(fmt::format("velocity {} {}", vx, vy));
+        expect_closed_form(mean_spectrum(0, kDistance, vx, vy), texture, blur);
+    }
+}
+
+TEST(ClosedForm, DefocusAndMotionTogether) {
+    const Sym2 texture = mean_spectrum(0, kDistance, 0, 0);
+    const double r = 0.1 * std::abs(1 / kDistance - 1 / 2.8) * pixels_per_slope();
+    const double v = 0.4 * pixels_per_slope() / kDistance;
+    expect_closed_form(mean_spectrum(0.1, 2.8, 0.4, 0), texture, {r * r / 4 + v * v / 12, 0, r * r / 4});
+}
+
+}  // namespace
+}  // namespace covtrace

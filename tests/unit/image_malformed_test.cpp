@@ -1,0 +1,175 @@
+// Whatever a file holds, reading it gives an image or one Error(scene) of one line that names the
+// file; nothing is printed, nothing crashes.
+#include <fcntl.h>
+
+#include "image/raster.h"
+#include "image_test_files.h"
+
+namespace covtrace {
+namespace {
+
+using namespace test;
+
+/// Sends what the process prints into a file while it lives.
+class PrintCounter {
+  public:
+    explicit PrintCounter(const fs::path& file) : file_(file) {
+        std::fflush(nullptr);
+        const int to = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        for (int i : {0, 1}) {
+            saved_[i] = ::dup(i + 1);
+            ::dup2(to, i + 1);
+        }
+        ::close(to);
+    }
+    ~PrintCounter() {
+        std::fflush(nullptr);
+        for (int i : {0, 1}) {
+            ::dup2(saved_[i], i + 1);
+            ::close(saved_[i]);
+        }
+    }
+    uintmax_t bytes() const {
+        std::fflush(nullptr);
+        return fs::file_size(file_);
+    }
+
+  private:
+    fs::path file_;
+    int saved_[2]{};
+};
+
+/// Empty where reading kept the contract, else what is wrong.
+template <class Reader>
+std::string problem_of_reading(const fs::path& file, Reader read) {
+    try {
+        read(file);
+    } catch (const Error& e) {
+        const std::string text = e.what();
+        if (e.kind() != ErrorKind::scene) return "wrong kind of error: " + text;
+        if (text.find('\n') != std::string::npos) return "several lines: " + text;
+        const std::string named = "'" + file.string() + "': ";
+        const size_t at = text.find(named);
+        if (at == std::string::npos) return "the file is not named: " + text;
+        if (at + named.size() == text.size()) return "no reason: " + text;
+    } catch (const std::exception& e) {
+        return std::string("an exception of another type: ") + e.what();
+    }
+    return {};
+}
+
+std::string problem_of(const fs::path& file) {
+    const std::string problem = problem_of_reading(file, [](const fs::path& f) { read_image(f); });
+    if (!problem.empty()) return problem;
+    return problem_of_reading(file, [](const fs::path& f) { read_raster(f); });
+}
+
+/// One small valid file of each kind, by its extension.
+std::vector<std::pair<std::string, std::string>> valid_files(const TemporaryDirectory& directory) {
+    const Image image = random_image({0, 0, 9, 20}, {-1, 0, 10, 20}, {"R", "G", "B", "raw.R"}, 2);
+    write_exr(image, directory / "valid.exr");
+    write_png(image, directory / "valid.png");
+    const std::string rle_row = bytes_of({2, 2, 0, 8, 136, 128, 136, 128, 136, 128, 136, 129});
+    return {
+        {"exr", read_bytes(directory / "valid.exr")},
+        {"png", read_bytes(directory / "valid.png")},
+        {"jpg", grey_jpeg()},
+        {"hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n" + rle_row + rle_row},
+        {"pfm", "PF\n1 1\n-1.0\n" + float_bytes({1, 2, 3})},
+        {"tga", bytes_of({0, 1, 9, 0, 0,    2, 0, 24,  0, 0,   0, 0,   3,
+                          0, 1, 0, 8, 0x20, 0, 0, 255, 0, 255, 0, 130, 1})},
+        {"qoi", "qoif" + bytes_of({0, 0, 0, 3, 0, 0, 0, 1, 4, 0, 0xff, 1, 2, 3, 4, 0x6a, 0xc0})},
+    };
+}
+
+TEST(Malformed, ValidFilesAreRead) {
+    TemporaryDirectory directory;
+    for (const auto& [extension, bytes] : valid_files(directory)) {
+        const fs::path file = directory / ("a." + extension);
+        write_bytes(file, bytes);
+        EXPECT_NO_THROW(read_raster(file)) << extension;
+    }
+}
+
+TEST(Malformed, EveryTruncationIsAnError) {
+    TemporaryDirectory directory;
+    PrintCounter printed(directory / "printed");
+    for (const auto& [extension, bytes] : valid_files(directory))
+        for (size_t length = 0; length < bytes.size(); ++length) {
+            const fs::path file = directory / ("a." + extension);
+            write_bytes(file, bytes.substr(0, length));
+            ASSERT_EQ(problem_of(file), "") << extension << " of " << length << " bytes";
+            // The last bytes of these end the file without holding pixels.
+            const bool has_end_marker = extension == "png" || extension == "jpg";
+            if (!has_end_marker || length + 20 < bytes.size()) {
+                ASSERT_THROW(read_image(file), Error) << extension << " of " << length << " bytes";
+            }
+        }
+    EXPECT_EQ(printed.bytes(), 0u);
+}
+
+TEST(Malformed, DamagedBytes) {
+    TemporaryDirectory directory;
+    PrintCounter printed(directory / "printed");
+    uint64_t state = 5;
+    const auto random = [&](size_t below) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        return size_t(state >> 33) % below;
+    };
+    for (const auto& [extension, bytes] : valid_files(directory))
+        for (int i = 0; i < 400; ++i) {
+            std::string damaged = bytes;
+            for (size_t k = 0; k <= random(3); ++k)
+                damaged[random(damaged.size())] = char(random(2) ? random(256) : 255 * random(2));
+            const fs::path file = directory / ("a." + extension);
+            write_bytes(file, damaged);
+            ASSERT_EQ(problem_of(file), "") << extension << ", " << i;
+        }
+    EXPECT_EQ(printed.bytes(), 0u);
+}
+
+TEST(Malformed, ClaimsOfHugeSizesAreRefusedBeforeAllocating) {
+    TemporaryDirectory directory;
+    const auto expect_refused = [&](const std::string& name, const std::string& bytes) {
+        write_bytes(directory / name, bytes);
+        const std::string text = error_of([&] { read_image(directory / name); }).what();
+        EXPECT_NE(text.find("pixels are too many"), std::string::npos) << text;
+    };
+    expect_refused("a.pfm", "PF\n60000 60000\n-1.0\n");
+    expect_refused("a.hdr", "#?RADIANCE\n\n-Y 40000 +X 40000\n");
+    expect_refused("a.tga",
+                   bytes_of({0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 255, 255, 255, 255, 24, 0}));
+    expect_refused("a.qoi", "qoif" + bytes_of({255, 255, 255, 255, 255, 255, 255, 255, 4, 0}));
+    std::string jpeg = grey_jpeg();
+    const size_t frame = jpeg.find("\xff\xc0");
+    jpeg.replace(frame + 5, 4, "\xff\xdc\xff\xdc");
+    expect_refused("a.jpg", jpeg);
+}
+
+TEST(Malformed, NotAnImage) {
+    TemporaryDirectory directory;
+    write_bytes(directory / "empty.png", "");
+    write_bytes(directory / "text.png", "hello, world\n");
+    EXPECT_EQ(problem_of(directory / "empty.png"), "");
+    EXPECT_NE(std::string(error_of([&] { read_image(directory / "text.png"); }).what())
+                  .find("it is no image of a known format"),
+              std::string::npos);
+}
+
+TEST(Malformed, Corpus) {
+    const char* shared = std::getenv("COVTRACE_SHARED");
+    if (!shared) GTEST_SKIP() << "COVTRACE_SHARED is not set";
+    TemporaryDirectory directory;
+    PrintCounter printed(directory / "printed");
+    size_t files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(shared) / "malformed"))
+        if (entry.is_regular_file()) {
+            EXPECT_EQ(problem_of(entry.path()), "") << entry.path();
+            ++files;
+        }
+    EXPECT_GT(files, 0u);
+    EXPECT_EQ(printed.bytes(), 0u);
+}
+
+}  // namespace
+}  // namespace covtrace

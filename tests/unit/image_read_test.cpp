@@ -1,0 +1,200 @@
+#include <cmath>
+#include <limits>
+
+#include "image/color_encoding.h"
+#include "image/raster.h"
+#include "image_test_files.h"
+
+namespace covtrace {
+namespace {
+
+using namespace test;
+
+class Read : public testing::Test {
+  protected:
+    fs::path file(const std::string& name, const std::string& bytes) {
+        write_bytes(directory_ / name, bytes);
+        return directory_ / name;
+    }
+    TemporaryDirectory directory_;
+};
+
+TEST_F(Read, PfmOfBothByteOrders) {
+    // Two rows from the bottom: the second row of the file is the top of the image.
+    for (const bool big : {false, true}) {
+        const auto f = file("a.pfm", "PF\n2 2\n" + std::string(big ? "1.0" : "-1.0") + "\n" +
+                                         float_bytes({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, big));
+        const Image image = read_image(f);
+        EXPECT_EQ(image.display, (PixelBounds{0, 0, 2, 2}));
+        EXPECT_EQ(image.rgb(0), Rgb(7, 8, 9));
+        EXPECT_EQ(image.rgb(3), Rgb(4, 5, 6));
+    }
+    const auto grey = file("b.pfm", "Pf\n1 2\n-0.5\n" + float_bytes({1, -4}));
+    EXPECT_EQ(read_image(grey).find("Y")->values, (std::vector<float>{-2, 0.5f}));
+    const RasterImage raster = read_raster(grey);
+    EXPECT_EQ(raster.channels, 1);
+    EXPECT_FALSE(raster.is_8bit);
+}
+
+TEST_F(Read, PnmIsDecodedFromSrgbAsImageOnly) {
+    const auto f = file("a.ppm", "P6\n# comment\n1 1 255\n" + bytes_of({255, 128, 0}));
+    EXPECT_FLOAT_EQ(read_image(f).rgb(0).g, srgb_decode(128 / 255.0f));
+    const RasterImage raster = read_raster(f);
+    EXPECT_EQ(raster.values, (std::vector<float>{1, 128 / 255.0f, 0}));
+    EXPECT_TRUE(raster.is_8bit);
+    const RasterImage grey =
+        read_raster(file("b.pgm", "P5 2 1 65535\n" + bytes_of({255, 255, 0, 1})));
+    EXPECT_EQ(grey.values, (std::vector<float>{1, 1 / 65535.0f}));
+    EXPECT_TRUE(grey.is_16bit);
+    EXPECT_FALSE(grey.is_8bit);
+}
+
+TEST_F(Read, HdrFlatOldAndNewRunLengths) {
+    const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
+    // 128 * 2^(129 - 136) = 1
+    const RasterImage flat = read_raster(
+        file("a.hdr", header + "-Y 1 +X 2\n" + bytes_of({128, 64, 0, 129, 9, 9, 9, 0})));
+    EXPECT_EQ(flat.values, (std::vector<float>{1, 0.5f, 0, 0, 0, 0}));
+
+    const RasterImage old =
+        read_raster(file("b.hdr", header + "-Y 1 +X 4\n" +
+                                      bytes_of({128, 128, 128, 129, 1, 1, 1, 2, 64, 0, 0, 129})));
+    EXPECT_EQ(old.values, (std::vector<float>{1, 1, 1, 1, 1, 1, 1, 1, 1, 0.5f, 0, 0}));
+
+    std::string rows;
+    for (int y = 0; y < 2; ++y)
+        rows += bytes_of({2, 2, 0, 8}) + bytes_of({128 + 8, y == 0 ? 128 : 64}) +
+                bytes_of({3, 1, 2, 3, 128 + 5, 4}) + bytes_of({128 + 8, 0}) +
+                bytes_of({128 + 8, 136});
+    const RasterImage runs = read_raster(file("c.hdr", header + "-Y 2 +X 8\n" + rows));
+    EXPECT_EQ(runs.values[0], 128);
+    EXPECT_EQ(runs.values[1], 1);
+    EXPECT_EQ(runs.values[7], 3);
+    EXPECT_EQ(runs.values[3 * 7 + 1], 4);
+    EXPECT_EQ(runs.values[3 * 8], 64);
+    EXPECT_EQ(read_raster(file("d.hdr", header + "+Y 2 +X 8\n" + rows)).values[0], 64);
+}
+
+std::string targa_header(int type, int width, int height, int bits, int descriptor,
+                         int colors = 0) {
+    return bytes_of({0, colors > 0, type, 0, 0, colors, 0, colors > 0 ? 24 : 0, 0, 0, 0, 0, width,
+                     0, height, 0, bits, descriptor});
+}
+
+TEST_F(Read, TargaOrientationsPalettesAndRuns) {
+    const std::string pixels = bytes_of({0, 0, 255, 0, 255, 0});  // red, green
+    const std::vector<float> red_green = {1, 0, 0, 0, 1, 0}, green_red = {0, 1, 0, 1, 0, 0};
+    const auto raster = [&](const std::string& bytes) { return read_raster(file("a.tga", bytes)); };
+    EXPECT_EQ(raster(targa_header(2, 2, 1, 24, 0x20) + pixels).values, red_green);
+    EXPECT_EQ(raster(targa_header(2, 2, 1, 24, 0x30) + pixels).values, green_red);
+    EXPECT_EQ(raster(targa_header(2, 1, 2, 24, 0x20) + pixels).values, red_green);
+    EXPECT_EQ(raster(targa_header(2, 1, 2, 24, 0) + pixels).values, green_red);
+    EXPECT_EQ(raster(targa_header(10, 2, 1, 24, 0x20) + bytes_of({1}) + pixels).values, red_green);
+    EXPECT_EQ(raster(targa_header(10, 2, 1, 24, 0x20) + bytes_of({129, 0, 0, 255})).values,
+              (std::vector<float>{1, 0, 0, 1, 0, 0}));
+    EXPECT_EQ(raster(targa_header(1, 2, 1, 8, 0x20, 2) + pixels + bytes_of({1, 0})).values,
+              green_red);
+    EXPECT_EQ(raster(targa_header(3, 2, 1, 8, 0x20) + bytes_of({255, 51})).values,
+              (std::vector<float>{1, 0.2f}));
+    EXPECT_EQ(raster(targa_header(2, 1, 1, 16, 0x20) + bytes_of({0x00, 0x7c})).values,
+              (std::vector<float>{1, 0, 0}));
+    // The fourth byte is alpha only where the descriptor says so.
+    const std::string bgra = bytes_of({0, 0, 255, 51});
+    EXPECT_EQ(raster(targa_header(2, 1, 1, 32, 0x20) + bgra).channels, 3);
+    EXPECT_EQ(raster(targa_header(2, 1, 1, 32, 0x28) + bgra).values,
+              (std::vector<float>{1, 0, 0, 0.2f}));
+}
+
+TEST_F(Read, QoiChunks) {
+    const std::string header = "qoif" + bytes_of({0, 0, 0, 5, 0, 0, 0, 1, 3, 0});
+    // RGB(10, 20, 30), difference (+1, 0, -1), by green (+4: red +5, blue +2), a run of 2.
+    const RasterImage raster =
+        read_raster(file("a.qoi", header + bytes_of({0xfe, 10, 20, 30, 0x40 | 3 << 4 | 2 << 2 | 1,
+                                                     0x80 | 36, 9 << 4 | 6, 0xc0 | 1})));
+    std::vector<int> values;
+    for (float v : raster.values) values.push_back(int(std::lround(v * 255)));
+    EXPECT_EQ(values,
+              (std::vector<int>{10, 20, 30, 11, 20, 29, 16, 24, 31, 16, 24, 31, 16, 24, 31}));
+}
+
+TEST_F(Read, Jpeg) {
+    const RasterImage raster = read_raster(file("a.jpg", grey_jpeg()));
+    EXPECT_EQ(raster.channels, 1);
+    EXPECT_EQ(raster.values, std::vector<float>(64, 128 / 255.0f));
+}
+
+TEST_F(Read, PngKindsOfTheSuite) {
+    const char* shared = std::getenv("COVTRACE_SHARED");
+    if (!shared) GTEST_SKIP() << "COVTRACE_SHARED is not set";
+    const fs::path suite = fs::path(shared) / "malformed/pngsuite";
+    struct Kind {
+        const char* name;
+        int channels;
+        bool sixteen;
+    };
+    // Name, then 0: grey, 2: colour, 3p: palette, 4a and 6a: with alpha, then the bits. The alpha
+    // of grey images is dropped; transparent colours become alpha.
+    for (const Kind& k : {Kind{"basn0g01", 1, false},
+                          {"basn0g02", 1, false},
+                          {"basn0g04", 1, false},
+                          {"basn0g08", 1, false},
+                          {"basn0g16", 1, true},
+                          {"basn2c08", 3, false},
+                          {"basn2c16", 3, true},
+                          {"basn3p01", 3, false},
+                          {"basn3p08", 3, false},
+                          {"basn4a08", 1, false},
+                          {"basn4a16", 1, true},
+                          {"basn6a08", 4, false},
+                          {"basn6a16", 4, true},
+                          {"ftbwn3p08", 4, false}}) {
+        const RasterImage plain = read_raster(suite / (std::string(k.name) + ".png"));
+        EXPECT_EQ(plain.channels, k.channels) << k.name;
+        EXPECT_EQ(plain.is_16bit, k.sixteen) << k.name;
+        EXPECT_EQ(plain.is_8bit, !k.sixteen) << k.name;
+        const RasterImage interlaced = read_raster(suite / ("i" + std::string(k.name) + ".png"));
+        EXPECT_EQ(plain.values, interlaced.values) << k.name;
+    }
+    // A horizontal ramp from black to white in 1-bit grey has only these two values.
+    for (float v : read_raster(suite / "basn0g01.png").values) EXPECT_TRUE(v == 0 || v == 1);
+    const Image alpha = read_image(suite / "basn4a08.png");
+    ASSERT_TRUE(alpha.find("Y") && alpha.find("A"));
+}
+
+TEST_F(Read, RasterOfExrTakesTheRootLayerAndRepairs) {
+    const float inf = std::numeric_limits<float>::infinity();
+    Image image{{2, 3, 4, 4}, {0, 0, 10, 10}, {}, {}};
+    image.add_channel("albedo.R").values = {9, 1000};
+    image.add_channel("R").values = {1, inf};
+    image.add_channel("G").values = {-50, std::numeric_limits<float>::quiet_NaN()};
+    image.add_channel("B").values = {3, -inf};
+    write_exr(image, directory_ / "a.exr");
+    const RasterImage raster = read_raster(directory_ / "a.exr");
+    EXPECT_EQ(raster.values, (std::vector<float>{1, -50, 3, 50, 0, -50}));
+    EXPECT_EQ(raster.repaired, 3);
+    EXPECT_FALSE(raster.is_8bit);
+    EXPECT_TRUE(std::isinf(read_image(directory_ / "a.exr").rgb(1).r));
+
+    image.channels.erase(image.channels.begin() + 1);
+    write_exr(image, directory_ / "b.exr");
+    EXPECT_NE(std::string(error_of([&] { read_raster(directory_ / "b.exr"); }).what())
+                  .find("no channels R, G, B or Y"),
+              std::string::npos);
+}
+
+TEST_F(Read, MissingFilesAndTheirPlace) {
+    const fs::path missing = directory_ / "missing.png";
+    EXPECT_STREQ(error_of([&] { read_image(missing); }).what(),
+                 ("cannot open '" + missing.string() + "': No such file or directory").c_str());
+    const SourceLocation where{std::make_shared<const std::string>("scene.pbrt"), 7, 3};
+    const Error error = error_of([&] { read_raster(missing, where); });
+    EXPECT_EQ(error.kind(), ErrorKind::scene);
+    EXPECT_STREQ(error.what(), ("scene.pbrt:7:3: cannot open '" + missing.string() +
+                                "': No such file or directory")
+                                   .c_str());
+    EXPECT_STREQ(error_of([&] { read_image(directory_.path()); }).what(),
+                 ("cannot open '" + directory_.path().string() + "': Is a directory").c_str());
+}
+
+}  // namespace
+}  // namespace covtrace

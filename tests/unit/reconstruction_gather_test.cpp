@@ -1,0 +1,121 @@
+// The gather: constants stay, means are kept, ellipses have the asked-for covariance, holes are filled.
+#include "reconstruction/gather.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace covtrace {
+namespace {
+
+using covariance::Sym2;
+
+FilterField uniform_field(int w, int h, Sym2<float> s) {
+    return {w, h, std::vector<Sym2<float>>(size_t(w) * size_t(h), s)};
+}
+
+GatheredImage run(const std::vector<Rgb>& mean, const FilterField& field, std::vector<uint32_t> count = {}) {
+    if (count.empty()) count.assign(mean.size(), 1);
+    const std::vector<float> variance(mean.size(), 1.0f);
+    return gather(mean, variance, count, field);
+}
+
+/// Second moments of the filter about the middle of the image, read off the response to a point.
+Sym2<double> response_moments(Sym2<float> s, int size) {
+    const int c = size / 2;
+    std::vector<Rgb> impulse(size_t(size) * size_t(size));
+    impulse[size_t(c) * size_t(size) + size_t(c)] = Rgb(1);
+    const auto image = run(impulse, uniform_field(size, size, s)).color;
+    double sum = 0;
+    Sym2<double> m;
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+            const double v = image[size_t(y) * size_t(size) + size_t(x)].r;
+            sum += v;
+            m.xx += v * (x - c) * (x - c);
+            m.xy += v * (x - c) * (y - c);
+            m.yy += v * (y - c) * (y - c);
+        }
+    return (1 / sum) * m;
+}
+
+TEST(Gather, ConstantImagesStayConstant) {
+    for (float s : {0.2f, 1.0f, 30.0f, 225.0f}) {
+        const auto image = run(std::vector<Rgb>(57 * 43, Rgb(0.7f)), uniform_field(57, 43, {s, 0.3f * s, s})).color;
+        for (const Rgb& c : image) ASSERT_NEAR(c.g, 0.7f, 1e-5f);
+    }
+}
+
+TEST(Gather, EllipsesHaveTheirCovariance) {
+    // The cut at three deviations takes 2.7 % (2-D: chi-square with 9) off the variance; the pyramid adds a little.
+    for (const Sym2<float>& s : {Sym2<float>{4, 0, 4}, Sym2<float>{9, 5, 6}, Sym2<float>{1, 0, 60}, Sym2<float>{100, 0, 100},
+                                 Sym2<float>{150, 60, 80}}) {
+        const auto m = response_moments(s, 141);
+        EXPECT_NEAR(m.xx / s.xx, 1, 0.08) << s.xx;
+        EXPECT_NEAR(m.yy / s.yy, 1, 0.08) << s.yy;
+        EXPECT_NEAR(m.xy, s.xy, 0.08 * std::sqrt(s.xx * s.yy));
+    }
+}
+
+TEST(Gather, PixelsWithoutSamplesTakeNoPart) {
+    std::vector<Rgb> mean(25 * 25, Rgb(1));
+    std::vector<uint32_t> count(mean.size(), 1);
+    for (size_t i = 0; i < mean.size(); i += 2) {
+        mean[i] = Rgb(100);
+        count[i] = 0;
+    }
+    for (const Rgb& c : run(mean, uniform_field(25, 25, {0.16f, 0, 0.16f}), count).color) EXPECT_NEAR(c.r, 1, 1e-5f);
+}
+
+TEST(Gather, AnEmptyNeighbourhoodIsFilledFromFarther) {
+    std::vector<Rgb> mean(40 * 40);
+    std::vector<uint32_t> count(mean.size(), 0);
+    mean[0] = Rgb(3);
+    count[0] = 1;
+    EXPECT_NEAR(run(mean, uniform_field(40, 40, {0.16f, 0, 0.16f}), count).color.back().r, 3, 1e-4f);
+}
+
+TEST(Gather, NonFiniteMeansAreLeftOut) {
+    std::vector<Rgb> mean(9, Rgb(2));
+    mean[4] = Rgb(NAN, 1, 1);
+    for (const Rgb& c : run(mean, uniform_field(3, 3, {1, 0, 1})).color) EXPECT_FLOAT_EQ(c.r, 2);
+}
+
+TEST(Gather, VarianceFallsByTheEffectiveNumberOfPixels) {
+    // A Gaussian of deviation s averages 4 pi s^2 pixels.
+    const auto g = run(std::vector<Rgb>(101 * 101, Rgb(1)), uniform_field(101, 101, {9, 0, 9}));
+    EXPECT_NEAR(g.variance[50 * 101 + 50] * 4 * 3.14159f * 9, 1, 0.05f);
+}
+
+TEST(FilterField, SettingsFollowTheCount) {
+    EXPECT_FLOAT_EQ(filter_settings(16).c, 2);
+    EXPECT_FLOAT_EQ(filter_settings(16).slope, 0.1f);
+    EXPECT_FLOAT_EQ(filter_settings(64).slope, 0.05f);
+    EXPECT_GT(filter_settings(256).c, 3);
+    EXPECT_LT(filter_settings(256).limits.s_min, 0.3f);
+}
+
+TEST(FilterField, NeighboursLimitTheWidth) {
+    FilterField f = uniform_field(21, 1, {100, 0, 25});
+    f.covariance[0] = {0.25f, 0, 0.25f};
+    FilterSettings settings = filter_settings(16);
+    limit_by_neighbours(f, settings);
+    for (int x = 0; x < 21; ++x) {
+        const float size = covariance::filter_size(f.covariance[size_t(x)]);
+        EXPECT_NEAR(size, std::min(std::sqrt(std::sqrt(2500.0f)), 0.5f + 0.1f * float(x)), 2e-2f) << x;
+    }
+    // The shape stays: the long axis is still twice the short one where no clamp acts.
+    EXPECT_NEAR(f.covariance[20].xx / f.covariance[20].yy, 4, 1e-3f);
+}
+
+TEST(FilterField, ThesisRuleIsWiderByItsConstant) {
+    const std::vector<Sym2<float>> spectrum{{0.01f, 0, 0.01f}};
+    const FilterSettings settings = filter_settings(16);
+    const auto verified = filter_field(spectrum, 1, 1, FilterRule::verified, settings);
+    const auto thesis = filter_field(spectrum, 1, 1, FilterRule::thesis, settings);
+    // 4 pi^2 c^2 against 2 pi, with c = 2.
+    EXPECT_NEAR(thesis.covariance[0].xx / verified.covariance[0].xx, 2 * 3.14159265f * 4, 1e-2f);
+}
+
+}  // namespace
+}  // namespace covtrace

@@ -1,0 +1,243 @@
+#include "scene_test_support.h"
+
+namespace covtrace::test {
+namespace {
+
+struct Made {
+    SceneDescription scene;
+    MaterialDescription material;
+};
+Made material_of(const std::string& text) {
+    Made m{read_world("Material " + text + "\nShape \"sphere\""), {}};
+    m.material = m.scene.materials.at(static_cast<size_t>(m.scene.shapes.at(0).material));
+    return m;
+}
+template <typename Model>
+Model model_of(const std::string& text) {
+    return std::get<Model>(material_of(text).material.value);
+}
+
+TEST(SceneMaterials, TheDefaultIsDiffuseGrey) {
+    const auto scene = read_world("Shape \"sphere\"");
+    const auto& m = std::get<DiffuseMaterial>(
+        scene.materials.at(static_cast<size_t>(scene.shapes.at(0).material)).value);
+    EXPECT_EQ(constant_value(scene, m.reflectance), Rgb{0.5f});
+}
+
+TEST(SceneMaterials, CoatedDiffuseHasAllItsParameters) {
+    const auto made = material_of(
+        "\"coateddiffuse\" \"rgb reflectance\" [ .1 .2 .3 ] \"float roughness\" .4 \"float "
+        "vroughness\" .2\n"
+        "\"float thickness\" .5 \"float g\" .3 \"rgb albedo\" [ .6 .6 .6 ] \"float eta\" 1.7\n"
+        "\"bool remaproughness\" false \"integer maxdepth\" 3 \"integer nsamples\" 2");
+    const auto& m = std::get<CoatedDiffuseMaterial>(made.material.value);
+    const auto value = [&](TextureId id) { return constant_value(made.scene, id); };
+    EXPECT_EQ(value(m.reflectance), (Rgb{0.1f, 0.2f, 0.3f}));
+    EXPECT_EQ(value(m.u_roughness), Rgb{0.4f});
+    EXPECT_EQ(value(m.v_roughness), Rgb{0.2f});
+    EXPECT_EQ(value(m.thickness), Rgb{0.5f});
+    EXPECT_EQ(value(m.g), Rgb{0.3f});
+    EXPECT_EQ(value(m.albedo), Rgb{0.6f});
+    EXPECT_EQ(m.eta, 1.7f);
+    EXPECT_FALSE(m.remap_roughness);
+    EXPECT_EQ(m.max_depth, 3);
+    EXPECT_EQ(m.samples, 2);
+    EXPECT_TRUE(made.scene.warnings.empty()) << warnings_of(made.scene);
+}
+
+TEST(SceneMaterials, DefaultsAreThoseOfPbrt) {
+    const auto made = material_of("\"coateddiffuse\"");
+    const auto& m = std::get<CoatedDiffuseMaterial>(made.material.value);
+    EXPECT_EQ(constant_value(made.scene, m.reflectance), Rgb{0.5f});
+    EXPECT_EQ(constant_value(made.scene, m.u_roughness), Rgb{0});
+    EXPECT_EQ(constant_value(made.scene, m.thickness), Rgb{0.01f});
+    EXPECT_EQ(m.eta, 1.5f);
+    EXPECT_TRUE(m.remap_roughness);
+    EXPECT_EQ(model_of<DielectricMaterial>("\"dielectric\"").eta, 1.5f);
+    const auto t = material_of("\"diffusetransmission\"");
+    const auto& d = std::get<DiffuseTransmissionMaterial>(t.material.value);
+    EXPECT_EQ(constant_value(t.scene, d.reflectance), Rgb{0.25f});
+    EXPECT_EQ(constant_value(t.scene, d.transmittance), Rgb{0.25f});
+}
+
+TEST(SceneMaterials, GlassHasItsIndexAtTheHeliumLine) {
+    const auto made =
+        material_of("\"dielectric\" \"spectrum eta\" \"glass-BK7\" \"float roughness\" .1");
+    EXPECT_NEAR(std::get<DielectricMaterial>(made.material.value).eta, 1.5168f, 1e-4f);
+    EXPECT_TRUE(contains(warnings_of(made.scene), "dispersion is not rendered"));
+    EXPECT_NEAR(
+        model_of<DielectricMaterial>("\"dielectric\" \"spectrum eta\" [ 500 1.4 600 1.6 ]").eta,
+        1.5752f, 1e-4f);
+}
+
+Rgb normal_reflectance(const Made& made) {
+    const auto& m = std::get<ConductorMaterial>(made.material.value);
+    const Rgb n = constant_value(made.scene, m.eta), k = constant_value(made.scene, m.k);
+    Rgb f;
+    for (int c = 0; c < 3; ++c) f[c] = (sqr(n[c] - 1) + sqr(k[c])) / (sqr(n[c] + 1) + sqr(k[c]));
+    return f;
+}
+
+TEST(SceneMaterials, MetalsHaveTheColourOfTheirSpectra) {
+    const auto metal = [](const std::string& name) {
+        return normal_reflectance(material_of("\"conductor\" \"spectrum eta\" \"metal-" + name +
+                                              "-eta\" \"spectrum k\" \"metal-" + name + "-k\""));
+    };
+    // Linear colours as tabulated for normal incidence (Hoffman, "Physics and Math of Shading",
+    // SIGGRAPH 2015).
+    expect_near(metal("Ag"), {0.97f, 0.96f, 0.92f}, 0.03f);
+    expect_near(metal("Al"), {0.91f, 0.92f, 0.92f}, 0.02f);
+    expect_near(metal("Au"), {1.0f, 0.77f, 0.34f}, 0.06f);
+    expect_near(metal("Cu"), {0.96f, 0.64f, 0.54f}, 0.04f);
+    expect_near(metal("TiO2"), {0.2f, 0.21f, 0.24f}, 0.03f);
+}
+
+TEST(SceneMaterials, ConductorsDefaultToCopper) {
+    const Rgb copper = normal_reflectance(material_of(
+        "\"conductor\" \"spectrum eta\" \"metal-Cu-eta\" \"spectrum k\" \"metal-Cu-k\""));
+    expect_near(normal_reflectance(material_of("\"conductor\"")), copper, 0);
+    expect_near(normal_reflectance(material_of("\"conductor\" \"spectrum eta\" \"metal-Cu-eta\"")),
+                copper, 0);
+}
+
+TEST(SceneMaterials, ConductorColoursPassThrough) {
+    const auto made = material_of(
+        "\"conductor\" \"rgb eta\" [ .2 .9 1.1 ] \"rgb k\" [ 3.9 2.4 2.1 ] \"float uroughness\" "
+        ".25");
+    const auto& m = std::get<ConductorMaterial>(made.material.value);
+    EXPECT_EQ(constant_value(made.scene, m.eta), (Rgb{0.2f, 0.9f, 1.1f}));
+    EXPECT_EQ(constant_value(made.scene, m.k), (Rgb{3.9f, 2.4f, 2.1f}));
+    EXPECT_EQ(constant_value(made.scene, m.u_roughness), Rgb{0.25f});
+    const auto mirror =
+        model_of<ConductorMaterial>("\"conductor\" \"rgb reflectance\" [ .9 .9 .9 ]");
+    EXPECT_GE(mirror.reflectance, 0);
+    EXPECT_EQ(mirror.eta, -1);
+    EXPECT_EQ(mirror.k, -1);
+}
+
+TEST(SceneMaterials, NamesMayBeUsedBeforeTheyAreDefined) {
+    const auto scene = read_world(
+        "NamedMaterial \"later\" Shape \"sphere\"\n"
+        "MakeNamedMaterial \"later\" \"string type\" \"diffuse\" \"texture reflectance\" \"tex\"\n"
+        "Texture \"tex\" \"spectrum\" \"constant\" \"rgb value\" [ .1 .2 .3 ]\n");
+    const auto& m = scene.materials.at(static_cast<size_t>(scene.shapes.at(0).material));
+    EXPECT_EQ(m.name, "later");
+    EXPECT_EQ(constant_value(scene, std::get<DiffuseMaterial>(m.value).reflectance),
+              (Rgb{0.1f, 0.2f, 0.3f}));
+    EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
+}
+
+TEST(SceneMaterials, InterfacesHaveSeveralNames) {
+    for (const char* name : {"interface", "", "none"})
+        EXPECT_NO_THROW(model_of<InterfaceMaterial>(std::string("\"") + name + "\""));
+}
+
+TEST(SceneMaterials, OthersAreReplacedWithOneWarning) {
+    const auto check = [](const std::string& text, auto expected) {
+        const auto made = material_of(text);
+        EXPECT_TRUE(std::holds_alternative<decltype(expected)>(made.material.value)) << text;
+        EXPECT_EQ(made.scene.warnings.size(), 1u) << text << "\n" << warnings_of(made.scene);
+    };
+    check(
+        "\"coatedconductor\" \"float interface.roughness\" .1 \"float conductor.roughness\" .2 "
+        "\"float thickness\" 1",
+        ConductorMaterial{});
+    check("\"thindielectric\" \"float eta\" 1.4", DielectricMaterial{});
+    check("\"subsurface\" \"string name\" \"Skin1\" \"float scale\" 4", CoatedDiffuseMaterial{});
+    check("\"hair\" \" float beta_n\" .3 \"float eumelanin\" 8", DiffuseMaterial{});
+    check("\"measured\" \"string filename\" \"x.bsdf\"", CoatedDiffuseMaterial{});
+    check("\"diffuse\" \"float displacement\" 1", DiffuseMaterial{});
+    check("\"diffuse\" \"string normalmap\" \"n.png\"", DiffuseMaterial{});
+    EXPECT_EQ(model_of<DielectricMaterial>("\"thindielectric\" \"float eta\" 1.4").eta, 1);
+}
+
+TEST(SceneMaterials, DarkHairIsDark) {
+    const auto reflectance = [](const std::string& text) {
+        const auto made = material_of(text);
+        return constant_value(made.scene,
+                              std::get<DiffuseMaterial>(made.material.value).reflectance);
+    };
+    const Rgb dark = reflectance("\"hair\" \"float eumelanin\" 8"),
+              fair = reflectance("\"hair\" \"float eumelanin\" .3");
+    EXPECT_LT(max_component(dark), 0.01f);
+    EXPECT_GT(fair.r, fair.g);
+    EXPECT_GT(fair.g, fair.b);
+    EXPECT_GT(fair.r, 0.05f);
+}
+
+TEST(SceneMaterials, AMixIsItsGreaterPart) {
+    const std::string two =
+        "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n"
+        "MakeNamedMaterial \"b\" \"string type\" \"conductor\"\n";
+    const auto chosen = [&](const std::string& amount) {
+        const auto scene =
+            read_world(two + "Material \"mix\" \"string materials\" [ \"a\" \"b\" ] " + amount +
+                       "\nShape \"sphere\"");
+        EXPECT_EQ(scene.warnings.size(), 1u) << warnings_of(scene);
+        return scene.materials.at(static_cast<size_t>(scene.shapes.at(0).material)).name;
+    };
+    EXPECT_EQ(chosen(""), "a");
+    EXPECT_EQ(chosen("\"float amount\" .2"), "a");
+    EXPECT_EQ(chosen("\"float amount\" .7"), "b");
+}
+
+TEST(SceneMaterials, ReflectancesAreAtMostOne) {
+    const auto made = material_of("\"diffuse\" \"rgb reflectance\" [ 2 .5 .5 ]");
+    EXPECT_EQ(
+        constant_value(made.scene, std::get<DiffuseMaterial>(made.material.value).reflectance),
+        (Rgb{1, 0.5f, 0.5f}));
+    EXPECT_TRUE(contains(warnings_of(made.scene), "above 1"));
+}
+
+TEST(SceneMaterials, MediaAreRead) {
+    const auto scene = read_world(
+        "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 1 2 3 ] \"rgb "
+        "sigma_s\" [ 0 0 0 ] \"float scale\" 2 \"float g\" .5\n"
+        "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\"\n"
+        "MakeNamedMedium \"cloud\" \"string type\" \"nanovdb\" \"string filename\" \"x.nvdb\"\n");
+    ASSERT_EQ(scene.media.size(), 3u);
+    EXPECT_EQ(scene.media[0].sigma_a, (Rgb{2, 4, 6}));
+    EXPECT_TRUE(is_black(scene.media[0].sigma_s));
+    EXPECT_EQ(scene.media[0].g, 0.5f);
+    EXPECT_EQ(scene.media[1].sigma_a, Rgb{1});
+    EXPECT_TRUE(is_black(scene.media[2].sigma_a));
+    EXPECT_EQ(scene.warnings.size(), 2u) << warnings_of(scene);
+}
+
+TEST(SceneMaterials, ErrorsNameThePlace) {
+    struct Case {
+        const char* text;
+        const char* message;
+    };
+    const Case cases[] = {
+        {"Material \"matte\"", "test.pbrt:2:1: material \"matte\" belongs to pbrt-v3"},
+        {"Material \"velvet\"", "unknown material \"velvet\"; expected one of diffuse"},
+        {"NamedMaterial \"Fluor\" Shape \"sphere\" MakeNamedMaterial \"Floor\" \"string type\" "
+         "\"diffuse\"",
+         "test.pbrt:2:1: material \"Fluor\" is not defined; did you mean \"Floor\"?"},
+        {"MakeNamedMaterial \"a\"", "has no type"},
+        {"MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"a\" \"string "
+         "type\" \"diffuse\"",
+         "test.pbrt:3:1: material \"a\" is already defined at test.pbrt:2:1"},
+        {"Material \"conductor\" \"rgb reflectance\" [1 1 1] \"rgb k\" [1 1 1]",
+         "both \"reflectance\" and"},
+        {"Material \"dielectric\" \"float eta\" 0", "must be greater than 0"},
+        {"Material \"dielectric\" \"spectrum eta\" \"stdillum-A\"", "is a light"},
+        {"Material \"mix\" \"string materials\" [ \"a\" ]", "names of two materials"},
+        {"Material \"mix\" \"string materials\" [ \"a\" \"b\" ]", "material \"a\" is not defined"},
+        {"MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [ \"a\" \"a\" ]",
+         "mixes itself"},
+        {"Material \"diffuse\" \"texture reflectance\" \"t\"",
+         "names the spectrum texture \"t\", which is not defined"},
+        {"Texture \"t\" \"float\" \"constant\" Material \"diffuse\" \"texture reflectance\" \"t\"",
+         "the texture of this name is of type float"},
+        {"MediumInterface \"fog\" \"\" Shape \"sphere\"", "medium \"fog\" is not defined"},
+        {"MakeNamedMedium \"m\" \"string type\" \"gas\"", "unknown medium \"gas\""},
+        {"MakeNamedMedium \"m\"", "medium \"m\" has no type"},
+        {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float g\" 1", "between -1 and 1"},
+    };
+    for (const Case& c : cases) EXPECT_TRUE(contains(world_error(c.text), c.message)) << c.text;
+}
+
+}  // namespace
+}  // namespace covtrace::test

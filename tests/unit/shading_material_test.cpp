@@ -1,0 +1,214 @@
+#include "shading/material.h"
+
+#include <gtest/gtest.h>
+
+#include "shading/fresnel.h"
+
+namespace covtrace {
+namespace {
+
+/// A scene that holds textures and materials only.
+class MaterialTest : public testing::Test {
+  protected:
+    TextureId constant(Rgb value) {
+        return add_texture(
+            {.name = "", .is_spectrum = true, .value = ConstantTexture{value}, .where = {}});
+    }
+    TextureId constant(float value) { return constant(Rgb(value)); }
+    /// `a` where floor(u) + floor(v) is even, `b` elsewhere.
+    TextureId checks(TextureId a, TextureId b) {
+        CheckerboardTexture t;
+        t.tex1 = a;
+        t.tex2 = b;
+        return add_texture({.name = "", .is_spectrum = true, .value = t, .where = {}});
+    }
+    template <typename M>
+    MaterialId add(const M& material) {
+        scene_.materials.push_back({.name = "", .value = material, .where = {}});
+        return static_cast<MaterialId>(scene_.materials.size()) - 1;
+    }
+    /// To be called when everything is added.
+    void build() {
+        textures_ = std::make_unique<TextureStore>(scene_);
+        materials_ = std::make_unique<MaterialStore>(scene_, *textures_);
+    }
+    template <typename B>
+    B bsdf_at(MaterialId id, Vec2 uv = {0.5f, 0.5f}) const {
+        SurfaceHit hit;
+        hit.uv = uv;
+        const Bsdf bsdf = materials_->bsdf(id, hit, *textures_);
+        EXPECT_TRUE(std::holds_alternative<B>(bsdf));
+        return std::get<B>(bsdf);
+    }
+
+    SceneDescription scene_;
+    std::unique_ptr<TextureStore> textures_;
+    std::unique_ptr<MaterialStore> materials_;
+
+  private:
+    TextureId add_texture(TextureDescription t) {
+        scene_.textures.push_back(std::move(t));
+        return static_cast<TextureId>(scene_.textures.size()) - 1;
+    }
+};
+
+TEST_F(MaterialTest, NoMaterialIsGreyDiffuse) {
+    build();
+    EXPECT_EQ(bsdf_at<DiffuseBsdf>(-1).reflectance, Rgb(0.5f));
+    EXPECT_FALSE(materials_->is_interface(-1));
+    EXPECT_EQ(materials_->textures(-1).reflectance, -1);
+}
+
+TEST_F(MaterialTest, DiffuseReflectanceIsClamped) {
+    const MaterialId id = add(DiffuseMaterial{constant({1.5f, -0.2f, 0.3f})});
+    const MaterialId broken = add(DiffuseMaterial{constant({NAN, 0.5f, 0.5f})});
+    build();
+    EXPECT_EQ(bsdf_at<DiffuseBsdf>(id).reflectance, Rgb(1, 0, 0.3f));
+    EXPECT_EQ(bsdf_at<DiffuseBsdf>(broken).reflectance, Rgb(0, 0.5f, 0.5f));
+}
+
+TEST_F(MaterialTest, TexturesAreEvaluatedAtTheHit) {
+    const TextureId board = checks(constant(0.2f), constant(0.7f));
+    const MaterialId textured = add(DiffuseMaterial{board}),
+                     plain = add(DiffuseMaterial{constant(0.4f)});
+    build();
+    EXPECT_EQ(bsdf_at<DiffuseBsdf>(textured, {0.5f, 0.5f}).reflectance, Rgb(0.2f));
+    EXPECT_EQ(bsdf_at<DiffuseBsdf>(textured, {1.5f, 0.5f}).reflectance, Rgb(0.7f));
+    EXPECT_EQ(bsdf_at<DiffuseBsdf>(plain, {1.5f, 0.5f}).reflectance, Rgb(0.4f));
+    EXPECT_EQ(materials_->textures(textured).reflectance, board);
+    EXPECT_EQ(materials_->textures(plain).reflectance, -1);
+}
+
+TEST_F(MaterialTest, RoughnessIsRemappedAsPbrtDoes) {
+    EXPECT_EQ(ggx_alphas(0.25f, 0.04f, true), (Vec2{0.5f, std::sqrt(0.04f)}));
+    EXPECT_EQ(ggx_alphas(0.25f, 0.04f, false), (Vec2{0.25f, 0.04f}));
+    EXPECT_EQ(ggx_alphas(0, 0, true), (Vec2{0, 0}));
+    EXPECT_EQ(ggx_alphas(9e-4f, 9e-4f, false), (Vec2{0, 0}));
+    EXPECT_EQ(ggx_alphas(1e-3f, 0, false), (Vec2{1e-3f, 1e-4f}));
+    EXPECT_EQ(ggx_alphas(-1, -1, true), (Vec2{0, 0}));
+    EXPECT_EQ(ggx_alphas(0.5f, NAN, false), (Vec2{0.5f, 1e-4f}));
+    EXPECT_EQ(ggx_alphas(NAN, 0.5f, false), (Vec2{0, 0}));
+}
+
+TEST_F(MaterialTest, ConductorTakesIndexOrReflectance) {
+    ConductorMaterial gold;
+    gold.eta = constant({0.14f, 0.37f, 1.44f});
+    gold.k = constant({3.98f, 2.39f, 1.6f});
+    gold.u_roughness = constant(0.01f);
+    gold.v_roughness = constant(0.09f);
+    ConductorMaterial tinted;
+    tinted.reflectance = constant({0.9f, 0.5f, 0.0f});
+    ConductorMaterial white;
+    white.reflectance = constant(1.0f);
+    const MaterialId gold_id = add(gold), tinted_id = add(tinted), white_id = add(white);
+    build();
+
+    const auto g = bsdf_at<ConductorBsdf>(gold_id);
+    EXPECT_EQ(g.eta, Rgb(0.14f, 0.37f, 1.44f));
+    EXPECT_EQ(g.k, Rgb(3.98f, 2.39f, 1.6f));
+    EXPECT_NEAR(g.alpha_x, 0.1f, 1e-6f);
+    EXPECT_NEAR(g.alpha_y, 0.3f, 1e-6f);
+
+    const auto t = bsdf_at<ConductorBsdf>(tinted_id);
+    EXPECT_EQ(t.alpha_x, 0);
+    const Rgb at_normal = fresnel_conductor(1, t.eta, t.k);
+    EXPECT_NEAR(at_normal.r, 0.9f, 1e-5f);
+    EXPECT_NEAR(at_normal.g, 0.5f, 1e-5f);
+    EXPECT_NEAR(at_normal.b, 0, 1e-5f);
+
+    const auto w = bsdf_at<ConductorBsdf>(white_id);
+    EXPECT_TRUE(is_finite(w.k));
+    EXPECT_NEAR(fresnel_conductor(1, w.eta, w.k).g, 0.9999f, 1e-5f);
+}
+
+TEST_F(MaterialTest, DielectricWithTexturedRoughness) {
+    DielectricMaterial glass;
+    glass.eta = 1.33f;
+    glass.u_roughness = glass.v_roughness = checks(constant(0.0f), constant(0.25f));
+    const MaterialId id = add(glass);
+    build();
+    EXPECT_TRUE(is_specular(Bsdf(bsdf_at<DielectricBsdf>(id, {0.5f, 0.5f}))));
+    EXPECT_EQ(bsdf_at<DielectricBsdf>(id, {1.5f, 0.5f}).alpha_x, 0.5f);
+    EXPECT_EQ(bsdf_at<DielectricBsdf>(id, {1.5f, 0.5f}).eta, 1.33f);
+    EXPECT_EQ(materials_->textures(id).reflectance, -1);
+}
+
+TEST_F(MaterialTest, CoatedDiffuseHonoursDepthAndSharesTables) {
+    CoatedDiffuseMaterial paint;
+    paint.reflectance = constant(0.8f);
+    CoatedDiffuseMaterial shallow = paint;
+    shallow.max_depth = 2;
+    CoatedDiffuseMaterial thick = paint;
+    thick.thickness = constant(0.5f);
+    const MaterialId paint_id = add(paint), shallow_id = add(shallow), thick_id = add(thick);
+    build();
+    const auto p = bsdf_at<CoatedDiffuseBsdf>(paint_id), s = bsdf_at<CoatedDiffuseBsdf>(shallow_id),
+               t = bsdf_at<CoatedDiffuseBsdf>(thick_id);
+    EXPECT_EQ(p.table, s.table);
+    EXPECT_NE(p.table, t.table);
+    EXPECT_EQ(p.table->thickness(), 0.01f);
+    EXPECT_EQ(t.table->thickness(), 0.5f);
+    // One reflection at the base instead of five: the series stops after its first term.
+    const float again = 0.8f * p.table->internal_reflectance(0);
+    EXPECT_NEAR(p.base.g / s.base.g, (1 - std::pow(again, 5.0f)) / (1 - again), 1e-5f);
+    EXPECT_LT(albedo(Bsdf(t), {0, 0, 1}).g, albedo(Bsdf(p), {0, 0, 1}).g);
+    EXPECT_TRUE(materials_->warnings().empty());
+}
+
+TEST_F(MaterialTest, WhatTheGapCantDoIsWarnedOf) {
+    CoatedDiffuseMaterial clear, foggy, uneven;
+    clear.albedo = constant(0.0f);
+    foggy.albedo = constant(0.5f);
+    uneven.thickness = checks(constant(0.1f), constant(0.2f));
+    add(clear);
+    add(foggy);
+    const MaterialId uneven_id = add(uneven);
+    scene_.materials[1].where.line = 7;
+    build();
+    ASSERT_EQ(materials_->warnings().size(), 2u);
+    EXPECT_EQ(materials_->warnings()[0].where.line, 7);
+    EXPECT_NE(materials_->warnings()[0].text.find("albedo"), std::string::npos);
+    EXPECT_NE(materials_->warnings()[1].text.find("thickness"), std::string::npos);
+    EXPECT_EQ(bsdf_at<CoatedDiffuseBsdf>(uneven_id).table->thickness(), 0.1f);
+}
+
+TEST_F(MaterialTest, DiffuseTransmissionIsScaledThenClamped) {
+    DiffuseTransmissionMaterial leaf;
+    leaf.reflectance = checks(constant(0.3f), constant(0.1f));
+    leaf.transmittance = constant(0.9f);
+    leaf.scale = 2;
+    const MaterialId id = add(leaf), standard = add(DiffuseTransmissionMaterial{});
+    build();
+    EXPECT_EQ(bsdf_at<DiffuseTransmissionBsdf>(id).reflectance, Rgb(0.6f));
+    EXPECT_EQ(bsdf_at<DiffuseTransmissionBsdf>(id).transmittance, Rgb(1));
+    EXPECT_EQ(bsdf_at<DiffuseTransmissionBsdf>(standard).reflectance, Rgb(0.25f));
+    EXPECT_EQ(materials_->textures(id).reflectance, leaf.reflectance);
+    EXPECT_EQ(materials_->textures(id).transmittance, -1);
+}
+
+TEST_F(MaterialTest, InterfacesAreKnown) {
+    const MaterialId id = add(InterfaceMaterial{}), other = add(DiffuseMaterial{});
+    build();
+    EXPECT_TRUE(materials_->is_interface(id));
+    EXPECT_FALSE(materials_->is_interface(other));
+    bsdf_at<InterfaceBsdf>(id);
+}
+
+TEST(ShadingFrame, FollowsNormalAndParameterisation) {
+    SurfaceHit hit;
+    hit.ng = {0, 0, 1};
+    hit.ns = normalize({0.2f, -0.1f, 1});
+    hit.dpdu = {3, 0.5f, 0.1f};
+    const Frame f = shading_frame(hit);
+    EXPECT_EQ(f.z, hit.ns);
+    EXPECT_NEAR(dot(f.x, f.z), 0, 1e-6f);
+    EXPECT_GT(dot(f.x, hit.dpdu), 0);
+    EXPECT_NEAR(dot(cross(f.x, f.y), f.z), 1, 1e-6f);
+    // A surface without a usable parameterisation still has a frame.
+    hit.dpdu = {};
+    const Frame g = shading_frame(hit);
+    EXPECT_NEAR(dot(cross(g.x, g.y), g.z), 1, 1e-6f);
+}
+
+}  // namespace
+}  // namespace covtrace
