@@ -164,6 +164,14 @@ class VoxelGridBuilder {
             grid_.voxels_.insert(grid_.voxels_.end(), found[b].begin(), found[b].end());
         }
         grid_.voxels_.shrink_to_fit();
+        grid_.offsets_.resize(grid_.voxels_.size());
+        for (size_t i = 0; i < grid_.voxels_.size(); ++i) {
+            const Vec3 p = (grid_.voxels_[i].centroid - layout_.origin) / layout_.size;
+            const auto part = [](float v) {
+                return static_cast<uint8_t>(std::clamp((v - std::floor(v)) * 256, 0.0f, 255.0f));
+            };
+            grid_.offsets_[i] = {part(p.x), part(p.y), part(p.z)};
+        }
     }
 
     std::array<int, 3> place_of(size_t place) const {

@@ -1,13 +1,12 @@
 #include "geometry/voxel_grid.h"
 
-#include <bit>
 #include <cmath>
 
 namespace covtrace {
 
 size_t VoxelGrid::memory() const {
     return top_.capacity() * sizeof(top_[0]) + stored_.capacity() * sizeof(Brick) +
-           voxels_.capacity() * sizeof(Voxel);
+           voxels_.capacity() * sizeof(Voxel) + offsets_.capacity() * sizeof(Offset);
 }
 
 VoxelGrid::Cell VoxelGrid::cell_of(Vec3 point) const {
@@ -25,18 +24,12 @@ const VoxelGrid::Brick* VoxelGrid::brick_of(Cell c) const {
     return index < 0 ? nullptr : &stored_[static_cast<size_t>(index)];
 }
 
-const Voxel& VoxelGrid::voxel(const Brick& brick, int z, int bit) const {
-    const uint64_t below = brick.occupied[static_cast<size_t>(z)] & ((uint64_t{1} << bit) - 1);
-    return voxels_[brick.first + brick.rank[static_cast<size_t>(z)] +
-                   static_cast<uint32_t>(std::popcount(below))];
-}
-
 const Voxel* VoxelGrid::find(Vec3 point) const {
     const Cell c = cell_of(point);
     const Brick* brick = brick_of(c);
     const int z = c.z & 7, bit = (c.y & 7) * 8 + (c.x & 7);
     if (!brick || !(brick->occupied[static_cast<size_t>(z)] >> bit & 1)) return nullptr;
-    return &voxel(*brick, z, bit);
+    return &voxels_[voxel_index(*brick, z, bit)];
 }
 
 }  // namespace covtrace

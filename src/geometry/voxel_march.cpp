@@ -18,6 +18,7 @@ uint64_t rectangle(int x0, int x1, int y0, int y1) {
 constexpr int kSlab = 3;        ///< steps that share one event
 constexpr float kEnds = 1.5f;   ///< voxels left out at either end
 constexpr float kWidest = 3.0f;  ///< voxels, the largest radius
+constexpr uint32_t kNoVoxel = ~uint32_t{0};
 
 }  // namespace
 
@@ -61,54 +62,69 @@ bool VoxelMarch::next(float radius, OccluderEvent& event) {
             continue;
         }
         const uint64_t word = brick->within[static_cast<size_t>(reach - 1)][static_cast<size_t>(cell.z & 7)];
-        if (!(word >> ((cell.y & 7) * 8 + (cell.x & 7)) & 1) || !nearest_in_step(step_, radius, event)) {
+        if (!(word >> ((cell.y & 7) * 8 + (cell.x & 7)) & 1)) {
             ++step_;
             continue;
         }
-        for (int i = 1; i < kSlab && step_ + i < steps_; ++i)
-            nearest_in_step(step_ + i, event.distance, event);
+        const bool found = nearest_in_slab(radius, event);
         step_ += kSlab;
+        if (!found) continue;
         event.distance = std::max(event.distance, 0.5f * size);
         return true;
     }
     return false;
 }
 
-bool VoxelMarch::nearest_in_step(int step, float radius, OccluderEvent& event) const {
-    const float size = grid_.size_;
-    const float begin = static_cast<float>(step) * size, end = std::min(begin + size, length_);
-    // The box of a cylinder about the step.
-    const Vec3 middle = start_ + direction_ * (begin + 0.5f * size);
-    const auto half = [&](float d) { return 0.5f * size * std::abs(d) + radius * safe_sqrt(1 - d * d); };
-    const Vec3 extent{half(direction_.x), half(direction_.y), half(direction_.z)};
-    const VoxelGrid::Cell lo = grid_.cell_of(middle - extent), hi = grid_.cell_of(middle + extent);
+bool VoxelMarch::nearest_in_slab(float radius, OccluderEvent& event) const {
+    // In units of voxels, from the grid's corner on.
+    const float scale = 1 / grid_.size_;
+    const Vec3 start = (start_ - grid_.origin_) * scale, d = direction_;
+    const auto begin = static_cast<float>(step_);
+    const float end = std::min(begin + kSlab, length_ * scale), middle = 0.5f * (begin + end);
+    radius *= scale;
+    // The box of a cylinder about the slab.
+    const auto half = [&](float c) { return 0.5f * (end - begin) * std::abs(c) + radius * safe_sqrt(1 - c * c); };
+    const Vec3 center = start + d * middle, extent{half(d.x), half(d.y), half(d.z)};
+    const auto cell = [](Vec3 p) {
+        return VoxelGrid::Cell{static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y)),
+                               static_cast<int>(std::floor(p.z))};
+    };
+    const VoxelGrid::Cell lo = cell(center - extent), hi = cell(center + extent);
     float best = radius * radius;
-    bool found = false;
+    uint32_t nearest = kNoVoxel;
     for (int bz = lo.z >> 3; bz <= hi.z >> 3; ++bz)
         for (int by = lo.y >> 3; by <= hi.y >> 3; ++by)
             for (int bx = lo.x >> 3; bx <= hi.x >> 3; ++bx) {
                 const VoxelGrid::Brick* brick = grid_.brick_of({8 * bx, 8 * by, 8 * bz});
                 if (!brick) continue;
-                const uint64_t window =
-                    rectangle(std::max(lo.x - 8 * bx, 0), std::min(hi.x - 8 * bx, 7),
-                              std::max(lo.y - 8 * by, 0), std::min(hi.y - 8 * by, 7));
+                const uint64_t window = rectangle(std::max(lo.x - 8 * bx, 0), std::min(hi.x - 8 * bx, 7),
+                                                  std::max(lo.y - 8 * by, 0), std::min(hi.y - 8 * by, 7));
+                const Vec3 corner = Vec3{static_cast<float>(8 * bx), static_cast<float>(8 * by), 0} - start;
                 for (int z = std::max(lo.z - 8 * bz, 0); z <= std::min(hi.z - 8 * bz, 7); ++z) {
                     uint64_t word = brick->occupied[static_cast<size_t>(z)] & window;
+                    const float cz = static_cast<float>(8 * bz + z) + corner.z;
                     for (; word != 0; word &= word - 1) {
-                        const Voxel& v = grid_.voxel(*brick, z, std::countr_zero(word));
-                        const Vec3 to_centroid = v.centroid - start_;
-                        const float s = dot(to_centroid, direction_);
-                        if (!(s >= begin && s < end)) continue;
-                        const Vec3 offset = to_centroid - direction_ * s;
-                        const float r2 = length_squared(offset);
-                        if (!(r2 < best)) continue;
+                        const int bit = std::countr_zero(word);
+                        const uint32_t index = VoxelGrid::voxel_index(*brick, z, bit);
+                        const VoxelGrid::Offset offset = grid_.offsets_[index];
+                        const Vec3 c{corner.x + static_cast<float>(bit & 7) + VoxelGrid::fraction(offset.x),
+                                     corner.y + static_cast<float>(bit >> 3) + VoxelGrid::fraction(offset.y),
+                                     cz + VoxelGrid::fraction(offset.z)};
+                        const float s = dot(c, d);
+                        const float r2 = length_squared(c - d * s);
+                        if (!(s >= begin && s < end && r2 < best)) continue;
                         best = r2;
-                        found = true;
-                        event = {skipped_ + s, offset, std::sqrt(r2), v.normals, v.velocity};
+                        nearest = index;
                     }
                 }
             }
-    return found;
+    if (nearest == kNoVoxel) return false;
+    const Voxel& v = grid_.voxels_[nearest];
+    const Vec3 from_start = v.centroid - start_;
+    const float s = dot(from_start, d);
+    const Vec3 offset = from_start - d * s;
+    event = {skipped_ + s, offset, length(offset), v.normals, v.velocity};
+    return true;
 }
 
 int VoxelMarch::step_behind_brick(VoxelGrid::Cell cell) const {

@@ -8,8 +8,6 @@ namespace covtrace {
 
 namespace {
 
-constexpr size_t kLongestExcerpt = 60;
-
 std::string lower(std::string_view s) {
     std::string r(s);
     for (char& c : r) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -34,13 +32,17 @@ size_t edit_distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string in_quotes(std::string_view text) {
+std::string in_quotes(std::string_view text, size_t longest) {
     std::string r = "\"";
-    for (const char c : text.substr(0, kLongestExcerpt)) {
+    for (const char c : text.substr(0, longest)) {
         const auto byte = static_cast<unsigned char>(c);
         r += byte < 0x20 || byte == 0x7f ? '?' : c;
     }
-    return r + (text.size() > kLongestExcerpt ? "…\"" : "\"");
+    return r + (text.size() > longest ? "…\"" : "\"");
+}
+
+std::string path_in_quotes(const std::string& path) {
+    return in_quotes(path, path.size());
 }
 
 std::string listed(const std::vector<std::string>& names) {
@@ -57,7 +59,7 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
     for (const std::string& c : candidates) {
         if (c.size() > name.size() + 3 || name.size() > c.size() + 3) continue;
         const size_t d = edit_distance(wanted, lower(c));
-        if (d <= std::max<size_t>(1, wanted.size() / 3)) near.emplace_back(d, &c);
+        if (d <= std::max<size_t>(1, (wanted.size() + 2) / 3)) near.emplace_back(d, &c);
     }
     if (near.empty()) return {};
     std::stable_sort(near.begin(), near.end(),

@@ -7,8 +7,12 @@
 
 namespace covtrace {
 
-/// The text in double quotes, shortened, with bytes that are not printable replaced.
-std::string in_quotes(std::string_view text);
+/// Longer texts are cut in messages, except for file names.
+inline constexpr size_t kLongestExcerpt = 60;
+
+/// The text in double quotes, shortened, with control characters replaced.
+std::string in_quotes(std::string_view text, size_t longest = kLongestExcerpt);
+std::string path_in_quotes(const std::string& path);
 /// "a, b, c"; at most a dozen.
 std::string listed(const std::vector<std::string>& names);
 /// `; did you mean "x" or "y"?` for candidates close to `name`, else empty.

@@ -60,7 +60,7 @@ std::optional<fs::path> find_without_case(fs::path folder, const fs::path& name)
 
 std::string read_compressed(const fs::path& file, const SourceLocation& where) {
     const std::unique_ptr<gzFile_s, int (*)(gzFile)> in(gzopen(file.c_str(), "rb"), gzclose);
-    if (!in) throw Error(ErrorKind::scene, where, "can't open " + in_quotes(file.string()));
+    if (!in) throw Error(ErrorKind::scene, where, "can't open " + path_in_quotes(file.string()));
     gzbuffer(in.get(), 1 << 18);
     std::string text;
     std::vector<char> block(1 << 20);
@@ -70,7 +70,7 @@ std::string read_compressed(const fs::path& file, const SourceLocation& where) {
         const std::string problem = gzerror(in.get(), &status);
         if (n < 0 || (status != Z_OK && status != Z_STREAM_END))
             throw Error(ErrorKind::scene, where,
-                        "can't decompress " + in_quotes(file.string()) + ": " + problem);
+                        "can't decompress " + path_in_quotes(file.string()) + ": " + problem);
         if (n == 0) return text;
         text.append(block.data(), static_cast<size_t>(n));
     }
@@ -95,14 +95,14 @@ fs::path SceneFiles::find(const std::string& name, const SourceLocation& where) 
         const auto p = find_without_case(fs::path(plain).is_absolute() ? "/" : root,
                                          fs::path(plain).relative_path());
         if (!p) continue;
-        log_.add(where, "file " + in_quotes(name) + " does not exist as written; " +
-                            in_quotes(p->lexically_normal().string()) + " is used");
+        log_.add(where, "file " + path_in_quotes(name) + " does not exist as written; " +
+                            path_in_quotes(p->lexically_normal().string()) + " is used");
         return p->lexically_normal();
     }
-    std::string text = "file " + in_quotes(name) + " not found";
+    std::string text = "file " + path_in_quotes(name) + " not found";
     if (!fs::path(name).is_absolute()) {
-        text += "; looked in " + in_quotes(folder_.empty() ? "." : folder_.string());
-        for (const fs::path& p : search_paths_) text += ", " + in_quotes(p.string());
+        text += "; looked in " + path_in_quotes(folder_.empty() ? "." : folder_.string());
+        for (const fs::path& p : search_paths_) text += ", " + path_in_quotes(p.string());
     }
     throw Error(ErrorKind::scene, where, text);
 }
@@ -114,17 +114,19 @@ std::string SceneFiles::read(const fs::path& file, const SourceLocation& where) 
     } else {
         std::error_code failed;
         if (!fs::exists(file, failed))
-            throw Error(ErrorKind::scene, where, "file " + in_quotes(file.string()) + " not found");
+            throw Error(ErrorKind::scene, where,
+                        "file " + path_in_quotes(file.string()) + " not found");
         const auto size = fs::file_size(file, failed);
         const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"),
                                                                  std::fclose);
         if (failed || !in)
             throw Error(ErrorKind::scene, where,
-                        "can't open " + in_quotes(file.string()) + ": " +
+                        "can't open " + path_in_quotes(file.string()) + ": " +
                             (failed ? failed.message() : std::string(std::strerror(errno))));
         text.resize(size);
         if (std::fread(text.data(), 1, size, in.get()) != size)
-            throw Error(ErrorKind::io, where, "reading " + in_quotes(file.string()) + " failed");
+            throw Error(ErrorKind::io, where,
+                        "reading " + path_in_quotes(file.string()) + " failed");
     }
     add_to_hash(text);
     return text;

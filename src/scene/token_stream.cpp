@@ -88,7 +88,7 @@ void TokenStream::open(const std::string& file, const SourceLocation& where) {
         return fs::weakly_canonical(p, ignored) == identity;
     };
     if (std::any_of(open_files_.begin(), open_files_.end(), is_same))
-        throw Error(ErrorKind::scene, where, "file " + in_quotes(file) + " includes itself");
+        throw Error(ErrorKind::scene, where, "file " + path_in_quotes(file) + " includes itself");
     if (open_files_.size() >= kDeepestInclude)
         throw Error(ErrorKind::scene, where,
                     "files are included more than " + std::to_string(kDeepestInclude) + " deep");

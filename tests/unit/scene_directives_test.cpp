@@ -192,8 +192,8 @@ TEST(SceneDirectives, InclusionCannotGoOnForever) {
     const auto self = folder.write("self.pbrt", "Include \"self.pbrt\"");
     EXPECT_TRUE(contains(failure_of([&] { read_pbrt(self); }).message,
                          "self.pbrt:1:9: file \"self.pbrt\" includes itself"));
-    const auto a = folder.write("a.pbrt", "WorldBegin Import \"b.pbrt\"");
-    folder.write("b.pbrt", "Include \"sub/../a.pbrt\"");
+    const auto a = folder.write("a.pbrt", "WorldBegin Import \"sub/b.pbrt\"");
+    folder.write("sub/b.pbrt", "Include \"sub/../a.pbrt\"");
     EXPECT_TRUE(contains(failure_of([&] { read_pbrt(a); }).message, "includes itself"));
     for (int i = 0; i < 70; ++i)
         folder.write(std::to_string(i) + ".pbrt", "Include \"" + std::to_string(i + 1) + ".pbrt\"");
@@ -229,8 +229,8 @@ TEST(SceneDirectives, FilesAreFoundInSpiteOfCaseAndBackslashes) {
     EXPECT_EQ(scene.shapes.size(), 1u);
     EXPECT_TRUE(contains(warnings_of(scene),
                          "2: file \"models\\part one.PBRT\" does not exist as written"));
-    const TemporaryFolder other;
-    const auto far = folder.write("far/scene.pbrt", "WorldBegin\nInclude \"Part One.pbrt\"");
+    const TemporaryFolder other("other");
+    const auto far = other.write("far/scene.pbrt", "WorldBegin\nInclude \"Part One.pbrt\"");
     EXPECT_TRUE(contains(failure_of([&] { read_pbrt(far); }).message,
                          "scene.pbrt:2:9: file \"Part One.pbrt\" not found"));
     EXPECT_EQ(read_pbrt(far, {.search_paths = {folder.path() / "Models"}}).shapes.size(), 1u);

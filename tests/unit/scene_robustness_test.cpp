@@ -86,9 +86,9 @@ TEST(SceneRobustness, RandomMutations) {
                                  " WorldBegin ",
                                  " 1e-30 "};
     size_t read = 0;
-    for (int round = 0; round < 6000; ++round) {
+    for (int round = 0; round < 20000; ++round) {
         std::string text = kScene;
-        for (size_t changes = 1 + below(4); changes > 0; --changes) {
+        for (size_t changes = 1 + below(3); changes > 0; --changes) {
             const size_t at = below(text.size());
             switch (below(5)) {
                 case 0:
@@ -111,8 +111,8 @@ TEST(SceneRobustness, RandomMutations) {
         read += survives(text);
     }
     // Were all refused, or none, the mutations would test nothing.
-    EXPECT_GT(read, 300u);
-    EXPECT_LT(read, 5700u);
+    EXPECT_GT(read, 1000u);
+    EXPECT_LT(read, 19000u);
 }
 
 TEST(SceneRobustness, SwappedTokens) {

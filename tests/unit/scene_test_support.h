@@ -62,10 +62,10 @@ inline ::testing::AssertionResult contains(const std::string& text, const std::s
 /// A folder that is gone at the end of the test.
 class TemporaryFolder {
   public:
-    TemporaryFolder() {
+    explicit TemporaryFolder(const std::string& suffix = {}) {
         const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
         path_ = std::filesystem::path(::testing::TempDir()) /
-                (std::string("covtrace_") + info->test_suite_name() + "_" + info->name());
+                (std::string("covtrace_") + info->test_suite_name() + "_" + info->name() + suffix);
         std::filesystem::remove_all(path_);
         std::filesystem::create_directories(path_);
     }
