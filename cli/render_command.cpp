@@ -228,6 +228,9 @@ void add_render(CLI::App& app, Invocation& invocation) {
                             "how counts follow from the prediction");
     c->add_option("--max-spp", a->options.max_spp, "most samples in any pixel (default: 16 x average)")
         ->check(CLI::Range(1, 1 << 30));
+    add_choice<Occlusion>(c, "--occlusion", a->options.occlusion, {{"grid", Occlusion::grid}, {"none", Occlusion::none}},
+                          "occluders beside the rays of the analysis");
+    c->add_option("--voxels", a->options.voxels, "width of the occlusion grid (default 200)")->check(CLI::Range(1, 2048));
     add_choice<FilterRule>(c, "--filter", a->options.filter,
                            {{"verified", FilterRule::verified}, {"thesis", FilterRule::thesis}},
                            "the filter's constant: verified, or the thesis' equation 5.7");

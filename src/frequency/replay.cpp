@@ -35,19 +35,41 @@ cov::SymmetricMatrix5<double> to_sensor(const LightField& field, const SensorGeo
 
 }  // namespace
 
-PathReplay::PathReplay(const RenderScene& scene) : scene_(scene) {
+PathReplay::PathReplay(const RenderScene& scene, const VoxelGrid* occluders)
+    : scene_(scene), occluders_(occluders) {
     const Bounds3 bounds = scene.geometry.bounds();
     center_ = bounds.center();
     radius_ = std::max(bounds.radius(), 1e-6f);
     smallest_ = 1e-4 * radius_;
 }
 
+LightField PathReplay::carry(LightField field, Vec3 from, Vec3 to) const {
+    double at = 0;
+    if (occluders_) {
+        const float voxel = occluders_->voxel_size();
+        VoxelMarch march(*occluders_, from, to);
+        OccluderEvent e;
+        while (march.next(float(std::min(cov::footprint_radius(field.sigma), 3.0 * voxel)), e)) {
+            field = cov::travel(field, e.s - at);
+            at = e.s;
+            // So near that the direction to the centroid is chance: the surface's normals tell where its edge is.
+            const bool touches = length(e.offset) < 0.5f * voxel;
+            const NormalTensor& n = e.normals;
+            field = touches ? cov::occlude(field, cov::Sym3<double>{n.xx, n.xy, n.xz, n.yy, n.yz, n.zz},
+                                           0.5 * voxel, e.velocity)
+                            : cov::occlude(field, e.offset, 0.5 * voxel, e.velocity);
+        }
+    }
+    return cov::travel(field, distance(from, to) - at);
+}
+
 PathCovariance PathReplay::operator()(const PathRecord& record) const {
     const SensorGeometry camera = scene_.camera.sensor(record.camera_ray);
-    const auto distance_to_sphere = [&](Vec3 p, Vec3 w) {
+    /// Where light from infinity, seen from p in the direction w, enters the scene's bounding sphere.
+    const auto entry = [&](Vec3 p, Vec3 w) {
         const Vec3 o = p - center_;
         const float b = dot(o, w), c = length_squared(o) - sqr(radius_);
-        return double(std::max(0.0f, -b + safe_sqrt(b * b - c)));
+        return p + w * std::max(0.0f, -b + safe_sqrt(b * b - c));
     };
 
     Arriving light;
@@ -56,7 +78,7 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         light.add(source_field(s, -record.escape_direction, record.escape_seen_sharply, smallest_), record.escaped);
         const Vec3 last = record.count > 0 ? record.vertices[size_t(record.count - 1)].hit.position
                                            : record.camera_ray.origin;
-        light.field = cov::travel(light.field, distance_to_sphere(last, record.escape_direction));
+        light.field = carry(light.field, entry(last, record.escape_direction), last);
     }
 
     // Half a pixel's extent grows with the distance travelled from the camera.
@@ -79,11 +101,10 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
             if (light.weight > 0) leaving.add(scatter(light.field, point, v.next_event.lobes), light.weight);
             if (v.direct > 0) {
                 const SourceSpectrum s = scene_.lights.source_spectrum(v.light, v.hit.time);
-                const double d = std::isfinite(v.light.distance)
-                                     ? double(v.light.distance)
-                                     : distance_to_sphere(v.hit.position, v.light.wi);
+                const Vec3 from = std::isfinite(v.light.distance) ? v.hit.position + v.light.wi * v.light.distance
+                                                                  : entry(v.hit.position, v.light.wi);
                 const LightField source = source_field(s, -v.light.wi, false, smallest_);
-                leaving.add(scatter(cov::travel(source, d), point, v.direct_event.lobes), v.direct);
+                leaving.add(scatter(carry(source, from, v.hit.position), point, v.direct_event.lobes), v.direct);
             }
         }
         if (v.emitted > 0)
@@ -91,7 +112,7 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         light = leaving;
         if (!(light.weight > 0)) continue;
         const Vec3 next = i > 0 ? record.vertices[size_t(i - 1)].hit.position : record.camera_ray.origin;
-        light.field = cov::travel(light.field, distance(v.hit.position, next));
+        light.field = carry(light.field, v.hit.position, next);
     }
 
     if (!(light.weight > 0)) return {};

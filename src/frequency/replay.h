@@ -2,6 +2,8 @@
 #pragma once
 
 #include "covariance/covariance.hpp"
+#include "frequency/light_source.h"
+#include "geometry/voxel_grid.h"
 #include "integrator/path_record.h"
 #include "integrator/render_scene.h"
 
@@ -19,11 +21,16 @@ struct PathCovariance {
 /// (an incoherent sum, covariance::merge), so that k vertices cost k steps.
 class PathReplay {
   public:
-    explicit PathReplay(const RenderScene& scene);
+    /// `occluders` may be null: then light travels as if nothing stood beside its way. Both must outlive this.
+    PathReplay(const RenderScene& scene, const VoxelGrid* occluders);
     PathCovariance operator()(const PathRecord& record) const;
 
   private:
+    /// Travel from one point to another past the occluders on the way.
+    LightField carry(LightField field, Vec3 from, Vec3 to) const;
+
     const RenderScene& scene_;
+    const VoxelGrid* occluders_;
     double smallest_;      // extent that stands for a point, scene units
     Vec3 center_;          // bounding sphere of the scene: light from infinity enters there
     float radius_;

@@ -18,15 +18,27 @@ struct Vec3d {
         return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
     }
 };
-constexpr Vec3d operator+(Vec3d a, Vec3d b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-constexpr Vec3d operator-(Vec3d a, Vec3d b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-constexpr Vec3d operator*(Vec3d a, double s) { return {a.x * s, a.y * s, a.z * s}; }
-constexpr double dot(Vec3d a, Vec3d b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+constexpr Vec3d operator+(Vec3d a, Vec3d b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+constexpr Vec3d operator-(Vec3d a, Vec3d b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+constexpr Vec3d operator*(Vec3d a, double s) {
+    return {a.x * s, a.y * s, a.z * s};
+}
+constexpr double dot(Vec3d a, Vec3d b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 constexpr Vec3d cross(Vec3d a, Vec3d b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline Vec3d abs(Vec3d a) { return {std::abs(a.x), std::abs(a.y), std::abs(a.z)}; }
-inline double length(Vec3d a) { return std::sqrt(dot(a, a)); }
+inline Vec3d abs(Vec3d a) {
+    return {std::abs(a.x), std::abs(a.y), std::abs(a.z)};
+}
+inline double length(Vec3d a) {
+    return std::sqrt(dot(a, a));
+}
 /// Unit vector along `a`; the zero vector stays zero.
 inline Vec3d normalize(Vec3d a) {
     const double l = length(a);
@@ -46,18 +58,21 @@ struct Affine {
     }
     Vec3d vector(Vec3d v) const { return {dot(row[0], v), dot(row[1], v), dot(row[2], v)}; }
     Vec3d point(Vec3d p) const { return vector(p) + translation; }
-    /// By the transpose of the linear part: covectors pulled back, or normals under the inverse map.
+    /// By the transpose of the linear part: covectors pulled back, or normals under the inverse
+    /// map.
     Vec3d transposed(Vec3d v) const { return row[0] * v.x + row[1] * v.y + row[2] * v.z; }
     double determinant() const { return dot(row[0], cross(row[1], row[2])); }
     /// Normals by the inverse transpose up to a positive factor: no inverse is needed.
     Vec3d normal(Vec3d n) const {
-        const Vec3d c0 = cross(row[1], row[2]), c1 = cross(row[2], row[0]), c2 = cross(row[0], row[1]);
+        const Vec3d c0 = cross(row[1], row[2]), c1 = cross(row[2], row[0]),
+                    c2 = cross(row[0], row[1]);
         const double sign = dot(row[0], c0) < 0 ? -1 : 1;
         return Vec3d{dot(c0, n), dot(c1, n), dot(c2, n)} * sign;
     }
     /// The linear part must be regular.
     Affine inverse() const {
-        const Vec3d c0 = cross(row[1], row[2]), c1 = cross(row[2], row[0]), c2 = cross(row[0], row[1]);
+        const Vec3d c0 = cross(row[1], row[2]), c1 = cross(row[2], row[0]),
+                    c2 = cross(row[0], row[1]);
         const double s = 1 / dot(row[0], c0);
         Affine r;
         r.row[0] = Vec3d{c0.x, c1.x, c2.x} * s;

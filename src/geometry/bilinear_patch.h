@@ -21,9 +21,9 @@ struct PatchHit {
     double t = 0, u = 0, v = 0;
 };
 
-/// Nearest hit of the ray with t in (t_min, t_max); false where there is none. The direction may have
-/// any length. Two iso-lines u = const meet the ray at the roots of a quadratic (Reshetov 2019, "Cool
-/// patches: a geometric approach to ray/bilinear patch intersections").
+/// Nearest hit of the ray with t in (t_min, t_max); false where there is none. The direction may
+/// have any length. Two iso-lines u = const meet the ray at the roots of a quadratic (Reshetov
+/// 2019, "Cool patches: a geometric approach to ray/bilinear patch intersections").
 bool intersect_patch(const BilinearPatch& patch, Vec3d origin, Vec3d direction, double t_min,
                      double t_max, PatchHit& hit);
 

@@ -6,7 +6,9 @@ namespace covtrace {
 
 namespace {
 
-float finite(double v) { return std::isfinite(v) && std::abs(v) < 1e30 ? static_cast<float>(v) : 0.0f; }
+float finite(double v) {
+    return std::isfinite(v) && std::abs(v) < 1e30 ? static_cast<float>(v) : 0.0f;
+}
 
 }  // namespace
 
@@ -26,8 +28,8 @@ DifferentialGeometry Geometry::differential(const SurfaceHit& hit) const {
     const SurfaceDerivatives d =
         surface_derivatives(impl_->local[hit.shape], hit.primitive, hit.barycentric, near);
 
-    // Displacements in the tangent plane, dq = P (da, db), and the change of the unit normal that goes
-    // with them, dn = N (da, db): the shape operator is N P^-1.
+    // Displacements in the tangent plane, dq = P (da, db), and the change of the unit normal that
+    // goes with them, dn = N (da, db): the shape operator is N P^-1.
     const Vec3d pa = map.vector(d.dpda), pb = map.vector(d.dpdb);
     const double p11 = dot(pa, t1), p21 = dot(pa, t2), p12 = dot(pb, t1), p22 = dot(pb, t2);
     const double determinant = p11 * p22 - p12 * p21;

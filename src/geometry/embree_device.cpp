@@ -19,10 +19,12 @@ std::string chosen_isa(RTCDevice device) {
 EmbreeDevice::EmbreeDevice(const std::string& isa) : isa_(isa) {
     device_ = rtcNewDevice(isa.empty() ? nullptr : ("isa=" + isa).c_str());
     if (!device_)
-        throw Error(ErrorKind::internal, "Embree can't be started" + (isa.empty() ? "" : " with isa=" + isa));
+        throw Error(ErrorKind::internal,
+                    "Embree can't be started" + (isa.empty() ? "" : " with isa=" + isa));
     if (!rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED)) {
         rtcReleaseDevice(device_);
-        throw Error(ErrorKind::internal, "this Embree was built without ray masks, which are needed");
+        throw Error(ErrorKind::internal,
+                    "this Embree was built without ray masks, which are needed");
     }
     if (isa_.empty()) isa_ = chosen_isa(device_);
     rtcSetDeviceErrorFunction(device_, &EmbreeDevice::on_error, this);

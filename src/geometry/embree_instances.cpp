@@ -10,7 +10,7 @@ namespace covtrace {
 
 namespace {
 
-constexpr unsigned kMostSteps = 128;       ///< Embree's limit is 129 keys
+constexpr unsigned kMostSteps = 128;          ///< Embree's limit is 129 keys
 constexpr double kInterpolationError = 5e-6;  ///< of the extent, at the tested times
 
 GeometryHandle new_instance(const EmbreeDevice& device, RTCScene scene) {
@@ -21,14 +21,16 @@ GeometryHandle new_instance(const EmbreeDevice& device, RTCScene scene) {
     return instance;
 }
 
-/// A matrix as translation * rotation * upper triangular scale, which is what Embree interpolates too.
+/// A matrix as translation * rotation * upper triangular scale, which is what Embree interpolates
+/// too.
 RTCQuaternionDecomposition decompose(const Transform& map) {
     const AnimatedTransform from_identity(Transform{}, 0, map, 1);
     const AnimatedTransform::Decomposition& key = from_identity.end_key();
     const auto number = [](double v) { return static_cast<float>(v); };
     RTCQuaternionDecomposition d;
     rtcInitQuaternionDecomposition(&d);
-    rtcQuaternionDecompositionSetTranslation(&d, key.translation.x, key.translation.y, key.translation.z);
+    rtcQuaternionDecompositionSetTranslation(&d, key.translation.x, key.translation.y,
+                                             key.translation.z);
     const Quaternion& q = key.rotation;
     rtcQuaternionDecompositionSetQuaternion(&d, number(q.w), number(q.x), number(q.y), number(q.z));
     const auto& s = key.scale;
@@ -48,9 +50,9 @@ double interpolation_error(RTCGeometry instance, const RTCBounds& box, const Mot
         const float time = clock.key_time(i, tests);
         const Affine exact = Affine::from_matrix(motion.at(time).matrix());
         const Affine used = instance_transform(instance, clock.parameter(time));
-        const double diagonal = length(exact.vector({double(box.upper_x) - box.lower_x,
-                                                     double(box.upper_y) - box.lower_y,
-                                                     double(box.upper_z) - box.lower_z}));
+        const double diagonal = length(
+            exact.vector({double(box.upper_x) - box.lower_x, double(box.upper_y) - box.lower_y,
+                          double(box.upper_z) - box.lower_z}));
         for (int c = 0; c < 8; ++c) {
             const Vec3d corner{c & 1 ? box.upper_x : box.lower_x, c & 2 ? box.upper_y : box.lower_y,
                                c & 4 ? box.upper_z : box.lower_z};
@@ -65,7 +67,8 @@ double interpolation_error(RTCGeometry instance, const RTCBounds& box, const Mot
 
 }  // namespace
 
-GeometryHandle new_still_instance(const EmbreeDevice& device, RTCScene scene, const Transform& map) {
+GeometryHandle new_still_instance(const EmbreeDevice& device, RTCScene scene,
+                                  const Transform& map) {
     GeometryHandle instance = new_instance(device, scene);
     std::array<float, 12> rows;
     for (size_t i = 0; i < 12; ++i) rows[i] = static_cast<float>(map.matrix().m[i / 4][i % 4]);

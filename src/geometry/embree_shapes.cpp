@@ -11,8 +11,12 @@ namespace {
 
 // Only single rays are traced, so every callback gets N = 1.
 
-Vec3d origin_of(const RTCRay& ray) { return {ray.org_x, ray.org_y, ray.org_z}; }
-Vec3d direction_of(const RTCRay& ray) { return {ray.dir_x, ray.dir_y, ray.dir_z}; }
+Vec3d origin_of(const RTCRay& ray) {
+    return {ray.org_x, ray.org_y, ray.org_z};
+}
+Vec3d direction_of(const RTCRay& ray) {
+    return {ray.dir_x, ray.dir_y, ray.dir_z};
+}
 
 void set_bounds(const Bounds3& box, RTCBounds& out) {
     out.lower_x = box.lo.x, out.lower_y = box.lo.y, out.lower_z = box.lo.z;
@@ -20,11 +24,13 @@ void set_bounds(const Bounds3& box, RTCBounds& out) {
 }
 
 void quadric_bounds_callback(const RTCBoundsFunctionArguments* args) {
-    set_bounds(quadric_bounds(*static_cast<const Quadric*>(args->geometryUserPtr)), *args->bounds_o);
+    set_bounds(quadric_bounds(*static_cast<const Quadric*>(args->geometryUserPtr)),
+               *args->bounds_o);
 }
 
 bool hit_primitive(const Quadric& quadric, unsigned, const RTCRay& ray, PatchHit& hit) {
-    return intersect_quadric(quadric, origin_of(ray), direction_of(ray), ray.tnear, ray.tfar, hit.t);
+    return intersect_quadric(quadric, origin_of(ray), direction_of(ray), ray.tnear, ray.tfar,
+                             hit.t);
 }
 
 void patch_bounds_callback(const RTCBoundsFunctionArguments* args) {
@@ -35,8 +41,8 @@ void patch_bounds_callback(const RTCBoundsFunctionArguments* args) {
 }
 
 bool hit_primitive(const PatchShape& shape, unsigned primitive, const RTCRay& ray, PatchHit& hit) {
-    return intersect_patch(shape.patch(primitive), origin_of(ray), direction_of(ray), ray.tnear, ray.tfar,
-                           hit);
+    return intersect_patch(shape.patch(primitive), origin_of(ray), direction_of(ray), ray.tnear,
+                           ray.tfar, hit);
 }
 
 template <class Shape>
@@ -44,7 +50,8 @@ void intersect_callback(const RTCIntersectFunctionNArguments* args) {
     if (!args->valid[0]) return;
     auto& ray_hit = *reinterpret_cast<RTCRayHit*>(args->rayhit);
     PatchHit hit;
-    if (!hit_primitive(*static_cast<const Shape*>(args->geometryUserPtr), args->primID, ray_hit.ray, hit))
+    if (!hit_primitive(*static_cast<const Shape*>(args->geometryUserPtr), args->primID, ray_hit.ray,
+                       hit))
         return;
     ray_hit.ray.tfar = static_cast<float>(hit.t);
     ray_hit.hit.u = static_cast<float>(hit.u);
@@ -73,8 +80,8 @@ void set_user(RTCGeometry geometry, const Shape& shape, size_t count, RTCBoundsF
 }
 
 void set_positions(RTCGeometry geometry, const std::vector<Vec3>& positions) {
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0,
-                               sizeof(Vec3), positions.size() - 1);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               positions.data(), 0, sizeof(Vec3), positions.size() - 1);
 }
 
 GeometryHandle build(RTCDevice device, const TriangleShape& shape) {
@@ -82,8 +89,8 @@ GeometryHandle build(RTCDevice device, const TriangleShape& shape) {
     if (triangles.empty()) return {};
     GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
     set_positions(geometry.get(), shape.positions);
-    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
-                               sizeof(triangles[0]), triangles.size());
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               triangles.data(), 0, sizeof(triangles[0]), triangles.size());
     return geometry;
 }
 
@@ -102,9 +109,10 @@ GeometryHandle build(RTCDevice device, const PatchShape& shape) {
         rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4,
                                 sizeof(std::array<uint32_t, 4>), patches.size()));
     if (corners)
-        std::transform(patches.begin(), patches.end(), corners, [](const std::array<uint32_t, 4>& p) {
-            return std::array<uint32_t, 4>{p[0], p[1], p[3], p[2]};
-        });
+        std::transform(patches.begin(), patches.end(), corners,
+                       [](const std::array<uint32_t, 4>& p) {
+                           return std::array<uint32_t, 4>{p[0], p[1], p[3], p[2]};
+                       });
     return geometry;
 }
 
@@ -116,8 +124,10 @@ GeometryHandle build(RTCDevice device, const Quadric& shape) {
 
 }  // namespace
 
-GeometryHandle new_shape_geometry(const EmbreeDevice& device, const LocalShape& shape, bool is_interface) {
-    GeometryHandle geometry = std::visit([&](const auto& s) { return build(device.get(), s); }, shape);
+GeometryHandle new_shape_geometry(const EmbreeDevice& device, const LocalShape& shape,
+                                  bool is_interface) {
+    GeometryHandle geometry =
+        std::visit([&](const auto& s) { return build(device.get(), s); }, shape);
     device.check();
     if (!geometry) return geometry;
     rtcSetGeometryMask(geometry.get(), is_interface ? kInterfaceMask : kSolidMask);

@@ -21,10 +21,12 @@ void set_ray(RTCRay& out, const Ray& ray, const ShutterClock& clock, unsigned ma
     out.flags = 0;
 }
 
-/// Bound on where float arithmetic may put a ray that Embree carries into an instance and back: each
-/// coordinate suffers a few roundings of sums as large as these.
-double instance_error(const Affine& world_from_local, const Affine& local_from_world, Vec3d position) {
-    const Vec3d local = local_from_world.absolute(abs(position) + abs(world_from_local.translation));
+/// Bound on where float arithmetic may put a ray that Embree carries into an instance and back:
+/// each coordinate suffers a few roundings of sums as large as these.
+double instance_error(const Affine& world_from_local, const Affine& local_from_world,
+                      Vec3d position) {
+    const Vec3d local =
+        local_from_world.absolute(abs(position) + abs(world_from_local.translation));
     return 6 * kHalfUlp * length(world_from_local.absolute(local));
 }
 
@@ -74,7 +76,8 @@ bool Geometry::intersect(const Ray& ray, SurfaceHit& hit) const {
     if (query.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
         hit.instance = 0;
         hit.shape = impl_->top.shape_of_geometry[query.hit.geomID];
-        fill_hit(surface_point(impl_->local[hit.shape], hit.primitive, hit.barycentric, near), nullptr, hit);
+        fill_hit(surface_point(impl_->local[hit.shape], hit.primitive, hit.barycentric, near),
+                 nullptr, hit);
         return true;
     }
     hit.instance = query.hit.instID[0] + 1;
@@ -82,7 +85,8 @@ bool Geometry::intersect(const Ray& ray, SurfaceHit& hit) const {
     hit.shape = impl_->scenes[instance.scene].shape_of_geometry[query.hit.geomID];
     const Affine map = impl_->world_from_local(instance, ray.time);
     const LocalShape& shape = impl_->local[hit.shape];
-    const Vec3d local_near = std::holds_alternative<Quadric>(shape) ? map.inverse().point(near) : near;
+    const Vec3d local_near =
+        std::holds_alternative<Quadric>(shape) ? map.inverse().point(near) : near;
     fill_hit(surface_point(shape, hit.primitive, hit.barycentric, local_near), &map, hit);
     return true;
 }
@@ -106,7 +110,9 @@ Vec3 Geometry::offset_origin(const SurfaceHit& hit, Vec3 direction) {
     return origin;
 }
 
-const std::vector<PlacedShape>& Geometry::shapes() const { return impl_->placed; }
+const std::vector<PlacedShape>& Geometry::shapes() const {
+    return impl_->placed;
+}
 
 WorldTriangle Geometry::world_triangle(uint32_t shape, uint32_t triangle, float time) const {
     const LocalShape& local = impl_->local[shape];
@@ -121,23 +127,30 @@ WorldTriangle Geometry::world_triangle(uint32_t shape, uint32_t triangle, float 
         w = triangle % 2 == 0 ? WorldTriangle{p[i[0]], p[i[1]], p[i[2]]}
                               : WorldTriangle{p[i[3]], p[i[2]], p[i[1]]};
     }
-    if (!Motion{nullptr, &impl_->placed[shape].object_to_world}.moves(impl_->clock.open(), impl_->clock.close()))
+    if (!Motion{nullptr, &impl_->placed[shape].object_to_world}.moves(impl_->clock.open(),
+                                                                      impl_->clock.close()))
         return w;
     const float clamped = std::clamp(time, impl_->clock.open(), impl_->clock.close());
     const Transform map = impl_->placed[shape].object_to_world.at(clamped);
     return {map.point(w.p0), map.point(w.p1), map.point(w.p2)};
 }
 
-const std::string& Geometry::isa() const { return impl_->device.isa(); }
-Bounds3 Geometry::bounds() const { return impl_->bounds; }
+const std::string& Geometry::isa() const {
+    return impl_->device.isa();
+}
+Bounds3 Geometry::bounds() const {
+    return impl_->bounds;
+}
 
 size_t Geometry::memory() const {
     size_t bytes = impl_->device.bytes_used() + impl_->placed.capacity() * sizeof(PlacedShape) +
                    impl_->local.capacity() * sizeof(LocalShape) +
                    impl_->instances.capacity() * sizeof(EmbreeInstance);
     for (const LocalShape& shape : impl_->local) {
-        if (const auto* mesh = std::get_if<TriangleShape>(&shape)) bytes += mesh->positions.capacity() * sizeof(Vec3);
-        if (const auto* patches = std::get_if<PatchShape>(&shape)) bytes += patches->positions.capacity() * sizeof(Vec3);
+        if (const auto* mesh = std::get_if<TriangleShape>(&shape))
+            bytes += mesh->positions.capacity() * sizeof(Vec3);
+        if (const auto* patches = std::get_if<PatchShape>(&shape))
+            bytes += patches->positions.capacity() * sizeof(Vec3);
     }
     return bytes;
 }

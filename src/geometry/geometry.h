@@ -1,5 +1,6 @@
 /// All shapes of a scene behind Embree: intersection, occlusion, and the local geometry of a hit.
-/// Embree's types stay in the .cpp files of this folder.
+/// Embree's types stay in the .cpp files of this folder. Times are the scene's, clamped to the camera's
+/// shutter. Alpha textures are not looked at here. Interfaces with no medium on either side are not there.
 #pragma once
 
 #include <memory>
@@ -12,7 +13,8 @@ namespace covtrace {
 /// A shape as it stands in the scene: its description and where it is over time.
 struct PlacedShape {
     ShapeDescription description;
-    /// Objects of instances keep their object-to-instance transform here; the instance's comes on top (SurfaceHit::instance).
+    /// Objects of instances keep their object-to-instance transform here; the instance's comes on
+    /// top (SurfaceHit::instance).
     AnimatedTransform object_to_world;
     bool flip_normal = false;  ///< reverse orientation xor mirrored transform
     bool is_instanced = false;
@@ -36,15 +38,18 @@ class Geometry {
     bool intersect(const Ray& ray, SurfaceHit& hit) const;
     /// Whether anything but interface surfaces lies in (0, ray.t_max). Thread-safe.
     bool occluded(const Ray& ray) const;
-    /// `origin` moved off the surface of `hit` to the side of `direction`, so that a ray from there does not meet it again.
+    /// `origin` moved off the surface of `hit` to the side of `direction`, so that a ray from there
+    /// does not meet it again.
     static Vec3 offset_origin(const SurfaceHit& hit, Vec3 direction);
 
     DifferentialGeometry differential(const SurfaceHit& hit) const;
 
     const std::vector<PlacedShape>& shapes() const;
-    /// Of a mesh's triangle (or of a patch: halves 2i and 2i+1), at `time`. Not for instanced shapes.
+    /// Of a mesh's triangle (or of a patch: halves 2i and 2i+1), at `time`. Not for instanced
+    /// shapes.
     WorldTriangle world_triangle(uint32_t shape, uint32_t triangle, float time) const;
-    /// The instruction set that rays are traced with: as asked for, or what Embree chose ("sse2" to "avx512").
+    /// The instruction set that rays are traced with: as asked for, or what Embree chose ("sse2" to
+    /// "avx512").
     const std::string& isa() const;
     /// Over the whole shutter. Empty scene: a unit box about the origin.
     Bounds3 bounds() const;

@@ -15,7 +15,8 @@ bool has_interface_material(const SceneDescription& scene, const ShapeDescriptio
 
 /// An interface between nothing and nothing has no effect on any path.
 bool is_left_out(const SceneDescription& scene, const ShapeDescription& shape) {
-    return has_interface_material(scene, shape) && shape.inside < 0 && shape.outside < 0 && shape.area_light < 0;
+    return has_interface_material(scene, shape) && shape.inside < 0 && shape.outside < 0 &&
+           shape.area_light < 0;
 }
 
 std::vector<float> key_times(const SceneDescription& scene) {
@@ -37,10 +38,9 @@ struct Geometry::Impl::Builder {
     const SceneDescription& scene;
 
     void place(const ShapeDescription& shape, bool is_instanced) {
-        PlacedShape placed{shape, shape.object_to_world, false, is_instanced};
-        placed.flip_normal =
+        const bool flip =
             shape.reverse_orientation != shape.object_to_world.start().swaps_handedness();
-        g.placed.push_back(std::move(placed));
+        g.placed.push_back({shape, shape.object_to_world, flip, is_instanced});
         g.is_interface.push_back(has_interface_material(scene, shape));
     }
 
@@ -51,7 +51,8 @@ struct Geometry::Impl::Builder {
     ShapeScene new_scene() const { return {g.device.new_scene(), {}}; }
 
     void add(ShapeScene& target, uint32_t shape) const {
-        GeometryHandle geometry = new_shape_geometry(g.device, g.local[shape], g.is_interface[shape]);
+        GeometryHandle geometry =
+            new_shape_geometry(g.device, g.local[shape], g.is_interface[shape]);
         if (geometry) attach(target, geometry.get(), shape);
     }
 
@@ -107,7 +108,8 @@ struct Geometry::Impl::Builder {
             else
                 add(still, i);
         }
-        if (!still.shape_of_geometry.empty()) object.parts.emplace_back(keep(std::move(still)), nullptr);
+        if (!still.shape_of_geometry.empty())
+            object.parts.emplace_back(keep(std::move(still)), nullptr);
         return object;
     }
 
@@ -128,11 +130,17 @@ struct Geometry::Impl::Builder {
 
         for (const InstanceDescription& instance : scene.instances)
             g.instance_motions.push_back(instance.instance_to_world);
-        std::vector<ObjectScenes> objects;
-        for (size_t i = 0; i < scene.objects.size(); ++i)
-            objects.push_back(build_object(first_of_object[i], scene.objects[i].shapes.size()));
+        std::vector<ObjectScenes> objects(scene.objects.size());
+        std::vector<bool> is_built(scene.objects.size(), false);
+        for (const InstanceDescription& instance : scene.instances) {
+            const auto o = static_cast<size_t>(instance.object);
+            if (!is_built[o])
+                objects[o] = build_object(first_of_object[o], scene.objects[o].shapes.size());
+            is_built[o] = true;
+        }
         for (size_t i = 0; i < scene.instances.size(); ++i)
-            for (const auto& [part, motion] : objects[static_cast<size_t>(scene.instances[i].object)].parts)
+            for (const auto& [part, motion] :
+                 objects[static_cast<size_t>(scene.instances[i].object)].parts)
                 instantiate(part, {&g.instance_motions[i], motion});
         const auto count = static_cast<uint32_t>(scene.shapes.size());
         for (uint32_t i = 0; i < count; ++i) {

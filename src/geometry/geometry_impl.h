@@ -15,11 +15,11 @@ struct ShapeScene {
 };
 
 struct EmbreeInstance {
-    uint32_t scene = 0;             ///< into Geometry::Impl::scenes
-    RTCGeometry handle = nullptr;   ///< kept alive by the top scene
+    uint32_t scene = 0;            ///< into Geometry::Impl::scenes
+    RTCGeometry handle = nullptr;  ///< kept alive by the top scene
     bool moves = false;
-    Affine still;                   ///< where it does not move
-    Motion motion;                  ///< where it does; refers to Geometry::Impl's transforms
+    Affine still;   ///< where it does not move
+    Motion motion;  ///< where it does; refers to Geometry::Impl's transforms
 };
 
 struct Geometry::Impl {

@@ -18,12 +18,13 @@ struct Ray {
 
 /// The point where a ray meets a surface, all in world space at the ray's time.
 struct SurfaceHit {
-    float t = 0;       ///< distance along the ray
+    float t = 0;  ///< distance along the ray
     Vec3 position;
     float position_error = 0;  ///< bound on the distance between `position` and the true surface
-    Vec3 ng;           ///< unit geometric normal on the shape's outside (emitting) side; not turned to the viewer
-    Vec3 ns;           ///< unit shading normal in the hemisphere of ng
-    Vec3 dpdu, dpdv;   ///< of the surface parameterisation that `uv` uses
+    Vec3 ng;  ///< unit geometric normal on the shape's outside (emitting) side; not turned to the
+              ///< viewer
+    Vec3 ns;  ///< unit shading normal in the hemisphere of ng
+    Vec3 dpdu, dpdv;  ///< of the surface parameterisation that `uv` uses
     Vec2 uv;
     float time = 0;
     uint32_t shape = 0;      ///< into Geometry::shapes()
@@ -34,12 +35,12 @@ struct SurfaceHit {
 
 /// Second-order geometry and motion at a hit, for the frequency analysis only.
 struct DifferentialGeometry {
-    Frame tangent;              ///< z = ns
-    /// Shape operator in (tangent.x, tangent.y): d ns = kappa dq, k11 k12 k22, 1 / scene unit; positive where convex
-    /// seen from ns.
+    Frame tangent;  ///< z = ns
+    /// Shape operator in (tangent.x, tangent.y): d ns = kappa dq, k11 k12 k22, 1 / scene unit;
+    /// positive where convex seen from ns.
     float k11 = 0, k12 = 0, k22 = 0;
-    Vec3 velocity;              ///< of the material point, scene units per unit of time
-    Vec3 angular_velocity;      ///< of its neighbourhood, radians per unit of time
+    Vec3 velocity;          ///< of the material point, scene units per unit of time
+    Vec3 angular_velocity;  ///< of its neighbourhood, radians per unit of time
     /// d(u, v)/d(tangent.x, tangent.y): uv_from_tangent[i][j] = d uv_i / d s_j, 1 / scene unit
     float uv_from_tangent[2][2] = {{0, 0}, {0, 0}};
 };

@@ -21,7 +21,8 @@ ShutterClock::ShutterClock(float open, float close, const std::vector<float>& ke
     std::sort(breaks_.begin(), breaks_.end());
     if (close > open) breaks_.erase(std::unique(breaks_.begin(), breaks_.end()), breaks_.end());
     if (segments() > 128)
-        throw Error(ErrorKind::limit, "more than 128 different times at which motions start or stop");
+        throw Error(ErrorKind::limit,
+                    "more than 128 different times at which motions start or stop");
 }
 
 float ShutterClock::parameter(float time) const {

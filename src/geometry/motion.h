@@ -1,4 +1,5 @@
-/// Where a shape is over time: up to two animated transforms, one on top of the other, within a shutter.
+/// Where a shape is over time: up to two animated transforms, one on top of the other, within a
+/// shutter.
 #pragma once
 
 #include <vector>
@@ -9,9 +10,9 @@
 namespace covtrace {
 
 /// The shutter, and a parameter in [0, 1] over it in which the times where any motion of the scene
-/// starts or stops are equally spaced. Embree's keys are uniform in that parameter, so that every start
-/// and stop falls on a key. (Embree 3.13 can also give each geometry a time range of its own, but then
-/// loses hits where ranges differ.)
+/// starts or stops are equally spaced. Embree's keys are uniform in that parameter, so that every
+/// start and stop falls on a key. (Embree 3.13 can also give each geometry a time range of its own,
+/// but then loses hits where ranges differ.)
 class ShutterClock {
   public:
     /// `close` may equal `open`. Throws Error(limit) for more than 128 different key times within.

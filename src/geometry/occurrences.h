@@ -1,5 +1,5 @@
-/// Every shape wherever it stands in the world at one time: instances unrolled, for what goes over all
-/// surfaces of a scene. Only for .cpp files of this folder.
+/// Every shape wherever it stands in the world at one time: instances unrolled, for what goes over
+/// all surfaces of a scene. Only for .cpp files of this folder.
 #pragma once
 
 #include "geometry/geometry_impl.h"

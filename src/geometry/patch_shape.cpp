@@ -7,7 +7,9 @@ namespace covtrace {
 
 namespace {
 
-double largest(Vec3d v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+double largest(Vec3d v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
 
 double largest_coordinate(const BilinearPatch& p) {
     return std::max({largest(p.p00), largest(p.p10), largest(p.p01), largest(p.p11)});
@@ -39,7 +41,9 @@ Bilinear<Vec3d> normal_at(const PatchShape& shape, uint32_t primitive, Vec2 b) {
     return {corner(0), corner(1), corner(2), corner(3), b.x, b.y};
 }
 
-Vec2 to_vec2(Vec3d v) { return {static_cast<float>(v.x), static_cast<float>(v.y)}; }
+Vec2 to_vec2(Vec3d v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y)};
+}
 
 }  // namespace
 
@@ -95,7 +99,8 @@ SurfacePoint patch_point(const PatchShape& shape, uint32_t primitive, Vec2 baryc
     return point;
 }
 
-SurfaceDerivatives patch_derivatives(const PatchShape& shape, uint32_t primitive, Vec2 barycentric) {
+SurfaceDerivatives patch_derivatives(const PatchShape& shape, uint32_t primitive,
+                                     Vec2 barycentric) {
     const BilinearPatch p = shape.patch(primitive);
     SurfaceDerivatives d;
     d.dpda = p.du(barycentric.y);

@@ -11,7 +11,9 @@ namespace {
 
 constexpr double kTwoPi = 6.283185307179586;
 
-double clamped_phi(float degrees) { return std::clamp(double(degrees), 0.0, 360.0) * (kTwoPi / 360); }
+double clamped_phi(float degrees) {
+    return std::clamp(double(degrees), 0.0, 360.0) * (kTwoPi / 360);
+}
 
 Quadric placed(const Transform& local_from_object, bool reverse) {
     Quadric q;
@@ -26,7 +28,9 @@ double azimuth(Vec3d p) {
     return phi < 0 ? phi + kTwoPi : phi;
 }
 
-double polar_angle(const Quadric& q, double z) { return std::acos(std::clamp(z / q.radius, -1.0, 1.0)); }
+double polar_angle(const Quadric& q, double z) {
+    return std::acos(std::clamp(z / q.radius, -1.0, 1.0));
+}
 
 /// Whether a point of the whole sphere or plane belongs to the part that is there.
 bool inside_part(const Quadric& q, Vec3d p) {
@@ -88,7 +92,8 @@ Quadric make_quadric(const Sphere& sphere, const Transform& local_from_object, b
     Quadric q = placed(local_from_object, reverse);
     q.kind = Quadric::Kind::sphere;
     q.radius = sphere.radius;
-    const double lo = std::min(sphere.z_min, sphere.z_max), hi = std::max(sphere.z_min, sphere.z_max);
+    const double lo = std::min(sphere.z_min, sphere.z_max),
+                 hi = std::max(sphere.z_min, sphere.z_max);
     q.z_min = std::clamp(lo, -q.radius, q.radius);
     q.z_max = std::clamp(hi, -q.radius, q.radius);
     q.phi_max = clamped_phi(sphere.phi_max);
@@ -109,7 +114,8 @@ bool intersect_quadric(const Quadric& q, Vec3d origin, Vec3d direction, double t
                        double& t) {
     const Vec3d o = q.object_from_local.point(origin), d = q.object_from_local.vector(direction);
     const auto accept = [&](double candidate) {
-        if (!(candidate > t_min && candidate < t_max) || !inside_part(q, o + d * candidate)) return false;
+        if (!(candidate > t_min && candidate < t_max) || !inside_part(q, o + d * candidate))
+            return false;
         t = candidate;
         return true;
     };

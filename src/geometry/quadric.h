@@ -1,5 +1,5 @@
-/// Analytic spheres and disks: intersection and differential geometry in double, in object space, so
-/// that transforms need not be uniform.
+/// Analytic spheres and disks: intersection and differential geometry in double, in object space,
+/// so that transforms need not be uniform.
 #pragma once
 
 #include "geometry/surface.h"
@@ -9,8 +9,8 @@ namespace covtrace {
 Quadric make_quadric(const Sphere& sphere, const Transform& local_from_object, bool reverse);
 Quadric make_quadric(const Disk& disk, const Transform& local_from_object, bool reverse);
 
-/// Nearest hit of the local ray with t in (t_min, t_max); false where there is none. The direction may
-/// have any length.
+/// Nearest hit of the local ray with t in (t_min, t_max); false where there is none. The direction
+/// may have any length.
 bool intersect_quadric(const Quadric& quadric, Vec3d origin, Vec3d direction, double t_min,
                        double t_max, double& t);
 /// Local box that holds the quadric, rounded outwards.

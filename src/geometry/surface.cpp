@@ -8,7 +8,8 @@
 
 namespace covtrace {
 
-LocalShape make_local_shape(const ShapeDescription& description, const Transform& local_from_object) {
+LocalShape make_local_shape(const ShapeDescription& description,
+                            const Transform& local_from_object) {
     const bool reverse = description.reverse_orientation;
     return std::visit(
         [&](const auto& geometry) -> LocalShape {
@@ -23,7 +24,8 @@ LocalShape make_local_shape(const ShapeDescription& description, const Transform
         description.geometry);
 }
 
-SurfacePoint surface_point(const LocalShape& shape, uint32_t primitive, Vec2 barycentric, Vec3d near) {
+SurfacePoint surface_point(const LocalShape& shape, uint32_t primitive, Vec2 barycentric,
+                           Vec3d near) {
     if (const auto* triangles = std::get_if<TriangleShape>(&shape))
         return triangle_point(*triangles, primitive, barycentric);
     if (const auto* patches = std::get_if<PatchShape>(&shape))
@@ -31,8 +33,8 @@ SurfacePoint surface_point(const LocalShape& shape, uint32_t primitive, Vec2 bar
     return quadric_point(std::get<Quadric>(shape), near);
 }
 
-SurfaceDerivatives surface_derivatives(const LocalShape& shape, uint32_t primitive, Vec2 barycentric,
-                                       Vec3d near) {
+SurfaceDerivatives surface_derivatives(const LocalShape& shape, uint32_t primitive,
+                                       Vec2 barycentric, Vec3d near) {
     if (const auto* triangles = std::get_if<TriangleShape>(&shape))
         return triangle_derivatives(*triangles, primitive, barycentric);
     if (const auto* patches = std::get_if<PatchShape>(&shape))

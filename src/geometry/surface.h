@@ -1,6 +1,6 @@
-/// Shapes in the space of the Embree scene that holds them ("local": the world for shapes that stand
-/// still, the instance's space inside objects, the shape's own space for moving shapes), and the
-/// differential geometry of their points. No Embree here.
+/// Shapes in the space of the Embree scene that holds them ("local": the world for shapes that
+/// stand still, the instance's space inside objects, the shape's own space for moving shapes), and
+/// the differential geometry of their points. No Embree here.
 #pragma once
 
 #include <memory>
@@ -19,15 +19,16 @@ inline constexpr double kHalfUlp = 5.9604644775390625e-8;
 struct TriangleShape {
     std::shared_ptr<const TriangleMesh> mesh;
     std::vector<Vec3> positions;  ///< local; one spare element, for Embree's wide loads
-    Affine normal_map;            ///< of the mesh's normals to local ones; turned where the orientation is reversed
-    bool flip = false;            ///< whether the outside is opposite to (p1 - p0) x (p2 - p0)
+    Affine normal_map;  ///< of the mesh's normals to local ones; turned where the orientation is
+                        ///< reversed
+    bool flip = false;  ///< whether the outside is opposite to (p1 - p0) x (p2 - p0)
 };
 
 struct PatchShape {
     std::shared_ptr<const BilinearMesh> mesh;
     std::vector<Vec3> positions;
     Affine normal_map;
-    bool flip = false;  ///< whether the outside is opposite to dp/du x dp/dv
+    bool flip = false;            ///< whether the outside is opposite to dp/du x dp/dv
     bool parallelograms = false;  ///< all patches are, up to rounding
     BilinearPatch patch(uint32_t i) const;
 };
@@ -37,9 +38,9 @@ struct Quadric {
     enum class Kind { sphere, disk };
     Kind kind = Kind::sphere;
     double radius = 1;
-    double z_min = -1, z_max = 1;          ///< sphere
-    double height = 0, inner_radius = 0;   ///< disk
-    double phi_max = 6.283185307179586;    ///< radians
+    double z_min = -1, z_max = 1;         ///< sphere
+    double height = 0, inner_radius = 0;  ///< disk
+    double phi_max = 6.283185307179586;   ///< radians
     Affine local_from_object, object_from_local;
     bool reverse = false;
 };
@@ -47,7 +48,8 @@ struct Quadric {
 using LocalShape = std::variant<TriangleShape, PatchShape, Quadric>;
 
 /// `description` moved to local space; vertices in parallel.
-LocalShape make_local_shape(const ShapeDescription& description, const Transform& local_from_object);
+LocalShape make_local_shape(const ShapeDescription& description,
+                            const Transform& local_from_object);
 
 /// First order, in local space.
 struct SurfacePoint {
@@ -67,10 +69,12 @@ struct SurfaceDerivatives {
     Vec3d n, dnda, dndb;
 };
 
-/// `barycentric` as Embree gives it; quadrics use `near` instead, a local point close to the surface.
-SurfacePoint surface_point(const LocalShape& shape, uint32_t primitive, Vec2 barycentric, Vec3d near);
-SurfaceDerivatives surface_derivatives(const LocalShape& shape, uint32_t primitive, Vec2 barycentric,
-                                       Vec3d near);
+/// `barycentric` as Embree gives it; quadrics use `near` instead, a local point close to the
+/// surface.
+SurfacePoint surface_point(const LocalShape& shape, uint32_t primitive, Vec2 barycentric,
+                           Vec3d near);
+SurfaceDerivatives surface_derivatives(const LocalShape& shape, uint32_t primitive,
+                                       Vec2 barycentric, Vec3d near);
 
 /// Tangents dp/ds, dp/dt of the coordinates (s, t) whose derivatives after the parameters of dp are
 /// given; an orthonormal pair about `normal` where (s, t) is degenerate.

@@ -30,8 +30,8 @@ Tessellation::Tessellation(const LocalShape& shape, double piece, double scale) 
     }
     const Quadric& quadric = std::get<Quadric>(shape);
     const Affine& map = quadric.local_from_object;
-    const double radius =
-        quadric.radius * scale * std::max({length(map.row[0]), length(map.row[1]), length(map.row[2])});
+    const double radius = quadric.radius * scale *
+                          std::max({length(map.row[0]), length(map.row[1]), length(map.row[2])});
     const int around = pieces(quadric.phi_max * radius, piece, 16);
     const int along = quadric.kind == Quadric::Kind::sphere ? pieces(3.2 * radius, piece, 8) : 1;
     add_grid(around, along, [&](double u, double v) {
@@ -43,8 +43,11 @@ template <class PointAt>
 void Tessellation::add_grid(int nu, int nv, PointAt&& point_at) {
     const auto first = static_cast<uint32_t>(positions_.size());
     for (int j = 0; j <= nv; ++j)
-        for (int i = 0; i <= nu; ++i) positions_.push_back(point_at(double(i) / nu, double(j) / nv));
-    const auto index = [&](int i, int j) { return first + static_cast<uint32_t>(j * (nu + 1) + i); };
+        for (int i = 0; i <= nu; ++i)
+            positions_.push_back(point_at(double(i) / nu, double(j) / nv));
+    const auto index = [&](int i, int j) {
+        return first + static_cast<uint32_t>(j * (nu + 1) + i);
+    };
     for (int j = 0; j < nv; ++j)
         for (int i = 0; i < nu; ++i) {
             triangles_.push_back({index(i, j), index(i + 1, j), index(i, j + 1)});

@@ -11,8 +11,8 @@ namespace covtrace {
 /// Triangles over positions; both may belong to the shape itself, which must outlive this.
 class Tessellation {
   public:
-    /// Curved shapes are cut into pieces of about `piece` scene units, at most 512 along a parameter;
-    /// `scale` is how much longer a local unit may be in the scene.
+    /// Curved shapes are cut into pieces of about `piece` scene units, at most 512 along a
+    /// parameter; `scale` is how much longer a local unit may be in the scene.
     Tessellation(const LocalShape& shape, double piece, double scale);
 
     size_t size() const { return triangles().size(); }

@@ -31,7 +31,9 @@ Corners corners(const TriangleShape& shape, uint32_t primitive) {
     return c;
 }
 
-double largest(Vec3d v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+double largest(Vec3d v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
 
 }  // namespace
 

@@ -15,7 +15,7 @@ namespace covtrace {
 
 namespace {
 
-constexpr size_t kBatch = 2048;                     ///< triangles
+constexpr size_t kBatch = 2048;  ///< triangles
 constexpr size_t kMostInstancedTriangles = 1 << 24;
 
 /// Triangles that one thread enters in one go.
@@ -64,12 +64,14 @@ class VoxelGridBuilder {
         layout_.box = box;
         layout_.origin = box.lo - Vec3{8 * size, 8 * size, 8 * size};
         for (int k = 0; k < 3; ++k)
-            layout_.bricks[static_cast<size_t>(k)] = static_cast<int>(std::floor(d[k] / size)) / 8 + 3;
+            layout_.bricks[static_cast<size_t>(k)] =
+                static_cast<int>(std::floor(d[k] / size)) / 8 + 3;
         grid_.size_ = size;
         grid_.box_ = box;
         grid_.origin_ = layout_.origin;
         grid_.bricks_ = layout_.bricks;
-        grid_.top_.assign(static_cast<size_t>(layout_.bricks[0]) * static_cast<size_t>(layout_.bricks[1]) *
+        grid_.top_.assign(static_cast<size_t>(layout_.bricks[0]) *
+                              static_cast<size_t>(layout_.bricks[1]) *
                               static_cast<size_t>(layout_.bricks[2]),
                           -1);
     }
@@ -78,7 +80,8 @@ class VoxelGridBuilder {
         const ShutterClock& clock = geometry_.clock;
         for (int i = 0; i < times; ++i) {
             const float f = (static_cast<float>(i) + 0.5f) / static_cast<float>(times);
-            for (const Occurrence& o : occurrences(geometry_, clock.open() + f * (clock.close() - clock.open())))
+            for (const Occurrence& o :
+                 occurrences(geometry_, clock.open() + f * (clock.close() - clock.open())))
                 if (o.moves || i == 0) {
                     occurrences_.push_back(o);
                     weights_.push_back(o.moves ? 1.0f / static_cast<float>(times) : 1.0f);
@@ -95,7 +98,8 @@ class VoxelGridBuilder {
         surfaces_.resize(scales.size());
         for (size_t i = 0; i < scales.size(); ++i)
             if (scales[i] > 0)
-                surfaces_[i] = std::make_unique<Tessellation>(geometry_.local[i], layout_.size, scales[i]);
+                surfaces_[i] =
+                    std::make_unique<Tessellation>(geometry_.local[i], layout_.size, scales[i]);
     }
 
     const Tessellation& surface_of(const Occurrence& o) const {
@@ -175,7 +179,8 @@ class VoxelGridBuilder {
     }
 
     std::array<int, 3> place_of(size_t place) const {
-        const auto nx = static_cast<size_t>(layout_.bricks[0]), ny = static_cast<size_t>(layout_.bricks[1]);
+        const auto nx = static_cast<size_t>(layout_.bricks[0]),
+                   ny = static_cast<size_t>(layout_.bricks[1]);
         return {static_cast<int>(place % nx), static_cast<int>(place / nx % ny),
                 static_cast<int>(place / (nx * ny))};
     }
@@ -193,13 +198,16 @@ class VoxelGridBuilder {
             brick.occupied[k / 64] |= uint64_t{1} << (k % 64);
             const auto middle = [&](int axis, size_t index) {
                 return layout_.origin[axis] +
-                       (static_cast<float>(8 * at[static_cast<size_t>(axis)] + static_cast<int>(index)) + 0.5f) *
+                       (static_cast<float>(8 * at[static_cast<size_t>(axis)] +
+                                           static_cast<int>(index)) +
+                        0.5f) *
                            layout_.size;
             };
             const float w = 1 / s.area;
             Voxel v;
             v.area = s.area;
-            v.centroid = Vec3{middle(0, k % 8), middle(1, k / 8 % 8), middle(2, k / 64)} + s.position * w;
+            v.centroid =
+                Vec3{middle(0, k % 8), middle(1, k / 8 % 8), middle(2, k / 64)} + s.position * w;
             v.velocity = s.velocity * w;
             v.normals = {s.normals.xx * w, s.normals.xy * w, s.normals.xz * w,
                          s.normals.yy * w, s.normals.yz * w, s.normals.zz * w};
@@ -232,7 +240,8 @@ class VoxelGridBuilder {
     static constexpr size_t kNone = ~size_t{0};
     size_t neighbour(const std::array<int, 3>& at, int dx, int dy, int dz) const {
         const int x = at[0] + dx, y = at[1] + dy, z = at[2] + dz;
-        if (x < 0 || y < 0 || z < 0 || x >= layout_.bricks[0] || y >= layout_.bricks[1] || z >= layout_.bricks[2])
+        if (x < 0 || y < 0 || z < 0 || x >= layout_.bricks[0] || y >= layout_.bricks[1] ||
+            z >= layout_.bricks[2])
             return kNone;
         return static_cast<size_t>((z * layout_.bricks[1] + y) * layout_.bricks[0] + x);
     }
@@ -245,11 +254,14 @@ class VoxelGridBuilder {
                 for (int dx = -1; dx <= 1; ++dx) {
                     const size_t other = neighbour(at, dx, dy, dz);
                     if (other == kNone || grid_.top_[other] < 0) continue;
-                    const VoxelGrid::Brick& from = grid_.stored_[static_cast<size_t>(grid_.top_[other])];
+                    const VoxelGrid::Brick& from =
+                        grid_.stored_[static_cast<size_t>(grid_.top_[other])];
                     for (int z = 0; z < 8; ++z)
                         for (int y = 0; y < 8; ++y) {
-                            const auto bits = static_cast<uint32_t>(from.occupied[static_cast<size_t>(z)] >> (8 * y) & 255);
-                            rows[static_cast<size_t>((8 * (dz + 1) + z) * 24 + 8 * (dy + 1) + y)] |= bits << (8 * (dx + 1));
+                            const auto bits = static_cast<uint32_t>(
+                                from.occupied[static_cast<size_t>(z)] >> (8 * y) & 255);
+                            rows[static_cast<size_t>((8 * (dz + 1) + z) * 24 + 8 * (dy + 1) + y)] |=
+                                bits << (8 * (dx + 1));
                         }
                 }
         for (VoxelGrid::Bits& within : brick.within) {
@@ -257,7 +269,8 @@ class VoxelGridBuilder {
             for (int z = 0; z < 8; ++z)
                 for (int y = 0; y < 8; ++y)
                     within[static_cast<size_t>(z)] |=
-                        uint64_t{rows[static_cast<size_t>((8 + z) * 24 + 8 + y)] >> 8 & 255} << (8 * y);
+                        uint64_t{rows[static_cast<size_t>((8 + z) * 24 + 8 + y)] >> 8 & 255}
+                        << (8 * y);
         }
     }
 

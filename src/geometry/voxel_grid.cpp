@@ -17,10 +17,12 @@ VoxelGrid::Cell VoxelGrid::cell_of(Vec3 point) const {
 
 const VoxelGrid::Brick* VoxelGrid::brick_of(Cell c) const {
     const int x = c.x >> 3, y = c.y >> 3, z = c.z >> 3;
-    if (x < 0 || y < 0 || z < 0 || x >= bricks_[0] || y >= bricks_[1] || z >= bricks_[2]) return nullptr;
-    const int32_t index = top_[(static_cast<size_t>(z) * static_cast<size_t>(bricks_[1]) + static_cast<size_t>(y)) *
-                                   static_cast<size_t>(bricks_[0]) +
-                               static_cast<size_t>(x)];
+    if (x < 0 || y < 0 || z < 0 || x >= bricks_[0] || y >= bricks_[1] || z >= bricks_[2])
+        return nullptr;
+    const int32_t index =
+        top_[(static_cast<size_t>(z) * static_cast<size_t>(bricks_[1]) + static_cast<size_t>(y)) *
+                 static_cast<size_t>(bricks_[0]) +
+             static_cast<size_t>(x)];
     return index < 0 ? nullptr : &stored_[static_cast<size_t>(index)];
 }
 

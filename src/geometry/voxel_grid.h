@@ -1,6 +1,7 @@
 /// The scene's surfaces in coarse voxels: who may occlude a bundle of rays that passes by. For the
 /// occlusion term of the frequency analysis alone (covariance/SPEC.md, section 2.3); radiance never
-/// depends on it. Only bricks of 8^3 voxels near a surface are stored, and in them only what is occupied.
+/// depends on it. Only bricks of 8^3 voxels near a surface are stored, and in them only what is
+/// occupied.
 #pragma once
 
 #include <array>
@@ -27,16 +28,17 @@ struct Voxel {
 };
 
 struct VoxelGridOptions {
-    int width = 200;         ///< voxels along the longest side of the box
-    int shutter_samples = 1;  ///< times, spread over the shutter, at which moving shapes are entered
-    Bounds3 box{};           ///< what lies outside is ignored; empty: Geometry::bounds()
+    int width = 200;  ///< voxels along the longest side of the box
+    int shutter_samples =
+        1;          ///< times, spread over the shutter, at which moving shapes are entered
+    Bounds3 box{};  ///< what lies outside is ignored; empty: Geometry::bounds()
 };
 
 class VoxelGrid {
   public:
-    /// All surfaces but interfaces. The same for any number of threads. Where instances hold more than
-    /// 2^24 triangles, only every k-th of them is entered, with k times its area.
-    /// Throws Error(limit) where the width is not in [1, 2048].
+    /// All surfaces but interfaces. The same for any number of threads. Where instances hold more
+    /// than 2^24 triangles, only every k-th of them is entered, with k times its area. Throws
+    /// Error(limit) where the width is not in [1, 2048].
     explicit VoxelGrid(const Geometry& geometry, const VoxelGridOptions& options = {});
 
     float voxel_size() const { return size_; }
@@ -57,7 +59,7 @@ class VoxelGrid {
         Bits occupied{};
         /// within[d - 1]: something is occupied within a Chebyshev distance of d voxels.
         std::array<Bits, kReach> within{};
-        uint32_t first = 0;             ///< into voxels_
+        uint32_t first = 0;              ///< into voxels_
         std::array<uint16_t, 8> rank{};  ///< occupied voxels of this brick before word z
     };
     struct Cell {
@@ -70,16 +72,19 @@ class VoxelGrid {
     /// Into voxels_ and offsets_.
     static uint32_t voxel_index(const Brick& brick, int z, int bit) {
         const uint64_t below = brick.occupied[static_cast<size_t>(z)] & ((uint64_t{1} << bit) - 1);
-        return brick.first + brick.rank[static_cast<size_t>(z)] + static_cast<uint32_t>(std::popcount(below));
+        return brick.first + brick.rank[static_cast<size_t>(z)] +
+               static_cast<uint32_t>(std::popcount(below));
     }
     /// Where in its voxel a centroid is, in 256 parts: small enough to stay in the cache.
     struct Offset {
         uint8_t x = 0, y = 0, z = 0;
     };
-    static float fraction(uint8_t offset) { return (static_cast<float>(offset) + 0.5f) * (1.0f / 256); }
+    static float fraction(uint8_t offset) {
+        return (static_cast<float>(offset) + 0.5f) * (1.0f / 256);
+    }
 
     float size_ = 1;
-    Vec3 origin_;             ///< corner of voxel (0, 0, 0), one empty brick outside the box
+    Vec3 origin_;  ///< corner of voxel (0, 0, 0), one empty brick outside the box
     Bounds3 box_;
     std::array<int, 3> bricks_{0, 0, 0};
     std::vector<int32_t> top_;  ///< brick of each place, -1 for none; x fastest
@@ -90,29 +95,34 @@ class VoxelGrid {
 
 /// A place where something passes close to a ray.
 struct OccluderEvent {
-    float s = 0;         ///< distance from the start of the march
-    Vec3 offset;         ///< from the ray's point at `s` to the occluder's centroid; perpendicular to the ray
+    float s = 0;  ///< distance from the start of the march
+    Vec3 offset;  ///< from the ray's point at `s` to the occluder's centroid; perpendicular to the
+                  ///< ray
     float distance = 0;  ///< length of `offset`, at least half a voxel
     NormalTensor normals;
     Vec3 velocity;
 };
 
-/// Walks a segment and stops at the occluders beside it. The first and last 1.5 voxels are left out:
-/// there lie the surfaces that the segment starts and ends on. No heap use.
+/// Walks a segment and stops at the occluders beside it. The first and last 1.5 voxels are left
+/// out: there lie the surfaces that the segment starts and ends on. No heap use.
 ///
 ///     VoxelMarch march(grid, from, to);
 ///     for (OccluderEvent e; march.next(radius, e);) …
 class VoxelMarch {
   public:
     VoxelMarch(const VoxelGrid& grid, Vec3 from, Vec3 to);
-    /// The next occluder whose centroid is within `radius` of the ray, at most 3 voxels; false at the
-    /// end. Per 3 voxels of the way it gives the nearest one only: an edge that runs along the ray would
-    /// be counted many times otherwise. `radius` may change from call to call.
+    /// The next occluder whose centroid is within `radius` of the ray, at most 3 voxels; false at
+    /// the end. Per 3 voxels of the way it gives the nearest one only: an edge that runs along the
+    /// ray would be counted many times otherwise. `radius` may change from call to call.
     bool next(float radius, OccluderEvent& event);
 
   private:
-    /// The voxel nearest to the ray in the next steps, within `radius`.
-    bool nearest_in_slab(float radius, OccluderEvent& event) const;
+    struct Nearest {
+        uint32_t voxel = 0;
+        float first = 0;  ///< step where anything is met first
+    };
+    /// The voxel nearest to the ray in the slab that starts at step_, within `radius`.
+    Nearest nearest_in_slab(float radius) const;
     /// First step behind the empty brick that holds `cell`.
     int step_behind_brick(VoxelGrid::Cell cell) const;
 

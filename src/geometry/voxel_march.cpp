@@ -15,8 +15,8 @@ uint64_t rectangle(int x0, int x1, int y0, int y1) {
     return (all >> (8 * (7 - y1 + y0))) << (8 * y0);
 }
 
-constexpr int kSlab = 3;        ///< steps that share one event
-constexpr float kEnds = 1.5f;   ///< voxels left out at either end
+constexpr int kSlab = 3;         ///< steps that share one event
+constexpr float kEnds = 1.5f;    ///< voxels left out at either end
 constexpr float kWidest = 3.0f;  ///< voxels, the largest radius
 constexpr uint32_t kNoVoxel = ~uint32_t{0};
 
@@ -30,7 +30,8 @@ VoxelMarch::VoxelMarch(const VoxelGrid& grid, Vec3 from, Vec3 to) : grid_(grid) 
     float enter = kEnds * size, leave = total - kEnds * size;
     const float margin = kWidest * size;
     for (int k = 0; k < 3; ++k) {
-        const float lo = grid.box_.lo[k] - margin - from[k], hi = grid.box_.hi[k] + margin - from[k];
+        const float lo = grid.box_.lo[k] - margin - from[k],
+                    hi = grid.box_.hi[k] + margin - from[k];
         if (direction_[k] == 0) {
             if (lo > 0 || hi < 0) return;
             continue;
@@ -61,21 +62,33 @@ bool VoxelMarch::next(float radius, OccluderEvent& event) {
             step_ = step_behind_brick(cell);
             continue;
         }
-        const uint64_t word = brick->within[static_cast<size_t>(reach - 1)][static_cast<size_t>(cell.z & 7)];
+        const uint64_t word =
+            brick->within[static_cast<size_t>(reach - 1)][static_cast<size_t>(cell.z & 7)];
         if (!(word >> ((cell.y & 7) * 8 + (cell.x & 7)) & 1)) {
             ++step_;
             continue;
         }
-        const bool found = nearest_in_slab(radius, event);
+        // A slab starts where something is first seen, lest one edge falls into two of them.
+        const float begin = static_cast<float>(step_);
+        Nearest nearest = nearest_in_slab(radius);
+        if (nearest.voxel != kNoVoxel && nearest.first >= begin + 1) {
+            step_ += static_cast<int>(nearest.first - begin);
+            nearest = nearest_in_slab(radius);
+        }
         step_ += kSlab;
-        if (!found) continue;
-        event.distance = std::max(event.distance, 0.5f * size);
+        if (nearest.voxel == kNoVoxel) continue;
+        const Voxel& v = grid_.voxels_[nearest.voxel];
+        const Vec3 to_centroid = v.centroid - start_;
+        const float s = dot(to_centroid, direction_);
+        const Vec3 offset = to_centroid - direction_ * s;
+        event = {skipped_ + s, offset, std::max(length(offset), 0.5f * size), v.normals,
+                 v.velocity};
         return true;
     }
     return false;
 }
 
-bool VoxelMarch::nearest_in_slab(float radius, OccluderEvent& event) const {
+VoxelMarch::Nearest VoxelMarch::nearest_in_slab(float radius) const {
     // In units of voxels, from the grid's corner on.
     const float scale = 1 / grid_.size_;
     const Vec3 start = (start_ - grid_.origin_) * scale, d = direction_;
@@ -83,23 +96,28 @@ bool VoxelMarch::nearest_in_slab(float radius, OccluderEvent& event) const {
     const float end = std::min(begin + kSlab, length_ * scale), middle = 0.5f * (begin + end);
     radius *= scale;
     // The box of a cylinder about the slab.
-    const auto half = [&](float c) { return 0.5f * (end - begin) * std::abs(c) + radius * safe_sqrt(1 - c * c); };
+    const auto half = [&](float c) {
+        return 0.5f * (end - begin) * std::abs(c) + radius * safe_sqrt(1 - c * c);
+    };
     const Vec3 center = start + d * middle, extent{half(d.x), half(d.y), half(d.z)};
     const auto cell = [](Vec3 p) {
         return VoxelGrid::Cell{static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y)),
                                static_cast<int>(std::floor(p.z))};
     };
     const VoxelGrid::Cell lo = cell(center - extent), hi = cell(center + extent);
-    float best = radius * radius;
-    uint32_t nearest = kNoVoxel;
+    const float widest = radius * radius;
+    float best = widest;
+    Nearest nearest{kNoVoxel, end};
     for (int bz = lo.z >> 3; bz <= hi.z >> 3; ++bz)
         for (int by = lo.y >> 3; by <= hi.y >> 3; ++by)
             for (int bx = lo.x >> 3; bx <= hi.x >> 3; ++bx) {
                 const VoxelGrid::Brick* brick = grid_.brick_of({8 * bx, 8 * by, 8 * bz});
                 if (!brick) continue;
-                const uint64_t window = rectangle(std::max(lo.x - 8 * bx, 0), std::min(hi.x - 8 * bx, 7),
-                                                  std::max(lo.y - 8 * by, 0), std::min(hi.y - 8 * by, 7));
-                const Vec3 corner = Vec3{static_cast<float>(8 * bx), static_cast<float>(8 * by), 0} - start;
+                const uint64_t window =
+                    rectangle(std::max(lo.x - 8 * bx, 0), std::min(hi.x - 8 * bx, 7),
+                              std::max(lo.y - 8 * by, 0), std::min(hi.y - 8 * by, 7));
+                const Vec3 corner =
+                    Vec3{static_cast<float>(8 * bx), static_cast<float>(8 * by), 0} - start;
                 for (int z = std::max(lo.z - 8 * bz, 0); z <= std::min(hi.z - 8 * bz, 7); ++z) {
                     uint64_t word = brick->occupied[static_cast<size_t>(z)] & window;
                     const float cz = static_cast<float>(8 * bz + z) + corner.z;
@@ -107,24 +125,21 @@ bool VoxelMarch::nearest_in_slab(float radius, OccluderEvent& event) const {
                         const int bit = std::countr_zero(word);
                         const uint32_t index = VoxelGrid::voxel_index(*brick, z, bit);
                         const VoxelGrid::Offset offset = grid_.offsets_[index];
-                        const Vec3 c{corner.x + static_cast<float>(bit & 7) + VoxelGrid::fraction(offset.x),
-                                     corner.y + static_cast<float>(bit >> 3) + VoxelGrid::fraction(offset.y),
-                                     cz + VoxelGrid::fraction(offset.z)};
+                        const Vec3 c{
+                            corner.x + static_cast<float>(bit & 7) + VoxelGrid::fraction(offset.x),
+                            corner.y + static_cast<float>(bit >> 3) + VoxelGrid::fraction(offset.y),
+                            cz + VoxelGrid::fraction(offset.z)};
                         const float s = dot(c, d);
                         const float r2 = length_squared(c - d * s);
-                        if (!(s >= begin && s < end && r2 < best)) continue;
+                        if (!(s >= begin && s < end && r2 < widest)) continue;
+                        nearest.first = std::min(nearest.first, s);
+                        if (!(r2 < best)) continue;
                         best = r2;
-                        nearest = index;
+                        nearest.voxel = index;
                     }
                 }
             }
-    if (nearest == kNoVoxel) return false;
-    const Voxel& v = grid_.voxels_[nearest];
-    const Vec3 from_start = v.centroid - start_;
-    const float s = dot(from_start, d);
-    const Vec3 offset = from_start - d * s;
-    event = {skipped_ + s, offset, length(offset), v.normals, v.velocity};
-    return true;
+    return nearest;
 }
 
 int VoxelMarch::step_behind_brick(VoxelGrid::Cell cell) const {
@@ -138,7 +153,8 @@ int VoxelMarch::step_behind_brick(VoxelGrid::Cell cell) const {
         leave = std::min(leave, (plane - start_[k]) / direction_[k]);
     }
     const float steps = std::ceil(leave / size - 0.5f);
-    return std::max(step_ + 1, steps < static_cast<float>(steps_) ? static_cast<int>(steps) : steps_);
+    return std::max(step_ + 1,
+                    steps < static_cast<float>(steps_) ? static_cast<int>(steps) : steps_);
 }
 
 }  // namespace covtrace

@@ -1,4 +1,5 @@
-/// Triangles into voxels, one batch at a time: the part of building a VoxelGrid that runs in parallel.
+/// Triangles into voxels, one batch at a time: the part of building a VoxelGrid that runs in
+/// parallel.
 #pragma once
 
 #include <array>
@@ -36,7 +37,8 @@ struct VoxelLayout {
 class VoxelRasterizer {
   public:
     explicit VoxelRasterizer(const VoxelLayout& layout) : layout_(layout) {}
-    /// `velocity` is a field over world points, null where nothing moves; `weight` multiplies the area.
+    /// `velocity` is a field over world points, null where nothing moves; `weight` multiplies the
+    /// area.
     void add(const std::array<Vec3, 3>& corners, const Affine* velocity, float weight);
     /// One entry per voxel that was met, each key once, in no order; forgets them.
     std::vector<VoxelEntry> take();

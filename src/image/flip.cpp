@@ -10,7 +10,7 @@ namespace covtrace {
 
 namespace {
 
-// Exponents, thresholds and widths of the paper: equations 7 to 11 and table 1.
+// Exponents, thresholds and widths, in brackets the paper's symbols.
 constexpr float kColorExponent = 0.7f;          // q_c
 constexpr float kColorKnee = 0.4f;              // p_c, as a part of the largest difference
 constexpr float kColorKneeValue = 0.95f;        // p_t
@@ -185,7 +185,7 @@ Plane magnitude(const Plane& x, const Plane& y) {
 }
 
 Percept perceive(std::span<const Rgb> image, Size size, float pixels_per_degree) {
-    // Table 1 of the paper: achromatic, red-green and blue-yellow.
+    // The paper's constants for the achromatic, red-green and blue-yellow channel.
     const std::vector<Kernel> filters[3] = {
         sensitivity_kernels({{1, 0.0047}}, pixels_per_degree),
         sensitivity_kernels({{1, 0.0053}}, pixels_per_degree),

@@ -49,9 +49,10 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
                                            directory.string() + "' does not exist");
         fail(error_number);
     }
-    // Permissions are a comfort: where they cannot be carried over, the file is still right.
-    if (exists && !temporary_.empty() && ::fchmod(descriptor_, status.st_mode & 07777) != 0)
-        errno = 0;
+    if (exists && !temporary_.empty()) {
+        // Where permissions cannot be carried over, the file is still right.
+        [[maybe_unused]] const int result = ::fchmod(descriptor_, status.st_mode & 07777);
+    }
     buffer_.reserve(kBufferSize);
 }
 

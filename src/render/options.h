@@ -17,12 +17,20 @@ enum class Method {
     covariance  ///< the thesis' method: prediction, counts, Gaussian gather
 };
 
+/// Where the frequency analysis learns of what stands beside a ray.
+enum class Occlusion {
+    none,
+    grid  ///< the thesis' voxel grid of the scene
+};
+
 struct RenderOptions {
     Method method = Method::covariance;
     std::optional<double> spp;      ///< average samples per pixel; default: the scene's
     std::optional<double> seconds;  ///< wall clock, from `start_time` to the finished file
     std::optional<int> cov_spp;     ///< covariance paths per pixel; default spp/4 in [2, 4]
     DensityRule density = DensityRule::tempered;
+    Occlusion occlusion = Occlusion::grid;
+    int voxels = 200;  ///< width of the grid
     FilterRule filter = FilterRule::verified;
     std::optional<int> max_spp;     ///< most samples in any pixel; default 16 times the average
     std::optional<int> max_depth;   ///< default: the scene's

@@ -123,13 +123,19 @@ class Session {
         const double wanted = options_.cov_spp ? *options_.cov_spp : std::clamp(std::floor(spp / 4), 2.0, 4.0);
         const double cov_spp = target_spp_ ? std::min(wanted, spp) : wanted;
         CovarianceBuffer buffer(film_.bounds.width(), film_.bounds.height());
+        std::optional<VoxelGrid> occluders;
+        if (options_.occlusion == Occlusion::grid) {
+            const PhaseTimer timer(monitor_, phase("grid"));
+            occluders.emplace(scene_.geometry, VoxelGridOptions{.width = options_.voxels});
+        }
         {
             const PhaseTimer timer(monitor_, phase("covariance"));
             const std::vector<float> even(film_.pixels.size(), 1.0f);
             const std::vector<uint32_t> none(film_.pixels.size(), 0);
             const auto counts = allocate(even, std::llround(cov_spp * double(pixels())), none, 1u << 30);
-            result_.statistics.covariance = covariance_pass(
-                context_, film_, counts, buffer, monitor_, reporter("covariance", 0, fraction(cov_spp), 0, cov_spp));
+            result_.statistics.covariance =
+                covariance_pass(context_, occluders ? &*occluders : nullptr, film_, counts, buffer, monitor_,
+                                reporter("covariance", 0, fraction(cov_spp), 0, cov_spp));
         }
         Prediction raw, smoothed;
         {

@@ -13,7 +13,7 @@ namespace covtrace {
 
 struct RenderStatistics {
     PassStatistics covariance, radiance;
-    std::map<std::string, double> seconds;  ///< per phase: "covariance", "plan", "radiance", "reconstruction"
+    std::map<std::string, double> seconds;  ///< per phase: "grid", "covariance", "plan", "radiance", "reconstruction"
     double samples_per_pixel = 0;           ///< average taken
 };
 

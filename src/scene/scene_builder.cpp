@@ -16,6 +16,8 @@ SceneBuilder::SceneBuilder(SceneDescription& scene, SceneFiles& files, WarningLo
       shapes_(context_) {}
 
 void SceneBuilder::camera(Entity entity) {
+    if (!state_.outside_medium.empty())
+        context_.log.add(entity.where, "the medium around the camera is not rendered");
     view_.camera = std::move(entity);
     view_.camera_to_world = state_.world_to_object();
     coordinate_systems_["camera"] = {state_.ctm[0].inverse(), state_.ctm[1].inverse()};

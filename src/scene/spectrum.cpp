@@ -49,6 +49,7 @@ Rgb64 rec709(const Xyz& v) {
 struct Observer {
     std::array<Rgb64, kSamples> response{};
     std::array<double, kSamples> d65{};
+    std::array<ObserverSample, kSamples> samples{};
     Observer() {
         Rgb64 white;
         for (size_t i = 0; i < kSamples; ++i) {
@@ -58,6 +59,10 @@ struct Observer {
         }
         for (Rgb64& r : response)
             for (size_t c = 0; c < 3; ++c) r.c[c] /= white.c[c];
+        for (size_t i = 0; i < kSamples; ++i) {
+            samples[i].wavelength = wavelength(i);
+            for (size_t c = 0; c < 3; ++c) samples[i].weight[c] = response[i].c[c] * d65[i];
+        }
     }
     static double wavelength(size_t i) { return kFirst + kStep * static_cast<double>(i); }
 };
@@ -70,11 +75,10 @@ const Observer& observer() {
 /// Colour under D65 of a factor given as a function of the wavelength.
 template <typename Factor>
 Rgb64 colour_under_d65(Factor factor) {
-    const Observer& o = observer();
     Rgb64 sum;
-    for (size_t i = 0; i < kSamples; ++i) {
-        const double f = factor(Observer::wavelength(i)) * o.d65[i];
-        for (size_t c = 0; c < 3; ++c) sum.c[c] += f * o.response[i].c[c];
+    for (const ObserverSample& s : observer().samples) {
+        const double f = factor(s.wavelength);
+        for (size_t c = 0; c < 3; ++c) sum.c[c] += f * s.weight[c];
     }
     return sum;
 }
@@ -97,6 +101,10 @@ double normal_reflectance(double eta, double k) {
 }
 
 }  // namespace
+
+std::span<const ObserverSample> observer_samples() {
+    return observer().samples;
+}
 
 double Spectrum::at(double l) const {
     if (wavelengths.empty()) return 0;
@@ -157,10 +165,10 @@ Rgb channel_means(const Spectrum& s) {
     return to_rgb(sum);
 }
 
-ConductorColours conductor_colours(const Spectrum& eta, const Spectrum& k) {
+ConductorColours conductor_colours(const Spectrum& eta, const Spectrum& k, Rgb index) {
     const Rgb64 reflectance =
         colour_under_d65([&](double l) { return normal_reflectance(eta.at(l), k.at(l)); });
-    ConductorColours r{channel_means(eta), Rgb{0}};
+    ConductorColours r{index, Rgb{0}};
     for (int c = 0; c < 3; ++c) {
         // Saturated metals lie slightly outside of the Rec.709 gamut.
         const double f = std::clamp(reflectance.c[static_cast<size_t>(c)], 0.0, 0.9999);

@@ -5,6 +5,8 @@
 /// that of D65 through the same functions, so that a white surface is exactly (1, 1, 1).
 #pragma once
 
+#include <array>
+#include <span>
 #include <vector>
 
 #include "core/vec.h"
@@ -17,6 +19,14 @@ struct Spectrum {
     bool extends = false;  ///< the end values go on outside; otherwise zero there
     double at(double wavelength) const;
 };
+
+/// A wavelength (nanometres) and what it adds to a colour.
+struct ObserverSample {
+    double wavelength = 0;
+    std::array<double, 3> weight{};  ///< red, green, blue
+};
+/// The colour under D65 of a factor f is the sum of f(wavelength) * weight; of 1 it is white.
+std::span<const ObserverSample> observer_samples();
 
 /// Planck's law at this temperature (kelvin, > 0), largest visible value 1.
 Spectrum blackbody_spectrum(double kelvin);
@@ -33,10 +43,9 @@ Rgb chromaticity_colour(double x, double y);
 struct ConductorColours {
     Rgb eta{1}, k{0};
 };
-/// eta is the mean over the wavelengths that each channel sees; k is chosen so that the reflectance
-/// at normal incidence is the colour of the spectral one. Where no k >= 0 does that, k is 0 and eta
-/// is chosen instead.
-ConductorColours conductor_colours(const Spectrum& eta, const Spectrum& k);
+/// eta is `index`; k is chosen so that the reflectance at normal incidence is the colour of the
+/// spectral one. Where no k >= 0 does that, k is 0 and eta is chosen instead.
+ConductorColours conductor_colours(const Spectrum& eta, const Spectrum& k, Rgb index);
 /// Mean over the wavelengths that each channel sees (its positive part times D65).
 Rgb channel_means(const Spectrum& s);
 

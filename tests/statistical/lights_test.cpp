@@ -45,7 +45,6 @@ const TemporaryImage& lat_long_map() {
 }
 
 std::vector<Case> all_cases() {
-    const Rgb white(1);
     const auto up = Vec3{0, 0, 1};
     const auto lamp = [](auto shape, bool two_sided = false) {
         return [shape, two_sided](LightScene& s) { s.add(shape, Rgb(2, 1, 0.5f), two_sided); };

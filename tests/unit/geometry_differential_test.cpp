@@ -43,7 +43,8 @@ void expect_matches_numeric(const Geometry& g, Vec3 origin, Vec3 direction, floa
     EXPECT_NEAR(d.k12, 0.5f * (n.k[0][1] + n.k[1][0]), tolerance * scale);
     for (int i = 0; i < 2; ++i)
         for (int j = 0; j < 2; ++j)
-            EXPECT_NEAR(d.uv_from_tangent[i][j], n.uv[i][j], tolerance * (1 + std::abs(n.uv[i][j])));
+            EXPECT_NEAR(d.uv_from_tangent[i][j], n.uv[i][j],
+                        tolerance * (1 + std::abs(n.uv[i][j])));
 }
 
 TEST(GeometryDifferential, SphereIsOneOverRadius) {
@@ -65,7 +66,9 @@ TEST(GeometryDifferential, SphereIsOneOverRadius) {
 }
 
 TEST(GeometryDifferential, EllipsoidAgainstFiniteDifferences) {
-    const Transform place = chain({Transform::translate({1, 2, 3}), Transform::rotate(50, {1, -1, 2}), Transform::scale(2, 0.7, -1.3)});
+    const Transform place =
+        chain({Transform::translate({1, 2, 3}), Transform::rotate(50, {1, -1, 2}),
+               Transform::scale(2, 0.7, -1.3)});
     const AnimatedTransform moving(place, 0, Transform::rotate(20, {1, 0, 0}) * place, 1);
     for (const AnimatedTransform& t : {AnimatedTransform(place), moving})
         for (bool reverse : {false, true}) {
@@ -89,7 +92,8 @@ TEST(GeometryDifferential, DiskAndFlatTriangleAreFlat) {
     EXPECT_EQ(disk.differential(hit).k22, 0);
     TriangleMesh m = unit_triangle();
     m.uvs = {{0, 0}, {3, 1}, {1, 2}};
-    expect_matches_numeric(Geometry{scene_of({mesh(m, AnimatedTransform(place))})}, place.point({0.3f, 0.3f, 0}) + n * 2.0f, -n, 0.01f);
+    expect_matches_numeric(Geometry{scene_of({mesh(m, AnimatedTransform(place))})},
+                           place.point({0.3f, 0.3f, 0}) + n * 2.0f, -n, 0.01f);
 }
 
 TEST(GeometryDifferential, FinelyTessellatedSphere) {
@@ -124,7 +128,8 @@ TEST(GeometryDifferential, TwistedPatchAgainstFiniteDifferences) {
         for (Vec2 b : {Vec2{0.5f, 0.5f}, Vec2{0.2f, 0.7f}, Vec2{0.8f, 0.1f}}) {
             const auto& c = m.positions;
             const Vec3 p = lerp(b.y, lerp(b.x, c[0], c[1]), lerp(b.x, c[2], c[3]));
-            const Vec3 n = cross(lerp(b.y, c[1] - c[0], c[3] - c[2]), lerp(b.x, c[2] - c[0], c[3] - c[1]));
+            const Vec3 n =
+                cross(lerp(b.y, c[1] - c[0], c[3] - c[2]), lerp(b.x, c[2] - c[0], c[3] - c[1]));
             const Vec3 world_n = normalize(place.normal(n));
             expect_matches_numeric(g, place.point(p) + world_n * 0.1f, -world_n, 0.02f);
         }
@@ -146,7 +151,8 @@ TEST(GeometryDifferential, DegenerateInputsStayFinite) {
     TriangleMesh m = unit_triangle();
     m.uvs.assign(3, {0.5f, 0.5f});
     m.normals = {{0, 0, 1}, {0, 0, 0}, {0, 0, -1}};
-    const Geometry g{scene_of({mesh(m), shape(sphere(1), AnimatedTransform(Transform::translate({5, 0, 0})))})};
+    const Geometry g{
+        scene_of({mesh(m), shape(sphere(1), AnimatedTransform(Transform::translate({5, 0, 0})))})};
     for (Vec3 o : {Vec3{0.2f, 0.3f, 4}, Vec3{0.3f, 0.5f, 4}, Vec3{5, 0, 4}}) {
         SurfaceHit hit;
         ASSERT_TRUE(g.intersect({o, {0, 0, -1}}, hit));

@@ -71,13 +71,17 @@ inline TriangleMesh sphere_mesh(float radius, int rings, int sectors) {
     TriangleMesh m;
     for (int i = 0; i <= rings; ++i)
         for (int j = 0; j <= sectors; ++j) {
-            const float theta = kPi * float(i) / float(rings), phi = 2 * kPi * float(j) / float(sectors);
-            const Vec3 n{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+            const float theta = kPi * float(i) / float(rings),
+                        phi = 2 * kPi * float(j) / float(sectors);
+            const Vec3 n{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                         std::cos(theta)};
             m.positions.push_back(n * radius);
             m.normals.push_back(n);
             m.uvs.push_back({phi / (2 * kPi), theta / kPi});
         }
-    const auto index = [sectors](int i, int j) { return static_cast<uint32_t>(i * (sectors + 1) + j); };
+    const auto index = [sectors](int i, int j) {
+        return static_cast<uint32_t>(i * (sectors + 1) + j);
+    };
     for (int i = 0; i < rings; ++i)
         for (int j = 0; j < sectors; ++j) {
             if (i > 0) m.triangles.push_back({index(i, j), index(i + 1, j), index(i, j + 1)});
@@ -88,7 +92,9 @@ inline TriangleMesh sphere_mesh(float radius, int rings, int sectors) {
 }
 
 /// A full sphere about the origin.
-inline Sphere sphere(float radius) { return {radius, -radius, radius, 360}; }
+inline Sphere sphere(float radius) {
+    return {radius, -radius, radius, 360};
+}
 
 inline SceneDescription scene_of(std::vector<ShapeDescription> shapes) {
     SceneDescription scene;

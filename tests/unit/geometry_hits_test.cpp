@@ -9,9 +9,8 @@ using namespace test;
 
 ::testing::AssertionResult near_vec(Vec3 a, Vec3 b, float tolerance) {
     if (distance(a, b) <= tolerance) return ::testing::AssertionSuccess();
-    return ::testing::AssertionFailure()
-           << "(" << a.x << ", " << a.y << ", " << a.z << ") is not (" << b.x << ", " << b.y << ", " << b.z
-           << ")";
+    return ::testing::AssertionFailure() << "(" << a.x << ", " << a.y << ", " << a.z << ") is not ("
+                                         << b.x << ", " << b.y << ", " << b.z << ")";
 }
 
 SurfaceHit must_hit(const Geometry& g, Vec3 origin, Vec3 direction, float time = 0) {
@@ -37,7 +36,9 @@ TEST(GeometryHits, ShapesWithoutPrimitivesAreHarmless) {
     EXPECT_EQ(g.shapes().size(), 2u);
 }
 
-TEST(GeometryHits, TheInstructionSetCanBeChosen) { EXPECT_NO_THROW(Geometry(SceneDescription{}, "sse2")); }
+TEST(GeometryHits, TheInstructionSetCanBeChosen) {
+    EXPECT_NO_THROW(Geometry(SceneDescription{}, "sse2"));
+}
 
 TEST(GeometryHits, TrianglePositionUvAndTangents) {
     TriangleMesh m = unit_triangle();
@@ -115,7 +116,8 @@ TEST(GeometryHits, NormalsGoByTheInverseTranspose) {
     TriangleMesh m = unit_triangle();
     m.normals.assign(3, {0, 0, 1});
     for (const AnimatedTransform& t :
-         {AnimatedTransform(squash), AnimatedTransform(squash, 0.0f, Transform::translate({1, 0, 0}) * squash, 1.0f)}) {
+         {AnimatedTransform(squash),
+          AnimatedTransform(squash, 0.0f, Transform::translate({1, 0, 0}) * squash, 1.0f)}) {
         const Geometry g{scene_of({mesh(m, t)})};
         const Vec3 target = squash.point({0.25f, 0.25f, 0});
         const SurfaceHit hit = must_hit(g, target + Vec3{0, 0, 3}, {0, 0, -1});
@@ -126,14 +128,17 @@ TEST(GeometryHits, NormalsGoByTheInverseTranspose) {
 
 TEST(GeometryHits, SphereAgainstTheClosedForm) {
     Random random(1);
-    const Transform place = chain({Transform::translate({3, -2, 5}), Transform::rotate(35, {1, 2, 3})});
+    const Transform place =
+        chain({Transform::translate({3, -2, 5}), Transform::rotate(35, {1, 2, 3})});
     const Geometry g{scene_of({shape(sphere(2), AnimatedTransform(place))})};
     int hits = 0;
     for (int i = 0; i < 20000; ++i) {
         const Vec3 center{3, -2, 5};
         const Vec3 origin = center + random.direction() * random.between(2.5f, 50);
         const Vec3 d = normalize(center + random.in_box(2.5f) - origin);
-        const auto inner = [](Vec3 a, Vec3 c) { return double(a.x) * c.x + double(a.y) * c.y + double(a.z) * c.z; };
+        const auto inner = [](Vec3 a, Vec3 c) {
+            return double(a.x) * c.x + double(a.y) * c.y + double(a.z) * c.z;
+        };
         const Vec3 o = origin - center;
         const double a = inner(d, d), b = -inner(o, d) / a, h2 = (4.0 - inner(o, o)) / a + b * b;
         if (std::abs(h2) < 1e-3) continue;
@@ -162,8 +167,8 @@ TEST(GeometryHits, SphereParameterisationOfPbrt) {
 TEST(GeometryHits, PartialSphereShowsItsInside) {
     const Geometry g{scene_of({shape(Sphere{1, -0.5f, 0.5f, 180})})};
     SurfaceHit hit;
-    EXPECT_FALSE(g.intersect({{0, 0.1f, 3}, {0, 0, -1}}, hit));     // both caps are cut off
-    hit = must_hit(g, {0, -3, 0}, {0, 1, 0});                        // phi = 270 degrees is missing
+    EXPECT_FALSE(g.intersect({{0, 0.1f, 3}, {0, 0, -1}}, hit));  // both caps are cut off
+    hit = must_hit(g, {0, -3, 0}, {0, 1, 0});                    // phi = 270 degrees is missing
     EXPECT_TRUE(near_vec(hit.position, {0, 1, 0}, 1e-6f));
     EXPECT_FALSE(g.occluded({{0, -3, 0}, {0, 1, 0}, 0, 3.9f}));
     EXPECT_TRUE(g.occluded({{0, -3, 0}, {0, 1, 0}, 0, 4.1f}));
@@ -224,7 +229,8 @@ TEST(GeometryHits, TwistedAndPlanarPatchesAgainstTheirParameters) {
         for (int i = 0; i < 2000; ++i) {
             const float u = random.next(), v = random.next();
             const Vec3 p = lerp(v, lerp(u, c[0], c[1]), lerp(u, c[2], c[3]));
-            const Vec3 du = lerp(v, c[1] - c[0], c[3] - c[2]), dv = lerp(u, c[2] - c[0], c[3] - c[1]);
+            const Vec3 du = lerp(v, c[1] - c[0], c[3] - c[2]),
+                       dv = lerp(u, c[2] - c[0], c[3] - c[1]);
             const Vec3 n = normalize(cross(du, dv));
             const SurfaceHit hit = must_hit(g, p + n * 0.05f, -n);
             ASSERT_TRUE(near_vec(hit.position, p, 1e-5f));
@@ -258,7 +264,9 @@ TEST(GeometryHits, InterfacesAreSeenButDoNotOcclude) {
         if (kind == 0) s = mesh(unit_triangle(), AnimatedTransform(Transform::scale(4, 4, 1)));
         if (kind == 1) s = patches(patch({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {2, 2, 1}));
         if (kind == 2) s = shape(sphere(2));
-        if (kind == 3) s = shape(sphere(2), AnimatedTransform(Transform{}, 0, Transform::translate({0.1f, 0, 0}), 1));
+        if (kind == 3)
+            s = shape(sphere(2),
+                      AnimatedTransform(Transform{}, 0, Transform::translate({0.1f, 0, 0}), 1));
         s.material = 0;
         s.inside = 0;
         SceneDescription scene = scene_of({s});
@@ -280,18 +288,23 @@ TEST(GeometryHits, OccludedAgreesWithIntersect) {
     Random random(4);
     SceneDescription scene;
     for (int i = 0; i < 40; ++i) {
-        const Transform t = Transform::translate(random.in_box(4)) * Transform::rotate(360 * random.next(), random.direction());
+        const Transform t = Transform::translate(random.in_box(4)) *
+                            Transform::rotate(360 * random.next(), random.direction());
         const Transform moved = Transform::translate(random.in_box(0.5f)) * t;
-        const AnimatedTransform place = i % 2 ? AnimatedTransform(t) : AnimatedTransform(t, 0, moved, 1);
+        const AnimatedTransform place =
+            i % 2 ? AnimatedTransform(t) : AnimatedTransform(t, 0, moved, 1);
         if (i % 4 == 0) scene.shapes.push_back(mesh(unit_triangle(), place));
         if (i % 4 == 1) scene.shapes.push_back(shape(sphere(0.5f), place));
         if (i % 4 == 2) scene.shapes.push_back(shape(Disk{0, 1, 0.2f, 300}, place));
-        if (i % 4 == 3) scene.shapes.push_back(patches(patch({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.5f}), place));
+        if (i % 4 == 3)
+            scene.shapes.push_back(
+                patches(patch({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.5f}), place));
     }
     const Geometry g{scene};
     int hits = 0;
     for (int i = 0; i < 50000; ++i) {
-        const Ray ray{random.in_box(6), random.direction(), random.next(), random.between(0.5f, 12)};
+        const Ray ray{random.in_box(6), random.direction(), random.next(),
+                      random.between(0.5f, 12)};
         SurfaceHit hit;
         const bool found = g.intersect(ray, hit);
         hits += found;
@@ -311,8 +324,10 @@ TEST(GeometryHits, OccludedAgreesWithIntersect) {
 
 TEST(GeometryHits, WorldTrianglesAreWhereRaysMeetThem) {
     const AnimatedTransform spin(Transform::translate({5, 0, 0}), 0,
-                                 Transform::translate({5, 1, 0}) * Transform::rotate(90, {0, 0, 1}), 1);
-    const Geometry g{scene_of({mesh(unit_triangle(), spin), patches(patch({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}))})};
+                                 Transform::translate({5, 1, 0}) * Transform::rotate(90, {0, 0, 1}),
+                                 1);
+    const Geometry g{scene_of(
+        {mesh(unit_triangle(), spin), patches(patch({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}))})};
     for (float time : {0.0f, 0.3f, 1.0f}) {
         const WorldTriangle t = g.world_triangle(0, 0, time);
         const Vec3 middle = (t.p0 + t.p1 + t.p2) / 3;

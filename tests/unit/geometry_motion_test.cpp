@@ -27,15 +27,19 @@ double worst_error(const Geometry& g, const TriangleMesh& m, float t0, float t1,
     Random random(11);
     double worst = 0;
     for (int i = 0; i < 3000; ++i) {
-        const float time = i < 3 ? (i == 0 ? t0 : (i == 1 ? t1 : 0.5f * (t0 + t1))) : random.between(t0, t1);
+        const float time =
+            i < 3 ? (i == 0 ? t0 : (i == 1 ? t1 : 0.5f * (t0 + t1))) : random.between(t0, t1);
         const Transform t = exact(time);
         const Vec2 b{0.2f + 0.3f * random.next(), 0.2f + 0.3f * random.next()};
         const Vec3 p = exact_point(t, m, b);
-        const Vec3 n = normalize(t.normal(cross(m.positions[1] - m.positions[0], m.positions[2] - m.positions[0])));
+        const Vec3 n = normalize(
+            t.normal(cross(m.positions[1] - m.positions[0], m.positions[2] - m.positions[0])));
         SurfaceHit hit;
         if (!g.intersect({p + n * 2.0f, -n, time}, hit)) return 1e9;
-        worst = std::max({worst, double(distance(hit.position, p)), double(length(cross(hit.ng, n)))});
-        if ((dot(hit.ng, n) < 0) != g.shapes()[hit.shape].description.reverse_orientation) return 1e8;
+        worst =
+            std::max({worst, double(distance(hit.position, p)), double(length(cross(hit.ng, n)))});
+        if ((dot(hit.ng, n) < 0) != g.shapes()[hit.shape].description.reverse_orientation)
+            return 1e8;
     }
     return worst;
 }
@@ -55,28 +59,36 @@ TEST(GeometryMotion, RaysMeetMovingShapesWhereTheTransformPutsThem) {
     Random random(21);
     for (int trial = 0; trial < 12; ++trial) {
         const bool mirror = trial % 3 == 2;
-        const AnimatedTransform motion(random_transform(random, mirror), 0, random_transform(random, mirror), 1);
+        const AnimatedTransform motion(random_transform(random, mirror), 0,
+                                       random_transform(random, mirror), 1);
         const Geometry g{scene_of({mesh(probe(), motion)})};
-        EXPECT_LT(worst_error(g, probe(), 0, 1, [&](float t) { return motion.at(t); }), 3e-5) << trial;
+        EXPECT_LT(worst_error(g, probe(), 0, 1, [&](float t) { return motion.at(t); }), 3e-5)
+            << trial;
     }
 }
 
 TEST(GeometryMotion, QuarterAndHalfTurnsAreCircles) {
     for (float degrees : {1.0f, 20.0f, 90.0f, 179.0f, 180.0f}) {
-        const AnimatedTransform motion(Transform{}, 0, Transform::rotate(degrees, {0.3f, 1, 0.2f}), 1);
+        const AnimatedTransform motion(Transform{}, 0, Transform::rotate(degrees, {0.3f, 1, 0.2f}),
+                                       1);
         const Geometry g{scene_of({mesh(probe(), motion)})};
-        EXPECT_LT(worst_error(g, probe(), 0, 1, [&](float t) { return motion.at(t); }), 2e-5) << degrees;
+        EXPECT_LT(worst_error(g, probe(), 0, 1, [&](float t) { return motion.at(t); }), 2e-5)
+            << degrees;
     }
 }
 
 TEST(GeometryMotion, ShapesRestOutsideTheirKeys) {
-    const AnimatedTransform motion(Transform{}, 0.25f, chain({Transform::translate({1, 2, 0}), Transform::rotate(60, {0, 0, 1})}), 0.75f);
+    const AnimatedTransform motion(
+        Transform{}, 0.25f,
+        chain({Transform::translate({1, 2, 0}), Transform::rotate(60, {0, 0, 1})}), 0.75f);
     SceneDescription scene = scene_of({mesh(probe(), motion)});
-    for (const auto& [open, close] : {std::pair{0.0f, 1.0f}, {-1.0f, 3.0f}, {0.3f, 0.6f}, {0.5f, 2.0f}, {0.8f, 2.0f}}) {
+    for (const auto& [open, close] :
+         {std::pair{0.0f, 1.0f}, {-1.0f, 3.0f}, {0.3f, 0.6f}, {0.5f, 2.0f}, {0.8f, 2.0f}}) {
         scene.camera.shutter_open = open;
         scene.camera.shutter_close = close;
         const Geometry g{scene};
-        EXPECT_LT(worst_error(g, probe(), open, close, [&](float t) { return motion.at(t); }), 2e-5) << open;
+        EXPECT_LT(worst_error(g, probe(), open, close, [&](float t) { return motion.at(t); }), 2e-5)
+            << open;
     }
 }
 
@@ -91,8 +103,9 @@ TEST(GeometryMotion, InstantShutterFreezesEverything) {
 }
 
 TEST(GeometryMotion, BoundsHoldTheWholeSweep) {
-    const AnimatedTransform spin(Transform::translate({2, 0, 0}), 0,
-                                 Transform::rotate(180, {0, 0, 1}) * Transform::translate({2, 0, 0}), 1);
+    const AnimatedTransform spin(
+        Transform::translate({2, 0, 0}), 0,
+        Transform::rotate(180, {0, 0, 1}) * Transform::translate({2, 0, 0}), 1);
     const Geometry g{scene_of({shape(sphere(1), spin)})};
     Random random(5);
     for (int i = 0; i < 2000; ++i) {
@@ -108,7 +121,9 @@ TEST(GeometryMotion, BoundsHoldTheWholeSweep) {
 struct InstancedScene {
     TriangleMesh still = probe(), moving = probe();
     AnimatedTransform still_place{Transform::translate({0, 0, 9})};
-    AnimatedTransform inner{Transform{}, 0.2f, chain({Transform::translate({0, 1, 0}), Transform::rotate(100, {0, 0, 1})}), 0.8f};
+    AnimatedTransform inner{
+        Transform{}, 0.2f,
+        chain({Transform::translate({0, 1, 0}), Transform::rotate(100, {0, 0, 1})}), 0.8f};
     std::vector<AnimatedTransform> outer;
     SceneDescription scene;
 
@@ -120,7 +135,9 @@ struct InstancedScene {
                  AnimatedTransform(far * Transform::scale(-1, 1, 1)),
                  AnimatedTransform(far * far, 0, far * far * Transform::rotate(90, {1, 1, 0}), 1),
                  AnimatedTransform(far * far * far * Transform::scale(1, 1, -1), 0,
-                                   far * far * far * Transform::rotate(-50, {0, 1, 0}) * Transform::scale(1, 2, -1), 0.5f)};
+                                   far * far * far * Transform::rotate(-50, {0, 1, 0}) *
+                                       Transform::scale(1, 2, -1),
+                                   0.5f)};
         for (const AnimatedTransform& t : outer) {
             scene.instances.push_back({0, t, {}});
             scene.instances.push_back({1, t, {}});
@@ -136,8 +153,12 @@ TEST(GeometryMotion, InstancesOfStillAndMovingShapes) {
     EXPECT_FALSE(g.shapes()[0].is_instanced);
     EXPECT_TRUE(g.shapes()[1].is_instanced);
     for (const AnimatedTransform& outer : s.outer) {
-        EXPECT_LT(worst_error(g, s.still, 0, 1, [&](float t) { return outer.at(t) * s.still_place.at(t); }), 5e-5);
-        EXPECT_LT(worst_error(g, s.moving, 0, 1, [&](float t) { return outer.at(t) * s.inner.at(t); }), 1e-4);
+        EXPECT_LT(worst_error(g, s.still, 0, 1,
+                              [&](float t) { return outer.at(t) * s.still_place.at(t); }),
+                  5e-5);
+        EXPECT_LT(
+            worst_error(g, s.moving, 0, 1, [&](float t) { return outer.at(t) * s.inner.at(t); }),
+            1e-4);
     }
     SurfaceHit hit;
     ASSERT_TRUE(g.intersect({{0, 50, 3}, {0, 0, -1}, 0.5f}, hit));
@@ -160,14 +181,17 @@ TEST(GeometryMotion, VelocityAgainstFiniteDifferences) {
             const float h = 1e-3f, t0 = std::max(0.0f, time - h);
             // At the kink of the last instance the later side counts.
             const float from = time == 0.5f ? time : t0;
-            const Vec3 v = (exact_point(at(time + h), s.moving, b) - exact_point(at(from), s.moving, b)) / (time + h - from);
+            const Vec3 v =
+                (exact_point(at(time + h), s.moving, b) - exact_point(at(from), s.moving, b)) /
+                (time + h - from);
             EXPECT_LT(distance(d.velocity, v), 0.01f * (1 + length(v))) << time;
         }
 }
 
 TEST(GeometryMotion, AngularVelocityOfASpin) {
     const Vec3 axis = normalize({1, 2, -1});
-    for (const Transform& size : {Transform::scale(1, 1, 1), Transform::scale(3, 0.5, 2), Transform::scale(-1, 1, 1)}) {
+    for (const Transform& size :
+         {Transform::scale(1, 1, 1), Transform::scale(3, 0.5, 2), Transform::scale(-1, 1, 1)}) {
         const AnimatedTransform spin(size, 0, Transform::rotate(90, axis) * size, 2);
         SceneDescription scene = scene_of({shape(sphere(1), spin)});
         scene.camera.shutter_close = 2;

@@ -121,7 +121,11 @@ TEST(VoxelGrid, MarchFindsWhatBruteForceFinds) {
     Random random(12);
     SceneDescription scene;
     for (int i = 0; i < 60; ++i)
-        scene.shapes.push_back(mesh(unit_triangle(), AnimatedTransform(Transform::translate(random.in_box(5)) * Transform::rotate(360 * random.next(), random.direction()) * Transform::scale(random.next(), 2, 1))));
+        scene.shapes.push_back(
+            mesh(unit_triangle(),
+                 AnimatedTransform(Transform::translate(random.in_box(5)) *
+                                   Transform::rotate(360 * random.next(), random.direction()) *
+                                   Transform::scale(random.next(), 2, 1))));
     const Geometry g{scene};
     const VoxelGrid grid(g, {.width = 60});
     const float size = grid.voxel_size();
@@ -139,8 +143,8 @@ TEST(VoxelGrid, MarchFindsWhatBruteForceFinds) {
         const Vec3 d = normalize(to - from);
         const auto found = events(grid, from, to, radius);
         with_events += !found.empty();
-        // The nearest of all is among the events, unless it shares a slab with a nearer one; and what
-        // comes first is never farther along than the first candidate's slab.
+        // The nearest of all is among the events, unless it shares a slab with a nearer one; and
+        // what comes first is never farther along than the first candidate's slab.
         float nearest = kInfinity, first = kInfinity;
         for (Vec3 c : centroids) {
             const float s = dot(c - from, d);
@@ -161,9 +165,11 @@ TEST(VoxelGrid, MarchFindsWhatBruteForceFinds) {
 }
 
 TEST(VoxelGrid, MovingOccludersCarryTheirVelocity) {
-    const AnimatedTransform slide(Transform::translate({-1, 0, 0}), 0, Transform::translate({1, 0.5f, 0}), 2);
-    SceneDescription scene = scene_of({patches(patch({-1, -1, 0}, {0, -1, 0}, {-1, 1, 0}, {0, 1, 0}), slide),
-                                       shape(sphere(0.2f), AnimatedTransform(Transform::translate({5, 5, 5})))});
+    const AnimatedTransform slide(Transform::translate({-1, 0, 0}), 0,
+                                  Transform::translate({1, 0.5f, 0}), 2);
+    SceneDescription scene =
+        scene_of({patches(patch({-1, -1, 0}, {0, -1, 0}, {-1, 1, 0}, {0, 1, 0}), slide),
+                  shape(sphere(0.2f), AnimatedTransform(Transform::translate({5, 5, 5})))});
     scene.camera.shutter_close = 2;
     const Geometry g{scene};
     const VoxelGrid grid(g, {.width = 200});
@@ -183,9 +189,12 @@ TEST(VoxelGrid, MovingOccludersCarryTheirVelocity) {
 }
 
 TEST(VoxelGrid, CurvedAndInstancedShapesAreEntered) {
-    SceneDescription scene = scene_of({shape(sphere(3)), shape(Disk{0, 2, 1, 360}, AnimatedTransform(Transform::translate({8, 0, 0})))});
+    SceneDescription scene =
+        scene_of({shape(sphere(3)),
+                  shape(Disk{0, 2, 1, 360}, AnimatedTransform(Transform::translate({8, 0, 0})))});
     scene.objects.push_back({"o", {patches(patch({0, 0, 0}, {1, 0, 1}, {0, 1, 1}, {1, 1, 0}))}});
-    scene.instances.push_back({0, AnimatedTransform(Transform::translate({-8, 0, 0}) * Transform::scale(2, 2, 2)), {}});
+    scene.instances.push_back(
+        {0, AnimatedTransform(Transform::translate({-8, 0, 0}) * Transform::scale(2, 2, 2)), {}});
     scene.materials.push_back({"", InterfaceMaterial{}, {}});
     ShapeDescription invisible = shape(sphere(3.5f));
     invisible.material = 0;
@@ -200,7 +209,9 @@ TEST(VoxelGrid, CurvedAndInstancedShapesAreEntered) {
         const Voxel* v = grid.find(d * 2.999f);
         const Voxel* w = grid.find(d * (3 - grid.voxel_size()));
         ASSERT_TRUE(v || w);
-        if (v) { EXPECT_NEAR(length(v->centroid), 3, 0.02f); }
+        if (v) {
+            EXPECT_NEAR(length(v->centroid), 3, 0.02f);
+        }
         const float phi = 2 * kPi * random.next();
         ASSERT_NE(grid.find({8 + 1.5f * std::cos(phi), 1.5f * std::sin(phi), 0}), nullptr);
         ASSERT_EQ(grid.find({8 + 0.8f * std::cos(phi), 0.8f * std::sin(phi), 0}), nullptr);
@@ -222,17 +233,23 @@ TEST(VoxelGrid, ABoxCutsAwayTheRest) {
 }
 
 TEST(VoxelGrid, TheSameBitsForAnyNumberOfThreads) {
-    SceneDescription scene = scene_of({mesh(sphere_mesh(2, 100, 200)), shape(sphere(1)), mesh(unit_triangle(), AnimatedTransform(Transform{}, 0, Transform::rotate(90, {0, 0, 1}), 1))});
+    SceneDescription scene =
+        scene_of({mesh(sphere_mesh(2, 100, 200)), shape(sphere(1)),
+                  mesh(unit_triangle(),
+                       AnimatedTransform(Transform{}, 0, Transform::rotate(90, {0, 0, 1}), 1))});
     const Geometry g{scene};
     const auto all = [&](int threads) {
         const ThreadLimit limit(threads);
         const VoxelGrid grid(g, {.width = 64});
         std::vector<float> numbers;
         for (int i = 0; i < 64 * 64 * 64; ++i) {
-            const Vec3 cell{static_cast<float>(i % 64), static_cast<float>(i / 64 % 64), static_cast<float>(i / 4096)};
-            const Voxel* v = grid.find(g.bounds().lo + (cell + Vec3{0.5f, 0.5f, 0.5f}) * grid.voxel_size());
+            const Vec3 cell{static_cast<float>(i % 64), static_cast<float>(i / 64 % 64),
+                            static_cast<float>(i / 4096)};
+            const Voxel* v =
+                grid.find(g.bounds().lo + (cell + Vec3{0.5f, 0.5f, 0.5f}) * grid.voxel_size());
             if (v)
-                numbers.insert(numbers.end(), {v->area, v->centroid.x, v->centroid.y, v->velocity.x, v->normals.xy, v->normals.zz});
+                numbers.insert(numbers.end(), {v->area, v->centroid.x, v->centroid.y, v->velocity.x,
+                                               v->normals.xy, v->normals.zz});
         }
         return numbers;
     };

@@ -111,7 +111,7 @@ TEST(SceneRobustness, RandomMutations) {
         read += survives(text);
     }
     // Were all refused, or none, the mutations would test nothing.
-    EXPECT_GT(read, 1000u);
+    EXPECT_GT(read, 400u);
     EXPECT_LT(read, 19000u);
 }
 
