@@ -20,7 +20,8 @@ struct CompareArguments {
     double smooth = 0;
 };
 
-/// The image after a Gaussian of the given standard deviation in pixels: the baseline that any renderer can have.
+/// The image after a Gaussian of the given standard deviation in pixels: the baseline that any
+/// renderer can have.
 void smooth_root(Image& image, double deviation) {
     const auto variance = float(deviation * deviation);
     const std::vector<covariance::Sym2<float>> same(image.pixel_count(), {variance, 0, variance});
@@ -28,7 +29,8 @@ void smooth_root(Image& image, double deviation) {
     for (size_t i = 0; i < mean.size(); ++i) mean[i] = image.rgb(i);
     const std::vector<float> no_variance(mean.size(), 0.0f);
     const std::vector<uint32_t> count(mean.size(), 1);
-    const GatheredImage smoothed = gather(mean, no_variance, count, {image.width(), image.height(), same});
+    const GatheredImage smoothed =
+        gather(mean, no_variance, count, {image.width(), image.height(), same});
     for (Channel& c : image.channels)
         for (int k = 0; k < 3; ++k)
             if (c.name == std::string(1, "RGB"[k]))
@@ -36,29 +38,33 @@ void smooth_root(Image& image, double deviation) {
 }
 
 int compare_images(const CompareArguments& a) {
+    std::optional<PixelBounds> crop;
+    if (!a.crop.empty()) crop = parse_crop("--crop", a.crop);
     Image image = read_image(a.image);
     const Image reference = read_image(a.reference);
     if (a.smooth > 0) smooth_root(image, a.smooth);
-    std::optional<PixelBounds> crop;
-    if (!a.crop.empty()) crop = parse_crop(a.crop);
     const Comparison c = compare(image, reference, crop);
     if (a.json) {
         // JSON has no infinity: the psnr of equal images is null.
-        nlohmann::json j = {{"mse", c.mse},
-                            {"relmse", c.relmse},
-                            {"relmse_trimmed", c.relmse_trimmed},
-                            {"psnr", std::isfinite(c.psnr) ? nlohmann::json(c.psnr) : nlohmann::json()},
-                            {"flip", c.flip},
-                            {"mean_ratio", c.mean_ratio},
-                            {"nonfinite", c.nonfinite},
-                            {"identical", c.identical}};
+        nlohmann::json j = {
+            {"mse", c.mse},
+            {"relmse", c.relmse},
+            {"relmse_trimmed", c.relmse_trimmed},
+            {"psnr", std::isfinite(c.psnr) ? nlohmann::json(c.psnr) : nlohmann::json()},
+            {"flip", c.flip},
+            {"mean_ratio", c.mean_ratio},
+            {"nonfinite", c.nonfinite},
+            {"identical", c.identical}};
         fmt::print("{}\n", j.dump());
         return 0;
     }
-    fmt::print("mse             {:.6g}\nrelmse          {:.6g}\nrelmse_trimmed  {:.6g}\npsnr            {:.3f} dB\n"
-               "flip            {:.5f}\nmean_ratio      {:.5f} {:.5f} {:.5f}\nnonfinite       {}\nidentical       {}\n",
-               c.mse, c.relmse, c.relmse_trimmed, c.psnr, c.flip, c.mean_ratio[0], c.mean_ratio[1], c.mean_ratio[2],
-               c.nonfinite, c.identical ? "yes" : "no");
+    fmt::print(
+        "mse             {:.6g}\nrelmse          {:.6g}\nrelmse_trimmed  {:.6g}\npsnr            "
+        "{:.3f} dB\n"
+        "flip            {:.5f}\nmean_ratio      {:.5f} {:.5f} {:.5f}\nnonfinite       "
+        "{}\nidentical       {}\n",
+        c.mse, c.relmse, c.relmse_trimmed, c.psnr, c.flip, c.mean_ratio[0], c.mean_ratio[1],
+        c.mean_ratio[2], c.nonfinite, c.identical ? "yes" : "no");
     return 0;
 }
 
@@ -70,7 +76,8 @@ void add_compare(CLI::App& app, Invocation& invocation) {
     c->add_option("IMAGE", a->image, "the image")->required();
     c->add_option("REFERENCE", a->reference, "what it should be")->required();
     c->add_option("--crop", a->crop, "x0,y0,x1,y1: only these pixels, end exclusive");
-    c->add_option("--smooth", a->smooth, "first smooth the image by a Gaussian of this deviation in pixels")
+    c->add_option("--smooth", a->smooth,
+                  "first smooth the image by a Gaussian of this deviation in pixels")
         ->check(CLI::PositiveNumber);
     c->add_flag("--json", a->json, "one JSON object on standard output");
     c->callback([a, &invocation] { invocation.action = [a] { return compare_images(*a); }; });

@@ -17,7 +17,8 @@ void add_info(CLI::App& app, Invocation& invocation) {
     c->callback([file, &invocation] {
         invocation.action = [file] {
             const std::filesystem::path path = *file;
-            const bool is_scene = path.extension() == ".pbrt" || path.string().ends_with(".pbrt.gz");
+            const bool is_scene =
+                path.extension() == ".pbrt" || path.string().ends_with(".pbrt.gz");
             fmt::print("{}", is_scene ? summarize(read_pbrt(path)) : describe(read_image(path)));
             return 0;
         };

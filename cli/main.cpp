@@ -1,11 +1,17 @@
 // The program `covtrace`: parses the command line, runs a subcommand, turns errors into exit codes.
-#include <fmt/format.h>
+#include <fcntl.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include "cli/commands.h"
+#include "cli/message.h"
 #include "core/error.h"
 #include "render/version.h"
 
@@ -14,14 +20,36 @@ namespace {
 int exit_code(covtrace::ErrorKind kind) {
     using enum covtrace::ErrorKind;
     switch (kind) {
-        case usage: return 2;
-        case scene: return 3;
-        case limit: return 4;
-        case io: return 5;
-        case interrupted: return 6;
-        case internal: return 7;
+        case usage:
+            return 2;
+        case scene:
+            return 3;
+        case limit:
+            return 4;
+        case io:
+            return 5;
+        case interrupted:
+            return 6;
+        case internal:
+            return 7;
     }
     return 7;
+}
+
+/// Where a standard stream is closed, the next file to be opened would take its number and its
+/// messages.
+void fill_standard_streams() {
+    int descriptor = 0;
+    while (descriptor >= 0 && descriptor <= STDERR_FILENO) descriptor = ::open("/dev/null", O_RDWR);
+    if (descriptor >= 0) ::close(descriptor);
+}
+
+/// Why the command line is wrong; CLI11 itself does not name a command that it does not know.
+std::string explain(const CLI::App& app, const CLI::ParseError& e) {
+    const std::vector<std::string> unknown = app.remaining();
+    if (app.get_subcommands().empty() && !unknown.empty())
+        return "unknown command or option '" + unknown.front() + "'";
+    return e.what();
 }
 
 int run(int argc, char** argv) {
@@ -29,7 +57,9 @@ int run(int argc, char** argv) {
     invocation.start = std::chrono::steady_clock::now();
     for (int i = 0; i < argc; ++i) invocation.command_line += (i ? " " : "") + std::string(argv[i]);
 
-    CLI::App app("covtrace: a path tracer that predicts how many samples and which filter every pixel needs.");
+    CLI::App app(
+        "covtrace: a path tracer that predicts how many samples and which filter every pixel "
+        "needs.");
     app.set_version_flag("--version", "covtrace " + std::string(covtrace::kVersion) + " (" +
                                           std::string(covtrace::kCommit) + ")");
     app.require_subcommand(1);
@@ -41,25 +71,40 @@ int run(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) return app.exit(e);
-        fmt::print(stderr, "covtrace: {}\nRun 'covtrace --help' or 'covtrace COMMAND --help'.\n", e.what());
+        covtrace::cli::say("covtrace: {}\nRun 'covtrace --help' or 'covtrace COMMAND --help'.\n",
+                           explain(app, e));
         return exit_code(covtrace::ErrorKind::usage);
     }
-    return invocation.action();
+    const int code = invocation.action();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+        throw covtrace::Error(
+            covtrace::ErrorKind::io,
+            std::string("cannot write to standard output: ") + std::strerror(errno));
+    return code;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+    fill_standard_streams();
+    // A reader that went away and a file size limit are then errors of the write, reported and
+    // cleaned up after.
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+    using covtrace::cli::say;
     try {
         return run(argc, argv);
     } catch (const covtrace::Error& e) {
-        fmt::print(stderr, "covtrace: {}\n", e.what());
+        say("covtrace: {}\n", e.what());
         return exit_code(e.kind());
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "covtrace: not enough memory\n");
+        say("covtrace: not enough memory\n");
         return exit_code(covtrace::ErrorKind::limit);
+    } catch (const std::system_error& e) {
+        say("covtrace: {}\n", e.what());
+        return exit_code(covtrace::ErrorKind::io);
     } catch (const std::exception& e) {
-        fmt::print(stderr, "covtrace: internal error: {}\n", e.what());
+        say("covtrace: internal error: {}\n", e.what());
         return exit_code(covtrace::ErrorKind::internal);
     }
 }

@@ -1,17 +1,22 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
 
 #include "cli/commands.h"
+#include "cli/message.h"
 #include "cli/progress_line.h"
 #include "cli/values.h"
 #include "core/parallel.h"
 #include "image/image.h"
+#include "image/output_file.h"
 #include "render/session.h"
 #include "render/version.h"
 #include "scene/read_scene.h"
@@ -66,11 +71,14 @@ fs::path output_path(const RenderArguments& a, const SceneDescription& scene) {
     return name;
 }
 
-void require_writable_folder(const fs::path& file) {
+/// Before hours of rendering, not after them.
+void require_writable(const fs::path& file) {
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
     std::error_code error;
     if (!fs::is_directory(folder, error))
-        throw Error(ErrorKind::usage, "the folder of the output '" + file.string() + "' does not exist");
+        throw Error(ErrorKind::usage,
+                    "the folder of the output '" + file.string() + "' does not exist");
+    const OutputFile probe(file);
 }
 
 std::vector<float> flat(const Matrix4& m) {
@@ -81,13 +89,15 @@ std::vector<float> flat(const Matrix4& m) {
     return v;
 }
 
-void describe_render(Image& image, const RenderArguments& a, const RenderScene& scene, const RenderResult& result,
-                     const Monitor& monitor, const std::string& command) {
+void describe_render(Image& image, const RenderArguments& a, const RenderScene& scene,
+                     const RenderResult& result, const Monitor& monitor,
+                     const std::string& command) {
     auto& m = image.metadata;
     m["covtrace:version"] = std::string(kVersion);
     m["covtrace:commit"] = std::string(kCommit);
     m["covtrace:seed"] = std::to_string(a.options.seed);
-    m["covtrace:method"] = std::string(a.options.method == Method::uniform ? "uniform" : "covariance");
+    m["covtrace:method"] =
+        std::string(a.options.method == Method::uniform ? "uniform" : "covariance");
     m["covtrace:isa"] = scene.geometry.isa();
     m["covtrace:sceneHash"] = fmt::format("{:016x}", scene.description.content_hash);
     m["spp"] = static_cast<float>(result.statistics.samples_per_pixel);
@@ -110,8 +120,9 @@ nlohmann::json statistics_json(const RenderResult& result, const Monitor& monito
     const auto pass = [](const PassStatistics& s) {
         nlohmann::json rejected = nlohmann::json::array();
         for (const RejectedSample& r : s.first_rejected) rejected.push_back({r.x, r.y, r.sample});
-        return nlohmann::json{{"samples", s.samples},         {"rays", s.rays},         {"vertices", s.vertices},
-                              {"black_paths", s.black_paths}, {"rejected", s.rejected}, {"first_rejected", rejected}};
+        return nlohmann::json{{"samples", s.samples},   {"rays", s.rays},
+                              {"vertices", s.vertices}, {"black_paths", s.black_paths},
+                              {"rejected", s.rejected}, {"first_rejected", rejected}};
     };
     return {{"seconds_total", monitor.elapsed()},
             {"seconds", result.statistics.seconds},
@@ -121,44 +132,54 @@ nlohmann::json statistics_json(const RenderResult& result, const Monitor& monito
             {"complete", result.complete}};
 }
 
-void keep_layers(Image& image, const std::string& wanted) {
-    if (wanted.empty() || wanted == "all") return;
-    const auto layer_of = [](const std::string& channel) {
-        const auto dot = channel.rfind('.');
-        return dot == std::string::npos ? std::string() : channel.substr(0, dot);
-    };
+/// "all" or names with commas; empty for all. Names are checked before the render, against what any
+/// method writes.
+std::vector<std::string> parse_layers(const std::string& wanted) {
+    constexpr std::array<std::string_view, 13> kKnown{
+        "A",       "Z",       "raw",    "albedo",   "N",   "variance", "error",
+        "samples", "density", "filter", "spectrum", "cov", "covweight"};
     std::vector<std::string> names;
+    if (wanted.empty() || wanted == "all") return names;
     for (size_t from = 0; from <= wanted.size();) {
         const size_t to = std::min(wanted.find(',', from), wanted.size());
         names.push_back(wanted.substr(from, to - from));
         from = to + 1;
     }
-    for (const std::string& name : names) {
-        const bool known = std::any_of(image.channels.begin(), image.channels.end(), [&](const Channel& c) {
-            return c.name == name || layer_of(c.name) == name;
-        });
-        if (!known) throw Error(ErrorKind::usage, "--layers: the image has no layer '" + name + "'");
-    }
+    for (const std::string& name : names)
+        if (std::find(kKnown.begin(), kKnown.end(), name) == kKnown.end())
+            throw Error(ErrorKind::usage,
+                        fmt::format("--layers: there is no layer '{}'; expected all or some of {}",
+                                    name, fmt::join(kKnown, ",")));
+    return names;
+}
+
+/// Drops every layer but the root's R G B A and those that are named.
+void keep_layers(Image& image, const std::vector<std::string>& names) {
+    if (names.empty()) return;
     std::erase_if(image.channels, [&](const Channel& c) {
-        const std::string layer = layer_of(c.name);
-        const bool root = layer.empty() && c.name != "Z";
-        return !root && std::find(names.begin(), names.end(), layer.empty() ? c.name : layer) == names.end();
+        const size_t dot = c.name.rfind('.');
+        const bool root = dot == std::string::npos && c.name != "Z";
+        return !root && std::find(names.begin(), names.end(), c.name.substr(0, dot)) == names.end();
     });
 }
 
 void print_warnings(const Warnings& warnings) {
     for (const Warning& w : warnings) {
         const std::string where = w.where.to_string();
-        fmt::print(stderr, "warning: {}{}{}\n", where, where.empty() ? "" : ": ", w.text);
+        say("warning: {}{}{}\n", where, where.empty() ? "" : ": ", w.text);
     }
 }
 
 int render_scene(RenderArguments a, const Invocation& invocation) {
     const ThreadLimit threads(a.threads);
-    if (!a.seconds.empty()) a.options.seconds = parse_duration(a.seconds);
-    if (!a.resolution.empty()) a.overrides.resolution = parse_resolution(a.resolution);
-    if (!a.crop.empty()) a.overrides.crop = parse_crop(a.crop);
-    if (!a.shutter.empty()) a.overrides.shutter = parse_pair(a.shutter);
+    if (!a.seconds.empty()) a.options.seconds = parse_duration("--time", a.seconds);
+    if (!a.resolution.empty())
+        a.overrides.resolution = parse_resolution("--resolution", a.resolution);
+    if (!a.crop.empty()) a.overrides.crop = parse_crop("--crop", a.crop);
+    if (!a.shutter.empty()) a.overrides.shutter = parse_interval("--shutter", a.shutter);
+
+    if (a.quiet && a.progress == ProgressStyle::automatic) a.progress = ProgressStyle::none;
+    const std::vector<std::string> layers = parse_layers(a.layers);
 
     const ProgressReporter reporter = make_reporter(a.progress);
     Monitor monitor(reporter.report, reporter.interval, invocation.start);
@@ -167,8 +188,8 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
     SceneDescription description = read_pbrt(a.scene);
     apply(a.overrides, description);
     const fs::path output = output_path(a, description);
-    require_writable_folder(output);
-    if (!a.png.empty()) require_writable_folder(a.png);
+    for (const fs::path& file : {output, fs::path(a.png), fs::path(a.stats)})
+        if (!file.empty()) require_writable(file);
 
     RenderScene scene(std::move(description), a.isa);
     if (!a.quiet) {
@@ -177,36 +198,53 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
     }
     RenderResult result = render(scene, a.options, monitor);
     finish_line(a.progress);
-    keep_layers(result.image, a.layers);
+    keep_layers(result.image, layers);
     describe_render(result.image, a, scene, result, monitor, invocation.command_line);
     write_exr(result.image, output, threads.threads());
     if (!a.png.empty()) write_png(result.image, a.png);
     if (!a.stats.empty()) {
-        std::ofstream file(a.stats);
-        file << statistics_json(result, monitor).dump(2) << "\n";
-        if (!file.flush()) throw Error(ErrorKind::io, "cannot write '" + a.stats + "'");
+        const std::string text = statistics_json(result, monitor).dump(2) + "\n";
+        OutputFile file(a.stats);
+        file.write(text.data(), text.size());
+        file.commit();
     }
-    const uint64_t rejected = result.statistics.covariance.rejected + result.statistics.radiance.rejected;
+    const uint64_t rejected =
+        result.statistics.covariance.rejected + result.statistics.radiance.rejected;
     if (rejected > 0) {
-        const auto& first = result.statistics.covariance.rejected > 0 ? result.statistics.covariance.first_rejected
-                                                                      : result.statistics.radiance.first_rejected;
-        fmt::print(stderr, "warning: {} samples were not finite and count as black; the first at x,y,sample = {},{},{}\n",
-                   rejected, first[0].x, first[0].y, first[0].sample);
+        const auto& first = result.statistics.covariance.rejected > 0
+                                ? result.statistics.covariance.first_rejected
+                                : result.statistics.radiance.first_rejected;
+        say("warning: {} samples were not finite and count as black; the first at x,y,sample = "
+            "{},{},{}\n",
+            rejected, first[0].x, first[0].y, first[0].sample);
     }
     if (!a.quiet)
-        fmt::print(stderr, "{}: {:.4g} samples per pixel in {:.1f} s\n", output.string(),
-                   result.statistics.samples_per_pixel, monitor.elapsed());
+        say("{}: {:.4g} samples per pixel in {:.1f} s\n", output.string(),
+            result.statistics.samples_per_pixel, monitor.elapsed());
     return result.complete ? 0 : 6;
 }
 
 template <typename T>
-void add_choice(CLI::App* c, const std::string& name, T& value, const std::map<std::string, T>& choices,
-                const std::string& help) {
-    c->add_option(name, value, help)->transform(CLI::CheckedTransformer(choices).description(""))->option_text([&] {
-        std::string names;
-        for (const auto& [choice, unused] : choices) names += (names.empty() ? "" : "|") + choice;
-        return names;
-    }());
+void add_choice(CLI::App* c, const std::string& name, T& value,
+                const std::map<std::string, T>& choices, const std::string& help) {
+    std::string names;
+    for (const auto& [choice, unused] : choices) names += (names.empty() ? "" : "|") + choice;
+    const auto choose = [name, &value, choices, names](const std::string& text) {
+        const auto it = choices.find(text);
+        if (it == choices.end())
+            throw Error(ErrorKind::usage, name + ": '" + text + "' is none of " + names);
+        value = it->second;
+    };
+    c->add_option_function<std::string>(name, choose, help)->option_text(names);
+}
+
+template <typename T>
+void add_positive(CLI::App* c, const std::string& name, std::optional<T>& value, double most,
+                  const std::string& help) {
+    const auto parse = [name, &value, most](const std::string& text) {
+        value = static_cast<T>(parse_positive(name, text, most));
+    };
+    c->add_option_function<std::string>(name, parse, help)->option_text("NUMBER");
 }
 
 }  // namespace
@@ -219,45 +257,62 @@ void add_render(CLI::App& app, Invocation& invocation) {
     add_choice<Method>(c, "--method", a->options.method,
                        {{"uniform", Method::uniform}, {"covariance", Method::covariance}},
                        "plain path tracer, or covariance tracing (default)");
-    c->add_option("--spp", a->options.spp, "average samples per pixel (default: the scene's)")->check(CLI::PositiveNumber);
+    add_positive(c, "--spp", a->options.spp, 1 << 30,
+                 "average samples per pixel (default: the scene's)");
     c->add_option("--time", a->seconds, "wall-clock budget: 2.5, 45s, 3m, 1h30m");
-    c->add_option("--cov-spp", a->options.cov_spp, "covariance paths per pixel (default: spp/4 in [2, 4])")
+    c->add_option("--cov-spp", a->options.cov_spp,
+                  "covariance paths per pixel (default: spp/4 in [2, 4])")
         ->check(CLI::Range(1, 1 << 20));
     add_choice<DensityRule>(c, "--density", a->options.density,
                             {{"tempered", DensityRule::tempered}, {"thesis", DensityRule::thesis}},
                             "how counts follow from the prediction");
-    c->add_option("--max-spp", a->options.max_spp, "most samples in any pixel (default: 16 x average)")
+    c->add_option("--max-spp", a->options.max_spp,
+                  "most samples in any pixel (default: 16 x average)")
         ->check(CLI::Range(1, 1 << 30));
-    add_choice<Occlusion>(c, "--occlusion", a->options.occlusion, {{"grid", Occlusion::grid}, {"none", Occlusion::none}},
+    add_choice<Occlusion>(c, "--occlusion", a->options.occlusion,
+                          {{"grid", Occlusion::grid}, {"none", Occlusion::none}},
                           "occluders beside the rays of the analysis");
-    c->add_option("--voxels", a->options.voxels, "width of the occlusion grid (default 200)")->check(CLI::Range(1, 2048));
+    c->add_option("--voxels", a->options.voxels, "width of the occlusion grid (default 200)")
+        ->check(CLI::Range(1, 2048));
     add_choice<FilterRule>(c, "--filter", a->options.filter,
                            {{"verified", FilterRule::verified}, {"thesis", FilterRule::thesis}},
                            "the filter's constant: verified, or the thesis' equation 5.7");
     c->add_option("--resolution", a->resolution, "WxH in place of the scene's");
     c->add_option("--crop", a->crop, "x0,y0,x1,y1: only these pixels, end exclusive");
-    c->add_option("--max-depth", a->options.max_depth, "most scattering events (default: the scene's)")
+    c->add_option("--max-depth", a->options.max_depth,
+                  "most scattering events (default: the scene's)")
         ->check(CLI::NonNegativeNumber);
-    c->add_option("--seed", a->options.seed, "seed of all random numbers (default 0)");
-    c->add_option("--threads", a->threads, "worker threads (default: all cores)")->check(CLI::Range(1, 4096));
+    c->add_option_function<std::string>(
+         "--seed", [a](const std::string& text) { a->options.seed = parse_seed("--seed", text); },
+         "seed of all random numbers (default 0)")
+        ->option_text("NUMBER");
+    c->add_option("--threads", a->threads, "worker threads (default: all cores)")
+        ->check(CLI::Range(1, 4096));
     c->add_option("--isa", a->isa, "instruction set of the ray tracing")
         ->check(CLI::IsMember({"sse2", "avx", "avx2", "avx512"}).description(""))
         ->option_text("sse2|avx|avx2|avx512");
     c->add_option("--shutter", a->shutter, "T0,T1 in place of the scene's");
-    c->add_option("--focus", a->overrides.focal_distance, "focal distance in place of the scene's")->check(CLI::PositiveNumber);
-    c->add_option("--fstop", a->overrides.f_number, "lens by f-number, for a full-frame sensor and metres")
-        ->check(CLI::PositiveNumber);
+    add_positive(c, "--focus", a->overrides.focal_distance, 1e30,
+                 "focal distance in place of the scene's");
+    add_positive(c, "--fstop", a->overrides.f_number, 1e30,
+                 "lens by f-number, for a full-frame sensor and metres");
     c->add_option("--png", a->png, "also a tone-mapped sRGB picture");
     c->add_option("--layers", a->layers, "all, or the names of layers to keep beside the image");
     add_choice<ProgressStyle>(c, "--progress", a->progress,
-                              {{"auto", ProgressStyle::automatic}, {"bar", ProgressStyle::bar},
-                               {"plain", ProgressStyle::plain}, {"percent", ProgressStyle::percent},
-                               {"json", ProgressStyle::json}, {"none", ProgressStyle::none}},
+                              {{"auto", ProgressStyle::automatic},
+                               {"bar", ProgressStyle::bar},
+                               {"plain", ProgressStyle::plain},
+                               {"percent", ProgressStyle::percent},
+                               {"json", ProgressStyle::json},
+                               {"none", ProgressStyle::none}},
                               "how progress is shown on standard error");
     c->add_option("--stats", a->stats, "counters and phase times as JSON");
-    c->add_flag("--reproducible", a->reproducible, "leave command, seconds and date out of the file");
+    c->add_flag("--reproducible", a->reproducible,
+                "leave command, seconds and date out of the file");
     c->add_flag("--quiet", a->quiet, "errors only");
-    c->callback([a, &invocation] { invocation.action = [a, &invocation] { return render_scene(*a, invocation); }; });
+    c->callback([a, &invocation] {
+        invocation.action = [a, &invocation] { return render_scene(*a, invocation); };
+    });
 }
 
 }  // namespace covtrace::cli

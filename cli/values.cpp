@@ -1,9 +1,12 @@
 #include "cli/values.h"
 
-#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
 #include <charconv>
+#include <cmath>
 #include <string_view>
-#include <vector>
+
+#include "core/error.h"
 
 namespace covtrace::cli {
 
@@ -17,24 +20,29 @@ bool take_number(std::string_view& text, T& value) {
     return true;
 }
 
-/// Exactly `count` numbers with `separator` between them.
-template <typename T>
-std::vector<T> parse_list(const std::string& text, size_t count, char separator, const char* expected) {
+[[noreturn]] void refuse(const std::string& option, const std::string& text,
+                         const std::string& expected) {
+    throw Error(ErrorKind::usage, option + ": '" + text + "' is not " + expected);
+}
+
+/// Exactly N numbers with `separator` between them.
+template <typename T, size_t N>
+std::array<T, N> parse_list(const std::string& option, const std::string& text, char separator,
+                            const char* expected) {
     std::string_view rest = text;
-    std::vector<T> values(count);
-    for (size_t i = 0; i < count; ++i) {
+    std::array<T, N> values{};
+    for (size_t i = 0; i < N; ++i) {
         const bool separated = i == 0 || (!rest.empty() && rest.front() == separator);
         if (separated && i > 0) rest.remove_prefix(1);
-        if (!separated || !take_number(rest, values[i]))
-            throw CLI::ValidationError("'" + text + "' is not " + expected);
+        if (!separated || !take_number(rest, values[i])) refuse(option, text, expected);
     }
-    if (!rest.empty()) throw CLI::ValidationError("'" + text + "' is not " + expected);
+    if (!rest.empty()) refuse(option, text, expected);
     return values;
 }
 
 }  // namespace
 
-double parse_duration(const std::string& text) {
+double parse_duration(const std::string& option, const std::string& text) {
     std::string_view rest = text;
     double seconds = 0;
     bool any = false;
@@ -51,24 +59,47 @@ double parse_duration(const std::string& text) {
         any = true;
     }
     if (!any || !rest.empty() || !(seconds > 0) || !(seconds < 1e9))
-        throw CLI::ValidationError("'" + text + "' is not a duration such as 2.5, 45s, 3m or 1h30m");
+        refuse(option, text, "a duration such as 2.5, 45s, 3m or 1h30m");
     return seconds;
 }
 
-std::array<int, 2> parse_resolution(const std::string& text) {
-    const auto v = parse_list<int>(text, 2, 'x', "a resolution such as 640x360");
-    if (v[0] < 1 || v[1] < 1) throw CLI::ValidationError("'" + text + "' is not a resolution such as 640x360");
-    return {v[0], v[1]};
+std::array<int, 2> parse_resolution(const std::string& option, const std::string& text) {
+    constexpr auto kExpected = "a resolution such as 640x360";
+    const auto v = parse_list<int, 2>(option, text, 'x', kExpected);
+    if (v[0] < 1 || v[1] < 1) refuse(option, text, kExpected);
+    return v;
 }
 
-PixelBounds parse_crop(const std::string& text) {
-    const auto v = parse_list<int>(text, 4, ',', "a crop x0,y0,x1,y1 in pixels");
-    return {v[0], v[1], v[2], v[3]};
+PixelBounds parse_crop(const std::string& option, const std::string& text) {
+    constexpr auto kExpected = "a crop x0,y0,x1,y1 in pixels with x0 < x1 and y0 < y1";
+    const auto v = parse_list<int, 4>(option, text, ',', kExpected);
+    const PixelBounds crop{v[0], v[1], v[2], v[3]};
+    if (crop.empty()) refuse(option, text, kExpected);
+    return crop;
 }
 
-std::array<float, 2> parse_pair(const std::string& text) {
-    const auto v = parse_list<float>(text, 2, ',', "a pair of numbers such as 0,0.5");
-    return {v[0], v[1]};
+std::array<float, 2> parse_interval(const std::string& option, const std::string& text) {
+    constexpr auto kExpected = "a begin and a later end such as 0,0.5";
+    const auto v = parse_list<float, 2>(option, text, ',', kExpected);
+    if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !(v[0] < v[1]))
+        refuse(option, text, kExpected);
+    return v;
+}
+
+double parse_positive(const std::string& option, const std::string& text, double most) {
+    std::string_view rest = text;
+    double value = 0;
+    if (!take_number(rest, value) || !rest.empty() || !(value > 0) || !(value <= most))
+        refuse(option, text, "a number above 0 and up to " + fmt::format("{:.10g}", most));
+    return value;
+}
+
+uint64_t parse_seed(const std::string& option, const std::string& text) {
+    std::string_view rest = text;
+    uint64_t value = 0;
+    if (!take_number(rest, value) || !rest.empty())
+        refuse(option, text, "a whole number from 0 to 2^64 - 1");
+    return value;
 }
 
 }  // namespace covtrace::cli

@@ -1,7 +1,9 @@
-/// Option values that need a parser of their own. All throw CLI::ValidationError, a usage error.
+/// Option values that need a parser of their own. All throw Error(usage), whose message begins with
+/// `option`.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 
 #include "image/image.h"
@@ -9,12 +11,16 @@
 namespace covtrace::cli {
 
 /// "2.5", "45s", "3m", "1h30m" in seconds; above zero.
-double parse_duration(const std::string& text);
+double parse_duration(const std::string& option, const std::string& text);
 /// "640x360".
-std::array<int, 2> parse_resolution(const std::string& text);
+std::array<int, 2> parse_resolution(const std::string& option, const std::string& text);
 /// "x0,y0,x1,y1" in pixels, end exclusive.
-PixelBounds parse_crop(const std::string& text);
-/// "a,b", two numbers.
-std::array<float, 2> parse_pair(const std::string& text);
+PixelBounds parse_crop(const std::string& option, const std::string& text);
+/// "a,b", two finite numbers with a < b.
+std::array<float, 2> parse_interval(const std::string& option, const std::string& text);
+/// A finite number above zero and up to `most`.
+double parse_positive(const std::string& option, const std::string& text, double most);
+/// A whole number in [0, 2^64).
+uint64_t parse_seed(const std::string& option, const std::string& text);
 
 }  // namespace covtrace::cli

@@ -8,8 +8,8 @@ namespace covtrace {
 
 GeometryHandle new_still_instance(const EmbreeDevice& device, RTCScene scene, const Transform& map);
 
-/// With as many keys as it takes (at most 129) for Embree's interpolation to keep within 1e-5 of the
-/// extent of `scene` of where `motion` puts it.
+/// With as many keys as it takes (at most 129) for Embree's interpolation to keep within 1e-5 of
+/// the extent of `scene` of where `motion` puts it.
 GeometryHandle new_moving_instance(const EmbreeDevice& device, RTCScene scene, const Motion& motion,
                                    const ShutterClock& clock);
 

@@ -1,6 +1,7 @@
 /// All shapes of a scene behind Embree: intersection, occlusion, and the local geometry of a hit.
-/// Embree's types stay in the .cpp files of this folder. Times are the scene's, clamped to the camera's
-/// shutter. Alpha textures are not looked at here. Interfaces with no medium on either side are not there.
+/// Embree's types stay in the .cpp files of this folder. Times are the scene's, clamped to the
+/// camera's shutter. Alpha textures are not looked at here. Interfaces with no medium on either
+/// side are not there.
 #pragma once
 
 #include <memory>

@@ -18,41 +18,49 @@ void VoxelRasterizer::add(const std::array<Vec3, 3>& corners, const Affine* velo
     const Vec3 area = 0.5f * cross(corners[1] - corners[0], corners[2] - corners[0]);
     const float size = length(area);
     if (!(size > 0) || !std::isfinite(size)) return;
+    Bounds3 bounds;
+    for (Vec3 p : corners) bounds.extend(p);
+    const Bounds3& box = layout_.box;
+    for (int k = 0; k < 3; ++k)
+        if (bounds.hi[k] < box.lo[k] || bounds.lo[k] > box.hi[k]) return;
     normal_ = area / size;
     velocity_ = velocity;
-    split({corners, size * weight});
+    split(corners[0], corners[1], corners[2], size * weight);
 }
 
-void VoxelRasterizer::split(const Piece& piece) {
-    const auto& p = piece.corners;
-    for (int k = 0; k < 3; ++k) {
-        const float lo = std::min({p[0][k], p[1][k], p[2][k]}),
-                    hi = std::max({p[0][k], p[1][k], p[2][k]});
-        if (hi < layout_.box.lo[k] || lo > layout_.box.hi[k]) return;
-    }
-    size_t longest = 0;
-    float l2[3];
-    for (size_t i = 0; i < 3; ++i) {
-        l2[i] = length_squared(p[(i + 1) % 3] - p[i]);
-        if (l2[i] > l2[longest]) longest = i;
-    }
+void VoxelRasterizer::split(Vec3 a, Vec3 b, Vec3 c, float area) {
     // Halving the longest edge down to half a voxel gives 16 to 32 pieces per voxel of a plane, and
     // no more than it takes along slivers.
-    if (l2[longest] <= 0.25f * layout_.size * layout_.size) return enter(piece);
-    const Vec3 a = p[longest], b = p[(longest + 1) % 3], c = p[(longest + 2) % 3];
+    const float ab = length_squared(b - a), bc = length_squared(c - b), ca = length_squared(a - c);
+    const float longest = std::max({ab, bc, ca});
+    if (longest <= 0.25f * layout_.size * layout_.size)
+        return enter((a + b + c) * (1.0f / 3), area);
+    if (longest == bc) {
+        const Vec3 first = a;
+        a = b, b = c, c = first;
+    } else if (longest == ca) {
+        const Vec3 last = c;
+        c = b, b = a, a = last;
+    }
     const Vec3 middle = (a + b) * 0.5f;
-    if (middle == a || middle == b) return enter(piece);
-    split({{a, middle, c}, 0.5f * piece.area});
-    split({{middle, b, c}, 0.5f * piece.area});
+    // Where float has no more room between the corners, or nothing of the piece is in the box.
+    if (middle == a || middle == b) return enter((a + b + c) * (1.0f / 3), area);
+    if (longest > sqr(16 * layout_.size)) {
+        const Vec3 lo = min(a, min(b, c)), hi = max(a, max(b, c));
+        for (int k = 0; k < 3; ++k)
+            if (hi[k] < layout_.box.lo[k] || lo[k] > layout_.box.hi[k]) return;
+    }
+    split(a, middle, c, 0.5f * area);
+    split(middle, b, c, 0.5f * area);
 }
 
-void VoxelRasterizer::enter(const Piece& piece) {
-    const Vec3 center = (piece.corners[0] + piece.corners[1] + piece.corners[2]) * (1.0f / 3);
+void VoxelRasterizer::enter(Vec3 center, float area) {
     int cell[3];
     Vec3 middle;
+    const float per_voxel = 1 / layout_.size;
     for (int k = 0; k < 3; ++k) {
         if (center[k] < layout_.box.lo[k] || center[k] > layout_.box.hi[k]) return;
-        cell[k] = static_cast<int>((center[k] - layout_.origin[k]) / layout_.size);
+        cell[k] = static_cast<int>((center[k] - layout_.origin[k]) * per_voxel);
         cell[k] = std::clamp(cell[k], 0, layout_.bricks[static_cast<size_t>(k)] * 8 - 1);
         middle[k] = layout_.origin[k] + (static_cast<float>(cell[k]) + 0.5f) * layout_.size;
     }
@@ -68,7 +76,7 @@ void VoxelRasterizer::enter(const Piece& piece) {
         last_key_ = key;
         last_ = found->second;
     }
-    const float w = piece.area;
+    const float w = area;
     const Vec3 n = normal_;
     VoxelSums s;
     s.area = w;

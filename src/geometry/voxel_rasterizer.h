@@ -44,12 +44,9 @@ class VoxelRasterizer {
     std::vector<VoxelEntry> take();
 
   private:
-    struct Piece {
-        std::array<Vec3, 3> corners;
-        float area;
-    };
-    void split(const Piece& piece);
-    void enter(const Piece& piece);
+    /// `area` belongs to the piece, weight included.
+    void split(Vec3 a, Vec3 b, Vec3 c, float area);
+    void enter(Vec3 center, float area);
 
     const VoxelLayout& layout_;
     Vec3 normal_;

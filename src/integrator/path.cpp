@@ -19,6 +19,10 @@ Rgb transmittance(const RenderScene& scene, MediumId medium, float distance) {
     return {pass(sigma.r), pass(sigma.g), pass(sigma.b)};
 }
 
+bool transmits(const Bsdf& bsdf) {
+    return std::holds_alternative<DielectricBsdf>(bsdf) || std::holds_alternative<DiffuseTransmissionBsdf>(bsdf);
+}
+
 /// The medium that a ray is in after it leaves `hit` in the direction `w`.
 MediumId medium_beyond(const PlacedShape& shape, const SurfaceHit& hit, Vec3 w, MediumId current) {
     const ShapeDescription& d = shape.description;
@@ -67,6 +71,8 @@ class PathTracer {
             sampler_.set_dimension(depth * kPairsPerBounce);
             const Vec2 u_choice = sampler_.next_2d();
             const Vec2 u_light = sampler_.next_2d(), u_bsdf = sampler_.next_2d();
+            // Lights are chosen for the side that can be lit: the viewer's, or both where light passes through.
+            light_normal_ = transmits(bsdf) ? Vec3{} : face_forward(hit.ns, wo);
             if (!is_specular(bsdf)) add_direct(hit, shape, bsdf, frame, wo_local, u_choice.x, u_light, vertex);
             if (!scatter(hit, shape, bsdf, frame, wo_local, u_choice.y, u_bsdf, vertex)) break;
             if (!survives(depth)) break;
@@ -129,7 +135,7 @@ class PathTracer {
 
     void add_direct(const SurfaceHit& hit, const PlacedShape& shape, const Bsdf& bsdf, const Frame& frame,
                     Vec3 wo_local, float u_select, Vec2 u, PathVertex* vertex) {
-        const auto light = scene_.lights.sample(hit.position, hit.ns, hit.time, u_select, u);
+        const auto light = scene_.lights.sample(hit.position, light_normal_, hit.time, u_select, u);
         if (!light || is_black(light->radiance) || !(light->pdf > 0)) return;
         const Vec3 wi_local = frame.to_local(light->wi);
         const Rgb f = eval(bsdf, wo_local, wi_local);
@@ -181,7 +187,7 @@ class PathTracer {
             }
         }
         previous_position_ = hit.position;
-        previous_normal_ = hit.ns;
+        previous_normal_ = light_normal_;
         medium_ = medium_beyond(shape, hit, wi, medium_);
         ray_.origin = Geometry::offset_origin(hit, wi);
         ray_.direction = wi;
@@ -213,7 +219,8 @@ class PathTracer {
     float eta_scale_ = 1;
     MediumId medium_ = -1;
     int passed_interfaces_ = 0;
-    Vec3 previous_position_, previous_normal_;
+    Vec3 light_normal_;                         // what the lights are told at the current vertex
+    Vec3 previous_position_, previous_normal_;  // and at the last one, for the weights
 };
 
 }  // namespace

@@ -7,9 +7,9 @@ namespace covtrace {
 RenderScene::RenderScene(SceneDescription scene_description, const std::string& isa)
     : description(std::move(scene_description)),
       geometry(description, isa),
-      textures(description),
-      materials(description, textures),
       lights(description, geometry),
+      textures(description),
+      materials(description, textures, IlluminantAdaptation(lights.total_power())),
       camera(description.camera, description.film.width, description.film.height),
       filter(description.filter) {
     for (const MediumDescription& m : description.media) {

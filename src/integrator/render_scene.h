@@ -23,9 +23,9 @@ struct RenderScene {
 
     SceneDescription description;
     Geometry geometry;
-    TextureStore textures;
-    MaterialStore materials;
     Lights lights;
+    TextureStore textures;
+    MaterialStore materials;  ///< reflectances as they are in the light of all `lights` together
     Camera camera;
     PixelFilter filter;
     /// Extinction per medium, per scene unit: absorption alone (scattering is not rendered).

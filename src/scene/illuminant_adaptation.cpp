@@ -1,6 +1,8 @@
 #include "scene/illuminant_adaptation.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "core/parallel.h"
 #include "scene/sigmoid_spectrum.h"
@@ -13,10 +15,18 @@ constexpr float kFaintestChannel = 0.05f;
 /// Illuminants whose channels differ by less are white.
 constexpr float kSmallestTint = 1e-3f;
 
-/// Nodes of the table per axis, spaced evenly in the square root of the reflectance: close together
-/// near black, where the change depends on the ratios of the channels alone.
-constexpr int kNodes = 33;
+/// Nodes of the table per axis. They crowd towards black and white, where the change depends on the
+/// ratios of the channels, or of what the channels lack to 1, alone.
+constexpr int kNodes = 25;
 constexpr int kCells = kNodes - 1;
+
+float node(int64_t i) {
+    return sqr(std::sin(0.5f * kPi * static_cast<float>(i) / kCells));
+}
+/// Inverse of node().
+float node_position(float value) {
+    return std::acos(1 - 2 * value) * kInvPi * kCells;
+}
 
 /// What is not a number becomes 0.
 Rgb clamp_to_unit(Rgb c) {
@@ -50,29 +60,30 @@ IlluminantAdaptation::IlluminantAdaptation(Rgb illuminant) {
     }
 }
 
-Rgb IlluminantAdaptation::operator()(Rgb reflectance) const {
-    const Rgb before = clamp_to_unit(reflectance);
-    if (is_identity() || is_grey(before)) return before;
-    const SigmoidSpectrum spectrum = sigmoid_spectrum(before);
-    std::array<double, 3> change{};
+Rgb IlluminantAdaptation::change(Rgb reflectance) const {
+    if (is_identity() || is_grey(reflectance)) return {};
+    const SigmoidSpectrum spectrum = sigmoid_spectrum(reflectance);
+    std::array<double, 3> sum{};
     for (const Weight& w : weights_) {
         const double s = spectrum.at(w.wavelength);
-        for (size_t c = 0; c < 3; ++c) change[c] += s * w.change[c];
+        for (size_t c = 0; c < 3; ++c) sum[c] += s * w.change[c];
     }
-    return clamp_to_unit(before + Rgb(static_cast<float>(change[0]), static_cast<float>(change[1]),
-                                      static_cast<float>(change[2])));
+    return {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])};
+}
+
+Rgb IlluminantAdaptation::operator()(Rgb reflectance) const {
+    const Rgb before = clamp_to_unit(reflectance);
+    return clamp_to_unit(before + change(before));
 }
 
 AdaptationTable::AdaptationTable(const IlluminantAdaptation& adaptation) {
     if (adaptation.is_identity()) return;
     constexpr auto kCount = static_cast<size_t>(kNodes);
     changes_.resize(kCount * kCount * kCount);
-    const auto value = [](int64_t i) { return sqr(static_cast<float>(i) / kCells); };
     parallel_for(kNodes * kNodes, [&](int64_t row) {
-        for (int b = 0; b < kNodes; ++b) {
-            const Rgb node{value(row / kNodes), value(row % kNodes), value(b)};
-            changes_[static_cast<size_t>(row * kNodes + b)] = adaptation(node) - node;
-        }
+        for (int b = 0; b < kNodes; ++b)
+            changes_[static_cast<size_t>(row * kNodes + b)] =
+                adaptation.change({node(row / kNodes), node(row % kNodes), node(b)});
     });
 }
 
@@ -87,13 +98,12 @@ Rgb AdaptationTable::operator()(Rgb reflectance) const {
     std::array<float, 3> rest{};
     for (int c = 0; c < 3; ++c) {
         const auto i = static_cast<size_t>(c);
-        const float x = std::sqrt(before[c]) * kCells;
+        const float x = node_position(before[c]);
         corner[i] = std::min(static_cast<int>(x), kCells - 1);
         rest[i] = x - static_cast<float>(corner[i]);
     }
-    // From the cell's first corner to its last, along the channels in the order of their rests:
-    // within one of six tetrahedra that share the cell's diagonal, so that nearly grey colours take
-    // no part in the change of colourful ones.
+    // From the cell's first corner to its last, one channel after the other: linear in each of six
+    // tetrahedra that share the cell's diagonal, so that what is nearly grey hardly changes.
     std::array<size_t, 3> order{0, 1, 2};
     if (rest[order[0]] < rest[order[1]]) std::swap(order[0], order[1]);
     if (rest[order[1]] < rest[order[2]]) std::swap(order[1], order[2]);

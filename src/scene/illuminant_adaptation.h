@@ -33,6 +33,8 @@ class IlluminantAdaptation {
     /// The reflectance (or transmittance) to render with, in [0, 1]; greys stay as they are. Fits a
     /// spectrum, some 10 microseconds: for load time.
     Rgb operator()(Rgb reflectance) const;
+    /// What is added to a reflectance in [0, 1], before the sum is cut to [0, 1].
+    Rgb change(Rgb reflectance) const;
 
   private:
     struct Weight {
@@ -42,10 +44,14 @@ class IlluminantAdaptation {
     std::vector<Weight> weights_;
 };
 
-/// The same by interpolation in a table, for textures: no allocation, a few nanoseconds, within
-/// 0.005. Greys stay as they are here too. Immutable and thread-safe after construction.
+/// The same by interpolation in a table, for textures: no allocation, some 10 nanoseconds. Within
+/// 0.005 for lights no more colourful than a candle; within 0.015 for saturated reflectances under
+/// the most saturated light. Greys stay as they are here too. Immutable and thread-safe after
+/// construction.
 class AdaptationTable {
   public:
+    /// The identity.
+    AdaptationTable() = default;
     explicit AdaptationTable(const IlluminantAdaptation& adaptation);
     Rgb operator()(Rgb reflectance) const;
 

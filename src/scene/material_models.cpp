@@ -4,6 +4,7 @@
 
 #include "scene/named_spectra.h"
 #include "scene/names.h"
+#include "scene/sigmoid_spectrum.h"
 #include "scene/spectrum_parameter.h"
 #include "scene/texture_builder.h"
 #include "scene/version_three.h"
@@ -73,6 +74,7 @@ ConductorMaterial Builder::conductor(const std::string& prefix) {
     const auto spectral = [&](const Parameter* given,
                               const char* otherwise) -> std::optional<Spectrum> {
         if (!given) return material_spectrum(otherwise);
+        if (given->type == ParameterType::rgb) return unbounded_spectrum(rgb_value(*given));
         if (given->type != ParameterType::spectrum) return std::nullopt;
         std::optional<Spectrum> s = spectrum_value(*given, context);
         // An index of 0 outside of the measured range would make a mirror of it.
@@ -82,7 +84,9 @@ ConductorMaterial Builder::conductor(const std::string& prefix) {
     const auto eta_spectrum = spectral(eta, "metal-Cu-eta");
     const auto k_spectrum = spectral(k, "metal-Cu-k");
     if (eta_spectrum && k_spectrum) {
-        const ConductorColours c = conductor_colours(*eta_spectrum, *k_spectrum);
+        const bool is_rgb = eta && eta->type == ParameterType::rgb;
+        const ConductorColours c = conductor_colours(
+            *eta_spectrum, *k_spectrum, is_rgb ? rgb_value(*eta) : channel_means(*eta_spectrum));
         m.eta = textures.constant(c.eta, true);
         m.k = textures.constant(c.k, true);
     } else {

@@ -62,8 +62,12 @@ float Environment::pdf(Vec3 n, Vec3 w) const {
     return map_->pdf(stretched / l) * determinant_ / (l * l * l);
 }
 
+Rgb Environment::mean_radiance() const {
+    return map_ ? scale_ * map_->mean() : scale_;
+}
+
 float Environment::irradiance() const {
-    return kPi * choice_weight(scale_) * (map_ ? map_->mean() : 1.0f);
+    return kPi * choice_weight(mean_radiance());
 }
 
 void Environment::prepare_spectrum() {

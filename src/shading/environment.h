@@ -31,6 +31,8 @@ class Environment {
     /// the cosine; n zero: from all sides.
     Vec3 sample(Vec3 n, Vec2 u) const;
     float pdf(Vec3 n, Vec3 w) const;
+    /// Over all directions, of a rigid transform.
+    Rgb mean_radiance() const;
     /// Rough irradiance of any surface, mean of the channels: 0 where the light is black.
     float irradiance() const;
 

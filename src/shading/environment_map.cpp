@@ -164,7 +164,8 @@ void EnvironmentMap::build_distribution() {
     const auto w = static_cast<size_t>(width_), h = static_cast<size_t>(height_);
     column_cdf_.resize(w * h);
     row_cdf_.resize(h);
-    std::vector<double> row_sum(h), row_mean(h);
+    std::vector<double> row_sum(h);
+    std::vector<std::array<double, 3>> row_mean(h);
     parallel_for(height_, [&](int64_t row) {
         const int y = static_cast<int>(row);
         const auto r = static_cast<size_t>(row);
@@ -173,25 +174,29 @@ void EnvironmentMap::build_distribution() {
             return 0.125 * weight(x, y - 1) + 0.75 * weight(x, y) + 0.125 * weight(x, y + 1);
         };
         std::vector<double> cumulated(w);
-        double sum = 0, mean = 0;
+        double sum = 0;
+        std::array<double, 3> mean{};
         for (int x = 0; x < width_; ++x) {
             sum += 0.125 * column(x - 1) + 0.75 * column(x) + 0.125 * column(x + 1);
             cumulated[static_cast<size_t>(x)] = sum;
-            mean += choice_weight(texel(x, y));
+            for (int c = 0; c < 3; ++c) mean[static_cast<size_t>(c)] += texel(x, y)[c];
         }
         for (size_t x = 0; x < w; ++x)
             column_cdf_[r * w + x] =
                 static_cast<float>(sum > 0 ? cumulated[x] / sum : double(x + 1) / double(w));
         row_sum[r] = sum;
-        row_mean[r] = mean * solid_angle(y);
+        for (double& channel : mean) channel *= solid_angle(y);
+        row_mean[r] = mean;
     });
-    double total = 0, mean = 0;
+    double total = 0;
+    std::array<double, 3> mean{};
     for (size_t y = 0; y < h; ++y) {
         total += row_sum[y];
-        mean += row_mean[y];
+        for (size_t c = 0; c < 3; ++c) mean[c] += row_mean[y][c];
     }
     mean_weight_ = static_cast<float>(total / (double(w) * double(h)));
-    mean_ = static_cast<float>(mean / (4 * double(kPi)));
+    for (int c = 0; c < 3; ++c)
+        mean_[c] = static_cast<float>(mean[static_cast<size_t>(c)] / (4 * double(kPi)));
     double cumulated = 0;
     for (size_t y = 0; y < h; ++y) {
         cumulated += row_sum[y];

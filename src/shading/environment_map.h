@@ -39,8 +39,8 @@ class EnvironmentMap {
     /// Per solid angle.
     float pdf(Vec3 w) const;
 
-    /// Mean of radiance's channels over the sphere.
-    float mean() const { return mean_; }
+    /// Mean radiance over the sphere.
+    Rgb mean() const { return mean_; }
     /// Irradiance of a surface that faces +z.
     Rgb irradiance_from_above() const;
 
@@ -61,7 +61,7 @@ class EnvironmentMap {
     std::vector<float> column_cdf_;  // width_ per row: cumulated shares of the row, the last is 1
     std::vector<float> row_cdf_;     // height_: cumulated shares of the rows
     float mean_weight_ = 0;          // over the square
-    float mean_ = 0;
+    Rgb mean_;
 };
 
 }  // namespace covtrace

@@ -210,36 +210,37 @@ ImageSpectrum::ImageSpectrum(std::span<const float> luminance, int width, int he
     const int factor = (std::max(width, height) + kMaxAnalysedSize - 1) / kMaxAnalysedSize;
     if (factor > 1) field = box_reduced(field, factor);
 
-    const std::vector<Level> levels = make_pyramid(std::move(field));
-    Accumulator sum{float(mean)};
-    for (size_t i = levels.size(); i-- > 0;) sum.add(levels[i], 2);
-    sum.add(levels[0], 1);
-
-    // The narrowest window is as wide as a cell of two by two texels, so that less would tell no
-    // more.
-    const ScalarField ss = box_reduced(sum.ss, 2), st = box_reduced(sum.st, 2),
-                      tt = box_reduced(sum.tt, 2);
-    const float texels_per_s = float(width) / float(factor);
-    const float texels_per_t = float(height) / float(factor);
-    width_ = ss.width;
-    height_ = ss.height;
-    cells_per_s_ = texels_per_s / 2;
-    cells_per_t_ = texels_per_t / 2;
-    cells_.resize(ss.values.size());
-    for (size_t i = 0; i < cells_.size(); ++i) {
-        const Covariance c = bounded_anisotropy({ss.values[i], st.values[i], tt.values[i]});
-        cells_[i] = {c.ss * sqr(texels_per_s), c.st * texels_per_s * texels_per_t,
-                     c.tt * sqr(texels_per_t)};
+    float texels_per_s = float(width) / float(factor), texels_per_t = float(height) / float(factor);
+    for (;;) {
+        const std::vector<Level> levels = make_pyramid(field);
+        Accumulator sum{float(mean)};
+        for (size_t i = levels.size(); i-- > 0;) sum.add(levels[i], 2);
+        sum.add(levels[0], 1);
+        // The narrowest window is as wide as a cell of two by two texels, so that less would tell no
+        // more.
+        const ScalarField ss = box_reduced(sum.ss, 2), st = box_reduced(sum.st, 2),
+                          tt = box_reduced(sum.tt, 2);
+        Scale scale{ss.width, ss.height, texels_per_s / 2, texels_per_t / 2, {}};
+        scale.cells.resize(ss.values.size());
+        for (size_t i = 0; i < scale.cells.size(); ++i) {
+            const Covariance c = bounded_anisotropy({ss.values[i], st.values[i], tt.values[i]});
+            scale.cells[i] = {c.ss * sqr(texels_per_s), c.st * texels_per_s * texels_per_t,
+                              c.tt * sqr(texels_per_t)};
+        }
+        scales_.push_back(std::move(scale));
+        if (std::min(field.width, field.height) < 4) break;
+        field = halved(field);
+        texels_per_s /= 2;
+        texels_per_t /= 2;
     }
 }
 
-SpatialCovariance2 ImageSpectrum::at(float s, float t) const {
-    if (cells_.empty()) return {};
-    const AxisTaps x = axis_taps(s, cells_per_s_, width_, repeat_s_);
-    const AxisTaps y = axis_taps(t, cells_per_t_, height_, repeat_t_);
+SpatialCovariance2 ImageSpectrum::at_scale(const Scale& scale, float s, float t) const {
+    const AxisTaps x = axis_taps(s, scale.cells_per_s, scale.width, repeat_s_);
+    const AxisTaps y = axis_taps(t, scale.cells_per_t, scale.height, repeat_t_);
     SpatialCovariance2 sum;
     const auto add = [&](int column, int row, float weight) {
-        const auto& c = cells_[size_t(row) * size_t(width_) + size_t(column)];
+        const auto& c = scale.cells[size_t(row) * size_t(scale.width) + size_t(column)];
         sum.ss += weight * c.ss;
         sum.st += weight * c.st;
         sum.tt += weight * c.tt;
@@ -251,8 +252,24 @@ SpatialCovariance2 ImageSpectrum::at(float s, float t) const {
     return sum;
 }
 
+SpatialCovariance2 ImageSpectrum::at(float s, float t, Vec2 footprint) const {
+    if (scales_.empty()) return {};
+    // Halving l times smooths by a deviation of half of 2^l texels: as a pixel of 2^l texels does.
+    const float texels = 2 * std::min(footprint.x * scales_[0].cells_per_s, footprint.y * scales_[0].cells_per_t);
+    const float level = texels > 1 ? std::min(std::log2(texels), float(scales_.size() - 1)) : 0.0f;
+    const auto finer = static_cast<size_t>(level);
+    const float coarser_share = level - float(finer);
+    const SpatialCovariance2 a = at_scale(scales_[finer], s, t);
+    if (!(coarser_share > 0)) return a;
+    const SpatialCovariance2 b = at_scale(scales_[finer + 1], s, t);
+    const auto blend = [coarser_share](float p, float q) { return p + coarser_share * (q - p); };
+    return {blend(a.ss, b.ss), blend(a.st, b.st), blend(a.tt, b.tt)};
+}
+
 size_t ImageSpectrum::memory() const {
-    return cells_.size() * sizeof(SpatialCovariance2);
+    size_t bytes = 0;
+    for (const Scale& s : scales_) bytes += s.cells.size() * sizeof(SpatialCovariance2);
+    return bytes;
 }
 
 }  // namespace covtrace

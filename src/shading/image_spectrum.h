@@ -40,14 +40,24 @@ class ImageSpectrum {
     /// Covariance (amplitude spectrum) around (s, t), one unit of s and t being the whole image.
     /// Symmetric positive semi-definite and finite everywhere; outside the image, where it is
     /// clamped, that of the border.
-    SpatialCovariance2 at(float s, float t) const;
+    ///
+    /// `footprint`: extent of a pixel in the same units. Structure below it is averaged by the pixel
+    /// filter before anything else happens to the image, so the analysis is of the image smoothed to
+    /// it (by a Gaussian of half the footprint). 0: of the image as it is.
+    SpatialCovariance2 at(float s, float t, Vec2 footprint = {}) const;
     size_t memory() const;
 
   private:
-    int width_ = 0, height_ = 0;  ///< cells, each of two by two analysed texels
+    /// The analysis of the image at one resolution.
+    struct Scale {
+        int width = 0, height = 0;  ///< cells, each of two by two texels of this resolution
+        float cells_per_s = 0, cells_per_t = 0;
+        std::vector<SpatialCovariance2> cells;
+    };
+    SpatialCovariance2 at_scale(const Scale& scale, float s, float t) const;
+
     bool repeat_s_ = false, repeat_t_ = false;
-    float cells_per_s_ = 0, cells_per_t_ = 0;
-    std::vector<SpatialCovariance2> cells_;
+    std::vector<Scale> scales_;  ///< each of half the resolution of the one before
 };
 
 }  // namespace covtrace

@@ -43,7 +43,7 @@ PointEmitter make_point_emitter(const PointLight& light, const Transform& light_
     PointEmitter e;
     e.position = light_to_world.point(light.from);
     e.intensity = light.intensity;
-    if (light.power) e.intensity *= normalisation(*light.power, 4 * kPi * luminance(e.intensity));
+    if (light.power) e.intensity *= normalisation(*light.power, luminance(power(e)));
     return e;
 }
 
@@ -58,17 +58,21 @@ PointEmitter make_point_emitter(const SpotLight& light, const Transform& light_t
     e.cos_outer = std::cos(radians(outer));
     e.cos_inner = std::cos(radians(inner));
     e.intensity = light.intensity;
-    if (light.power) {
-        // A smoothstep in the cosine lets half of its range through.
-        const float angle = 2 * kPi * ((1 - e.cos_inner) + (e.cos_inner - e.cos_outer) / 2);
-        e.intensity *= normalisation(*light.power, angle * luminance(e.intensity));
-    }
+    if (light.power) e.intensity *= normalisation(*light.power, luminance(power(e)));
     e.cone_variance = cone_variance(e);
     return e;
 }
 
 Rgb intensity(const PointEmitter& light, Vec3 w) {
     return light.is_spot ? light.intensity * falloff(light, dot(light.axis, w)) : light.intensity;
+}
+
+Rgb power(const PointEmitter& light) {
+    // A smoothstep in the cosine lets half of its range through.
+    const float angle =
+        light.is_spot ? 2 * kPi * ((1 - light.cos_inner) + (light.cos_inner - light.cos_outer) / 2)
+                      : 4 * kPi;
+    return angle * light.intensity;
 }
 
 LightBounds bounds(const PointEmitter& light) {

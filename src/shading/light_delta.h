@@ -21,6 +21,8 @@ PointEmitter make_point_emitter(const PointLight& light, const Transform& light_
 PointEmitter make_point_emitter(const SpotLight& light, const Transform& light_to_world);
 /// Intensity towards `w` (unit, away from the light).
 Rgb intensity(const PointEmitter& light, Vec3 w);
+/// Emitted in all directions together.
+Rgb power(const PointEmitter& light);
 LightBounds bounds(const PointEmitter& light);
 
 struct DistantEmitter {

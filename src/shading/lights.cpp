@@ -21,6 +21,21 @@ Emitter make_emitter(const PlacedShape& shape) {
     return EmissiveMesh(shape);
 }
 
+double surface(const Emitter& emitter) {
+    return std::visit(
+        [](const auto& e) {
+            double sum = 0;
+            for (int k = 0; k < e.light_count(); ++k) sum += double(e.area(k));
+            return sum;
+        },
+        emitter);
+}
+
+/// Emitted by one square unit of a diffuse light.
+Rgb exitance(Rgb radiance, bool two_sided) {
+    return (two_sided ? 2 * kPi : kPi) * radiance;
+}
+
 /// Whether alpha hides the whole shape: the customary way to write an invisible light.
 bool is_hidden(const SceneDescription& scene, TextureId alpha) {
     if (alpha < 0) return false;
@@ -48,17 +63,13 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
                        .first_light = static_cast<int>(owner.size()),
                        .emitter = make_emitter(shapes[i]),
                        .spectrum = {}};
+        if (light.power) {
+            const float measured = static_cast<float>(surface(area.emitter)) *
+                                   luminance(exitance(area.radiance, area.two_sided));
+            area.radiance *= normalisation(*light.power, measured);
+        }
         std::visit(
             [&](const auto& emitter) {
-                if (light.power) {
-                    double surface = 0;
-                    for (int k = 0; k < emitter.light_count(); ++k)
-                        surface += double(emitter.area(k));
-                    const float sides = light.two_sided ? 2 : 1;
-                    const float measured =
-                        sides * kPi * static_cast<float>(surface) * luminance(area.radiance);
-                    area.radiance *= normalisation(*light.power, measured);
-                }
                 for (int k = 0; k < emitter.light_count(); ++k) {
                     LightBounds bounds = emitter.bounds(k);
                     bounds.intensity *= choice_weight(area.radiance);
@@ -249,6 +260,16 @@ Rgb Lights::environment(Vec3 w) const {
 }
 float Lights::environment_pdf(Vec3 p, Vec3 n, Vec3 w) const {
     return impl_->environment_pdf(impl_->infinite_share(p, n), n, w);
+}
+Rgb Lights::total_power() const {
+    Rgb sum;
+    for (const AreaLight& area : impl_->area_lights)
+        sum += static_cast<float>(surface(area.emitter)) * exitance(area.radiance, area.two_sided);
+    for (const PointEmitter& point : impl_->points) sum += power(point);
+    const float disk = kPi * sqr(impl_->geometry->bounds().radius());
+    for (const DistantEmitter& distant : impl_->distants) sum += disk * distant.irradiance;
+    for (const Environment& e : impl_->environments) sum += disk * 4 * kPi * e.mean_radiance();
+    return sum;
 }
 int Lights::count() const {
     return impl_->first_environment() + static_cast<int>(impl_->environments.size());

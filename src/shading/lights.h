@@ -87,6 +87,8 @@ class Lights {
     /// Of all infinite lights together around the direction `w`, weighted by radiance.
     SourceSpectrum environment_spectrum(Vec3 w) const;
 
+    /// Power that all lights emit, of infinite ones that which enters the sphere around the scene.
+    Rgb total_power() const;
     /// Every emissive triangle, patch half, sphere and disk counts as a light of its own.
     int count() const;
     /// Probability that `sample(p, n)` chooses the light. Those of all lights sum to 1, or less

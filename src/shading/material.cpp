@@ -6,14 +6,6 @@
 namespace covtrace {
 namespace {
 
-/// To [0, limit]; what is not a number becomes 0, so that a broken texel can't spread.
-float clamp_to(float v, float limit) {
-    return std::max(0.0f, std::min(v, limit));
-}
-Rgb clamp_to(Rgb c, float limit) {
-    return {clamp_to(c.r, limit), clamp_to(c.g, limit), clamp_to(c.b, limit)};
-}
-
 Rgb sqrt(Rgb c) {
     return {std::sqrt(c.r), std::sqrt(c.g), std::sqrt(c.b)};
 }
@@ -22,6 +14,14 @@ Rgb sqrt(Rgb c) {
 struct Values {
     const TextureStore& textures;
     TexturePoint at;
+    const MaterialColours& colours;
+    const AdaptationTable& adaptation;
+    Rgb reflectance() const { return colour(colours.reflectance); }
+    Rgb transmittance() const { return colour(colours.transmittance); }
+    /// In [0, 1]; what is not a number is 0, so that a broken texel can't spread.
+    Rgb colour(const MaterialColour& c) const {
+        return c.texture < 0 ? c.fixed : adaptation(c.scale * textures.eval(c.texture, at));
+    }
     Rgb spectrum(TextureId id, float fallback) const {
         return id < 0 ? Rgb(fallback) : textures.eval(id, at);
     }
@@ -40,10 +40,11 @@ float refractive_index(float eta) {
 }
 
 constexpr float kDefaultReflectance = 0.5f;
+constexpr float kDefaultTransmission = 0.25f;  // and reflection of what transmits
 constexpr float kDefaultThickness = 0.01f;
 
-Bsdf make(const DiffuseMaterial& m, const Values& v, const CoatTable*) {
-    return DiffuseBsdf{clamp_to(v.spectrum(m.reflectance, kDefaultReflectance), 1)};
+Bsdf make(const DiffuseMaterial&, const Values& v, const CoatTable*) {
+    return DiffuseBsdf{v.reflectance()};
 }
 
 Bsdf make(const ConductorMaterial& m, const Values& v, const CoatTable*) {
@@ -51,7 +52,9 @@ Bsdf make(const ConductorMaterial& m, const Values& v, const CoatTable*) {
     if (m.reflectance < 0)
         return ConductorBsdf{v.spectrum(m.eta, 1), v.spectrum(m.k, 1), alpha.x, alpha.y};
     // The k that reflects r at normal incidence where eta = 1.
-    const Rgb r = clamp_to(v.spectrum(m.reflectance, 1), 0.9999f);
+    constexpr float kMost = 0.9999f;
+    Rgb r = v.reflectance();
+    r = {std::min(r.r, kMost), std::min(r.g, kMost), std::min(r.b, kMost)};
     return ConductorBsdf{Rgb(1), 2 * sqrt(r) / sqrt(Rgb(1) - r), alpha.x, alpha.y};
 }
 
@@ -62,15 +65,12 @@ Bsdf make(const DielectricMaterial& m, const Values& v, const CoatTable*) {
 
 Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const CoatTable* coat) {
     const Vec2 alpha = v.alphas(m);
-    const Rgb reflectance = clamp_to(v.spectrum(m.reflectance, kDefaultReflectance), 1);
     // pbrt's walk meets the base at every second of its steps.
-    return make_coated_diffuse(*coat, reflectance, alpha.x, alpha.y, (m.max_depth + 1) / 2);
+    return make_coated_diffuse(*coat, v.reflectance(), alpha.x, alpha.y, (m.max_depth + 1) / 2);
 }
 
-Bsdf make(const DiffuseTransmissionMaterial& m, const Values& v, const CoatTable*) {
-    constexpr float kDefault = 0.25f;
-    return DiffuseTransmissionBsdf{clamp_to(m.scale * v.spectrum(m.reflectance, kDefault), 1),
-                                   clamp_to(m.scale * v.spectrum(m.transmittance, kDefault), 1)};
+Bsdf make(const DiffuseTransmissionMaterial&, const Values& v, const CoatTable*) {
+    return DiffuseTransmissionBsdf{v.reflectance(), v.transmittance()};
 }
 
 Bsdf make(const InterfaceMaterial&, const Values&, const CoatTable*) {
@@ -103,27 +103,38 @@ bool is_constant(const TextureStore&, const InterfaceMaterial&) {
     return true;
 }
 
-MaterialTextures modulating(const DiffuseMaterial& m) {
-    return {m.reflectance, -1};
+/// As the file gives them; `fixed` where it doesn't.
+MaterialColours colours(const DiffuseMaterial& m) {
+    return {{m.reflectance, 1, Rgb(kDefaultReflectance)}, {}};
 }
-MaterialTextures modulating(const ConductorMaterial& m) {
-    return {m.reflectance, -1};
+MaterialColours colours(const ConductorMaterial& m) {
+    return {{m.reflectance, 1, Rgb(1)}, {}};
 }
-MaterialTextures modulating(const DielectricMaterial&) {
+MaterialColours colours(const DielectricMaterial&) {
     return {};
 }
-MaterialTextures modulating(const CoatedDiffuseMaterial& m) {
-    return {m.reflectance, -1};
+MaterialColours colours(const CoatedDiffuseMaterial& m) {
+    return {{m.reflectance, 1, Rgb(kDefaultReflectance)}, {}};
 }
-MaterialTextures modulating(const DiffuseTransmissionMaterial& m) {
-    return {m.reflectance, m.transmittance};
+MaterialColours colours(const DiffuseTransmissionMaterial& m) {
+    const Rgb otherwise = m.scale * Rgb(kDefaultTransmission);
+    return {{m.reflectance, m.scale, otherwise}, {m.transmittance, m.scale, otherwise}};
 }
-MaterialTextures modulating(const InterfaceMaterial&) {
+MaterialColours colours(const InterfaceMaterial&) {
     return {};
 }
 
 /// The middle of the texture, for parameters that may not vary.
 constexpr TexturePoint kMiddle{{0.5f, 0.5f}, {}};
+
+/// Adapts the colour once and for all where no texture varies.
+void settle(MaterialColour& c, const TextureStore& textures,
+            const IlluminantAdaptation& adaptation) {
+    if (c.texture >= 0 && !textures.is_constant(c.texture)) return;
+    if (c.texture >= 0) c.fixed = c.scale * textures.eval(c.texture, kMiddle);
+    c.texture = -1;
+    c.fixed = adaptation(c.fixed);
+}
 
 void warn_of_gap(const CoatedDiffuseMaterial& m, const SourceLocation& where,
                  const TextureStore& textures, Warnings& warnings) {
@@ -152,14 +163,20 @@ Vec2 ggx_alphas(float u_roughness, float v_roughness, bool remap) {
     return {std::max(kSmallest, a.x), std::max(kSmallest, a.y)};
 }
 
-MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& textures) {
+MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& textures,
+                             const IlluminantAdaptation& adaptation) {
     materials_.reserve(scene.materials.size());
-    textures_.reserve(scene.materials.size());
+    bool any_varies = false;
     for (const MaterialDescription& description : scene.materials) {
         Material& material = materials_.emplace_back();
         material.description = description;
+        material.colours = std::visit([](const auto& m) { return colours(m); }, description.value);
+        for (MaterialColour* c : {&material.colours.reflectance, &material.colours.transmittance}) {
+            settle(*c, textures, adaptation);
+            any_varies = any_varies || c->texture >= 0;
+        }
+        const Values at_middle{textures, kMiddle, material.colours, adaptation_};
         if (const auto* m = std::get_if<CoatedDiffuseMaterial>(&description.value)) {
-            const Values at_middle{textures, kMiddle};
             const float thickness =
                 std::max(0.0f, at_middle.number(m->thickness, kDefaultThickness));
             material.coat = &coats_.get(refractive_index(m->eta), thickness);
@@ -168,28 +185,26 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
         std::visit(
             [&](const auto& m) {
                 material.is_constant = is_constant(textures, m);
-                if (material.is_constant)
-                    material.constant = make(m, Values{textures, kMiddle}, material.coat);
-                MaterialTextures modulators = modulating(m);
-                for (TextureId* id : {&modulators.reflectance, &modulators.transmittance})
-                    if (*id >= 0 && textures.is_constant(*id)) *id = -1;
-                textures_.push_back(modulators);
+                if (material.is_constant) material.constant = make(m, at_middle, material.coat);
             },
             description.value);
     }
+    if (any_varies) adaptation_ = AdaptationTable(adaptation);
 }
 
 Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStore& textures) const {
     if (id < 0) return DiffuseBsdf{Rgb(kDefaultReflectance)};
     const Material& material = materials_[static_cast<size_t>(id)];
     if (material.is_constant) return material.constant;
-    const Values values{textures, {hit.uv, hit.position}};
+    const Values values{textures, {hit.uv, hit.position}, material.colours, adaptation_};
     return std::visit([&](const auto& m) { return make(m, values, material.coat); },
                       material.description.value);
 }
 
 MaterialTextures MaterialStore::textures(MaterialId id) const {
-    return id < 0 ? MaterialTextures{} : textures_[static_cast<size_t>(id)];
+    if (id < 0) return {};
+    const MaterialColours& c = materials_[static_cast<size_t>(id)].colours;
+    return {c.reflectance.texture, c.transmittance.texture};
 }
 
 bool MaterialStore::is_interface(MaterialId id) const {

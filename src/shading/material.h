@@ -6,6 +6,7 @@
 
 #include "core/frame.h"
 #include "geometry/hit.h"
+#include "scene/illuminant_adaptation.h"
 #include "scene/scene_description.h"
 #include "shading/bsdf.h"
 #include "shading/coat_table.h"
@@ -21,6 +22,16 @@ Frame shading_frame(const SurfaceHit& hit);
 /// (0, 0), a smooth surface, where both are below 1e-3; at least 1e-4 each otherwise.
 Vec2 ggx_alphas(float u_roughness, float v_roughness, bool remap);
 
+/// A reflectance or transmittance of a material, for the light of the scene.
+struct MaterialColour {
+    TextureId texture = -1;  ///< where it varies
+    float scale = 1;         ///< of the texture
+    Rgb fixed;               ///< where it doesn't
+};
+struct MaterialColours {
+    MaterialColour reflectance, transmittance;
+};
+
 /// The textures that modulate what a material's lobes reflect and transmit; -1 where nothing
 /// varies.
 struct MaterialTextures {
@@ -30,8 +41,10 @@ struct MaterialTextures {
 /// Immutable and thread-safe after construction.
 class MaterialStore {
   public:
-    /// `textures` must be made from the same scene.
-    MaterialStore(const SceneDescription& scene, const TextureStore& textures);
+    /// `textures` must be made from the same scene. `adaptation` to the scene's light is applied to
+    /// all reflectances and transmittances, not to refractive indices.
+    MaterialStore(const SceneDescription& scene, const TextureStore& textures,
+                  const IlluminantAdaptation& adaptation = {});
     MaterialStore(const MaterialStore&) = delete;
     MaterialStore& operator=(const MaterialStore&) = delete;
 
@@ -46,12 +59,13 @@ class MaterialStore {
   private:
     struct Material {
         MaterialDescription description;
+        MaterialColours colours;
         const CoatTable* coat = nullptr;
         bool is_constant = false;
         Bsdf constant;  ///< where no texture varies
     };
     std::vector<Material> materials_;
-    std::vector<MaterialTextures> textures_;
+    AdaptationTable adaptation_;  ///< of textures that vary
     CoatTables coats_;
     Warnings warnings_;
 };

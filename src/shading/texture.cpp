@@ -160,6 +160,30 @@ ImageSpectrum analyse(const TextureImage& image, const ImageNode& node) {
     return {values, image.width(), image.height(), spectrum_wrap(image.wrap())};
 }
 
+/// Mean luminance over the unit square of (u, v).
+float mean_luminance(const TextureGraph& graph, TextureId id) {
+    constexpr int kSide = 16;
+    float sum = 0;
+    for (int i = 0; i < kSide * kSide; ++i) {
+        const Vec2 uv{(float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide};
+        sum += luminance(eval(graph, id, {uv, {}}));
+    }
+    return sum / (kSide * kSide);
+}
+
+/// An amount has no contrast of its own: a trace of chalk on a cloth is as visible as the difference it
+/// makes there. So the image that is analysed is the mixture, of the means of both textures.
+ImageSpectrum analyse_mixture(const TextureGraph& graph, const MixNode& mix, const ImageNode& amount) {
+    const TextureImage& image = graph.images[size_t(amount.image)];
+    const float a = mean_luminance(graph, mix.tex1), b = mean_luminance(graph, mix.tex2);
+    std::vector<float> values(size_t(image.width()) * size_t(image.height()));
+    for (size_t i = 0; i < values.size(); ++i) {
+        const Rgb decoded = amount.is_spectrum ? image.color(i) : Rgb(image.value(i));
+        values[i] = a + luminance(image_value(amount, decoded)) * (b - a);
+    }
+    return {values, image.width(), image.height(), spectrum_wrap(image.wrap())};
+}
+
 }  // namespace
 
 struct TextureStore::Impl {
@@ -196,6 +220,14 @@ void TextureStore::prepare_spectra() {
                             int(graph.spectra.size()));
         if (is_new) graph.spectra.push_back(analyse(graph.images[size_t(n->image)], *n));
         n->spectrum = entry->second;
+    }
+    for (TextureNode& node : graph.nodes) {
+        auto* mix = std::get_if<MixNode>(&node);
+        if (!mix) continue;
+        const auto* amount = std::get_if<ImageNode>(&graph.nodes[size_t(mix->amount)]);
+        if (!amount) continue;
+        mix->mixture_spectrum = int(graph.spectra.size());
+        graph.spectra.push_back(analyse_mixture(graph, *mix, *amount));
     }
     impl_->is_prepared = true;
 }

@@ -41,12 +41,20 @@ float distance_to_integer(float v) {
     return std::abs(v - std::round(v));
 }
 
-/// Of a window with a's and b's in equal shares: standard deviation over mean, then saturated.
-float contrast_weight(Rgb a, Rgb b) {
+/// Of a window with a's and b's in equal shares: standard deviation over mean, `kept` of it left by
+/// the pixel filter, then saturated.
+float contrast_weight(Rgb a, Rgb b, float kept = 1) {
     const Rgb difference(std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b));
-    const float d = luminance(difference), sum = luminance(a + b);
+    const float d = kept * luminance(difference), sum = luminance(a + b);
     if (!(d > 0)) return 0;
     return d < kFullContrast * sum ? d / (kFullContrast * sum) : 1;
+}
+
+/// What a pixel leaves of the fundamental wave of unit cells, two cells long: a Gaussian with a
+/// deviation of half a pixel, `gradient` taking uv to cells.
+float kept_by_pixel(Vec2 gradient, float footprint_uv) {
+    const float deviation = footprint_uv * length(gradient);
+    return std::exp(-0.5f * sqr(kPi * deviation));
 }
 
 struct Analyser {
@@ -59,11 +67,15 @@ struct Analyser {
 
     SpatialCovariance2 operator()(const ConstantNode&) const { return {}; }
 
-    SpatialCovariance2 operator()(const ImageNode& node) const {
+    SpatialCovariance2 operator()(const ImageNode& node) const { return of_image(node, node.spectrum); }
+
+    SpatialCovariance2 of_image(const ImageNode& node, int spectrum) const {
         const TextureImage& image = graph.images[size_t(node.image)];
         const StGradient gradient = st_gradient(node.mapping, at, dpdu, dpdv);
         const Vec2 st = flip_t(map_to_st(node.mapping, at));
-        SpatialCovariance2 c = graph.spectra[size_t(node.spectrum)].at(st.x, st.y);
+        const float pixel_uv = 2 * footprint_uv;
+        SpatialCovariance2 c = graph.spectra[size_t(spectrum)].at(
+            st.x, st.y, {pixel_uv * length(gradient.s), pixel_uv * length(gradient.t)});
         c.st = -c.st;  // the image's rows run against t
         SpatialCovariance2 result = to_uv(c, gradient);
         if (image.wrap() == TextureImage::Wrap::black) {
@@ -76,23 +88,24 @@ struct Analyser {
     }
 
     SpatialCovariance2 operator()(const CheckerboardNode& node) const {
-        const float weight =
-            contrast_weight(eval(graph, node.tex1, at), eval(graph, node.tex2, at));
+        const Rgb a = eval(graph, node.tex1, at), b = eval(graph, node.tex2, at);
+        const auto edge_at = [&](float coordinate, Vec2 gradient) {
+            return edge(distance_to_integer(coordinate), gradient, footprint_uv) *
+                   contrast_weight(a, b, kept_by_pixel(gradient, footprint_uv));
+        };
         SpatialCovariance2 edges;
         if (node.dimension == 2) {
             const Vec2 st = map_to_st(node.mapping, at);
             const StGradient gradient = st_gradient(node.mapping, at, dpdu, dpdv);
-            edges = edge(distance_to_integer(st.x), gradient.s, footprint_uv) +
-                    edge(distance_to_integer(st.y), gradient.t, footprint_uv);
+            edges = edge_at(st.x, gradient.s) + edge_at(st.y, gradient.t);
         } else {
             const Vec3 p = node.texture_from_world.point(at.position);
             const Vec3 pu = node.texture_from_world.vector(dpdu);
             const Vec3 pv = node.texture_from_world.vector(dpdv);
             for (int axis = 0; axis < 3; ++axis)
-                edges =
-                    edges + edge(distance_to_integer(p[axis]), {pu[axis], pv[axis]}, footprint_uv);
+                edges = edges + edge_at(p[axis], {pu[axis], pv[axis]});
         }
-        return edges * weight + of(active_texture(node, at));
+        return edges + of(active_texture(node, at));
     }
 
     /// A product of signals: their spectra are convolved, their covariances add.
@@ -107,7 +120,10 @@ struct Analyser {
         const Rgb amount = eval(graph, node.amount, at);
         const float wa = std::abs(luminance((Rgb(1) - amount) * a));
         const float wb = std::abs(luminance(amount * b));
-        SpatialCovariance2 result = of(node.amount) * contrast_weight(a, b);
+        SpatialCovariance2 result =
+            node.mixture_spectrum >= 0
+                ? of_image(std::get<ImageNode>(graph.nodes[size_t(node.amount)]), node.mixture_spectrum)
+                : of(node.amount) * contrast_weight(a, b);
         if (wa + wb > 0)
             result = result + of(node.tex1) * (wa / (wa + wb)) + of(node.tex2) * (wb / (wa + wb));
         return result;

@@ -33,6 +33,8 @@ struct ScaleNode {
 };
 struct MixNode {
     TextureId tex1 = -1, tex2 = -1, amount = -1;
+    /// Of the mixture of both textures' means by an image as the amount; -1 for other amounts.
+    int mixture_spectrum = -1;
 };
 using TextureNode = std::variant<ConstantNode, ImageNode, CheckerboardNode, ScaleNode, MixNode>;
 

@@ -101,7 +101,7 @@ TEST(SceneSpectrum, ConductorsKeepTheirReflectanceAtNormalIncidence) {
                 static_cast<float>(normal_reflectance(eta.at(nm), k.at(nm))));
         }
         const Rgb expected = reflectance_colour(reflectance);
-        const ConductorColours c = conductor_colours(eta, k);
+        const ConductorColours c = conductor_colours(eta, k, channel_means(eta));
         for (int i = 0; i < 3; ++i) {
             EXPECT_NEAR(normal_reflectance(c.eta[i], c.k[i]), std::min(expected[i], 0.9999f), 1e-4)
                 << name;

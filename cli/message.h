@@ -1,0 +1,19 @@
+/// Messages on standard error. A message that cannot be written (a closed terminal, a full disk
+/// behind a redirection) is lost; it must not end a render.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+#include <utility>
+
+namespace covtrace::cli {
+
+template <typename... Args>
+void say(fmt::format_string<Args...> format, Args&&... args) {
+    const std::string text = fmt::format(format, std::forward<Args>(args)...);
+    std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+}  // namespace covtrace::cli

@@ -1,0 +1,105 @@
+"""Help, version, and command lines that are wrong."""
+
+import unittest
+
+from support import DONE, USAGE, TINY, CliTest
+
+
+class Help(CliTest):
+    def assert_fits(self, text, lines):
+        self.assertLessEqual(len(text.splitlines()), lines)
+        for line in text.splitlines():
+            self.assertLessEqual(len(line), 100, line)
+
+    def test_help_goes_to_stdout_and_fits_a_screen(self):
+        for arguments in (["--help"], ["-h"], ["render", "--help"], ["compare", "--help"], ["info", "--help"]):
+            with self.subTest(arguments=arguments):
+                result = self.run_program(*arguments)
+                self.assertEqual(result.code, DONE, result)
+                self.assertEqual(result.stderr, "")
+                self.assert_fits(result.stdout, 60)
+
+    def test_help_names_commands_and_options(self):
+        overview = self.run_program("--help").stdout
+        for command in ("render", "compare", "info"):
+            self.assertIn(command, overview)
+        options = self.run_program("render", "--help").stdout
+        for option in (
+            "--output --method --spp --time --cov-spp --density --max-spp --filter --resolution --crop --max-depth --seed "
+            "--threads --isa --shutter --focus --fstop --png --layers --progress --stats --reproducible"
+        ).split():
+            self.assertIn(option, options)
+
+    def test_version(self):
+        result = self.run_program("--version")
+        self.assertEqual(result.code, DONE, result)
+        self.assertRegex(result.stdout, r"^covtrace \d+\.\d+\.\d+ \(\S+\)\n$")
+        self.assertEqual(result.stderr, "")
+
+
+class WrongCommandLines(CliTest):
+    def test_no_command_or_an_unknown_one(self):
+        self.assert_fails(self.run_program(), USAGE)
+        self.assert_fails(self.run_program("paint"), USAGE, "'paint'")
+        self.assert_fails(self.run_program("--frobnicate"), USAGE, "'--frobnicate'")
+
+    def test_missing_and_superfluous_arguments(self):
+        self.write("scene.pbrt", TINY)
+        self.assert_fails(self.run_program("render"), USAGE, "SCENE")
+        self.assert_fails(self.run_program("compare", "a.exr"), USAGE, "REFERENCE")
+        self.assert_fails(self.run_program("info"), USAGE, "FILE")
+        self.assert_fails(self.run_program("render", "scene.pbrt", "other.pbrt"), USAGE, "other.pbrt")
+        self.assert_fails(self.run_program("render", "scene.pbrt", "--spp"), USAGE, "--spp")
+
+    def test_every_bad_value_names_its_option(self):
+        bad = {
+            "--spp": ["0", "-1", "many", "nan", "inf", "1e300", ""],
+            "--time": ["garbage", "0", "-3", "5x", "3m5", "1h30", "nan", "inf", "1e400", "m"],
+            "--method": ["magic", "Uniform", "0"],
+            "--cov-spp": ["0", "-2", "x"],
+            "--max-spp": ["0", "x"],
+            "--density": ["even"],
+            "--filter": ["none"],
+            "--resolution": ["0x5", "5x0", "-4x4", "640", "640x", "640x360x2", "axb", "640X360", " 64x64", "99999999999x1"],
+            "--crop": ["0,0,8", "0,0,8,8,8", "a,b,c,d", "4,4,4,8", "8,0,4,8", "0,0,25,16", "-1,0,8,8", "0,0,8,17"],
+            "--max-depth": ["-1", "x"],
+            "--seed": ["-1", "x", "1.5", "18446744073709551616"],
+            "--threads": ["0", "-1", "x", "5000"],
+            "--isa": ["mmx"],
+            "--shutter": ["1,0", "0,0", "0", "nan,1", "0,inf", "a,b"],
+            "--focus": ["0", "-1", "nan"],
+            "--fstop": ["0", "-1", "nan", "inf"],
+            "--progress": ["loud"],
+            "--layers": ["nope", "raw,nope", "raw,", "raw.R"],
+        }
+        self.write("scene.pbrt", TINY)
+        for option, values in bad.items():
+            for value in values:
+                with self.subTest(option=option, value=value):
+                    result = self.run_program("render", "scene.pbrt", "-o", "out.exr", f"{option}={value}")
+                    self.assert_fails(result, USAGE, option)
+                    self.assert_no_file()
+
+    def test_unknown_option(self):
+        self.assert_fails(self.render(TINY, "--frobnicate"), USAGE, "--frobnicate")
+
+    def test_usage_is_checked_before_the_scene_is_read(self):
+        result = self.run_program("render", "missing.pbrt", "--time", "soon")
+        self.assert_fails(result, USAGE, "--time")
+
+    def test_compare_checks_its_options(self):
+        image = self.rendered("--spp", "1")
+        for crop in ("1,2,3", "5,5,5,5", "100,100,120,120", "x"):
+            with self.subTest(crop=crop):
+                self.assert_fails(self.run_program("compare", image, image, "--crop", crop), USAGE)
+
+    def test_durations(self):
+        # Only that they are understood: the spp limit ends the render long before.
+        for time in ("2.5", "45s", "3m", "1h30m", "0.5h", "1m30"):
+            with self.subTest(time=time):
+                expected = USAGE if time == "1m30" else DONE
+                self.assertEqual(self.render(TINY, "--spp", "1", "--time", time).code, expected)
+
+
+if __name__ == "__main__":
+    unittest.main()
