@@ -73,12 +73,15 @@ int compare_images(const CompareArguments& a) {
 void add_compare(CLI::App& app, Invocation& invocation) {
     auto a = std::make_shared<CompareArguments>();
     CLI::App* c = app.add_subcommand("compare", "Measure an image against a reference");
-    c->add_option("IMAGE", a->image, "the image")->required();
-    c->add_option("REFERENCE", a->reference, "what it should be")->required();
-    c->add_option("--crop", a->crop, "x0,y0,x1,y1: only these pixels, end exclusive");
-    c->add_option("--smooth", a->smooth,
-                  "first smooth the image by a Gaussian of this deviation in pixels")
-        ->check(CLI::PositiveNumber);
+    c->add_option("IMAGE", a->image, "the image")->required()->option_text(" ");
+    c->add_option("REFERENCE", a->reference, "what it should be")->required()->option_text(" ");
+    c->add_option("--crop", a->crop, "only these pixels, end exclusive")
+        ->option_text("x0,y0,x1,y1");
+    c->add_option_function<std::string>(
+         "--smooth",
+         [a](const std::string& text) { a->smooth = parse_positive("--smooth", text, 1000); },
+         "first blur the image: a Gaussian of N pixels")
+        ->option_text("N");
     c->add_flag("--json", a->json, "one JSON object on standard output");
     c->callback([a, &invocation] { invocation.action = [a] { return compare_images(*a); }; });
 }

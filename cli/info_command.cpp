@@ -13,7 +13,7 @@ namespace covtrace::cli {
 void add_info(CLI::App& app, Invocation& invocation) {
     auto file = std::make_shared<std::string>();
     CLI::App* c = app.add_subcommand("info", "Tell what a scene or an image holds");
-    c->add_option("FILE", *file, "a pbrt-v4 scene or an image")->required();
+    c->add_option("FILE", *file, "a pbrt-v4 scene or an image")->required()->option_text(" ");
     c->callback([file, &invocation] {
         invocation.action = [file] {
             const std::filesystem::path path = *file;

@@ -57,13 +57,12 @@ int run(int argc, char** argv) {
     invocation.start = std::chrono::steady_clock::now();
     for (int i = 0; i < argc; ++i) invocation.command_line += (i ? " " : "") + std::string(argv[i]);
 
-    CLI::App app(
-        "covtrace: a path tracer that predicts how many samples and which filter every pixel "
-        "needs.");
+    CLI::App app("A path tracer that predicts the samples and the filter of every pixel.",
+                 "covtrace");
     app.set_version_flag("--version", "covtrace " + std::string(covtrace::kVersion) + " (" +
                                           std::string(covtrace::kCommit) + ")");
     app.require_subcommand(1);
-    app.get_formatter()->column_width(34);
+    app.get_formatter()->column_width(30);
     covtrace::cli::add_render(app, invocation);
     covtrace::cli::add_compare(app, invocation);
     covtrace::cli::add_info(app, invocation);

@@ -244,7 +244,7 @@ void add_positive(CLI::App* c, const std::string& name, std::optional<T>& value,
     const auto parse = [name, &value, most](const std::string& text) {
         value = static_cast<T>(parse_positive(name, text, most));
     };
-    c->add_option_function<std::string>(name, parse, help)->option_text("NUMBER");
+    c->add_option_function<std::string>(name, parse, help)->option_text("N");
 }
 
 }  // namespace
@@ -252,52 +252,60 @@ void add_positive(CLI::App* c, const std::string& name, std::optional<T>& value,
 void add_render(CLI::App& app, Invocation& invocation) {
     auto a = std::make_shared<RenderArguments>();
     CLI::App* c = app.add_subcommand("render", "Render a pbrt-v4 scene into an EXR with layers");
-    c->add_option("SCENE", a->scene, "the scene, a pbrt-v4 file")->required();
-    c->add_option("-o,--output", a->output, "the image (default: the film's name, else SCENE.exr)");
+    c->add_option("SCENE", a->scene, "the scene, a pbrt-v4 file")->required()->option_text(" ");
+    c->add_option("-o,--output", a->output, "the image (default: the film's name or SCENE.exr)")
+        ->option_text("FILE");
     add_choice<Method>(c, "--method", a->options.method,
                        {{"uniform", Method::uniform}, {"covariance", Method::covariance}},
-                       "plain path tracer, or covariance tracing (default)");
+                       "covariance tracing (default), or plain paths");
     add_positive(c, "--spp", a->options.spp, 1 << 30,
                  "average samples per pixel (default: the scene's)");
-    c->add_option("--time", a->seconds, "wall-clock budget: 2.5, 45s, 3m, 1h30m");
+    c->add_option("--time", a->seconds, "wall-clock budget: 2.5, 45s, 3m, 1h30m")->option_text("T");
     c->add_option("--cov-spp", a->options.cov_spp,
-                  "covariance paths per pixel (default: spp/4 in [2, 4])")
-        ->check(CLI::Range(1, 1 << 20));
+                  "covariance paths per pixel (default: spp/4, 2 to 4)")
+        ->check(CLI::Range(1, 1 << 20))
+        ->option_text("N");
     add_choice<DensityRule>(c, "--density", a->options.density,
                             {{"tempered", DensityRule::tempered}, {"thesis", DensityRule::thesis}},
                             "how counts follow from the prediction");
     c->add_option("--max-spp", a->options.max_spp,
-                  "most samples in any pixel (default: 16 x average)")
-        ->check(CLI::Range(1, 1 << 30));
+                  "most samples in a pixel (default: 16 x average)")
+        ->check(CLI::Range(1, 1 << 30))
+        ->option_text("N");
     add_choice<Occlusion>(c, "--occlusion", a->options.occlusion,
                           {{"grid", Occlusion::grid}, {"none", Occlusion::none}},
                           "occluders beside the rays of the analysis");
     c->add_option("--voxels", a->options.voxels, "width of the occlusion grid (default 200)")
-        ->check(CLI::Range(1, 2048));
+        ->check(CLI::Range(1, 2048))
+        ->option_text("N");
     add_choice<FilterRule>(c, "--filter", a->options.filter,
                            {{"verified", FilterRule::verified}, {"thesis", FilterRule::thesis}},
-                           "the filter's constant: verified, or the thesis' equation 5.7");
-    c->add_option("--resolution", a->resolution, "WxH in place of the scene's");
-    c->add_option("--crop", a->crop, "x0,y0,x1,y1: only these pixels, end exclusive");
+                           "its constant: verified, or the thesis' eq. 5.7");
+    c->add_option("--resolution", a->resolution, "in place of the scene's")->option_text("WxH");
+    c->add_option("--crop", a->crop, "only these pixels, end exclusive")
+        ->option_text("x0,y0,x1,y1");
     c->add_option("--max-depth", a->options.max_depth,
                   "most scattering events (default: the scene's)")
-        ->check(CLI::NonNegativeNumber);
+        ->check(CLI::NonNegativeNumber)
+        ->option_text("N");
     c->add_option_function<std::string>(
          "--seed", [a](const std::string& text) { a->options.seed = parse_seed("--seed", text); },
          "seed of all random numbers (default 0)")
-        ->option_text("NUMBER");
+        ->option_text("N");
     c->add_option("--threads", a->threads, "worker threads (default: all cores)")
-        ->check(CLI::Range(1, 4096));
+        ->check(CLI::Range(1, 4096))
+        ->option_text("N");
     c->add_option("--isa", a->isa, "instruction set of the ray tracing")
         ->check(CLI::IsMember({"sse2", "avx", "avx2", "avx512"}).description(""))
         ->option_text("sse2|avx|avx2|avx512");
-    c->add_option("--shutter", a->shutter, "T0,T1 in place of the scene's");
+    c->add_option("--shutter", a->shutter, "in place of the scene's")->option_text("T0,T1");
     add_positive(c, "--focus", a->overrides.focal_distance, 1e30,
                  "focal distance in place of the scene's");
     add_positive(c, "--fstop", a->overrides.f_number, 1e30,
-                 "lens by f-number, for a full-frame sensor and metres");
-    c->add_option("--png", a->png, "also a tone-mapped sRGB picture");
-    c->add_option("--layers", a->layers, "all, or the names of layers to keep beside the image");
+                 "lens by f-number (full-frame sensor, metres)");
+    c->add_option("--png", a->png, "also a tone-mapped sRGB picture")->option_text("FILE");
+    c->add_option("--layers", a->layers, "all, or name,name…: layers beside the image")
+        ->option_text("LIST");
     add_choice<ProgressStyle>(c, "--progress", a->progress,
                               {{"auto", ProgressStyle::automatic},
                                {"bar", ProgressStyle::bar},
@@ -306,9 +314,8 @@ void add_render(CLI::App& app, Invocation& invocation) {
                                {"json", ProgressStyle::json},
                                {"none", ProgressStyle::none}},
                               "how progress is shown on standard error");
-    c->add_option("--stats", a->stats, "counters and phase times as JSON");
-    c->add_flag("--reproducible", a->reproducible,
-                "leave command, seconds and date out of the file");
+    c->add_option("--stats", a->stats, "counters and phase times as JSON")->option_text("FILE");
+    c->add_flag("--reproducible", a->reproducible, "write no command, seconds and date");
     c->add_flag("--quiet", a->quiet, "errors only");
     c->callback([a, &invocation] {
         invocation.action = [a, &invocation] { return render_scene(*a, invocation); };

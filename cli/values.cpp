@@ -43,23 +43,24 @@ std::array<T, N> parse_list(const std::string& option, const std::string& text, 
 }  // namespace
 
 double parse_duration(const std::string& option, const std::string& text) {
+    constexpr auto kExpected = "a duration such as 2.5, 45s, 3m or 1h30m";
     std::string_view rest = text;
     double seconds = 0;
-    bool any = false;
-    while (!rest.empty()) {
-        double value = 0;
-        if (!take_number(rest, value) || !(value >= 0)) break;
-        const char unit = rest.empty() ? 's' : rest.front();
-        if (!rest.empty()) rest.remove_prefix(1);
-        if (unit != 's' && unit != 'm' && unit != 'h') {
-            any = false;
-            break;
-        }
-        seconds += value * (unit == 'h' ? 3600 : (unit == 'm' ? 60 : 1));
-        any = true;
+    if (!take_number(rest, seconds) || !rest.empty()) {
+        // Only a number alone may leave out its unit: "1h30" could mean minutes or seconds.
+        rest = text;
+        seconds = 0;
+        do {
+            double value = 0;
+            if (!take_number(rest, value) || !(value >= 0) || rest.empty())
+                refuse(option, text, kExpected);
+            const char unit = rest.front();
+            rest.remove_prefix(1);
+            if (unit != 's' && unit != 'm' && unit != 'h') refuse(option, text, kExpected);
+            seconds += value * (unit == 'h' ? 3600 : (unit == 'm' ? 60 : 1));
+        } while (!rest.empty());
     }
-    if (!any || !rest.empty() || !(seconds > 0) || !(seconds < 1e9))
-        refuse(option, text, "a duration such as 2.5, 45s, 3m or 1h30m");
+    if (!(seconds > 0) || !(seconds < 1e9)) refuse(option, text, kExpected);
     return seconds;
 }
 

@@ -23,6 +23,10 @@ struct Arriving {
     }
 };
 
+/// Light below this part of a path's luminance is carried without a look at its occluders, the dearest
+/// step of the replay: the contrast of its shadow edges is below what the spectra of textures count as visible.
+constexpr double kSmallestShare = 0.1;
+
 cov::SymmetricMatrix5<double> to_sensor(const LightField& field, const SensorGeometry& g) {
     const LightField at_rest = cov::motion_enter(field, {g.velocity, g.angular_velocity});
     if (g.orthographic)
@@ -43,9 +47,9 @@ PathReplay::PathReplay(const RenderScene& scene, const VoxelGrid* occluders)
     smallest_ = 1e-4 * radius_;
 }
 
-LightField PathReplay::carry(LightField field, Vec3 from, Vec3 to) const {
+LightField PathReplay::carry(LightField field, Vec3 from, Vec3 to, double share) const {
     double at = 0;
-    if (occluders_) {
+    if (occluders_ && share >= kSmallestShare) {
         const float voxel = occluders_->voxel_size();
         VoxelMarch march(*occluders_, from, to);
         OccluderEvent e;
@@ -72,13 +76,20 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         return p + w * std::max(0.0f, -b + safe_sqrt(b * b - c));
     };
 
+    double total = record.escaped;
+    for (int i = 0; i < record.count; ++i) {
+        const PathVertex& v = record.vertices[size_t(i)];
+        total += double(v.emitted) + v.direct;
+    }
+    if (!(total > 0)) return {};
+
     Arriving light;
     if (record.escaped > 0) {
         const SourceSpectrum s = scene_.lights.environment_spectrum(record.escape_direction);
         light.add(source_field(s, -record.escape_direction, record.escape_seen_sharply, smallest_), record.escaped);
         const Vec3 last = record.count > 0 ? record.vertices[size_t(record.count - 1)].hit.position
                                            : record.camera_ray.origin;
-        light.field = carry(light.field, entry(last, record.escape_direction), last);
+        light.field = carry(light.field, entry(last, record.escape_direction), last, light.weight / total);
     }
 
     // Half a pixel's extent grows with the distance travelled from the camera.
@@ -104,7 +115,7 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
                 const Vec3 from = std::isfinite(v.light.distance) ? v.hit.position + v.light.wi * v.light.distance
                                                                   : entry(v.hit.position, v.light.wi);
                 const LightField source = source_field(s, -v.light.wi, false, smallest_);
-                leaving.add(scatter(carry(source, from, v.hit.position), point, v.direct_event.lobes), v.direct);
+                leaving.add(scatter(carry(source, from, v.hit.position, v.direct / total), point, v.direct_event.lobes), v.direct);
             }
         }
         if (v.emitted > 0)
@@ -112,7 +123,7 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         light = leaving;
         if (!(light.weight > 0)) continue;
         const Vec3 next = i > 0 ? record.vertices[size_t(i - 1)].hit.position : record.camera_ray.origin;
-        light.field = carry(light.field, v.hit.position, next);
+        light.field = carry(light.field, v.hit.position, next, light.weight / total);
     }
 
     if (!(light.weight > 0)) return {};

@@ -26,8 +26,9 @@ class PathReplay {
     PathCovariance operator()(const PathRecord& record) const;
 
   private:
-    /// Travel from one point to another past the occluders on the way.
-    LightField carry(LightField field, Vec3 from, Vec3 to) const;
+    /// Travel from one point to another, past the occluders on the way where `share`, this light's part
+    /// of the path's luminance, is large enough to be seen.
+    LightField carry(LightField field, Vec3 from, Vec3 to, double share) const;
 
     const RenderScene& scene_;
     const VoxelGrid* occluders_;

@@ -18,7 +18,7 @@ struct SigmoidSpectrum {
 };
 
 /// The spectrum whose colour under D65 is `colour`, brought into [0.0001, 0.9999]; a constant one
-/// for greys. Every such colour has one, the primaries too: the error is below 1e-5.
+/// for greys. Every such colour has one, the primaries too: the error is below 1e-4.
 SigmoidSpectrum sigmoid_spectrum(Rgb colour);
 
 /// The spectrum of a factor without upper limit, such as an index of refraction, as pbrt-v4 makes

@@ -9,7 +9,7 @@ class Help(CliTest):
     def assert_fits(self, text, lines):
         self.assertLessEqual(len(text.splitlines()), lines)
         for line in text.splitlines():
-            self.assertLessEqual(len(line), 100, line)
+            self.assertLessEqual(len(line), 80, line)
 
     def test_help_goes_to_stdout_and_fits_a_screen(self):
         for arguments in (["--help"], ["-h"], ["render", "--help"], ["compare", "--help"], ["info", "--help"]):
@@ -54,7 +54,7 @@ class WrongCommandLines(CliTest):
     def test_every_bad_value_names_its_option(self):
         bad = {
             "--spp": ["0", "-1", "many", "nan", "inf", "1e300", ""],
-            "--time": ["garbage", "0", "-3", "5x", "3m5", "1h30", "nan", "inf", "1e400", "m"],
+            "--time": ["garbage", "0", "-3", "5x", "3m5", "1h30", "1m-3s", "s", "nan", "inf", "1e400", "m"],
             "--method": ["magic", "Uniform", "0"],
             "--cov-spp": ["0", "-2", "x"],
             "--max-spp": ["0", "x"],
@@ -95,10 +95,9 @@ class WrongCommandLines(CliTest):
 
     def test_durations(self):
         # Only that they are understood: the spp limit ends the render long before.
-        for time in ("2.5", "45s", "3m", "1h30m", "0.5h", "1m30"):
+        for time in ("2.5", "45s", "3m", "1h30m", "0.5h", "1h0m30.5s"):
             with self.subTest(time=time):
-                expected = USAGE if time == "1m30" else DONE
-                self.assertEqual(self.render(TINY, "--spp", "1", "--time", time).code, expected)
+                self.assertEqual(self.render(TINY, "--spp", "1", "--time", time).code, DONE)
 
 
 if __name__ == "__main__":
