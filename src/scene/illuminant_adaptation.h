@@ -45,7 +45,7 @@ class IlluminantAdaptation {
 };
 
 /// The same by interpolation in a table, for textures: no allocation, some 10 nanoseconds. Within
-/// 0.005 for lights no more colourful than a candle; within 0.015 for saturated reflectances under
+/// 0.005 for lights no more colourful than a candle; within 0.025 for saturated reflectances under
 /// the most saturated light. Greys stay as they are here too. Immutable and thread-safe after
 /// construction.
 class AdaptationTable {

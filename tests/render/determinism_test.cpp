@@ -85,7 +85,9 @@ TEST(Budget, MostSamplesAreRespected) {
 
 TEST(Crop, IsTheSamePixelsOfTheFullFrame) {
     SceneDescription description = read_pbrt_string(kScene, "test", ".");
-    apply({.crop = PixelBounds{20, 10, 50, 30}}, description);
+    SceneOverrides overrides;
+    overrides.crop = PixelBounds{20, 10, 50, 30};
+    apply(overrides, description);
     RenderScene scene(std::move(description));
     Monitor monitor;
     const Image part = render(scene, uniform(3), monitor).image, full = render_text(kScene, uniform(3)).image;
