@@ -262,7 +262,7 @@ void add_render(CLI::App& app, Invocation& invocation) {
                  "average samples per pixel (default: the scene's)");
     c->add_option("--time", a->seconds, "wall-clock budget: 2.5, 45s, 3m, 1h30m")->option_text("T");
     c->add_option("--cov-spp", a->options.cov_spp,
-                  "covariance paths per pixel (default: spp/4, 2 to 4)")
+                  "covariance paths per pixel (default: spp/4, 2-4)")
         ->check(CLI::Range(1, 1 << 20))
         ->option_text("N");
     add_choice<DensityRule>(c, "--density", a->options.density,

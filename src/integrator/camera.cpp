@@ -8,6 +8,8 @@ namespace covtrace {
 
 Camera::Camera(const CameraDescription& description, int width, int height)
     : description_(description),
+      width_(width),
+      height_(height),
       lens_radius_(description.lens_radius),
       focal_distance_(description.focal_distance),
       shutter_open_(description.shutter_open),
@@ -84,7 +86,7 @@ Matrix4 Camera::world_to_camera() const {
 Matrix4 Camera::world_to_ndc() const {
     // Film fractions in [0, 1], y down, as pbrt and OpenEXR's "worldToNDC" users expect: x' / w', y' / w'.
     Matrix4 projection;
-    const double width_slope = per_pixel_.x, height_slope = per_pixel_.y;
+    const double width_slope = double(per_pixel_.x) * width_, height_slope = double(per_pixel_.y) * height_;
     projection.m[0] = {1 / width_slope, 0, -origin_.x / width_slope, 0};
     projection.m[1] = {0, 1 / height_slope, -origin_.y / height_slope, 0};
     projection.m[2] = {0, 0, 1, 0};

@@ -35,6 +35,7 @@ class Camera {
     const Transform& to_world(float time, Transform& storage) const;
 
     CameraDescription description_;
+    int width_, height_;
     Vec2 origin_;     // camera-space slope (or position) of film position (0, 0)
     Vec2 per_pixel_;  // and its change per pixel; y is negative
     float lens_radius_ = 0, focal_distance_ = 1;

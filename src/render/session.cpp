@@ -1,5 +1,7 @@
 #include "render/session.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <new>
@@ -245,11 +247,17 @@ RenderResult render(RenderScene& scene, const RenderOptions& options, Monitor& m
     const PixelBounds region = render_region(scene.description.film);
     if (region.width() <= 0 || region.height() <= 0)
         throw Error(ErrorKind::scene, scene.description.film.where, "the film's crop window holds no pixel");
+    const Error too_large(ErrorKind::limit, "not enough memory for an image of " + std::to_string(region.width()) + "x" +
+                                                std::to_string(region.height()) + " pixels");
+    // Film, layers and the buffers of the method, as measured. A system that promises more memory than it has
+    // would end the process in the middle of the render.
+    const double bytes_per_pixel = options.method == Method::uniform ? 130 : 350;
+    const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+    if (bytes_per_pixel * double(region.width()) * double(region.height()) > memory) throw too_large;
     try {
         return Session(scene, options, monitor).run();
     } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::limit, "not enough memory for an image of " + std::to_string(region.width()) + "x" +
-                                          std::to_string(region.height()) + " pixels");
+        throw too_large;
     }
 }
 

@@ -72,7 +72,7 @@ class Text(SceneErrorTest):
             ('LightSource "glow"', 'LightSource "glow"', ["glow"]),
             ('AreaLightSource "glow"', 'AreaLightSource "glow"', ["glow"]),
             ('Texture "t" "spectrum" "plaid"', 'Texture "t"', ["plaid"]),
-            ('MakeNamedMedium "m" "string type" "fog"', "MakeNamedMedium", ["fog"]),
+            ('MakeNamedMedium "m" "string type" "fog"', '"string type"', ["fog"]),
             ('ColorSpace "cmyk"', "ColorSpace", ["cmyk"]),
             ("WorldEnd", "WorldEnd", ["pbrt-v3"]),
             ('Material "matte"', 'Material "matte"', ["pbrt-v3"]),
@@ -129,10 +129,11 @@ class Text(SceneErrorTest):
                 self.assertRegex(result.stderr, r"^covtrace: scene\.pbrt:\d+:\d+: ")
 
     def test_structure(self):
+        before = HEADER + "WorldBegin\nReverseOrientation\n"
+        here = f"scene.pbrt:{before.count(chr(10)) + 1}:1"
         for tail in ("AttributeBegin", 'ObjectBegin "o"', "ObjectEnd", "WorldBegin", 'Camera "perspective"'):
             with self.subTest(tail=tail):
-                self.assert_scene_fails_at(HEADER + "WorldBegin\nReverseOrientation\n" + tail + " ", tail + " "
-                                           if tail != "WorldBegin" else "WorldBegin ")
+                self.assert_fails_at(self.render(before + tail), here, tail.split()[0])
         self.assert_fails(self.render(HEADER), SCENE, "WorldBegin")
 
     def test_degenerate_transforms(self):
@@ -237,7 +238,7 @@ class Meshes(SceneErrorTest):
             self.assert_mesh_fails(binary_ply([(0, 0, 0), (1, bad, 0), (0, 1, 0)]))
 
     def test_more_vertices_claimed_than_there_are(self):
-        for claimed in (4, 10**6, 2**31 - 1, 2**40, -1):
+        for claimed in (5, 10**6, 2**31 - 1, 2**40, -1):
             with self.subTest(claimed=claimed):
                 self.write("mesh.ply", binary_ply(count=claimed))
                 result = self.render(self.SCENE, before=limits(AS=2 << 30))

@@ -14,7 +14,7 @@ struct Moments {
 
 Moments moments(const PixelFilter& filter) {
     Moments m;
-    constexpr int n = 400;
+    constexpr int n = 1600;
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
             const auto s = filter.sample({(float(i) + 0.5f) / n, (float(j) + 0.5f) / n});
