@@ -50,9 +50,7 @@ ProgressReporter make_reporter(ProgressStyle style) {
         case ProgressStyle::json:
             return {
                 [](const Progress& p) {
-                    fmt::print(
-                        stderr,
-                        "{{\"phase\":\"{}\",\"fraction\":{:.4f},\"spp\":{:.4f},\"elapsed\":{:.3f},"
+                    say("{{\"phase\":\"{}\",\"fraction\":{:.4f},\"spp\":{:.4f},\"elapsed\":{:.3f},"
                         "\"remaining\":{:.3f}}}\n",
                         p.phase, p.fraction, p.samples_per_pixel, p.elapsed, p.remaining);
                 },

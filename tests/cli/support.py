@@ -102,11 +102,11 @@ class CliTest(unittest.TestCase):
         )
 
     def rendered(self, *arguments, output="out.exr", scene=TINY, **options):
-        """Renders, expects success, returns the path of the image."""
+        """Renders, expects success, returns the path of the image (output=None: what TINY's film names)."""
         result = self.render(scene, *arguments, output=output, **options)
         self.assertEqual(result.code, DONE, result)
         self.assertEqual(result.stdout, "", result)
-        return self.folder / output
+        return self.folder / (output or "film.exr")
 
     def assert_fails(self, result, code, *fragments):
         """The exit code, nothing on stdout, and one line on stderr that holds all the fragments.

@@ -1,68 +1,12 @@
 // Whatever a file holds, reading it gives an image or one Error(scene) of one line that names the
 // file; nothing is printed, nothing crashes.
-#include <fcntl.h>
-
-#include "image/raster.h"
+#include "image_reading_contract.h"
 #include "image_test_files.h"
 
 namespace covtrace {
 namespace {
 
 using namespace test;
-
-/// Sends what the process prints into a file while it lives.
-class PrintCounter {
-  public:
-    explicit PrintCounter(const fs::path& file) : file_(file) {
-        std::fflush(nullptr);
-        const int to = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-        for (int i : {0, 1}) {
-            saved_[i] = ::dup(i + 1);
-            ::dup2(to, i + 1);
-        }
-        ::close(to);
-    }
-    ~PrintCounter() {
-        std::fflush(nullptr);
-        for (int i : {0, 1}) {
-            ::dup2(saved_[i], i + 1);
-            ::close(saved_[i]);
-        }
-    }
-    uintmax_t bytes() const {
-        std::fflush(nullptr);
-        return fs::file_size(file_);
-    }
-
-  private:
-    fs::path file_;
-    int saved_[2]{};
-};
-
-/// Empty where reading kept the contract, else what is wrong.
-template <class Reader>
-std::string problem_of_reading(const fs::path& file, Reader read) {
-    try {
-        read(file);
-    } catch (const Error& e) {
-        const std::string text = e.what();
-        if (e.kind() != ErrorKind::scene) return "wrong kind of error: " + text;
-        if (text.find('\n') != std::string::npos) return "several lines: " + text;
-        const std::string named = "'" + file.string() + "': ";
-        const size_t at = text.find(named);
-        if (at == std::string::npos) return "the file is not named: " + text;
-        if (at + named.size() == text.size()) return "no reason: " + text;
-    } catch (const std::exception& e) {
-        return std::string("an exception of another type: ") + e.what();
-    }
-    return {};
-}
-
-std::string problem_of(const fs::path& file) {
-    const std::string problem = problem_of_reading(file, [](const fs::path& f) { read_image(f); });
-    if (!problem.empty()) return problem;
-    return problem_of_reading(file, [](const fs::path& f) { read_raster(f); });
-}
 
 /// One small valid file of each kind, by its extension.
 std::vector<std::pair<std::string, std::string>> valid_files(const TemporaryDirectory& directory) {
@@ -154,21 +98,6 @@ TEST(Malformed, NotAnImage) {
     EXPECT_NE(std::string(error_of([&] { read_image(directory / "text.png"); }).what())
                   .find("it is no image of a known format"),
               std::string::npos);
-}
-
-TEST(Malformed, Corpus) {
-    const char* shared = std::getenv("COVTRACE_SHARED");
-    if (!shared) GTEST_SKIP() << "COVTRACE_SHARED is not set";
-    TemporaryDirectory directory;
-    PrintCounter printed(directory / "printed");
-    size_t files = 0;
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(shared) / "malformed"))
-        if (entry.is_regular_file()) {
-            EXPECT_EQ(problem_of(entry.path()), "") << entry.path();
-            ++files;
-        }
-    EXPECT_GT(files, 0u);
-    EXPECT_EQ(printed.bytes(), 0u);
 }
 
 }  // namespace

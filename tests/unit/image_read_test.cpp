@@ -123,44 +123,6 @@ TEST_F(Read, Jpeg) {
     EXPECT_EQ(raster.values, std::vector<float>(64, 128 / 255.0f));
 }
 
-TEST_F(Read, PngKindsOfTheSuite) {
-    const char* shared = std::getenv("COVTRACE_SHARED");
-    if (!shared) GTEST_SKIP() << "COVTRACE_SHARED is not set";
-    const fs::path suite = fs::path(shared) / "malformed/pngsuite";
-    struct Kind {
-        const char* name;
-        int channels;
-        bool sixteen;
-    };
-    // Name, then 0: grey, 2: colour, 3p: palette, 4a and 6a: with alpha, then the bits. The alpha
-    // of grey images is dropped; transparent colours become alpha.
-    for (const Kind& k : {Kind{"basn0g01", 1, false},
-                          {"basn0g02", 1, false},
-                          {"basn0g04", 1, false},
-                          {"basn0g08", 1, false},
-                          {"basn0g16", 1, true},
-                          {"basn2c08", 3, false},
-                          {"basn2c16", 3, true},
-                          {"basn3p01", 3, false},
-                          {"basn3p08", 3, false},
-                          {"basn4a08", 1, false},
-                          {"basn4a16", 1, true},
-                          {"basn6a08", 4, false},
-                          {"basn6a16", 4, true},
-                          {"ftbwn3p08", 4, false}}) {
-        const RasterImage plain = read_raster(suite / (std::string(k.name) + ".png"));
-        EXPECT_EQ(plain.channels, k.channels) << k.name;
-        EXPECT_EQ(plain.is_16bit, k.sixteen) << k.name;
-        EXPECT_EQ(plain.is_8bit, !k.sixteen) << k.name;
-        const RasterImage interlaced = read_raster(suite / ("i" + std::string(k.name) + ".png"));
-        EXPECT_EQ(plain.values, interlaced.values) << k.name;
-    }
-    // A horizontal ramp from black to white in 1-bit grey has only these two values.
-    for (float v : read_raster(suite / "basn0g01.png").values) EXPECT_TRUE(v == 0 || v == 1);
-    const Image alpha = read_image(suite / "basn4a08.png");
-    ASSERT_TRUE(alpha.find("Y") && alpha.find("A"));
-}
-
 TEST_F(Read, RasterOfExrTakesTheRootLayerAndRepairs) {
     const float inf = std::numeric_limits<float>::infinity();
     Image image{{2, 3, 4, 4}, {0, 0, 10, 10}, {}, {}};

@@ -1,14 +1,11 @@
-/// Real scenes, where they are at hand: the folder that COVTRACE_SHARED names.
-#include <cstdlib>
-
-#include "scene_test_support.h"
+/// Real scenes read without complaints.
+#include "tests/shared/shared_folder.h"
+#include "tests/unit/scene_test_support.h"
 
 namespace covtrace::test {
 namespace {
 
 TEST(SceneShared, RealScenesReadWithoutWarnings) {
-    const char* shared = std::getenv("COVTRACE_SHARED");
-    if (!shared) GTEST_SKIP() << "COVTRACE_SHARED is not set";
     struct Case {
         const char* name;
         size_t shapes;
@@ -18,7 +15,7 @@ TEST(SceneShared, RealScenesReadWithoutWarnings) {
                           Case{"material-testball", 4, 1280, 65}, Case{"staircase2", 32, 1024, 65},
                           Case{"veach-mis", 9, 1280, 3}}) {
         const auto scene =
-            read_pbrt(std::filesystem::path(shared) / "scenes" / c.name / "scene.pbrt");
+            read_pbrt(shared_folder() / "scenes" / c.name / "scene.pbrt");
         EXPECT_EQ(warnings_of(scene), "") << c.name;
         EXPECT_EQ(scene.shapes.size(), c.shapes) << c.name;
         EXPECT_EQ(scene.film.width, c.width) << c.name;

@@ -1,0 +1,234 @@
+"""The image: layers, windows, metadata, and the PNG beside it."""
+
+import math
+import struct
+import unittest
+import zlib
+
+import exr
+from support import TINY, DONE, CliTest
+
+PLAIN = (
+    "R G B A raw.R raw.G raw.B albedo.R albedo.G albedo.B N.X N.Y N.Z Z variance.R variance.G variance.B error.Y samples.Y"
+).split()
+SYMMETRIC = ["xx", "xy", "yy"]
+COVARIANCE = (
+    ["density.Y", "covweight.Y"]
+    + [f"filter.{s}" for s in SYMMETRIC]
+    + [f"spectrum.{s}" for s in SYMMETRIC]
+    + [f"cov.{i}{j}" for i in range(5) for j in range(i, 5)]
+)
+ENVIRONMENT = 'LightSource "infinite" "rgb L" [.4 .4 .4]\n'
+
+
+class Layers(CliTest):
+    def layers(self, *arguments, scene=TINY):
+        return exr.read(self.rendered(*arguments, scene=scene))
+
+    def test_names(self):
+        self.assertCountEqual(self.layers("--method", "uniform").channels, PLAIN)
+        self.assertCountEqual(self.layers("--method", "covariance").channels, PLAIN + COVARIANCE)
+
+    def test_covariance_is_the_default(self):
+        self.assertEqual(self.layers().value("covtrace:method"), "covariance")
+
+    def test_alpha_only_where_the_scene_leaves_holes(self):
+        self.assertIn("A", self.layers().channels)
+        self.assertNotIn("A", self.layers(scene=TINY + ENVIRONMENT).channels)
+
+    def test_everything_is_finite(self):
+        for method in ("uniform", "covariance"):
+            image = self.layers("--method", method)
+            for name, values in image.pixels.items():
+                self.assertTrue(all(map(math.isfinite, values)), f"{method}: {name}")
+
+    def test_uniform_takes_the_same_everywhere(self):
+        image = self.layers("--method", "uniform", "--spp", "5")
+        self.assertEqual(set(image.pixels["samples.Y"]), {5.0})
+        for c in "RGB":
+            self.assertEqual(image.pixels[c], image.pixels[f"raw.{c}"])
+
+    def test_average_of_the_samples_is_what_was_asked_for(self):
+        for method in ("uniform", "covariance"):
+            for spp in (0.5, 1, 4, 6.25):
+                with self.subTest(method=method, spp=spp):
+                    samples = self.layers("--method", method, "--spp", spp).pixels["samples.Y"]
+                    self.assertAlmostEqual(sum(samples) / len(samples), spp, delta=1 / len(samples) + 0.01 * spp)
+
+    def test_max_spp(self):
+        samples = self.layers("--spp", "8", "--max-spp", "10").pixels["samples.Y"]
+        self.assertLessEqual(max(samples), 10)
+
+    def test_chosen_layers(self):
+        few = self.layers("--layers", "N,samples")
+        self.assertCountEqual(few.channels, ["R", "G", "B", "A", "N.X", "N.Y", "N.Z", "samples.Y"])
+        one = self.layers("--layers", "Z")
+        self.assertCountEqual(one.channels, ["R", "G", "B", "A", "Z"])
+        whole = self.layers("--layers", "all")
+        self.assertCountEqual(whole.channels, PLAIN + COVARIANCE)
+        for name in few.channels:
+            self.assertEqual(few.pixels[name], whole.pixels[name], name)
+
+    def test_what_the_layers_mean(self):
+        image = self.layers("--spp", "16")
+        middle = (image.height // 2) * image.width + image.width // 2  # on the sphere of radius 1
+        self.assertAlmostEqual(image.pixels["Z"][middle], math.sqrt(37) - 1, delta=0.3)
+        normal = [image.pixels[f"N.{c}"][middle] for c in "XYZ"]
+        self.assertGreater(normal[2], 0.8)
+        for channel, value in zip("RGB", (0.5, 0.4, 0.3)):
+            self.assertAlmostEqual(image.pixels[f"albedo.{channel}"][middle], value, delta=1e-3)
+        corner = 0
+        self.assertEqual(image.pixels["A"][corner], 0)
+        self.assertEqual(image.pixels["A"][middle], 1)
+
+
+class Windows(CliTest):
+    def test_whole_frame(self):
+        image = exr.read(self.rendered())
+        self.assertEqual(image.data_window, (0, 0, 24, 16))
+        self.assertEqual(image.display_window, (0, 0, 24, 16))
+
+    def test_resolution(self):
+        image = exr.read(self.rendered("--resolution", "31x17"))
+        self.assertEqual(image.data_window, (0, 0, 31, 17))
+
+    def test_one_pixel(self):
+        for method in ("uniform", "covariance"):
+            self.assertEqual(exr.read(self.rendered("--resolution", "1x1", "--method", method)).width, 1)
+            image = exr.read(self.rendered("--crop", "23,15,24,16", "--method", method))
+            self.assertEqual(image.data_window, (23, 15, 24, 16))
+
+    def test_crop_holds_the_pixels_of_the_whole(self):
+        whole = exr.read(self.rendered("--method", "uniform"))
+        part = exr.read(self.rendered("--method", "uniform", "--crop", "5,3,20,11", output="part.exr"))
+        self.assertEqual(part.data_window, (5, 3, 20, 11))
+        self.assertEqual(part.display_window, (0, 0, 24, 16))
+        for name in part.channels:
+            for y in range(3, 11):
+                expected = whole.pixels[name][y * 24 + 5 : y * 24 + 20]
+                found = part.pixels[name][(y - 3) * 15 : (y - 2) * 15]
+                self.assertEqual(found, expected, f"{name}, row {y}")
+
+    def test_crop_in_the_scene(self):
+        scene = TINY.replace('"string filename"', '"integer pixelbounds" [4 12 2 6] "string filename"')
+        image = exr.read(self.rendered(scene=scene))
+        self.assertEqual(image.data_window, (4, 2, 12, 6))
+        self.assertEqual(image.display_window, (0, 0, 24, 16))
+
+
+class Metadata(CliTest):
+    def test_header(self):
+        image = exr.read(self.rendered("--spp", "3", "--seed", "7", "--isa", "avx2"))
+        self.assertEqual(image.attributes["complete"], ("int", 1))
+        self.assertEqual(image.attributes["spp"][0], "float")
+        self.assertAlmostEqual(image.value("spp"), 3, delta=0.01)
+        self.assertEqual(image.attributes["covtrace:seed"], ("string", "7"))
+        self.assertEqual(image.attributes["covtrace:isa"], ("string", "avx2"))
+        self.assertRegex(image.value("covtrace:version"), r"^\d+\.\d+\.\d+$")
+        self.assertEqual(image.attributes["covtrace:commit"][0], "string")
+        self.assertRegex(image.value("covtrace:sceneHash"), r"^[0-9a-f]{16}$")
+        for camera in ("worldToCamera", "worldToNDC"):
+            self.assertEqual(image.attributes[camera][0], "m44f")
+        self.assertIn("render", image.value("covtrace:command"))
+        self.assertGreater(image.value("covtrace:seconds"), 0)
+        self.assertRegex(image.value("capDate"), r"^\d{4}:\d\d:\d\d \d\d:\d\d:\d\d$")
+
+    def test_scene_hash_follows_the_scene(self):
+        def scene_hash(scene):
+            return exr.read(self.rendered(scene=scene)).value("covtrace:sceneHash")
+
+        self.assertEqual(scene_hash(TINY), scene_hash(TINY))
+        self.assertNotEqual(scene_hash(TINY), scene_hash(TINY.replace(".5 .4 .3", ".5 .4 .31")))
+
+    def test_world_to_ndc_maps_the_look_at_point_to_the_middle(self):
+        m = exr.read(self.rendered()).value("worldToNDC")
+        x, y, w = m[12], m[13], m[15]  # the origin, where the camera looks, times the matrix
+        self.assertAlmostEqual(x / w, 0.5, delta=1e-4)
+        self.assertAlmostEqual(y / w, 0.5, delta=1e-4)
+
+    def test_reproducible_leaves_out_what_differs_between_runs(self):
+        image = exr.read(self.rendered("--reproducible"))
+        for name in ("covtrace:command", "covtrace:seconds", "capDate", "utcOffset"):
+            self.assertNotIn(name, image.attributes)
+        self.assertIn("covtrace:sceneHash", image.attributes)
+
+
+def read_png(data):
+    """Width, height, and rows of 8-bit RGB; checks every checksum."""
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    at, packed, header = 8, b"", None
+    kind = b""
+    while kind != b"IEND":
+        (size,) = struct.unpack_from(">I", data, at)
+        kind, body = data[at + 4 : at + 8], data[at + 8 : at + 8 + size]
+        (checksum,) = struct.unpack_from(">I", data, at + 8 + size)
+        assert checksum == zlib.crc32(kind + body), kind
+        if kind == b"IHDR":
+            header = struct.unpack(">IIBBBBB", body)
+        elif kind == b"IDAT":
+            packed += body
+        at += 12 + size
+    assert at == len(data)
+    width, height = header[:2]
+    assert header[2:] == (8, 2, 0, 0, 0), header
+    coded, rows, stride = zlib.decompress(packed), [], 3 * width
+    assert len(coded) == height * (stride + 1)
+    above = bytearray(stride)
+    for y in range(height):
+        kind, row = coded[y * (stride + 1)], bytearray(coded[y * (stride + 1) + 1 : (y + 1) * (stride + 1)])
+        for i in range(stride):
+            a, b = row[i - 3] if i >= 3 else 0, above[i]
+            c = above[i - 3] if i >= 3 else 0
+            p = a + b - c
+            paeth = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+            row[i] = (row[i] + (0, a, b, (a + b) // 2, paeth)[kind]) & 0xFF
+        rows.append(row)
+        above = row
+    return width, height, rows
+
+
+class Png(CliTest):
+    def test_png_is_the_image_in_srgb(self):
+        image = exr.read(self.rendered("--png", "out.png"))
+        width, height, rows = read_png((self.folder / "out.png").read_bytes())
+        self.assertEqual((width, height), (24, 16))
+        for c, name in enumerate("RGB"):
+            for i, v in enumerate(image.pixels[name]):
+                v = min(max(v, 0), 1)
+                encoded = 12.92 * v if v <= 0.0031308 else 1.055 * v ** (1 / 2.4) - 0.055
+                self.assertAlmostEqual(rows[i // 24][3 * (i % 24) + c], 255 * encoded, delta=0.51)
+
+    def test_png_of_a_crop(self):
+        self.rendered("--png", "out.png", "--crop", "3,4,10,9")
+        width, height, _ = read_png((self.folder / "out.png").read_bytes())
+        self.assertEqual((width, height), (7, 5))
+
+
+class Overrides(CliTest):
+    def test_lens_and_shutter(self):
+        for arguments in (["--shutter", "0,0.5"], ["--fstop", "2", "--focus", "5"], ["--max-depth", "0"], ["--focus", "3"]):
+            with self.subTest(arguments=arguments):
+                image = exr.read(self.rendered("--method", "uniform", *arguments))
+                self.assertEqual(image.value("complete"), 1)
+
+    def test_half_the_shutter_is_half_the_light(self):
+        whole = exr.read(self.rendered("--method", "uniform", "--shutter", "0,1")).pixels["R"]
+        half = exr.read(self.rendered("--method", "uniform", "--shutter", "0,0.5")).pixels["R"]
+        self.assertAlmostEqual(sum(half) / sum(whole), 0.5, delta=1e-4)
+
+    def test_depth_zero_shows_lights_only(self):
+        image = exr.read(self.rendered("--method", "uniform", "--max-depth", "0", "--spp", "16"))
+        lit = exr.read(self.rendered("--method", "uniform", "--max-depth", "2", "--spp", "16"))
+        self.assertLess(sum(image.pixels["R"]), sum(lit.pixels["R"]))
+
+    def test_a_world_without_anything(self):
+        empty = TINY[: TINY.index("WorldBegin")] + "WorldBegin\n"
+        for method in ("uniform", "covariance"):
+            with self.subTest(method=method):
+                result = self.render(empty, "--method", method)
+                self.assertEqual(result.code, DONE, result)
+                self.assertEqual(set(exr.read(self.folder / "out.exr").pixels["R"]), {0.0})
+
+
+if __name__ == "__main__":
+    unittest.main()

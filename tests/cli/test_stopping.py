@@ -1,0 +1,87 @@
+"""Renders that end early: interrupts and budgets of time."""
+
+import math
+import signal
+import subprocess
+import time
+import unittest
+
+import exr
+from support import DONE, INTERRUPTED, PROGRAM, TINY, CliTest
+
+# The contract says 2 s and 0.5 s; a machine that runs other tests at the same time may need longer.
+SLACK = 1.5
+
+
+class Interrupts(CliTest):
+    def interrupt(self, method, number):
+        self.write("scene.pbrt", TINY)
+        program = subprocess.Popen(
+            [PROGRAM, "render", "scene.pbrt", "-o", "out.exr", "--method", method, "--spp", "1e6",
+             "--resolution", "160x120", "--progress", "json"],
+            cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        )
+        try:
+            program.stderr.readline()  # the first report: it is tracing
+            time.sleep(0.3)
+            sent = time.monotonic()
+            program.send_signal(number)
+            stdout, _ = program.communicate(timeout=30)
+            return program.returncode, time.monotonic() - sent, stdout
+        finally:
+            program.kill()
+            program.communicate()
+
+    def test_interrupt_leaves_a_usable_image(self):
+        for method in ("uniform", "covariance"):
+            for number in (signal.SIGINT, signal.SIGTERM):
+                with self.subTest(method=method, signal=number.name):
+                    code, seconds, stdout = self.interrupt(method, number)
+                    self.assertEqual(code, INTERRUPTED)
+                    self.assertEqual(stdout, b"")
+                    self.assertLess(seconds, 2 + SLACK)
+                    image = exr.read(self.folder / "out.exr")
+                    self.assertEqual(image.value("complete"), 0)
+                    self.assertEqual((image.width, image.height), (160, 120))
+                    self.assertTrue(all(map(math.isfinite, image.pixels["R"])))
+                    self.assertGreater(max(image.pixels["R"]), 0)
+                    self.assertGreater(sum(image.pixels["samples.Y"]), 0)
+                    self.assert_no_leftovers()
+
+
+class Budgets(CliTest):
+    def test_time_is_kept(self):
+        for method in ("uniform", "covariance"):
+            with self.subTest(method=method):
+                start = time.monotonic()
+                image = exr.read(self.rendered("--time", "2", "--method", method, "--resolution", "120x80"))
+                seconds = time.monotonic() - start
+                self.assertLess(seconds, 2.5 + SLACK)
+                self.assertGreater(seconds, 0.5)
+                self.assertEqual(image.value("complete"), 1)
+                self.assertGreater(image.value("spp"), 1)
+
+    def test_a_second_is_more_than_a_tenth(self):
+        def spp(seconds):
+            return exr.read(self.rendered("--time", seconds, "--method", "uniform")).value("spp")
+
+        self.assertGreater(spp("1.5"), spp("0.2"))
+
+    def test_the_first_of_two_limits_stops(self):
+        start = time.monotonic()
+        image = exr.read(self.rendered("--time", "1h", "--spp", "2"))
+        self.assertLess(time.monotonic() - start, 20)
+        self.assertAlmostEqual(image.value("spp"), 2, delta=0.01)
+        image = exr.read(self.rendered("--time", "0.5", "--spp", "1000000"))
+        self.assertLess(image.value("spp"), 1000000)
+
+    def test_a_budget_too_small_for_one_sample_still_gives_an_image(self):
+        for method in ("uniform", "covariance"):
+            with self.subTest(method=method):
+                result = self.render(TINY, "--time", "0.001", "--method", method)
+                self.assertEqual(result.code, DONE, result)
+                self.assertTrue(all(map(math.isfinite, exr.read(self.folder / "out.exr").pixels["R"])))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,78 @@
+"""What pbrt-v4 has and this program has not: a warning with its place, a substitute, exit code 0."""
+
+import unittest
+
+from support import DONE, HEADER, TINY, WORLD, CliTest, warnings_of
+
+
+class Warnings(CliTest):
+    def assert_warns(self, scene, line, fragment):
+        result = self.render(scene)
+        self.assertEqual(result.code, DONE, result)
+        self.assertEqual(result.stdout, "", result)
+        self.assertTrue((self.folder / "out.exr").exists(), result)
+        places = [place for place, text in warnings_of(result) if fragment in text]
+        self.assertEqual(len(places), 1, f"no single warning with {fragment!r}: {result}")
+        self.assertRegex(places[0] or "", rf"^scene\.pbrt:{line}:\d+$", result)
+
+    def test_a_plain_scene_has_none(self):
+        result = self.render(TINY)
+        self.assertEqual((result.code, warnings_of(result)), (DONE, []), result)
+
+    def test_substitutes_in_the_world(self):
+        points = '"point3 P" [0 0 0  0 1 0  0 2 0  0 3 0]'
+        sphere = '\nShape "sphere"'
+        for directive, fragment in [
+            ('Material "subsurface"' + sphere, "subsurface"),
+            ('Material "hair"' + sphere, "hair"),
+            ('Material "measured" "string filename" "paint.bsdf"' + sphere, "measured"),
+            ('Material "coatedconductor"' + sphere, "coatedconductor"),
+            ('Material "thindielectric"' + sphere, "thindielectric"),
+            (f'Shape "curve" {points}', "curve"),
+            ('Shape "cylinder"', "cylinder"),
+            ('LightSource "goniometric" "spectrum I" "stdillum-D65"', "goniometric"),
+            ('Texture "t" "spectrum" "marble"\nMaterial "diffuse" "texture reflectance" "t"' + sphere, "marble"),
+            ('MakeNamedMedium "m" "string type" "cloud"', "cloud"),
+            ('AttributeBegin\nAreaLightSource "diffuse" "rgb L" [1 1 1]\nAttributeEnd', "no shape"),
+            ('Shape "sphere" "float raduis" 2', "raduis"),
+            ("AttributeEnd", "AttributeEnd"),
+        ]:
+            with self.subTest(directive=directive):
+                # The line of the directive that is substituted: the first, or the second after AttributeBegin.
+                line = TINY.count("\n") + (2 if directive.startswith("AttributeBegin") else 1)
+                self.assert_warns(TINY + directive + "\n", line, fragment)
+
+    def test_substitutes_of_the_view(self):
+        for directive, fragment in [
+            ('Camera "spherical"', "spherical"),
+            ('Camera "realistic" "string lensfile" "lens.dat"', "realistic"),
+            ('Film "gbuffer"\n"integer xresolution" 16 "integer yresolution" 8', "gbuffer"),
+            ('Film "spectral"\n"integer xresolution" 16 "integer yresolution" 8', "spectral"),
+            ('Integrator "bdpt"', "bdpt"),
+            ('Integrator "sppm"', "sppm"),
+            ('Integrator "path" "integer maxdeth" 3', "maxdeth"),
+            ('Accelerator "octree"', "octree"),
+        ]:
+            with self.subTest(directive=directive):
+                line = HEADER.count("\n") + 1
+                self.assert_warns(HEADER + directive + "\n" + WORLD, line, fragment)
+
+    def test_the_same_warning_is_told_once(self):
+        many = "\n".join(['Shape "sphere" "float raduis" 2'] * 50)
+        result = self.render(TINY + many + "\n")
+        self.assertEqual(len(warnings_of(result)), 1, result)
+        self.assertIn("49 more places", result.stderr)
+
+    def test_quiet_says_nothing(self):
+        result = self.render(TINY + 'Shape "sphere" "float raduis" 2\n', "--quiet")
+        self.assertEqual((result.code, result.stdout, result.stderr), (DONE, "", ""))
+
+    def test_info_tells_them_too(self):
+        self.write("scene.pbrt", TINY + 'Shape "cylinder"\n')
+        result = self.run_program("info", "scene.pbrt")
+        self.assertEqual(result.code, DONE, result)
+        self.assertIn("cylinder", result.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
