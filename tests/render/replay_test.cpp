@@ -15,7 +15,7 @@ constexpr int kSize = 32;
 constexpr double kFov = 20;
 double pixels_per_slope() { return kSize / (2 * std::tan(kFov * 3.14159265358979 / 360)); }
 
-/// `depth`: just enough for the way from the sky to the camera that the test is about.
+/// `depth`: enough for the way from the sky to the camera that the test is about, and little else.
 std::string film(int depth) {
     return fmt::format(R"(
 Integrator "path" "integer maxdepth" {}
@@ -72,7 +72,7 @@ Rotate 90 0 1 0
 
 TEST(Replay, PlaneBehindASlabOfGlassIsNearer) {
     // A slab of index 1.5 and thickness 3 shortens the optical way by 3 (1 - 1/1.5).
-    const std::string text = film(3) + fmt::format(R"(LookAt 0 0 -8  0 0 0  0 1 0
+    const std::string text = film(6) + fmt::format(R"(LookAt 0 0 -8  0 0 0  0 1 0
 Camera "perspective" "float fov" {}
 WorldBegin
 LightSource "infinite"
