@@ -1,4 +1,5 @@
-/// Errors and warnings. Libraries throw `Error` while loading and collect `Warning`s; they never print or exit.
+/// Errors and warnings. Libraries throw `Error` while loading and collect `Warning`s; they never
+/// print or exit.
 #pragma once
 
 #include <memory>

@@ -16,7 +16,9 @@ struct ThreadLimit::Impl {
 ThreadLimit::ThreadLimit(int threads)
     : impl_(std::make_unique<Impl>(threads > 0 ? threads : tbb::info::default_concurrency())) {}
 ThreadLimit::~ThreadLimit() = default;
-int ThreadLimit::threads() const { return impl_->count; }
+int ThreadLimit::threads() const {
+    return impl_->count;
+}
 
 void parallel_for(int64_t count, const std::function<void(int64_t)>& body) {
     tbb::parallel_for(

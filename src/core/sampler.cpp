@@ -17,7 +17,8 @@ constexpr uint32_t reverse_bits(uint32_t v) {
     return ((v & 0x55555555u) << 1) | ((v & 0xaaaaaaaau) >> 1);
 }
 
-/// Laine-Karras permutation with the constants of Vegdahl 2021: each bit is flipped depending on the lower bits.
+/// Laine-Karras permutation with the constants of Vegdahl 2021: each bit is flipped depending on
+/// the lower bits.
 constexpr uint32_t laine_karras(uint32_t v, uint32_t seed) {
     v ^= v * 0x3d20adeau;
     v += seed;
@@ -74,7 +75,8 @@ constexpr auto kByteTables = [] {
 uint32_t sobol(uint32_t index, size_t dimension) {
     if (dimension == 0) return reverse_bits(index);
     const auto& t = kByteTables[dimension - 1];
-    return t[0][index & 255] ^ t[1][(index >> 8) & 255] ^ t[2][(index >> 16) & 255] ^ t[3][index >> 24];
+    return t[0][index & 255] ^ t[1][(index >> 8) & 255] ^ t[2][(index >> 16) & 255] ^
+           t[3][index >> 24];
 }
 
 }  // namespace
@@ -84,7 +86,8 @@ Sampler::Sampler(uint64_t seed, int pixel_x, int pixel_y, uint32_t sample_index)
       index_(sample_index) {}
 
 Sampler::CameraSample Sampler::camera() {
-    const uint32_t index = owen_scramble(index_, static_cast<uint32_t>(hash_combine(key_, 0x63616d)));
+    const uint32_t index =
+        owen_scramble(index_, static_cast<uint32_t>(hash_combine(key_, 0x63616d)));
     std::array<float, 5> x{};
     for (size_t d = 0; d < 5; ++d) {
         const auto scramble = static_cast<uint32_t>(hash_combine(key_, 0x100 + d));

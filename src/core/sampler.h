@@ -1,4 +1,5 @@
-/// Owen-scrambled Sobol points: every number is a function of (seed, pixel, sample index, dimension).
+/// Owen-scrambled Sobol points: every number is a function of (seed, pixel, sample index,
+/// dimension).
 #pragma once
 
 #include <cstdint>

@@ -24,7 +24,8 @@ Quaternion from_matrix(const Matrix3& m) {
         const double s = std::sqrt(trace + 1.0) * 2;
         q = {(m[2][1] - m[1][2]) / s, (m[0][2] - m[2][0]) / s, (m[1][0] - m[0][1]) / s, 0.25 * s};
     } else {
-        const size_t i = m[0][0] > m[1][1] ? (m[0][0] > m[2][2] ? 0 : 2) : (m[1][1] > m[2][2] ? 1 : 2);
+        const size_t i =
+            m[0][0] > m[1][1] ? (m[0][0] > m[2][2] ? 0 : 2) : (m[1][1] > m[2][2] ? 1 : 2);
         const size_t j = (i + 1) % 3, k = (i + 2) % 3;
         const double s = std::sqrt(std::max(0.0, m[i][i] - m[j][j] - m[k][k] + 1.0)) * 2;
         double v[3];
@@ -51,7 +52,8 @@ AnimatedTransform::Decomposition decompose(const Matrix4& a) {
             for (int i = 0; i < 3; ++i) v[i] -= r[p][c] * q[p][i];
         }
         r[c][c] = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-        for (int i = 0; i < 3; ++i) q[c][i] = r[c][c] > 0 ? v[i] / r[c][c] : (i == int(c) ? 1.0 : 0.0);
+        for (int i = 0; i < 3; ++i)
+            q[c][i] = r[c][c] > 0 ? v[i] / r[c][c] : (i == int(c) ? 1.0 : 0.0);
     }
     const double det = q[0][0] * (q[1][1] * q[2][2] - q[1][2] * q[2][1]) -
                        q[0][1] * (q[1][0] * q[2][2] - q[1][2] * q[2][0]) +
@@ -60,7 +62,8 @@ AnimatedTransform::Decomposition decompose(const Matrix4& a) {
         for (int i = 0; i < 3; ++i) q[2][i] = -q[2][i];
         r[2][2] = -r[2][2];
     }
-    const Matrix3 rotation{{{q[0][0], q[1][0], q[2][0]}, {q[0][1], q[1][1], q[2][1]}, {q[0][2], q[1][2], q[2][2]}}};
+    const Matrix3 rotation{
+        {{q[0][0], q[1][0], q[2][0]}, {q[0][1], q[1][1], q[2][1]}, {q[0][2], q[1][2], q[2][2]}}};
     d.rotation = from_matrix(rotation);
     d.scale = r;
     return d;
@@ -138,7 +141,8 @@ Transform Transform::scale(double x, double y, double z) {
 }
 
 Transform Transform::rotate(double degrees, Vec3 axis) {
-    const double l = std::sqrt(double(axis.x) * axis.x + double(axis.y) * axis.y + double(axis.z) * axis.z);
+    const double l =
+        std::sqrt(double(axis.x) * axis.x + double(axis.y) * axis.y + double(axis.z) * axis.z);
     if (!(l > 0)) return {};
     const double x = axis.x / l, y = axis.y / l, z = axis.z / l;
     const double s = std::sin(degrees * kRadians), c = std::cos(degrees * kRadians), k = 1 - c;
@@ -180,7 +184,9 @@ Vec3 Transform::point(Vec3 p) const {
     return w == 1 ? r : r * static_cast<float>(1 / w);
 }
 
-Vec3 Transform::vector(Vec3 v) const { return apply(matrix_, v, 0); }
+Vec3 Transform::vector(Vec3 v) const {
+    return apply(matrix_, v, 0);
+}
 
 Vec3 Transform::normal(Vec3 n) const {
     const auto& a = inverse_.m;
@@ -218,7 +224,10 @@ Quaternion slerp(double t, Quaternion a, Quaternion b) {
 
 AnimatedTransform::AnimatedTransform(const Transform& start, float start_time, const Transform& end,
                                      float end_time)
-    : start_(start), end_(end), start_time_(start_time), end_time_(end_time),
+    : start_(start),
+      end_(end),
+      start_time_(start_time),
+      end_time_(end_time),
       animated_(!(start == end) && end_time > start_time) {
     if (!animated_) return;
     keys_ = {decompose(start.matrix()), decompose(end.matrix())};
@@ -264,7 +273,8 @@ Vec3 AnimatedTransform::angular_velocity(float time) const {
     const double s = std::sqrt(x * x + y * y + z * z);
     if (!(s > 0)) return {};
     const double rate = 2 * std::atan2(s, w) / (double(end_time_) - start_time_) / s;
-    return {static_cast<float>(x * rate), static_cast<float>(y * rate), static_cast<float>(z * rate)};
+    return {static_cast<float>(x * rate), static_cast<float>(y * rate),
+            static_cast<float>(z * rate)};
 }
 
 Bounds3 AnimatedTransform::motion_bounds(const Bounds3& b) const {

@@ -10,7 +10,8 @@ namespace covtrace {
 
 /// A 4x4 matrix in double: m[row][column], acts on column vectors.
 struct Matrix4 {
-    std::array<std::array<double, 4>, 4> m{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+    std::array<std::array<double, 4>, 4> m{
+        {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
     bool operator==(const Matrix4&) const = default;
 };
 Matrix4 operator*(const Matrix4& a, const Matrix4& b);
@@ -30,7 +31,8 @@ class Transform {
     /// All factors must be non-zero.
     static Transform scale(double x, double y, double z);
     static Transform rotate(double degrees, Vec3 axis);
-    /// World to camera, x right, y up, z forward, as pbrt's LookAt; empty where the vectors are degenerate.
+    /// World to camera, x right, y up, z forward, as pbrt's LookAt; empty where the vectors are
+    /// degenerate.
     static std::optional<Transform> look_at(Vec3 eye, Vec3 look, Vec3 up);
 
     const Matrix4& matrix() const { return matrix_; }
@@ -56,12 +58,14 @@ Quaternion slerp(double t, Quaternion a, Quaternion b);
 
 /// A transform that moves between two keys over [start_time, end_time] and rests outside.
 /// Each key is decomposed into translation, rotation and an upper triangular scale-and-skew, which
-/// are interpolated linearly, spherically (the short way) and linearly; a half turn is a half circle.
+/// are interpolated linearly, spherically (the short way) and linearly; a half turn is a half
+/// circle.
 class AnimatedTransform {
   public:
     AnimatedTransform() = default;
     explicit AnimatedTransform(const Transform& still) : start_(still), end_(still) {}
-    AnimatedTransform(const Transform& start, float start_time, const Transform& end, float end_time);
+    AnimatedTransform(const Transform& start, float start_time, const Transform& end,
+                      float end_time);
 
     struct Decomposition {
         Vec3 translation;
@@ -78,8 +82,8 @@ class AnimatedTransform {
     const Decomposition& start_key() const { return keys_[0]; }
     const Decomposition& end_key() const { return keys_[1]; }
     Transform at(float time) const;
-    /// Velocity at `time` of the material point that is at world position `p` then, per unit of time.
-    /// Zero outside the keys and where nothing moves.
+    /// Velocity at `time` of the material point that is at world position `p` then, per unit of
+    /// time. Zero outside the keys and where nothing moves.
     Vec3 velocity(Vec3 p, float time) const;
     /// Angular velocity (world axes, radians per unit of time) of the rotation at `time`.
     Vec3 angular_velocity(float time) const;

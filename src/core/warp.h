@@ -27,7 +27,9 @@ inline Vec3 square_to_cosine_hemisphere(Vec2 u) {
     const Vec2 d = square_to_disc(u);
     return {d.x, d.y, safe_sqrt(1 - d.x * d.x - d.y * d.y)};
 }
-constexpr float cosine_hemisphere_pdf(float cos_theta) { return cos_theta > 0 ? cos_theta * kInvPi : 0; }
+constexpr float cosine_hemisphere_pdf(float cos_theta) {
+    return cos_theta > 0 ? cos_theta * kInvPi : 0;
+}
 
 /// Whole sphere, density 1/(4 pi) per solid angle.
 inline Vec3 square_to_sphere(Vec2 u) {
@@ -43,7 +45,9 @@ inline Vec3 square_to_cone(Vec2 u, float one_minus_cos_max) {
     const float sin_theta = safe_sqrt(h * (2 - h)), phi = 2 * kPi * u.y;
     return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), 1 - h};
 }
-constexpr float cone_pdf(float one_minus_cos_max) { return 1 / (2 * kPi * one_minus_cos_max); }
+constexpr float cone_pdf(float one_minus_cos_max) {
+    return 1 / (2 * kPi * one_minus_cos_max);
+}
 
 /// Barycentric coordinates (b0, b1) of a triangle, uniform by area (Heitz 2019, low distortion).
 inline Vec2 square_to_triangle(Vec2 u) {

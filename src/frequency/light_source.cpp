@@ -9,9 +9,11 @@ namespace cov = covariance;
 namespace {
 
 LightField area_field(const SourceSpectrum& s, Vec3 travel, bool seen_sharply, double smallest) {
-    const cov::Surface<double> surface{s.tangent.z, s.tangent.x, s.tangent.y, {s.k11, s.k12, s.k22}};
+    const cov::Surface<double> surface{
+        s.tangent.z, s.tangent.x, s.tangent.y, {s.k11, s.k12, s.k22}};
     const double cap = cov::edge_variance(smallest);
-    LightField field = cov::area_source<double>({s.s11, s.s12, s.s22}, cov::frame_along<double>(travel), cap);
+    LightField field =
+        cov::area_source<double>({s.s11, s.s12, s.s22}, cov::frame_along<double>(travel), cap);
     if (seen_sharply && std::isfinite(s.border_distance)) {
         const double q = cov::edge_variance(std::max<double>(s.border_distance, smallest));
         const double dx = s.border_direction.x, dy = s.border_direction.y;
@@ -23,14 +25,16 @@ LightField area_field(const SourceSpectrum& s, Vec3 travel, bool seen_sharply, d
 
 }  // namespace
 
-LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sharply, double smallest) {
+LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sharply,
+                        double smallest) {
     switch (source.kind) {
         case SourceSpectrum::Kind::area:
             return area_field(source, travel, seen_sharply, smallest);
         case SourceSpectrum::Kind::point: {
             const LightField field = cov::point_source(cov::frame_along<double>(travel), smallest);
             if (!(source.cone_variance > 0)) return field;
-            return cov::add_angular_window(field, cov::spot_window(std::sqrt(double(source.cone_variance))));
+            return cov::add_angular_window(
+                field, cov::spot_window(std::sqrt(double(source.cone_variance))));
         }
         case SourceSpectrum::Kind::directional:
         case SourceSpectrum::Kind::environment:

@@ -1,4 +1,5 @@
-/// Where the light of a path starts: from a light's shape to the covariance of the light that leaves it.
+/// Where the light of a path starts: from a light's shape to the covariance of the light that
+/// leaves it.
 #pragma once
 
 #include "covariance/covariance.hpp"
@@ -11,8 +12,10 @@ using LightField = covariance::LightField<double>;
 /// The light field that leaves a light in the direction `travel` (unit, world).
 ///
 /// Area lights are Gaussian emitters with the moments of the whole shape; where the camera sees
-/// them sharply (directly or by specular lobes alone) their border is an image edge and its distance
-/// limits the bandwidth too. `smallest` is the extent that stands for a point, in scene units.
-LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sharply, double smallest);
+/// them sharply (directly or by specular lobes alone) their border is an image edge and its
+/// distance limits the bandwidth too. `smallest` is the extent that stands for a point, in scene
+/// units.
+LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sharply,
+                        double smallest);
 
 }  // namespace covtrace

@@ -23,18 +23,20 @@ struct Arriving {
     }
 };
 
-/// Light below this part of a path's luminance is carried without a look at its occluders, the dearest
-/// step of the replay: the contrast of its shadow edges is below what the spectra of textures count as visible.
+/// Light below this part of a path's luminance is carried without a look at its occluders, the
+/// dearest step of the replay: the contrast of its shadow edges is below what the spectra of
+/// textures count as visible.
 constexpr double kSmallestShare = 0.1;
 
 cov::SymmetricMatrix5<double> to_sensor(const LightField& field, const SensorGeometry& g) {
     const LightField at_rest = cov::motion_enter(field, {g.velocity, g.angular_velocity});
     if (g.orthographic)
-        return cov::sensor(at_rest, cov::OrthographicLens<double>{g.right, g.down, g.forward, g.focal_distance,
-                                                                  g.lens_radius, g.pixels_per_x, g.pixels_per_y,
-                                                                  g.shutter});
-    return cov::sensor(at_rest, cov::ThinLens<double>{g.right, g.down, g.forward, g.focal_distance, g.lens_radius,
-                                                      g.pixels_per_x, g.pixels_per_y, g.shutter});
+        return cov::sensor(at_rest, cov::OrthographicLens<double>{
+                                        g.right, g.down, g.forward, g.focal_distance, g.lens_radius,
+                                        g.pixels_per_x, g.pixels_per_y, g.shutter});
+    return cov::sensor(
+        at_rest, cov::ThinLens<double>{g.right, g.down, g.forward, g.focal_distance, g.lens_radius,
+                                       g.pixels_per_x, g.pixels_per_y, g.shutter});
 }
 
 }  // namespace
@@ -56,12 +58,14 @@ LightField PathReplay::carry(LightField field, Vec3 from, Vec3 to, double share)
         while (march.next(float(std::min(cov::footprint_radius(field.sigma), 3.0 * voxel)), e)) {
             field = cov::travel(field, e.s - at);
             at = e.s;
-            // So near that the direction to the centroid is chance: the surface's normals tell where its edge is.
+            // So near that the direction to the centroid is chance: the surface's normals tell
+            // where its edge is.
             const bool touches = length(e.offset) < 0.5f * voxel;
             const NormalTensor& n = e.normals;
-            field = touches ? cov::occlude(field, cov::Sym3<double>{n.xx, n.xy, n.xz, n.yy, n.yz, n.zz},
-                                           0.5 * voxel, e.velocity)
-                            : cov::occlude(field, e.offset, 0.5 * voxel, e.velocity);
+            field = touches
+                        ? cov::occlude(field, cov::Sym3<double>{n.xx, n.xy, n.xz, n.yy, n.yz, n.zz},
+                                       0.5 * voxel, e.velocity)
+                        : cov::occlude(field, e.offset, 0.5 * voxel, e.velocity);
         }
     }
     return cov::travel(field, distance(from, to) - at);
@@ -69,7 +73,8 @@ LightField PathReplay::carry(LightField field, Vec3 from, Vec3 to, double share)
 
 PathCovariance PathReplay::operator()(const PathRecord& record) const {
     const SensorGeometry camera = scene_.camera.sensor(record.camera_ray);
-    /// Where light from infinity, seen from p in the direction w, enters the scene's bounding sphere.
+    /// Where light from infinity, seen from p in the direction w, enters the scene's bounding
+    /// sphere.
     const auto entry = [&](Vec3 p, Vec3 w) {
         const Vec3 o = p - center_;
         const float b = dot(o, w), c = length_squared(o) - sqr(radius_);
@@ -86,10 +91,12 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
     Arriving light;
     if (record.escaped > 0) {
         const SourceSpectrum s = scene_.lights.environment_spectrum(record.escape_direction);
-        light.add(source_field(s, -record.escape_direction, record.escape_seen_sharply, smallest_), record.escaped);
+        light.add(source_field(s, -record.escape_direction, record.escape_seen_sharply, smallest_),
+                  record.escaped);
         const Vec3 last = record.count > 0 ? record.vertices[size_t(record.count - 1)].hit.position
                                            : record.camera_ray.origin;
-        light.field = carry(light.field, entry(last, record.escape_direction), last, light.weight / total);
+        light.field =
+            carry(light.field, entry(last, record.escape_direction), last, light.weight / total);
     }
 
     // Half a pixel's extent grows with the distance travelled from the camera.
@@ -108,21 +115,29 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         Arriving leaving;
         if (light.weight > 0 || v.direct > 0) {
             const float extent = camera.orthographic ? 1.0f : distances[i];
-            const ScatterPoint point = scatter_point(scene_, v, 0.5f * extent / camera.pixels_per_x);
-            if (light.weight > 0) leaving.add(scatter(light.field, point, v.next_event.lobes), light.weight);
+            const ScatterPoint point =
+                scatter_point(scene_, v, 0.5f * extent / camera.pixels_per_x);
+            if (light.weight > 0)
+                leaving.add(scatter(light.field, point, v.next_event.lobes), light.weight);
             if (v.direct > 0) {
                 const SourceSpectrum s = scene_.lights.source_spectrum(v.light, v.hit.time);
-                const Vec3 from = std::isfinite(v.light.distance) ? v.hit.position + v.light.wi * v.light.distance
-                                                                  : entry(v.hit.position, v.light.wi);
+                const Vec3 from = std::isfinite(v.light.distance)
+                                      ? v.hit.position + v.light.wi * v.light.distance
+                                      : entry(v.hit.position, v.light.wi);
                 const LightField source = source_field(s, -v.light.wi, false, smallest_);
-                leaving.add(scatter(carry(source, from, v.hit.position, v.direct / total), point, v.direct_event.lobes), v.direct);
+                leaving.add(scatter(carry(source, from, v.hit.position, v.direct / total), point,
+                                    v.direct_event.lobes),
+                            v.direct);
             }
         }
         if (v.emitted > 0)
-            leaving.add(source_field(scene_.lights.source_spectrum(v.hit), v.wo, v.seen_sharply, smallest_), v.emitted);
+            leaving.add(
+                source_field(scene_.lights.source_spectrum(v.hit), v.wo, v.seen_sharply, smallest_),
+                v.emitted);
         light = leaving;
         if (!(light.weight > 0)) continue;
-        const Vec3 next = i > 0 ? record.vertices[size_t(i - 1)].hit.position : record.camera_ray.origin;
+        const Vec3 next =
+            i > 0 ? record.vertices[size_t(i - 1)].hit.position : record.camera_ray.origin;
         light.field = carry(light.field, v.hit.position, next, light.weight / total);
     }
 

@@ -17,23 +17,24 @@ struct PathCovariance {
 };
 
 /// Walks the path once from its far end to the sensor. At every vertex the light found there (its
-/// own emission, a sampled light) and the light that arrives from further on are merged by luminance
-/// (an incoherent sum, covariance::merge), so that k vertices cost k steps.
+/// own emission, a sampled light) and the light that arrives from further on are merged by
+/// luminance (an incoherent sum, covariance::merge), so that k vertices cost k steps.
 class PathReplay {
   public:
-    /// `occluders` may be null: then light travels as if nothing stood beside its way. Both must outlive this.
+    /// `occluders` may be null: then light travels as if nothing stood beside its way. Both must
+    /// outlive this.
     PathReplay(const RenderScene& scene, const VoxelGrid* occluders);
     PathCovariance operator()(const PathRecord& record) const;
 
   private:
-    /// Travel from one point to another, past the occluders on the way where `share`, this light's part
-    /// of the path's luminance, is large enough to be seen.
+    /// Travel from one point to another, past the occluders on the way where `share`, this light's
+    /// part of the path's luminance, is large enough to be seen.
     LightField carry(LightField field, Vec3 from, Vec3 to, double share) const;
 
     const RenderScene& scene_;
     const VoxelGrid* occluders_;
-    double smallest_;      // extent that stands for a point, scene units
-    Vec3 center_;          // bounding sphere of the scene: light from infinity enters there
+    double smallest_;  // extent that stands for a point, scene units
+    Vec3 center_;      // bounding sphere of the scene: light from infinity enters there
     float radius_;
 };
 

@@ -52,23 +52,28 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
     p.outgoing = vertex.wo;
     const auto& m = d.uv_from_tangent;
     const cov::Mat2<double> uv_from_tangent{m[0][0], m[0][1], m[1][0], m[1][1]};
-    const float uv_per_length = std::sqrt(0.5f * (sqr(m[0][0]) + sqr(m[0][1]) + sqr(m[1][0]) + sqr(m[1][1])));
+    const float uv_per_length =
+        std::sqrt(0.5f * (sqr(m[0][0]) + sqr(m[0][1]) + sqr(m[1][0]) + sqr(m[1][1])));
     const float footprint_uv = footprint * uv_per_length;
     const MaterialTextures textures = scene.materials.textures(vertex.material);
-    p.reflectance = texture_spectrum(scene, textures.reflectance, vertex.hit, uv_from_tangent, footprint_uv);
-    p.transmittance = texture_spectrum(scene, textures.transmittance, vertex.hit, uv_from_tangent, footprint_uv);
+    p.reflectance =
+        texture_spectrum(scene, textures.reflectance, vertex.hit, uv_from_tangent, footprint_uv);
+    p.transmittance =
+        texture_spectrum(scene, textures.transmittance, vertex.hit, uv_from_tangent, footprint_uv);
     return p;
 }
 
 LightField scatter(const LightField& arriving, const ScatterPoint& point, const LobeShares& lobes) {
-    const LightField entered = cov::surface_enter(cov::motion_enter(arriving, point.motion), point.surface);
+    const LightField entered =
+        cov::surface_enter(cov::motion_enter(arriving, point.motion), point.surface);
     LightField sum{{}, cov::frame_along<double>(point.outgoing)};
     double total = 0;
     for (int i = 0; i < lobes.count; ++i) {
         const LobeShare& lobe = lobes.lobes[size_t(i)];
         const double weight = luminance(lobe.value);
         if (!(weight > 0)) continue;
-        const LightField left = cov::surface_exit(through_lobe(entered, point, lobe), point.surface);
+        const LightField left =
+            cov::surface_exit(through_lobe(entered, point, lobe), point.surface);
         total += weight;
         const double share = weight / total;
         const auto aligned = cov::rotate_to(cov::motion_exit(left, point.motion), sum.frame);

@@ -12,12 +12,14 @@ namespace covtrace {
 struct ScatterPoint {
     covariance::Surface<double> surface;
     covariance::Motion<double> motion;
-    /// Spectra of the textures that scale the diffuse lobes, along surface.t1, t2, 1 / scene unit^2.
+    /// Spectra of the textures that scale the diffuse lobes, along surface.t1, t2, 1 / scene
+    /// unit^2.
     covariance::Sym2<double> reflectance, transmittance;
     Vec3 outgoing;  ///< unit, the direction in which light leaves towards the camera
 };
 
-/// `footprint`: half a pixel's extent at the vertex, in scene units; no texture edge counts as nearer.
+/// `footprint`: half a pixel's extent at the vertex, in scene units; no texture edge counts as
+/// nearer.
 ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, float footprint);
 
 /// Sends `arriving` (its frame's z is the direction of travel towards the surface) through the

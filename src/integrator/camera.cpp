@@ -84,9 +84,11 @@ Matrix4 Camera::world_to_camera() const {
 }
 
 Matrix4 Camera::world_to_ndc() const {
-    // Film fractions in [0, 1], y down, as pbrt and OpenEXR's "worldToNDC" users expect: x' / w', y' / w'.
+    // Film fractions in [0, 1], y down, as pbrt and OpenEXR's "worldToNDC" users expect: x' / w',
+    // y' / w'.
     Matrix4 projection;
-    const double width_slope = double(per_pixel_.x) * width_, height_slope = double(per_pixel_.y) * height_;
+    const double width_slope = double(per_pixel_.x) * width_,
+                 height_slope = double(per_pixel_.y) * height_;
     projection.m[0] = {1 / width_slope, 0, -origin_.x / width_slope, 0};
     projection.m[1] = {0, 1 / height_slope, -origin_.y / height_slope, 0};
     projection.m[2] = {0, 0, 1, 0};

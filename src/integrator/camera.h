@@ -9,11 +9,13 @@ namespace covtrace {
 
 /// The linear map of a thin-lens (or orthographic) camera around one of its rays.
 struct SensorGeometry {
-    Vec3 right, down, forward;  ///< world directions of increasing pixel x, pixel y, and the optical axis
-    float lens_radius = 0;      ///< world units; 0 for a pinhole
-    float focal_distance = 1;   ///< world units along `forward`
-    float pixels_per_x = 1, pixels_per_y = 1;  ///< per unit of slope (perspective) or of length (orthographic)
-    float shutter = 1;          ///< length of the shutter interval
+    Vec3 right, down,
+        forward;  ///< world directions of increasing pixel x, pixel y, and the optical axis
+    float lens_radius = 0;     ///< world units; 0 for a pinhole
+    float focal_distance = 1;  ///< world units along `forward`
+    float pixels_per_x = 1,
+          pixels_per_y = 1;  ///< per unit of slope (perspective) or of length (orthographic)
+    float shutter = 1;       ///< length of the shutter interval
     bool orthographic = false;
     Vec3 velocity, angular_velocity;  ///< of the camera at the ray's lens point and time
 };
@@ -23,7 +25,8 @@ class Camera {
     /// `width` x `height`: the full frame in pixels.
     Camera(const CameraDescription& description, int width, int height);
 
-    /// The ray through a film position in pixels (y down), a lens position and a shutter position in [0, 1)^2, [0, 1).
+    /// The ray through a film position in pixels (y down), a lens position and a shutter position
+    /// in [0, 1)^2, [0, 1).
     Ray generate_ray(Vec2 film, Vec2 lens, float shutter) const;
     SensorGeometry sensor(const Ray& ray) const;
     bool has_lens() const { return lens_radius_ > 0; }

@@ -20,7 +20,8 @@ Rgb transmittance(const RenderScene& scene, MediumId medium, float distance) {
 }
 
 bool transmits(const Bsdf& bsdf) {
-    return std::holds_alternative<DielectricBsdf>(bsdf) || std::holds_alternative<DiffuseTransmissionBsdf>(bsdf);
+    return std::holds_alternative<DielectricBsdf>(bsdf) ||
+           std::holds_alternative<DiffuseTransmissionBsdf>(bsdf);
 }
 
 /// The medium that a ray is in after it leaves `hit` in the direction `w`.
@@ -35,7 +36,8 @@ MediumId medium_beyond(const PlacedShape& shape, const SurfaceHit& hit, Vec3 w, 
 /// weights add to one.
 class PathTracer {
   public:
-    PathTracer(const RenderScene& scene, Ray ray, Sampler& sampler, int max_depth, PathRecord* record)
+    PathTracer(const RenderScene& scene, Ray ray, Sampler& sampler, int max_depth,
+               PathRecord* record)
         : scene_(scene), ray_(ray), sampler_(sampler), max_depth_(max_depth), record_(record) {}
 
     PathResult run() {
@@ -52,7 +54,8 @@ class PathTracer {
             }
             beta_ *= transmittance(scene_, medium_, hit.t);
             const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
-            const Bsdf bsdf = scene_.materials.bsdf(shape.description.material, hit, scene_.textures);
+            const Bsdf bsdf =
+                scene_.materials.bsdf(shape.description.material, hit, scene_.textures);
             if (std::holds_alternative<InterfaceBsdf>(bsdf)) {
                 medium_ = medium_beyond(shape, hit, ray_.direction, medium_);
                 ray_.origin = Geometry::offset_origin(hit, ray_.direction);
@@ -71,9 +74,11 @@ class PathTracer {
             sampler_.set_dimension(depth * kPairsPerBounce);
             const Vec2 u_choice = sampler_.next_2d();
             const Vec2 u_light = sampler_.next_2d(), u_bsdf = sampler_.next_2d();
-            // Lights are chosen for the side that can be lit: the viewer's, or both where light passes through.
+            // Lights are chosen for the side that can be lit: the viewer's, or both where light
+            // passes through.
             light_normal_ = transmits(bsdf) ? Vec3{} : face_forward(hit.ns, wo);
-            if (!is_specular(bsdf)) add_direct(hit, shape, bsdf, frame, wo_local, u_choice.x, u_light, vertex);
+            if (!is_specular(bsdf))
+                add_direct(hit, shape, bsdf, frame, wo_local, u_choice.x, u_light, vertex);
             if (!scatter(hit, shape, bsdf, frame, wo_local, u_choice.y, u_bsdf, vertex)) break;
             if (!survives(depth)) break;
         }
@@ -82,14 +87,16 @@ class PathTracer {
 
   private:
     static constexpr int kPairsPerBounce = 4;
-    static constexpr int kMostInterfaces = 1000;  // a ray caught between coincident interfaces must end
+    static constexpr int kMostInterfaces =
+        1000;  // a ray caught between coincident interfaces must end
 
     void escape() {
         if (!scene_.lights.has_environment()) return;
         const Rgb light = scene_.lights.environment(ray_.direction);
         float weight = 1;
         if (!specular_) {
-            const float p = scene_.lights.environment_pdf(previous_position_, previous_normal_, ray_.direction);
+            const float p =
+                scene_.lights.environment_pdf(previous_position_, previous_normal_, ray_.direction);
             weight = power_heuristic(pdf_, p);
         }
         const Rgb contribution = beta_ * light * weight;
@@ -118,7 +125,8 @@ class PathTracer {
         if (is_black(light)) return;
         float weight = 1;
         if (!specular_) {
-            const float p = scene_.lights.pdf(previous_position_, previous_normal_, ray_.direction, hit);
+            const float p =
+                scene_.lights.pdf(previous_position_, previous_normal_, ray_.direction, hit);
             weight = power_heuristic(pdf_, p);
         }
         const Rgb contribution = beta_ * light * weight;
@@ -133,8 +141,8 @@ class PathTracer {
         result_.depth = distance(ray_.origin, hit.position);
     }
 
-    void add_direct(const SurfaceHit& hit, const PlacedShape& shape, const Bsdf& bsdf, const Frame& frame,
-                    Vec3 wo_local, float u_select, Vec2 u, PathVertex* vertex) {
+    void add_direct(const SurfaceHit& hit, const PlacedShape& shape, const Bsdf& bsdf,
+                    const Frame& frame, Vec3 wo_local, float u_select, Vec2 u, PathVertex* vertex) {
         const auto light = scene_.lights.sample(hit.position, light_normal_, hit.time, u_select, u);
         if (!light || is_black(light->radiance) || !(light->pdf > 0)) return;
         const Vec3 wi_local = frame.to_local(light->wi);
@@ -157,7 +165,8 @@ class PathTracer {
         const MediumId medium = medium_beyond(shape, hit, light->wi, medium_);
         const float weight =
             light->is_delta ? 1.0f : power_heuristic(light->pdf, pdf(bsdf, wo_local, wi_local));
-        const Rgb contribution = beta_ * f * light->radiance * transmittance(scene_, medium, light->distance) *
+        const Rgb contribution = beta_ * f * light->radiance *
+                                 transmittance(scene_, medium, light->distance) *
                                  (weight / light->pdf);
         result_.radiance += contribution;
         if (!vertex) return;
@@ -166,8 +175,8 @@ class PathTracer {
         vertex->direct_event = {light->wi, lobe_shares(bsdf, wo_local, wi_local)};
     }
 
-    bool scatter(const SurfaceHit& hit, const PlacedShape& shape, const Bsdf& bsdf, const Frame& frame,
-                 Vec3 wo_local, float u_lobe, Vec2 u, PathVertex* vertex) {
+    bool scatter(const SurfaceHit& hit, const PlacedShape& shape, const Bsdf& bsdf,
+                 const Frame& frame, Vec3 wo_local, float u_lobe, Vec2 u, PathVertex* vertex) {
         const auto s = sample(bsdf, wo_local, u_lobe, u);
         if (!s || is_black(s->weight)) return false;
         const Vec3 wi = normalize(frame.to_world(s->wi));
@@ -213,8 +222,9 @@ class PathTracer {
 
     PathResult result_;
     Rgb beta_{1};
-    float pdf_ = 0;            // of the last sampled direction
-    bool specular_ = true;     // the last lobe (the camera counts as one): no light sampling could find it
+    float pdf_ = 0;  // of the last sampled direction
+    bool specular_ =
+        true;  // the last lobe (the camera counts as one): no light sampling could find it
     bool sharp_so_far_ = true;
     float eta_scale_ = 1;
     MediumId medium_ = -1;

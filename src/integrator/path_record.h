@@ -10,7 +10,8 @@
 
 namespace covtrace {
 
-/// Lobes that take part at a vertex for one pair of directions, with their shares of the scattered light.
+/// Lobes that take part at a vertex for one pair of directions, with their shares of the scattered
+/// light.
 struct ScatterEvent {
     Vec3 wi;  ///< unit, world, away from the surface, towards where the light comes from
     LobeShares lobes;
@@ -22,7 +23,8 @@ struct PathVertex {
     Frame shading;  ///< frame of the BSDF: anisotropic roughness is along its x and y
     MaterialId material = -1;
 
-    /// Luminance that reaches the sensor from this vertex' own emission, after multiple importance sampling.
+    /// Luminance that reaches the sensor from this vertex' own emission, after multiple importance
+    /// sampling.
     float emitted = 0;
     bool seen_sharply = false;  ///< no lobe but specular ones between the camera and this vertex
 
@@ -42,7 +44,8 @@ struct PathRecord {
     std::array<PathVertex, kCapacity> vertices;
     int count = 0;
     Ray camera_ray;
-    /// Luminance from the infinite lights where the path left the scene, and the direction it left by.
+    /// Luminance from the infinite lights where the path left the scene, and the direction it left
+    /// by.
     float escaped = 0;
     Vec3 escape_direction;
     bool escape_seen_sharply = false;

@@ -28,8 +28,13 @@ float evaluate(const FilterDescription& d, float x, float radius) {
         case FilterDescription::Kind::mitchell: {
             // Mitchell and Netravali 1988, stretched from its support of 2 to the radius.
             const float v = 2 * x / radius, b = d.b, c = d.c;
-            if (v <= 1) return ((12 - 9 * b - 6 * c) * v * v * v + (-18 + 12 * b + 6 * c) * v * v + (6 - 2 * b)) / 6;
-            return ((-b - 6 * c) * v * v * v + (6 * b + 30 * c) * v * v + (-12 * b - 48 * c) * v + (8 * b + 24 * c)) / 6;
+            if (v <= 1)
+                return ((12 - 9 * b - 6 * c) * v * v * v + (-18 + 12 * b + 6 * c) * v * v +
+                        (6 - 2 * b)) /
+                       6;
+            return ((-b - 6 * c) * v * v * v + (6 * b + 30 * c) * v * v + (-12 * b - 48 * c) * v +
+                    (8 * b + 24 * c)) /
+                   6;
         }
         case FilterDescription::Kind::lanczos_sinc:
             return sinc(x) * sinc(x / d.tau);
@@ -63,7 +68,8 @@ PixelFilter::PixelFilter(const FilterDescription& description) {
 
 std::array<float, 2> PixelFilter::Axis::sample(float u) const {
     const auto upper = std::upper_bound(cdf.begin(), cdf.end(), u);
-    const auto cell = static_cast<size_t>(std::clamp<std::ptrdiff_t>(upper - cdf.begin() - 1, 0, kCells - 1));
+    const auto cell =
+        static_cast<size_t>(std::clamp<std::ptrdiff_t>(upper - cdf.begin() - 1, 0, kCells - 1));
     const float span = cdf[cell + 1] - cdf[cell];
     const float within = span > 0 ? (u - cdf[cell]) / span : 0.5f;
     const float offset = -radius + (static_cast<float>(cell) + within) * (2 * radius / kCells);

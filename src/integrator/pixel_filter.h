@@ -1,5 +1,5 @@
-/// The scene's pixel filter, importance sampled: a sample belongs to one pixel and the filter shapes
-/// its position, so that samples of different pixels stay independent (Ernst et al. 2006).
+/// The scene's pixel filter, importance sampled: a sample belongs to one pixel and the filter
+/// shapes its position, so that samples of different pixels stay independent (Ernst et al. 2006).
 #pragma once
 
 #include <array>

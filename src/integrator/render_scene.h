@@ -1,4 +1,5 @@
-/// Everything that a path needs to find its way: geometry, materials, lights, media, camera, filter.
+/// Everything that a path needs to find its way: geometry, materials, lights, media, camera,
+/// filter.
 #pragma once
 
 #include <string>
@@ -15,10 +16,12 @@ namespace covtrace {
 
 /// Built once from a description; immutable and thread-safe afterwards.
 struct RenderScene {
-    /// `isa`: as Geometry's. Throws Error(scene) for images that can't be read, Error(limit) where memory runs out.
+    /// `isa`: as Geometry's. Throws Error(scene) for images that can't be read, Error(limit) where
+    /// memory runs out.
     explicit RenderScene(SceneDescription scene_description, const std::string& isa = {});
 
-    /// What only the frequency analysis needs: spectra of textures and environments. Not thread-safe.
+    /// What only the frequency analysis needs: spectra of textures and environments. Not
+    /// thread-safe.
     void prepare_spectra();
 
     SceneDescription description;

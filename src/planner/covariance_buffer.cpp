@@ -1,6 +1,7 @@
 #include "planner/covariance_buffer.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/parallel.h"
 
@@ -26,37 +27,52 @@ Prediction preintegrate(const CovarianceBuffer& buffer) {
 
 namespace {
 
-/// Mean over the weighted pixels of the smallest square ring around (x, y) that has any.
-bool borrow(const CovarianceBuffer& b, int x, int y, Covariance5& mean, float& weight) {
-    const int farthest = std::max(b.width, b.height);
-    for (int r = 1; r <= farthest; ++r) {
-        Covariance5 sum;
-        float total = 0;
-        for (int dy = -r; dy <= r; ++dy) {
-            const int step = std::abs(dy) == r ? 1 : 2 * r;
-            for (int dx = -r; dx <= r; dx += step) {
-                const int px = x + dx, py = y + dy;
-                if (px < 0 || py < 0 || px >= b.width || py >= b.height) continue;
-                const size_t j = size_t(py) * size_t(b.width) + size_t(px);
-                if (!(b.weight[j] > 0)) continue;
-                sum = sum + b.weight[j] * b.covariance[j];
-                total += b.weight[j];
-            }
-        }
-        if (total > 0) {
-            mean = (1 / total) * sum;
-            weight = 0;
-            return true;
-        }
+/// For every pixel the index of a nearest pixel with a weight: a chamfer transform with the steps 5
+/// and 7, one pass down and one up, so that the time is linear whatever the holes. At least one
+/// pixel has a weight.
+std::vector<size_t> nearest_lit(const CovarianceBuffer& b) {
+    constexpr int kFar = std::numeric_limits<int>::max() / 2;
+    std::vector<int> distance(b.weight.size(), kFar);
+    std::vector<size_t> nearest(b.weight.size());
+    for (size_t i = 0; i < nearest.size(); ++i) {
+        nearest[i] = i;
+        if (b.weight[i] > 0) distance[i] = 0;
     }
-    return false;
+    const auto relax = [&](int x, int y, int dx, int dy, int step) {
+        const int px = x + dx, py = y + dy;
+        if (px < 0 || py < 0 || px >= b.width || py >= b.height) return;
+        const size_t i = size_t(y) * size_t(b.width) + size_t(x);
+        const size_t j = size_t(py) * size_t(b.width) + size_t(px);
+        if (distance[j] + step >= distance[i]) return;
+        distance[i] = distance[j] + step;
+        nearest[i] = nearest[j];
+    };
+    for (int y = 0; y < b.height; ++y)
+        for (int x = 0; x < b.width; ++x) {
+            relax(x, y, -1, 0, 5);
+            relax(x, y, 0, -1, 5);
+            relax(x, y, -1, -1, 7);
+            relax(x, y, 1, -1, 7);
+        }
+    for (int y = b.height - 1; y >= 0; --y)
+        for (int x = b.width - 1; x >= 0; --x) {
+            relax(x, y, 1, 0, 5);
+            relax(x, y, 0, 1, 5);
+            relax(x, y, 1, 1, 7);
+            relax(x, y, -1, 1, 7);
+        }
+    // The first pass leaves what it could not reach at "far" and its own index; the second reaches
+    // it.
+    return nearest;
 }
 
 }  // namespace
 
 CovarianceBuffer smooth(const CovarianceBuffer& buffer) {
     CovarianceBuffer result(buffer.width, buffer.height);
-    if (std::none_of(buffer.weight.begin(), buffer.weight.end(), [](float w) { return w > 0; })) return result;
+    if (std::none_of(buffer.weight.begin(), buffer.weight.end(), [](float w) { return w > 0; }))
+        return result;
+    const std::vector<size_t> nearest = nearest_lit(buffer);
     parallel_for(buffer.height, [&](int64_t row) {
         const int y = int(row);
         for (int x = 0; x < buffer.width; ++x) {
@@ -70,10 +86,7 @@ CovarianceBuffer smooth(const CovarianceBuffer& buffer) {
                     total += buffer.weight[j];
                 }
             result.weight[i] = buffer.weight[i];
-            if (total > 0)
-                result.covariance[i] = (1 / total) * sum;
-            else
-                borrow(buffer, x, y, result.covariance[i], result.weight[i]);
+            result.covariance[i] = total > 0 ? (1 / total) * sum : buffer.covariance[nearest[i]];
         }
     });
     return result;

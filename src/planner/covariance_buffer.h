@@ -14,7 +14,10 @@ using Covariance2 = covariance::Sym2<float>;
 /// Weight 0: no path of the pixel found light, and the covariance is zero.
 struct CovarianceBuffer {
     CovarianceBuffer(int w, int h)
-        : width(w), height(h), covariance(size_t(w) * size_t(h)), weight(size_t(w) * size_t(h), 0.0f) {}
+        : width(w),
+          height(h),
+          covariance(size_t(w) * size_t(h)),
+          weight(size_t(w) * size_t(h), 0.0f) {}
     int width, height;
     std::vector<Covariance5> covariance;
     std::vector<float> weight;

@@ -10,7 +10,8 @@ std::vector<float> relative_density(const Prediction& prediction, DensityRule ru
     std::vector<float> g(prediction.spectrum.size());
     double sum = 0;
     for (size_t i = 0; i < g.size(); ++i) {
-        const auto usable = covariance::limit_spectrum(prediction.spectrum[i], c, limits.s_min, limits.s_max);
+        const auto usable =
+            covariance::limit_spectrum(prediction.spectrum[i], c, limits.s_min, limits.s_max);
         const float interior = prediction.interior_count[i];
         g[i] = rule == DensityRule::thesis ? covariance::thesis_density(usable, interior)
                                            : covariance::tempered_density(usable, interior);

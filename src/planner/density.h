@@ -15,8 +15,8 @@ enum class DensityRule {
 };
 
 /// Relative densities with mean 1, one per pixel. The spectra are first limited to what filters of
-/// width factor `c` and the given limits can use (covariance::limit_spectrum), so that no pixel asks
-/// for detail that the narrowest filter would remove.
+/// width factor `c` and the given limits can use (covariance::limit_spectrum), so that no pixel
+/// asks for detail that the narrowest filter would remove.
 std::vector<float> relative_density(const Prediction& prediction, DensityRule rule, float c,
                                     const covariance::FilterLimits<float>& limits);
 

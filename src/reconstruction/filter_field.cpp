@@ -34,8 +34,7 @@ FilterField filter_field(std::span<const covariance::Sym2<float>> spectrum, int 
 void limit_by_neighbours(FilterField& field, const FilterSettings& settings) {
     const int w = field.width, h = field.height;
     std::vector<float> s(field.covariance.size());
-    for (size_t i = 0; i < s.size(); ++i)
-        s[i] = covariance::filter_size(field.covariance[i]);
+    for (size_t i = 0; i < s.size(); ++i) s[i] = covariance::filter_size(field.covariance[i]);
     std::vector<float> limit = s;
     // Chamfer distance transform with steps 1 and sqrt 2: one pass down, one pass up.
     const float straight = settings.slope, diagonal = settings.slope * std::sqrt(2.0f);
@@ -61,7 +60,8 @@ void limit_by_neighbours(FilterField& field, const FilterSettings& settings) {
         }
     for (size_t i = 0; i < s.size(); ++i)
         if (limit[i] < s[i])
-            field.covariance[i] = covariance::resize_filter(field.covariance[i], limit[i], settings.limits);
+            field.covariance[i] =
+                covariance::resize_filter(field.covariance[i], limit[i], settings.limits);
 }
 
 }  // namespace covtrace

@@ -9,7 +9,8 @@
 namespace covtrace {
 
 /// How spectra become filters. `verified` is the constant that keeps a signal with the predicted
-/// spectrum; `thesis` prints exp(-pi p^T S p), equation 5.7 to the letter, with no limit by neighbours.
+/// spectrum; `thesis` prints exp(-pi p^T S p), equation 5.7 to the letter, with no limit by
+/// neighbours.
 enum class FilterRule { verified, thesis };
 
 struct FilterSettings {
@@ -17,20 +18,23 @@ struct FilterSettings {
     covariance::FilterLimits<float> limits{0.4f, 15};  ///< of the standard deviations, pixels
     float slope = 0.1f;  ///< how fast a filter may widen away from a narrower one, pixels per pixel
 };
-/// The settings for an average of `samples_per_pixel` samples: c and 1/s_min grow as n^(1/6), so that
-/// the bias falls as the noise does.
+/// The settings for an average of `samples_per_pixel` samples: c and 1/s_min grow as n^(1/6), so
+/// that the bias falls as the noise does.
 FilterSettings filter_settings(double samples_per_pixel);
 
-/// Primal covariances (pixels^2), row by row: S_h = (4 pi^2 c^2 S2D)^-1 with eigenvalues in [s_min^2, s_max^2].
+/// Primal covariances (pixels^2), row by row: S_h = (4 pi^2 c^2 S2D)^-1 with eigenvalues in
+/// [s_min^2, s_max^2].
 struct FilterField {
     int width = 0, height = 0;
     std::vector<covariance::Sym2<float>> covariance;
 };
-/// `spectrum`: width * height predicted spectra after the integral over lens and shutter, (cycles/pixel)^2.
+/// `spectrum`: width * height predicted spectra after the integral over lens and shutter,
+/// (cycles/pixel)^2.
 FilterField filter_field(std::span<const covariance::Sym2<float>> spectrum, int width, int height,
                          FilterRule rule, const FilterSettings& settings);
 
-/// Narrows filters near narrower ones: s = det(S_h)^(1/4) becomes min over q of s(q) + slope |p - q|.
+/// Narrows filters near narrower ones: s = det(S_h)^(1/4) becomes min over q of s(q) + slope |p -
+/// q|.
 void limit_by_neighbours(FilterField& field, const FilterSettings& settings);
 
 }  // namespace covtrace

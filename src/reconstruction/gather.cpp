@@ -47,7 +47,8 @@ constexpr float kCut = 9;  // squared number of standard deviations
 
 /// The Gaussian mean with covariance `s` (level pixels^2) about (cx, cy) (level pixel coordinates).
 /// Returns the total weight; `mean` and `variance` are set where it is positive.
-float gaussian_mean(const Level& level, float cx, float cy, const Sym2& s, Rgb& mean, float& variance) {
+float gaussian_mean(const Level& level, float cx, float cy, const Sym2& s, Rgb& mean,
+                    float& variance) {
     const float determinant = s.xx * s.yy - s.xy * s.xy;
     const float qxx = s.yy / determinant, qxy = -s.xy / determinant, qyy = s.xx / determinant;
     const float reach_y = std::sqrt(kCut * s.yy);
@@ -95,7 +96,8 @@ GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
             base.cells[i] = {mean[i], std::isfinite(variance[i]) ? variance[i] : 0.0f, 1.0f};
     }
     constexpr size_t kMostLevels = 12;
-    while (pyramid.size() < kMostLevels && std::max(pyramid.back().width, pyramid.back().height) > 1)
+    while (pyramid.size() < kMostLevels &&
+           std::max(pyramid.back().width, pyramid.back().height) > 1)
         pyramid.push_back(halve(pyramid.back()));
 
     GatheredImage result{std::vector<Rgb>(mean.size()), std::vector<float>(mean.size())};
@@ -111,10 +113,11 @@ GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
                 // A box of that size has blurred already: (size^2 - 1) / 12 beside single pixels.
                 const float blurred = (size * size - 1) / 12;
                 const Sym2 rest{(s.xx - blurred) / (size * size), s.xy / (size * size),
-                                       (s.yy - blurred) / (size * size)};
-                const float cx = (float(x) + 0.5f) / size - 0.5f, cy = (float(row) + 0.5f) / size - 0.5f;
-                const float total =
-                    gaussian_mean(pyramid[level], cx, cy, rest, result.color[i], result.variance[i]);
+                                (s.yy - blurred) / (size * size)};
+                const float cx = (float(x) + 0.5f) / size - 0.5f,
+                            cy = (float(row) + 0.5f) / size - 0.5f;
+                const float total = gaussian_mean(pyramid[level], cx, cy, rest, result.color[i],
+                                                  result.variance[i]);
                 if (total > 1e-3f) break;
                 s = 16.0f * s;
             }

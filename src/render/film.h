@@ -1,4 +1,5 @@
-/// The film: everything the samples of each pixel left behind. It is the state; images are views of it.
+/// The film: everything the samples of each pixel left behind. It is the state; images are views of
+/// it.
 #pragma once
 
 #include <cstdint>

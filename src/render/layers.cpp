@@ -9,7 +9,8 @@ namespace {
 
 /// Adds channels prefix+suffix and fills them from value(pixel), an array of as many floats.
 template <size_t N, typename Value>
-void add_layer(Image& image, const std::string& prefix, const std::array<const char*, N>& suffixes, const Value& value) {
+void add_layer(Image& image, const std::string& prefix, const std::array<const char*, N>& suffixes,
+               const Value& value) {
     const size_t first = image.channels.size();
     for (const char* suffix : suffixes) image.add_channel(prefix + suffix);
     for (size_t i = 0; i < image.pixel_count(); ++i) {
@@ -23,8 +24,12 @@ constexpr std::array<const char*, 3> kSymmetric{"xx", "xy", "yy"};
 constexpr std::array<const char*, 15> kFive{"00", "01", "02", "03", "04", "11", "12", "13",
                                             "14", "22", "23", "24", "33", "34", "44"};
 
-std::array<float, 3> array(Rgb c) { return {c.r, c.g, c.b}; }
-std::array<float, 3> array(const covariance::Sym2<float>& s) { return {s.xx, s.xy, s.yy}; }
+std::array<float, 3> array(Rgb c) {
+    return {c.r, c.g, c.b};
+}
+std::array<float, 3> array(const covariance::Sym2<float>& s) {
+    return {s.xx, s.xy, s.yy};
+}
 
 }  // namespace
 
@@ -35,30 +40,42 @@ Image make_layers(const Film& film, PixelBounds display, bool has_holes,
     image.display = display;
     const auto& pixels = film.pixels;
     const auto luminance_variance = [&](size_t i) {
-        // The channels of one sample vary together: the luminance of the deviations, not of the variances.
+        // The channels of one sample vary together: the luminance of the deviations, not of the
+        // variances.
         const Rgb v = pixels[i].variance_of_mean();
         return sqr(luminance({std::sqrt(v.r), std::sqrt(v.g), std::sqrt(v.b)}));
     };
-    add_layer(image, "", kRgb, [&](size_t i) { return array(covariance ? covariance->gathered.color[i] : pixels[i].mean); });
+    add_layer(image, "", kRgb, [&](size_t i) {
+        return array(covariance ? covariance->gathered.color[i] : pixels[i].mean);
+    });
     if (has_holes)
-        add_layer(image, "", std::array{"A"}, [&](size_t i) { return std::array{pixels[i].coverage}; });
+        add_layer(image, "", std::array{"A"},
+                  [&](size_t i) { return std::array{pixels[i].coverage}; });
     add_layer(image, "raw.", kRgb, [&](size_t i) { return array(pixels[i].mean); });
     add_layer(image, "albedo.", kRgb, [&](size_t i) { return array(pixels[i].albedo); });
     add_layer(image, "N.", std::array{"X", "Y", "Z"}, [&](size_t i) {
         return std::array{pixels[i].normal.x, pixels[i].normal.y, pixels[i].normal.z};
     });
     add_layer(image, "", std::array{"Z"}, [&](size_t i) { return std::array{pixels[i].depth}; });
-    add_layer(image, "variance.", kRgb, [&](size_t i) { return array(pixels[i].variance_of_mean()); });
+    add_layer(image, "variance.", kRgb,
+              [&](size_t i) { return array(pixels[i].variance_of_mean()); });
     add_layer(image, "error.", std::array{"Y"}, [&](size_t i) {
-        return std::array{std::sqrt(covariance ? covariance->gathered.variance[i] : luminance_variance(i))};
+        return std::array{
+            std::sqrt(covariance ? covariance->gathered.variance[i] : luminance_variance(i))};
     });
-    add_layer(image, "samples.", std::array{"Y"}, [&](size_t i) { return std::array{float(pixels[i].count)}; });
+    add_layer(image, "samples.", std::array{"Y"},
+              [&](size_t i) { return std::array{float(pixels[i].count)}; });
     if (!covariance) return image;
-    add_layer(image, "density.", std::array{"Y"}, [&](size_t i) { return std::array{covariance->density[i]}; });
-    add_layer(image, "filter.", kSymmetric, [&](size_t i) { return array(covariance->filter.covariance[i]); });
-    add_layer(image, "spectrum.", kSymmetric, [&](size_t i) { return array(covariance->prediction.spectrum[i]); });
-    add_layer(image, "cov.", kFive, [&](size_t i) { return covariance->buffer.covariance[i].values; });
-    add_layer(image, "covweight.", std::array{"Y"}, [&](size_t i) { return std::array{covariance->buffer.weight[i]}; });
+    add_layer(image, "density.", std::array{"Y"},
+              [&](size_t i) { return std::array{covariance->density[i]}; });
+    add_layer(image, "filter.", kSymmetric,
+              [&](size_t i) { return array(covariance->filter.covariance[i]); });
+    add_layer(image, "spectrum.", kSymmetric,
+              [&](size_t i) { return array(covariance->prediction.spectrum[i]); });
+    add_layer(image, "cov.", kFive,
+              [&](size_t i) { return covariance->buffer.covariance[i].values; });
+    add_layer(image, "covweight.", std::array{"Y"},
+              [&](size_t i) { return std::array{covariance->buffer.weight[i]}; });
     return image;
 }
 

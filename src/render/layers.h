@@ -13,10 +13,10 @@ namespace covtrace {
 /// What the covariance method knows beyond the film, for its layers.
 struct CovarianceLayers {
     const CovarianceBuffer& buffer;
-    const Prediction& prediction;     ///< before smoothing and clamps
-    std::vector<float> density;       ///< samples per pixel that the plan asked for
-    const FilterField& filter;        ///< as applied
-    const GatheredImage& gathered;    ///< the delivered image
+    const Prediction& prediction;   ///< before smoothing and clamps
+    std::vector<float> density;     ///< samples per pixel that the plan asked for
+    const FilterField& filter;      ///< as applied
+    const GatheredImage& gathered;  ///< the delivered image
 };
 
 /// Root R G B (A where `has_holes`): the gathered image, or the raw film without `covariance`;

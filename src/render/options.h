@@ -32,8 +32,8 @@ struct RenderOptions {
     Occlusion occlusion = Occlusion::grid;
     int voxels = 200;  ///< width of the grid
     FilterRule filter = FilterRule::verified;
-    std::optional<int> max_spp;     ///< most samples in any pixel; default 16 times the average
-    std::optional<int> max_depth;   ///< default: the scene's
+    std::optional<int> max_spp;    ///< most samples in any pixel; default 16 times the average
+    std::optional<int> max_depth;  ///< default: the scene's
     uint64_t seed = 0;
 };
 

@@ -14,10 +14,11 @@ namespace {
 constexpr int kTileSize = 16;
 constexpr size_t kMostRejectedKept = 8;
 
-/// Runs body(film pixel index, x, y, statistics) for all pixels, tile by tile, and sums the statistics in tile order.
+/// Runs body(film pixel index, x, y, statistics) for all pixels, tile by tile, and sums the
+/// statistics in tile order.
 template <typename Body>
-PassStatistics for_each_pixel(const PixelBounds& b, const Monitor& monitor, const PassProgress& progress,
-                              const Body& body) {
+PassStatistics for_each_pixel(const PixelBounds& b, const Monitor& monitor,
+                              const PassProgress& progress, const Body& body) {
     const int tiles_x = (b.width() + kTileSize - 1) / kTileSize;
     const int tiles_y = (b.height() + kTileSize - 1) / kTileSize;
     const int64_t tiles = int64_t(tiles_x) * tiles_y;
@@ -25,7 +26,8 @@ PassStatistics for_each_pixel(const PixelBounds& b, const Monitor& monitor, cons
     std::atomic<int64_t> done{0};
     parallel_for(tiles, [&](int64_t tile) {
         if (monitor.cancelled()) return;
-        const int x0 = b.x0 + int(tile % tiles_x) * kTileSize, y0 = b.y0 + int(tile / tiles_x) * kTileSize;
+        const int x0 = b.x0 + int(tile % tiles_x) * kTileSize,
+                  y0 = b.y0 + int(tile / tiles_x) * kTileSize;
         PassStatistics& statistics = per_tile[static_cast<size_t>(tile)];
         for (int y = y0; y < std::min(y0 + kTileSize, b.y1); ++y)
             for (int x = x0; x < std::min(x0 + kTileSize, b.x1); ++x) {
@@ -51,7 +53,8 @@ void sample_pixel(const PassContext& context, FilmPixel& pixel, int x, int y, Pa
     if (is_black(path.radiance)) ++statistics.black_paths;
     if (!is_finite(s.radiance)) {
         ++statistics.rejected;
-        if (statistics.first_rejected.size() < kMostRejectedKept) statistics.first_rejected.push_back({x, y, index});
+        if (statistics.first_rejected.size() < kMostRejectedKept)
+            statistics.first_rejected.push_back({x, y, index});
         s.radiance = Rgb(0);
     }
     pixel.add(s);
@@ -69,8 +72,8 @@ void PassStatistics::add(const PassStatistics& other) {
         if (first_rejected.size() < kMostRejectedKept) first_rejected.push_back(r);
 }
 
-FilmPixel::Sample take_sample(const PassContext& context, int x, int y, uint32_t index, PathRecord* record,
-                              PathResult& path) {
+FilmPixel::Sample take_sample(const PassContext& context, int x, int y, uint32_t index,
+                              PathRecord* record, PathResult& path) {
     Sampler sampler(context.seed, x, y, index);
     const Sampler::CameraSample u = sampler.camera();
     const PixelFilter::Sample position = context.scene.filter.sample(u.film);
@@ -89,16 +92,19 @@ FilmPixel::Sample take_sample(const PassContext& context, int x, int y, uint32_t
     return s;
 }
 
-PassStatistics radiance_pass(const PassContext& context, Film& film, std::span<const uint32_t> counts,
-                             const Monitor& monitor, const PassProgress& progress) {
-    return for_each_pixel(film.bounds, monitor, progress, [&](size_t i, int x, int y, PassStatistics& statistics) {
-        for (uint32_t s = 0; s < counts[i]; ++s) sample_pixel(context, film.pixels[i], x, y, nullptr, statistics);
-    });
+PassStatistics radiance_pass(const PassContext& context, Film& film,
+                             std::span<const uint32_t> counts, const Monitor& monitor,
+                             const PassProgress& progress) {
+    return for_each_pixel(film.bounds, monitor, progress,
+                          [&](size_t i, int x, int y, PassStatistics& statistics) {
+                              for (uint32_t s = 0; s < counts[i]; ++s)
+                                  sample_pixel(context, film.pixels[i], x, y, nullptr, statistics);
+                          });
 }
 
 PassStatistics covariance_pass(const PassContext& context, const VoxelGrid* occluders, Film& film,
-                               std::span<const uint32_t> counts, CovarianceBuffer& buffer, const Monitor& monitor,
-                               const PassProgress& progress) {
+                               std::span<const uint32_t> counts, CovarianceBuffer& buffer,
+                               const Monitor& monitor, const PassProgress& progress) {
     const PathReplay replay(context.scene, occluders);
     const auto traced = [&](size_t i, int x, int y, PassStatistics& statistics) {
         static thread_local PathRecord record;
@@ -131,10 +137,12 @@ PassStatistics covariance_pass(const PassContext& context, const VoxelGrid* occl
     const float most = lit > 0 ? float(10 * sum / lit) : 0.0f;
 
     statistics.add(for_each_pixel(
-        film.bounds, monitor, [&](double f) { progress(share_of_first + f * (1 - share_of_first)); },
+        film.bounds, monitor,
+        [&](double f) { progress(share_of_first + f * (1 - share_of_first)); },
         [&](size_t i, int x, int y, PassStatistics& s) {
             covariance::Accumulator<double> mean;
-            mean.add(covariance::cast<double>(buffer.covariance[i]), std::min(buffer.weight[i], most));
+            mean.add(covariance::cast<double>(buffer.covariance[i]),
+                     std::min(buffer.weight[i], most));
             for (uint32_t k = 1; k < counts[i]; ++k) {
                 const PathCovariance p = traced(i, x, y, s);
                 mean.add(p.sigma, std::min(p.weight, double(most)));

@@ -44,19 +44,21 @@ struct PassContext {
 /// Called from worker threads with the share of the pass that is done.
 using PassProgress = std::function<void(double)>;
 
-/// Takes `count(pixel index)` more samples in every pixel. One thread owns a pixel and adds its samples in
-/// index order. Returns early, with whole tiles done, once the monitor is cancelled.
-PassStatistics radiance_pass(const PassContext& context, Film& film, std::span<const uint32_t> counts,
-                             const Monitor& monitor, const PassProgress& progress);
+/// Takes `count(pixel index)` more samples in every pixel. One thread owns a pixel and adds its
+/// samples in index order. Returns early, with whole tiles done, once the monitor is cancelled.
+PassStatistics radiance_pass(const PassContext& context, Film& film,
+                             std::span<const uint32_t> counts, const Monitor& monitor,
+                             const PassProgress& progress);
 
-/// The same with `counts` paths per pixel that also leave their covariance. Weights are limited to ten
-/// times the mean of the image's first paths, so that no single path owns a pixel. `occluders` may be null.
+/// The same with `counts` paths per pixel that also leave their covariance. Weights are limited to
+/// ten times the mean of the image's first paths, so that no single path owns a pixel. `occluders`
+/// may be null.
 PassStatistics covariance_pass(const PassContext& context, const VoxelGrid* occluders, Film& film,
-                               std::span<const uint32_t> counts, CovarianceBuffer& buffer, const Monitor& monitor,
-                               const PassProgress& progress);
+                               std::span<const uint32_t> counts, CovarianceBuffer& buffer,
+                               const Monitor& monitor, const PassProgress& progress);
 
 /// One sample as the passes take it, for replaying a pixel: returns the path and the film's sample.
-FilmPixel::Sample take_sample(const PassContext& context, int x, int y, uint32_t index, PathRecord* record,
-                              PathResult& path);
+FilmPixel::Sample take_sample(const PassContext& context, int x, int y, uint32_t index,
+                              PathRecord* record, PathResult& path);
 
 }  // namespace covtrace

@@ -4,7 +4,8 @@
 
 namespace covtrace {
 
-Monitor::Monitor(std::function<void(const Progress&)> report, double interval, Clock::time_point start)
+Monitor::Monitor(std::function<void(const Progress&)> report, double interval,
+                 Clock::time_point start)
     : report_(std::move(report)), interval_(interval), start_(start) {}
 
 double Monitor::elapsed() const {

@@ -10,8 +10,8 @@
 namespace covtrace {
 
 struct Progress {
-    std::string_view phase;        ///< "covariance", "radiance", "reconstruction"
-    double fraction = 0;           ///< of the whole render, in [0, 1); 1 only when the image is ready
+    std::string_view phase;  ///< "covariance", "radiance", "reconstruction"
+    double fraction = 0;     ///< of the whole render, in [0, 1); 1 only when the image is ready
     double samples_per_pixel = 0;  ///< taken so far
     double elapsed = 0;            ///< seconds
     double remaining = 0;          ///< estimated seconds

@@ -16,7 +16,8 @@ namespace {
 /// Adds the seconds that a scope took to a phase.
 class PhaseTimer {
   public:
-    PhaseTimer(const Monitor& monitor, double& total) : monitor_(monitor), total_(total), start_(monitor.elapsed()) {}
+    PhaseTimer(const Monitor& monitor, double& total)
+        : monitor_(monitor), total_(total), start_(monitor.elapsed()) {}
     ~PhaseTimer() { total_ += monitor_.elapsed() - start_; }
 
   private:
@@ -25,9 +26,11 @@ class PhaseTimer {
     const double start_;
 };
 
-/// The sizes of the rounds are fixed: the mean count after each grows by half. A budget in samples or
-/// time only says after which of them, and where inside the last one, to stop.
-double next_round(double taken) { return std::max(taken + 1, std::floor(taken * 1.5)); }
+/// The sizes of the rounds are fixed: the mean count after each grows by half. A budget in samples
+/// or time only says after which of them, and where inside the last one, to stop.
+double next_round(double taken) {
+    return std::max(taken + 1, std::floor(taken * 1.5));
+}
 
 class Session {
   public:
@@ -36,10 +39,11 @@ class Session {
           options_(options),
           monitor_(monitor),
           film_(render_region(scene.description.film)),
-          context_{scene, options.seed, options.max_depth.value_or(scene.description.max_depth),
-                   (scene.description.camera.shutter_close - scene.description.camera.shutter_open) *
-                       scene.description.film.iso / 100,
-                   scene.description.film.max_component_value} {
+          context_{
+              scene, options.seed, options.max_depth.value_or(scene.description.max_depth),
+              (scene.description.camera.shutter_close - scene.description.camera.shutter_open) *
+                  scene.description.film.iso / 100,
+              scene.description.film.max_component_value} {
         if (options.spp || !options.seconds)
             target_spp_ = options.spp.value_or(scene.description.samples_per_pixel);
     }
@@ -58,7 +62,8 @@ class Session {
     double& phase(const char* name) { return result_.statistics.seconds[name]; }
     int64_t pixels() const { return int64_t(film_.pixels.size()); }
 
-    PassProgress reporter(const char* name, double from, double to, double spp_from, double spp_to) {
+    PassProgress reporter(const char* name, double from, double to, double spp_from,
+                          double spp_to) {
         return [this, name, from, to, spp_from, spp_to](double f) {
             monitor_.update(name, from + f * (to - from), spp_from + f * (spp_to - spp_from));
         };
@@ -70,7 +75,8 @@ class Session {
         if (target_spp_) target = std::min(target, *target_spp_);
         if (options_.seconds && radiance_spp_ > 0) {
             const double left = *options_.seconds - reserve_ - monitor_.elapsed();
-            const double affordable = taken + std::floor(left / (radiance_seconds_ / radiance_spp_) * 16) / 16;
+            const double affordable =
+                taken + std::floor(left / (radiance_seconds_ / radiance_spp_) * 16) / 16;
             target = std::min(target, affordable);
         }
         return std::max(target, taken);
@@ -88,15 +94,15 @@ class Session {
         std::vector<uint32_t> have(film_.pixels.size());
         for (size_t i = 0; i < have.size(); ++i) have[i] = film_.pixels[i].count;
         const double most = options_.max_spp ? double(*options_.max_spp) : std::ceil(16 * target);
-        std::vector<uint32_t> counts = allocate(density, std::llround(target * double(pixels())), have,
-                                                uint32_t(std::clamp(most, 1.0, 4e9)));
+        std::vector<uint32_t> counts = allocate(density, std::llround(target * double(pixels())),
+                                                have, uint32_t(std::clamp(most, 1.0, 4e9)));
         for (size_t i = 0; i < counts.size(); ++i) counts[i] -= std::min(counts[i], have[i]);
         const double start = monitor_.elapsed();
         {
             const PhaseTimer timer(monitor_, phase("radiance"));
-            result_.statistics.radiance.add(
-                radiance_pass(context_, film_, counts, monitor_,
-                              reporter("radiance", fraction(taken), fraction(target), taken, target)));
+            result_.statistics.radiance.add(radiance_pass(
+                context_, film_, counts, monitor_,
+                reporter("radiance", fraction(taken), fraction(target), taken, target)));
         }
         radiance_seconds_ += monitor_.elapsed() - start;
         radiance_spp_ += target - taken;
@@ -116,13 +122,15 @@ class Session {
         const std::vector<float> even(film_.pixels.size(), 1.0f);
         reserve_ = kWriteSeconds;
         trace_rounds(even, 0);
-        result_.image = make_layers(film_, display(), !scene_.lights.has_environment(), std::nullopt);
+        result_.image =
+            make_layers(film_, display(), !scene_.lights.has_environment(), std::nullopt);
     }
 
     void trace_covariance() {
         scene_.prepare_spectra();
         const double spp = target_spp_.value_or(16);
-        const double wanted = options_.cov_spp ? *options_.cov_spp : std::clamp(std::floor(spp / 4), 2.0, 4.0);
+        const double wanted =
+            options_.cov_spp ? *options_.cov_spp : std::clamp(std::floor(spp / 4), 2.0, 4.0);
         const double cov_spp = target_spp_ ? std::min(wanted, spp) : wanted;
         CovarianceBuffer buffer(film_.bounds.width(), film_.bounds.height());
         std::optional<VoxelGrid> occluders;
@@ -134,10 +142,11 @@ class Session {
             const PhaseTimer timer(monitor_, phase("covariance"));
             const std::vector<float> even(film_.pixels.size(), 1.0f);
             const std::vector<uint32_t> none(film_.pixels.size(), 0);
-            const auto counts = allocate(even, std::llround(cov_spp * double(pixels())), none, 1u << 30);
+            const auto counts =
+                allocate(even, std::llround(cov_spp * double(pixels())), none, 1u << 30);
             result_.statistics.covariance =
-                covariance_pass(context_, occluders ? &*occluders : nullptr, film_, counts, buffer, monitor_,
-                                reporter("covariance", 0, fraction(cov_spp), 0, cov_spp));
+                covariance_pass(context_, occluders ? &*occluders : nullptr, film_, counts, buffer,
+                                monitor_, reporter("covariance", 0, fraction(cov_spp), 0, cov_spp));
         }
         Prediction raw, smoothed;
         {
@@ -145,24 +154,26 @@ class Session {
             raw = preintegrate(buffer);
             smoothed = preintegrate(smooth(buffer));
         }
-        // A covariance path costs a little more than a radiance path: good enough to plan the first round.
+        // A covariance path costs a little more than a radiance path: good enough to plan the first
+        // round.
         radiance_seconds_ = phase("covariance");
         radiance_spp_ = cov_spp;
         reserve_ = kWriteSeconds + 4 * phase("plan");
         const FilterSettings planned = filter_settings(spp);
-        const std::vector<float> density = relative_density(smoothed, options_.density, planned.c, planned.limits);
+        const std::vector<float> density =
+            relative_density(smoothed, options_.density, planned.c, planned.limits);
         trace_rounds(density, cov_spp);
         reconstruct(buffer, raw, smoothed, density);
     }
 
-    void reconstruct(const CovarianceBuffer& buffer, const Prediction& raw, const Prediction& smoothed,
-                     const std::vector<float>& density) {
+    void reconstruct(const CovarianceBuffer& buffer, const Prediction& raw,
+                     const Prediction& smoothed, const std::vector<float>& density) {
         monitor_.update("reconstruction", kTracingShare, film_.mean_count());
         const PhaseTimer timer(monitor_, phase("reconstruction"));
         const double taken = film_.mean_count();
         const FilterSettings settings = filter_settings(taken);
-        FilterField field =
-            filter_field(smoothed.spectrum, smoothed.width, smoothed.height, options_.filter, settings);
+        FilterField field = filter_field(smoothed.spectrum, smoothed.width, smoothed.height,
+                                         options_.filter, settings);
         if (options_.filter == FilterRule::verified) limit_by_neighbours(field, settings);
         std::vector<Rgb> mean(film_.pixels.size());
         std::vector<float> variance(film_.pixels.size());
@@ -176,15 +187,17 @@ class Session {
         const GatheredImage gathered = gather(mean, variance, count, field);
         std::vector<float> asked(density.size());
         for (size_t i = 0; i < asked.size(); ++i) asked[i] = density[i] * float(taken);
-        result_.image = make_layers(film_, display(), !scene_.lights.has_environment(),
-                                    CovarianceLayers{buffer, raw, std::move(asked), field, gathered});
+        result_.image =
+            make_layers(film_, display(), !scene_.lights.has_environment(),
+                        CovarianceLayers{buffer, raw, std::move(asked), field, gathered});
     }
 
     PixelBounds display() const {
         return {0, 0, scene_.description.film.width, scene_.description.film.height};
     }
 
-    static constexpr double kTracingShare = 0.97;  // of the progress bar; the rest is reconstruction and output
+    static constexpr double kTracingShare =
+        0.97;  // of the progress bar; the rest is reconstruction and output
     static constexpr double kWriteSeconds = 0.1;
 
     RenderScene& scene_;
@@ -194,8 +207,9 @@ class Session {
     PassContext context_;
     RenderResult result_;
     std::optional<double> target_spp_;
-    double radiance_seconds_ = 0, radiance_spp_ = 0;  // measured so far: what a sample per pixel costs
-    double reserve_ = 0;  // seconds kept for what follows the samples
+    double radiance_seconds_ = 0,
+           radiance_spp_ = 0;  // measured so far: what a sample per pixel costs
+    double reserve_ = 0;       // seconds kept for what follows the samples
 };
 
 }  // namespace
@@ -215,9 +229,12 @@ void apply(const SceneOverrides& overrides, SceneDescription& scene) {
     }
     if (overrides.crop) {
         const PixelBounds& c = *overrides.crop;
-        if (c.x0 < 0 || c.y0 < 0 || c.x1 > scene.film.width || c.y1 > scene.film.height || c.x0 >= c.x1 || c.y0 >= c.y1)
-            throw Error(ErrorKind::usage, "--crop must lie inside the frame of " + std::to_string(scene.film.width) + "x" +
-                                              std::to_string(scene.film.height) + " pixels and hold at least one");
+        if (c.x0 < 0 || c.y0 < 0 || c.x1 > scene.film.width || c.y1 > scene.film.height ||
+            c.x0 >= c.x1 || c.y0 >= c.y1)
+            throw Error(ErrorKind::usage, "--crop must lie inside the frame of " +
+                                              std::to_string(scene.film.width) + "x" +
+                                              std::to_string(scene.film.height) +
+                                              " pixels and hold at least one");
         scene.film.pixel_bounds = {c.x0, c.x1, c.y0, c.y1};
     }
     if (overrides.shutter) {
@@ -235,25 +252,33 @@ void apply(const SceneOverrides& overrides, SceneDescription& scene) {
 PixelBounds render_region(const FilmDescription& film) {
     if (film.pixel_bounds) {
         const auto& b = *film.pixel_bounds;
-        return {std::max(0, b[0]), std::max(0, b[2]), std::min(film.width, b[1]), std::min(film.height, b[3])};
+        return {std::max(0, b[0]), std::max(0, b[2]), std::min(film.width, b[1]),
+                std::min(film.height, b[3])};
     }
-    const auto pixel = [](float fraction, int size) { return int(std::ceil(fraction * float(size))); };
+    const auto pixel = [](float fraction, int size) {
+        return int(std::ceil(fraction * float(size)));
+    };
     const auto& c = film.crop_window;
-    return {std::clamp(pixel(c[0], film.width), 0, film.width), std::clamp(pixel(c[2], film.height), 0, film.height),
-            std::clamp(pixel(c[1], film.width), 0, film.width), std::clamp(pixel(c[3], film.height), 0, film.height)};
+    return {std::clamp(pixel(c[0], film.width), 0, film.width),
+            std::clamp(pixel(c[2], film.height), 0, film.height),
+            std::clamp(pixel(c[1], film.width), 0, film.width),
+            std::clamp(pixel(c[3], film.height), 0, film.height)};
 }
 
 RenderResult render(RenderScene& scene, const RenderOptions& options, Monitor& monitor) {
     const PixelBounds region = render_region(scene.description.film);
     if (region.width() <= 0 || region.height() <= 0)
-        throw Error(ErrorKind::scene, scene.description.film.where, "the film's crop window holds no pixel");
-    const Error too_large(ErrorKind::limit, "not enough memory for an image of " + std::to_string(region.width()) + "x" +
+        throw Error(ErrorKind::scene, scene.description.film.where,
+                    "the film's crop window holds no pixel");
+    const Error too_large(ErrorKind::limit, "not enough memory for an image of " +
+                                                std::to_string(region.width()) + "x" +
                                                 std::to_string(region.height()) + " pixels");
-    // Film, layers and the buffers of the method, as measured. A system that promises more memory than it has
-    // would end the process in the middle of the render.
+    // Film, layers and the buffers of the method, as measured. A system that promises more memory
+    // than it has would end the process in the middle of the render.
     const double bytes_per_pixel = options.method == Method::uniform ? 130 : 350;
     const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
-    if (bytes_per_pixel * double(region.width()) * double(region.height()) > memory) throw too_large;
+    if (bytes_per_pixel * double(region.width()) * double(region.height()) > memory)
+        throw too_large;
     try {
         return Session(scene, options, monitor).run();
     } catch (const std::bad_alloc&) {

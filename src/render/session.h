@@ -13,8 +13,9 @@ namespace covtrace {
 
 struct RenderStatistics {
     PassStatistics covariance, radiance;
-    std::map<std::string, double> seconds;  ///< per phase: "grid", "covariance", "plan", "radiance", "reconstruction"
-    double samples_per_pixel = 0;           ///< average taken
+    std::map<std::string, double>
+        seconds;  ///< per phase: "grid", "covariance", "plan", "radiance", "reconstruction"
+    double samples_per_pixel = 0;  ///< average taken
 };
 
 struct RenderResult {
@@ -23,14 +24,15 @@ struct RenderResult {
     bool complete = false;  ///< false: cancelled, or not all samples taken
 };
 
-/// Applies resolution, crop, shutter, focus and f-number. Throws Error(usage) for a crop outside the frame,
-/// Error(limit) for sizes that no machine holds.
+/// Applies resolution, crop, shutter, focus and f-number. Throws Error(usage) for a crop outside
+/// the frame, Error(limit) for sizes that no machine holds.
 void apply(const SceneOverrides& overrides, SceneDescription& scene);
 
 /// The pixels that a description asks for: its crop window or pixel bounds within the frame.
 PixelBounds render_region(const FilmDescription& film);
 
-/// Renders. Calls scene.prepare_spectra() where the method needs it. Throws Error(limit) where memory runs out.
+/// Renders. Calls scene.prepare_spectra() where the method needs it. Throws Error(limit) where
+/// memory runs out.
 RenderResult render(RenderScene& scene, const RenderOptions& options, Monitor& monitor);
 
 }  // namespace covtrace

@@ -216,8 +216,8 @@ ImageSpectrum::ImageSpectrum(std::span<const float> luminance, int width, int he
         Accumulator sum{float(mean)};
         for (size_t i = levels.size(); i-- > 0;) sum.add(levels[i], 2);
         sum.add(levels[0], 1);
-        // The narrowest window is as wide as a cell of two by two texels, so that less would tell no
-        // more.
+        // The narrowest window is as wide as a cell of two by two texels, so that less would tell
+        // no more.
         const ScalarField ss = box_reduced(sum.ss, 2), st = box_reduced(sum.st, 2),
                           tt = box_reduced(sum.tt, 2);
         Scale scale{ss.width, ss.height, texels_per_s / 2, texels_per_t / 2, {}};
@@ -255,7 +255,8 @@ SpatialCovariance2 ImageSpectrum::at_scale(const Scale& scale, float s, float t)
 SpatialCovariance2 ImageSpectrum::at(float s, float t, Vec2 footprint) const {
     if (scales_.empty()) return {};
     // Halving l times smooths by a deviation of half of 2^l texels: as a pixel of 2^l texels does.
-    const float texels = 2 * std::min(footprint.x * scales_[0].cells_per_s, footprint.y * scales_[0].cells_per_t);
+    const float texels =
+        2 * std::min(footprint.x * scales_[0].cells_per_s, footprint.y * scales_[0].cells_per_t);
     const float level = texels > 1 ? std::min(std::log2(texels), float(scales_.size() - 1)) : 0.0f;
     const auto finer = static_cast<size_t>(level);
     const float coarser_share = level - float(finer);

@@ -41,9 +41,9 @@ class ImageSpectrum {
     /// Symmetric positive semi-definite and finite everywhere; outside the image, where it is
     /// clamped, that of the border.
     ///
-    /// `footprint`: extent of a pixel in the same units. Structure below it is averaged by the pixel
-    /// filter before anything else happens to the image, so the analysis is of the image smoothed to
-    /// it (by a Gaussian of half the footprint). 0: of the image as it is.
+    /// `footprint`: extent of a pixel in the same units. Structure below it is averaged by the
+    /// pixel filter before anything else happens to the image, so the analysis is of the image
+    /// smoothed to it (by a Gaussian of half the footprint). 0: of the image as it is.
     SpatialCovariance2 at(float s, float t, Vec2 footprint = {}) const;
     size_t memory() const;
 

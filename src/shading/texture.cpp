@@ -171,9 +171,11 @@ float mean_luminance(const TextureGraph& graph, TextureId id) {
     return sum / (kSide * kSide);
 }
 
-/// An amount has no contrast of its own: a trace of chalk on a cloth is as visible as the difference it
-/// makes there. So the image that is analysed is the mixture, of the means of both textures.
-ImageSpectrum analyse_mixture(const TextureGraph& graph, const MixNode& mix, const ImageNode& amount) {
+/// An amount has no contrast of its own: a trace of chalk on a cloth is as visible as the
+/// difference it makes there. So the image that is analysed is the mixture, of the means of both
+/// textures.
+ImageSpectrum analyse_mixture(const TextureGraph& graph, const MixNode& mix,
+                              const ImageNode& amount) {
     const TextureImage& image = graph.images[size_t(amount.image)];
     const float a = mean_luminance(graph, mix.tex1), b = mean_luminance(graph, mix.tex2);
     std::vector<float> values(size_t(image.width()) * size_t(image.height()));

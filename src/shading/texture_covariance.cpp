@@ -67,7 +67,9 @@ struct Analyser {
 
     SpatialCovariance2 operator()(const ConstantNode&) const { return {}; }
 
-    SpatialCovariance2 operator()(const ImageNode& node) const { return of_image(node, node.spectrum); }
+    SpatialCovariance2 operator()(const ImageNode& node) const {
+        return of_image(node, node.spectrum);
+    }
 
     SpatialCovariance2 of_image(const ImageNode& node, int spectrum) const {
         const TextureImage& image = graph.images[size_t(node.image)];
@@ -122,7 +124,8 @@ struct Analyser {
         const float wb = std::abs(luminance(amount * b));
         SpatialCovariance2 result =
             node.mixture_spectrum >= 0
-                ? of_image(std::get<ImageNode>(graph.nodes[size_t(node.amount)]), node.mixture_spectrum)
+                ? of_image(std::get<ImageNode>(graph.nodes[size_t(node.amount)]),
+                           node.mixture_spectrum)
                 : of(node.amount) * contrast_weight(a, b);
         if (wa + wb > 0)
             result = result + of(node.tex1) * (wa / (wa + wb)) + of(node.tex2) * (wb / (wa + wb));

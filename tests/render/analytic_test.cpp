@@ -17,7 +17,8 @@ Camera "perspective" "float fov" 30
 WorldBegin
 )";
 
-/// The mean must agree with the known value within 4.5 standard errors (false alarm 7e-6 each) plus `model`.
+/// The mean must agree with the known value within 4.5 standard errors (false alarm 7e-6 each) plus
+/// `model`.
 void expect_mean(const RenderResult& r, double expected, double model = 1e-3) {
     const Summary s = summarize_image(r.image);
     EXPECT_NEAR(s.mean, expected, 4.5 * s.standard_error + model * expected);
@@ -26,7 +27,9 @@ void expect_mean(const RenderResult& r, double expected, double model = 1e-3) {
 }
 
 TEST(Analytic, UniformSkyShowsItsRadiance) {
-    expect_mean(render_text(kView + R"(LightSource "infinite" "rgb L" [ 0.3 0.3 0.3 ])", uniform(4)), 0.3, 1e-5);
+    expect_mean(
+        render_text(kView + R"(LightSource "infinite" "rgb L" [ 0.3 0.3 0.3 ])", uniform(4)), 0.3,
+        1e-5);
 }
 
 TEST(Analytic, ImagingScaleFollowsShutterAndIso) {
@@ -41,13 +44,17 @@ LightSource "infinite" "rgb L" [ 1 1 1 ])";
 TEST(Analytic, WhiteDiffuseSphereVanishesInAFurnace) {
     expect_mean(render_text(kView + R"(LightSource "infinite" "rgb L" [ 0.5 0.5 0.5 ]
 Material "diffuse" "rgb reflectance" [ 1 1 1 ]
-Shape "sphere")", uniform(64)), 0.5);
+Shape "sphere")",
+                            uniform(64)),
+                0.5);
 }
 
 TEST(Analytic, SmoothGlassSphereVanishesInAFurnace) {
     expect_mean(render_text(kView + R"(LightSource "infinite" "rgb L" [ 0.5 0.5 0.5 ]
 Material "dielectric" "float eta" 1.5
-Shape "sphere")", uniform(64)), 0.5);
+Shape "sphere")",
+                            uniform(64)),
+                0.5);
 }
 
 TEST(Analytic, ClosedSphereOfLightSumsAllBounces) {
@@ -71,8 +78,13 @@ TEST(Analytic, DistantLightOnAFacingPlane) {
     const std::string plane = R"(
 Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
 Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indices" [ 0 1 2 0 2 3 ])";
-    expect_mean(render_text(kView + R"(LightSource "distant" "rgb L" [ 2 2 2 ] "point3 from" [ 0 0 -1 ] "point3 to" [ 0 0 0 ])" + plane,
-                            uniform(4)), 1 / 3.14159265, 1e-4);
+    expect_mean(
+        render_text(
+            kView +
+                R"(LightSource "distant" "rgb L" [ 2 2 2 ] "point3 from" [ 0 0 -1 ] "point3 to" [ 0 0 0 ])" +
+                plane,
+            uniform(4)),
+        1 / 3.14159265, 1e-4);
 }
 
 TEST(Analytic, DefocusAndMotionKeepTheMeanOfAUniformPlane) {

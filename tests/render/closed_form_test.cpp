@@ -1,9 +1,10 @@
-// The thesis' closed form in real renders: a textured plane under a constant sky, out of focus or moving.
+// The thesis' closed form in real renders: a textured plane under a constant sky, out of focus or
+// moving.
 //
 //   (4 pi^2 spectrum)^-1 = (4 pi^2 Sigma_texture)^-1 + r^2/4 I + v v^T/12
 //
-// r the radius of the blur disc in pixels, v the motion in pixels per shutter. Sigma_texture, in pixels,
-// is what a pinhole sees at rest. No constant is fitted.
+// r the radius of the blur disc in pixels, v the motion in pixels per shutter. Sigma_texture, in
+// pixels, is what a pinhole sees at rest. No constant is fitted.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +21,8 @@ using Sym2 = covariance::Sym2<double>;
 constexpr int kSize = 64;
 constexpr double kDistance = 4, kFov = 40;
 
-/// A texture of random waves with frequencies about (fx, fy) cycles per texture: nearly the same spectrum everywhere.
+/// A texture of random waves with frequencies about (fx, fy) cycles per texture: nearly the same
+/// spectrum everywhere.
 std::filesystem::path write_waves() {
     const auto folder = std::filesystem::path(testing::TempDir());
     constexpr int n = 512;
@@ -33,13 +35,15 @@ std::filesystem::path write_waves() {
     std::vector<Wave> waves;
     for (int i = 0; i < 64; ++i) {
         const float angle = 2 * kPi * rng.next_float(), radius = 24 + 8 * rng.next_float();
-        waves.push_back({std::round(radius * std::cos(angle)), std::round(radius * std::sin(angle)), 2 * kPi * rng.next_float()});
+        waves.push_back({std::round(radius * std::cos(angle)), std::round(radius * std::sin(angle)),
+                         2 * kPi * rng.next_float()});
     }
     std::vector<float> values(size_t(n) * n);
     for (int y = 0; y < n; ++y)
         for (int x = 0; x < n; ++x) {
             float sum = 0;
-            for (const Wave& w : waves) sum += std::cos(2 * kPi * (w.kx * float(x) + w.ky * float(y)) / n + w.phase);
+            for (const Wave& w : waves)
+                sum += std::cos(2 * kPi * (w.kx * float(x) + w.ky * float(y)) / n + w.phase);
             values[size_t(y) * n + size_t(x)] = 0.5f + 0.02f * sum;
         }
     for (const char* name : {"R", "G", "B"}) image.add_channel(name).values = values;
@@ -71,13 +75,16 @@ AttributeEnd)",
 }
 
 Sym2 mean_of(const Image& image, const std::array<const char*, 3>& channels) {
-    return {middle_mean(image, channels[0]), middle_mean(image, channels[1]), middle_mean(image, channels[2])};
+    return {middle_mean(image, channels[0]), middle_mean(image, channels[1]),
+            middle_mean(image, channels[2])};
 }
 constexpr std::array<const char*, 3> kSpectrum{"spectrum.xx", "spectrum.xy", "spectrum.yy"};
 /// What a pinhole would see at one instant of the same light: the texture alone, in pixels.
 constexpr std::array<const char*, 3> kTexture{"cov.00", "cov.01", "cov.11"};
 
-double pixels_per_slope() { return kSize / (2 * std::tan(kFov * 3.14159265358979 / 360)); }
+double pixels_per_slope() {
+    return kSize / (2 * std::tan(kFov * 3.14159265358979 / 360));
+}
 
 Sym2 blurred(const Sym2& texture, const Sym2& blur) {
     const double four_pi_sq = covariance::four_pi_sq<double>;
@@ -91,8 +98,8 @@ void expect_near(const Sym2& measured, const Sym2& expected, double tolerance) {
 }
 
 /// The closed form in every pixel of the middle, with the texture that this pixel met on its paths
-/// (the plane is not quite perpendicular to rays off the axis: 3 %). That texture's mean is the pinhole's
-/// at rest but for how much the waves differ between the places that are seen (20 %).
+/// (the plane is not quite perpendicular to rays off the axis: 3 %). That texture's mean is the
+/// pinhole's at rest but for how much the waves differ between the places that are seen (20 %).
 void expect_closed_form(const Image& image, const Image& at_rest, const Sym2& blur) {
     expect_near(mean_of(image, kTexture), mean_of(at_rest, kSpectrum), 0.2);
     const auto at = [&image](const std::array<const char*, 3>& channels, size_t i) {
@@ -131,7 +138,8 @@ TEST(ClosedForm, DefocusedTexture) {
         const Sym2 disc = Sym2::diagonal(r * r / 4, r * r / 4);
         expect_closed_form(image, plane_at_rest(), disc);
         // The blur is the same in all directions, so that the means obey the closed form too.
-        expect_near(mean_of(image, kSpectrum), blurred(mean_of(plane_at_rest(), kSpectrum), disc), 0.05);
+        expect_near(mean_of(image, kSpectrum), blurred(mean_of(plane_at_rest(), kSpectrum), disc),
+                    0.05);
     }
 }
 
@@ -148,7 +156,8 @@ TEST(ClosedForm, MovingTexture) {
 TEST(ClosedForm, DefocusAndMotionTogether) {
     const double r = 0.1 * std::abs(1 / kDistance - 1 / 2.8) * pixels_per_slope();
     const double v = 0.4 * pixels_per_slope() / kDistance;
-    expect_closed_form(render_plane(0.1, 2.8, 0.4, 0), plane_at_rest(), {r * r / 4 + v * v / 12, 0, r * r / 4});
+    expect_closed_form(render_plane(0.1, 2.8, 0.4, 0), plane_at_rest(),
+                       {r * r / 4 + v * v / 12, 0, r * r / 4});
 }
 
 }  // namespace

@@ -43,7 +43,8 @@ AttributeEnd
 bool same_bits(const Image& a, const Image& b) {
     if (a.channels.size() != b.channels.size()) return false;
     for (size_t c = 0; c < a.channels.size(); ++c)
-        if (std::memcmp(a.channels[c].values.data(), b.channels[c].values.data(), a.channels[c].values.size() * 4) != 0)
+        if (std::memcmp(a.channels[c].values.data(), b.channels[c].values.data(),
+                        a.channels[c].values.size() * 4) != 0)
             return false;
     return true;
 }
@@ -65,13 +66,15 @@ TEST_P(Determinism, ThreadsDoNotMatter) {
     EXPECT_FALSE(same_bits(one, with_threads(1)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Determinism, testing::Values(Method::uniform, Method::covariance));
+INSTANTIATE_TEST_SUITE_P(Methods, Determinism,
+                         testing::Values(Method::uniform, Method::covariance));
 
 TEST(Budget, TheAverageIsExact) {
     for (double spp : {0.5, 3.0, 6.25, 16.0}) {
         const RenderResult r = render_text(kScene, covariance_method(spp));
         EXPECT_NEAR(r.statistics.samples_per_pixel, spp, 1e-3);
-        EXPECT_EQ(r.statistics.covariance.samples + r.statistics.radiance.samples, uint64_t(std::llround(spp * 3500)));
+        EXPECT_EQ(r.statistics.covariance.samples + r.statistics.radiance.samples,
+                  uint64_t(std::llround(spp * 3500)));
     }
     EXPECT_EQ(render_text(kScene, uniform(5)).statistics.radiance.samples, 5u * 3500u);
 }
@@ -90,12 +93,14 @@ TEST(Crop, IsTheSamePixelsOfTheFullFrame) {
     apply(overrides, description);
     RenderScene scene(std::move(description));
     Monitor monitor;
-    const Image part = render(scene, uniform(3), monitor).image, full = render_text(kScene, uniform(3)).image;
+    const Image part = render(scene, uniform(3), monitor).image,
+                full = render_text(kScene, uniform(3)).image;
     EXPECT_EQ(part.data, (PixelBounds{20, 10, 50, 30}));
     EXPECT_EQ(part.display, full.display);
     for (int y = 10; y < 30; ++y)
         for (int x = 20; x < 50; ++x)
-            ASSERT_EQ(part.rgb(size_t(y - 10) * 30 + size_t(x - 20)), full.rgb(size_t(y) * 70 + size_t(x)));
+            ASSERT_EQ(part.rgb(size_t(y - 10) * 30 + size_t(x - 20)),
+                      full.rgb(size_t(y) * 70 + size_t(x)));
 }
 
 }  // namespace

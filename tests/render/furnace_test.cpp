@@ -14,7 +14,9 @@ struct Furnace {
     float corner;  ///< of the four corners, an eighth of each side
 };
 
-void PrintTo(const Furnace& f, std::ostream* out) { *out << f.name; }
+void PrintTo(const Furnace& f, std::ostream* out) {
+    *out << f.name;
+}
 
 class FurnaceFile : public testing::TestWithParam<Furnace> {};
 
@@ -28,13 +30,15 @@ void expect_block(const Image& image, int x0, int y0, int size, float expected) 
             variance += image.rgb(i, "variance.").g;
         }
     const double n = size * size;
-    EXPECT_NEAR(mean / n, expected, 5 * std::sqrt(variance) / n + 2e-3) << "block at " << x0 << ", " << y0;
+    EXPECT_NEAR(mean / n, expected, 5 * std::sqrt(variance) / n + 2e-3)
+        << "block at " << x0 << ", " << y0;
 }
 
 TEST_P(FurnaceFile, ShowsItsValue) {
     const Furnace& f = GetParam();
     for (Method method : {Method::uniform, Method::covariance}) {
-        RenderScene scene(read_pbrt(std::filesystem::path(COVTRACE_SCENES_FOLDER) / "tests" / (std::string(f.name) + ".pbrt")));
+        RenderScene scene(read_pbrt(std::filesystem::path(COVTRACE_SCENES_FOLDER) / "tests" /
+                                    (std::string(f.name) + ".pbrt")));
         RenderOptions options = uniform(64, 7);
         options.method = method;
         Monitor monitor;
@@ -48,12 +52,15 @@ TEST_P(FurnaceFile, ShowsItsValue) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, FurnaceFile,
-                         testing::Values(Furnace{"furnace-diffuse", 0.5f, 1}, Furnace{"furnace-glass", 1, 1},
-                                         Furnace{"furnace-mirror", 1, 1}, Furnace{"furnace-transmission", 7 / 12.0f, 1},
+                         testing::Values(Furnace{"furnace-diffuse", 0.5f, 1},
+                                         Furnace{"furnace-glass", 1, 1},
+                                         Furnace{"furnace-mirror", 1, 1},
+                                         Furnace{"furnace-transmission", 7 / 12.0f, 1},
                                          Furnace{"furnace-closed", 1, 1}));
 
 TEST(FurnaceFile, LensAndMotionKeepTheWeights) {
-    RenderScene scene(read_pbrt(std::filesystem::path(COVTRACE_SCENES_FOLDER) / "tests/furnace-lens-motion.pbrt"));
+    RenderScene scene(read_pbrt(std::filesystem::path(COVTRACE_SCENES_FOLDER) /
+                                "tests/furnace-lens-motion.pbrt"));
     Monitor monitor;
     const Image image = render(scene, uniform(64), monitor).image;
     expect_block(image, 26, 26, 12, 0.5f);

@@ -13,16 +13,20 @@ using namespace test;
 
 constexpr int kSize = 32;
 constexpr double kFov = 20;
-double pixels_per_slope() { return kSize / (2 * std::tan(kFov * 3.14159265358979 / 360)); }
+double pixels_per_slope() {
+    return kSize / (2 * std::tan(kFov * 3.14159265358979 / 360));
+}
 
 /// `depth`: enough for the way from the sky to the camera that the test is about, and little else.
 std::string film(int depth) {
     return fmt::format(R"(
 Integrator "path" "integer maxdepth" {}
 Film "rgb" "integer xresolution" 32 "integer yresolution" 32
-)", depth);
+)",
+                       depth);
 }
-/// Checks so large that the middle of one fills the view: a constant spectrum 1/(4 pi^2 (e/2)^2) there, e = 50.
+/// Checks so large that the middle of one fills the view: a constant spectrum 1/(4 pi^2 (e/2)^2)
+/// there, e = 50.
 const char* kChecks = R"(
 Texture "checks" "spectrum" "checkerboard" "float uscale" 0.01 "float vscale" 0.01 "float udelta" 0.5 "float vdelta" 0.5
     "rgb tex1" [ 0.9 0.9 0.9 ] "rgb tex2" [ 0.1 0.1 0.1 ]
@@ -49,12 +53,14 @@ Camera "perspective" "float fov" {}
 WorldBegin
 LightSource "infinite"
 {}Material "diffuse" "texture reflectance" "checks"
-{})", kFov, kChecks, kPlane);
+{})",
+                                                   kFov, kChecks, kPlane);
     EXPECT_NEAR(spectrum_xx(text) / texture_variance(4), 1, 0.05);
 }
 
 TEST(Replay, PlaneInAFlatMirrorIsAsFarAsItsImage) {
-    // From (0, 0, -3) towards a mirror at the origin, tilted by 45 degrees; the plane stands 5 units to the side.
+    // From (0, 0, -3) towards a mirror at the origin, tilted by 45 degrees; the plane stands 5
+    // units to the side.
     const std::string text = film(2) + fmt::format(R"(LookAt 0 0 -3  0 0 0  0 1 0
 Camera "perspective" "float fov" {}
 WorldBegin
@@ -66,7 +72,8 @@ AttributeEnd
 Material "diffuse" "texture reflectance" "checks"
 Translate 5 0 0
 Rotate 90 0 1 0
-{})", kFov, kChecks, kPlane);
+{})",
+                                                   kFov, kChecks, kPlane);
     EXPECT_NEAR(spectrum_xx(text) / texture_variance(8), 1, 0.05);
 }
 
@@ -82,15 +89,18 @@ Shape "trianglemesh" "point3 P" [ -9 -9 -5  9 -9 -5  9 9 -5  -9 9 -5 ] "integer 
 Shape "trianglemesh" "point3 P" [ -9 -9 -2  9 -9 -2  9 9 -2  -9 9 -2 ] "integer indices" [ 0 1 2 0 2 3 ]
 AttributeEnd
 Material "diffuse" "texture reflectance" "checks"
-{})", kFov, kChecks, kPlane);
-    // The slab also shows the sky, without any detail: 2 r / (1 + r) of it, r = 0.04, beside the plane's 0.9 through the rest.
+{})",
+                                                   kFov, kChecks, kPlane);
+    // The slab also shows the sky, without any detail: 2 r / (1 + r) of it, r = 0.04, beside the
+    // plane's 0.9 through the rest.
     const double sky = 2 * 0.04 / 1.04, plane = 0.9 * (1 - 0.04) * (1 - 0.04);
     const double share = plane / (plane + sky);
     EXPECT_NEAR(spectrum_xx(text) / (share * texture_variance(8 - 3 * (1 - 1 / 1.5))), 1, 0.03);
 }
 
 TEST(Replay, ConvexMirrorSharpensAndConcaveBlursByItsCurvature) {
-    // A convex mirror shrinks what it shows: more cycles per pixel than the flat one at the same place.
+    // A convex mirror shrinks what it shows: more cycles per pixel than the flat one at the same
+    // place.
     const auto scene = [](const char* mirror) {
         return film(2) + fmt::format(R"(LookAt 0 0 -4  0 0 0  0 1 0
 Camera "perspective" "float fov" 5
@@ -102,13 +112,15 @@ Material "conductor" "rgb reflectance" [ 0.99 0.99 0.99 ]
 AttributeEnd
 Material "diffuse" "texture reflectance" "checks"
 Translate 0 0 -6
-{})", kChecks, mirror, kPlane);
+{})",
+                                     kChecks, mirror, kPlane);
     };
     const double flat = spectrum_xx(scene(R"(Shape "disk" "float radius" 3)"));
     const double convex = spectrum_xx(scene(R"(Translate 0 0 10
 Shape "sphere" "float radius" 10)"));
-    // Mirror equation: 1/s' = 2/R - 1/s with R = -10 (convex), s = 6: the image 2.73 behind the mirror, magnified by
-    // 2.73/6; seen from 4 the plane's coordinates move (4 + 2.73)/(2.73/6) per slope, against 10 for the flat one.
+    // Mirror equation: 1/s' = 2/R - 1/s with R = -10 (convex), s = 6: the image 2.73 behind the
+    // mirror, magnified by 2.73/6; seen from 4 the plane's coordinates move (4 + 2.73)/(2.73/6) per
+    // slope, against 10 for the flat one.
     const double ratio = (4 + 30.0 / 11) / (5.0 / 11) / 10;
     EXPECT_NEAR(convex / flat, ratio * ratio, 0.05 * ratio * ratio);
 }

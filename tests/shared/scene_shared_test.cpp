@@ -14,8 +14,7 @@ TEST(SceneShared, RealScenesReadWithoutWarnings) {
     for (const Case& c : {Case{"cornell-box", 8, 1024, 65}, Case{"living-room", 65, 1280, 65},
                           Case{"material-testball", 4, 1280, 65}, Case{"staircase2", 32, 1024, 65},
                           Case{"veach-mis", 9, 1280, 3}}) {
-        const auto scene =
-            read_pbrt(shared_folder() / "scenes" / c.name / "scene.pbrt");
+        const auto scene = read_pbrt(shared_folder() / "scenes" / c.name / "scene.pbrt");
         EXPECT_EQ(warnings_of(scene), "") << c.name;
         EXPECT_EQ(scene.shapes.size(), c.shapes) << c.name;
         EXPECT_EQ(scene.film.width, c.width) << c.name;

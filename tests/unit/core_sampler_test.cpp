@@ -11,13 +11,15 @@
 namespace covtrace {
 namespace {
 
-/// Every elementary interval of area 1/n holds exactly one of n = 2^k points of a (0,2)-sequence in base 2.
+/// Every elementary interval of area 1/n holds exactly one of n = 2^k points of a (0,2)-sequence in
+/// base 2.
 void expect_elementary_intervals(const std::vector<Vec2>& points) {
     const int n = static_cast<int>(points.size());
     for (int columns = 1; columns <= n; columns *= 2) {
         const int rows = n / columns;
         std::set<int> cells;
-        for (const Vec2& p : points) cells.insert(int(p.x * float(columns)) * rows + int(p.y * float(rows)));
+        for (const Vec2& p : points)
+            cells.insert(int(p.x * float(columns)) * rows + int(p.y * float(rows)));
         EXPECT_EQ(int(cells.size()), n) << columns << " columns";
     }
 }
@@ -52,7 +54,8 @@ TEST(Sampler, CameraDimensionsAreStratified) {
 }
 
 TEST(Sampler, IntegratesSmoothFunctionsFasterThanRandom) {
-    // Mean squared error of the mean of x y over 64 points: random sampling has var(x y)/64 = 7.6e-4.
+    // Mean squared error of the mean of x y over 64 points: random sampling has var(x y)/64
+    // = 7.6e-4.
     double squares = 0;
     constexpr int kRuns = 200;
     for (int run = 0; run < kRuns; ++run) {

@@ -23,7 +23,8 @@ Vec3 random_vector() {
 
 Transform random_rigid() {
     const Vec3 axis = random_vector() + Vec3{0.001f, 0, 0};
-    return Transform::translate(random_vector()) * Transform::rotate(*rc::gen::inRange(-170, 171), axis);
+    return Transform::translate(random_vector()) *
+           Transform::rotate(*rc::gen::inRange(-170, 171), axis);
 }
 
 RC_GTEST_PROP(Transform, InverseUndoes, ()) {
@@ -49,16 +50,17 @@ TEST(Transform, SingularMatricesAreRefused) {
 
 TEST(Transform, LookAtIsLeftHandedWithZForward) {
     const Transform t = *Transform::look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0});
-    expect_near(t.point({0, 0, 0}), {0, 0, 5}, 1e-6f);    // in front, on +z
-    expect_near(t.point({0, 1, 5}), {0, 1, 0}, 1e-6f);    // up stays up
-    expect_near(t.point({-1, 0, 5}), {1, 0, 0}, 1e-6f);   // seen from +z, world -x is on the right
+    expect_near(t.point({0, 0, 0}), {0, 0, 5}, 1e-6f);   // in front, on +z
+    expect_near(t.point({0, 1, 5}), {0, 1, 0}, 1e-6f);   // up stays up
+    expect_near(t.point({-1, 0, 5}), {1, 0, 0}, 1e-6f);  // seen from +z, world -x is on the right
 }
 
 TEST(AnimatedTransform, HalfTurnTracesACircle) {
     const AnimatedTransform motion(Transform(), 0, Transform::rotate(179, {0, 0, 1}), 1);
     for (float t = 0; t <= 1; t += 0.125f) {
         const double angle = 179 * t * 3.14159265358979 / 180;
-        expect_near(motion.at(t).point({2, 0, 0}), {float(2 * std::cos(angle)), float(2 * std::sin(angle)), 0}, 1e-5f);
+        expect_near(motion.at(t).point({2, 0, 0}),
+                    {float(2 * std::cos(angle)), float(2 * std::sin(angle)), 0}, 1e-5f);
     }
 }
 

@@ -1,4 +1,5 @@
-// Camera rays: field of view, focus, shutter, and the sensor's linear map against finite differences.
+// Camera rays: field of view, focus, shutter, and the sensor's linear map against finite
+// differences.
 #include "integrator/camera.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,8 @@ namespace {
 
 CameraDescription description(float lens_radius) {
     CameraDescription d;
-    d.camera_to_world = AnimatedTransform(Transform::look_at({1, 2, 3}, {4, 1, -6}, {0, 1, 0})->inverse());
+    d.camera_to_world =
+        AnimatedTransform(Transform::look_at({1, 2, 3}, {4, 1, -6}, {0, 1, 0})->inverse());
     d.fov = 50;
     d.lens_radius = lens_radius;
     d.focal_distance = 4;
@@ -32,7 +34,8 @@ TEST(Camera, FieldOfViewSpansTheShorterAxis) {
 
 TEST(Camera, LensRaysMeetInThePlaneOfFocus) {
     const Camera camera(description(0.3f), 320, 180);
-    const Ray a = camera.generate_ray({37, 120}, {0.1f, 0.9f}, 0), b = camera.generate_ray({37, 120}, {0.8f, 0.3f}, 0);
+    const Ray a = camera.generate_ray({37, 120}, {0.1f, 0.9f}, 0),
+              b = camera.generate_ray({37, 120}, {0.8f, 0.3f}, 0);
     EXPECT_GT(distance(a.origin, b.origin), 0.05f);
     const SensorGeometry g = camera.sensor(a);
     const auto focus = [&](const Ray& r) {
@@ -53,12 +56,14 @@ TEST(Camera, ShutterMapsToTime) {
     EXPECT_FLOAT_EQ(camera.sensor(camera.generate_ray({5, 5}, {}, 0)).shutter, 0.4f);
 }
 
-/// The camera ray in terms of the sensor geometry: origin + R (l1 right + l2 down), slope p - R l / z_f.
+/// The camera ray in terms of the sensor geometry: origin + R (l1 right + l2 down), slope p - R l /
+/// z_f.
 TEST(Camera, SensorGeometryPredictsNeighbouringRays) {
     for (bool mirrored : {false, true}) {
         CameraDescription d = description(0.2f);
         if (mirrored) {
-            const Transform flip = Transform::scale(-1, 1, 1) * *Transform::look_at({1, 2, 3}, {4, 1, -6}, {0, 1, 0});
+            const Transform flip =
+                Transform::scale(-1, 1, 1) * *Transform::look_at({1, 2, 3}, {4, 1, -6}, {0, 1, 0});
             d.camera_to_world = AnimatedTransform(flip.inverse());
         }
         const Camera camera(d, 320, 180);
@@ -89,7 +94,8 @@ TEST(Camera, WorldToNdcAgreesWithRays) {
 
 TEST(Camera, MovingCameraHasItsVelocity) {
     CameraDescription d;
-    d.camera_to_world = AnimatedTransform(Transform(), 0, Transform::translate({2, 0, 0}) * Transform::rotate(30, {0, 1, 0}), 1);
+    d.camera_to_world = AnimatedTransform(
+        Transform(), 0, Transform::translate({2, 0, 0}) * Transform::rotate(30, {0, 1, 0}), 1);
     const Camera camera(d, 10, 10);
     const SensorGeometry g = camera.sensor(camera.generate_ray({5, 5}, {}, 0.5f));
     EXPECT_NEAR(g.velocity.x, 2, 1e-2f);

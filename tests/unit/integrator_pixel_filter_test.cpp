@@ -58,8 +58,9 @@ TEST(PixelFilter, MitchellGoesNegativeOutside) {
 }
 
 TEST(PixelFilter, OffsetsStayInsideTheRadius) {
-    for (auto kind : {FilterDescription::Kind::box, FilterDescription::Kind::triangle, FilterDescription::Kind::gaussian,
-                      FilterDescription::Kind::mitchell, FilterDescription::Kind::lanczos_sinc}) {
+    for (auto kind : {FilterDescription::Kind::box, FilterDescription::Kind::triangle,
+                      FilterDescription::Kind::gaussian, FilterDescription::Kind::mitchell,
+                      FilterDescription::Kind::lanczos_sinc}) {
         const PixelFilter f({.kind = kind, .x_radius = 1.5f, .y_radius = 1.5f});
         for (float u : {0.0f, 0.3f, 0x1.fffffep-1f}) {
             EXPECT_LE(std::abs(f.sample({u, u}).offset.x), 1.5f);

@@ -9,7 +9,9 @@
 namespace covtrace {
 namespace {
 
-int64_t total(const std::vector<uint32_t>& counts) { return std::accumulate(counts.begin(), counts.end(), int64_t{0}); }
+int64_t total(const std::vector<uint32_t>& counts) {
+    return std::accumulate(counts.begin(), counts.end(), int64_t{0});
+}
 
 RC_GTEST_PROP(Allocate, MeetsTheBudgetExactly, ()) {
     const auto n = *rc::gen::inRange<size_t>(1, 400);
@@ -48,11 +50,16 @@ TEST(Allocate, SpreadsLessThanOneSamplePerPixel) {
     EXPECT_EQ(total(counts), 250);
     for (uint32_t c : counts) EXPECT_LE(c, 1u);
     for (size_t start = 0; start < 1000; start += 100)
-        EXPECT_EQ(std::accumulate(counts.begin() + long(start), counts.begin() + long(start) + 100, 0u), 25u);
+        EXPECT_EQ(
+            std::accumulate(counts.begin() + long(start), counts.begin() + long(start) + 100, 0u),
+            25u);
 }
 
 TEST(RelativeDensity, HasMeanOneAndAnEvenShare) {
-    Prediction p{2, 2, {{1e-4f, 0, 1e-4f}, {0.1f, 0, 0.1f}, {0, 0, 0}, {0.02f, 0.01f, 0.03f}}, {1, 1, 50, 2}};
+    Prediction p{2,
+                 2,
+                 {{1e-4f, 0, 1e-4f}, {0.1f, 0, 0.1f}, {0, 0, 0}, {0.02f, 0.01f, 0.03f}},
+                 {1, 1, 50, 2}};
     for (DensityRule rule : {DensityRule::tempered, DensityRule::thesis}) {
         const auto g = relative_density(p, rule, 2, {0.4f, 15});
         EXPECT_NEAR(std::accumulate(g.begin(), g.end(), 0.0f) / 4, 1, 1e-5f);

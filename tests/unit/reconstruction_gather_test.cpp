@@ -1,4 +1,5 @@
-// The gather: constants stay, means are kept, ellipses have the asked-for covariance, holes are filled.
+// The gather: constants stay, means are kept, ellipses have the asked-for covariance, holes are
+// filled.
 #include "reconstruction/gather.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,8 @@ FilterField uniform_field(int w, int h, Sym2<float> s) {
     return {w, h, std::vector<Sym2<float>>(size_t(w) * size_t(h), s)};
 }
 
-GatheredImage run(const std::vector<Rgb>& mean, const FilterField& field, std::vector<uint32_t> count = {}) {
+GatheredImage run(const std::vector<Rgb>& mean, const FilterField& field,
+                  std::vector<uint32_t> count = {}) {
     if (count.empty()) count.assign(mean.size(), 1);
     const std::vector<float> variance(mean.size(), 1.0f);
     return gather(mean, variance, count, field);
@@ -41,15 +43,18 @@ Sym2<double> response_moments(Sym2<float> s, int size) {
 
 TEST(Gather, ConstantImagesStayConstant) {
     for (float s : {0.2f, 1.0f, 30.0f, 225.0f}) {
-        const auto image = run(std::vector<Rgb>(57 * 43, Rgb(0.7f)), uniform_field(57, 43, {s, 0.3f * s, s})).color;
+        const auto image =
+            run(std::vector<Rgb>(57 * 43, Rgb(0.7f)), uniform_field(57, 43, {s, 0.3f * s, s}))
+                .color;
         for (const Rgb& c : image) ASSERT_NEAR(c.g, 0.7f, 1e-5f);
     }
 }
 
 TEST(Gather, EllipsesHaveTheirCovariance) {
-    // The cut at three deviations takes 2.7 % (2-D: chi-square with 9) off the variance; the pyramid adds a little.
-    for (const Sym2<float>& s : {Sym2<float>{4, 0, 4}, Sym2<float>{9, 5, 6}, Sym2<float>{1, 0, 60}, Sym2<float>{100, 0, 100},
-                                 Sym2<float>{150, 60, 80}}) {
+    // The cut at three deviations takes 2.7 % (2-D: chi-square with 9) off the variance; the
+    // pyramid adds a little.
+    for (const Sym2<float>& s : {Sym2<float>{4, 0, 4}, Sym2<float>{9, 5, 6}, Sym2<float>{1, 0, 60},
+                                 Sym2<float>{100, 0, 100}, Sym2<float>{150, 60, 80}}) {
         const auto m = response_moments(s, 141);
         EXPECT_NEAR(m.xx / s.xx, 1, 0.08) << s.xx;
         EXPECT_NEAR(m.yy / s.yy, 1, 0.08) << s.yy;
@@ -64,7 +69,8 @@ TEST(Gather, PixelsWithoutSamplesTakeNoPart) {
         mean[i] = Rgb(100);
         count[i] = 0;
     }
-    for (const Rgb& c : run(mean, uniform_field(25, 25, {0.16f, 0, 0.16f}), count).color) EXPECT_NEAR(c.r, 1, 1e-5f);
+    for (const Rgb& c : run(mean, uniform_field(25, 25, {0.16f, 0, 0.16f}), count).color)
+        EXPECT_NEAR(c.r, 1, 1e-5f);
 }
 
 TEST(Gather, AnEmptyNeighbourhoodIsFilledFromFarther) {
@@ -72,7 +78,8 @@ TEST(Gather, AnEmptyNeighbourhoodIsFilledFromFarther) {
     std::vector<uint32_t> count(mean.size(), 0);
     mean[0] = Rgb(3);
     count[0] = 1;
-    EXPECT_NEAR(run(mean, uniform_field(40, 40, {0.16f, 0, 0.16f}), count).color.back().r, 3, 1e-4f);
+    EXPECT_NEAR(run(mean, uniform_field(40, 40, {0.16f, 0, 0.16f}), count).color.back().r, 3,
+                1e-4f);
 }
 
 TEST(Gather, NonFiniteMeansAreLeftOut) {
@@ -102,7 +109,8 @@ TEST(FilterField, NeighboursLimitTheWidth) {
     limit_by_neighbours(f, settings);
     for (int x = 0; x < 21; ++x) {
         const float size = covariance::filter_size(f.covariance[size_t(x)]);
-        EXPECT_NEAR(size, std::min(std::sqrt(std::sqrt(2500.0f)), 0.5f + 0.1f * float(x)), 2e-2f) << x;
+        EXPECT_NEAR(size, std::min(std::sqrt(std::sqrt(2500.0f)), 0.5f + 0.1f * float(x)), 2e-2f)
+            << x;
     }
     // The shape stays: the long axis is still twice the short one where no clamp acts.
     EXPECT_NEAR(f.covariance[20].xx / f.covariance[20].yy, 4, 1e-3f);
