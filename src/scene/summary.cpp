@@ -1,5 +1,6 @@
 #include "scene/summary.h"
 
+#include <iomanip>
 #include <sstream>
 
 namespace covtrace {
@@ -52,6 +53,8 @@ std::string summarize(const SceneDescription& scene) {
     out << "materials  " << scene.materials.size() << ", " << scene.textures.size() << " textures, "
         << scene.media.size() << " media\n"
         << "lights     " << scene.lights.size() << " and " << top.emitters << " emitting shapes\n";
+    out << "hash       " << std::hex << std::setw(16) << std::setfill('0') << scene.content_hash
+        << std::dec << "\n";
     for (const Warning& w : scene.warnings)
         out << "warning    " << w.where.to_string() << ": " << w.text << "\n";
     return out.str();

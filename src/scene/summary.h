@@ -7,8 +7,8 @@
 
 namespace covtrace {
 
-/// Camera, film, counts of shapes, triangles, materials, textures and lights, and all warnings.
-/// Several lines.
+/// Camera, film, counts of shapes, triangles, materials, textures and lights, the content's hash,
+/// and all warnings. Several lines.
 std::string summarize(const SceneDescription& scene);
 
 }  // namespace covtrace
