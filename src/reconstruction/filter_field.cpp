@@ -11,7 +11,7 @@ FilterSettings filter_settings(double samples_per_pixel) {
     const double n = std::max(samples_per_pixel, 1.0 / 64);
     FilterSettings s;
     s.c = float(covariance::filter_sharpness(n));
-    s.limits.s_min = 0.4f * 2 / s.c;
+    s.limits.s_min = 0.5f * 2 / s.c;
     s.slope = std::clamp(0.1f * float(std::sqrt(16 / n)), 0.05f, 0.1f);
     return s;
 }

@@ -15,7 +15,7 @@ enum class FilterRule { verified, thesis };
 
 struct FilterSettings {
     float c = 2;  ///< widening of the filter's spectrum beside the signal's
-    covariance::FilterLimits<float> limits{0.4f, 15};  ///< of the standard deviations, pixels
+    covariance::FilterLimits<float> limits{0.5f, 15};  ///< of the standard deviations, pixels
     float slope = 0.1f;  ///< how fast a filter may widen away from a narrower one, pixels per pixel
 };
 /// The settings for an average of `samples_per_pixel` samples: c and 1/s_min grow as n^(1/6), so

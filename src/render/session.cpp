@@ -127,7 +127,10 @@ class Session {
     }
 
     void trace_covariance() {
-        scene_.prepare_spectra();
+        {
+            const PhaseTimer timer(monitor_, phase("spectra"));
+            scene_.prepare_spectra();
+        }
         const double spp = target_spp_.value_or(16);
         const double wanted =
             options_.cov_spp ? *options_.cov_spp : std::clamp(std::floor(spp / 4), 2.0, 4.0);

@@ -72,8 +72,10 @@ float Environment::irradiance() const {
 
 void Environment::prepare_spectrum() {
     if (!map_ || spectrum_) return;
-    const int full =
-        map_->layout() == EnvironmentMap::Layout::lat_long ? map_->width() : 2 * map_->width();
+    // A square map is analysed as a lat-long map with as many texels.
+    const int full = map_->layout() == EnvironmentMap::Layout::lat_long
+                         ? map_->width()
+                         : int(std::ceil(std::sqrt(2.0f) * float(map_->width())));
     const int width = std::min(full, kWidestSpectrum), height = std::max(1, width / 2);
     const int taps = std::clamp((full + width - 1) / width, 1, kMostTapsPerAxis);
     std::vector<float> values(static_cast<size_t>(width) * static_cast<size_t>(height));

@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <exception>
+#include <functional>
 #include <map>
 #include <tuple>
 
@@ -212,6 +213,8 @@ bool TextureStore::is_constant(TextureId id) const {
 void TextureStore::prepare_spectra() {
     if (impl_->is_prepared) return;
     TextureGraph& graph = impl_->graph;
+    // One job per distinct image, in parallel: most images are too small to fill the cores alone.
+    std::vector<std::function<ImageSpectrum()>> jobs;
     // The analysis is relative: a scale matters only where it is followed by an inversion.
     std::map<std::tuple<int, bool, bool, float>, int> ids;
     for (TextureNode& node : graph.nodes) {
@@ -219,8 +222,9 @@ void TextureStore::prepare_spectra() {
         if (!n) continue;
         const auto [entry, is_new] =
             ids.try_emplace({n->image, n->is_spectrum, n->invert, n->invert ? n->scale : 1.0f},
-                            int(graph.spectra.size()));
-        if (is_new) graph.spectra.push_back(analyse(graph.images[size_t(n->image)], *n));
+                            int(jobs.size()));
+        if (is_new)
+            jobs.push_back([&graph, n] { return analyse(graph.images[size_t(n->image)], *n); });
         n->spectrum = entry->second;
     }
     for (TextureNode& node : graph.nodes) {
@@ -228,9 +232,12 @@ void TextureStore::prepare_spectra() {
         if (!mix) continue;
         const auto* amount = std::get_if<ImageNode>(&graph.nodes[size_t(mix->amount)]);
         if (!amount) continue;
-        mix->mixture_spectrum = int(graph.spectra.size());
-        graph.spectra.push_back(analyse_mixture(graph, *mix, *amount));
+        mix->mixture_spectrum = int(jobs.size());
+        jobs.push_back([&graph, mix, amount] { return analyse_mixture(graph, *mix, *amount); });
     }
+    graph.spectra.resize(jobs.size());
+    parallel_for(int64_t(jobs.size()),
+                 [&](int64_t i) { graph.spectra[size_t(i)] = jobs[size_t(i)](); });
     impl_->is_prepared = true;
 }
 
