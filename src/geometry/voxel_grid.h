@@ -1,5 +1,5 @@
 /// The scene's surfaces in coarse voxels: who may occlude a bundle of rays that passes by. For the
-/// occlusion term of the frequency analysis alone (covariance/SPEC.md, section 2.3); radiance never
+/// occlusion term of the frequency analysis alone; radiance never
 /// depends on it. Only bricks of 8^3 voxels near a surface are stored, and in them only what is
 /// occupied.
 #pragma once
