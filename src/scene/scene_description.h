@@ -42,7 +42,7 @@ struct ImageTexture {
     enum class Wrap { repeat, black, clamp, octahedral_sphere };
     enum class Filter { point, bilinear, trilinear, ewa };
     std::filesystem::path file;
-    /// Empty: sRGB for 8-bit files, linear for the others.
+    /// Empty: sRGB for integer files; float files are always linear.
     std::optional<Encoding> encoding;
     float gamma = 1;
     Wrap wrap = Wrap::repeat;
@@ -88,7 +88,7 @@ struct DielectricMaterial {
     TextureId u_roughness = -1, v_roughness = -1;
     bool remap_roughness = true;
 };
-/// A diffuse base under a dielectric coat with an absorbing-free gap of the given thickness.
+/// A diffuse base under a dielectric coat, a thin gap between them.
 struct CoatedDiffuseMaterial {
     TextureId reflectance = -1;
     TextureId u_roughness = -1, v_roughness = -1;
