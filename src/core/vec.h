@@ -191,6 +191,10 @@ struct Bounds3 {
         hi = max(hi, b.hi);
     }
     constexpr bool empty() const { return lo.x > hi.x || lo.y > hi.y || lo.z > hi.z; }
+    constexpr bool contains(Vec3 p) const {
+        return p.x >= lo.x && p.y >= lo.y && p.z >= lo.z && p.x <= hi.x && p.y <= hi.y &&
+               p.z <= hi.z;
+    }
     constexpr Vec3 center() const { return (lo + hi) * 0.5f; }
     constexpr Vec3 diagonal() const { return hi - lo; }
     float radius() const { return empty() ? 0.0f : 0.5f * length(diagonal()); }

@@ -77,6 +77,9 @@ class PathTracer {
             // Lights are chosen for the side that can be lit: the viewer's, or both where light
             // passes through.
             light_normal_ = transmits(bsdf) ? Vec3{} : face_forward(hit.ns, wo);
+            guide_ = has_diffuse_lobe(bsdf) && depth < max_depth_
+                         ? scene_.guide.at(hit.position, light_normal_)
+                         : GuideMixture{};
             if (!is_specular(bsdf))
                 add_direct(hit, shape, bsdf, frame, wo_local, u_choice.x, u_light, vertex);
             if (!scatter(hit, shape, bsdf, frame, wo_local, u_choice.y, u_bsdf, vertex)) break;
@@ -164,7 +167,9 @@ class PathTracer {
         if (scene_.geometry.occluded(shadow)) return;
         const MediumId medium = medium_beyond(shape, hit, light->wi, medium_);
         const float weight =
-            light->is_delta ? 1.0f : power_heuristic(light->pdf, pdf(bsdf, wo_local, wi_local));
+            light->is_delta
+                ? 1.0f
+                : power_heuristic(light->pdf, direction_pdf(bsdf, wo_local, wi_local, light->wi));
         const Rgb contribution = beta_ * f * light->radiance *
                                  transmittance(scene_, medium, light->distance) *
                                  (weight / light->pdf);
@@ -175,16 +180,55 @@ class PathTracer {
         vertex->direct_event = {light->wi, lobe_shares(bsdf, wo_local, wi_local)};
     }
 
+    /// Density of sample_direction to return a direction by other than specular lobes.
+    float direction_pdf(const Bsdf& bsdf, Vec3 wo_local, Vec3 wi_local, Vec3 wi) const {
+        const float own = pdf(bsdf, wo_local, wi_local), share = guide_.share();
+        return share > 0 ? (1 - share) * own + share * guide_.pdf(wi) : own;
+    }
+
+    /// A direction by the BSDF or, for a share of the samples, by the guide. The weight counts
+    /// both, whichever chose.
+    std::optional<BsdfSample> sample_direction(const Bsdf& bsdf, const Frame& frame, Vec3 wo_local,
+                                               float u_lobe, Vec2 u) {
+        const float share = guide_.share();
+        if (!(share > 0)) return sample(bsdf, wo_local, u_lobe, u);
+        std::optional<BsdfSample> s;
+        Vec3 wi;
+        if (u_lobe < share) {
+            wi = guide_.sample(u_lobe / share, u);
+            s = BsdfSample{};
+            s->wi = frame.to_local(wi);
+            s->lobe = s->wi.z * wo_local.z > 0 ? LobeKind::diffuse_reflection
+                                               : LobeKind::diffuse_transmission;
+        } else {
+            s = sample(bsdf, wo_local, (u_lobe - share) / (1 - share), u);
+            if (!s) return s;
+            if (is_specular(s->lobe)) {
+                s->weight *= 1 / (1 - share);
+                s->pdf *= 1 - share;
+                return s;
+            }
+            wi = frame.to_world(s->wi);
+        }
+        s->pdf = direction_pdf(bsdf, wo_local, s->wi, wi);
+        s->weight = s->pdf > 0 ? eval(bsdf, wo_local, s->wi) * (1 / s->pdf) : Rgb(0);
+        // A throughput that is small because the guide expects much light from there must not end
+        // the path: the roulette judges it as if the BSDF had chosen alone.
+        const float own = pdf(bsdf, wo_local, s->wi);
+        if (own > 0) roulette_scale_ *= s->pdf / own;
+        return s;
+    }
+
     bool scatter(const SurfaceHit& hit, const PlacedShape& shape, const Bsdf& bsdf,
                  const Frame& frame, Vec3 wo_local, float u_lobe, Vec2 u, PathVertex* vertex) {
-        const auto s = sample(bsdf, wo_local, u_lobe, u);
+        const auto s = sample_direction(bsdf, frame, wo_local, u_lobe, u);
         if (!s || is_black(s->weight)) return false;
         const Vec3 wi = normalize(frame.to_world(s->wi));
         beta_ *= s->weight;
         pdf_ = s->pdf;
         specular_ = is_specular(s->lobe);
         sharp_so_far_ = sharp_so_far_ && specular_;
-        if (is_transmission(s->lobe)) eta_scale_ *= s->eta * s->eta;
+        if (is_transmission(s->lobe)) roulette_scale_ *= s->eta * s->eta;
         if (vertex) {
             vertex->scatters = true;
             vertex->next_event.wi = wi;
@@ -204,9 +248,10 @@ class PathTracer {
         return true;
     }
 
-    /// Russian roulette by the throughput without the factor that refraction put on the radiance.
+    /// Russian roulette by the throughput without the factors that refraction and the guide put on
+    /// it.
     bool survives(int depth) {
-        const float carried = max_component(beta_) * eta_scale_;
+        const float carried = max_component(beta_) * roulette_scale_;
         if (!(carried < 1) || depth <= 1) return true;
         const float end = std::max(0.0f, 1 - carried);
         if (sampler_.next_1d() < end) return false;
@@ -226,9 +271,10 @@ class PathTracer {
     bool specular_ =
         true;  // the last lobe (the camera counts as one): no light sampling could find it
     bool sharp_so_far_ = true;
-    float eta_scale_ = 1;
+    float roulette_scale_ = 1;
     MediumId medium_ = -1;
     int passed_interfaces_ = 0;
+    GuideMixture guide_;                        // at the current vertex
     Vec3 light_normal_;                         // what the lights are told at the current vertex
     Vec3 previous_position_, previous_normal_;  // and at the last one, for the weights
 };

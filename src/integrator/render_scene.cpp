@@ -18,6 +18,7 @@ RenderScene::RenderScene(SceneDescription scene_description, const std::string& 
             description.warnings.push_back(
                 {m.where, "medium \"" + m.name + "\" scatters: rendered as if it only absorbed"});
     }
+    guide = CausticGuide(*this);
 }
 
 void RenderScene::prepare_spectra() {

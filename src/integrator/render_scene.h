@@ -6,6 +6,7 @@
 
 #include "geometry/geometry.h"
 #include "integrator/camera.h"
+#include "integrator/caustic_guide.h"
 #include "integrator/pixel_filter.h"
 #include "scene/scene_description.h"
 #include "shading/lights.h"
@@ -33,6 +34,7 @@ struct RenderScene {
     PixelFilter filter;
     /// Extinction per medium, per scene unit: absorption alone (scattering is not rendered).
     std::vector<Rgb> extinction;
+    CausticGuide guide;  ///< made last: it is learnt from all the rest
 };
 
 }  // namespace covtrace

@@ -67,6 +67,18 @@ bool is_specular(const Bsdf& bsdf) {
     return std::visit([](const auto& b) { return is_specular(b); }, bsdf);
 }
 
+bool has_diffuse_lobe(const Bsdf& bsdf) {
+    return std::holds_alternative<DiffuseBsdf>(bsdf) ||
+           std::holds_alternative<CoatedDiffuseBsdf>(bsdf) ||
+           std::holds_alternative<DiffuseTransmissionBsdf>(bsdf);
+}
+
+bool has_sharp_lobe(const Bsdf& bsdf) {
+    return std::holds_alternative<ConductorBsdf>(bsdf) ||
+           std::holds_alternative<DielectricBsdf>(bsdf) ||
+           std::holds_alternative<CoatedDiffuseBsdf>(bsdf);
+}
+
 LobeShares lobe_shares(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
     return std::visit([&](const auto& b) { return lobe_shares(b, wo, wi); }, bsdf);
 }

@@ -24,6 +24,9 @@ enum class LobeKind : uint8_t {
 constexpr bool is_specular(LobeKind k) {
     return k == LobeKind::specular_reflection || k == LobeKind::specular_transmission;
 }
+constexpr bool is_diffuse(LobeKind k) {
+    return k == LobeKind::diffuse_reflection || k == LobeKind::diffuse_transmission;
+}
 constexpr bool is_transmission(LobeKind k) {
     return k == LobeKind::diffuse_transmission || k == LobeKind::glossy_transmission ||
            k == LobeKind::specular_transmission;
@@ -88,6 +91,10 @@ float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
 std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float u_lobe, Vec2 u);
 /// True for models whose lobes are all specular: eval is zero for every pair.
 bool is_specular(const Bsdf& bsdf);
+/// True for models with a lobe that spreads light over a whole hemisphere.
+bool has_diffuse_lobe(const Bsdf& bsdf);
+/// True for models with a lobe that reflects or refracts light about one direction.
+bool has_sharp_lobe(const Bsdf& bsdf);
 /// The parts of eval(wo, wi), lobe by lobe; their values sum to it. Specular lobes have no part.
 LobeShares lobe_shares(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
 /// Directional albedo for this wo, approximate where no closed form exists; for the albedo layer.

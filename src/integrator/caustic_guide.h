@@ -1,0 +1,110 @@
+/// Where to look for light that comes over a mirror or through glass.
+///
+/// A diffuse point that is lit by a small lamp over a near-mirror finds that light by chance alone:
+/// neither sampling its own lobe nor sampling the lamp aims at the mirror's image of it. The guide
+/// knows those images. It is learnt once per scene, from light sent over the glossy surfaces that
+/// camera paths meet, and mixed with the BSDF's own sampling, so that estimates stay unbiased
+/// whatever it holds (Jensen 1995, "Importance driven path tracing using the photon map", with
+/// clusters of photons fitted by one lobe each instead of a histogram).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace covtrace {
+
+struct RenderScene;
+
+/// A density over directions: von Mises-Fisher lobes at one point.
+class GuideMixture {
+  public:
+    static constexpr int kMostLobes = 8;
+
+    /// Share of the samples that should follow it; 0 where there is nothing to be found.
+    float share() const { return share_; }
+    /// `u_choice` chooses the lobe.
+    Vec3 sample(float u_choice, Vec2 u) const;
+    /// Per solid angle.
+    float pdf(Vec3 w) const;
+
+  private:
+    friend class CausticGuide;
+    struct Lobe {
+        Vec3 direction;
+        float kappa = 0, weight = 0;
+    };
+    std::array<Lobe, kMostLobes> lobes_;
+    int count_ = 0;
+    float share_ = 0;
+};
+
+/// Light that arrived at a point over glossy surfaces.
+struct CausticPhoton {
+    Vec3 position, normal;  ///< moved off the surface to the lit side; unit, on that side
+    float time = 0;
+    Vec3 direction;       ///< unit, towards where it came from
+    float distance = 0;   ///< of the light along the unfolded path; infinite for distant light
+    float weight = 0;     ///< luminance
+    uint64_t source = 0;  ///< the light and the last surface on the way
+};
+
+class CausticGuide {
+  public:
+    /// Empty: shares are 0 everywhere.
+    CausticGuide() = default;
+    /// Learns from a scene whose own guide is empty. Deterministic.
+    explicit CausticGuide(const RenderScene& scene);
+
+    /// At a point with the normal `n` on the side that is to be lit; zero where light counts from
+    /// both.
+    GuideMixture at(Vec3 position, Vec3 n) const;
+
+  private:
+    /// All light of one leaf that came from one light over one surface seems to come from about
+    /// one point: exact for a flat mirror, the nearest point to all its rays else.
+    struct Image {
+        Vec3 point;
+        float kappa = 0;       ///< of directions to it
+        float irradiance = 0;  ///< luminance, on the surfaces there
+        uint64_t source = 0;   ///< CausticPhoton::source
+    };
+    struct Leaf {
+        Bounds3 bounds;  ///< where it is worth asking
+        float share = 0;
+        uint32_t first = 0, count = 0;  ///< into images_
+    };
+    struct Node {
+        int axis = -1;  ///< -1: a leaf
+        float split = 0;
+        uint32_t left = 0, right = 0;  ///< nodes; for a leaf `left` is the index into leaves_
+    };
+
+    /// A leaf in the making: what lies in it, and what may be seen from it.
+    struct Region {
+        std::span<const CausticPhoton> photons;
+        std::vector<Image> images;
+    };
+    uint32_t build(std::span<CausticPhoton> photons, std::vector<Image> images, int depth,
+                   std::vector<Region>& regions);
+    /// Renews those images that the photons suffice for; the others stay as they are.
+    static void refine(std::span<const CausticPhoton> photons, std::vector<Image>& images);
+    static Image fit(std::span<const CausticPhoton> cluster);
+    /// Measures what is to be found in each image, drops those that are worth nothing, and returns
+    /// the share of the samples for the others.
+    static float measure(const RenderScene& scene, Region& region, uint64_t key);
+
+    std::vector<Node> nodes_;
+    std::vector<Leaf> leaves_;
+    std::vector<Image> images_;
+};
+
+/// Sends light over the glossy surfaces that `count` camera paths meet, the first of them number
+/// `first`, and returns where it arrives on surfaces that spread light. Deterministic.
+std::vector<CausticPhoton> trace_caustic_photons(const RenderScene& scene, int64_t first,
+                                                 int64_t count);
+
+}  // namespace covtrace

@@ -1,0 +1,128 @@
+#include <cmath>
+
+#include "core/hash.h"
+#include "core/parallel.h"
+#include "core/rng.h"
+#include "integrator/caustic_guide.h"
+#include "integrator/render_scene.h"
+
+namespace covtrace {
+
+namespace {
+
+constexpr uint64_t kPilotKey = 0x6361757374696373ull;
+constexpr int kPathsPerChunk = 64;
+constexpr int kCameraVertices = 4;  // how far a pilot path goes in search of glossy surfaces
+constexpr int kChainVertices = 8;   // glossy surfaces in a row
+constexpr int kMostInterfaces = 64;
+constexpr int kLightSamples = 2;  // at every glossy surface found
+
+/// A pilot path from the camera, and the light sent over the glossy surfaces that it finds.
+class Pilot {
+  public:
+    Pilot(const RenderScene& scene, uint64_t index, std::vector<CausticPhoton>& photons)
+        : scene_(scene), rng_(hash_combine(kPilotKey, index)), photons_(photons) {}
+
+    void run() {
+        const FilmDescription& film = scene_.description.film;
+        const Vec2 u = rng_.next_2d();
+        const Vec2 lens = rng_.next_2d();
+        Ray ray = scene_.camera.generate_ray({u.x * float(film.width), u.y * float(film.height)},
+                                             lens, rng_.next_float());
+        for (int i = 0; i < kCameraVertices; ++i) {
+            SurfaceHit hit;
+            Bsdf bsdf;
+            if (!next_surface(ray, hit, bsdf)) return;
+            const Frame frame = shading_frame(hit);
+            if (has_sharp_lobe(bsdf))
+                for (int k = 0; k < kLightSamples; ++k) send_light(hit, bsdf, frame);
+            const float u_lobe = rng_.next_float();
+            const auto s = sample(bsdf, frame.to_local(-ray.direction), u_lobe, rng_.next_2d());
+            if (!s || is_black(s->weight)) return;
+            follow(ray, hit, normalize(frame.to_world(s->wi)));
+        }
+    }
+
+  private:
+    static void follow(Ray& ray, const SurfaceHit& hit, Vec3 direction) {
+        ray.origin = Geometry::offset_origin(hit, direction);
+        ray.direction = direction;
+        ray.t_max = kInfinity;
+    }
+
+    /// The nearest surface but interfaces.
+    bool next_surface(Ray& ray, SurfaceHit& hit, Bsdf& bsdf) const {
+        for (int i = 0; i < kMostInterfaces; ++i) {
+            if (!scene_.geometry.intersect(ray, hit)) return false;
+            const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
+            bsdf = scene_.materials.bsdf(shape.description.material, hit, scene_.textures);
+            if (!std::holds_alternative<InterfaceBsdf>(bsdf)) return true;
+            ray.origin = Geometry::offset_origin(hit, ray.direction);
+        }
+        return false;
+    }
+
+    /// Light of one sampled lamp, scattered at `hit` by a sharp lobe and on to where it lands.
+    void send_light(const SurfaceHit& start, const Bsdf& start_bsdf, const Frame& start_frame) {
+        const float u_select = rng_.next_float();
+        const auto light =
+            scene_.lights.sample(start.position, Vec3{}, start.time, u_select, rng_.next_2d());
+        if (!light || is_black(light->radiance) || !(light->pdf > 0)) return;
+        Ray shadow;
+        shadow.time = start.time;
+        follow(shadow, start, light->wi);
+        if (std::isfinite(light->distance)) shadow.t_max = light->distance * (1 - 1e-3f);
+        if (scene_.geometry.occluded(shadow)) return;
+
+        float travelled = light->distance;
+        Rgb weight = light->radiance / light->pdf;
+        SurfaceHit hit = start;
+        Bsdf bsdf = start_bsdf;
+        Frame frame = start_frame;
+        Ray ray;
+        ray.time = start.time;
+        Vec3 towards_light = light->wi;
+        for (int i = 0; i < kChainVertices; ++i) {
+            const float u_lobe = rng_.next_float();
+            const auto s = sample(bsdf, frame.to_local(towards_light), u_lobe, rng_.next_2d());
+            if (!s || is_black(s->weight) || is_diffuse(s->lobe)) return;
+            weight *= s->weight;
+            const uint64_t source = hash_combine(uint64_t(light->light), hit.shape, hit.instance);
+            follow(ray, hit, normalize(frame.to_world(s->wi)));
+            if (!next_surface(ray, hit, bsdf)) return;
+            travelled += hit.t;
+            towards_light = -ray.direction;
+            if (has_diffuse_lobe(bsdf)) {
+                const float y = luminance(weight);
+                if (std::isfinite(y) && y > 0)
+                    photons_.push_back({Geometry::offset_origin(hit, towards_light),
+                                        face_forward(hit.ns, towards_light), hit.time,
+                                        towards_light, travelled, y, source});
+                return;
+            }
+            frame = shading_frame(hit);
+        }
+    }
+
+    const RenderScene& scene_;
+    Rng rng_;
+    std::vector<CausticPhoton>& photons_;
+};
+
+}  // namespace
+
+std::vector<CausticPhoton> trace_caustic_photons(const RenderScene& scene, int64_t first,
+                                                 int64_t count) {
+    const int64_t chunks = (count + kPathsPerChunk - 1) / kPathsPerChunk;
+    std::vector<std::vector<CausticPhoton>> found(static_cast<size_t>(chunks));
+    parallel_for(chunks, [&](int64_t chunk) {
+        const int64_t end = std::min(count, (chunk + 1) * kPathsPerChunk);
+        for (int64_t i = chunk * kPathsPerChunk; i < end; ++i)
+            Pilot(scene, static_cast<uint64_t>(first + i), found[static_cast<size_t>(chunk)]).run();
+    });
+    std::vector<CausticPhoton> all;
+    for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
+
+}  // namespace covtrace

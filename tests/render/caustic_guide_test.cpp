@@ -1,0 +1,139 @@
+// Light that reaches a diffuse floor over a mirror: found by the guide, and counted right.
+#include <gtest/gtest.h>
+
+#include "integrator/path.h"
+#include "shading/fresnel.h"
+#include "tests/render/fixtures.h"
+#include "tests/statistical/chi_square.h"
+
+namespace covtrace {
+namespace {
+
+using namespace test;
+
+constexpr float kLampRadius = 0.05f, kLampRadiance = 500;
+
+// A lamp at (0, 1, 0) over a floor that the camera sees near the origin, a mirror at x = 1.
+const std::string kMirrorScene = R"(
+Integrator "path" "integer maxdepth" 4
+Film "rgb" "integer xresolution" 48 "integer yresolution" 48
+PixelFilter "box"
+LookAt 0 3 -3  0 0 0  0 1 0
+Camera "perspective" "float fov" 0.5
+WorldBegin
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [ 500 500 500 ]
+Translate 0 1 0
+Shape "sphere" "float radius" 0.05
+AttributeEnd
+Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
+Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ]
+  "point3 P" [ -1 0 -1  -1 0 1  1 0 1  1 0 -1 ]
+Material "conductor" "rgb reflectance" [ 0.9 0.9 0.9 ] "float roughness" 0
+Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ]
+  "point3 P" [ 1 0 -1  1 0 1  1 2 1  1 2 -1 ]
+)";
+
+/// Irradiance of the floor at the origin: a sphere of radius r at distance d gives
+/// pi L (r / d)^2 cos(theta), the mirror's image of it (at (2, 1, 0)) what Fresnel leaves of that.
+double floor_radiance() {
+    const double source = kPi * kLampRadiance * kLampRadius * kLampRadius;
+    const double direct = source;
+    // The mirror is met at an angle whose cosine is 2 / sqrt(5).
+    const float k = 2 * std::sqrt(0.9f / 0.1f);
+    const double reflected = fresnel_conductor(2 / std::sqrt(5.0f), Rgb(1), Rgb(k)).g;
+    const double image = source / 5 * (1 / std::sqrt(5.0)) * reflected;
+    return 0.5 / kPi * (direct + image);
+}
+
+// 4.5 standard errors: false alarm 7e-6.
+TEST(CausticGuide, LightOverAMirrorSumsToTheImageOfTheLamp) {
+    const Summary s = summarize_image(render_text(kMirrorScene, uniform(64)).image);
+    EXPECT_NEAR(s.mean, floor_radiance(), 4.5 * s.standard_error + 2e-3 * floor_radiance());
+    // The standard error is small only because the guide aims at the image: the part that it finds
+    // is 7 % of the whole.
+    EXPECT_LT(s.standard_error, 4e-3 * floor_radiance());  // without the guide above 9e-3
+}
+
+TEST(CausticGuide, FindsWhatTheFloorAloneFindsByChance) {
+    const auto variance = [](RenderScene& scene) {
+        double sum = 0, squares = 0;
+        constexpr int kPaths = 60000;
+        for (int i = 0; i < kPaths; ++i) {
+            Sampler sampler(3, i, 0, 0);
+            const Ray ray = scene.camera.generate_ray({24, 24}, {}, 0);
+            const double l = trace_path(scene, ray, sampler, 4, nullptr).radiance.g;
+            sum += l;
+            squares += l * l;
+        }
+        return squares / kPaths - sum / kPaths * sum / kPaths;
+    };
+    RenderScene scene(read_pbrt_string(kMirrorScene, "test", "."));
+    const double guided = variance(scene);
+    scene.guide = CausticGuide();
+    EXPECT_GT(variance(scene), 20 * guided);
+}
+
+TEST(CausticGuide, PointsAtTheImageAndIsADensity) {
+    const RenderScene scene(read_pbrt_string(kMirrorScene, "test", "."));
+    const Vec3 p{0.1f, 0, 0.1f}, up{0, 1, 0};
+    const GuideMixture guide = scene.guide.at(p, up);
+    ASSERT_GT(guide.share(), 0.01f);
+    const Vec3 towards = normalize(Vec3{2, 1, 0} - p);
+    EXPECT_GT(guide.pdf(towards), 50);  // 1 / (2 pi) were uniform
+
+    // Chi-square over cells of angle from the image's direction and azimuth, alpha 1e-4.
+    constexpr int kRings = 24, kSectors = 8, kSamples = 200000;
+    constexpr float kReach = 0.2f;  // radians
+    const Frame frame = Frame::from_z(towards);
+    const auto cell = [&](Vec3 w) {
+        const Vec3 l = frame.to_local(w);
+        const float angle = std::atan2(std::hypot(l.x, l.y), l.z);
+        if (angle >= kReach) return kRings * kSectors;
+        const float turn = (std::atan2(l.y, l.x) + kPi) / (2 * kPi);
+        return int(angle / kReach * kRings) * kSectors +
+               std::min(int(turn * kSectors), kSectors - 1);
+    };
+    std::vector<double> observed(kRings * kSectors + 1), expected(kRings * kSectors + 1);
+    for (int i = 0; i < kSamples; ++i) {
+        Sampler s(5, i, 0, 0);
+        const float u = s.next_1d();
+        ++observed[size_t(cell(guide.sample(u, s.next_2d())))];
+    }
+    double inside = 0;
+    for (int r = 0; r < kRings; ++r)
+        for (int t = 0; t < kSectors; ++t) {
+            double sum = 0;
+            constexpr int kSteps = 16;
+            for (int i = 0; i < kSteps; ++i)
+                for (int j = 0; j < kSteps; ++j) {
+                    const float angle = kReach * (float(r) + (float(i) + 0.5f) / kSteps) / kRings;
+                    const float turn = (float(t) + (float(j) + 0.5f) / kSteps) / kSectors;
+                    const float phi = 2 * kPi * turn - kPi;
+                    const Vec3 w =
+                        frame.to_world({std::sin(angle) * std::cos(phi),
+                                        std::sin(angle) * std::sin(phi), std::cos(angle)});
+                    sum += guide.pdf(w) * std::sin(angle);
+                }
+            const double area = kReach / kRings / kSteps * 2 * kPi / kSectors / kSteps;
+            expected[size_t(r * kSectors + t)] = sum * area * kSamples;
+            inside += sum * area;
+        }
+    expected.back() = std::max(0.0, 1 - inside) * kSamples;
+    EXPECT_GT(inside, 0.9);
+    EXPECT_LT(inside, 1 + 1e-3);
+    EXPECT_GT(chi_square_test(observed, expected).p, 1e-4);
+}
+
+TEST(CausticGuide, IsEmptyWithoutMirrors) {
+    const RenderScene scene(read_pbrt_string(R"(
+Film "rgb" "integer xresolution" 16 "integer yresolution" 16
+WorldBegin
+LightSource "infinite"
+Shape "sphere")",
+                                             "test", "."));
+    EXPECT_EQ(scene.guide.at({0, 1, 0}, {0, 1, 0}).share(), 0);
+}
+
+}  // namespace
+}  // namespace covtrace
