@@ -278,6 +278,10 @@ void add_render(CLI::App& app, Invocation& invocation) {
     c->add_option("--voxels", a->options.voxels, "width of the occlusion grid (default 200)")
         ->check(CLI::Range(1, 2048))
         ->option_text("N");
+    add_choice<BrdfCovariance>(
+        c, "--brdf-covariance", a->options.brdf_covariance,
+        {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}},
+        "a BRDF's frequencies: at the path's directions, or its peak's");
     add_choice<FilterRule>(c, "--filter", a->options.filter,
                            {{"verified", FilterRule::verified}, {"thesis", FilterRule::thesis}},
                            "its constant: verified, or the thesis' eq. 5.7");

@@ -218,18 +218,6 @@ TEST(Lobes, CosineWindowFollowsThePlaneOfIncidence) {
     EXPECT_NEAR(cosine_window(grazing, Vec3{0, 0, 1}).xx, w / (0.05 * 0.05), 1e-9);
 }
 
-RC_GTEST_PROP(Lobes, LocalLobeOfAGaussianIsThePeakAndNeverSharper, ()) {
-    const Sym2 peak = draw_pd2();
-    const double f = draw(0.1, 5);
-    const Sym2 hessian = (-4 * M_PI * M_PI * f) * peak;
-    RC_ASSERT(distance(local_lobe(hessian, f, peak), peak) < 1e-10);
-    const Sym2 other{draw(-300, 300), draw(-300, 300), draw(-300, 300)};
-    const Sym2 local = local_lobe(other, f, peak);
-    RC_ASSERT(is_psd(local));
-    RC_ASSERT(is_psd(peak - local, trace(peak)));
-    RC_ASSERT(local_lobe(other, 0, peak) == peak);
-}
-
 // ---- occluders and sources
 
 RC_GTEST_PROP(Occlusion, EdgeIsRankOneAndSeenAlongOneMinusZMinusV, ()) {

@@ -41,8 +41,8 @@ cov::SymmetricMatrix5<double> to_sensor(const LightField& field, const SensorGeo
 
 }  // namespace
 
-PathReplay::PathReplay(const RenderScene& scene, const VoxelGrid* occluders)
-    : scene_(scene), occluders_(occluders) {
+PathReplay::PathReplay(const RenderScene& scene, const VoxelGrid* occluders, BrdfCovariance rule)
+    : scene_(scene), occluders_(occluders), rule_(rule) {
     const Bounds3 bounds = scene.geometry.bounds();
     center_ = bounds.center();
     radius_ = std::max(bounds.radius(), 1e-6f);
@@ -118,7 +118,7 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
             const ScatterPoint point =
                 scatter_point(scene_, v, 0.5f * extent / camera.pixels_per_x);
             if (light.weight > 0)
-                leaving.add(scatter(light.field, point, v.next_event.lobes), light.weight);
+                leaving.add(scatter(light.field, point, v.next_event.lobes, rule_), light.weight);
             if (v.direct > 0) {
                 const SourceSpectrum s = scene_.lights.source_spectrum(v.light, v.hit.time);
                 const Vec3 from = std::isfinite(v.light.distance)
@@ -126,7 +126,7 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
                                       : entry(v.hit.position, v.light.wi);
                 const LightField source = source_field(s, -v.light.wi, false, smallest_);
                 leaving.add(scatter(carry(source, from, v.hit.position, v.direct / total), point,
-                                    v.direct_event.lobes),
+                                    v.direct_event.lobes, rule_),
                             v.direct);
             }
         }

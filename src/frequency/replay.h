@@ -2,6 +2,7 @@
 #pragma once
 
 #include "covariance/covariance.hpp"
+#include "frequency/brdf_covariance.h"
 #include "frequency/light_source.h"
 #include "geometry/voxel_grid.h"
 #include "integrator/path_record.h"
@@ -23,7 +24,7 @@ class PathReplay {
   public:
     /// `occluders` may be null: then light travels as if nothing stood beside its way. Both must
     /// outlive this.
-    PathReplay(const RenderScene& scene, const VoxelGrid* occluders);
+    PathReplay(const RenderScene& scene, const VoxelGrid* occluders, BrdfCovariance rule);
     PathCovariance operator()(const PathRecord& record) const;
 
   private:
@@ -33,6 +34,7 @@ class PathReplay {
 
     const RenderScene& scene_;
     const VoxelGrid* occluders_;
+    BrdfCovariance rule_;
     double smallest_;  // extent that stands for a point, scene units
     Vec3 center_;      // bounding sphere of the scene: light from infinity enters there
     float radius_;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "shading/lobe_function.h"
+
 namespace covtrace {
 
 namespace cov = covariance;
@@ -19,27 +21,67 @@ cov::Sym2<double> texture_spectrum(const RenderScene& scene, TextureId id, const
 /// A lobe as wide as this feels the horizon: the cosine limits it as it limits a diffuse surface.
 constexpr float kWideLobe = 0.4f;
 
-LightField through_lobe(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe) {
-    const cov::Vec3<double> out = p.outgoing;
+/// World vectors in the coordinates of the BSDF.
+cov::Vec3<double> to_local(const Frame& f, const cov::Vec3<double>& v) {
+    const auto along = [&](const Vec3& a) { return cov::dot(v, cov::Vec3<double>(a)); };
+    return {along(f.x), along(f.y), along(f.z)};
+}
+
+LightField through_diffuse(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe,
+                           BrdfCovariance rule) {
+    const cov::Sym2<double>& texture = is_transmission(lobe.kind) ? p.transmittance : p.reflectance;
+    const auto left = [&](const LightField& field) {
+        return cov::add_texture(cov::reflect_diffuse(field, p.surface, p.outgoing), texture);
+    };
+    if (rule == BrdfCovariance::global || !(lobe.border_eta > 0)) return left(entered);
+    // Below a coat the diffuse lobe is a product: what the coat lets in from each direction, and
+    // what it lets out.
+    const auto transmission = [&](const cov::Frame<double>& f) {
+        const auto direction = cov::jet_direction<double>(
+            to_local(p.shading, f.x), to_local(p.shading, f.y), to_local(p.shading, f.z));
+        return cov::local_lobe<double>(1 - border_reflectance(lobe, abs(direction.z)),
+                                       cov::cosine_window<double>(f, p.surface.n));
+    };
+    const LightField field = left(cov::add_angular_window(entered, transmission(entered.frame)));
+    return cov::add_angular_window(field, transmission(field.frame));
+}
+
+LightField through_glossy(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe,
+                          BrdfCovariance rule) {
+    const auto micro = cov::micro_ggx<double>(lobe.alpha_x, lobe.alpha_y);
+    const cov::GlossyPair<double> pair =
+        lobe.kind == LobeKind::glossy_reflection
+            ? cov::reflection_pair<double>(entered.frame, p.surface, p.outgoing, micro)
+            : cov::refraction_pair<double>(entered.frame, p.surface, p.outgoing, lobe.eta, 1,
+                                           micro);
+    if (rule == BrdfCovariance::global) {
+        const bool wide = std::max(lobe.alpha_x, lobe.alpha_y) > kWideLobe;
+        return cov::scatter(wide ? cov::add_cosine_window(entered, p.surface) : entered, pair);
+    }
+    const auto value = [&](const cov::JetVec3<double>& wi, const cov::JetVec3<double>& wo) {
+        return lobe_function(lobe, wo, wi);
+    };
+    const auto local = [&](const cov::Vec3<double>& v) { return to_local(p.shading, v); };
+    return cov::scatter(
+        entered, cov::local_lobe<double>(value, local, entered.frame, pair,
+                                         cov::cosine_window<double>(entered.frame, p.surface.n)));
+}
+
+LightField through_lobe(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe,
+                        BrdfCovariance rule) {
     switch (lobe.kind) {
-        case LobeKind::diffuse_reflection:
-            return cov::add_texture(cov::reflect_diffuse(entered, p.surface, out), p.reflectance);
-        case LobeKind::diffuse_transmission:
-            return cov::add_texture(cov::reflect_diffuse(entered, p.surface, out), p.transmittance);
         case LobeKind::specular_reflection:
-            return cov::reflect_specular(entered, p.surface, out);
+            return cov::reflect_specular<double>(entered, p.surface, p.outgoing);
         case LobeKind::specular_transmission:
-            return cov::refract(entered, p.surface, out, lobe.eta, 1.0);
+            return cov::refract<double>(entered, p.surface, p.outgoing, lobe.eta, 1);
+        case LobeKind::diffuse_reflection:
+        case LobeKind::diffuse_transmission:
+            return through_diffuse(entered, p, lobe, rule);
         case LobeKind::glossy_reflection:
         case LobeKind::glossy_transmission:
             break;
     }
-    const bool wide = std::max(lobe.alpha_x, lobe.alpha_y) > kWideLobe;
-    const LightField windowed = wide ? cov::add_cosine_window(entered, p.surface) : entered;
-    const auto micro = cov::micro_ggx<double>(lobe.alpha_x, lobe.alpha_y);
-    return lobe.kind == LobeKind::glossy_reflection
-               ? cov::reflect_glossy(windowed, p.surface, out, micro)
-               : cov::refract_glossy(windowed, p.surface, out, lobe.eta, 1.0, micro);
+    return through_glossy(entered, p, lobe, rule);
 }
 
 }  // namespace
@@ -49,6 +91,7 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
     ScatterPoint p;
     p.surface = {d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}};
     p.motion = {d.velocity, d.angular_velocity};
+    p.shading = vertex.shading;
     p.outgoing = vertex.wo;
     const auto& m = d.uv_from_tangent;
     const cov::Mat2<double> uv_from_tangent{m[0][0], m[0][1], m[1][0], m[1][1]};
@@ -63,7 +106,8 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
     return p;
 }
 
-LightField scatter(const LightField& arriving, const ScatterPoint& point, const LobeShares& lobes) {
+LightField scatter(const LightField& arriving, const ScatterPoint& point, const LobeShares& lobes,
+                   BrdfCovariance rule) {
     const LightField entered =
         cov::surface_enter(cov::motion_enter(arriving, point.motion), point.surface);
     LightField sum{{}, cov::frame_along<double>(point.outgoing)};
@@ -73,7 +117,7 @@ LightField scatter(const LightField& arriving, const ScatterPoint& point, const 
         const double weight = luminance(lobe.value);
         if (!(weight > 0)) continue;
         const LightField left =
-            cov::surface_exit(through_lobe(entered, point, lobe), point.surface);
+            cov::surface_exit(through_lobe(entered, point, lobe, rule), point.surface);
         total += weight;
         const double share = weight / total;
         const auto aligned = cov::rotate_to(cov::motion_exit(left, point.motion), sum.frame);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "covariance/covariance.hpp"
+#include "frequency/brdf_covariance.h"
 #include "frequency/light_source.h"
 #include "integrator/path_record.h"
 #include "integrator/render_scene.h"
@@ -15,6 +16,7 @@ struct ScatterPoint {
     /// Spectra of the textures that scale the diffuse lobes, along surface.t1, t2, 1 / scene
     /// unit^2.
     covariance::Sym2<double> reflectance, transmittance;
+    Frame shading;  ///< frame of the BSDF
     Vec3 outgoing;  ///< unit, the direction in which light leaves towards the camera
 };
 
@@ -25,6 +27,7 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
 /// Sends `arriving` (its frame's z is the direction of travel towards the surface) through the
 /// lobes of the event and merges them by luminance. The result is in the frame
 /// covariance::frame_along(point.outgoing), so that several of them can be merged.
-LightField scatter(const LightField& arriving, const ScatterPoint& point, const LobeShares& lobes);
+LightField scatter(const LightField& arriving, const ScatterPoint& point, const LobeShares& lobes,
+                   BrdfCovariance rule);
 
 }  // namespace covtrace

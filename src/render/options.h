@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "frequency/brdf_covariance.h"
 #include "image/image.h"
 #include "planner/density.h"
 #include "reconstruction/filter_field.h"
@@ -31,6 +32,7 @@ struct RenderOptions {
     DensityRule density = DensityRule::tempered;
     Occlusion occlusion = Occlusion::grid;
     int voxels = 200;  ///< width of the grid
+    BrdfCovariance brdf_covariance = BrdfCovariance::local;
     FilterRule filter = FilterRule::verified;
     std::optional<int> max_spp;    ///< most samples in any pixel; default 16 times the average
     std::optional<int> max_depth;  ///< default: the scene's

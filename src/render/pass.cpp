@@ -102,10 +102,11 @@ PassStatistics radiance_pass(const PassContext& context, Film& film,
                           });
 }
 
-PassStatistics covariance_pass(const PassContext& context, const VoxelGrid* occluders, Film& film,
-                               std::span<const uint32_t> counts, CovarianceBuffer& buffer,
-                               const Monitor& monitor, const PassProgress& progress) {
-    const PathReplay replay(context.scene, occluders);
+PassStatistics covariance_pass(const PassContext& context, const VoxelGrid* occluders,
+                               BrdfCovariance rule, Film& film, std::span<const uint32_t> counts,
+                               CovarianceBuffer& buffer, const Monitor& monitor,
+                               const PassProgress& progress) {
+    const PathReplay replay(context.scene, occluders, rule);
     const auto traced = [&](size_t i, int x, int y, PassStatistics& statistics) {
         static thread_local PathRecord record;
         sample_pixel(context, film.pixels[i], x, y, &record, statistics);

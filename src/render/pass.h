@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "frequency/brdf_covariance.h"
 #include "geometry/voxel_grid.h"
 #include "integrator/path.h"
 #include "integrator/render_scene.h"
@@ -53,9 +54,10 @@ PassStatistics radiance_pass(const PassContext& context, Film& film,
 /// The same with `counts` paths per pixel that also leave their covariance. Weights are limited to
 /// ten times the mean of the image's first paths, so that no single path owns a pixel. `occluders`
 /// may be null.
-PassStatistics covariance_pass(const PassContext& context, const VoxelGrid* occluders, Film& film,
-                               std::span<const uint32_t> counts, CovarianceBuffer& buffer,
-                               const Monitor& monitor, const PassProgress& progress);
+PassStatistics covariance_pass(const PassContext& context, const VoxelGrid* occluders,
+                               BrdfCovariance rule, Film& film, std::span<const uint32_t> counts,
+                               CovarianceBuffer& buffer, const Monitor& monitor,
+                               const PassProgress& progress);
 
 /// One sample as the passes take it, for replaying a pixel: returns the path and the film's sample.
 FilmPixel::Sample take_sample(const PassContext& context, int x, int y, uint32_t index,

@@ -147,9 +147,9 @@ class Session {
             const std::vector<uint32_t> none(film_.pixels.size(), 0);
             const auto counts =
                 allocate(even, std::llround(cov_spp * double(pixels())), none, 1u << 30);
-            result_.statistics.covariance =
-                covariance_pass(context_, occluders ? &*occluders : nullptr, film_, counts, buffer,
-                                monitor_, reporter("covariance", 0, fraction(cov_spp), 0, cov_spp));
+            result_.statistics.covariance = covariance_pass(
+                context_, occluders ? &*occluders : nullptr, options_.brdf_covariance, film_,
+                counts, buffer, monitor_, reporter("covariance", 0, fraction(cov_spp), 0, cov_spp));
         }
         Prediction raw, smoothed;
         {

@@ -41,12 +41,16 @@ struct BsdfSample {
     float eta = 1;  ///< index on wi's side over the index on wo's side
 };
 
-/// One lobe's part in a pair of directions, for the frequency analysis.
+/// One lobe's part in a pair of directions, for the frequency analysis: how much of the light takes
+/// it, and what its shape depends on (`lobe_function` of lobe_function.h is that shape).
 struct LobeShare {
     LobeKind kind{};
     Rgb value;  ///< this lobe's part of eval(wo, wi); for a sampled specular lobe its weight
     float alpha_x = 0, alpha_y = 0;  ///< GGX, along the local x and y; 0 for diffuse and specular
     float eta = 1;                   ///< index on wi's side over the index on wo's side
+    /// The border that reflects a glossy lobe, or that covers a diffuse one: its index over that of
+    /// wo's side, `border_k` the imaginary part of a conductor's. 0: no Fresnel factor.
+    float border_eta = 0, border_k = 0;
 };
 struct LobeShares {
     std::array<LobeShare, 4> lobes;

@@ -114,10 +114,11 @@ LobeShares lobe_shares(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi) {
     if (!same_side(wo, wi)) return {};
     wo = to_upper_side(wo);
     wi = to_upper_side(wi);
-    LobeShares shares{{LobeShare{LobeKind::diffuse_reflection, eval_base(b, wo, wi)}}, 1};
+    LobeShares shares{
+        {LobeShare{LobeKind::diffuse_reflection, eval_base(b, wo, wi), 0, 0, 1, b.eta}}, 1};
     if (!is_smooth(b))
-        shares.lobes[shares.count++] = {LobeKind::glossy_reflection, Rgb(eval_coat(b, wo, wi)),
-                                        b.alpha_x, b.alpha_y};
+        shares.lobes[shares.count++] = {
+            LobeKind::glossy_reflection, Rgb(eval_coat(b, wo, wi)), b.alpha_x, b.alpha_y, 1, b.eta};
     return shares;
 }
 

@@ -53,7 +53,9 @@ std::optional<BsdfSample> sample(const ConductorBsdf& b, Vec3 wo, float, Vec2 u)
 
 LobeShares lobe_shares(const ConductorBsdf& b, Vec3 wo, Vec3 wi) {
     if (is_smooth(b) || !same_side(wo, wi)) return {};
-    return {{LobeShare{LobeKind::glossy_reflection, eval(b, wo, wi), b.alpha_x, b.alpha_y}}, 1};
+    return {{LobeShare{LobeKind::glossy_reflection, eval(b, wo, wi), b.alpha_x, b.alpha_y, 1,
+                       luminance(b.eta), luminance(b.k)}},
+            1};
 }
 
 Rgb albedo(const ConductorBsdf& b, Vec3 wo) {

@@ -106,11 +106,10 @@ std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe,
 LobeShares lobe_shares(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
     const Rgb value = eval(b, wo, wi);
     if (is_black(value)) return {};
+    const float eta = wo.z > 0 ? b.eta : 1 / b.eta;
     if (same_side(wo, wi))
-        return {{LobeShare{LobeKind::glossy_reflection, value, b.alpha_x, b.alpha_y}}, 1};
-    return {{LobeShare{LobeKind::glossy_transmission, value, b.alpha_x, b.alpha_y,
-                       wo.z > 0 ? b.eta : 1 / b.eta}},
-            1};
+        return {{LobeShare{LobeKind::glossy_reflection, value, b.alpha_x, b.alpha_y, 1, eta}}, 1};
+    return {{LobeShare{LobeKind::glossy_transmission, value, b.alpha_x, b.alpha_y, eta, eta}}, 1};
 }
 
 }  // namespace covtrace

@@ -1,6 +1,7 @@
 /// Anisotropic GGX (Trowbridge-Reitz) microfacets with height-correlated Smith masking.
 ///
 /// All directions are unit vectors in the local frame with z > 0; callers mirror the lower side.
+/// Functions over V take Vec3, and vectors of scalars that carry derivatives (lobe_function.h).
 /// With s(w) = sqrt(w.z^2 + alpha_x^2 w.x^2 + alpha_y^2 w.y^2), Smith's Lambda is (s / w.z - 1) /
 /// 2, so masking needs no tangents and stays finite at grazing angles.
 ///
@@ -23,18 +24,24 @@ struct Ggx {
     float alpha_x = 0, alpha_y = 0;  ///< both > 0
 
     /// Density of microfacet normals: the integral of d(m) m.z over the hemisphere is 1.
-    float d(Vec3 m) const {
-        const float e = sqr(m.x / alpha_x) + sqr(m.y / alpha_y) + sqr(m.z);
+    template <typename V>
+    auto d(const V& m) const {
+        const auto x = m.x / alpha_x, y = m.y / alpha_y;
+        const auto e = x * x + y * y + m.z * m.z;
         return kInvPi / (alpha_x * alpha_y * e * e);
     }
     /// s(w) of the head of this file: length of w after stretching the surface to roughness one.
-    float stretched_length(Vec3 w) const {
-        return std::sqrt(sqr(w.z) + sqr(alpha_x * w.x) + sqr(alpha_y * w.y));
+    template <typename V>
+    auto stretched_length(const V& w) const {
+        using std::sqrt;
+        const auto x = alpha_x * w.x, y = alpha_y * w.y;
+        return sqrt(w.z * w.z + x * x + y * y);
     }
     /// Share of the microfacets facing w that are visible from w.
     float g1(Vec3 w) const { return 2 * w.z / (w.z + stretched_length(w)); }
     /// Share visible from both, over wo.z.
-    float g2_over_cos_o(Vec3 wo, Vec3 wi) const {
+    template <typename V>
+    auto g2_over_cos_o(const V& wo, const V& wi) const {
         return 2 * wi.z / (stretched_length(wo) * wi.z + stretched_length(wi) * wo.z);
     }
     /// g2(wo, wi) / g1(wo): what single scattering keeps of a sampled normal.

@@ -63,27 +63,6 @@ template <std::floating_point T>
     return (ratio * ratio) * congruence(micro, transpose(p_out));
 }
 
-/// Lobe from the local second derivatives of BRDF * cos at the actual pair of directions:
-/// C = |Hess f| / (4 pi^2 f), eigenvalues made positive, never sharper than the peak.
-///
-/// A lobe's curvature at its peak over-estimates far from it; this is the local alternative.
-/// Shapes   hessian: second derivatives of f in outgoing slopes; peak: C at the peak, same axes.
-/// Errors   where f <= 0 the peak is returned.
-/// Source   the idea is in Belcour's 2016 course notes.
-template <std::floating_point T>
-[[nodiscard]] Sym2<T> local_lobe(const Sym2<T>& hessian, NonDeduced<T> value,
-                                 const Sym2<NonDeduced<T>>& peak) noexcept {
-    if (!(value > 0) || !(det(peak) > 0)) return peak;
-    const T scale = 1 / (four_pi_sq<T> * value);
-    const Sym2<T> local = map_eigenvalues(hessian, [=](T l) { return scale * std::abs(l); });
-    // With peak = L L^T: limit the eigenvalues of L^-1 C L^-T to 1.
-    const T l00 = std::sqrt(peak.xx), l10 = peak.xy / l00, l11 = std::sqrt(det(peak)) / l00;
-    const Mat2<T> to_peak{1 / l00, -l10 / (l00 * l11), 0, 1 / l11};  // L^-T
-    const Sym2<T> relative = congruence(local, to_peak);
-    const Sym2<T> limited = clamp_eigenvalues(relative, T(0), T(1));
-    return congruence(limited, Mat2<T>{l00, l10, 0, l11});
-}
-
 /// Smallest cosine of incidence used in `cosine_window`.
 template <std::floating_point T>
 inline constexpr T min_window_cosine = T(0.05);

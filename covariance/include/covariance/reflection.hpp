@@ -58,19 +58,44 @@ template <std::floating_point T>
     return reflection_cov<T>(micro, surface_projection<T>(reflected, tilted<T>(surface, h)), cos_h);
 }
 
-/// Reflection by a rough surface: mirrored frame, convolution with P_h Cm P_h^T / (4 (h.Zo)^2).
+/// A pair of directions that a rough surface joins: the frame of the leaving ray, the map of the
+/// slopes (arriving from leaving) and the covariance of the lobe in leaving slopes, at its peak.
+template <std::floating_point T = double>
+struct GlossyPair {
+    Frame<T> outgoing;
+    Mat2<T> map = Mat2<T>::identity();
+    Sym2<T> lobe;
+};
+
+/// The pair of a reflection: mirrored frame, no map, lobe P_h Cm P_h^T / (4 (h.Zo)^2).
 ///
 /// Shapes   micro: slope covariance in surface.t1, t2, from `micro_beckmann`, `micro_ggx`, ...
 /// Errors   none; |h.Zo| below 0.02 counts as 0.02. The lobe's own error against the true
 ///          distribution is at most 1e-3 at the peak and 3 to 12 % a quarter radian off it.
 template <std::floating_point T>
+[[nodiscard]] GlossyPair<T> reflection_pair(const Frame<T>& incoming,
+                                            const Surface<NonDeduced<T>>& surface,
+                                            const Vec3<NonDeduced<T>>& outgoing,
+                                            const Sym2<NonDeduced<T>>& micro) noexcept {
+    const Vec3<T> h = half_vector(incoming.z, outgoing, surface.n);
+    const Frame<T> frame = mirrored(incoming, h);
+    return {frame, Mat2<T>::identity(), glossy_lobe(frame, surface, h, micro)};
+}
+
+/// Sends light through a pair: map of the slopes, then convolution with the lobe.
+template <std::floating_point T>
+[[nodiscard]] LightField<T> scatter(const LightField<T>& field,
+                                    const GlossyPair<NonDeduced<T>>& pair) noexcept {
+    return {convolve_angular(map_angular(field.sigma, pair.map), pair.lobe), pair.outgoing};
+}
+
+/// Reflection by a rough surface, by the lobe's peak; see `reflection_pair`.
+template <std::floating_point T>
 [[nodiscard]] LightField<T> reflect_glossy(const LightField<T>& field,
                                            const Surface<NonDeduced<T>>& surface,
                                            const Vec3<NonDeduced<T>>& outgoing,
                                            const Sym2<NonDeduced<T>>& micro) noexcept {
-    const Vec3<T> h = half_vector(field.frame.z, outgoing, surface.n);
-    const Frame<T> frame = mirrored(field.frame, h);
-    return {convolve_angular(field.sigma, glossy_lobe(frame, surface, h, micro)), frame};
+    return scatter(field, reflection_pair(field.frame, surface, outgoing, micro));
 }
 
 /// Multiplies the arriving light by the cosine of its angle with the normal (see `cosine_window`).

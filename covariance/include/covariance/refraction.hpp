@@ -43,26 +43,38 @@ template <std::floating_point T>
     return refract_to(field, surface, turned_to(field.frame, outgoing), n1, n2);
 }
 
-/// Refraction by a rough surface: the map about the microfacet that refracts one direction into the
-/// other, h along n1 Zi - n2 Zo, then convolution with (n2/Gamma)^2 P_h Cm P_h^T.
+/// The pair of a refraction by a rough surface: the map about the microfacet that refracts one
+/// direction into the other, h along n1 Zi - n2 Zo, and the lobe (n2/Gamma)^2 P_h Cm P_h^T.
 ///
-/// For the exact pair of Snell's law h is the normal and this is `refract` and a convolution.
 /// Shapes   micro: slope covariance in surface.t1, t2.
-/// Errors   none; where the interface does not bend the light nothing is convolved.
+/// Units    refractive indices n1 on the side of the arriving light, n2 of the leaving light.
+/// Errors   none; where the interface hardly bends the light (|Gamma| below 1e-6 n2) the lobe is
+///          that of 1e-6 n2, too sharp to change anything.
+template <std::floating_point T>
+[[nodiscard]] GlossyPair<T> refraction_pair(const Frame<T>& incoming,
+                                            const Surface<NonDeduced<T>>& surface,
+                                            const Vec3<NonDeduced<T>>& outgoing, NonDeduced<T> n1,
+                                            NonDeduced<T> n2,
+                                            const Sym2<NonDeduced<T>>& micro) noexcept {
+    const Vec3<T> h = normalized_or(n1 * incoming.z - n2 * outgoing, surface.n);
+    const Surface<T> facet = tilted(surface, h);
+    const Frame<T> frame = turned_to(incoming, outgoing);
+    const T bend = n2 * std::abs(dot(h, outgoing)) - n1 * std::abs(dot(h, incoming.z));
+    const T ratio = n2 / std::max(std::abs(bend), T(1e-6) * n2);
+    const Mat2<T> p_out = surface_projection(frame, facet);
+    return {frame, specular_map(incoming, frame, facet, n1, n2),
+            (ratio * ratio) * congruence(micro, transpose(p_out))};
+}
+
+/// Refraction by a rough surface, by the lobe's peak; see `refraction_pair`. For the exact pair of
+/// Snell's law h is the normal and this is `refract` and a convolution.
 template <std::floating_point T>
 [[nodiscard]] LightField<T> refract_glossy(const LightField<T>& field,
                                            const Surface<NonDeduced<T>>& surface,
                                            const Vec3<NonDeduced<T>>& outgoing, NonDeduced<T> n1,
                                            NonDeduced<T> n2,
                                            const Sym2<NonDeduced<T>>& micro) noexcept {
-    const Vec3<T> h = normalized_or(n1 * field.frame.z - n2 * outgoing, surface.n);
-    const Surface<T> facet = tilted(surface, h);
-    const LightField<T> bent = refract(field, facet, outgoing, n1, n2);
-    const T cos_i = std::abs(dot(h, field.frame.z)), cos_t = std::abs(dot(h, outgoing));
-    const T gamma = n2 * cos_t - n1 * cos_i;
-    if (std::abs(gamma) < T(1e-6) * n2) return bent;
-    const Mat2<T> p_out = surface_projection(bent.frame, facet);
-    return convolve_angular(bent, refraction_cov<T>(micro, p_out, cos_i, cos_t, n1, n2));
+    return scatter(field, refraction_pair(field.frame, surface, outgoing, n1, n2, micro));
 }
 
 }  // namespace covariance
