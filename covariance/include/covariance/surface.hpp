@@ -55,17 +55,37 @@ template <std::floating_point T>
     return inverse(p);
 }
 
+/// A unit normal and its change per displacement along t1 and t2 of a surface: the surface's own,
+/// or that of a bump or normal map over it (normal_field.hpp).
+template <std::floating_point T = double>
+struct NormalField {
+    Vec3<T> n{0, 0, 1};
+    Vec3<T> d1, d2;  ///< dn/ds1, dn/ds2, in 1/scene unit, orthogonal to n
+};
+
+/// The normals of the geometry itself: dn_j = kappa_1j t1 + kappa_2j t2.
+template <std::floating_point T>
+[[nodiscard]] constexpr NormalField<T> normal_field(const Surface<T>& s) noexcept {
+    return {s.n, s.curvature.xx * s.t1 + s.curvature.xy * s.t2,
+            s.curvature.xy * s.t1 + s.curvature.yy * s.t2};
+}
+
 /// G: change of slope per tangent displacement between world axes and axes that turn with n.
 template <std::floating_point T>
-[[nodiscard]] constexpr Mat2<T> surface_curvature(const Frame<T>& f,
-                                                  const Surface<NonDeduced<T>>& s) noexcept {
+[[nodiscard]] constexpr Mat2<T> surface_curvature(
+    const Frame<T>& f, const NormalField<NonDeduced<T>>& normals) noexcept {
     // (n x d) x Z = d (n.Z) - n (d.Z)
-    const T nx = dot(f.x, s.n), ny = dot(f.y, s.n), nz = dot(f.z, s.n);
-    const Vec3<T> d1 = s.curvature.xx * s.t1 + s.curvature.xy * s.t2;
-    const Vec3<T> d2 = s.curvature.xy * s.t1 + s.curvature.yy * s.t2;
+    const Vec3<T>&n = normals.n, &d1 = normals.d1, &d2 = normals.d2;
+    const T nx = dot(f.x, n), ny = dot(f.y, n), nz = dot(f.z, n);
     const T z1 = dot(f.z, d1), z2 = dot(f.z, d2);
     return {nz * dot(f.x, d1) - z1 * nx, nz * dot(f.x, d2) - z2 * nx,  //
             nz * dot(f.y, d1) - z1 * ny, nz * dot(f.y, d2) - z2 * ny};
+}
+
+template <std::floating_point T>
+[[nodiscard]] constexpr Mat2<T> surface_curvature(const Frame<T>& f,
+                                                  const Surface<NonDeduced<T>>& s) noexcept {
+    return surface_curvature(f, normal_field(s));
 }
 
 /// The shape operator with principal curvatures limited to 1/(2 footprint), where the first order
