@@ -112,6 +112,26 @@ RC_GTEST_PROP(LocalLobe, OfANarrowLobeAtItsPeakIsTheGlobalOneWithoutAWindow, ())
     RC_ASSERT(trace(local.window) < 0.01 * trace(pair.lobe));
 }
 
+RC_GTEST_PROP(LocalLobe, OfANarrowRefractionIsTheGlobalOneWithoutAWindow, ()) {
+    const Surface flat;
+    const double a = draw(0.002, 0.01), n1 = draw(1, 1.6), n2 = draw(1, 1.6), eta = n1 / n2;
+    const Frame in = draw_frame(-draw_leaving(flat.n));
+    const double c1 = -in.z.z;
+    RC_PRE(std::abs(n1 - n2) > 0.1 && eta * eta * (1 - c1 * c1) < 0.95);
+    const double c2 = std::sqrt(1 - eta * eta * (1 - c1 * c1));
+    const Vec3 out = eta * in.z + (eta * c1 - c2) * flat.n;
+    // The distribution of the facets that refract, the sharp part of a rough border's BTDF.
+    const auto facets = [&](const auto& wi, const auto& wo) {
+        const auto x = n1 * wi.x + n2 * wo.x, y = n1 * wi.y + n2 * wo.y, z = n1 * wi.z + n2 * wo.z;
+        const auto e = a * a * z * z + x * x + y * y;
+        return z * z * z * z / (e * e);
+    };
+    const auto pair = refraction_pair(in, flat, out, n1, n2, micro_ggx(a, a));
+    const auto local = local_lobe(facets, same, in, pair, Sym2::diagonal(1e9, 1e9));
+    RC_ASSERT(distance(local.pair.lobe, pair.lobe) < 0.01);
+    RC_ASSERT(trace(local.window) < 0.01 * trace(congruence(pair.lobe, inverse(pair.map))));
+}
+
 RC_GTEST_PROP(LocalLobe, IsPositiveAndNeverSharperThanThePeak, ()) {
     const Surface flat;
     const Rough f{draw(0.02, 1), draw(0.02, 1)};

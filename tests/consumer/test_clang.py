@@ -1,0 +1,36 @@
+"""The covariance library alone, its example and all of its tests with the other compiler, warnings as errors."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+SOURCE = pathlib.Path(os.environ["COVTRACE_SOURCE"])
+CMAKE = os.environ.get("CMAKE", "cmake")
+CLANG = shutil.which("clang++-14") or shutil.which("clang++")
+
+
+@unittest.skipUnless(CLANG, "clang++ is not installed")
+class Clang(unittest.TestCase):
+    def test_builds_and_passes_alone(self):
+        with tempfile.TemporaryDirectory(prefix="covtrace-clang-") as folder:
+
+            def run(*command):
+                done = subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True)
+                self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout}\n{done.stderr}")
+                return done.stdout
+
+            # Nothing of the renderer beside it.
+            shutil.copytree(SOURCE / "covariance", pathlib.Path(folder) / "covariance")
+            run(CMAKE, "-G", "Ninja", "-S", "covariance", "-B", "build", f"-DCMAKE_CXX_COMPILER={CLANG}")
+            run(CMAKE, "--build", "build", "-j", "2")
+            tested = run("ctest", "--test-dir", "build", "--output-on-failure")
+            self.assertIn("100% tests passed", tested)
+            self.assertIn("covariance.oracle", tested)
+            self.assertIn("covariance.example", tested)
+
+
+if __name__ == "__main__":
+    unittest.main()
