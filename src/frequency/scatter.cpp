@@ -31,7 +31,7 @@ LightField through_diffuse(const LightField& entered, const ScatterPoint& p, con
                            BrdfCovariance rule) {
     const cov::Sym2<double>& texture = is_transmission(lobe.kind) ? p.transmittance : p.reflectance;
     const auto left = [&](const LightField& field) {
-        return cov::add_texture(cov::reflect_diffuse(field, p.surface, p.outgoing), texture);
+        return cov::add_texture(cov::reflect_diffuse(field, p.facing, p.outgoing), texture);
     };
     if (rule == BrdfCovariance::global || !(lobe.border_eta > 0)) return left(entered);
     // Below a coat the diffuse lobe is a product: what the coat lets in from each direction, and
@@ -40,7 +40,7 @@ LightField through_diffuse(const LightField& entered, const ScatterPoint& p, con
         const auto direction = cov::jet_direction<double>(
             to_local(p.shading, f.x), to_local(p.shading, f.y), to_local(p.shading, f.z));
         return cov::local_lobe<double>(1 - border_reflectance(lobe, abs(direction.z)),
-                                       cov::cosine_window<double>(f, p.surface.n));
+                                       cov::cosine_window<double>(f, p.facing.n));
     };
     const LightField field = left(cov::add_angular_window(entered, transmission(entered.frame)));
     return cov::add_angular_window(field, transmission(field.frame));
@@ -51,12 +51,11 @@ LightField through_glossy(const LightField& entered, const ScatterPoint& p, cons
     const auto micro = cov::micro_ggx<double>(lobe.alpha_x, lobe.alpha_y);
     const cov::GlossyPair<double> pair =
         lobe.kind == LobeKind::glossy_reflection
-            ? cov::reflection_pair<double>(entered.frame, p.surface, p.outgoing, micro)
-            : cov::refraction_pair<double>(entered.frame, p.surface, p.outgoing, lobe.eta, 1,
-                                           micro);
+            ? cov::reflection_pair<double>(entered.frame, p.facing, p.outgoing, micro)
+            : cov::refraction_pair<double>(entered.frame, p.facing, p.outgoing, lobe.eta, 1, micro);
     if (rule == BrdfCovariance::global) {
         const bool wide = std::max(lobe.alpha_x, lobe.alpha_y) > kWideLobe;
-        return cov::scatter(wide ? cov::add_cosine_window(entered, p.surface) : entered, pair);
+        return cov::scatter(wide ? cov::add_cosine_window(entered, p.facing) : entered, pair);
     }
     const auto value = [&](const cov::JetVec3<double>& wi, const cov::JetVec3<double>& wo) {
         return lobe_function(lobe, wo, wi);
@@ -64,16 +63,16 @@ LightField through_glossy(const LightField& entered, const ScatterPoint& p, cons
     const auto local = [&](const cov::Vec3<double>& v) { return to_local(p.shading, v); };
     return cov::scatter(
         entered, cov::local_lobe<double>(value, local, entered.frame, pair,
-                                         cov::cosine_window<double>(entered.frame, p.surface.n)));
+                                         cov::cosine_window<double>(entered.frame, p.facing.n)));
 }
 
 LightField through_lobe(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe,
                         BrdfCovariance rule) {
     switch (lobe.kind) {
         case LobeKind::specular_reflection:
-            return cov::reflect_specular<double>(entered, p.surface, p.outgoing);
+            return cov::reflect_specular<double>(entered, p.facing, p.outgoing);
         case LobeKind::specular_transmission:
-            return cov::refract<double>(entered, p.surface, p.outgoing, lobe.eta, 1);
+            return cov::refract<double>(entered, p.facing, p.outgoing, lobe.eta, 1);
         case LobeKind::diffuse_reflection:
         case LobeKind::diffuse_transmission:
             return through_diffuse(entered, p, lobe, rule);
@@ -90,6 +89,8 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
     const DifferentialGeometry d = scene.geometry.differential(vertex.hit);
     ScatterPoint p;
     p.surface = {d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}};
+    p.normals = cov::normal_field(p.surface);
+    p.facing = p.surface;
     p.motion = {d.velocity, d.angular_velocity};
     p.shading = vertex.shading;
     p.outgoing = vertex.wo;
@@ -108,16 +109,16 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
 
 LightField scatter(const LightField& arriving, const ScatterPoint& point, const LobeShares& lobes,
                    BrdfCovariance rule) {
-    const LightField entered =
-        cov::surface_enter(cov::motion_enter(arriving, point.motion), point.surface);
+    const LightField entered = cov::surface_enter<double>(cov::motion_enter(arriving, point.motion),
+                                                          point.surface, point.normals);
     LightField sum{{}, cov::frame_along<double>(point.outgoing)};
     double total = 0;
     for (int i = 0; i < lobes.count; ++i) {
         const LobeShare& lobe = lobes.lobes[size_t(i)];
         const double weight = luminance(lobe.value);
         if (!(weight > 0)) continue;
-        const LightField left =
-            cov::surface_exit(through_lobe(entered, point, lobe, rule), point.surface);
+        const LightField left = cov::surface_exit<double>(through_lobe(entered, point, lobe, rule),
+                                                          point.surface, point.normals);
         total += weight;
         const double share = weight / total;
         const auto aligned = cov::rotate_to(cov::motion_exit(left, point.motion), sum.frame);

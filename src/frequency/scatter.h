@@ -11,7 +11,11 @@ namespace covtrace {
 
 /// A recorded vertex as the operators see it, gathered once for all the light that meets there.
 struct ScatterPoint {
-    covariance::Surface<double> surface;
+    covariance::Surface<double> surface;  ///< the geometry, on which positions are measured
+    /// What the BSDF faces: the normals of a bump or normal map over the geometry, if there is one,
+    /// and the surface with its tangents turned along.
+    covariance::NormalField<double> normals;
+    covariance::Surface<double> facing;
     covariance::Motion<double> motion;
     /// Spectra of the textures that scale the diffuse lobes, along surface.t1, t2, 1 / scene
     /// unit^2.

@@ -25,8 +25,7 @@ class Package(unittest.TestCase):
         return done.stdout
 
     def configure(self, source, build, *arguments):
-        compiler = f"-DCMAKE_CXX_COMPILER={COMPILER}"
-        self.run_command(CMAKE, "-G", "Ninja", "-S", source, "-B", build, compiler, *arguments)
+        self.run_command(CMAKE, "-G", "Ninja", "-S", source, "-B", build, f"-DCMAKE_CXX_COMPILER={COMPILER}", *arguments)
 
     def consume(self, *arguments):
         self.configure(CONSUMER, "consumer", *arguments)
