@@ -12,15 +12,15 @@ namespace {
 std::atomic<long> allocations{0};
 }  // namespace
 
-void* operator new(std::size_t size) {
+[[gnu::noinline]] void* operator new(std::size_t size) {
     ++allocations;
     if (void* p = std::malloc(size)) return p;
     throw std::bad_alloc();
 }
-void operator delete(void* p) noexcept {
+[[gnu::noinline]] void operator delete(void* p) noexcept {
     std::free(p);
 }
-void operator delete(void* p, std::size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept {
     std::free(p);
 }
 
@@ -53,6 +53,12 @@ static_assert(noexcept(travel(LightField<float>{}, 1)));
 static_assert(noexcept(surface_exit(LightField<float>{}, Surface<float>{})));
 static_assert(noexcept(reflect_glossy(LightField<float>{}, Surface<float>{}, Vec3<float>{},
                                       Sym2<float>{})));
+static_assert(noexcept(scatter_in_volume(LightField<float>{}, Vec3<float>{}, 0.5F)));
+static_assert(noexcept(pass_through(LightField<float>{}, Surface<float>{}, Sym2<float>{})));
+static_assert(roughened(Sym2<double>::diagonal(1, 2), Sym2<double>{}) ==
+              Sym2<double>::diagonal(1, 2));
+static_assert(absorb(SymmetricMatrix5<double>{}, {0, 0, 0, 0, 0}) == SymmetricMatrix5<double>{});
+static_assert(edge_visibility(0.0) == 1 && edge_visibility(1.0) == 0);
 static_assert(noexcept(sample_count(SymmetricMatrix5<float>{}, sensor_window<float>(), 1)));
 
 template <typename T>
@@ -75,6 +81,16 @@ TYPED_TEST(Contract, WholePathWithTheCallersVectorsAllocatesNothing) {
     f = surface_enter(f, floor);
     const LightField<T> glossy = reflect_glossy(f, floor, up, micro_ggx(T(0.3), T(0.3)));
     const LightField<T> clear = refract_glossy(f, floor, down, 1, T(1.5), phong_cov(T(50)));
+    const auto brdf = [](const auto& wi, const auto& wo) { return wi.z * wo.z; };
+    const auto world = [](const Vec3<T>& v) { return v; };
+    const auto pair = reflection_pair(f.frame, floor, up, micro_ggx(T(0.3), T(0.3)));
+    const LightField<T> own =
+        scatter(f, local_lobe(brdf, world, f.frame, pair, cosine_window(f.frame, floor.n)));
+    const auto bumps = normal_field(floor, MapSlopes<T>{T(0.1), 0, {1, 2, 3, 4}});
+    const LightField<T> bent = surface_exit(
+        reflect_specular(surface_enter(f, floor, bumps), shading_surface(floor, bumps), up), floor,
+        bumps);
+    const LightField<T> fog = scatter_in_volume(pass_through(f, floor, {}), up, T(0.5));
     f = reflect_diffuse(f, floor, up);
     f = merge(rotate_to(f, glossy.frame), 2, glossy, 1);
     f = add_texture(f, checkerboard_texture(T(0.1), T(0.2), T(0.01)));
@@ -91,7 +107,7 @@ TYPED_TEST(Contract, WholePathWithTheCallersVectorsAllocatesNothing) {
 
     EXPECT_EQ(allocations, before);
     EXPECT_TRUE(added);
-    EXPECT_TRUE(is_finite(clear.sigma));
+    for (const LightField<T>& each : {clear, own, bent, fog}) EXPECT_TRUE(is_finite(each.sigma));
     EXPECT_GT(q.xx, 0);
     EXPECT_GT(count.total, 0);
     EXPECT_GE(count.integration, 1);

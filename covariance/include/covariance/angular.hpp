@@ -18,6 +18,7 @@ template <std::floating_point T>
     return s;
 }
 
+/// The same on a light field, whose frame stays.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> add_angular_window(
     const LightField<T>& field, const Sym2<NonDeduced<T>>& window) noexcept {
@@ -85,6 +86,7 @@ template <std::floating_point T>
     return s;
 }
 
+/// The same on a light field, whose frame stays.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> convolve_angular(const LightField<T>& field,
                                                        const Sym2<NonDeduced<T>>& kernel) noexcept {

@@ -115,6 +115,7 @@ template <std::floating_point T, typename Camera>
     return result;
 }
 
+/// The same on a light field; the result has left its frame for the sensor's axes.
 template <std::floating_point T, typename Camera>
 [[nodiscard]] constexpr SymmetricMatrix5<T> sensor(const LightField<T>& field,
                                                    const Camera& camera) noexcept {
@@ -143,6 +144,7 @@ template <std::floating_point T>
     return s;
 }
 
+/// The same on a light field, whose frame stays.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> lens(const LightField<T>& field,
                                            NonDeduced<T> focal_length) noexcept {

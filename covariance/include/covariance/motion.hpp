@@ -80,6 +80,7 @@ template <std::floating_point T>
     return motion.at_rest() ? s : change_time(s, drift<T>(incoming, motion));
 }
 
+/// The same on a light field, with its own frame as the arriving one.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> motion_enter(const LightField<T>& field,
                                                    const Motion<NonDeduced<T>>& motion) noexcept {
@@ -96,6 +97,7 @@ template <std::floating_point T>
     return motion_enter(s, outgoing, {-motion.velocity, -motion.angular_velocity});
 }
 
+/// The same on a light field, with its own frame as the leaving one.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> motion_exit(const LightField<T>& field,
                                                   const Motion<NonDeduced<T>>& motion) noexcept {

@@ -82,6 +82,7 @@ template <std::floating_point T>
             nz * dot(f.y, d1) - z1 * ny, nz * dot(f.y, d2) - z2 * ny};
 }
 
+/// The same for the normals of the geometry, in 1/scene unit.
 template <std::floating_point T>
 [[nodiscard]] constexpr Mat2<T> surface_curvature(const Frame<T>& f,
                                                   const Surface<NonDeduced<T>>& s) noexcept {

@@ -28,11 +28,13 @@ struct Mat2 {
     friend constexpr bool operator==(const Mat2&, const Mat2&) noexcept = default;
 };
 
+/// The transpose.
 template <std::floating_point T>
 [[nodiscard]] constexpr Mat2<T> transpose(const Mat2<T>& a) noexcept {
     return {a.m00, a.m10, a.m01, a.m11};
 }
 
+/// The determinant.
 template <std::floating_point T>
 [[nodiscard]] constexpr T det(const Mat2<T>& a) noexcept {
     return a.m00 * a.m11 - a.m01 * a.m10;
@@ -66,11 +68,13 @@ struct Sym2 {
     friend constexpr bool operator==(const Sym2&, const Sym2&) noexcept = default;
 };
 
+/// The determinant.
 template <std::floating_point T>
 [[nodiscard]] constexpr T det(const Sym2<T>& a) noexcept {
     return a.xx * a.yy - a.xy * a.xy;
 }
 
+/// The sum of the diagonal: of both eigenvalues.
 template <std::floating_point T>
 [[nodiscard]] constexpr T trace(const Sym2<T>& a) noexcept {
     return a.xx + a.yy;

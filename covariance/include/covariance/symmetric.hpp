@@ -83,6 +83,7 @@ struct SymmetricMatrix5 {
                                      const SymmetricMatrix5&) noexcept = default;
 };
 
+/// The sum of the diagonal, whose entries differ in unit: a size for tolerances.
 template <std::floating_point T>
 [[nodiscard]] constexpr T trace(const SymmetricMatrix5<T>& s) noexcept {
     return s(0, 0) + s(1, 1) + s(2, 2) + s(3, 3) + s(4, 4);

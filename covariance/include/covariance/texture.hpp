@@ -35,6 +35,7 @@ template <std::floating_point T>
     return s;
 }
 
+/// The same on a light field, whose frame stays.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> add_texture(const LightField<T>& field,
                                                   const Sym2<NonDeduced<T>>& texture) noexcept {

@@ -42,16 +42,19 @@ struct Vec3 {
     friend constexpr bool operator==(const Vec3&, const Vec3&) noexcept = default;
 };
 
+/// The scalar product.
 template <std::floating_point T>
 [[nodiscard]] constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) noexcept {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/// The vector product, right-handed.
 template <std::floating_point T>
 [[nodiscard]] constexpr Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) noexcept {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/// The Euclidean length.
 template <std::floating_point T>
 [[nodiscard]] T length(const Vec3<T>& a) noexcept {
     return std::sqrt(dot(a, a));
