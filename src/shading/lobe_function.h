@@ -60,4 +60,14 @@ auto lobe_function(const LobeShare& lobe, V wo, V wi) {
              half_length2);
 }
 
+/// The part of a glossy lobe's `lobe_function` that is not a function of the half vector: masking,
+/// and with it the cosine of wi.
+template <typename V>
+auto masked_cosine(const LobeShare& lobe, V wo, V wi) {
+    using std::abs;
+    wo.z = abs(wo.z);
+    wi.z = abs(wi.z);
+    return Ggx{lobe.alpha_x, lobe.alpha_y}.g2_over_cos_o(wo, wi);
+}
+
 }  // namespace covtrace
