@@ -19,13 +19,16 @@ cov::Sym2<double> texture_spectrum(const RenderScene& scene, TextureId id, const
 /// A lobe as wide as this feels the horizon: the cosine limits it as it limits a diffuse surface.
 constexpr float kWideLobe = 0.4f;
 
-LightField through_lobe(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe) {
+LightField through_lobe(const LightField& entered, const cov::Emitter<double>& emitter,
+                        const ScatterPoint& p, const LobeShare& lobe) {
     const cov::Vec3<double> out = p.outgoing;
     switch (lobe.kind) {
         case LobeKind::diffuse_reflection:
-            return cov::add_texture(cov::reflect_diffuse(entered, p.surface, out), p.reflectance);
+            return cov::add_texture(cov::reflect_diffuse(entered, p.surface, out, emitter),
+                                    p.reflectance);
         case LobeKind::diffuse_transmission:
-            return cov::add_texture(cov::reflect_diffuse(entered, p.surface, out), p.transmittance);
+            return cov::add_texture(cov::reflect_diffuse(entered, p.surface, out, emitter),
+                                    p.transmittance);
         case LobeKind::specular_reflection:
             return cov::reflect_specular(entered, p.surface, out);
         case LobeKind::specular_transmission:
@@ -63,7 +66,8 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
     return p;
 }
 
-LightField scatter(const LightField& arriving, const ScatterPoint& point, const LobeShares& lobes) {
+LightField scatter(const LightField& arriving, const cov::Emitter<double>& emitter,
+                   const ScatterPoint& point, const LobeShares& lobes) {
     const LightField entered =
         cov::surface_enter(cov::motion_enter(arriving, point.motion), point.surface);
     LightField sum{{}, cov::frame_along<double>(point.outgoing)};
@@ -73,7 +77,7 @@ LightField scatter(const LightField& arriving, const ScatterPoint& point, const 
         const double weight = luminance(lobe.value);
         if (!(weight > 0)) continue;
         const LightField left =
-            cov::surface_exit(through_lobe(entered, point, lobe), point.surface);
+            cov::surface_exit(through_lobe(entered, emitter, point, lobe), point.surface);
         total += weight;
         const double share = weight / total;
         const auto aligned = cov::rotate_to(cov::motion_exit(left, point.motion), sum.frame);
