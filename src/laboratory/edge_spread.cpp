@@ -9,22 +9,25 @@
 
 namespace covtrace {
 
-EdgeSpread edge_spread(const LocalField& field, Vec2 direction, double reach, uint32_t samples,
-                       uint64_t seed) {
+EdgeSpread edge_spread(const LocalField& field, const LocalField& without, Vec2 direction,
+                       double reach, uint32_t samples, uint64_t seed) {
     constexpr uint32_t kBins = 200;
     const uint32_t per_bin = std::max(1u, samples / kBins);
     std::vector<double> profile(kBins);
     parallel_for(kBins, [&](int64_t bin) {
-        double sum = 0;
+        double sum = 0, whole = 0;
         for (uint32_t i = 0; i < per_bin; ++i) {
             Sampler sampler(seed, int(bin), 1, i);
             const Sampler::CameraSample u = sampler.camera();
             const Vec2 lens = square_to_disc(u.lens);
             const double s = reach * (2 * (double(bin) + u.film.x) / kBins - 1);
-            sum += field({s * direction.x, s * direction.y, lens.x, lens.y, double(u.time) - 0.5},
-                         uint32_t(bin) * per_bin + i);
+            const SensorOffset p{s * direction.x, s * direction.y, lens.x, lens.y,
+                                 double(u.time) - 0.5};
+            const uint32_t index = uint32_t(bin) * per_bin + i;
+            sum += field(p, index);
+            whole += without ? without(p, index) : 1;
         }
-        profile[size_t(bin)] = sum / per_bin;
+        profile[size_t(bin)] = sum / whole;
     });
     constexpr uint32_t kEnd = kBins / 10;
     EdgeSpread e;

@@ -13,9 +13,10 @@ struct EdgeSpread {
 };
 
 /// Samples the field across an edge, from -reach to reach pixels along the unit `direction`,
-/// integrated over lens and shutter. Both ends must lie on the plateaus beside the edge: they are
-/// the mean of the outer tenths. `samples` estimates in all; same result for any number of threads.
-EdgeSpread edge_spread(const LocalField& field, Vec2 direction, double reach, uint32_t samples,
-                       uint64_t seed);
+/// integrated over lens and shutter, and divides it by `without` the edge (none: by 1), since light
+/// that varies by itself is no blur. Both ends must then lie on plateaus: they are the mean of the
+/// outer tenths. `samples` estimates in all; same result for any number of threads.
+EdgeSpread edge_spread(const LocalField& field, const LocalField& without, Vec2 direction,
+                       double reach, uint32_t samples, uint64_t seed);
 
 }  // namespace covtrace

@@ -14,6 +14,7 @@ struct Case {
     Vec2 across;   ///< the edge, in pixels
     double reach;  ///< to the plateaus, pixels
     std::string text;
+    std::string without{};  ///< the same without the occluder; empty where there is none
 };
 
 std::string scene(const char* depth, const char* from, const char* camera,
@@ -51,18 +52,26 @@ std::string half_plane(double z, double edge) {
         z, edge);
 }
 
+Case penumbra(const char* name, Vec2 across, double reach, const char* light,
+              const std::string& occluder) {
+    return {name, across, reach, scene("1", kBelow, kDown, lit_floor(light, occluder)),
+            scene("1", kBelow, kDown, lit_floor(light, ""))};
+}
+
 const Case kPenumbrae[]{
-    {"penumbra of a half plane", {1, 0}, 14, scene("1", kBelow, kDown, lit_floor(kDisc, half_plane(1, 0)))},
-    {"wider penumbra", {1, 0}, 30, scene("1", kBelow, kDown, lit_floor(kDisc, half_plane(2, 0)))},
-    {"penumbra of a large square light", {1, 0}, 30,
-     scene("1", kBelow, kDown,
-           lit_floor("Shape \"trianglemesh\" \"point3 P\" [ -1 -1 4  1 -1 4  1 1 4  -1 1 4 ] "
-                     "\"integer indices\" [ 0 2 1 0 3 2 ]",
-                     half_plane(1, 0)))},
-    {"penumbra across the diagonal", {0.70710678f, 0.70710678f}, 14,
-     scene("1", kBelow, kDown, lit_floor(kDisc, "Rotate 45 0 0 1\n" + half_plane(1, 0)))},
-    {"penumbra a deviation beside its middle", {1, 0}, 16,
-     scene("1", kBelow, kDown, lit_floor(kDisc, half_plane(1, 0.083)))},
+    penumbra("penumbra of a half plane", {1, 0}, 14, kDisc, half_plane(1, 0)),
+    penumbra("wider penumbra", {1, 0}, 30, kDisc, half_plane(2, 0)),
+    penumbra("penumbra of a large square light", {1, 0}, 30,
+             "Shape \"trianglemesh\" \"point3 P\" [ -1 -1 4  1 -1 4  1 1 4  -1 1 4 ] \"integer "
+             "indices\" [ 0 2 1 0 3 2 ]",
+             half_plane(1, 0)),
+    penumbra("penumbra across the diagonal", {0.70710678f, 0.70710678f}, 14, kDisc,
+             "Rotate 45 0 0 1\n" + half_plane(1, 0)),
+    penumbra("penumbra near its bright end", {1, 0}, 16, kDisc, half_plane(1, 0.083)),
+    penumbra("penumbra near its dark end", {1, 0}, 16, kDisc, half_plane(1, -0.083)),
+    penumbra("penumbra of a ball", {1, 0}, 14, kDisc,
+             "Translate 1 0 1\nShape \"sphere\" \"float radius\" 1"),
+    penumbra("contact shadow", {1, 0}, 8, kDisc, half_plane(0.5, 0)),
 };
 
 /// One border of the texture, at x = edge; checks of 50 units.
@@ -100,7 +109,11 @@ double bandwidth_ratio(const Table& table, const Case& c) {
     const auto s = covariance::preintegrate(table.predicted_over_lens_and_shutter().sigma);
     const double d0 = c.across.x, d1 = c.across.y;
     const double variance = s.xx * d0 * d0 + 2 * s.xy * d0 * d1 + s.yy * d1 * d1;
-    const EdgeSpread e = edge_spread(table.radiance(), c.across, c.reach, 200 * 256, 3);
+    std::optional<Table> lit;
+    LocalField without;
+    if (!c.without.empty()) without = lit.emplace(c.without).radiance();
+    const EdgeSpread e = edge_spread(table.radiance(), without, c.across, c.reach, 200 * 256, 3);
+    fmt::print("DEBUG {} {} | low {} high {} dev {} c {}\n", s.xx, s.yy, e.low, e.high, e.deviation, e.centre);
     return std::sqrt(variance) * 2 * kPiD * e.deviation;
 }
 

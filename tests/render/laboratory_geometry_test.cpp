@@ -86,7 +86,7 @@ Shape "trianglemesh" "point3 P" [ -9 -9 -2  9 -9 -2  9 9 -2  -9 9 -2 ] "integer 
      camera("0 0 -4  0 0 0  0 1 0", kPinhole) +
          moving("Translate 0.6 0.3 0.5", std::string("Rotate 30 0 1 0\n") + kChecked)},
     {"rotating textured plane", 0,
-     camera("0 0 -4  0.6 0.3 0  0 1 0", kPinhole) + moving("Rotate 40 0 0 1", kChecked)},
+     camera("0 0 -4  1.6 0.8 0  0 1 0", kPinhole) + moving("Rotate 10 0 0 1", kChecked)},
     {"moving camera", 0,
      moving_camera("Translate 0.2 0 0.4\nRotate 4 0 1 0", "0 0 -4  0 0 0  0 1 0", kPinhole) +
          kChecked},

@@ -72,7 +72,7 @@ TEST(LaboratoryMeasure, TheSpreadOfABlurredEdgeIsThatOfItsBlur) {
         const double s = 0.8 * p[0] + 0.6 * p[1];
         return 0.3 + 0.5 * std::erfc(-(s - centre) / (std::sqrt(2.0) * blur));
     };
-    const EdgeSpread e = edge_spread(field, {0.8f, 0.6f}, 10, 20000, 0);
+    const EdgeSpread e = edge_spread(field, nullptr, {0.8f, 0.6f}, 10, 20000, 0);
     EXPECT_NEAR(e.deviation, blur, 0.01);
     EXPECT_NEAR(e.centre, centre, 0.01);
     EXPECT_NEAR(e.low, 0.3, 1e-3);
