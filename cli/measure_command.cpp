@@ -38,15 +38,14 @@ struct PixelComparison {
     covariance::SymmetricMatrix5<double> predicted;
     double luminance = 0;  ///< of the central ray
     MeasuredSpectrum measured;
-    std::array<bool, 5> resolved{};
 
     double bandwidth(const covariance::SymmetricMatrix5<double>& s, size_t axis) const {
         return std::sqrt(std::max(0.0, s(axis, axis)));
     }
-    /// Predicted over measured, where the axis carries a bandwidth that can be measured.
+    /// Predicted over measured, where the measurement stands out of its noise.
     std::optional<double> ratio(size_t axis) const {
         const double m = bandwidth(measured.sigma, axis);
-        if (!resolved[axis] || !(m > 0)) return std::nullopt;
+        if (!(m > 3 * measured.bandwidth_error[axis])) return std::nullopt;
         return bandwidth(predicted, axis) / m;
     }
 };
@@ -73,7 +72,6 @@ nlohmann::json to_json(const PixelComparison& c, const MeasureArguments& a) {
                         {"window", c.measured.window},
                         {"luminance_predicted", c.luminance},
                         {"luminance_measured", c.measured.mean},
-                        {"resolved", c.resolved},
                         {"bandwidth_error", c.measured.bandwidth_error}};
     for (size_t i = 0; i < 5; ++i) {
         const auto ratio = c.ratio(i);
@@ -137,11 +135,9 @@ int measure_pixel(MeasureArguments a) {
     const PathReplay replay(scene, occluders ? &*occluders : nullptr);
     const PathCovariance predicted =
         predict(scene, replay, rays, depth, a.paths, a.measure.seed);
-    PixelComparison c{pixel, {width, height}, predicted.sigma, predicted.weight, {}, {}};
+    PixelComparison c{pixel, {width, height}, predicted.sigma, predicted.weight, {}};
+    a.measure.axes = sensor_axes(scene);
     c.measured = measure(radiance_field(scene, rays, depth, a.measure.seed), a.measure);
-    for (size_t i = 0; i < 5; ++i)
-        c.resolved[i] = is_resolved(c.predicted(i, i), i, a.measure) ||
-                        is_resolved(c.measured.sigma(i, i), i, a.measure);
     if (!(c.measured.mean > 0) && !a.quiet)
         say("warning: no light reaches pixel {},{}: nothing was measured\n", pixel[0], pixel[1]);
     if (a.json)
@@ -162,7 +158,7 @@ void add_measure(CLI::App& app, Invocation& invocation) {
         ->required()
         ->option_text("x,y");
     c->add_option("--samples", a->measure.samples,
-                  "radiance samples of the measurement (default 131072, twice)")
+                  "radiance samples of the measurement (default 262144, twice)")
         ->check(CLI::Range(1u << 12, 1u << 28))
         ->option_text("N");
     c->add_option("--paths", a->paths, "covariance paths of the prediction (default 1024)")

@@ -18,6 +18,8 @@ constexpr double kFourPiSq = 4 * double(kPi) * double(kPi);
 constexpr double kFilterSharpness = 2;  // c
 constexpr size_t kBatches = 8;          // even, for two halves
 constexpr int kIterations = 16;
+/// Where the window starts, as a part of the widest one: narrower than any filter.
+constexpr double kNarrowest = 1.0 / 300;
 /// The window grows at most twofold and shrinks at most fourfold at a time: far from its fixed
 /// point a single one tells little. As factors on the inverse of its covariance.
 constexpr double kWiden = 0.25, kNarrow = 16;
@@ -35,22 +37,27 @@ double normal_quantile(double p) {
 
 /// Sums of the field times Hermite polynomials up to the third order.
 struct HermiteSums {
-    double mean = 0;
+    uint64_t count = 0;
+    double sum = 0;
     Matrix second;
     std::array<Matrix, 5> third;  ///< third[k](i, j)
 
-    void add(double g, const std::array<double, 5>& z) {
-        mean += g;
+    void add(double g, const std::array<double, 5>& z, const std::array<bool, 5>& axes) {
+        ++count;
+        sum += g;
         for (size_t i = 0; i < 5; ++i)
             for (size_t j = i; j < 5; ++j) {
+                if (!axes[i] || !axes[j]) continue;
                 const double he2 = z[i] * z[j] - (i == j);
                 second(i, j) += g * he2;
                 for (size_t k = 0; k < 5; ++k)
-                    third[k](i, j) += g * (he2 * z[k] - (i == k) * z[j] - (j == k) * z[i]);
+                    if (axes[k])
+                        third[k](i, j) += g * (he2 * z[k] - (i == k) * z[j] - (j == k) * z[i]);
             }
     }
     void add(const HermiteSums& o) {
-        mean += o.mean;
+        count += o.count;
+        sum += o.sum;
         second = second + o.second;
         for (size_t k = 0; k < 5; ++k) third[k] = third[k] + o.third[k];
     }
@@ -59,7 +66,8 @@ using Batches = std::array<HermiteSums, kBatches>;
 
 /// The window as a linear map: offset = sum_k z_k axis_k, axes orthogonal.
 struct Window {
-    SymmetricEigen precision;  ///< of the inverse covariance
+    /// Of the inverse covariance. Axes that are not looked at stay their own eigenvectors, in place.
+    SymmetricEigen precision;
 
     SensorOffset offset(const std::array<double, 5>& z) const {
         SensorOffset p{};
@@ -85,7 +93,7 @@ struct Window {
 };
 
 Batches sample_window(const LocalField& field, const Window& window, uint32_t samples,
-                      uint64_t seed) {
+                      const MeasureOptions& o) {
     constexpr uint32_t kChunk = 512;
     const uint32_t chunks = std::max(1u, samples / uint32_t(kBatches) / kChunk);
     std::vector<HermiteSums> sums(kBatches * chunks);
@@ -94,14 +102,14 @@ Batches sample_window(const LocalField& field, const Window& window, uint32_t sa
         for (uint32_t i = 0; i < kChunk; ++i) {
             // Every batch is a point set of its own, so that the batches are independent.
             const uint32_t in_batch = uint32_t(uint64_t(c) % chunks) * kChunk + i;
-            Sampler sampler(seed, int(batch), 0, in_batch);
+            Sampler sampler(o.seed, int(batch), 0, in_batch);
             const Sampler::CameraSample u = sampler.camera();
             const std::array<double, 5> z{normal_quantile(u.film.x), normal_quantile(u.film.y),
                                           normal_quantile(u.lens.x), normal_quantile(u.lens.y),
                                           normal_quantile(u.time)};
             const double g =
                 field(window.offset(z), uint32_t(batch) * chunks * kChunk + in_batch);
-            if (std::isfinite(g)) sums[size_t(c)].add(g, z);
+            if (std::isfinite(g)) sums[size_t(c)].add(g, z, o.axes);
         }
     });
     Batches batches;
@@ -125,17 +133,41 @@ Matrix whitened_bandwidth(const Batches& batches, size_t left_out = kBatches) {
     std::array<HermiteSums, 2> half;
     for (size_t b = 0; b < kBatches; ++b)
         if (b != left_out) half[b % 2].add(batches[b]);
-    if (!(half[0].mean > 0) || !(half[1].mean > 0)) return {};
+    if (!(half[0].sum > 0) || !(half[1].sum > 0)) return {};
     std::array<Matrix, 2> second;
     for (size_t h = 0; h < 2; ++h)
-        second[h] = map_eigenvalues((1 / half[h].mean) * half[h].second, [](double l) {
+        second[h] = map_eigenvalues((1 / half[h].sum) * half[h].second, [](double l) {
             return l < 0 ? l / std::max(1 + l, 1e-3) : l;
         });
     Matrix square = symmetric_product(second[0], second[1]);
     for (size_t k = 0; k < 5; ++k)
-        square = square + symmetric_product((1 / half[0].mean) * half[0].third[k],
-                                            (1 / half[1].mean) * half[1].third[k]);
+        square = square + symmetric_product((1 / half[0].sum) * half[0].third[k],
+                                            (1 / half[1].sum) * half[1].third[k]);
     return map_eigenvalues(square, [](double l) { return std::sqrt(std::max(l, 0.0)); });
+}
+
+double bandwidth(const Matrix& sigma, size_t axis) {
+    return std::sqrt(std::max(0.0, sigma(axis, axis)));
+}
+
+/// The result in the sensor's units, and its error by the jackknife.
+MeasuredSpectrum evaluate(const Window& window, const Batches& batches) {
+    MeasuredSpectrum result;
+    const auto sigma_without = [&](size_t left_out) {
+        return (1 / kFourPiSq) * window.unwhiten(whitened_bandwidth(batches, left_out));
+    };
+    result.sigma = sigma_without(kBatches);
+    for (const HermiteSums& b : batches) result.mean += b.sum / (double(b.count) * kBatches);
+    std::array<Matrix, kBatches> without;
+    for (size_t b = 0; b < kBatches; ++b) without[b] = sigma_without(b);
+    for (size_t axis = 0; axis < 5; ++axis) {
+        result.window[axis] = window.deviation(axis);
+        double mean = 0, spread = 0;
+        for (const Matrix& s : without) mean += bandwidth(s, axis) / kBatches;
+        for (const Matrix& s : without) spread += sqr(bandwidth(s, axis) - mean);
+        result.bandwidth_error[axis] = std::sqrt(spread * (kBatches - 1) / kBatches);
+    }
+    return result;
 }
 
 }  // namespace
@@ -146,53 +178,24 @@ bool is_resolved(double variance, size_t axis, const MeasureOptions& o) {
 }
 
 MeasuredSpectrum measure(const LocalField& field, const MeasureOptions& o) {
-    const auto inverse_square = [](double s) { return 1 / (s * s); };
-    const Matrix widest = Matrix::diagonal(
-        inverse_square(o.widest_pixels), inverse_square(o.widest_pixels),
-        inverse_square(o.widest_lens), inverse_square(o.widest_lens),
-        inverse_square(o.widest_shutter));
-    // Narrower than any filter, and then out to where the field first bends.
-    constexpr double kNarrowest = 0.05;  // pixels; on lens and shutter of their widest
-    Matrix precision = Matrix::diagonal(
-        inverse_square(kNarrowest), inverse_square(kNarrowest),
-        inverse_square(kNarrowest * o.widest_lens), inverse_square(kNarrowest * o.widest_lens),
-        inverse_square(kNarrowest * o.widest_shutter));
-    Window window;
-    MeasuredSpectrum result;
-    for (int i = 0; i <= kIterations; ++i) {
-        const bool last = i == kIterations;
-        window = {symmetric_eigen(precision)};
-        const Batches batches =
-            sample_window(field, window, last ? o.samples : o.samples / kIterations, o.seed);
-        const Matrix l = whitened_bandwidth(batches);
-        if (!last) {
-            const Matrix next = map_eigenvalues(l, [](double e) {
-                return std::clamp(kFilterSharpness * kFilterSharpness * e, kWiden, kNarrow);
-            });
-            precision = window.unwhiten(next) + widest;
-            continue;
-        }
-        double sum = 0, count = 0;
-        for (const HermiteSums& b : batches) sum += b.mean;
-        const uint32_t per_batch = std::max(1u, o.samples / uint32_t(kBatches) / 512) * 512;
-        count = double(per_batch) * kBatches;
-        result.mean = sum / count;
-        result.sigma = (1 / kFourPiSq) * window.unwhiten(l);
-        for (size_t axis = 0; axis < 5; ++axis) result.window[axis] = window.deviation(axis);
-        std::array<std::array<double, kBatches>, 5> without{};
-        for (size_t b = 0; b < kBatches; ++b) {
-            const Matrix s = (1 / kFourPiSq) * window.unwhiten(whitened_bandwidth(batches, b));
-            for (size_t axis = 0; axis < 5; ++axis)
-                without[axis][b] = std::sqrt(std::max(0.0, s(axis, axis)));
-        }
-        for (size_t axis = 0; axis < 5; ++axis) {
-            double mean = 0, spread = 0;
-            for (const double v : without[axis]) mean += v / kBatches;
-            for (const double v : without[axis]) spread += sqr(v - mean);
-            result.bandwidth_error[axis] = std::sqrt(spread * (kBatches - 1) / kBatches);
-        }
+    const std::array<double, 5> deviations{o.widest_pixels, o.widest_pixels, o.widest_lens,
+                                           o.widest_lens, o.widest_shutter};
+    Matrix widest, precision;
+    for (size_t axis = 0; axis < 5; ++axis) {
+        widest(axis, axis) = 1 / sqr(deviations[axis]);
+        precision(axis, axis) = widest(axis, axis) / sqr(kNarrowest);
     }
-    return result;
+    Window window;
+    for (int i = 0; i < kIterations; ++i) {
+        window = {symmetric_eigen(precision)};
+        const Matrix l =
+            whitened_bandwidth(sample_window(field, window, o.samples / kIterations, o));
+        precision = widest + window.unwhiten(map_eigenvalues(l, [](double e) {
+                        return std::clamp(sqr(kFilterSharpness) * e, kWiden, kNarrow);
+                    }));
+    }
+    window = {symmetric_eigen(precision)};
+    return evaluate(window, sample_window(field, window, o.samples, o));
 }
 
 }  // namespace covtrace

@@ -25,8 +25,10 @@
 namespace covtrace {
 
 struct MeasureOptions {
-    uint32_t samples = 1u << 17;  ///< of the final window; all earlier ones together take as many
+    uint32_t samples = 1u << 18;  ///< of the final window; all earlier ones together take as many
     uint64_t seed = 0;
+    /// Those along which the field may vary; on the others its noise is not taken for variation.
+    std::array<bool, 5> axes{true, true, true, true, true};
     /// Standard deviations of the largest window: pixels, lens radii, shutter intervals. The last
     /// two keep four deviations inside the aperture and the shutter.
     double widest_pixels = 15, widest_lens = 0.25, widest_shutter = 0.125;

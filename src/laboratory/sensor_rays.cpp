@@ -1,5 +1,7 @@
 #include "laboratory/sensor_rays.h"
 
+#include <algorithm>
+
 namespace covtrace {
 
 namespace {
@@ -19,6 +21,20 @@ Ray SensorRays::operator()(const SensorOffset& offset) const {
                   g.down * (g.lens_radius * float(offset[3]));
     ray.direction = normalize(focus - ray.origin);
     return ray;
+}
+
+std::array<bool, 5> sensor_axes(const RenderScene& scene) {
+    const SceneDescription& d = scene.description;
+    const auto& shapes = scene.geometry.shapes();
+    const bool moves =
+        d.camera.camera_to_world.is_animated() ||
+        std::any_of(shapes.begin(), shapes.end(),
+                    [](const PlacedShape& s) { return s.object_to_world.is_animated(); }) ||
+        std::any_of(d.instances.begin(), d.instances.end(), [](const InstanceDescription& i) {
+            return i.instance_to_world.is_animated();
+        });
+    const bool lens = scene.camera.has_lens();
+    return {true, true, lens, lens, moves};
 }
 
 }  // namespace covtrace
