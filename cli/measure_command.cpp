@@ -133,8 +133,7 @@ int measure_pixel(MeasureArguments a) {
     const SensorRays rays(scene, {float(pixel[0]) + 0.5f, float(pixel[1]) + 0.5f});
     const int depth = a.max_depth.value_or(scene.description.max_depth);
     const PathReplay replay(scene, occluders ? &*occluders : nullptr);
-    const PathCovariance predicted =
-        predict(scene, replay, rays, depth, a.paths, a.measure.seed);
+    const PathCovariance predicted = predict(scene, replay, rays, depth, a.paths, a.measure.seed);
     PixelComparison c{pixel, {width, height}, predicted.sigma, predicted.weight, {}};
     a.measure.axes = sensor_axes(scene);
     c.measured = measure(radiance_field(scene, rays, depth, a.measure.seed), a.measure);
@@ -175,8 +174,7 @@ void add_measure(CLI::App& app, Invocation& invocation) {
         ->check(CLI::NonNegativeNumber)
         ->option_text("N");
     c->add_option_function<std::string>(
-         "--seed",
-         [a](const std::string& text) { a->measure.seed = parse_seed("--seed", text); },
+         "--seed", [a](const std::string& text) { a->measure.seed = parse_seed("--seed", text); },
          "seed of all random numbers (default 0)")
         ->option_text("N");
     c->add_option("--threads", a->threads, "worker threads (default: all cores)")

@@ -1,5 +1,5 @@
-/// Kinds of options that several commands have. Wrong values throw Error(usage), whose message begins
-/// with the option's name.
+/// Kinds of options that several commands have. Wrong values throw Error(usage), whose message
+/// begins with the option's name.
 #pragma once
 
 #include <CLI/CLI.hpp>

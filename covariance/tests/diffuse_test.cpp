@@ -106,12 +106,13 @@ RC_GTEST_PROP(NearEmitter, DoesNotDependOnTheFrames, ()) {
     const Sym2& k = floor.curvature;
     turned.curvature = congruence(k, Mat2{c, -d, d, c});
     const auto reflected = [&](const Surface& s, const Field& f) {
-        const Field left = reflect_diffuse(surface_enter(f, s), s, floor.n,
-                                           {normal, static_cast<double>(2)});
+        const Field left =
+            reflect_diffuse(surface_enter(f, s), s, floor.n, {normal, static_cast<double>(2)});
         return surface_exit(left, s).sigma;
     };
     const Field other = rotate_to(light, draw_frame_like(light.frame));
-    RC_ASSERT(distance(reflected(floor, light), reflected(turned, other), largest(light.sigma)) < 1e-7);
+    RC_ASSERT(distance(reflected(floor, light), reflected(turned, other), largest(light.sigma)) <
+              1e-7);
 }
 
 RC_GTEST_PROP(NearEmitter, IsPositiveSemiDefiniteWithoutAngles, ()) {

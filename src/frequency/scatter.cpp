@@ -19,6 +19,15 @@ cov::Sym2<double> texture_spectrum(const RenderScene& scene, TextureId id, const
 /// A lobe as wide as this feels the horizon: the cosine limits it as it limits a diffuse surface.
 constexpr float kWideLobe = 0.4f;
 
+/// Reflection by GGX's slopes, which are distributed like cov::tailed_lobe.
+LightField reflect_ggx(const LightField& entered, const ScatterPoint& p,
+                       const cov::Sym2<double>& micro) {
+    const LightField left = cov::reflect_specular<double>(entered, p.surface, p.outgoing);
+    const auto h = cov::half_vector<double>(entered.frame.z, p.outgoing, p.surface.n);
+    const auto lobe = cov::glossy_lobe<double>(left.frame, p.surface, h, micro);
+    return cov::convolve_angular(left, cov::tailed_lobe(lobe, left.sigma.angular()));
+}
+
 LightField through_lobe(const LightField& entered, const cov::Emitter<double>& emitter,
                         const ScatterPoint& p, const LobeShare& lobe) {
     const cov::Vec3<double> out = p.outgoing;
@@ -41,7 +50,7 @@ LightField through_lobe(const LightField& entered, const cov::Emitter<double>& e
     const LightField windowed = wide ? cov::add_cosine_window(entered, p.surface) : entered;
     const auto micro = cov::micro_ggx<double>(lobe.alpha_x, lobe.alpha_y);
     return lobe.kind == LobeKind::glossy_reflection
-               ? cov::reflect_glossy(windowed, p.surface, out, micro)
+               ? reflect_ggx(windowed, p, micro)
                : cov::refract_glossy(windowed, p.surface, out, lobe.eta, 1.0, micro);
 }
 

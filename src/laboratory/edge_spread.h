@@ -7,8 +7,9 @@
 namespace covtrace {
 
 struct EdgeSpread {
-    double centre = 0;     ///< of the edge, pixels from the central ray along the direction
-    double deviation = 0;  ///< of the line spread function, pixels; its bandwidth is 1/(2 pi deviation)
+    double centre = 0;  ///< of the edge, pixels from the central ray along the direction
+    double deviation =
+        0;  ///< of the line spread function, pixels; its bandwidth is 1/(2 pi deviation)
     double low = 0, high = 0;  ///< of the field at the two ends
 };
 

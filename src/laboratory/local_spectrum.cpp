@@ -66,7 +66,8 @@ using Batches = std::array<HermiteSums, kBatches>;
 
 /// The window as a linear map: offset = sum_k z_k axis_k, axes orthogonal.
 struct Window {
-    /// Of the inverse covariance. Axes that are not looked at stay their own eigenvectors, in place.
+    /// Of the inverse covariance. Axes that are not looked at stay their own eigenvectors, in
+    /// place.
     SymmetricEigen precision;
 
     SensorOffset offset(const std::array<double, 5>& z) const {
@@ -107,8 +108,7 @@ Batches sample_window(const LocalField& field, const Window& window, uint32_t sa
             const std::array<double, 5> z{normal_quantile(u.film.x), normal_quantile(u.film.y),
                                           normal_quantile(u.lens.x), normal_quantile(u.lens.y),
                                           normal_quantile(u.time)};
-            const double g =
-                field(window.offset(z), uint32_t(batch) * chunks * kChunk + in_batch);
+            const double g = field(window.offset(z), uint32_t(batch) * chunks * kChunk + in_batch);
             if (std::isfinite(g)) sums[size_t(c)].add(g, z, o.axes);
         }
     });
@@ -122,8 +122,7 @@ Matrix symmetric_product(const Matrix& a, const Matrix& b) {
     Matrix r;
     for (size_t i = 0; i < 5; ++i)
         for (size_t j = i; j < 5; ++j)
-            for (size_t k = 0; k < 5; ++k)
-                r(i, j) += 0.5 * (a(i, k) * b(k, j) + b(i, k) * a(k, j));
+            for (size_t k = 0; k < 5; ++k) r(i, j) += 0.5 * (a(i, k) * b(k, j) + b(i, k) * a(k, j));
     return r;
 }
 
@@ -136,9 +135,8 @@ Matrix whitened_bandwidth(const Batches& batches, size_t left_out = kBatches) {
     if (!(half[0].sum > 0) || !(half[1].sum > 0)) return {};
     std::array<Matrix, 2> second;
     for (size_t h = 0; h < 2; ++h)
-        second[h] = map_eigenvalues((1 / half[h].sum) * half[h].second, [](double l) {
-            return l < 0 ? l / std::max(1 + l, 1e-3) : l;
-        });
+        second[h] = map_eigenvalues((1 / half[h].sum) * half[h].second,
+                                    [](double l) { return l < 0 ? l / std::max(1 + l, 1e-3) : l; });
     Matrix square = symmetric_product(second[0], second[1]);
     for (size_t k = 0; k < 5; ++k)
         square = square + symmetric_product((1 / half[0].sum) * half[0].third[k],
@@ -191,8 +189,8 @@ MeasuredSpectrum measure(const LocalField& field, const MeasureOptions& o) {
         const Matrix l =
             whitened_bandwidth(sample_window(field, window, o.samples / kIterations, o));
         precision = widest + window.unwhiten(map_eigenvalues(l, [](double e) {
-                        return std::clamp(sqr(kFilterSharpness) * e, kWiden, kNarrow);
-                    }));
+            return std::clamp(sqr(kFilterSharpness) * e, kWiden, kNarrow);
+        }));
     }
     window = {symmetric_eigen(precision)};
     return evaluate(window, sample_window(field, window, o.samples, o));

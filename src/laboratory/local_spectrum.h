@@ -42,8 +42,8 @@ struct MeasuredSpectrum {
     double mean = 0;                 ///< of the field in the window; 0: nothing was measured
 };
 
-/// Whether a bandwidth bends the field within the widest window: slower variation along that axis is
-/// below what lens, shutter or filter can tell from none, and not measured well.
+/// Whether a bandwidth bends the field within the widest window: slower variation along that axis
+/// is below what lens, shutter or filter can tell from none, and not measured well.
 bool is_resolved(double variance, size_t axis, const MeasureOptions& options);
 
 /// Same result for any number of threads.

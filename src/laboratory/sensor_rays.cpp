@@ -17,8 +17,8 @@ Ray SensorRays::operator()(const SensorOffset& offset) const {
     if (!(g.lens_radius > 0)) return ray;
     const Vec3 focus =
         ray.origin + ray.direction * (g.focal_distance / dot(ray.direction, g.forward));
-    ray.origin += g.right * (g.lens_radius * float(offset[2])) +
-                  g.down * (g.lens_radius * float(offset[3]));
+    ray.origin +=
+        g.right * (g.lens_radius * float(offset[2])) + g.down * (g.lens_radius * float(offset[3]));
     ray.direction = normalize(focus - ray.origin);
     return ray;
 }
@@ -30,9 +30,8 @@ std::array<bool, 5> sensor_axes(const RenderScene& scene) {
         d.camera.camera_to_world.is_animated() ||
         std::any_of(shapes.begin(), shapes.end(),
                     [](const PlacedShape& s) { return s.object_to_world.is_animated(); }) ||
-        std::any_of(d.instances.begin(), d.instances.end(), [](const InstanceDescription& i) {
-            return i.instance_to_world.is_animated();
-        });
+        std::any_of(d.instances.begin(), d.instances.end(),
+                    [](const InstanceDescription& i) { return i.instance_to_world.is_animated(); });
     const bool lens = scene.camera.has_lens();
     return {true, true, lens, lens, moves};
 }

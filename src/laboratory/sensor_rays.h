@@ -27,8 +27,8 @@ class SensorRays {
     Vec2 film_;
 };
 
-/// The axes along which any two rays see different things: not the lens of a pinhole camera, not the
-/// shutter where nothing moves.
+/// The axes along which any two rays see different things: not the lens of a pinhole camera, not
+/// the shutter where nothing moves.
 std::array<bool, 5> sensor_axes(const RenderScene& scene);
 
 }  // namespace covtrace

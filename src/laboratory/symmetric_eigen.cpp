@@ -23,7 +23,8 @@ SymmetricEigen symmetric_eigen(const covariance::SymmetricMatrix5<double>& s) {
             for (size_t q = p + 1; q < 5; ++q) {
                 if (a[p][q] == 0) continue;
                 const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-                const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::hypot(theta, 1.0));
+                const double t =
+                    std::copysign(1.0, theta) / (std::abs(theta) + std::hypot(theta, 1.0));
                 const double c = 1 / std::hypot(t, 1.0), d = t * c;
                 for (size_t k = 0; k < 5; ++k) {
                     const double kp = a[k][p], kq = a[k][q];

@@ -18,8 +18,8 @@ SymmetricEigen symmetric_eigen(const covariance::SymmetricMatrix5<double>& s);
 
 /// The symmetric matrix with the same eigenvectors and the eigenvalues f(lambda).
 template <typename F>
-covariance::SymmetricMatrix5<double> map_eigenvalues(
-    const covariance::SymmetricMatrix5<double>& s, F f) {
+covariance::SymmetricMatrix5<double> map_eigenvalues(const covariance::SymmetricMatrix5<double>& s,
+                                                     F f) {
     const SymmetricEigen e = symmetric_eigen(s);
     covariance::SymmetricMatrix5<double> r;
     for (size_t k = 0; k < 5; ++k) {

@@ -61,7 +61,8 @@ void expect_within(double first, double last, double bound, const char* name) {
             const std::string where = fmt::format("{} at {:.0f} degrees", light.name, angle);
             SCOPED_TRACE(where);
             const Table table(fmt::format(fmt::runtime(kDown), light.at(angle)));
-            const Ratios r = compare(table.predicted(64).sigma, measure(table.radiance(), options), options);
+            const Ratios r =
+                compare(table.predicted(64).sigma, measure(table.radiance(), options), options);
             worst.add(where, r);
             EXPECT_TRUE(r.within(bound)) << r.text;
         }

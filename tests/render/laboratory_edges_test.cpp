@@ -36,7 +36,7 @@ AreaLightSource "diffuse" "rgb L" [ 50 50 50 ]
 {}
 AttributeEnd
 Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
-Shape "trianglemesh" "point3 P" [ -5 -5 0  5 -5 0  5 5 0  -5 5 0 ] "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ -3 -3 0  3 -3 0  3 3 0  -3 3 0 ] "integer indices" [ 0 1 2 0 2 3 ]
 Material "diffuse" "rgb reflectance" [ 0 0 0 ]
 {})",
                        light, occluder);
@@ -47,7 +47,7 @@ const char* kDisc = "Translate 0 0 4\nRotate 180 0 1 0\nShape \"disk\" \"float r
 /// Half a plane x > edge at the height z.
 std::string half_plane(double z, double edge) {
     return fmt::format(
-        "Shape \"trianglemesh\" \"point3 P\" [ {1} -5 {0}  5 -5 {0}  5 5 {0}  {1} 5 {0} ] "
+        "Shape \"trianglemesh\" \"point3 P\" [ {1} -3 {0}  3 -3 {0}  3 3 {0}  {1} 3 {0} ] "
         "\"integer indices\" [ 0 1 2 0 2 3 ]",
         z, edge);
 }
@@ -92,13 +92,19 @@ const char* kLens =
 
 const Case kBorders[]{
     {"border out of focus", {1, 0}, 14, scene("1", kAhead, kLens, border(0, 0))},
-    {"border out of focus, half a radius beside it", {1, 0}, 14,
+    {"border out of focus, half a radius beside it",
+     {1, 0},
+     14,
      scene("1", kAhead, kLens, border(0.09, 0))},
-    {"border in motion", {1, 0}, 14,
+    {"border in motion",
+     {1, 0},
+     14,
      scene("1", kAhead, R"("perspective" "float fov" 20)",
            "ActiveTransform EndTime\nTranslate 0.6 0 0\nActiveTransform All\nTranslate -0.3 0 0\n" +
                border(0, 0))},
-    {"border out of focus and in motion", {1, 0}, 16,
+    {"border out of focus and in motion",
+     {1, 0},
+     16,
      scene("1", kAhead, kLens,
            "ActiveTransform EndTime\nTranslate 0.4 0 0\nActiveTransform All\nTranslate -0.2 0 0\n" +
                border(0, 0))},
@@ -113,7 +119,6 @@ double bandwidth_ratio(const Table& table, const Case& c) {
     LocalField without;
     if (!c.without.empty()) without = lit.emplace(c.without).radiance();
     const EdgeSpread e = edge_spread(table.radiance(), without, c.across, c.reach, 200 * 256, 3);
-    fmt::print("DEBUG {} {} | low {} high {} dev {} c {}\n", s.xx, s.yy, e.low, e.high, e.deviation, e.centre);
     return std::sqrt(variance) * 2 * kPiD * e.deviation;
 }
 

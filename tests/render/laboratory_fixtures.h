@@ -56,8 +56,8 @@ class Table {
             const PathVertex& end = record.vertices[size_t(mirrors)];
             if (!(end.direct > 0) || !end.seen_sharply) continue;
             const auto spot = scene_.textures.uv_covariance(
-                scene_.materials.textures(end.material).reflectance,
-                {end.hit.uv, end.hit.position}, end.hit.dpdu, end.hit.dpdv, 0);
+                scene_.materials.textures(end.material).reflectance, {end.hit.uv, end.hit.position},
+                end.hit.dpdu, end.hit.dpdv, 0);
             return Probe{(*replay_)(record).sigma, probe_field(scene_, rays_, record, spot)};
         }
         return std::nullopt;

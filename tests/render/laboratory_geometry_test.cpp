@@ -50,7 +50,8 @@ std::string moving_camera(const char* motion, const char* look_at, const char* p
 }
 
 const char* kPinhole = R"("perspective" "float fov" 20)";
-const char* kLens = R"("perspective" "float fov" 20 "float lensradius" 0.3 "float focaldistance" 3)";
+const char* kLens =
+    R"("perspective" "float fov" 20 "float lensradius" 0.3 "float focaldistance" 3)";
 
 const Case kCases[]{
     {"plane", 0, camera("0 0 -4  0 0 0  0 1 0", kPinhole) + kChecked},
@@ -66,15 +67,15 @@ const Case kCases[]{
          "Translate 0 0 -6\nRotate 10 1 0 0\n" + kChecked},
     {"concave mirror", 1,
      camera("0 0 -2  0.3 0.2 0  0 1 0", R"("perspective" "float fov" 10)") +
-         block(std::string(kMirror) + "Translate 0 0 -8\nShape \"sphere\" \"float radius\" 8 \"float zmin\" 7 \"float zmax\" 8") +
+         block(std::string(kMirror) + "Translate 0 0 -8\nShape \"sphere\" \"float radius\" 8 "
+                                      "\"float zmin\" 7 \"float zmax\" 8") +
          "Translate 0 0 -3\nRotate 180 1 0 0\n" + kChecked},
     {"convex mirror at 60 degrees", 1,
      camera("-4 0 -2.3  0 0.1 0  0 1 0", R"("perspective" "float fov" 4)") +
          block(std::string(kMirror) + "Translate 0 0 5\nShape \"sphere\" \"float radius\" 5") +
          "Translate 4 0 -2.3\nRotate 100 0 1 0\n" + kChecked},
     {"slab of glass", 2,
-     camera("1 0.5 -8  0 0 0  0 1 0", kPinhole) +
-         block(R"(Material "dielectric" "float eta" 1.5
+     camera("1 0.5 -8  0 0 0  0 1 0", kPinhole) + block(R"(Material "dielectric" "float eta" 1.5
 Shape "trianglemesh" "point3 P" [ -9 -9 -5  9 -9 -5  9 9 -5  -9 9 -5 ] "integer indices" [ 0 2 1 0 3 2 ]
 Shape "trianglemesh" "point3 P" [ -9 -9 -2  9 -9 -2  9 9 -2  -9 9 -2 ] "integer indices" [ 0 1 2 0 2 3 ])") +
          kChecked},
@@ -94,8 +95,9 @@ Shape "trianglemesh" "point3 P" [ -9 -9 -2  9 -9 -2  9 9 -2  -9 9 -2 ] "integer 
     {"tilted plane out of focus", 0,
      camera("0 0 -4  0 0 0  0 1 0", kLens) + "Rotate 40 1 1 0\n" + kChecked},
     {"orthographic camera with a lens", 0,
-     camera("0 0 -4  0 0 0  0 1 0",
-            R"("orthographic" "float screenwindow" [-1 1 -1 1] "float lensradius" 0.3 "float focaldistance" 3)") +
+     camera(
+         "0 0 -4  0 0 0  0 1 0",
+         R"("orthographic" "float screenwindow" [-1 1 -1 1] "float lensradius" 0.3 "float focaldistance" 3)") +
          "Rotate 30 1 0 0\n" + kChecked},
     {"moving mirror", 1,
      camera("0 0 -3  0 0 0  0 1 0", kPinhole) +

@@ -36,8 +36,9 @@ std::string rough(const char* roughness, const char* shape = nullptr) {
         "Material \"conductor\" \"rgb reflectance\" [ 0.9 0.9 0.9 ] \"bool remaproughness\" false "
         "{}\n{}",
         roughness,
-        shape ? shape
-              : R"(Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "point2 uv" [ 0 0 1 0 1 1 0 1 ] "integer indices" [ 0 1 2 0 2 3 ])");
+        shape
+            ? shape
+            : R"(Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "point2 uv" [ 0 0 1 0 1 1 0 1 ] "integer indices" [ 0 1 2 0 2 3 ])");
 }
 /// A disc at `place` that faces the origin, turned about y by `angle`.
 std::string disc(const char* place, double angle, double radius) {
@@ -65,18 +66,19 @@ const Case kCases[]{
     {"rough convex mirror",
      scene("-2 0 3.4641", kWide, disc("2 0 3.4641", 210, 0.05),
            rough(kRough1, "Translate 0 0 -5\nShape \"sphere\" \"float radius\" 5"))},
-    {"rough mirror of a moving light",
-     scene("-2 0 3.4641", kWide,
-           "ActiveTransform EndTime\nTranslate 0.5 0.8 0\nActiveTransform All\nTranslate -0.25 -0.4 0\n" +
-               disc("2 0 3.4641", 210, 0.05),
-           rough(kRough1))},
+    {"rough mirror of a moving light", scene("-2 0 3.4641", kWide,
+                                             "ActiveTransform EndTime\nTranslate 0.5 0.8 "
+                                             "0\nActiveTransform All\nTranslate -0.25 -0.4 0\n" +
+                                                 disc("2 0 3.4641", 210, 0.05),
+                                             rough(kRough1))},
     {"rough mirror out of focus",
      scene("-2 0 3.4641",
            R"("perspective" "float fov" 30 "float lensradius" 0.4 "float focaldistance" 2)",
            disc("2 0 3.4641", 210, 0.05), rough(kRough1))},
     {"rough glass",
-     scene("0 0 4", kWide, "Translate 0 0 -4\nShape \"disk\" \"float radius\" 0.05",
-           R"(Material "dielectric" "float eta" 1.5 "bool remaproughness" false "float roughness" 0.15
+     scene(
+         "0 0 4", kWide, "Translate 0 0 -4\nShape \"disk\" \"float radius\" 0.05",
+         R"(Material "dielectric" "float eta" 1.5 "bool remaproughness" false "float roughness" 0.15
 Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indices" [ 0 1 2 0 2 3 ])")},
 };
 

@@ -35,17 +35,17 @@ template <std::floating_point T>
     return dot(emitter_normal, emitter_normal) > 0 ? T(4) : T(3);
 }
 
-/// 4 pi^2 times the squared bandwidth, on the tangent plane, of the light that a small emitter at the
-/// unit distance casts; `falloff_peak` right below the emitter.
+/// 4 pi^2 times the squared bandwidth, on the tangent plane, of the light that a small emitter at
+/// the unit distance casts; `falloff_peak` right below the emitter.
 ///
 /// Along the direction in which H = Hess E / E is highest it is
 ///
 ///     max(peak (1 - sin^2(theta)/2), 1.5 (h - peak)),
 ///
-/// what a Gaussian window of the size that follows from it sees of E, from the peak through the point
-/// of inflection, where h alone would tell nothing, out to the flank. Across it, -h and the change of
-/// h along the first direction within that window, the third derivative, root mean square.
-/// Within 15 % on the bandwidth of the exact kernel (docs/decisions/0010).
+/// what a Gaussian window of the size that follows from it sees of E, from the peak through the
+/// point of inflection, where h alone would tell nothing, out to the flank. Across it, -h and the
+/// change of h along the first direction within that window, the third derivative, root mean
+/// square. Within 15 % on the bandwidth of the exact kernel (docs/decisions/0010).
 ///
 /// Shapes   symmetric 2x2 along receiver.t1, t2. Frame the arriving one; z from the emitter.
 /// Errors   none; the emission cosine counts as at least 0.05.
@@ -70,8 +70,7 @@ template <std::floating_point T>
                           second * a2 * a2 - peak - 2 * peak * a2 * b2};
     const Eigen2<T> e = eigen(hessian);
     const T sin_sq = std::min(a1 * a1 + a2 * a2, T(1));
-    const T high =
-        std::max(std::max(peak * (1 - sin_sq / 2), -e.high), T(1.5) * (e.high - peak));
+    const T high = std::max(std::max(peak * (1 - sin_sq / 2), -e.high), T(1.5) * (e.high - peak));
     // Third derivative, twice across and once along: 4n(n + 1) a, and the Hessian's part times b.
     const T along_a = e.x * a1 + e.y * a2, along_b = e.x * b1 + e.y * b2;
     const T third = second * along_a - peak * along_b;
@@ -81,14 +80,15 @@ template <std::floating_point T>
             high * e.y * e.y + low * e.x * e.x};
 }
 
-/// The angular window of diffuse reflection for light from an emitter: what `cosine_window` is where
-/// nothing but the direction of the light is known.
+/// The angular window of diffuse reflection for light from an emitter: what `cosine_window` is
+/// where nothing but the direction of the light is known.
 ///
 /// Frames   incoming: of the arriving light; `light`: its angular covariance there, between
 /// `surface_enter` and the slice. The weight of a direction, (1 + u^2 + v^2)^-2, has the tails of
 /// `tailed_lobe`. A receiver of curvature k turns against the light by k s beside the s/D of the
 /// emitter; only the part of the parallax, (1 + |k| D)^-2, gets the falloff.
-/// Errors   none; cosines below 0.05 count as 0.05 where the light is distant, below 0.02 elsewhere.
+/// Errors   none; cosines below 0.05 count as 0.05 where the light is distant, below 0.02
+/// elsewhere.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> diffuse_window(const Frame<T>& incoming,
                                      const Surface<NonDeduced<T>>& receiver,
@@ -99,7 +99,7 @@ template <std::floating_point T>
     if (!std::isfinite(emitter.distance)) return seen;
     // A displacement s changes the slope by P s / D: the window of the falloff F is P^-T F P^-1.
     const Sym2<T> falloff =
-        (1 / four_pi_sq<T>) * falloff_bandwidth(incoming, receiver, emitter.normal);
+        (1 / four_pi_sq<T>)*falloff_bandwidth(incoming, receiver, emitter.normal);
     const Sym2<T> near = congruence(falloff, inverse_projection(incoming, receiver));
     const Eigen2<T> k = eigen(receiver.curvature);
     const T turn = 1 + std::max(std::abs(k.high), std::abs(k.low)) * emitter.distance;
