@@ -50,6 +50,20 @@ TEST(LaboratoryMeasure, AnExponentialFlankHasTheBandwidthOfItsSecondDerivative) 
     EXPECT_NEAR(std::sqrt(m.sigma(0, 0)) * 2 * kPiD / k, 1, 0.15);
 }
 
+/// The window settles where the edge begins to show in it: the Gaussian of what is measured has about
+/// the distance of the edge as its deviation, twice that of the rule for edges.
+TEST(LaboratoryMeasure, ASharpEdgeReadsByItsDistance) {
+    for (const double distance : {1.0, 3.0}) {
+        const LocalField field = [&](const SensorOffset& p, uint32_t) {
+            return p[0] < distance ? 1.0 : 0.0;
+        };
+        const MeasuredSpectrum m = measure(field, {.samples = 1u << 16});
+        const double deviation = 1 / (2 * kPiD * std::sqrt(m.sigma(0, 0)));
+        EXPECT_GT(deviation, 0.8 * distance);
+        EXPECT_LT(deviation, 1.3 * distance);
+    }
+}
+
 /// Estimates with a relative standard deviation of 2: the mean survives, the stated error covers
 /// it. False-alarm rate of the last check 6e-5 per axis (four deviations), two axes.
 TEST(LaboratoryMeasure, NoiseIsNotTakenForBandwidth) {
