@@ -50,8 +50,8 @@ TEST(LaboratoryMeasure, AnExponentialFlankHasTheBandwidthOfItsSecondDerivative) 
     EXPECT_NEAR(std::sqrt(m.sigma(0, 0)) * 2 * kPiD / k, 1, 0.15);
 }
 
-/// The window settles where the edge begins to show in it: the Gaussian of what is measured has about
-/// the distance of the edge as its deviation, twice that of the rule for edges.
+/// The window settles where the edge begins to show in it: the Gaussian of what is measured has
+/// about the distance of the edge as its deviation, twice that of the rule for edges.
 TEST(LaboratoryMeasure, ASharpEdgeReadsByItsDistance) {
     for (const double distance : {1.0, 3.0}) {
         const LocalField field = [&](const SensorOffset& p, uint32_t) {
