@@ -8,12 +8,21 @@
 #include <string>
 #include <utility>
 
+#include "core/error.h"
+
 namespace covtrace::cli {
 
 template <typename... Args>
 void say(fmt::format_string<Args...> format, Args&&... args) {
     const std::string text = fmt::format(format, std::forward<Args>(args)...);
     std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+inline void print_warnings(const Warnings& warnings) {
+    for (const Warning& w : warnings) {
+        const std::string where = w.where.to_string();
+        say("warning: {}{}{}\n", where, where.empty() ? "" : ": ", w.text);
+    }
 }
 
 }  // namespace covtrace::cli

@@ -12,6 +12,7 @@
 
 #include "cli/commands.h"
 #include "cli/message.h"
+#include "cli/options.h"
 #include "cli/progress_line.h"
 #include "cli/values.h"
 #include "core/parallel.h"
@@ -163,13 +164,6 @@ void keep_layers(Image& image, const std::vector<std::string>& names) {
     });
 }
 
-void print_warnings(const Warnings& warnings) {
-    for (const Warning& w : warnings) {
-        const std::string where = w.where.to_string();
-        say("warning: {}{}{}\n", where, where.empty() ? "" : ": ", w.text);
-    }
-}
-
 int render_scene(RenderArguments a, const Invocation& invocation) {
     const ThreadLimit threads(a.threads);
     if (!a.seconds.empty()) a.options.seconds = parse_duration("--time", a.seconds);
@@ -222,29 +216,6 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
         say("{}: {:.4g} samples per pixel in {:.1f} s\n", output.string(),
             result.statistics.samples_per_pixel, monitor.elapsed());
     return result.complete ? 0 : 6;
-}
-
-template <typename T>
-void add_choice(CLI::App* c, const std::string& name, T& value,
-                const std::map<std::string, T>& choices, const std::string& help) {
-    std::string names;
-    for (const auto& [choice, unused] : choices) names += (names.empty() ? "" : "|") + choice;
-    const auto choose = [name, &value, choices, names](const std::string& text) {
-        const auto it = choices.find(text);
-        if (it == choices.end())
-            throw Error(ErrorKind::usage, name + ": '" + text + "' is none of " + names);
-        value = it->second;
-    };
-    c->add_option_function<std::string>(name, choose, help)->option_text(names);
-}
-
-template <typename T>
-void add_positive(CLI::App* c, const std::string& name, std::optional<T>& value, double most,
-                  const std::string& help) {
-    const auto parse = [name, &value, most](const std::string& text) {
-        value = static_cast<T>(parse_positive(name, text, most));
-    };
-    c->add_option_function<std::string>(name, parse, help)->option_text("N");
 }
 
 }  // namespace

@@ -8,10 +8,27 @@ namespace cov = covariance;
 
 namespace {
 
+/// Shows every side about the same disc.
+bool is_ball(const SourceSpectrum& s) {
+    return s.kind == SourceSpectrum::Kind::area && s.k11 > 0 && s.k22 > 0;
+}
+
+/// A ball sends out the light of a disc through its centre that faces the receiver: what the
+/// receiver sees changes with its distance from there, not from the point of the surface.
+LightField ball_field(const SourceSpectrum& s, Vec3 travel, double cap) {
+    const double moment = 0.5 * (double(s.s11) + s.s22);
+    const LightField disc = cov::area_source<double>(cov::Sym2<double>::diagonal(moment, moment),
+                                                     cov::frame_along<double>(travel), cap);
+    const cov::Motion<double> motion{s.velocity, s.angular_velocity};
+    const double depth = std::max(0.0f, dot(s.tangent.z, travel)) / (0.5 * (double(s.k11) + s.k22));
+    return cov::motion_exit(cov::travel(disc, depth), motion);
+}
+
 LightField area_field(const SourceSpectrum& s, Vec3 travel, bool seen_sharply, double smallest) {
     const cov::Surface<double> surface{
         s.tangent.z, s.tangent.x, s.tangent.y, {s.k11, s.k12, s.k22}};
     const double cap = cov::edge_variance(smallest);
+    if (is_ball(s) && !seen_sharply) return ball_field(s, travel, cap);
     LightField field =
         cov::area_source<double>({s.s11, s.s12, s.s22}, cov::frame_along<double>(travel), cap);
     if (seen_sharply && std::isfinite(s.border_distance)) {
@@ -44,6 +61,19 @@ LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sha
     // their signs, which a covariance does not see.
     const cov::Frame<double> frame{source.tangent.x, source.tangent.y, travel};
     return cov::distant_source(frame, {source.a11, source.a12, source.a22});
+}
+
+cov::Emitter<double> emitter_of(const SourceSpectrum& source, double distance) {
+    switch (source.kind) {
+        case SourceSpectrum::Kind::area:
+            return {is_ball(source) ? Vec3{} : source.tangent.z, distance};
+        case SourceSpectrum::Kind::point:
+            return {{}, distance};
+        case SourceSpectrum::Kind::directional:
+        case SourceSpectrum::Kind::environment:
+            break;
+    }
+    return {};
 }
 
 }  // namespace covtrace

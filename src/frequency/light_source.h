@@ -18,4 +18,7 @@ using LightField = covariance::LightField<double>;
 LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sharply,
                         double smallest);
 
+/// What a diffuse receiver `distance` away (scene units) has to know of the light as an emitter.
+covariance::Emitter<double> emitter_of(const SourceSpectrum& source, double distance);
+
 }  // namespace covtrace

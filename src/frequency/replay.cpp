@@ -15,6 +15,7 @@ namespace {
 struct Arriving {
     LightField field;
     double weight = 0;
+    cov::Emitter<double> emitter;
 
     void add(const LightField& other, double other_weight) {
         if (!(other_weight > 0)) return;
@@ -22,6 +23,15 @@ struct Arriving {
         weight += other_weight;
     }
 };
+
+/// What sends light on from a vertex, as a receiver at the given distance sees it. Mirrors show an
+/// emitter that is taken to face the receiver.
+cov::Emitter<double> emitter_at(const PathVertex& v, double distance) {
+    const LobeShares& lobes = v.scatters ? v.next_event.lobes : v.direct_event.lobes;
+    const bool diffuse = lobes.count > 0 && (lobes.lobes[0].kind == LobeKind::diffuse_reflection ||
+                                             lobes.lobes[0].kind == LobeKind::diffuse_transmission);
+    return {diffuse ? v.hit.ns : v.wo, distance};
+}
 
 /// Light below this part of a path's luminance is carried without a look at its occluders, the
 /// dearest step of the replay: the contrast of its shadow edges is below what the spectra of
@@ -118,26 +128,31 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
             const ScatterPoint point =
                 scatter_point(scene_, v, 0.5f * extent / camera.pixels_per_x);
             if (light.weight > 0)
-                leaving.add(scatter(light.field, point, v.next_event.lobes, rule_), light.weight);
+                leaving.add(scatter(light.field, light.emitter, point, v.next_event.lobes, rule_),
+                            light.weight);
             if (v.direct > 0) {
                 const SourceSpectrum s = scene_.lights.source_spectrum(v.light, v.hit.time);
                 const Vec3 from = std::isfinite(v.light.distance)
                                       ? v.hit.position + v.light.wi * v.light.distance
                                       : entry(v.hit.position, v.light.wi);
                 const LightField source = source_field(s, -v.light.wi, false, smallest_);
-                leaving.add(scatter(carry(source, from, v.hit.position, v.direct / total), point,
-                                    v.direct_event.lobes, rule_),
-                            v.direct);
+                leaving.add(
+                    scatter(carry(source, from, v.hit.position, v.direct / total),
+                            emitter_of(s, v.light.distance), point, v.direct_event.lobes, rule_),
+                    v.direct);
             }
         }
-        if (v.emitted > 0)
-            leaving.add(
-                source_field(scene_.lights.source_spectrum(v.hit), v.wo, v.seen_sharply, smallest_),
-                v.emitted);
-        light = leaving;
-        if (!(light.weight > 0)) continue;
         const Vec3 next =
             i > 0 ? record.vertices[size_t(i - 1)].hit.position : record.camera_ray.origin;
+        const double way = distance(v.hit.position, next);
+        leaving.emitter = emitter_at(v, way);
+        if (v.emitted > 0) {
+            const SourceSpectrum s = scene_.lights.source_spectrum(v.hit);
+            if (v.emitted > leaving.weight) leaving.emitter = emitter_of(s, way);
+            leaving.add(source_field(s, v.wo, v.seen_sharply, smallest_), v.emitted);
+        }
+        light = leaving;
+        if (!(light.weight > 0)) continue;
         light.field = carry(light.field, v.hit.position, next, light.weight / total);
     }
 

@@ -35,11 +35,12 @@ struct Axes {
     }
 };
 
-LightField through_diffuse(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe,
-                           BrdfCovariance rule) {
+LightField through_diffuse(const LightField& entered, const cov::Emitter<double>& emitter,
+                           const ScatterPoint& p, const LobeShare& lobe, BrdfCovariance rule) {
     const cov::Sym2<double>& texture = is_transmission(lobe.kind) ? p.transmittance : p.reflectance;
     const auto left = [&](const LightField& field) {
-        return cov::add_texture(cov::reflect_diffuse(field, p.facing, p.outgoing), texture);
+        return cov::add_texture(cov::reflect_diffuse(field, p.facing, p.outgoing, emitter),
+                                texture);
     };
     if (rule == BrdfCovariance::global || !(lobe.border_eta > 0)) return left(entered);
     // Below a coat the diffuse lobe is a product: what the coat lets in from each direction, and
@@ -54,16 +55,27 @@ LightField through_diffuse(const LightField& entered, const ScatterPoint& p, con
     return cov::add_angular_window(field, transmission(field.frame));
 }
 
+/// Through a lobe of GGX's slopes, which are distributed like cov::tailed_lobe.
+LightField scatter_tailed(const LightField& field, const cov::GlossyPair<double>& pair) {
+    const auto left = cov::map_angular(field.sigma, pair.map);
+    const double size = cov::trace(pair.lobe);
+    const bool is_peaked = cov::det(pair.lobe) > 1e-9 * size * size;
+    const auto lobe = is_peaked ? cov::tailed_lobe(pair.lobe, left.angular()) : pair.lobe;
+    return {cov::convolve_angular(left, lobe), pair.outgoing};
+}
+
 LightField through_glossy(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe,
                           BrdfCovariance rule) {
     const auto micro = cov::micro_ggx<double>(lobe.alpha_x, lobe.alpha_y);
+    const bool reflects = lobe.kind == LobeKind::glossy_reflection;
     const cov::GlossyPair<double> pair =
-        lobe.kind == LobeKind::glossy_reflection
+        reflects
             ? cov::reflection_pair<double>(entered.frame, p.facing, p.outgoing, micro)
             : cov::refraction_pair<double>(entered.frame, p.facing, p.outgoing, lobe.eta, 1, micro);
     if (rule == BrdfCovariance::global) {
         const bool wide = std::max(lobe.alpha_x, lobe.alpha_y) > kWideLobe;
-        return cov::scatter(wide ? cov::add_cosine_window(entered, p.facing) : entered, pair);
+        const LightField windowed = wide ? cov::add_cosine_window(entered, p.facing) : entered;
+        return reflects ? scatter_tailed(windowed, pair) : cov::scatter(windowed, pair);
     }
     // Distribution and Fresnel are functions of the half vector: what they do to the arriving
     // slopes is in the lobe already, and the window is left with masking, at half the price of
@@ -77,12 +89,14 @@ LightField through_glossy(const LightField& entered, const ScatterPoint& p, cons
     const cov::Sym2<double> window =
         cov::limited_by(cov::positive_part(cov::log_curvature(arriving)),
                         cov::cosine_window<double>(entered.frame, p.facing.n));
-    return cov::scatter<double>(
-        entered, {window, {pair.outgoing, pair.map, cov::local_lobe<double>(leaving, pair.lobe)}});
+    const LightField windowed = cov::add_angular_window(entered, window);
+    const cov::GlossyPair<double> local{pair.outgoing, pair.map,
+                                        cov::local_lobe<double>(leaving, pair.lobe)};
+    return reflects ? scatter_tailed(windowed, local) : cov::scatter(windowed, local);
 }
 
-LightField through_lobe(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe,
-                        BrdfCovariance rule) {
+LightField through_lobe(const LightField& entered, const cov::Emitter<double>& emitter,
+                        const ScatterPoint& p, const LobeShare& lobe, BrdfCovariance rule) {
     switch (lobe.kind) {
         case LobeKind::specular_reflection:
             return cov::reflect_specular<double>(entered, p.facing, p.outgoing);
@@ -90,7 +104,7 @@ LightField through_lobe(const LightField& entered, const ScatterPoint& p, const 
             return cov::refract<double>(entered, p.facing, p.outgoing, lobe.eta, 1);
         case LobeKind::diffuse_reflection:
         case LobeKind::diffuse_transmission:
-            return through_diffuse(entered, p, lobe, rule);
+            return through_diffuse(entered, emitter, p, lobe, rule);
         case LobeKind::glossy_reflection:
         case LobeKind::glossy_transmission:
             break;
@@ -122,8 +136,8 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
     return p;
 }
 
-LightField scatter(const LightField& arriving, const ScatterPoint& point, const LobeShares& lobes,
-                   BrdfCovariance rule) {
+LightField scatter(const LightField& arriving, const cov::Emitter<double>& emitter,
+                   const ScatterPoint& point, const LobeShares& lobes, BrdfCovariance rule) {
     const LightField entered = cov::surface_enter<double>(cov::motion_enter(arriving, point.motion),
                                                           point.surface, point.normals);
     LightField sum{{}, cov::frame_along<double>(point.outgoing)};
@@ -132,8 +146,8 @@ LightField scatter(const LightField& arriving, const ScatterPoint& point, const 
         const LobeShare& lobe = lobes.lobes[size_t(i)];
         const double weight = luminance(lobe.value);
         if (!(weight > 0)) continue;
-        const LightField left = cov::surface_exit<double>(through_lobe(entered, point, lobe, rule),
-                                                          point.surface, point.normals);
+        const LightField left = cov::surface_exit<double>(
+            through_lobe(entered, emitter, point, lobe, rule), point.surface, point.normals);
         total += weight;
         const double share = weight / total;
         const auto aligned = cov::rotate_to(cov::motion_exit(left, point.motion), sum.frame);

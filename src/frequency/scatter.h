@@ -29,9 +29,10 @@ struct ScatterPoint {
 ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, float footprint);
 
 /// Sends `arriving` (its frame's z is the direction of travel towards the surface) through the
-/// lobes of the event and merges them by luminance. The result is in the frame
-/// covariance::frame_along(point.outgoing), so that several of them can be merged.
-LightField scatter(const LightField& arriving, const ScatterPoint& point, const LobeShares& lobes,
-                   BrdfCovariance rule);
+/// lobes of the event and merges them by luminance. `emitter`: where the light was last sent out.
+/// The result is in the frame covariance::frame_along(point.outgoing), so that several of them can
+/// be merged.
+LightField scatter(const LightField& arriving, const covariance::Emitter<double>& emitter,
+                   const ScatterPoint& point, const LobeShares& lobes, BrdfCovariance rule);
 
 }  // namespace covtrace

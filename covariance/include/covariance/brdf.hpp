@@ -63,6 +63,20 @@ template <std::floating_point T>
     return (ratio * ratio) * congruence(micro, transpose(p_out));
 }
 
+/// A lobe of the shape (1 + r^2/a^2)^-2, which falls off more slowly than the Gaussian of its peak,
+/// as light of the angular covariance `light` finds it: C' with C'^-1 = C^-1 + (C + light)^-1.
+///
+/// Light that smooths the lobe by a variance S far below the lobe's own widens its peak by 2 S,
+/// where a Gaussian's would widen by S (from the Taylor series of the lobe); for S as large as the
+/// lobe the excess stays behind. Sharp light leaves C as it is, even light halves it. Within 2 % of
+/// the exact bandwidth up to S equal to the lobe's, and above it (never below) from there on.
+/// Shapes   both in the same axes; units 1/rad^2; C positive definite.
+template <std::floating_point T>
+[[nodiscard]] constexpr Sym2<T> tailed_lobe(const Sym2<T>& c,
+                                            const Sym2<NonDeduced<T>>& light) noexcept {
+    return inverse(inverse(c) + inverse(c + light));
+}
+
 /// Smallest cosine of incidence used in `cosine_window`.
 template <std::floating_point T>
 inline constexpr T min_window_cosine = T(0.05);

@@ -1,0 +1,196 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "cli/commands.h"
+#include "cli/message.h"
+#include "cli/options.h"
+#include "core/parallel.h"
+#include "geometry/voxel_grid.h"
+#include "laboratory/local_spectrum.h"
+#include "laboratory/prediction.h"
+#include "render/session.h"
+#include "scene/read_scene.h"
+
+namespace covtrace::cli {
+
+namespace {
+
+struct MeasureArguments {
+    std::string scene, pixel, resolution, shutter, isa;
+    Occlusion occlusion = RenderOptions{}.occlusion;
+    SceneOverrides overrides;
+    MeasureOptions measure;
+    std::optional<int> max_depth;
+    int voxels = RenderOptions{}.voxels, threads = 0;
+    uint32_t paths = 1024;
+    bool json = false, quiet = false;
+};
+
+constexpr std::array<const char*, 5> kAxes{"pixel_x", "pixel_y", "lens_x", "lens_y", "shutter"};
+
+/// Prediction and measurement of one pixel, and what both are compared by.
+struct PixelComparison {
+    std::array<int, 2> pixel{}, resolution{};
+    covariance::SymmetricMatrix5<double> predicted;
+    double luminance = 0;  ///< of the central ray
+    MeasuredSpectrum measured;
+
+    double bandwidth(const covariance::SymmetricMatrix5<double>& s, size_t axis) const {
+        return std::sqrt(std::max(0.0, s(axis, axis)));
+    }
+    /// Predicted over measured, where the measurement stands out of its noise.
+    std::optional<double> ratio(size_t axis) const {
+        const double m = bandwidth(measured.sigma, axis);
+        if (!(m > 3 * measured.bandwidth_error[axis])) return std::nullopt;
+        return bandwidth(predicted, axis) / m;
+    }
+};
+
+nlohmann::json matrix_json(const covariance::SymmetricMatrix5<double>& s) {
+    nlohmann::json rows = nlohmann::json::array();
+    for (size_t i = 0; i < 5; ++i) {
+        nlohmann::json row = nlohmann::json::array();
+        for (size_t j = 0; j < 5; ++j) row.push_back(s(i, j));
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+nlohmann::json to_json(const PixelComparison& c, const MeasureArguments& a) {
+    nlohmann::json j = {{"pixel", c.pixel},
+                        {"resolution", c.resolution},
+                        {"samples", a.measure.samples},
+                        {"paths", a.paths},
+                        {"seed", a.measure.seed},
+                        {"axes", kAxes},
+                        {"predicted", matrix_json(c.predicted)},
+                        {"measured", matrix_json(c.measured.sigma)},
+                        {"window", c.measured.window},
+                        {"luminance_predicted", c.luminance},
+                        {"luminance_measured", c.measured.mean},
+                        {"bandwidth_error", c.measured.bandwidth_error}};
+    for (size_t i = 0; i < 5; ++i) {
+        const auto ratio = c.ratio(i);
+        j["bandwidth_predicted"].push_back(c.bandwidth(c.predicted, i));
+        j["bandwidth_measured"].push_back(c.bandwidth(c.measured.sigma, i));
+        j["ratio"].push_back(ratio ? nlohmann::json(*ratio) : nlohmann::json());
+    }
+    return j;
+}
+
+void print_matrix(const char* title, const covariance::SymmetricMatrix5<double>& s) {
+    fmt::print("{}\n", title);
+    for (size_t i = 0; i < 5; ++i) {
+        fmt::print("  {:<8}", kAxes[i]);
+        for (size_t j = 0; j < 5; ++j) fmt::print(" {:>11.4g}", s(i, j));
+        fmt::print("\n");
+    }
+}
+
+void print_table(const PixelComparison& c, const MeasureArguments& a) {
+    fmt::print("pixel {},{} of {}x{}: {} paths predict, {} samples measure, seed {}\n", c.pixel[0],
+               c.pixel[1], c.resolution[0], c.resolution[1], a.paths, a.measure.samples,
+               a.measure.seed);
+    print_matrix("predicted covariance, (cycles per pixel, lens radius, shutter)^2", c.predicted);
+    print_matrix("measured covariance", c.measured.sigma);
+    fmt::print("bandwidth   predicted   measured      error     window  predicted/measured\n");
+    for (size_t i = 0; i < 5; ++i) {
+        const auto ratio = c.ratio(i);
+        fmt::print("  {:<8} {:>10.4g} {:>10.4g} {:>10.2g} {:>10.4g}  {}\n", kAxes[i],
+                   c.bandwidth(c.predicted, i), c.bandwidth(c.measured.sigma, i),
+                   c.measured.bandwidth_error[i], c.measured.window[i],
+                   ratio ? fmt::format("{:.3f}", *ratio) : "-");
+    }
+}
+
+int measure_pixel(MeasureArguments a) {
+    const ThreadLimit threads(a.threads);
+    if (!a.resolution.empty())
+        a.overrides.resolution = parse_resolution("--resolution", a.resolution);
+    if (!a.shutter.empty()) a.overrides.shutter = parse_interval("--shutter", a.shutter);
+    const std::array<int, 2> pixel = parse_pixel("--pixel", a.pixel);
+
+    SceneDescription description = read_pbrt(a.scene);
+    apply(a.overrides, description);
+    const int width = description.film.width, height = description.film.height;
+    if (pixel[0] < 0 || pixel[1] < 0 || pixel[0] >= width || pixel[1] >= height)
+        throw Error(ErrorKind::usage, fmt::format("--pixel: {},{} is outside the frame of {}x{}",
+                                                  pixel[0], pixel[1], width, height));
+    RenderScene scene(std::move(description), a.isa);
+    if (!a.quiet) {
+        print_warnings(scene.description.warnings);
+        print_warnings(scene.materials.warnings());
+    }
+    scene.prepare_spectra();
+    std::optional<VoxelGrid> occluders;
+    if (a.occlusion == Occlusion::grid)
+        occluders.emplace(scene.geometry, VoxelGridOptions{.width = a.voxels});
+
+    const SensorRays rays(scene, {float(pixel[0]) + 0.5f, float(pixel[1]) + 0.5f});
+    const int depth = a.max_depth.value_or(scene.description.max_depth);
+    const PathReplay replay(scene, occluders ? &*occluders : nullptr);
+    const PathCovariance predicted = predict(scene, replay, rays, depth, a.paths, a.measure.seed);
+    PixelComparison c{pixel, {width, height}, predicted.sigma, predicted.weight, {}};
+    a.measure.axes = sensor_axes(scene);
+    c.measured = measure(radiance_field(scene, rays, depth, a.measure.seed), a.measure);
+    if (!(c.measured.mean > 0) && !a.quiet)
+        say("warning: no light reaches pixel {},{}: nothing was measured\n", pixel[0], pixel[1]);
+    if (a.json)
+        fmt::print("{}\n", to_json(c, a).dump());
+    else
+        print_table(c, a);
+    return 0;
+}
+
+}  // namespace
+
+void add_measure(CLI::App& app, Invocation& invocation) {
+    auto a = std::make_shared<MeasureArguments>();
+    CLI::App* c = app.add_subcommand(
+        "measure", "Hold a pixel's predicted covariance against the measured light field");
+    c->add_option("SCENE", a->scene, "the scene, a pbrt-v4 file")->required()->option_text(" ");
+    c->add_option("--pixel", a->pixel, "the pixel whose middle is looked through")
+        ->required()
+        ->option_text("x,y");
+    c->add_option("--samples", a->measure.samples,
+                  "radiance samples of the measurement (default 262144, twice)")
+        ->check(CLI::Range(1u << 12, 1u << 28))
+        ->option_text("N");
+    c->add_option("--paths", a->paths, "covariance paths of the prediction (default 1024)")
+        ->check(CLI::Range(1u, 1u << 24))
+        ->option_text("N");
+    add_choice<Occlusion>(c, "--occlusion", a->occlusion,
+                          {{"grid", Occlusion::grid}, {"none", Occlusion::none}},
+                          "occluders beside the rays of the analysis");
+    c->add_option("--voxels", a->voxels, "width of the occlusion grid (default 200)")
+        ->check(CLI::Range(1, 2048))
+        ->option_text("N");
+    c->add_option("--resolution", a->resolution, "in place of the scene's")->option_text("WxH");
+    c->add_option("--max-depth", a->max_depth, "most scattering events (default: the scene's)")
+        ->check(CLI::NonNegativeNumber)
+        ->option_text("N");
+    c->add_option_function<std::string>(
+         "--seed", [a](const std::string& text) { a->measure.seed = parse_seed("--seed", text); },
+         "seed of all random numbers (default 0)")
+        ->option_text("N");
+    c->add_option("--threads", a->threads, "worker threads (default: all cores)")
+        ->check(CLI::Range(1, 4096))
+        ->option_text("N");
+    c->add_option("--isa", a->isa, "instruction set of the ray tracing")
+        ->check(CLI::IsMember({"sse2", "avx", "avx2", "avx512"}).description(""))
+        ->option_text("sse2|avx|avx2|avx512");
+    c->add_option("--shutter", a->shutter, "in place of the scene's")->option_text("T0,T1");
+    add_positive(c, "--focus", a->overrides.focal_distance, 1e30,
+                 "focal distance in place of the scene's");
+    add_positive(c, "--fstop", a->overrides.f_number, 1e30,
+                 "lens by f-number (full-frame sensor, metres)");
+    c->add_flag("--json", a->json, "one JSON object on standard output");
+    c->add_flag("--quiet", a->quiet, "errors only");
+    c->callback([a, &invocation] { invocation.action = [a] { return measure_pixel(*a); }; });
+}
+
+}  // namespace covtrace::cli

@@ -1,0 +1,40 @@
+/// Kinds of options that several commands have. Wrong values throw Error(usage), whose message
+/// begins with the option's name.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "cli/values.h"
+#include "core/error.h"
+
+namespace covtrace::cli {
+
+/// One of a few names.
+template <typename T>
+void add_choice(CLI::App* c, const std::string& name, T& value,
+                const std::map<std::string, T>& choices, const std::string& help) {
+    std::string names;
+    for (const auto& [choice, unused] : choices) names += (names.empty() ? "" : "|") + choice;
+    const auto choose = [name, &value, choices, names](const std::string& text) {
+        const auto it = choices.find(text);
+        if (it == choices.end())
+            throw Error(ErrorKind::usage, name + ": '" + text + "' is none of " + names);
+        value = it->second;
+    };
+    c->add_option_function<std::string>(name, choose, help)->option_text(names);
+}
+
+/// A number above zero and up to `most`.
+template <typename T>
+void add_positive(CLI::App* c, const std::string& name, std::optional<T>& value, double most,
+                  const std::string& help) {
+    const auto parse = [name, &value, most](const std::string& text) {
+        value = static_cast<T>(parse_positive(name, text, most));
+    };
+    c->add_option_function<std::string>(name, parse, help)->option_text("N");
+}
+
+}  // namespace covtrace::cli
