@@ -1,9 +1,11 @@
 #include "frequency/replay.h"
 
 #include <cmath>
+#include <optional>
 
 #include "frequency/light_source.h"
 #include "frequency/scatter.h"
+#include "frequency/scatter_in_medium.h"
 
 namespace covtrace {
 
@@ -81,13 +83,15 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         return p + w * std::max(0.0f, -b + safe_sqrt(b * b - c));
     };
 
-    double total = record.escaped;
+    double total = double(record.escaped) + record.escape_glow;
     for (int i = 0; i < record.count; ++i) {
         const PathVertex& v = record.vertices[size_t(i)];
-        total += double(v.emitted) + v.direct;
+        total += double(v.emitted) + v.direct + v.glow;
     }
     if (!(total > 0)) return {};
 
+    // What an even medium emits on the way is the same for all neighbouring rays.
+    const auto glow = [](Vec3 travel) { return LightField{{}, cov::frame_along<double>(travel)}; };
     Arriving light;
     if (record.escaped > 0) {
         const SourceSpectrum s = scene_.lights.environment_spectrum(record.escape_direction);
@@ -98,6 +102,7 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         light.field =
             carry(light.field, entry(last, record.escape_direction), last, light.weight / total);
     }
+    if (record.escape_glow > 0) light.add(glow(-record.escape_direction), record.escape_glow);
 
     // Half a pixel's extent grows with the distance travelled from the camera.
     float distances[PathRecord::kCapacity];
@@ -114,19 +119,25 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         const PathVertex& v = record.vertices[size_t(i)];
         Arriving leaving;
         if (light.weight > 0 || v.direct > 0) {
-            const float extent = camera.orthographic ? 1.0f : distances[i];
-            const ScatterPoint point =
-                scatter_point(scene_, v, 0.5f * extent / camera.pixels_per_x);
+            std::optional<ScatterPoint> point;
+            if (v.medium < 0) {
+                const float extent = camera.orthographic ? 1.0f : distances[i];
+                point = scatter_point(scene_, v, 0.5f * extent / camera.pixels_per_x);
+            }
+            const auto scattered = [&](const LightField& arriving, const LobeShares& lobes) {
+                return point ? scatter(arriving, *point, lobes)
+                             : scatter_in_medium(arriving, scene_.media[size_t(v.medium)].g, v.wo);
+            };
             if (light.weight > 0)
-                leaving.add(scatter(light.field, point, v.next_event.lobes), light.weight);
+                leaving.add(scattered(light.field, v.next_event.lobes), light.weight);
             if (v.direct > 0) {
                 const SourceSpectrum s = scene_.lights.source_spectrum(v.light, v.hit.time);
                 const Vec3 from = std::isfinite(v.light.distance)
                                       ? v.hit.position + v.light.wi * v.light.distance
                                       : entry(v.hit.position, v.light.wi);
                 const LightField source = source_field(s, -v.light.wi, false, smallest_);
-                leaving.add(scatter(carry(source, from, v.hit.position, v.direct / total), point,
-                                    v.direct_event.lobes),
+                leaving.add(scattered(carry(source, from, v.hit.position, v.direct / total),
+                                      v.direct_event.lobes),
                             v.direct);
             }
         }
@@ -135,10 +146,11 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
                 source_field(scene_.lights.source_spectrum(v.hit), v.wo, v.seen_sharply, smallest_),
                 v.emitted);
         light = leaving;
-        if (!(light.weight > 0)) continue;
         const Vec3 next =
             i > 0 ? record.vertices[size_t(i - 1)].hit.position : record.camera_ray.origin;
-        light.field = carry(light.field, v.hit.position, next, light.weight / total);
+        if (light.weight > 0)
+            light.field = carry(light.field, v.hit.position, next, light.weight / total);
+        if (v.glow > 0) light.add(glow(v.wo), v.glow);
     }
 
     if (!(light.weight > 0)) return {};
