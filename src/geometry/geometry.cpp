@@ -143,7 +143,7 @@ Bounds3 Geometry::bounds() const {
 }
 
 size_t Geometry::embree_memory() const {
-    return impl_->device.bytes_used();
+    return impl_->device.most_bytes();
 }
 
 size_t Geometry::memory() const {

@@ -55,7 +55,7 @@ class Geometry {
     Bounds3 bounds() const;
     /// Bytes held by the shapes; neither Embree's nor meshes of the description are counted.
     size_t memory() const;
-    /// Bytes that Embree holds for its hierarchies.
+    /// Most bytes that Embree has held: its hierarchies, and what building them took.
     size_t embree_memory() const;
 
     /// For the other parts of this folder.

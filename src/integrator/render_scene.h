@@ -28,7 +28,7 @@ struct RenderScene {
     /// thread-safe.
     void prepare_spectra();
 
-    /// Bytes held, by what they are for: "meshes", "shapes", "embree", "textures".
+    /// Bytes held, by what they are for: "meshes", "shapes", "embree" (at its peak), "textures".
     std::map<std::string, size_t> memory() const;
 
     SceneDescription description;

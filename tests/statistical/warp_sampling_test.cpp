@@ -237,10 +237,11 @@ TEST(WarpSampling, DistancesInMedia) {
         float length;
         Rgb throughput;
     };
-    const std::array<Case, 4> cases{Case{{Rgb(0.0f), Rgb(1.5f)}, 2, Rgb(1)},
-                                    Case{{{0.2f, 1, 3}, {1, 1, 0.1f}}, 1.5f, {1, 0.4f, 2}},
-                                    Case{{{0, 0.5f, 0}, {0, 2, 8}}, kInfinity, {1, 0.5f, 0.25f}},
-                                    Case{{{5, 0, 1}, {0.01f, 0, 20}}, 0.1f, {1, 0, 1}}};
+    const std::array<Case, 4> cases{
+        Case{{Rgb(0.0f), Rgb(1.5f), {}, 0}, 2, Rgb(1)},
+        Case{{{0.2f, 1, 3}, {1, 1, 0.1f}, {}, 0}, 1.5f, {1, 0.4f, 2}},
+        Case{{{0, 0.5f, 0}, {0, 2, 8}, {}, 0}, kInfinity, {1, 0.5f, 0.25f}},
+        Case{{{5, 0, 1}, {0.01f, 0, 20}, {}, 0}, 0.1f, {1, 0, 1}}};
     for (const Case& c : cases) {
         constexpr int n = 20;
         const double end = std::isfinite(c.length) ? c.length : 4;
