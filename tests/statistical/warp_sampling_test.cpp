@@ -250,7 +250,8 @@ TEST(WarpSampling, DistancesInMedia) {
         const auto scattered_before = [&](double d) {
             double p = 0;
             for (int k = 0; k < 3; ++k)
-                p += c.throughput[k] / sum * albedo[k] * -std::expm1(-double(t[k]) * d);
+                if (t[k] > 0)
+                    p += c.throughput[k] / sum * albedo[k] * -std::expm1(-double(t[k]) * d);
             return p;
         };
         std::vector<double> observed(n + 2), expected(n + 2);
