@@ -348,7 +348,7 @@ void add_render(CLI::App& app, Invocation& invocation) {
     c->add_option_function<std::string>(
          "--texture-memory",
          [a](const std::string& text) { a->texture_bytes = parse_size("--texture-memory", text); },
-         "most bytes of texture images: 500M, 2G (default: all)")
+         "most bytes of texture images: 500M, 2G")
         ->option_text("SIZE");
     c->add_option("--stats", a->stats, "counters, phase times and memory as JSON")
         ->option_text("FILE");
