@@ -73,7 +73,11 @@ Shape "sphere" "float radius" 1.2
 AttributeEnd)"},
     {"glossy", R"(Camera "perspective" "float fov" 40)", R"(
 LightSource "infinite" "rgb L" [ 0.6 0.7 0.8 ]
-LightSource "point" "rgb I" [ 6 6 6 ] "point3 from" [ 2 3 -2 ]
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [ 1.5 1.5 1.5 ]
+Translate 3 4 -3
+Shape "sphere" "float radius" 2
+AttributeEnd
 AttributeBegin
 Translate -0.7 0 0
 Material "conductor" "spectrum eta" "metal-Cu-eta" "spectrum k" "metal-Cu-k" "float roughness" 0.2
