@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -31,6 +32,7 @@ namespace fs = std::filesystem;
 struct RenderArguments {
     std::string scene, output, png, stats, isa;
     std::string seconds, resolution, crop, shutter, layers;
+    size_t texture_bytes = kNoTextureLimit;
     RenderOptions options;
     SceneOverrides overrides;
     ProgressStyle progress = ProgressStyle::automatic;
@@ -117,16 +119,39 @@ void describe_render(Image& image, const RenderArguments& a, const RenderScene& 
     m["utcOffset"] = 0.0f;
 }
 
-nlohmann::json statistics_json(const RenderResult& result, const Monitor& monitor) {
+/// Bytes by what they are for, and the most that the process ever had in memory.
+nlohmann::json memory_json(const RenderScene& scene, const RenderResult& result) {
+    nlohmann::json memory = scene.memory();
+    memory.update(nlohmann::json(result.statistics.memory));
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    memory["peak_resident"] = int64_t(usage.ru_maxrss) * 1024;
+    return memory;
+}
+
+nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& result,
+                               const Monitor& monitor) {
     const auto pass = [](const PassStatistics& s) {
         nlohmann::json rejected = nlohmann::json::array();
         for (const RejectedSample& r : s.first_rejected) rejected.push_back({r.x, r.y, r.sample});
-        return nlohmann::json{{"samples", s.samples},   {"rays", s.rays},
-                              {"vertices", s.vertices}, {"black_paths", s.black_paths},
-                              {"rejected", s.rejected}, {"first_rejected", rejected}};
+        const RayCounts& r = s.rays;
+        auto longest = s.lengths.size();
+        while (longest > 0 && s.lengths[longest - 1] == 0) --longest;
+        return nlohmann::json{
+            {"samples", s.samples},
+            {"rays", r.camera + r.bounce + r.shadow},
+            {"camera_rays", r.camera},
+            {"bounce_rays", r.bounce},
+            {"shadow_rays", r.shadow},
+            {"vertices", s.vertices},
+            {"path_lengths", std::vector(s.lengths.begin(), s.lengths.begin() + long(longest))},
+            {"black_paths", s.black_paths},
+            {"rejected", s.rejected},
+            {"first_rejected", rejected}};
     };
     return {{"seconds_total", monitor.elapsed()},
             {"seconds", result.statistics.seconds},
+            {"memory", memory_json(scene, result)},
             {"spp", result.statistics.samples_per_pixel},
             {"covariance", pass(result.statistics.covariance)},
             {"radiance", pass(result.statistics.radiance)},
@@ -180,24 +205,30 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
     const InterruptGuard guard(monitor);
 
     SceneDescription description = read_pbrt(a.scene);
+    const double loaded = monitor.elapsed();
     apply(a.overrides, description);
     const fs::path output = output_path(a, description);
     for (const fs::path& file : {output, fs::path(a.png), fs::path(a.stats)})
         if (!file.empty()) require_writable(file);
 
-    RenderScene scene(std::move(description), a.isa);
+    RenderScene scene(std::move(description), a.isa, a.texture_bytes);
+    const double built = monitor.elapsed();
     if (!a.quiet) {
         print_warnings(scene.description.warnings);
         print_warnings(scene.materials.warnings());
     }
     RenderResult result = render(scene, a.options, monitor);
+    result.statistics.seconds["load"] = loaded;
+    result.statistics.seconds["build"] = built - loaded;
+    const double rendered = monitor.elapsed();
     finish_line(a.progress);
     keep_layers(result.image, layers);
     describe_render(result.image, a, scene, result, monitor, invocation.command_line);
     write_exr(result.image, output, threads.threads());
     if (!a.png.empty()) write_png(result.image, a.png);
+    result.statistics.seconds["write"] = monitor.elapsed() - rendered;
     if (!a.stats.empty()) {
-        const std::string text = statistics_json(result, monitor).dump(2) + "\n";
+        const std::string text = statistics_json(scene, result, monitor).dump(2) + "\n";
         OutputFile file(a.stats);
         file.write(text.data(), text.size());
         file.commit();
@@ -289,7 +320,13 @@ void add_render(CLI::App& app, Invocation& invocation) {
                                {"json", ProgressStyle::json},
                                {"none", ProgressStyle::none}},
                               "how progress is shown on standard error");
-    c->add_option("--stats", a->stats, "counters and phase times as JSON")->option_text("FILE");
+    c->add_option_function<std::string>(
+         "--texture-memory",
+         [a](const std::string& text) { a->texture_bytes = parse_size("--texture-memory", text); },
+         "most bytes of texture images: 500M, 2G")
+        ->option_text("SIZE");
+    c->add_option("--stats", a->stats, "counters, phase times and memory as JSON")
+        ->option_text("FILE");
     c->add_flag("--reproducible", a->reproducible, "write no command, seconds and date");
     c->add_flag("--quiet", a->quiet, "errors only");
     c->callback([a, &invocation] {

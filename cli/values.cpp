@@ -99,6 +99,21 @@ double parse_positive(const std::string& option, const std::string& text, double
     return value;
 }
 
+size_t parse_size(const std::string& option, const std::string& text) {
+    constexpr auto kExpected = "a size in bytes such as 500M or 2G";
+    constexpr std::string_view kUnits = "kMGT";
+    std::string_view rest = text;
+    double bytes = 0;
+    if (!take_number(rest, bytes)) refuse(option, text, kExpected);
+    if (!rest.empty()) {
+        const size_t unit = kUnits.find(rest);
+        if (rest.size() != 1 || unit == std::string_view::npos) refuse(option, text, kExpected);
+        bytes = std::ldexp(bytes, 10 * (int(unit) + 1));
+    }
+    if (!(bytes >= 0) || !(bytes < 1e18)) refuse(option, text, kExpected);
+    return size_t(bytes);
+}
+
 uint64_t parse_seed(const std::string& option, const std::string& text) {
     std::string_view rest = text;
     uint64_t value = 0;

@@ -22,6 +22,8 @@ std::array<int, 2> parse_pixel(const std::string& option, const std::string& tex
 std::array<float, 2> parse_interval(const std::string& option, const std::string& text);
 /// A finite number above zero and up to `most`.
 double parse_positive(const std::string& option, const std::string& text, double most);
+/// Bytes: "500M", "2G", "64k", "1.5T" (powers of 1024) or a plain number.
+size_t parse_size(const std::string& option, const std::string& text);
 /// A whole number in [0, 2^64).
 uint64_t parse_seed(const std::string& option, const std::string& text);
 

@@ -28,7 +28,7 @@ class Sampler {
     float next_1d();  ///< the first number of a fresh pair
     Vec2 next_2d();   ///< a fresh pair
     /// Skips to a fixed dimension, so that later events see the same numbers whatever came before.
-    void set_dimension(int pair) { pair_ = static_cast<uint32_t>(pair); }
+    void set_dimension(uint32_t pair) { pair_ = pair; }
 
   private:
     uint64_t key_;

@@ -39,7 +39,7 @@ Quaternion from_matrix(const Matrix3& m) {
 }
 
 /// Gram-Schmidt: linear part = rotation * upper triangular. A reflection goes into the last scale.
-AnimatedTransform::Decomposition decompose(const Matrix4& a) {
+AnimatedTransform::Decomposition decompose_matrix(const Matrix4& a) {
     AnimatedTransform::Decomposition d;
     d.translation = {static_cast<float>(a.m[0][3]), static_cast<float>(a.m[1][3]),
                      static_cast<float>(a.m[2][3])};
@@ -224,36 +224,37 @@ Quaternion slerp(double t, Quaternion a, Quaternion b) {
 
 AnimatedTransform::AnimatedTransform(const Transform& start, float start_time, const Transform& end,
                                      float end_time)
-    : start_(start),
-      end_(end),
-      start_time_(start_time),
-      end_time_(end_time),
-      animated_(!(start == end) && end_time > start_time) {
-    if (!animated_) return;
-    keys_ = {decompose(start.matrix()), decompose(end.matrix())};
+    : start_(start), start_time_(start_time), end_time_(end_time) {
+    if (start == end || !(end_time > start_time)) return;
+    movement_ = std::make_shared<const Movement>(Movement{end, {decompose(start), decompose(end)}});
+}
+
+AnimatedTransform::Decomposition AnimatedTransform::decompose(const Transform& map) {
+    return decompose_matrix(map.matrix());
 }
 
 Transform AnimatedTransform::at(float time) const {
-    if (!animated_ || time <= start_time_) return start_;
-    if (time >= end_time_) return end_;
+    if (!movement_ || time <= start_time_) return start_;
+    if (time >= end_time_) return movement_->end;
+    const auto& keys = movement_->keys;
     const double t = (double(time) - start_time_) / (double(end_time_) - start_time_);
-    const Matrix3 rotation = to_matrix(slerp(t, keys_[0].rotation, keys_[1].rotation));
+    const Matrix3 rotation = to_matrix(slerp(t, keys[0].rotation, keys[1].rotation));
     Matrix4 m;
     for (size_t i = 0; i < 3; ++i) {
         for (size_t j = 0; j < 3; ++j) {
             double s = 0;
             for (size_t k = 0; k <= j; ++k)
-                s += rotation[i][k] * ((1 - t) * keys_[0].scale[k][j] + t * keys_[1].scale[k][j]);
+                s += rotation[i][k] * ((1 - t) * keys[0].scale[k][j] + t * keys[1].scale[k][j]);
             m.m[i][j] = s;
         }
-        m.m[i][3] = (1 - t) * keys_[0].translation[int(i)] + t * keys_[1].translation[int(i)];
+        m.m[i][3] = (1 - t) * keys[0].translation[int(i)] + t * keys[1].translation[int(i)];
     }
     const auto moved = Transform::from_matrix(m);
     return moved ? *moved : start_;
 }
 
 Vec3 AnimatedTransform::velocity(Vec3 p, float time) const {
-    if (!animated_ || time < start_time_ || time > end_time_) return {};
+    if (!movement_ || time < start_time_ || time > end_time_) return {};
     const Vec3 local = at(time).inverse().point(p);
     const float h = 1e-3f * (end_time_ - start_time_);
     const float t0 = std::max(start_time_, time - h), t1 = std::min(end_time_, time + h);
@@ -261,8 +262,8 @@ Vec3 AnimatedTransform::velocity(Vec3 p, float time) const {
 }
 
 Vec3 AnimatedTransform::angular_velocity(float time) const {
-    if (!animated_ || time < start_time_ || time > end_time_) return {};
-    Quaternion a = keys_[0].rotation, b = keys_[1].rotation;
+    if (!movement_ || time < start_time_ || time > end_time_) return {};
+    Quaternion a = movement_->keys[0].rotation, b = movement_->keys[1].rotation;
     if (a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w < 0) b = {-b.x, -b.y, -b.z, -b.w};
     // b a^-1 turns the first key into the second; its axis is fixed in the world during a slerp.
     const Quaternion c{-a.x, -a.y, -a.z, a.w};
@@ -282,7 +283,7 @@ Bounds3 AnimatedTransform::motion_bounds(const Bounds3& b) const {
     const auto corner = [&b](int i) {
         return Vec3{i & 1 ? b.hi.x : b.lo.x, i & 2 ? b.hi.y : b.lo.y, i & 4 ? b.hi.z : b.lo.z};
     };
-    const int steps = animated_ ? 64 : 0;
+    const int steps = movement_ ? 64 : 0;
     float largest_step = 0;
     std::array<Vec3, 8> previous{};
     for (int s = 0; s <= steps; ++s) {

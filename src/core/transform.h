@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 
 #include "core/vec.h"
@@ -63,7 +64,7 @@ Quaternion slerp(double t, Quaternion a, Quaternion b);
 class AnimatedTransform {
   public:
     AnimatedTransform() = default;
-    explicit AnimatedTransform(const Transform& still) : start_(still), end_(still) {}
+    explicit AnimatedTransform(const Transform& still) : start_(still) {}
     AnimatedTransform(const Transform& start, float start_time, const Transform& end,
                       float end_time);
 
@@ -74,13 +75,13 @@ class AnimatedTransform {
         std::array<std::array<double, 3>, 3> scale{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     };
 
-    bool is_animated() const { return animated_; }
+    static Decomposition decompose(const Transform& map);
+
+    bool is_animated() const { return movement_ != nullptr; }
     float start_time() const { return start_time_; }
     float end_time() const { return end_time_; }
     const Transform& start() const { return start_; }
-    const Transform& end() const { return end_; }
-    const Decomposition& start_key() const { return keys_[0]; }
-    const Decomposition& end_key() const { return keys_[1]; }
+    const Transform& end() const { return movement_ ? movement_->end : start_; }
     Transform at(float time) const;
     /// Velocity at `time` of the material point that is at world position `p` then, per unit of
     /// time. Zero outside the keys and where nothing moves.
@@ -91,10 +92,14 @@ class AnimatedTransform {
     Bounds3 motion_bounds(const Bounds3& b) const;
 
   private:
-    Transform start_, end_;
+    /// Most transforms of a scene rest: what only moving ones need is kept apart, and shared.
+    struct Movement {
+        Transform end;
+        std::array<Decomposition, 2> keys;
+    };
+    Transform start_;
     float start_time_ = 0, end_time_ = 1;
-    bool animated_ = false;
-    std::array<Decomposition, 2> keys_;
+    std::shared_ptr<const Movement> movement_;  ///< null where it rests
 };
 
 }  // namespace covtrace

@@ -1,6 +1,7 @@
 #include "frequency/replay.h"
 
 #include <cmath>
+#include <optional>
 
 #include "frequency/light_source.h"
 #include "frequency/scatter.h"
@@ -27,6 +28,7 @@ struct Arriving {
 /// What sends light on from a vertex, as a receiver at the given distance sees it. Mirrors show an
 /// emitter that is taken to face the receiver.
 cov::Emitter<double> emitter_at(const PathVertex& v, double distance) {
+    if (v.medium >= 0) return {{}, distance};  // a medium shines about evenly
     const LobeShares& lobes = v.scatters ? v.next_event.lobes : v.direct_event.lobes;
     const bool diffuse = lobes.count > 0 && (lobes.lobes[0].kind == LobeKind::diffuse_reflection ||
                                              lobes.lobes[0].kind == LobeKind::diffuse_transmission);
@@ -91,13 +93,15 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         return p + w * std::max(0.0f, -b + safe_sqrt(b * b - c));
     };
 
-    double total = record.escaped;
+    double total = double(record.escaped) + record.escape_glow;
     for (int i = 0; i < record.count; ++i) {
         const PathVertex& v = record.vertices[size_t(i)];
-        total += double(v.emitted) + v.direct;
+        total += double(v.emitted) + v.direct + v.glow;
     }
     if (!(total > 0)) return {};
 
+    // What an even medium emits on the way is the same for all neighbouring rays.
+    const auto glow = [](Vec3 travel) { return LightField{{}, cov::frame_along<double>(travel)}; };
     Arriving light;
     if (record.escaped > 0) {
         const SourceSpectrum s = scene_.lights.environment_spectrum(record.escape_direction);
@@ -108,6 +112,7 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         light.field =
             carry(light.field, entry(last, record.escape_direction), last, light.weight / total);
     }
+    if (record.escape_glow > 0) light.add(glow(-record.escape_direction), record.escape_glow);
 
     // Half a pixel's extent grows with the distance travelled from the camera.
     float distances[PathRecord::kCapacity];
@@ -124,11 +129,21 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         const PathVertex& v = record.vertices[size_t(i)];
         Arriving leaving;
         if (light.weight > 0 || v.direct > 0) {
-            const float extent = camera.orthographic ? 1.0f : distances[i];
-            const ScatterPoint point =
-                scatter_point(scene_, v, 0.5f * extent / camera.pixels_per_x);
+            std::optional<ScatterPoint> point;
+            if (v.medium < 0) {
+                const float extent = camera.orthographic ? 1.0f : distances[i];
+                point = scatter_point(scene_, v, 0.5f * extent / camera.pixels_per_x);
+            }
+            const auto scattered = [&](const LightField& arriving,
+                                       const cov::Emitter<double>& emitter,
+                                       const LobeShares& lobes) {
+                if (point) return scatter(arriving, emitter, *point, lobes, rule_);
+                const double g = scene_.media[size_t(v.medium)].g;
+                return cov::rotate_to(cov::scatter_in_volume<double>(arriving, v.wo, g),
+                                      cov::frame_along<double>(v.wo));
+            };
             if (light.weight > 0)
-                leaving.add(scatter(light.field, light.emitter, point, v.next_event.lobes, rule_),
+                leaving.add(scattered(light.field, light.emitter, v.next_event.lobes),
                             light.weight);
             if (v.direct > 0) {
                 const SourceSpectrum s = scene_.lights.source_spectrum(v.light, v.hit.time);
@@ -136,10 +151,9 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
                                       ? v.hit.position + v.light.wi * v.light.distance
                                       : entry(v.hit.position, v.light.wi);
                 const LightField source = source_field(s, -v.light.wi, false, smallest_);
-                leaving.add(
-                    scatter(carry(source, from, v.hit.position, v.direct / total),
-                            emitter_of(s, v.light.distance), point, v.direct_event.lobes, rule_),
-                    v.direct);
+                leaving.add(scattered(carry(source, from, v.hit.position, v.direct / total),
+                                      emitter_of(s, v.light.distance), v.direct_event.lobes),
+                            v.direct);
             }
         }
         const Vec3 next =
@@ -152,8 +166,9 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
             leaving.add(source_field(s, v.wo, v.seen_sharply, smallest_), v.emitted);
         }
         light = leaving;
-        if (!(light.weight > 0)) continue;
-        light.field = carry(light.field, v.hit.position, next, light.weight / total);
+        if (light.weight > 0)
+            light.field = carry(light.field, v.hit.position, next, light.weight / total);
+        if (v.glow > 0) light.add(glow(v.wo), v.glow);
     }
 
     if (!(light.weight > 0)) return {};

@@ -68,7 +68,11 @@ void EmbreeDevice::on_error(void* self, RTCError code, const char* message) {
 }
 
 bool EmbreeDevice::on_memory(void* self, ssize_t bytes, bool) {
-    static_cast<EmbreeDevice*>(self)->bytes_ += bytes;
+    auto& device = *static_cast<EmbreeDevice*>(self);
+    const int64_t now = device.bytes_ += bytes;
+    int64_t most = device.most_bytes_;
+    while (now > most && !device.most_bytes_.compare_exchange_weak(most, now)) {
+    }
     return true;
 }
 

@@ -40,7 +40,8 @@ class EmbreeDevice {
     void commit(RTCScene scene) const;
     /// Throws what Embree has reported since the last call: Error(limit) where memory ran out.
     void check() const;
-    size_t bytes_used() const { return static_cast<size_t>(bytes_.load()); }
+    /// Most bytes that Embree has held at a time, temporary ones of building included.
+    size_t most_bytes() const { return static_cast<size_t>(most_bytes_.load()); }
 
   private:
     static void on_error(void* self, RTCError code, const char* message);
@@ -51,7 +52,7 @@ class EmbreeDevice {
     mutable std::mutex mutex_;
     mutable RTCError code_ = RTC_ERROR_NONE;
     mutable std::string message_;
-    std::atomic<int64_t> bytes_{0};
+    std::atomic<int64_t> bytes_{0}, most_bytes_{0};
 };
 
 }  // namespace covtrace

@@ -24,8 +24,7 @@ GeometryHandle new_instance(const EmbreeDevice& device, RTCScene scene) {
 /// A matrix as translation * rotation * upper triangular scale, which is what Embree interpolates
 /// too.
 RTCQuaternionDecomposition decompose(const Transform& map) {
-    const AnimatedTransform from_identity(Transform{}, 0, map, 1);
-    const AnimatedTransform::Decomposition& key = from_identity.end_key();
+    const AnimatedTransform::Decomposition key = AnimatedTransform::decompose(map);
     const auto number = [](double v) { return static_cast<float>(v); };
     RTCQuaternionDecomposition d;
     rtcInitQuaternionDecomposition(&d);

@@ -127,11 +127,11 @@ WorldTriangle Geometry::world_triangle(uint32_t shape, uint32_t triangle, float 
         w = triangle % 2 == 0 ? WorldTriangle{p[i[0]], p[i[1]], p[i[2]]}
                               : WorldTriangle{p[i[3]], p[i[2]], p[i[1]]};
     }
-    if (!Motion{nullptr, &impl_->placed[shape].object_to_world}.moves(impl_->clock.open(),
-                                                                      impl_->clock.close()))
+    if (!Motion{nullptr, &impl_->placed[shape].description.object_to_world}.moves(
+            impl_->clock.open(), impl_->clock.close()))
         return w;
     const float clamped = std::clamp(time, impl_->clock.open(), impl_->clock.close());
-    const Transform map = impl_->placed[shape].object_to_world.at(clamped);
+    const Transform map = impl_->placed[shape].description.object_to_world.at(clamped);
     return {map.point(w.p0), map.point(w.p1), map.point(w.p2)};
 }
 
@@ -142,8 +142,12 @@ Bounds3 Geometry::bounds() const {
     return impl_->bounds;
 }
 
+size_t Geometry::embree_memory() const {
+    return impl_->device.most_bytes();
+}
+
 size_t Geometry::memory() const {
-    size_t bytes = impl_->device.bytes_used() + impl_->placed.capacity() * sizeof(PlacedShape) +
+    size_t bytes = impl_->placed.capacity() * sizeof(PlacedShape) +
                    impl_->local.capacity() * sizeof(LocalShape) +
                    impl_->instances.capacity() * sizeof(EmbreeInstance);
     for (const LocalShape& shape : impl_->local) {

@@ -11,12 +11,11 @@
 
 namespace covtrace {
 
-/// A shape as it stands in the scene: its description and where it is over time.
+/// A shape as it stands in the scene.
 struct PlacedShape {
+    /// Its object_to_world is where it is over time. Objects of instances keep their
+    /// object-to-instance transform there; the instance's comes on top (SurfaceHit::instance).
     ShapeDescription description;
-    /// Objects of instances keep their object-to-instance transform here; the instance's comes on
-    /// top (SurfaceHit::instance).
-    AnimatedTransform object_to_world;
     bool flip_normal = false;  ///< reverse orientation xor mirrored transform
     bool is_instanced = false;
 };
@@ -54,8 +53,10 @@ class Geometry {
     const std::string& isa() const;
     /// Over the whole shutter. Empty scene: a unit box about the origin.
     Bounds3 bounds() const;
-    /// Bytes held by the shapes and by Embree; meshes of the description are not counted.
+    /// Bytes held by the shapes; neither Embree's nor meshes of the description are counted.
     size_t memory() const;
+    /// Most bytes that Embree has held: its hierarchies, and what building them took.
+    size_t embree_memory() const;
 
     /// For the other parts of this folder.
     struct Impl;

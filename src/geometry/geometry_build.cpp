@@ -40,7 +40,7 @@ struct Geometry::Impl::Builder {
     void place(const ShapeDescription& shape, bool is_instanced) {
         const bool flip =
             shape.reverse_orientation != shape.object_to_world.start().swaps_handedness();
-        g.placed.push_back({shape, shape.object_to_world, flip, is_instanced});
+        g.placed.push_back({shape, flip, is_instanced});
         g.is_interface.push_back(has_interface_material(scene, shape));
     }
 
@@ -102,7 +102,7 @@ struct Geometry::Impl::Builder {
         ShapeScene still = new_scene();
         for (uint32_t i = first; i < first + count; ++i) {
             if (is_left_out(scene, g.placed[i].description)) continue;
-            const AnimatedTransform& motion = g.placed[i].object_to_world;
+            const AnimatedTransform& motion = g.placed[i].description.object_to_world;
             if (moves(motion))
                 object.parts.emplace_back(single_shape_scene(i), &motion);
             else
@@ -122,7 +122,7 @@ struct Geometry::Impl::Builder {
         }
         g.local.reserve(g.placed.size());
         for (const PlacedShape& shape : g.placed) {
-            const AnimatedTransform& t = shape.object_to_world;
+            const AnimatedTransform& t = shape.description.object_to_world;
             g.local.push_back(
                 make_local_shape(shape.description, moves(t) ? Transform{} : t.at(g.clock.open())));
         }
@@ -144,12 +144,13 @@ struct Geometry::Impl::Builder {
                 instantiate(part, {&g.instance_motions[i], motion});
         const auto count = static_cast<uint32_t>(scene.shapes.size());
         for (uint32_t i = 0; i < count; ++i) {
-            const AnimatedTransform& motion = g.placed[i].object_to_world;
+            const AnimatedTransform& motion = g.placed[i].description.object_to_world;
             if (is_left_out(scene, g.placed[i].description) || !moves(motion)) continue;
             instantiate(single_shape_scene(i), {nullptr, &motion});
         }
         for (uint32_t i = 0; i < count; ++i)
-            if (!is_left_out(scene, g.placed[i].description) && !moves(g.placed[i].object_to_world))
+            if (!is_left_out(scene, g.placed[i].description) &&
+                !moves(g.placed[i].description.object_to_world))
                 add(g.top, i);
         g.device.commit(g.top.scene.get());
     }

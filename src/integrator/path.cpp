@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "integrator/visibility.h"
+#include "shading/phase_function.h"
+
 namespace covtrace {
 
 namespace {
@@ -12,88 +15,146 @@ float power_heuristic(float a, float b) {
     return a2 + b2 > 0 ? a2 / (a2 + b2) : 0;
 }
 
-Rgb transmittance(const RenderScene& scene, MediumId medium, float distance) {
-    if (medium < 0) return Rgb(1);
-    const Rgb sigma = scene.extinction[static_cast<size_t>(medium)];
-    const auto pass = [distance](float s) { return s > 0 ? std::exp(-s * distance) : 1.0f; };
-    return {pass(sigma.r), pass(sigma.g), pass(sigma.b)};
-}
-
 bool transmits(const Bsdf& bsdf) {
     return std::holds_alternative<DielectricBsdf>(bsdf) ||
            std::holds_alternative<DiffuseTransmissionBsdf>(bsdf);
 }
 
-/// The medium that a ray is in after it leaves `hit` in the direction `w`.
-MediumId medium_beyond(const PlacedShape& shape, const SurfaceHit& hit, Vec3 w, MediumId current) {
-    const ShapeDescription& d = shape.description;
-    if (d.inside == d.outside) return current;
-    return dot(w, hit.ng) < 0 ? d.inside : d.outside;
-}
-
 /// One path in the making. The estimate is  sum over vertices of  beta * (emission + direct light),
-/// beta = product of  f |cos| / pdf  so far; each kind of light is found by two strategies whose
-/// weights add to one.
+/// beta = product of  f |cos| / pdf  and of the weights of media so far; each kind of light is
+/// found by two strategies whose weights add to one.
 class PathTracer {
   public:
     PathTracer(const RenderScene& scene, Ray ray, Sampler& sampler, int max_depth,
                PathRecord* record)
-        : scene_(scene), ray_(ray), sampler_(sampler), max_depth_(max_depth), record_(record) {}
+        : scene_(scene), ray_(ray), sampler_(sampler), max_depth_(max_depth), record_(record) {
+        camera_origin_ = ray.origin;
+        medium_ = scene.description.camera.medium;
+    }
 
     PathResult run() {
         if (record_) {
             record_->clear();
             record_->camera_ray = ray_;
         }
-        for (int depth = 0;;) {
-            SurfaceHit hit;
-            ++result_.rays;
-            if (!scene_.geometry.intersect(ray_, hit)) {
-                escape();
-                break;
-            }
-            beta_ *= transmittance(scene_, medium_, hit.t);
-            const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
-            const Bsdf bsdf =
-                scene_.materials.bsdf(shape.description.material, hit, scene_.textures);
-            if (std::holds_alternative<InterfaceBsdf>(bsdf)) {
-                medium_ = medium_beyond(shape, hit, ray_.direction, medium_);
-                ray_.origin = Geometry::offset_origin(hit, ray_.direction);
-                if (++passed_interfaces_ > kMostInterfaces) break;
-                continue;
-            }
-            ++result_.vertices;
-            const Vec3 wo = -ray_.direction;
-            PathVertex* vertex = begin_vertex(hit, shape, wo);
-            add_emission(hit, wo, vertex);
-            const Frame frame = shading_frame(hit);
-            const Vec3 wo_local = frame.to_local(wo);
-            if (depth == 0) describe_first_hit(hit, wo, bsdf, wo_local);
-            if (vertex) vertex->shading = frame;
-            if (depth++ == max_depth_) break;
-            sampler_.set_dimension(depth * kPairsPerBounce);
-            const Vec2 u_choice = sampler_.next_2d();
-            const Vec2 u_light = sampler_.next_2d(), u_bsdf = sampler_.next_2d();
-            // Lights are chosen for the side that can be lit: the viewer's, or both where light
-            // passes through.
-            light_normal_ = transmits(bsdf) ? Vec3{} : face_forward(hit.ns, wo);
-            guide_ = has_diffuse_lobe(bsdf) && depth < max_depth_
-                         ? scene_.guide.at(hit.position, light_normal_)
-                         : GuideMixture{};
-            if (!is_specular(bsdf))
-                add_direct(hit, shape, bsdf, frame, wo_local, u_choice.x, u_light, vertex);
-            if (!scatter(hit, shape, bsdf, frame, wo_local, u_choice.y, u_bsdf, vertex)) break;
-            if (!survives(depth)) break;
+        while (step()) {
         }
         return result_;
     }
 
   private:
-    static constexpr int kPairsPerBounce = 4;
-    static constexpr int kMostInterfaces =
-        1000;  // a ray caught between coincident interfaces must end
+    static constexpr uint32_t kPairsPerBounce = 4;
+    /// Media draw from dimensions of their own, so that surfaces see the same numbers with or
+    /// without them: one pair for each piece between interfaces.
+    static constexpr uint32_t kMediumPairs = 1u << 20;
+
+    /// Follows the ray to where it meets something; false where the path ends.
+    bool step() {
+        SurfaceHit hit;
+        ++(depth_ == 0 ? result_.rays.camera : result_.rays.bounce);
+        const bool found = scene_.geometry.intersect(ray_, hit);
+        if (medium_ >= 0) {
+            const float length = found ? hit.t : scene_.unbounded_distance;
+            const MediumEvent event = cross_medium(length);
+            if (event.scatters) return scatter_in_medium(event.distance);
+        }
+        if (!found) {
+            escape();
+            return false;
+        }
+        const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
+        const Bsdf bsdf = scene_.materials.bsdf(shape.description.material, hit, scene_.textures);
+        if (!std::holds_alternative<InterfaceBsdf>(bsdf)) return meet_surface(hit, shape, bsdf);
+        medium_ = medium_beyond(shape, hit, ray_.direction, medium_);
+        ray_.origin = Geometry::offset_origin(hit, ray_.direction);
+        return ++passed_interfaces_ <= kMostInterfaces;
+    }
+
+    bool meet_surface(const SurfaceHit& hit, const PlacedShape& shape, const Bsdf& bsdf) {
+        const Vec3 wo = -ray_.direction;
+        PathVertex* vertex = begin_vertex(hit, -1, wo);
+        if (vertex) vertex->material = shape.description.material;
+        add_emission(hit, wo, vertex);
+        const Frame frame = shading_frame(hit);
+        const Vec3 wo_local = frame.to_local(wo);
+        if (depth_ == 0)
+            describe_first_vertex(hit.position, albedo(bsdf, wo_local), face_forward(hit.ns, wo));
+        if (vertex) vertex->shading = frame;
+        if (depth_++ == max_depth_) return false;
+        sampler_.set_dimension(static_cast<uint32_t>(depth_) * kPairsPerBounce);
+        const Vec2 u_choice = sampler_.next_2d();
+        const Vec2 u_light = sampler_.next_2d(), u_bsdf = sampler_.next_2d();
+        // Lights are chosen for the side that can be lit: the viewer's, or both where light
+        // passes through.
+        light_normal_ = transmits(bsdf) ? Vec3{} : face_forward(hit.ns, wo);
+        guide_ = has_diffuse_lobe(bsdf) && depth_ < max_depth_
+                     ? scene_.guide.at(hit.position, light_normal_)
+                     : GuideMixture{};
+        if (!is_specular(bsdf))
+            add_direct(hit, shape, bsdf, frame, wo_local, u_choice.x, u_light, vertex);
+        return scatter(hit, shape, bsdf, frame, wo_local, u_choice.y, u_bsdf, vertex) && survives();
+    }
+
+    /// Adds what the medium emits on the way and decides whether the ray gets through.
+    MediumEvent cross_medium(float length) {
+        const Medium& medium = scene_.media[static_cast<size_t>(medium_)];
+        if (depth_ < max_depth_ && !is_black(medium.emission)) {
+            const Rgb contribution = beta_ * emitted_along(medium, length);
+            result_.radiance += contribution;
+            if (record_) glow_ += luminance(contribution);
+        }
+        MediumEvent event{false, length, transmittance(medium, length)};
+        if (depth_ < max_depth_ && medium.scatters()) {
+            sampler_.set_dimension(kMediumPairs + static_cast<uint32_t>(passed_interfaces_) +
+                                   static_cast<uint32_t>(depth_) * (kMostInterfaces + 1));
+            event = sample_event(medium, length, beta_, sampler_.next_2d());
+        }
+        beta_ *= event.weight;
+        return event;
+    }
+
+    bool scatter_in_medium(float distance) {
+        if (is_black(beta_)) return false;
+        const Medium& medium = scene_.media[static_cast<size_t>(medium_)];
+        const Vec3 wo = -ray_.direction;
+        SurfaceHit place;
+        place.position = ray_.origin + ray_.direction * distance;
+        place.time = ray_.time;
+        PathVertex* vertex = begin_vertex(place, medium_, wo);
+        if (depth_ == 0) describe_first_vertex(place.position, medium.albedo(), {});
+        ++depth_;
+        sampler_.set_dimension(static_cast<uint32_t>(depth_) * kPairsPerBounce);
+        const float u_select = sampler_.next_2d().x;
+        const Vec2 u_light = sampler_.next_2d(), u_phase = sampler_.next_2d();
+        light_normal_ = {};
+        Ray shadow;
+        shadow.origin = place.position;
+        shadow.time = place.time;
+        if (const auto light =
+                scene_.lights.sample(place.position, {}, place.time, u_select, u_light)) {
+            const float p = henyey_greenstein(medium.g, -dot(wo, light->wi));
+            add_light(
+                *light, Rgb(p), [p] { return p; }, shadow, medium_, vertex);
+        }
+        const Vec3 wi = sample_phase(medium.g, wo, u_phase);
+        pdf_ = henyey_greenstein(medium.g, -dot(wo, wi));
+        specular_ = sharp_so_far_ = false;
+        if (vertex) {
+            vertex->scatters = true;
+            vertex->next_event = {wi, {}};
+        }
+        previous_position_ = place.position;
+        previous_normal_ = {};
+        ray_.origin = place.position;
+        ray_.direction = wi;
+        return survives();
+    }
 
     void escape() {
+        if (record_ && record_->count == static_cast<int>(result_.vertices)) {
+            record_->escape_direction = ray_.direction;
+            record_->escape_glow = glow_;
+        }
         if (!scene_.lights.has_environment()) return;
         const Rgb light = scene_.lights.environment(ray_.direction);
         float weight = 1;
@@ -106,20 +167,23 @@ class PathTracer {
         result_.radiance += contribution;
         if (record_ && record_->count == static_cast<int>(result_.vertices)) {
             record_->escaped = luminance(contribution);
-            record_->escape_direction = ray_.direction;
             record_->escape_seen_sharply = sharp_so_far_;
         }
     }
 
-    PathVertex* begin_vertex(const SurfaceHit& hit, const PlacedShape& shape, Vec3 wo) {
+    PathVertex* begin_vertex(const SurfaceHit& hit, MediumId medium, Vec3 wo) {
+        ++result_.vertices;
         if (!record_ || record_->count == PathRecord::kCapacity) return nullptr;
         PathVertex* v = &record_->vertices[static_cast<size_t>(record_->count++)];
         v->hit = hit;
+        v->medium = medium;
         v->wo = wo;
-        v->material = shape.description.material;
+        v->material = -1;
         v->emitted = v->direct = 0;
         v->scatters = false;
         v->seen_sharply = sharp_so_far_;
+        v->glow = glow_;
+        glow_ = 0;
         return v;
     }
 
@@ -137,11 +201,11 @@ class PathTracer {
         if (vertex) vertex->emitted = luminance(contribution);
     }
 
-    void describe_first_hit(const SurfaceHit& hit, Vec3 wo, const Bsdf& bsdf, Vec3 wo_local) {
+    void describe_first_vertex(Vec3 position, Rgb albedo, Vec3 normal) {
         result_.hit = true;
-        result_.albedo = albedo(bsdf, wo_local);
-        result_.normal = face_forward(hit.ns, wo);
-        result_.depth = distance(ray_.origin, hit.position);
+        result_.albedo = albedo;
+        result_.normal = normal;
+        result_.depth = distance(camera_origin_, position);
     }
 
     void add_direct(const SurfaceHit& hit, const PlacedShape& shape, const Bsdf& bsdf,
@@ -154,30 +218,40 @@ class PathTracer {
         Ray shadow;
         shadow.origin = Geometry::offset_origin(hit, light->wi);
         shadow.time = hit.time;
-        shadow.direction = light->wi;
-        if (std::isfinite(light->distance)) {
+        const auto density = [&] { return direction_pdf(bsdf, wo_local, wi_local, light->wi); };
+        if (add_light(*light, f, density, shadow, medium_beyond(shape, hit, light->wi, medium_),
+                      vertex) &&
+            vertex)
+            vertex->direct_event.lobes = lobe_shares(bsdf, wo_local, wi_local);
+    }
+
+    /// Adds the light sampled at a vertex that scatters the part f of it into the path and would
+    /// have found its direction with density `density()`. False where nothing of it arrives.
+    template <typename Density>
+    bool add_light(const LightSample& light, Rgb f, const Density& density, Ray shadow,
+                   MediumId medium, PathVertex* vertex) {
+        if (is_black(light.radiance) || !(light.pdf > 0)) return false;
+        shadow.direction = light.wi;
+        if (std::isfinite(light.distance)) {
             // Aim at the light from the moved origin and stop just short of it.
-            const Vec3 to_light = light->position - shadow.origin;
+            const Vec3 to_light = light.position - shadow.origin;
             const float d = length(to_light);
-            if (!(d > 0)) return;
+            if (!(d > 0)) return false;
             shadow.direction = to_light / d;
             shadow.t_max = d * (1 - 1e-4f);
         }
-        ++result_.rays;
-        if (scene_.geometry.occluded(shadow)) return;
-        const MediumId medium = medium_beyond(shape, hit, light->wi, medium_);
-        const float weight =
-            light->is_delta
-                ? 1.0f
-                : power_heuristic(light->pdf, direction_pdf(bsdf, wo_local, wi_local, light->wi));
-        const Rgb contribution = beta_ * f * light->radiance *
-                                 transmittance(scene_, medium, light->distance) *
-                                 (weight / light->pdf);
+        uint32_t rays = 0;
+        const Rgb visible = visibility(scene_, shadow, light.distance, medium, rays);
+        result_.rays.shadow += rays;
+        if (is_black(visible)) return false;
+        const float weight = light.is_delta ? 1.0f : power_heuristic(light.pdf, density());
+        const Rgb contribution = beta_ * f * light.radiance * visible * (weight / light.pdf);
         result_.radiance += contribution;
-        if (!vertex) return;
+        if (!vertex) return true;
         vertex->direct = luminance(contribution);
-        vertex->light = *light;
-        vertex->direct_event = {light->wi, lobe_shares(bsdf, wo_local, wi_local)};
+        vertex->light = light;
+        vertex->direct_event = {light.wi, {}};
+        return true;
     }
 
     /// Density of sample_direction to return a direction by other than specular lobes.
@@ -250,9 +324,9 @@ class PathTracer {
 
     /// Russian roulette by the throughput without the factors that refraction and the guide put on
     /// it.
-    bool survives(int depth) {
+    bool survives() {
         const float carried = max_component(beta_) * roulette_scale_;
-        if (!(carried < 1) || depth <= 1) return true;
+        if (!(carried < 1) || depth_ <= 1) return true;
         const float end = std::max(0.0f, 1 - carried);
         if (sampler_.next_1d() < end) return false;
         beta_ *= 1 / (1 - end);
@@ -274,8 +348,11 @@ class PathTracer {
     float roulette_scale_ = 1;
     MediumId medium_ = -1;
     int passed_interfaces_ = 0;
-    GuideMixture guide_;                        // at the current vertex
-    Vec3 light_normal_;                         // what the lights are told at the current vertex
+    int depth_ = 0;       ///< scattering events so far
+    float glow_ = 0;      ///< luminance from media since the last vertex, for the record
+    Vec3 camera_origin_;  ///< where the path starts
+    GuideMixture guide_;  // at the current vertex
+    Vec3 light_normal_;   // what the lights are told at the current vertex
     Vec3 previous_position_, previous_normal_;  // and at the last one, for the weights
 };
 

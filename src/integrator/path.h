@@ -1,5 +1,5 @@
-/// The path tracer: next-event estimation, BSDF sampling, multiple importance sampling, Russian
-/// roulette.
+/// The path tracer: surfaces and homogeneous media, next-event estimation, sampling of BSDFs and
+/// phase functions, multiple importance sampling, Russian roulette.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,27 @@
 
 namespace covtrace {
 
-/// Everything one path says about its pixel.
+/// Rays by what they are for. A way through several interfaces counts a ray for each piece.
+struct RayCounts {
+    uint64_t camera = 0;  ///< up to the first place that scatters
+    uint64_t bounce = 0;  ///< behind it
+    uint64_t shadow = 0;  ///< towards sampled lights
+    void add(const RayCounts& other) {
+        camera += other.camera;
+        bounce += other.bounce;
+        shadow += other.shadow;
+    }
+};
+
+/// Everything one path says about its pixel. Its first vertex is the first surface, or the first
+/// place in a medium, where it scatters.
 struct PathResult {
     Rgb radiance;
-    Rgb albedo;       ///< of the first surface; 0 where the ray leaves the scene
-    Vec3 normal;      ///< shading normal of the first surface towards the viewer
-    float depth = 0;  ///< distance of the first surface from the camera, 0 where there is none
+    Rgb albedo;       ///< of the first vertex; 0 where the ray leaves the scene
+    Vec3 normal;      ///< shading normal of the first vertex towards the viewer; 0 in a medium
+    float depth = 0;  ///< distance of the first vertex from the camera, 0 where there is none
     bool hit = false;
-    uint32_t rays = 0;  ///< rays traced, shadow rays included
+    RayCounts rays;
     uint32_t vertices = 0;
 };
 

@@ -17,16 +17,21 @@ struct ScatterEvent {
     LobeShares lobes;
 };
 
+/// A place where the path scatters: on a surface, or inside a medium, where of `hit` only position
+/// and time mean anything and the events have no lobes.
 struct PathVertex {
     SurfaceHit hit;
-    Vec3 wo;        ///< unit, world, towards the previous vertex
-    Frame shading;  ///< frame of the BSDF: anisotropic roughness is along its x and y
+    MediumId medium = -1;  ///< of the scattering; -1: on a surface
+    Vec3 wo;               ///< unit, world, towards the previous vertex
+    Frame shading;         ///< frame of the BSDF: anisotropic roughness is along its x and y
     MaterialId material = -1;
 
     /// Luminance that reaches the sensor from this vertex' own emission, after multiple importance
     /// sampling.
     float emitted = 0;
     bool seen_sharply = false;  ///< no lobe but specular ones between the camera and this vertex
+    /// Luminance that reaches the sensor from the media between this vertex and the previous one.
+    float glow = 0;
 
     /// Luminance that reaches the sensor by the light sampled here; 0 where there is none.
     float direct = 0;
@@ -49,10 +54,11 @@ struct PathRecord {
     float escaped = 0;
     Vec3 escape_direction;
     bool escape_seen_sharply = false;
+    float escape_glow = 0;  ///< luminance from the media behind the last vertex
 
     void clear() {
         count = 0;
-        escaped = 0;
+        escaped = escape_glow = 0;
     }
 };
 

@@ -4,26 +4,49 @@
 
 namespace covtrace {
 
-RenderScene::RenderScene(SceneDescription scene_description, const std::string& isa)
+RenderScene::RenderScene(SceneDescription scene_description, const std::string& isa,
+                         size_t texture_bytes)
     : description(std::move(scene_description)),
       geometry(description, isa),
       lights(description, geometry),
-      textures(description),
+      textures(description, texture_bytes),
       materials(description, textures, IlluminantAdaptation(lights.total_power())),
       camera(description.camera, description.film.width, description.film.height),
       filter(description.filter) {
-    for (const MediumDescription& m : description.media) {
-        extinction.push_back(m.sigma_a);
-        if (!is_black(m.sigma_s))
-            description.warnings.push_back(
-                {m.where, "medium \"" + m.name + "\" scatters: rendered as if it only absorbed"});
-    }
+    const Warnings& reduced = textures.warnings();
+    description.warnings.insert(description.warnings.end(), reduced.begin(), reduced.end());
+    for (const MediumDescription& m : description.media)
+        media.push_back({m.sigma_a, m.sigma_s, m.emission, m.g});
+    for (const PlacedShape& shape : geometry.shapes())
+        has_interfaces |= materials.is_interface(shape.description.material);
+    unbounded_distance = 2 * geometry.bounds().radius();
     guide = CausticGuide(*this);
 }
 
 void RenderScene::prepare_spectra() {
     textures.prepare_spectra();
     lights.prepare_spectra();
+}
+
+std::map<std::string, size_t> RenderScene::memory() const {
+    const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+    const auto mesh_bytes = [&](const auto& mesh, const auto& faces) {
+        return bytes(mesh.positions) + bytes(mesh.normals) + bytes(mesh.uvs) + bytes(faces);
+    };
+    std::map<const void*, size_t> meshes;  // shapes share them
+    for (const PlacedShape& shape : geometry.shapes()) {
+        const auto& g = shape.description.geometry;
+        if (const auto* triangles = std::get_if<std::shared_ptr<const TriangleMesh>>(&g))
+            meshes[triangles->get()] = mesh_bytes(**triangles, (*triangles)->triangles);
+        else if (const auto* patches = std::get_if<std::shared_ptr<const BilinearMesh>>(&g))
+            meshes[patches->get()] = mesh_bytes(**patches, (*patches)->patches);
+    }
+    size_t sum = 0;
+    for (const auto& [mesh, size] : meshes) sum += size;
+    return {{"meshes", sum},
+            {"shapes", geometry.memory()},
+            {"embree", geometry.embree_memory()},
+            {"textures", textures.memory()}};
 }
 
 }  // namespace covtrace

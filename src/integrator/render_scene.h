@@ -2,6 +2,7 @@
 /// filter.
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "geometry/geometry.h"
@@ -11,19 +12,24 @@
 #include "scene/scene_description.h"
 #include "shading/lights.h"
 #include "shading/material.h"
+#include "shading/medium.h"
 #include "shading/texture.h"
 
 namespace covtrace {
 
 /// Built once from a description; immutable and thread-safe afterwards.
 struct RenderScene {
-    /// `isa`: as Geometry's. Throws Error(scene) for images that can't be read, Error(limit) where
-    /// memory runs out.
-    explicit RenderScene(SceneDescription scene_description, const std::string& isa = {});
+    /// `isa`: as Geometry's; `texture_bytes`: as TextureStore's. Throws Error(scene) for images
+    /// that can't be read, Error(limit) where memory runs out.
+    explicit RenderScene(SceneDescription scene_description, const std::string& isa = {},
+                         size_t texture_bytes = kNoTextureLimit);
 
     /// What only the frequency analysis needs: spectra of textures and environments. Not
     /// thread-safe.
     void prepare_spectra();
+
+    /// Bytes held, by what they are for: "meshes", "shapes", "embree" (at its peak), "textures".
+    std::map<std::string, size_t> memory() const;
 
     SceneDescription description;
     Geometry geometry;
@@ -32,8 +38,11 @@ struct RenderScene {
     MaterialStore materials;  ///< reflectances as they are in the light of all `lights` together
     Camera camera;
     PixelFilter filter;
-    /// Extinction per medium, per scene unit: absorption alone (scattering is not rendered).
-    std::vector<Rgb> extinction;
+    std::vector<Medium> media;    ///< by MediumId
+    bool has_interfaces = false;  ///< surfaces that only separate media
+    /// What a ray crosses of a medium without an end, in scene units: twice the radius of the
+    /// scene's bounds, as far away as pbrt-v4 puts its infinite lights.
+    float unbounded_distance = 0;
     CausticGuide guide;  ///< made last: it is learnt from all the rest
 };
 

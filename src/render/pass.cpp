@@ -48,8 +48,9 @@ void sample_pixel(const PassContext& context, FilmPixel& pixel, int x, int y, Pa
     const uint32_t index = pixel.count;
     FilmPixel::Sample s = take_sample(context, x, y, index, record, path);
     ++statistics.samples;
-    statistics.rays += path.rays;
+    statistics.rays.add(path.rays);
     statistics.vertices += path.vertices;
+    ++statistics.lengths[std::min<size_t>(path.vertices, PassStatistics::kLengths - 1)];
     if (is_black(path.radiance)) ++statistics.black_paths;
     if (!is_finite(s.radiance)) {
         ++statistics.rejected;
@@ -64,7 +65,8 @@ void sample_pixel(const PassContext& context, FilmPixel& pixel, int x, int y, Pa
 
 void PassStatistics::add(const PassStatistics& other) {
     samples += other.samples;
-    rays += other.rays;
+    rays.add(other.rays);
+    for (size_t i = 0; i < lengths.size(); ++i) lengths[i] += other.lengths[i];
     vertices += other.vertices;
     black_paths += other.black_paths;
     rejected += other.rejected;

@@ -1,6 +1,7 @@
 /// Passes over the image: radiance samples by count, and the covariance paths.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -26,7 +27,12 @@ struct RejectedSample {
 
 /// Sums over all samples of a render.
 struct PassStatistics {
-    uint64_t samples = 0, rays = 0, vertices = 0;
+    static constexpr size_t kLengths = 33;
+    uint64_t samples = 0, vertices = 0;
+    RayCounts rays;
+    /// Paths by their number of vertices, emitters at the end included; the last counts all that
+    /// are as long or longer.
+    std::array<uint64_t, kLengths> lengths{};
     uint64_t black_paths = 0;  ///< without any light
     uint64_t rejected = 0;
     std::vector<RejectedSample> first_rejected;  ///< at most a few, in image order

@@ -53,6 +53,7 @@ class Session {
             trace_uniform();
         else
             trace_covariance();
+        result_.statistics.memory["film"] = film_.pixels.size() * sizeof(FilmPixel);
         result_.statistics.samples_per_pixel = film_.mean_count();
         result_.complete = !monitor_.cancelled();
         return std::move(result_);
@@ -136,10 +137,13 @@ class Session {
             options_.cov_spp ? *options_.cov_spp : std::clamp(std::floor(spp / 4), 2.0, 4.0);
         const double cov_spp = target_spp_ ? std::min(wanted, spp) : wanted;
         CovarianceBuffer buffer(film_.bounds.width(), film_.bounds.height());
+        result_.statistics.memory["prediction"] =
+            buffer.covariance.size() * (sizeof(buffer.covariance[0]) + sizeof(float));
         std::optional<VoxelGrid> occluders;
         if (options_.occlusion == Occlusion::grid) {
             const PhaseTimer timer(monitor_, phase("grid"));
             occluders.emplace(scene_.geometry, VoxelGridOptions{.width = options_.voxels});
+            result_.statistics.memory["occluders"] = occluders->memory();
         }
         {
             const PhaseTimer timer(monitor_, phase("covariance"));

@@ -16,8 +16,7 @@ SceneBuilder::SceneBuilder(SceneDescription& scene, SceneFiles& files, WarningLo
       shapes_(context_) {}
 
 void SceneBuilder::camera(Entity entity) {
-    if (!state_.outside_medium.empty())
-        context_.log.add(entity.where, "the medium around the camera is not rendered");
+    view_.camera_medium = state_.outside_medium;
     view_.camera = std::move(entity);
     view_.camera_to_world = state_.world_to_object();
     coordinate_systems_["camera"] = {state_.ctm[0].inverse(), state_.ctm[1].inverse()};
@@ -207,6 +206,24 @@ MediumId SceneBuilder::medium_named(const std::string& name, const SourceLocatio
                 "medium " + in_quotes(name) + " is not defined" + did_you_mean(name, known));
 }
 
+void SceneBuilder::drop_media() {
+    bool used = scene_.camera.medium >= 0;
+    scene_.camera.medium = -1;
+    const auto drop = [&used](std::vector<ShapeDescription>& shapes) {
+        for (ShapeDescription& s : shapes) {
+            used |= s.inside != s.outside;
+            s.inside = s.outside = -1;
+        }
+    };
+    drop(scene_.shapes);
+    for (ObjectDescription& o : scene_.objects) drop(o.shapes);
+    if (!used) return;
+    context_.log.set_order(view_.integrator.directive);
+    context_.log.add(view_.integrator.where,
+                     "integrator " + in_quotes(view_.integrator.type) +
+                         " sees no media, as in pbrt; \"volpath\" renders them");
+}
+
 bool SceneBuilder::resolve_alpha(PendingShape& pending) {
     if (!pending.alpha) return true;
     ShapeDescription& s = pending.shape;
@@ -245,7 +262,9 @@ void SceneBuilder::finish(const SourceLocation& end) {
                 " has no matching end");
     textures_.build_all();
     materials_.build_all();
+    scene_.camera.medium = medium_named(view_.camera_medium, scene_.camera.where);
     for (PendingShape& p : pending_) resolve(p);
+    if (!scene_.renders_media) drop_media();
     for (size_t i = 0; i < scene_.instances.size(); ++i) {
         InstanceDescription& instance = scene_.instances[i];
         const auto it = objects_by_name_.find(instance_names_[i]);

@@ -87,6 +87,8 @@ class SceneBuilder {
     void resolve(PendingShape& pending);
     /// False where nothing of the shape has any effect.
     bool resolve_alpha(PendingShape& pending);
+    /// For integrators that see no media.
+    void drop_media();
     MediumId medium_named(const std::string& name, const SourceLocation& where) const;
 
     SceneDescription& scene_;

@@ -112,12 +112,13 @@ struct MaterialDescription {
     SourceLocation where;
 };
 
-// ---- media: parsed, and absorbing ones rendered inside dielectrics.
+// ---- media: the same everywhere inside
 
 struct MediumDescription {
     std::string name;
     Rgb sigma_a, sigma_s;  ///< per scene unit, scale applied
-    float g = 0;
+    Rgb emission;          ///< pbrt's Le: radiance of the absorbing part, scale applied
+    float g = 0;           ///< mean cosine of the phase function, in (-1, 1)
     SourceLocation where;
 };
 
@@ -218,6 +219,7 @@ struct CameraDescription {
     std::optional<std::array<float, 4>> screen_window;  ///< x0, x1, y0, y1
     float lens_radius = 0, focal_distance = 1e6f;
     float shutter_open = 0, shutter_close = 1;
+    MediumId medium = -1;  ///< around the lens
     SourceLocation where;
 };
 
@@ -247,6 +249,7 @@ struct SceneDescription {
     FilterDescription filter;
     int samples_per_pixel = 16;
     int max_depth = 5;
+    bool renders_media = true;  ///< false: the integrator sees no media, as pbrt's "path"
     std::vector<TextureDescription> textures;
     std::vector<MaterialDescription> materials;
     std::vector<MediumDescription> media;

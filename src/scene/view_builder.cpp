@@ -218,6 +218,9 @@ void build_integrator(Entity& e, BuildContext& context) {
                                      " is not supported; path tracing takes its place");
         p.ignore_all();
     }
+    const std::vector<std::string> volumetric{"volpath", "simplevolpath", "bdpt", "mlt"};
+    context.scene.renders_media =
+        std::find(volumetric.begin(), volumetric.end(), e.type) != volumetric.end();
     if (p.flag("regularize", false))
         context.log.add(p.where("regularize", e.where), "parameter \"regularize\" is ignored");
     p.ignore({"lightsampler"});

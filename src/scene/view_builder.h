@@ -15,6 +15,7 @@ struct ViewEntities {
     Entity integrator{"volpath", {}, {}, 0};
     Entity accelerator{"bvh", {}, {}, 0};
     AnimatedTransform camera_to_world;
+    std::string camera_medium;  ///< empty: none
     ColourSpace film_colour_space = ColourSpace::srgb;
 };
 

@@ -32,8 +32,9 @@ Vec2 barycentric(const WorldTriangle& t, Vec3 p, Vec3 w) {
 }  // namespace
 
 EmissiveMesh::EmissiveMesh(const PlacedShape& shape)
-    : motion_(shape.object_to_world.is_animated() ? &shape.object_to_world : nullptr) {
-    const Transform start = shape.object_to_world.start();
+    : motion_(shape.description.object_to_world.is_animated() ? &shape.description.object_to_world
+                                                              : nullptr) {
+    const Transform start = shape.description.object_to_world.start();
     const Transform placed = motion_ ? Transform() : start;
     const bool reverse = shape.description.reverse_orientation;
     const float winding = reverse != placed.swaps_handedness() ? -1.0f : 1.0f;

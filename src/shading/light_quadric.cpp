@@ -41,8 +41,9 @@ EmissiveQuadric::Pose EmissiveQuadric::make_pose(const Transform& object_to_worl
 
 EmissiveQuadric::EmissiveQuadric(const PlacedShape& shape)
     : orientation_(shape.description.reverse_orientation ? -1.0f : 1.0f),
-      start_(make_pose(shape.object_to_world.start())),
-      motion_(shape.object_to_world.is_animated() ? &shape.object_to_world : nullptr) {
+      start_(make_pose(shape.description.object_to_world.start())),
+      motion_(shape.description.object_to_world.is_animated() ? &shape.description.object_to_world
+                                                              : nullptr) {
     if (const auto* s = std::get_if<Sphere>(&shape.description.geometry)) {
         radius_ = s->radius;
         phi_max_ = radians(std::clamp(s->phi_max, 0.0f, 360.0f));

@@ -63,7 +63,7 @@ EmitterSpectrum::EmitterSpectrum(const PlacedShape& shape, const Emitter& emitte
         return;
     }
     const auto& mesh = std::get<EmissiveMesh>(emitter);
-    moments_ = mesh_moments(mesh, shape.object_to_world.start());
+    moments_ = mesh_moments(mesh, shape.description.object_to_world.start());
     std::vector<std::array<Vec3, 3>> triangles;
     triangles.reserve(size_t(mesh.light_count()));
     for (int light = 0; light < mesh.light_count(); ++light)
@@ -76,7 +76,7 @@ std::optional<Vec3> EmitterSpectrum::nearest_border(Vec3 position, const Transfo
         const auto q = quadric->nearest_border(now.inverse().point(position));
         return q ? std::optional(now.point(*q)) : std::nullopt;
     }
-    const AnimatedTransform& motion = shape_->object_to_world;
+    const AnimatedTransform& motion = shape_->description.object_to_world;
     if (!motion.is_animated()) return border_.nearest(position);
     const Vec3 at_start = motion.start().point(now.inverse().point(position));
     const auto q = border_.nearest(at_start);
@@ -84,7 +84,7 @@ std::optional<Vec3> EmitterSpectrum::nearest_border(Vec3 position, const Transfo
 }
 
 SourceSpectrum EmitterSpectrum::at(Vec3 position, Vec3 normal, float time) const {
-    const AnimatedTransform& motion = shape_->object_to_world;
+    const AnimatedTransform& motion = shape_->description.object_to_world;
     const Transform now = motion.at(time);
     SourceSpectrum s;
     s.kind = SourceSpectrum::Kind::area;

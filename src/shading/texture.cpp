@@ -1,13 +1,14 @@
 #include "shading/texture.h"
 
+#include <algorithm>
 #include <cassert>
-#include <exception>
 #include <functional>
 #include <map>
 #include <tuple>
 
 #include "core/parallel.h"
 #include "shading/texture_graph.h"
+#include "shading/texture_loader.h"
 
 namespace covtrace {
 namespace {
@@ -25,50 +26,20 @@ ImageKey key_of(const ImageTexture& t) {
     return {t.file.lexically_normal(), t.encoding, uses_gamma ? t.gamma : 1.0f, t.wrap};
 }
 
-struct ImageRequest {
-    const ImageTexture* texture;
-    const SourceLocation* where;
-};
-
-TextureImage load(const ImageRequest& request) {
-    const ImageTexture& t = *request.texture;
-    const RasterImage raster = read_raster(t.file, *request.where);
-    // Floating-point files are linear by definition, whatever the scene says, as in pbrt-v4.
-    const bool is_encoded = raster.is_8bit || raster.is_16bit;
-    const Encoding encoding = is_encoded ? t.encoding.value_or(Encoding::srgb) : Encoding::linear;
-    return {raster, encoding, t.gamma, t.wrap};
-}
-
-/// In parallel; of several errors the first in the order of the requests is thrown.
-std::vector<TextureImage> load_all(const std::vector<ImageRequest>& requests) {
-    std::vector<std::optional<TextureImage>> loaded(requests.size());
-    std::vector<std::exception_ptr> errors(requests.size());
-    parallel_for(int64_t(requests.size()), [&](int64_t i) {
-        try {
-            loaded[size_t(i)] = load(requests[size_t(i)]);
-        } catch (...) {
-            errors[size_t(i)] = std::current_exception();
-        }
-    });
-    for (const std::exception_ptr& e : errors)
-        if (e) std::rethrow_exception(e);
-    std::vector<TextureImage> images;
-    images.reserve(loaded.size());
-    for (auto& image : loaded) images.push_back(std::move(*image));
-    return images;
-}
-
 /// Turns descriptions into nodes, children first, and folds what is constant.
 class GraphBuilder {
   public:
-    explicit GraphBuilder(const SceneDescription& scene)
-        : textures_(scene.textures), built_(textures_.size(), false) {
+    GraphBuilder(const SceneDescription& scene, size_t most_bytes, Warnings& warnings)
+        : textures_(scene.textures),
+          most_bytes_(most_bytes),
+          warnings_(warnings),
+          built_(textures_.size(), false) {
         graph_.nodes.resize(textures_.size());
     }
 
     TextureGraph build() {
         for (size_t i = 0; i < textures_.size(); ++i) build(TextureId(i), 1);
-        graph_.images = load_all(requests_);
+        graph_.images = load_images(requests_, most_bytes_, warnings_);
         return std::move(graph_);
     }
 
@@ -141,6 +112,8 @@ class GraphBuilder {
     }
 
     const std::vector<TextureDescription>& textures_;
+    const size_t most_bytes_;
+    Warnings& warnings_;
     std::vector<bool> built_;
     std::map<ImageKey, int> image_ids_;
     std::vector<ImageRequest> requests_;
@@ -191,11 +164,14 @@ ImageSpectrum analyse_mixture(const TextureGraph& graph, const MixNode& mix,
 
 struct TextureStore::Impl {
     TextureGraph graph;
+    Warnings warnings;
     bool is_prepared = false;
 };
 
-TextureStore::TextureStore(const SceneDescription& scene)
-    : impl_(std::make_unique<Impl>(Impl{GraphBuilder(scene).build()})) {}
+TextureStore::TextureStore(const SceneDescription& scene, size_t most_bytes)
+    : impl_(std::make_unique<Impl>()) {
+    impl_->graph = GraphBuilder(scene, most_bytes, impl_->warnings).build();
+}
 TextureStore::~TextureStore() = default;
 
 Rgb TextureStore::eval(TextureId id, const TexturePoint& at) const {
@@ -220,9 +196,8 @@ void TextureStore::prepare_spectra() {
     for (TextureNode& node : graph.nodes) {
         auto* n = std::get_if<ImageNode>(&node);
         if (!n) continue;
-        const auto [entry, is_new] =
-            ids.try_emplace({n->image, n->is_spectrum, n->invert, n->invert ? n->scale : 1.0f},
-                            int(jobs.size()));
+        const auto [entry, is_new] = ids.try_emplace(
+            {n->image, n->is_spectrum, n->invert, n->invert ? n->scale : 1.0f}, int(jobs.size()));
         if (is_new)
             jobs.push_back([&graph, n] { return analyse(graph.images[size_t(n->image)], *n); });
         n->spectrum = entry->second;
@@ -245,6 +220,10 @@ SpatialCovariance2 TextureStore::uv_covariance(TextureId id, const TexturePoint&
                                                Vec3 dpdv, float footprint_uv) const {
     assert(impl_->is_prepared);
     return covtrace::uv_covariance(impl_->graph, id, at, dpdu, dpdv, footprint_uv);
+}
+
+const Warnings& TextureStore::warnings() const {
+    return impl_->warnings;
 }
 
 size_t TextureStore::memory() const {

@@ -1,6 +1,7 @@
 /// Textures: values over a surface, and how fast they vary there.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -24,11 +25,18 @@ struct TexturePoint {
 /// isn't 1 everywhere. Point and bilinear filters read the image as it is. Trilinear and EWA read
 /// it bilinearly as well, and checkerboards aren't filtered: the renderer's many samples per pixel
 /// do what these filters are for, without their bias.
+/// Textures take as much memory as their files ask for.
+inline constexpr size_t kNoTextureLimit = std::numeric_limits<size_t>::max();
+
 class TextureStore {
   public:
     /// Loads every image. Missing or broken files throw Error(scene) with the place in the scene
     /// file; textures nested a thousand deep or more throw Error(limit).
-    explicit TextureStore(const SceneDescription& scene);
+    ///
+    /// `most_bytes` limits what the images hold together: where they need more, the largest lose
+    /// their finest mip levels, one after the other, with a warning. Which do depends on the files
+    /// alone.
+    explicit TextureStore(const SceneDescription& scene, size_t most_bytes = kNoTextureLimit);
     ~TextureStore();
     TextureStore(const TextureStore&) = delete;
     TextureStore& operator=(const TextureStore&) = delete;
@@ -48,6 +56,8 @@ class TextureStore {
                                      float footprint_uv) const;
     /// Bytes held by images and their spectra.
     size_t memory() const;
+    /// Images that were reduced.
+    const Warnings& warnings() const;
 
   private:
     struct Impl;

@@ -1,5 +1,8 @@
 #include "shading/texture_image.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "image/color_encoding.h"
 
 namespace covtrace {
@@ -53,6 +56,39 @@ TextureImage::TextureImage(const RasterImage& raster, Encoding encoding, float g
             else
                 floats_[i * channels_ + c] = to_linear(v, encoding, gamma);
         }
+}
+
+uint8_t TextureImage::encode(float v) const {
+    const auto above = std::lower_bound(decode_.begin(), decode_.end(), v);
+    if (above == decode_.begin()) return 0;
+    if (above == decode_.end()) return 255;
+    const auto i = above - decode_.begin();
+    return uint8_t(v - *(above - 1) < *above - v ? i - 1 : i);
+}
+
+void TextureImage::halve() {
+    const int width = (width_ + 1) / 2, height = (height_ + 1) / 2;
+    const size_t values = size_t(width) * size_t(height) * channels_;
+    std::vector<uint8_t> bytes(bytes_.empty() ? 0 : values);
+    std::vector<float> floats(bytes_.empty() ? values : 0);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (size_t c = 0; c < channels_; ++c) {
+                float sum = 0;
+                int count = 0;
+                for (int v = 2 * y; v < std::min(2 * y + 2, height_); ++v)
+                    for (int u = 2 * x; u < std::min(2 * x + 2, width_); ++u, ++count)
+                        sum += channel((size_t(v) * size_t(width_) + size_t(u)) * channels_ + c);
+                const size_t i = (size_t(y) * size_t(width) + size_t(x)) * channels_ + c;
+                if (bytes_.empty())
+                    floats[i] = sum / float(count);
+                else
+                    bytes[i] = encode(sum / float(count));
+            }
+    width_ = width;
+    height_ = height;
+    bytes_ = std::move(bytes);
+    floats_ = std::move(floats);
 }
 
 Vec2 TextureImage::wrap_st(Vec2 st) const {

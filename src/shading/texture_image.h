@@ -39,12 +39,18 @@ class TextureImage {
     Rgb color(size_t texel) const;
     float value(size_t texel) const;
 
+    /// Drops the finest mip level: means over 2 x 2 texels (fewer at the far borders of odd sizes),
+    /// taken of decoded values and encoded again. Images of one texel stay as they are.
+    void halve();
+
     int width() const { return width_; }
     int height() const { return height_; }
     Wrap wrap() const { return wrap_; }
     size_t memory() const { return bytes_.size() + floats_.size() * sizeof(float); }
 
   private:
+    /// The byte that decodes to the value nearest to `v`.
+    uint8_t encode(float v) const;
     float channel(size_t i) const { return bytes_.empty() ? floats_[i] : decode_[bytes_[i]]; }
     Vec2 wrap_st(Vec2 st) const;
     void add_tap(Taps& taps, int x, int y, float weight) const;

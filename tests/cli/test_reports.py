@@ -167,6 +167,23 @@ class Statistics(CliTest):
         self.assertEqual(stats["radiance"]["rejected"], 0)
         self.assertGreater(stats["seconds_total"], 0)
 
+    def test_statistics_by_kind(self):
+        stats = self.statistics("--spp", "4", "--cov-spp", "2")
+        for one in (stats["covariance"], stats["radiance"]):
+            kinds = [one[kind + "_rays"] for kind in ("camera", "bounce", "shadow")]
+            self.assertEqual(sum(kinds), one["rays"])
+            self.assertGreaterEqual(kinds[0], one["samples"])
+            self.assertEqual(sum(one["path_lengths"]), one["samples"])
+            counted = sum(length * paths for length, paths in enumerate(one["path_lengths"]))
+            self.assertLessEqual(counted, one["vertices"])  # the last length stands for longer ones too
+        self.assertLessEqual(sum(stats["memory"][kind] for kind in ("meshes", "shapes", "film")),
+                             stats["memory"]["peak_resident"])
+        for kind in ("embree", "textures", "prediction", "occluders"):
+            self.assertGreaterEqual(stats["memory"][kind], 0)
+        for phase in ("load", "build", "covariance", "radiance", "reconstruction", "write"):
+            self.assertGreaterEqual(stats["seconds"][phase], 0)
+        self.assertLessEqual(sum(stats["seconds"].values()), stats["seconds_total"])
+
     def test_covariance_paths_count(self):
         stats = self.statistics("--spp", "8", "--cov-spp", "3")
         self.assertEqual(stats["covariance"]["samples"], 3 * 24 * 16)

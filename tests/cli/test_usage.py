@@ -26,7 +26,7 @@ class Help(CliTest):
         options = self.run_program("render", "--help").stdout
         for option in (
             "--output --method --spp --time --cov-spp --density --max-spp --filter --resolution --crop --max-depth --seed "
-            "--threads --isa --shutter --focus --fstop --png --layers --progress --stats --reproducible"
+            "--threads --isa --shutter --focus --fstop --png --layers --progress --texture-memory --stats --reproducible"
         ).split():
             self.assertIn(option, options)
 
@@ -66,6 +66,7 @@ class WrongCommandLines(CliTest):
             "--seed": ["-1", "x", "1.5", "18446744073709551616"],
             "--threads": ["0", "-1", "x", "5000"],
             "--isa": ["mmx"],
+            "--texture-memory": ["", "x", "-1", "5X", "5MB", "nan", "inf", "1e30"],
             "--shutter": ["1,0", "0,0", "0", "nan,1", "0,inf", "a,b"],
             "--focus": ["0", "-1", "nan"],
             "--fstop": ["0", "-1", "nan", "inf"],

@@ -102,5 +102,19 @@ TEST(Camera, MovingCameraHasItsVelocity) {
     EXPECT_NEAR(g.angular_velocity.y, 30 * kPi / 180, 1e-3f);
 }
 
+TEST(Camera, TurningByHalfATurnFollowsACircle) {
+    // On the spot, by an angle in proportion to time; either way round.
+    CameraDescription d;
+    d.camera_to_world = AnimatedTransform(Transform(), 0, Transform::rotate(180, {0, 1, 0}), 1);
+    const Camera camera(d, 10, 10);
+    const float side = camera.generate_ray({5, 5}, {}, 0.5f).direction.x > 0 ? 1.0f : -1.0f;
+    for (int i = 0; i <= 40; ++i) {
+        const float t = float(i) / 40;
+        const Vec3 w = camera.generate_ray({5, 5}, {}, t).direction;
+        const Vec3 exact = Transform::rotate(180 * t, {0, 1, 0}).vector({0, 0, 1});
+        EXPECT_LT(distance(w, {side * exact.x, exact.y, exact.z}), 1e-6f) << t;
+    }
+}
+
 }  // namespace
 }  // namespace covtrace

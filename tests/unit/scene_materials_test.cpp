@@ -195,15 +195,47 @@ TEST(SceneMaterials, MediaAreRead) {
     const auto scene = read_world(
         "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 1 2 3 ] \"rgb "
         "sigma_s\" [ 0 0 0 ] \"float scale\" 2 \"float g\" .5\n"
-        "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\"\n"
-        "MakeNamedMedium \"cloud\" \"string type\" \"nanovdb\" \"string filename\" \"x.nvdb\"\n");
-    ASSERT_EQ(scene.media.size(), 3u);
+        "MakeNamedMedium \"default\" \"string type\" \"homogeneous\" \"rgb Le\" [ 1 2 4 ] "
+        "\"float Lescale\" .5\n"
+        "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\" \"string preset\" \"Wholemilk\" "
+        "\"float scale\" 10\n"
+        "MakeNamedMedium \"cloud\" \"string type\" \"nanovdb\" \"string filename\" \"x.nvdb\"\n"
+        "MakeNamedMedium \"smoke\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"float "
+        "density\" [ 1 2 ] \"rgb sigma_a\" [ 1 1 2 ]\n"
+        "MakeNamedMedium \"dye\" \"string type\" \"rgbgrid\" \"integer nz\" 2 \"rgb sigma_a\" [ 1 "
+        "2 "
+        "3 3 4 5 ]\n"
+        "MakeNamedMedium \"odd\" \"string type\" \"homogeneous\" \"string preset\" "
+        "\"Wholemilc\"\n");
+    ASSERT_EQ(scene.media.size(), 7u);
     EXPECT_EQ(scene.media[0].sigma_a, (Rgb{2, 4, 6}));
     EXPECT_TRUE(is_black(scene.media[0].sigma_s));
+    EXPECT_TRUE(is_black(scene.media[0].emission));
     EXPECT_EQ(scene.media[0].g, 0.5f);
     EXPECT_EQ(scene.media[1].sigma_a, Rgb{1});
-    EXPECT_TRUE(is_black(scene.media[2].sigma_a));
-    EXPECT_EQ(scene.warnings.size(), 2u) << warnings_of(scene);
+    EXPECT_EQ(scene.media[1].sigma_s, Rgb{1});
+    EXPECT_EQ(scene.media[1].emission, (Rgb{0.5f, 1, 2}));
+    EXPECT_FLOAT_EQ(scene.media[2].sigma_s.g, 32.1f);
+    EXPECT_FLOAT_EQ(scene.media[2].sigma_a.b, 0.14f);
+    EXPECT_TRUE(is_black(scene.media[3].sigma_a));
+    EXPECT_EQ(scene.media[4].sigma_a, (Rgb{1.5f, 1.5f, 3}));
+    EXPECT_EQ(scene.media[4].sigma_s, Rgb{1.5f});
+    EXPECT_EQ(scene.media[5].sigma_a, (Rgb{2, 3, 4}));
+    EXPECT_EQ(scene.media[5].sigma_s, Rgb{1});
+    EXPECT_EQ(scene.warnings.size(), 4u) << warnings_of(scene);
+    EXPECT_TRUE(contains(warnings_of(scene), "did you mean \"Wholemilk\"")) << warnings_of(scene);
+}
+
+TEST(SceneMaterials, TheCameraStandsInItsMedium) {
+    const std::string fog =
+        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"\" \"fog\"\n"
+        "Camera \"perspective\"\n";
+    const auto scene = read_pbrt_string(fog + "WorldBegin\n", "test.pbrt", ".");
+    EXPECT_EQ(scene.camera.medium, 0);
+    const auto path = read_pbrt_string(fog + "Integrator \"path\"\nWorldBegin\n", "test.pbrt", ".");
+    EXPECT_EQ(path.camera.medium, -1);
+    EXPECT_TRUE(contains(warnings_of(path), "4: integrator \"path\" sees no media"))
+        << warnings_of(path);
 }
 
 TEST(SceneMaterials, ErrorsNameThePlace) {
@@ -236,6 +268,10 @@ TEST(SceneMaterials, ErrorsNameThePlace) {
         {"MediumInterface \"fog\" \"\" Shape \"sphere\"", "medium \"fog\" is not defined"},
         {"MakeNamedMedium \"m\" \"string type\" \"gas\"", "unknown medium \"gas\""},
         {"MakeNamedMedium \"m\"", "medium \"m\" has no type"},
+        {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\"", "expected \"float density\""},
+        {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 3 \"float density\" "
+         "[ 1 2 ]",
+         "has 2 values; expected nx * ny * nz"},
         {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float g\" 1", "between -1 and 1"},
     };
     for (const Case& c : cases) EXPECT_TRUE(contains(world_error(c.text), c.message)) << c.text;

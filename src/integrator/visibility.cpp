@@ -1,0 +1,40 @@
+#include "integrator/visibility.h"
+
+#include <cmath>
+
+namespace covtrace {
+
+MediumId medium_beyond(const PlacedShape& shape, const SurfaceHit& hit, Vec3 w, MediumId current) {
+    const ShapeDescription& d = shape.description;
+    if (d.inside == d.outside) return current;
+    return dot(w, hit.ng) < 0 ? d.inside : d.outside;
+}
+
+Rgb transmittance(const RenderScene& scene, MediumId medium, float distance) {
+    if (medium < 0) return Rgb(1);
+    return transmittance(scene.media[static_cast<size_t>(medium)],
+                         std::isfinite(distance) ? distance : scene.unbounded_distance);
+}
+
+Rgb visibility(const RenderScene& scene, Ray ray, float distance, MediumId medium, uint32_t& rays) {
+    ++rays;
+    if (scene.geometry.occluded(ray)) return Rgb(0);
+    if (!scene.has_interfaces) return transmittance(scene, medium, distance);
+    // Nothing but interfaces is left on the way.
+    Rgb passes(1);
+    SurfaceHit hit;
+    for (int i = 0; i < kMostInterfaces; ++i) {
+        ++rays;
+        if (!(ray.t_max > 0) || !scene.geometry.intersect(ray, hit)) break;
+        const PlacedShape& shape = scene.geometry.shapes()[hit.shape];
+        if (!scene.materials.is_interface(shape.description.material)) break;
+        passes *= transmittance(scene, medium, hit.t);
+        medium = medium_beyond(shape, hit, ray.direction, medium);
+        ray.origin = Geometry::offset_origin(hit, ray.direction);
+        ray.t_max -= hit.t;
+        distance -= hit.t;
+    }
+    return passes * transmittance(scene, medium, std::max(distance, 0.0f));
+}
+
+}  // namespace covtrace
