@@ -28,8 +28,9 @@ std::array<bool, 5> sensor_axes(const RenderScene& scene) {
     const auto& shapes = scene.geometry.shapes();
     const bool moves =
         d.camera.camera_to_world.is_animated() ||
-        std::any_of(shapes.begin(), shapes.end(),
-                    [](const PlacedShape& s) { return s.object_to_world.is_animated(); }) ||
+        std::any_of(
+            shapes.begin(), shapes.end(),
+            [](const PlacedShape& s) { return s.description.object_to_world.is_animated(); }) ||
         std::any_of(d.instances.begin(), d.instances.end(),
                     [](const InstanceDescription& i) { return i.instance_to_world.is_animated(); });
     const bool lens = scene.camera.has_lens();
