@@ -273,7 +273,9 @@ void add_render(CLI::App& app, Invocation& invocation) {
         ->check(CLI::Range(1, 1 << 30))
         ->option_text("N");
     add_choice<Occlusion>(c, "--occlusion", a->options.occlusion,
-                          {{"grid", Occlusion::grid}, {"none", Occlusion::none}},
+                          {{"grid", Occlusion::grid},
+                           {"query", Occlusion::query},
+                           {"none", Occlusion::none}},
                           "occluders beside the rays of the analysis");
     c->add_option("--voxels", a->options.voxels, "width of the occlusion grid (default 200)")
         ->check(CLI::Range(1, 2048))

@@ -41,7 +41,7 @@ cov::SymmetricMatrix5<double> to_sensor(const LightField& field, const SensorGeo
 
 }  // namespace
 
-PathReplay::PathReplay(const RenderScene& scene, const VoxelGrid* occluders)
+PathReplay::PathReplay(const RenderScene& scene, const Occluders& occluders)
     : scene_(scene), occluders_(occluders) {
     const Bounds3 bounds = scene.geometry.bounds();
     center_ = bounds.center();
@@ -49,26 +49,20 @@ PathReplay::PathReplay(const RenderScene& scene, const VoxelGrid* occluders)
     smallest_ = 1e-4 * radius_;
 }
 
-LightField PathReplay::carry(LightField field, Vec3 from, Vec3 to, double share) const {
-    double at = 0;
-    if (occluders_ && share >= kSmallestShare) {
-        const float voxel = occluders_->voxel_size();
-        VoxelMarch march(*occluders_, from, to);
-        OccluderEvent e;
-        while (march.next(float(std::min(cov::footprint_radius(field.sigma), 3.0 * voxel)), e)) {
-            field = cov::travel(field, e.s - at);
-            at = e.s;
-            // So near that the direction to the centroid is chance: the surface's normals tell
-            // where its edge is.
-            const bool touches = length(e.offset) < 0.5f * voxel;
-            const NormalTensor& n = e.normals;
-            field = touches
-                        ? cov::occlude(field, cov::Sym3<double>{n.xx, n.xy, n.xz, n.yy, n.yz, n.zz},
-                                       0.5 * voxel, e.velocity)
-                        : cov::occlude(field, e.offset, 0.5 * voxel, e.velocity);
-        }
-    }
-    return cov::travel(field, distance(from, to) - at);
+LightField PathReplay::to_surface(const LightField& field, const OccluderQuery::Segment& segment,
+                                  const Visibility& end, double share) const {
+    const double length = distance(segment.begin, segment.end);
+    if (!occluders_ || share < kSmallestShare || !(end.extent > 0))
+        return cov::travel(field, length);
+    return travel_past(occluders_, field, segment, measure_at_surface(field.sigma, length, end),
+                       smallest_);
+}
+
+LightField PathReplay::to_camera(const LightField& field, const OccluderQuery::Segment& segment,
+                                 const SensorGeometry& camera, double share) const {
+    if (!occluders_ || share < kSmallestShare)
+        return cov::travel(field, distance(segment.begin, segment.end));
+    return travel_past(occluders_, field, segment, measure_at_camera(camera), smallest_);
 }
 
 PathCovariance PathReplay::operator()(const PathRecord& record) const {
@@ -88,6 +82,28 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
     }
     if (!(total > 0)) return {};
 
+    // Half a pixel's extent grows with the distance travelled from the camera; what can be seen of a
+    // vertex shrinks with every rough surface before it.
+    std::array<float, PathRecord::kCapacity> distances;
+    std::array<Visibility, PathRecord::kCapacity> visible;
+    Vec3 previous = record.camera_ray.origin;
+    float travelled = 0;
+    for (size_t i = 0; i < size_t(record.count); ++i) {
+        const PathVertex& v = record.vertices[i];
+        const float d = distance(previous, v.hit.position);
+        travelled += d;
+        distances[i] = travelled;
+        previous = v.hit.position;
+        if (!occluders_) continue;
+        visible[i] = i == 0 ? first_visibility(camera, d, sharpest_window(v))
+                            : next_visibility(camera, visible[i - 1], d, sharpest_window(v));
+    }
+    const auto owner = [&record](int i) -> OccluderQuery::Owner {
+        if (i < 0) return {};
+        const SurfaceHit& hit = record.vertices[size_t(i)].hit;
+        return {hit.shape, hit.instance};
+    };
+
     Arriving light;
     if (record.escaped > 0) {
         const SourceSpectrum s = scene_.lights.environment_spectrum(record.escape_direction);
@@ -95,26 +111,19 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
                   record.escaped);
         const Vec3 last = record.count > 0 ? record.vertices[size_t(record.count - 1)].hit.position
                                            : record.camera_ray.origin;
-        light.field =
-            carry(light.field, entry(last, record.escape_direction), last, light.weight / total);
-    }
-
-    // Half a pixel's extent grows with the distance travelled from the camera.
-    float distances[PathRecord::kCapacity];
-    Vec3 previous = record.camera_ray.origin;
-    float travelled = 0;
-    for (int i = 0; i < record.count; ++i) {
-        const Vec3 p = record.vertices[size_t(i)].hit.position;
-        travelled += distance(previous, p);
-        distances[i] = travelled;
-        previous = p;
+        const OccluderQuery::Segment segment{entry(last, record.escape_direction), last,
+                                             record.camera_ray.time, {}, owner(record.count - 1)};
+        light.field = record.count > 0
+                          ? to_surface(light.field, segment, visible[size_t(record.count - 1)],
+                                       light.weight / total)
+                          : to_camera(light.field, segment, camera, light.weight / total);
     }
 
     for (int i = record.count - 1; i >= 0; --i) {
         const PathVertex& v = record.vertices[size_t(i)];
         Arriving leaving;
         if (light.weight > 0 || v.direct > 0) {
-            const float extent = camera.orthographic ? 1.0f : distances[i];
+            const float extent = camera.orthographic ? 1.0f : distances[size_t(i)];
             const ScatterPoint point =
                 scatter_point(scene_, v, 0.5f * extent / camera.pixels_per_x);
             if (light.weight > 0)
@@ -125,9 +134,10 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
                                       ? v.hit.position + v.light.wi * v.light.distance
                                       : entry(v.hit.position, v.light.wi);
                 const LightField source = source_field(s, -v.light.wi, false, smallest_);
-                leaving.add(scatter(carry(source, from, v.hit.position, v.direct / total), point,
-                                    v.direct_event.lobes),
-                            v.direct);
+                const LightField arriving =
+                    to_surface(source, {from, v.hit.position, v.hit.time, {}, owner(i)},
+                               visible[size_t(i)], v.direct / total);
+                leaving.add(scatter(arriving, point, v.direct_event.lobes), v.direct);
             }
         }
         if (v.emitted > 0)
@@ -138,7 +148,11 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         if (!(light.weight > 0)) continue;
         const Vec3 next =
             i > 0 ? record.vertices[size_t(i - 1)].hit.position : record.camera_ray.origin;
-        light.field = carry(light.field, v.hit.position, next, light.weight / total);
+        const OccluderQuery::Segment segment{v.hit.position, next, v.hit.time, owner(i),
+                                             owner(i - 1)};
+        light.field =
+            i > 0 ? to_surface(light.field, segment, visible[size_t(i - 1)], light.weight / total)
+                  : to_camera(light.field, segment, camera, light.weight / total);
     }
 
     if (!(light.weight > 0)) return {};

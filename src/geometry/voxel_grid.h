@@ -110,7 +110,8 @@ struct OccluderEvent {
 ///     for (OccluderEvent e; march.next(radius, e);) …
 class VoxelMarch {
   public:
-    VoxelMarch(const VoxelGrid& grid, Vec3 from, Vec3 to);
+    /// Only what lies between the distances `begin` and `end` from `from` is looked at.
+    VoxelMarch(const VoxelGrid& grid, Vec3 from, Vec3 to, float begin = 0, float end = kInfinity);
     /// The next occluder whose centroid is within `radius` of the ray, at most 3 voxels; false at
     /// the end. Per 3 voxels of the way it gives the nearest one only: an edge that runs along the
     /// ray would be counted many times otherwise. `radius` may change from call to call.

@@ -20,7 +20,8 @@ enum class Method {
 /// Where the frequency analysis learns of what stands beside a ray.
 enum class Occlusion {
     none,
-    grid  ///< the thesis' voxel grid of the scene
+    grid,  ///< the thesis' voxel grid of the scene
+    query  ///< the outlines of the geometry itself
 };
 
 struct RenderOptions {

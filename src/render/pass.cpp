@@ -102,7 +102,7 @@ PassStatistics radiance_pass(const PassContext& context, Film& film,
                           });
 }
 
-PassStatistics covariance_pass(const PassContext& context, const VoxelGrid* occluders, Film& film,
+PassStatistics covariance_pass(const PassContext& context, const Occluders& occluders, Film& film,
                                std::span<const uint32_t> counts, CovarianceBuffer& buffer,
                                const Monitor& monitor, const PassProgress& progress) {
     const PathReplay replay(context.scene, occluders);

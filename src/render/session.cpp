@@ -136,11 +136,16 @@ class Session {
             options_.cov_spp ? *options_.cov_spp : std::clamp(std::floor(spp / 4), 2.0, 4.0);
         const double cov_spp = target_spp_ ? std::min(wanted, spp) : wanted;
         CovarianceBuffer buffer(film_.bounds.width(), film_.bounds.height());
-        std::optional<VoxelGrid> occluders;
+        std::optional<VoxelGrid> grid;
+        std::optional<OccluderQuery> query;
         if (options_.occlusion == Occlusion::grid) {
             const PhaseTimer timer(monitor_, phase("grid"));
-            occluders.emplace(scene_.geometry, VoxelGridOptions{.width = options_.voxels});
+            grid.emplace(scene_.geometry, VoxelGridOptions{.width = options_.voxels});
+        } else if (options_.occlusion == Occlusion::query) {
+            const PhaseTimer timer(monitor_, phase("outlines"));
+            query.emplace(scene_.geometry);
         }
+        const Occluders occluders{grid ? &*grid : nullptr, query ? &*query : nullptr};
         {
             const PhaseTimer timer(monitor_, phase("covariance"));
             const std::vector<float> even(film_.pixels.size(), 1.0f);
@@ -148,8 +153,8 @@ class Session {
             const auto counts =
                 allocate(even, std::llround(cov_spp * double(pixels())), none, 1u << 30);
             result_.statistics.covariance =
-                covariance_pass(context_, occluders ? &*occluders : nullptr, film_, counts, buffer,
-                                monitor_, reporter("covariance", 0, fraction(cov_spp), 0, cov_spp));
+                covariance_pass(context_, occluders, film_, counts, buffer, monitor_,
+                                reporter("covariance", 0, fraction(cov_spp), 0, cov_spp));
         }
         Prediction raw, smoothed;
         {

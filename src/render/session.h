@@ -14,7 +14,7 @@ namespace covtrace {
 struct RenderStatistics {
     PassStatistics covariance, radiance;
     std::map<std::string, double>
-        seconds;  ///< per phase: "grid", "covariance", "plan", "radiance", "reconstruction"
+        seconds;  ///< per phase: "grid" or "outlines", "covariance", "plan", "radiance", "reconstruction"
     double samples_per_pixel = 0;  ///< average taken
 };
 
