@@ -15,9 +15,9 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 
-from generator import defocus_checker, motion, snooker, textured_plane  # noqa: E402
+from generator import defocus_checker, foliage, motion, snooker, textured_plane  # noqa: E402
 
-_WRITERS = (snooker, defocus_checker, motion, textured_plane.Lens, textured_plane.Moving)
+_WRITERS = (snooker, defocus_checker, motion, foliage, textured_plane.Lens, textured_plane.Moving)
 _SCENES = {writer.NAME: writer for writer in _WRITERS}
 
 

@@ -1,6 +1,7 @@
 #include "geometry/box_hierarchy.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "core/parallel.h"
@@ -79,7 +80,8 @@ struct BoxHierarchy::Builder {
         if (r.size() <= kMostInLeaf) parts[0] = r;
         for (size_t k = 0; k < kWidth; ++k) {
             if (k >= count) {
-                nodes[index].count[k] = Node::kNone;
+                for (Float4& axis : nodes[index].middle)
+                    axis[k] = std::numeric_limits<float>::quiet_NaN();
                 continue;
             }
             const Bounds3 b = bounds_of(parts[k]);

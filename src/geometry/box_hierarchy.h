@@ -2,7 +2,10 @@
 /// so that a search tests them together.
 #pragma once
 
+#include <immintrin.h>
+
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,18 +25,23 @@ inline Float4 min4(Float4 a, Float4 b) {
 inline Float4 abs4(Float4 a) {
     return max4(a, -a);
 }
+/// Bit k tells whether a[k] < b.
+inline unsigned below4(Float4 a, float b) {
+    return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(a < Float4{} + b)));
+}
 
 class BoxHierarchy {
   public:
     static constexpr int kWidth = 4;
-    static constexpr uint32_t kMostInLeaf = 2;
+    static constexpr uint32_t kMostInLeaf = 1;
 
     struct Node {
-        /// Middles and half sizes of the children's boxes, by axis.
+        /// Middles and half sizes of the children's boxes, by axis; no number where there is none, so
+        /// that every comparison fails.
         std::array<Float4, 3> middle{}, half{};
         std::array<uint32_t, kWidth> first{};  ///< a node, or the first item of a leaf
-        std::array<uint8_t, kWidth> count{};   ///< items of a leaf; kInner, kNone
-        static constexpr uint8_t kInner = 255, kNone = 254;
+        std::array<uint8_t, kWidth> count{};   ///< items of a leaf, kInner or kNone
+        static constexpr uint8_t kInner = 255, kNone = 0;
     };
 
     BoxHierarchy() = default;
@@ -85,8 +93,8 @@ void BoxHierarchy::search(const LowerBounds& bounds, const Limit& limit, const V
         const Node& node = nodes_[e.first];
         const Float4 lower = bounds(node, e.first);
         const size_t base = size;
-        for (size_t k = 0; k < kWidth; ++k) {
-            if (!(lower[k] < limit()) || node.count[k] == Node::kNone) continue;
+        for (unsigned below = below4(lower, limit()); below != 0; below &= below - 1) {
+            const auto k = static_cast<size_t>(std::countr_zero(below));
             // Farthest at the bottom.
             size_t at = size++;
             for (; at > base && stack[at - 1].bound < lower[k]; --at) stack[at] = stack[at - 1];

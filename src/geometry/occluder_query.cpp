@@ -64,11 +64,13 @@ Bounds3 transformed(const Bounds3& b, const Affine& map) {
 
 struct OccluderQuery::Impl {
     const Geometry::Impl& geometry;
+    std::function<bool()> cancelled;
     std::vector<EdgeSet> sets;
     std::vector<Body> bodies;  ///< in the order of `hierarchy`
     BoxHierarchy hierarchy;    ///< over the bodies, throughout the shutter
 
-    explicit Impl(const Geometry::Impl& g) : geometry(g) {
+    Impl(const Geometry::Impl& g, std::function<bool()> stop)
+        : geometry(g), cancelled(std::move(stop)) {
         size_t curved = 0;
         for (const LocalShape& shape : g.local)
             if (!is_flat(shape)) ++curved;
@@ -104,6 +106,7 @@ struct OccluderQuery::Impl {
         FoldEdgeFinder flat;
         std::vector<Body> parts;
         for (uint32_t shape : shapes) {
+            if (cancelled && cancelled()) break;
             if (geometry.is_interface[shape]) continue;
             const LocalShape& local = geometry.local[shape];
             if (is_flat(local)) {
@@ -166,9 +169,9 @@ struct OccluderQuery::Impl {
     double around_ = kMostAround;
 };
 
-OccluderQuery::OccluderQuery(const Geometry& geometry) {
+OccluderQuery::OccluderQuery(const Geometry& geometry, std::function<bool()> cancelled) {
     try {
-        impl_ = std::make_unique<Impl>(geometry.impl());
+        impl_ = std::make_unique<Impl>(geometry.impl(), std::move(cancelled));
     } catch (const std::bad_alloc&) {
         throw Error(ErrorKind::limit, "out of memory while collecting the scene's outlines");
     }

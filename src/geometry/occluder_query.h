@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "geometry/edge_measure.h"
@@ -30,8 +31,9 @@ struct OutlineEvents {
 class OccluderQuery {
   public:
     /// All surfaces but interfaces, instances and moving shapes where they are at a query's time;
-    /// curved shapes as fine polygons. Throws Error(limit) where memory runs out.
-    explicit OccluderQuery(const Geometry& geometry);
+    /// curved shapes as fine polygons. Once `cancelled` says yes, no more shapes are added. Throws
+    /// Error(limit) where memory runs out.
+    explicit OccluderQuery(const Geometry& geometry, std::function<bool()> cancelled = {});
     ~OccluderQuery();
     OccluderQuery(const OccluderQuery&) = delete;
     OccluderQuery& operator=(const OccluderQuery&) = delete;

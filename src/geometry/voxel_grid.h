@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/vec.h"
@@ -31,7 +32,11 @@ struct VoxelGridOptions {
     int width = 200;  ///< voxels along the longest side of the box
     int shutter_samples =
         1;          ///< times, spread over the shutter, at which moving shapes are entered
-    Bounds3 box{};  ///< what lies outside is ignored; empty: Geometry::bounds()
+    /// What lies outside is ignored; empty: Geometry::bounds(), or without a few far corners
+    /// beside which all the rest would lie in one voxel.
+    Bounds3 box{};
+    /// Asked from all threads; once it says yes the grid ends up empty, soon.
+    std::function<bool()> cancelled{};
 };
 
 class VoxelGrid {

@@ -140,10 +140,12 @@ class Session {
         std::optional<OccluderQuery> query;
         if (options_.occlusion == Occlusion::grid) {
             const PhaseTimer timer(monitor_, phase("grid"));
-            grid.emplace(scene_.geometry, VoxelGridOptions{.width = options_.voxels});
+            grid.emplace(scene_.geometry,
+                         VoxelGridOptions{.width = options_.voxels,
+                                          .cancelled = [this] { return monitor_.cancelled(); }});
         } else if (options_.occlusion == Occlusion::query) {
             const PhaseTimer timer(monitor_, phase("outlines"));
-            query.emplace(scene_.geometry);
+            query.emplace(scene_.geometry, [this] { return monitor_.cancelled(); });
         }
         const Occluders occluders{grid ? &*grid : nullptr, query ? &*query : nullptr};
         {
