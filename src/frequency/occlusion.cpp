@@ -12,10 +12,10 @@ namespace {
 /// Pixels. The widest filter has a standard deviation of 15 pixels and passes, at c = 2, no signal
 /// narrower than twice that.
 constexpr double kWidestFeature = 30;
-/// How many times an edge's distance counts beside its blur when it is looked for: a filter at the
-/// distance r may by itself be 0.25 r wide, but those of its neighbours nearer to the edge limit it
-/// to half a pixel + 0.1 r.
-constexpr double kDistance = 2.5 * cov::edge_beta<double>;
+/// How many times an edge's distance counts beside its blur when it is looked for, so that edges
+/// farther than 8 pixels are left out: there a filter could by itself be 0.25 * 8 pixels wide, and
+/// those of its neighbours nearer to the edge limit it to half a pixel + 0.1 * 8.
+constexpr double kDistance = kWidestFeature / 8;
 /// Of the angular windows of lobes that are sharp for this purpose, 1/rad^2.
 constexpr double kSharpWindow = 1e6;
 constexpr double kDiffuseWindow = 1 / (cov::pi<double> * cov::pi<double>);

@@ -30,7 +30,7 @@ struct RenderOptions {
     std::optional<double> seconds;  ///< wall clock, from `start_time` to the finished file
     std::optional<int> cov_spp;     ///< covariance paths per pixel; default spp/4 in [2, 4]
     DensityRule density = DensityRule::tempered;
-    Occlusion occlusion = Occlusion::grid;
+    Occlusion occlusion = Occlusion::query;
     int voxels = 200;  ///< width of the grid
     FilterRule filter = FilterRule::verified;
     std::optional<int> max_spp;    ///< most samples in any pixel; default 16 times the average
