@@ -1,4 +1,5 @@
-/// What building the voxel grid and the outlines takes, on a compact mesh and on scattered triangles.
+/// What building the voxel grid and the outlines takes, on a compact mesh and on scattered
+/// triangles.
 ///
 ///     grid_build [TRIANGLES [WIDTH ...]]
 #include <sys/resource.h>
@@ -6,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -25,10 +27,16 @@ double peak_memory() {
     return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-double seconds(const std::function<void()>& body) {
+/// Of the clock on the wall, and of all processors together.
+struct Seconds {
+    double wall = 0, processors = 0;
+};
+Seconds seconds(const std::function<void()>& body) {
     const auto start = std::chrono::steady_clock::now();
+    const std::clock_t before = std::clock();
     body();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+            static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC};
 }
 
 SceneDescription scene_of(TriangleMesh mesh) {
@@ -88,25 +96,26 @@ int main(int argc, char** argv) {
     std::vector<int> widths;
     for (int i = 2; i < argc; ++i) widths.push_back(std::atoi(argv[i]));
     if (widths.empty()) widths = {200, 400};
-    std::printf("%-12s%10s%10s%10s%12s%14s%16s\n", "mesh", "triangles", "what", "seconds", "MiB",
-                "parts", "peak so far MiB");
+    std::printf("%-12s%10s%10s%10s%10s%12s%14s%16s\n", "mesh", "triangles", "what", "seconds",
+                "of CPUs", "MiB", "parts", "peak so far MiB");
     for (const bool is_compact : {true, false}) {
         const Geometry geometry(scene_of(is_compact ? compact(triangles) : scattered(triangles)));
         const char* name = is_compact ? "compact" : "scattered";
-        const auto report = [&](const char* what, double time, size_t bytes, size_t parts) {
-            std::printf("%-12s%10zu%10s%10.2f%12.1f%14zu%16.0f\n", name, triangles, what, time,
-                        static_cast<double>(bytes) / (1 << 20), parts, peak_memory());
+        const auto report = [&](const char* what, Seconds time, size_t bytes, size_t parts) {
+            std::printf("%-12s%10zu%10s%10.2f%10.2f%12.1f%14zu%16.0f\n", name, triangles, what,
+                        time.wall, time.processors, static_cast<double>(bytes) / (1 << 20), parts,
+                        peak_memory());
             std::fflush(stdout);
         };
         for (int width : widths) {
             std::unique_ptr<VoxelGrid> grid;
-            const double time = seconds([&] {
+            const Seconds time = seconds([&] {
                 grid = std::make_unique<VoxelGrid>(geometry, VoxelGridOptions{.width = width});
             });
             report(std::to_string(width).c_str(), time, grid->memory(), grid->occupied_voxels());
         }
         std::unique_ptr<OccluderQuery> query;
-        const double time = seconds([&] { query = std::make_unique<OccluderQuery>(geometry); });
+        const Seconds time = seconds([&] { query = std::make_unique<OccluderQuery>(geometry); });
         report("outlines", time, query->memory(), query->edges());
     }
 }

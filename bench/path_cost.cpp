@@ -1,8 +1,9 @@
 /// What a covariance path costs beside a radiance path: traces every k-th pixel of every k-th row
-/// in each way under callgrind, with the counters on for the paths alone. bench/path_cost reads what
-/// it leaves.
+/// in each way under callgrind, with the counters on for the paths alone. bench/path_cost reads
+/// what it leaves.
 ///
-///     valgrind --tool=callgrind --instr-atstart=no path_cost SCENE WIDTH HEIGHT EVERY PATHS KIND ...
+///     valgrind --tool=callgrind --instr-atstart=no path_cost SCENE WIDTH HEIGHT EVERY PATHS KIND
+///     ...
 ///
 /// KIND: uniform, none, query, or the width of a grid. One dump per kind, in this order.
 #include <valgrind/callgrind.h>

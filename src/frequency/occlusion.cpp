@@ -76,8 +76,8 @@ LightField past_outlines(const OccluderQuery& query, LightField field,
         const OutlineEvent& e = found.events[i];
         field = cov::travel(field, length - e.z - at);
         at = length - e.z;
-        field = cov::occlude(field, e.direction * std::max(e.distance, 1e-30f), smallest,
-                             e.velocity);
+        field =
+            cov::occlude(field, e.direction * std::max(e.distance, 1e-30f), smallest, e.velocity);
     }
     return field;
 }

@@ -28,7 +28,8 @@ struct Visibility {
     double window = 0;
 };
 
-/// The angular window of the sharpest lobe of a recorded vertex: that of the cosine for diffuse ones.
+/// The angular window of the sharpest lobe of a recorded vertex: that of the cosine for diffuse
+/// ones.
 double sharpest_window(const PathVertex& vertex);
 /// What the camera can see at the path's first vertex, `distance` from it; `window`: the vertex'.
 Visibility first_visibility(const SensorGeometry& camera, double distance, double window);

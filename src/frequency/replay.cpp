@@ -82,8 +82,8 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
     }
     if (!(total > 0)) return {};
 
-    // Half a pixel's extent grows with the distance travelled from the camera; what can be seen of a
-    // vertex shrinks with every rough surface before it.
+    // Half a pixel's extent grows with the distance travelled from the camera; what can be seen of
+    // a vertex shrinks with every rough surface before it.
     std::array<float, PathRecord::kCapacity> distances;
     std::array<Visibility, PathRecord::kCapacity> visible;
     Vec3 previous = record.camera_ray.origin;
@@ -111,8 +111,11 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
                   record.escaped);
         const Vec3 last = record.count > 0 ? record.vertices[size_t(record.count - 1)].hit.position
                                            : record.camera_ray.origin;
-        const OccluderQuery::Segment segment{entry(last, record.escape_direction), last,
-                                             record.camera_ray.time, {}, owner(record.count - 1)};
+        const OccluderQuery::Segment segment{entry(last, record.escape_direction),
+                                             last,
+                                             record.camera_ray.time,
+                                             {},
+                                             owner(record.count - 1)};
         light.field = record.count > 0
                           ? to_surface(light.field, segment, visible[size_t(record.count - 1)],
                                        light.weight / total)

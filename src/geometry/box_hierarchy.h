@@ -36,8 +36,8 @@ class BoxHierarchy {
     static constexpr uint32_t kMostInLeaf = 1;
 
     struct Node {
-        /// Middles and half sizes of the children's boxes, by axis; no number where there is none, so
-        /// that every comparison fails.
+        /// Middles and half sizes of the children's boxes, by axis; no number where there is none,
+        /// so that every comparison fails.
         std::array<Float4, 3> middle{}, half{};
         std::array<uint32_t, kWidth> first{};  ///< a node, or the first item of a leaf
         std::array<uint8_t, kWidth> count{};   ///< items of a leaf, kInner or kNone

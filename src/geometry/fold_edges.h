@@ -19,14 +19,14 @@ struct FoldEdge {
     /// Frame::from_z(normalize(b - a)), in parts of 32767.
     std::array<int16_t, 2> face0{}, face1{};
 
-    /// Whether `p` sees the edge as an outline. Where p is in the plane of a face itself, as a point
-    /// of that face is, it is none.
+    /// Whether `p` sees the edge as an outline. Where p is in the plane of a face itself, as a
+    /// point of that face is, it is none.
     bool is_outline_from(Vec3 p) const;
 };
 
 /// Double cones of lines of sight that see no outline: those within 90 degrees less `angle` of the
-/// axis see the edges from the front (or the back) on both sides. Four side by side, as the nodes of
-/// a BoxHierarchy.
+/// axis see the edges from the front (or the back) on both sides. Four side by side, as the nodes
+/// of a BoxHierarchy.
 struct BlindCones {
     std::array<Float4, 3> axis{};
     Float4 cosine{}, sine2{1, 1, 1, 1};  ///< of `angle`; the sine squared

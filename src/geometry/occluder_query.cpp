@@ -84,7 +84,8 @@ struct OccluderQuery::Impl {
             for (Body part : parts) {
                 part.instance = &instance;
                 if (part.curved.shape != Owner::kNone)
-                    part.curved.instance = static_cast<uint32_t>(&instance - g.instances.data()) + 1;
+                    part.curved.instance =
+                        static_cast<uint32_t>(&instance - g.instances.data()) + 1;
                 bodies.push_back(part);
             }
         }

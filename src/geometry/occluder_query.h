@@ -14,11 +14,11 @@ namespace covtrace {
 
 /// An outline beside a segment.
 struct OutlineEvent {
-    float z = 0;           ///< distance from the segment's end
-    Vec3 direction;        ///< unit, across the segment, towards the edge and at right angles to it
-    float distance = 0;    ///< from the segment, along `direction`
-    Vec3 velocity;         ///< of the edge, scene units per unit of time
-    float width = 0;       ///< by the measure
+    float z = 0;         ///< distance from the segment's end
+    Vec3 direction;      ///< unit, across the segment, towards the edge and at right angles to it
+    float distance = 0;  ///< from the segment, along `direction`
+    Vec3 velocity;       ///< of the edge, scene units per unit of time
+    float width = 0;     ///< by the measure
 };
 
 /// The few outlines that matter most, from the segment's beginning on.

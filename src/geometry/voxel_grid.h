@@ -31,7 +31,7 @@ struct Voxel {
 struct VoxelGridOptions {
     int width = 200;  ///< voxels along the longest side of the box
     int shutter_samples =
-        1;          ///< times, spread over the shutter, at which moving shapes are entered
+        1;  ///< times, spread over the shutter, at which moving shapes are entered
     /// What lies outside is ignored; empty: Geometry::bounds(), or without a few far corners
     /// beside which all the rest would lie in one voxel.
     Bounds3 box{};

@@ -13,9 +13,9 @@ namespace covtrace {
 
 struct RenderStatistics {
     PassStatistics covariance, radiance;
-    std::map<std::string, double>
-        seconds;  ///< per phase: "grid" or "outlines", "covariance", "plan", "radiance", "reconstruction"
-    double samples_per_pixel = 0;  ///< average taken
+    std::map<std::string, double> seconds;  ///< per phase: "grid" or "outlines", "covariance",
+                                            ///< "plan", "radiance", "reconstruction"
+    double samples_per_pixel = 0;           ///< average taken
 };
 
 struct RenderResult {

@@ -75,9 +75,9 @@ TEST(FoldEdges, AnOutlineHasItsFacesOnOneSide) {
     roof.triangles = {{0, 1, 2}, {1, 3, 2}};
     for (const FoldEdge& e : edges_of(roof)) {
         if (e.a.x != 0 || e.b.x != 0) continue;
-        EXPECT_TRUE(e.is_outline_from({5, 0.5f, 0.5f}));   // one face is hidden
-        EXPECT_FALSE(e.is_outline_from({0, 0.5f, 5}));     // both are seen
-        EXPECT_FALSE(e.is_outline_from({0, 0.5f, -5}));    // both from below
+        EXPECT_TRUE(e.is_outline_from({5, 0.5f, 0.5f}));      // one face is hidden
+        EXPECT_FALSE(e.is_outline_from({0, 0.5f, 5}));        // both are seen
+        EXPECT_FALSE(e.is_outline_from({0, 0.5f, -5}));       // both from below
         EXPECT_FALSE(e.is_outline_from({0.5f, 0.4f, 0.5f}));  // a point of a face
     }
 }
@@ -112,7 +112,9 @@ TEST(FoldEdges, BlindConesHideNoOutline) {
                 ++count;
             });
         for (size_t e = 0; e < edges.size(); ++e)
-            if (edges[e].is_outline_from(p)) { ASSERT_TRUE(met[e]); }
+            if (edges[e].is_outline_from(p)) {
+                ASSERT_TRUE(met[e]);
+            }
         EXPECT_LT(count, edges.size() / 2);
     }
 }
@@ -182,7 +184,8 @@ TEST(OccluderQuery, FindsTheNarrowestOfAll) {
                         p[k] + (p[(k + 1) % 3] - p[k]) * (static_cast<float>(j) / 200) - end;
                     const float z = dot(q, axis);
                     if (z < 1e-4f || z > length - 1e-4f) continue;
-                    narrowest = std::min(narrowest, m.width_squared(z, length_squared(q - axis * z)));
+                    narrowest =
+                        std::min(narrowest, m.width_squared(z, length_squared(q - axis * z)));
                 }
         }
         if (narrowest == sqr(m.widest)) continue;
@@ -226,8 +229,8 @@ TEST(OccluderQuery, InstancesAndMotion) {
     const OccluderQuery query(g);
     for (float time : {0.0f, 0.7f, 1.0f, 1.9f}) {
         const float edge = time - 1;
-        const auto found = outlines(query, {edge + 0.1f, 0, 2}, {edge + 0.1f, 0, -2}, plain(0.2f),
-                                    time);
+        const auto found =
+            outlines(query, {edge + 0.1f, 0, 2}, {edge + 0.1f, 0, -2}, plain(0.2f), time);
         ASSERT_EQ(found.size(), 1u);
         EXPECT_NEAR(found[0].distance, 0.1f, 1e-3f);
         EXPECT_LT(distance(found[0].velocity, {1, 0.25f, 0}), 1e-2f);
