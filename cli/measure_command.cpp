@@ -22,6 +22,7 @@ namespace {
 struct MeasureArguments {
     std::string scene, pixel, resolution, shutter, isa;
     Occlusion occlusion = RenderOptions{}.occlusion;
+    BrdfCovariance brdf_covariance = RenderOptions{}.brdf_covariance;
     SceneOverrides overrides;
     MeasureOptions measure;
     std::optional<int> max_depth;
@@ -126,13 +127,17 @@ int measure_pixel(MeasureArguments a) {
         print_warnings(scene.materials.warnings());
     }
     scene.prepare_spectra();
-    std::optional<VoxelGrid> occluders;
+    std::optional<VoxelGrid> grid;
+    std::optional<OccluderQuery> query;
     if (a.occlusion == Occlusion::grid)
-        occluders.emplace(scene.geometry, VoxelGridOptions{.width = a.voxels});
+        grid.emplace(scene.geometry, VoxelGridOptions{.width = a.voxels});
+    else if (a.occlusion == Occlusion::query)
+        query.emplace(scene.geometry);
 
     const SensorRays rays(scene, {float(pixel[0]) + 0.5f, float(pixel[1]) + 0.5f});
     const int depth = a.max_depth.value_or(scene.description.max_depth);
-    const PathReplay replay(scene, occluders ? &*occluders : nullptr);
+    const PathReplay replay(scene, {grid ? &*grid : nullptr, query ? &*query : nullptr},
+                            a.brdf_covariance);
     const PathCovariance predicted = predict(scene, replay, rays, depth, a.paths, a.measure.seed);
     PixelComparison c{pixel, {width, height}, predicted.sigma, predicted.weight, {}};
     a.measure.axes = sensor_axes(scene);
@@ -163,9 +168,14 @@ void add_measure(CLI::App& app, Invocation& invocation) {
     c->add_option("--paths", a->paths, "covariance paths of the prediction (default 1024)")
         ->check(CLI::Range(1u, 1u << 24))
         ->option_text("N");
-    add_choice<Occlusion>(c, "--occlusion", a->occlusion,
-                          {{"grid", Occlusion::grid}, {"none", Occlusion::none}},
-                          "occluders beside the rays of the analysis");
+    add_choice<Occlusion>(
+        c, "--occlusion", a->occlusion,
+        {{"query", Occlusion::query}, {"grid", Occlusion::grid}, {"none", Occlusion::none}},
+        "how the prediction finds edges beside paths");
+    add_choice<BrdfCovariance>(
+        c, "--brdf-covariance", a->brdf_covariance,
+        {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}},
+        "what the prediction knows of a BRDF: at the path's directions, or its peak");
     c->add_option("--voxels", a->voxels, "width of the occlusion grid (default 200)")
         ->check(CLI::Range(1, 2048))
         ->option_text("N");

@@ -274,9 +274,10 @@ void add_render(CLI::App& app, Invocation& invocation) {
                   "most samples in a pixel (default: 16 x average)")
         ->check(CLI::Range(1, 1 << 30))
         ->option_text("N");
-    add_choice<Occlusion>(c, "--occlusion", a->options.occlusion,
-                          {{"grid", Occlusion::grid}, {"none", Occlusion::none}},
-                          "occluders beside the rays of the analysis");
+    add_choice<Occlusion>(
+        c, "--occlusion", a->options.occlusion,
+        {{"grid", Occlusion::grid}, {"query", Occlusion::query}, {"none", Occlusion::none}},
+        "occluders beside the rays of the analysis");
     c->add_option("--voxels", a->options.voxels, "width of the occlusion grid (default 200)")
         ->check(CLI::Range(1, 2048))
         ->option_text("N");

@@ -15,12 +15,13 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 
-from generator import defocus_checker, motion, shininess, snooker, textured_plane  # noqa: E402
+from generator import defocus_checker, foliage, motion, shininess, snooker, textured_plane  # noqa: E402
 
 _WRITERS = (
     snooker,
     defocus_checker,
     motion,
+    foliage,
     shininess,
     textured_plane.Lens,
     textured_plane.Moving,

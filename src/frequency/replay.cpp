@@ -53,7 +53,7 @@ cov::SymmetricMatrix5<double> to_sensor(const LightField& field, const SensorGeo
 
 }  // namespace
 
-PathReplay::PathReplay(const RenderScene& scene, const VoxelGrid* occluders, BrdfCovariance rule)
+PathReplay::PathReplay(const RenderScene& scene, const Occluders& occluders, BrdfCovariance rule)
     : scene_(scene), occluders_(occluders), rule_(rule) {
     const Bounds3 bounds = scene.geometry.bounds();
     center_ = bounds.center();
@@ -61,26 +61,20 @@ PathReplay::PathReplay(const RenderScene& scene, const VoxelGrid* occluders, Brd
     smallest_ = 1e-4 * radius_;
 }
 
-LightField PathReplay::carry(LightField field, Vec3 from, Vec3 to, double share) const {
-    double at = 0;
-    if (occluders_ && share >= kSmallestShare) {
-        const float voxel = occluders_->voxel_size();
-        VoxelMarch march(*occluders_, from, to);
-        OccluderEvent e;
-        while (march.next(float(std::min(cov::footprint_radius(field.sigma), 3.0 * voxel)), e)) {
-            field = cov::travel(field, e.s - at);
-            at = e.s;
-            // So near that the direction to the centroid is chance: the surface's normals tell
-            // where its edge is.
-            const bool touches = length(e.offset) < 0.5f * voxel;
-            const NormalTensor& n = e.normals;
-            field = touches
-                        ? cov::occlude(field, cov::Sym3<double>{n.xx, n.xy, n.xz, n.yy, n.yz, n.zz},
-                                       0.5 * voxel, e.velocity)
-                        : cov::occlude(field, e.offset, 0.5 * voxel, e.velocity);
-        }
-    }
-    return cov::travel(field, distance(from, to) - at);
+LightField PathReplay::to_surface(const LightField& field, const OccluderQuery::Segment& segment,
+                                  const Visibility& end, double share) const {
+    const double length = distance(segment.begin, segment.end);
+    if (!occluders_ || share < kSmallestShare || !(end.extent > 0))
+        return cov::travel(field, length);
+    return travel_past(occluders_, field, segment, measure_at_surface(field.sigma, length, end),
+                       smallest_);
+}
+
+LightField PathReplay::to_camera(const LightField& field, const OccluderQuery::Segment& segment,
+                                 const SensorGeometry& camera, double share) const {
+    if (!occluders_ || share < kSmallestShare)
+        return cov::travel(field, distance(segment.begin, segment.end));
+    return travel_past(occluders_, field, segment, measure_at_camera(camera), smallest_);
 }
 
 PathCovariance PathReplay::operator()(const PathRecord& record) const {
@@ -102,6 +96,28 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
 
     // What an even medium emits on the way is the same for all neighbouring rays.
     const auto glow = [](Vec3 travel) { return LightField{{}, cov::frame_along<double>(travel)}; };
+    // Half a pixel's extent grows with the distance travelled from the camera; what can be seen of
+    // a vertex shrinks with every rough surface before it.
+    std::array<float, PathRecord::kCapacity> distances;
+    std::array<Visibility, PathRecord::kCapacity> visible;
+    Vec3 previous = record.camera_ray.origin;
+    float travelled = 0;
+    for (size_t i = 0; i < size_t(record.count); ++i) {
+        const PathVertex& v = record.vertices[i];
+        const float d = distance(previous, v.hit.position);
+        travelled += d;
+        distances[i] = travelled;
+        previous = v.hit.position;
+        if (!occluders_) continue;
+        visible[i] = i == 0 ? first_visibility(camera, d, sharpest_window(v))
+                            : next_visibility(camera, visible[i - 1], d, sharpest_window(v));
+    }
+    const auto owner = [&record](int i) -> OccluderQuery::Owner {
+        if (i < 0 || record.vertices[size_t(i)].medium >= 0) return {};
+        const SurfaceHit& hit = record.vertices[size_t(i)].hit;
+        return {hit.shape, hit.instance};
+    };
+
     Arriving light;
     if (record.escaped > 0) {
         const SourceSpectrum s = scene_.lights.environment_spectrum(record.escape_direction);
@@ -109,20 +125,18 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
                   record.escaped);
         const Vec3 last = record.count > 0 ? record.vertices[size_t(record.count - 1)].hit.position
                                            : record.camera_ray.origin;
-        light.field =
-            carry(light.field, entry(last, record.escape_direction), last, light.weight / total);
+        const OccluderQuery::Segment segment{entry(last, record.escape_direction),
+                                             last,
+                                             record.camera_ray.time,
+                                             {},
+                                             owner(record.count - 1)};
+        light.field = record.count > 0
+                          ? to_surface(light.field, segment, visible[size_t(record.count - 1)],
+                                       light.weight / total)
+                          : to_camera(light.field, segment, camera, light.weight / total);
     }
-    if (record.escape_glow > 0) light.add(glow(-record.escape_direction), record.escape_glow);
-
-    // Half a pixel's extent grows with the distance travelled from the camera.
-    float distances[PathRecord::kCapacity];
-    Vec3 previous = record.camera_ray.origin;
-    float travelled = 0;
-    for (int i = 0; i < record.count; ++i) {
-        const Vec3 p = record.vertices[size_t(i)].hit.position;
-        travelled += distance(previous, p);
-        distances[i] = travelled;
-        previous = p;
+    if (record.escape_glow > 0) {
+        light.add(glow(-record.escape_direction), record.escape_glow);
     }
 
     for (int i = record.count - 1; i >= 0; --i) {
@@ -131,7 +145,7 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         if (light.weight > 0 || v.direct > 0) {
             std::optional<ScatterPoint> point;
             if (v.medium < 0) {
-                const float extent = camera.orthographic ? 1.0f : distances[i];
+                const float extent = camera.orthographic ? 1.0f : distances[size_t(i)];
                 point = scatter_point(scene_, v, 0.5f * extent / camera.pixels_per_x);
             }
             const auto scattered = [&](const LightField& arriving,
@@ -151,9 +165,12 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
                                       ? v.hit.position + v.light.wi * v.light.distance
                                       : entry(v.hit.position, v.light.wi);
                 const LightField source = source_field(s, -v.light.wi, false, smallest_);
-                leaving.add(scattered(carry(source, from, v.hit.position, v.direct / total),
-                                      emitter_of(s, v.light.distance), v.direct_event.lobes),
-                            v.direct);
+                const LightField arriving =
+                    to_surface(source, {from, v.hit.position, v.hit.time, {}, owner(i)},
+                               visible[size_t(i)], v.direct / total);
+                leaving.add(
+                    scattered(arriving, emitter_of(s, v.light.distance), v.direct_event.lobes),
+                    v.direct);
             }
         }
         const Vec3 next =
@@ -166,8 +183,12 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
             leaving.add(source_field(s, v.wo, v.seen_sharply, smallest_), v.emitted);
         }
         light = leaving;
+        const OccluderQuery::Segment segment{v.hit.position, next, v.hit.time, owner(i),
+                                             owner(i - 1)};
         if (light.weight > 0)
-            light.field = carry(light.field, v.hit.position, next, light.weight / total);
+            light.field = i > 0 ? to_surface(light.field, segment, visible[size_t(i - 1)],
+                                             light.weight / total)
+                                : to_camera(light.field, segment, camera, light.weight / total);
         if (v.glow > 0) light.add(glow(v.wo), v.glow);
     }
 

@@ -4,7 +4,7 @@
 #include "covariance/covariance.hpp"
 #include "frequency/brdf_covariance.h"
 #include "frequency/light_source.h"
-#include "geometry/voxel_grid.h"
+#include "frequency/occlusion.h"
 #include "integrator/path_record.h"
 #include "integrator/render_scene.h"
 
@@ -22,18 +22,20 @@ struct PathCovariance {
 /// luminance (an incoherent sum, covariance::merge), so that k vertices cost k steps.
 class PathReplay {
   public:
-    /// `occluders` may be null: then light travels as if nothing stood beside its way. Both must
-    /// outlive this.
-    PathReplay(const RenderScene& scene, const VoxelGrid* occluders, BrdfCovariance rule);
+    /// What is given must outlive this.
+    PathReplay(const RenderScene& scene, const Occluders& occluders, BrdfCovariance rule);
     PathCovariance operator()(const PathRecord& record) const;
 
   private:
-    /// Travel from one point to another, past the occluders on the way where `share`, this light's
-    /// part of the path's luminance, is large enough to be seen.
-    LightField carry(LightField field, Vec3 from, Vec3 to, double share) const;
+    /// Travel, past the occluders on the way where `share`, this light's part of the path's
+    /// luminance, is large enough to be seen and the end's features can be.
+    LightField to_surface(const LightField& field, const OccluderQuery::Segment& segment,
+                          const Visibility& end, double share) const;
+    LightField to_camera(const LightField& field, const OccluderQuery::Segment& segment,
+                         const SensorGeometry& camera, double share) const;
 
     const RenderScene& scene_;
-    const VoxelGrid* occluders_;
+    Occluders occluders_;
     BrdfCovariance rule_;
     double smallest_;  // extent that stands for a point, scene units
     Vec3 center_;      // bounding sphere of the scene: light from infinity enters there

@@ -21,12 +21,12 @@ class Tessellation {
         const auto& p = positions();
         return {p[t[0]], p[t[1]], p[t[2]]};
     }
-
-  private:
     const std::vector<Vec3>& positions() const { return mesh_ ? mesh_->positions : positions_; }
     const std::vector<std::array<uint32_t, 3>>& triangles() const {
         return mesh_ ? mesh_->mesh->triangles : triangles_;
     }
+
+  private:
     template <class PointAt>
     void add_grid(int nu, int nv, PointAt&& point_at);
 

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "geometry/core_bounds.h"
 #include "geometry/occurrences.h"
 #include "geometry/tessellation.h"
 #include "geometry/voxel_grid.h"
@@ -43,23 +44,40 @@ void dilate(Rows& rows) {
 class VoxelGridBuilder {
   public:
     VoxelGridBuilder(VoxelGrid& grid, const Geometry& geometry, const VoxelGridOptions& options)
-        : grid_(grid), geometry_(geometry.impl()) {
+        : grid_(grid), geometry_(geometry.impl()), options_(options) {
         if (options.width < 1 || options.width > 2048)
             throw Error(ErrorKind::limit, "the voxel grid's width must be between 1 and 2048");
-        lay_out(options);
+        lay_out();
         collect(std::max(1, options.shutter_samples));
         rasterize();
+        if (is_cancelled()) return;
         sort_into_bricks();
         fill_bricks();
         mark_neighbourhoods();
     }
 
   private:
-    void lay_out(const VoxelGridOptions& options) {
-        Bounds3 box = options.box.empty() ? geometry_.bounds : options.box;
+    bool is_cancelled() const { return options_.cancelled && options_.cancelled(); }
+
+    /// The bounds without far outliers, if there are any.
+    Bounds3 scene_box() const {
+        const Bounds3 all = geometry_.bounds;
+        const Bounds3 core = core_bounds(geometry_);
+        const auto longest = [](const Bounds3& b) {
+            const Vec3 d = b.diagonal();
+            return std::max({d.x, d.y, d.z});
+        };
+        if (core.empty() || longest(all) <= static_cast<float>(options_.width) * longest(core))
+            return all;
+        const Vec3 margin = Vec3{1, 1, 1} * longest(core);
+        return {max(all.lo, core.lo - margin), min(all.hi, core.hi + margin)};
+    }
+
+    void lay_out() {
+        const Bounds3 box = options_.box.empty() ? scene_box() : options_.box;
         const Vec3 d = box.diagonal();
         const float longest = std::max({d.x, d.y, d.z});
-        const float size = longest > 0 ? longest / static_cast<float>(options.width) : 1.0f;
+        const float size = longest > 0 ? longest / static_cast<float>(options_.width) : 1.0f;
         layout_.size = size;
         layout_.box = box;
         layout_.origin = box.lo - Vec3{8 * size, 8 * size, 8 * size};
@@ -132,7 +150,7 @@ class VoxelGridBuilder {
             const float weight = weights_[static_cast<size_t>(&o - occurrences_.data())] *
                                  static_cast<float>(batch.stride);
             VoxelRasterizer rasterizer(layout_);
-            for (size_t i = batch.begin; i < batch.end; i += batch.stride) {
+            for (size_t i = batch.begin; i < batch.end && !is_cancelled(); i += batch.stride) {
                 std::array<Vec3, 3> corners = (*batch.surface)[i];
                 for (Vec3& p : corners) p = o.world_from_local.point(Vec3d(p)).to_float();
                 rasterizer.add(corners, o.moves ? &o.velocity : nullptr, weight);
@@ -232,6 +250,7 @@ class VoxelGridBuilder {
                     }
         }
         grid_.stored_.resize(places.size());
+        grid_.stored_.shrink_to_fit();
         parallel_for(static_cast<int64_t>(places.size()), [&](int64_t i) {
             mark_brick(places[static_cast<size_t>(i)], grid_.stored_[static_cast<size_t>(i)]);
         });
@@ -276,6 +295,7 @@ class VoxelGridBuilder {
 
     VoxelGrid& grid_;
     const Geometry::Impl& geometry_;
+    const VoxelGridOptions& options_;
     VoxelLayout layout_;
     std::vector<Occurrence> occurrences_;
     std::vector<float> weights_;  ///< of the occurrence of the same index

@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/vec.h"
@@ -30,8 +31,12 @@ struct Voxel {
 struct VoxelGridOptions {
     int width = 200;  ///< voxels along the longest side of the box
     int shutter_samples =
-        1;          ///< times, spread over the shutter, at which moving shapes are entered
-    Bounds3 box{};  ///< what lies outside is ignored; empty: Geometry::bounds()
+        1;  ///< times, spread over the shutter, at which moving shapes are entered
+    /// What lies outside is ignored; empty: Geometry::bounds(), or without a few far corners
+    /// beside which all the rest would lie in one voxel.
+    Bounds3 box{};
+    /// Asked from all threads; once it says yes the grid ends up empty, soon.
+    std::function<bool()> cancelled{};
 };
 
 class VoxelGrid {
@@ -110,7 +115,8 @@ struct OccluderEvent {
 ///     for (OccluderEvent e; march.next(radius, e);) …
 class VoxelMarch {
   public:
-    VoxelMarch(const VoxelGrid& grid, Vec3 from, Vec3 to);
+    /// Only what lies between the distances `begin` and `end` from `from` is looked at.
+    VoxelMarch(const VoxelGrid& grid, Vec3 from, Vec3 to, float begin = 0, float end = kInfinity);
     /// The next occluder whose centroid is within `radius` of the ray, at most 3 voxels; false at
     /// the end. Per 3 voxels of the way it gives the nearest one only: an edge that runs along the
     /// ray would be counted many times otherwise. `radius` may change from call to call.

@@ -22,12 +22,13 @@ constexpr uint32_t kNoVoxel = ~uint32_t{0};
 
 }  // namespace
 
-VoxelMarch::VoxelMarch(const VoxelGrid& grid, Vec3 from, Vec3 to) : grid_(grid) {
+VoxelMarch::VoxelMarch(const VoxelGrid& grid, Vec3 from, Vec3 to, float begin, float end)
+    : grid_(grid) {
     const float total = distance(from, to), size = grid.size_;
     if (grid.voxels_.empty() || !(total > 2 * kEnds * size) || !std::isfinite(total)) return;
     direction_ = (to - from) / total;
     // Clipped to the box and what can see into it.
-    float enter = kEnds * size, leave = total - kEnds * size;
+    float enter = std::max(begin, kEnds * size), leave = std::min(end, total - kEnds * size);
     const float margin = kWidest * size;
     for (int k = 0; k < 3; ++k) {
         const float lo = grid.box_.lo[k] - margin - from[k],

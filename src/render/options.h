@@ -21,7 +21,8 @@ enum class Method {
 /// Where the frequency analysis learns of what stands beside a ray.
 enum class Occlusion {
     none,
-    grid  ///< the thesis' voxel grid of the scene
+    grid,  ///< the thesis' voxel grid of the scene
+    query  ///< the outlines of the geometry itself
 };
 
 struct RenderOptions {
@@ -30,7 +31,7 @@ struct RenderOptions {
     std::optional<double> seconds;  ///< wall clock, from `start_time` to the finished file
     std::optional<int> cov_spp;     ///< covariance paths per pixel; default spp/4 in [2, 4]
     DensityRule density = DensityRule::tempered;
-    Occlusion occlusion = Occlusion::grid;
+    Occlusion occlusion = Occlusion::query;
     int voxels = 200;  ///< width of the grid
     BrdfCovariance brdf_covariance = BrdfCovariance::local;
     FilterRule filter = FilterRule::verified;

@@ -104,7 +104,7 @@ PassStatistics radiance_pass(const PassContext& context, Film& film,
                           });
 }
 
-PassStatistics covariance_pass(const PassContext& context, const VoxelGrid* occluders,
+PassStatistics covariance_pass(const PassContext& context, const Occluders& occluders,
                                BrdfCovariance rule, Film& film, std::span<const uint32_t> counts,
                                CovarianceBuffer& buffer, const Monitor& monitor,
                                const PassProgress& progress) {

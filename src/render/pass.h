@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "frequency/brdf_covariance.h"
-#include "geometry/voxel_grid.h"
+#include "frequency/occlusion.h"
 #include "integrator/path.h"
 #include "integrator/render_scene.h"
 #include "planner/covariance_buffer.h"
@@ -58,9 +58,8 @@ PassStatistics radiance_pass(const PassContext& context, Film& film,
                              const PassProgress& progress);
 
 /// The same with `counts` paths per pixel that also leave their covariance. Weights are limited to
-/// ten times the mean of the image's first paths, so that no single path owns a pixel. `occluders`
-/// may be null.
-PassStatistics covariance_pass(const PassContext& context, const VoxelGrid* occluders,
+/// ten times the mean of the image's first paths, so that no single path owns a pixel.
+PassStatistics covariance_pass(const PassContext& context, const Occluders& occluders,
                                BrdfCovariance rule, Film& film, std::span<const uint32_t> counts,
                                CovarianceBuffer& buffer, const Monitor& monitor,
                                const PassProgress& progress);

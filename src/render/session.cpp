@@ -139,12 +139,20 @@ class Session {
         CovarianceBuffer buffer(film_.bounds.width(), film_.bounds.height());
         result_.statistics.memory["prediction"] =
             buffer.covariance.size() * (sizeof(buffer.covariance[0]) + sizeof(float));
-        std::optional<VoxelGrid> occluders;
+        std::optional<VoxelGrid> grid;
+        std::optional<OccluderQuery> query;
         if (options_.occlusion == Occlusion::grid) {
             const PhaseTimer timer(monitor_, phase("grid"));
-            occluders.emplace(scene_.geometry, VoxelGridOptions{.width = options_.voxels});
-            result_.statistics.memory["occluders"] = occluders->memory();
+            grid.emplace(scene_.geometry,
+                         VoxelGridOptions{.width = options_.voxels,
+                                          .cancelled = [this] { return monitor_.cancelled(); }});
+        } else if (options_.occlusion == Occlusion::query) {
+            const PhaseTimer timer(monitor_, phase("outlines"));
+            query.emplace(scene_.geometry, [this] { return monitor_.cancelled(); });
         }
+        if (grid) result_.statistics.memory["occluders"] = grid->memory();
+        if (query) result_.statistics.memory["occluders"] = query->memory();
+        const Occluders occluders{grid ? &*grid : nullptr, query ? &*query : nullptr};
         {
             const PhaseTimer timer(monitor_, phase("covariance"));
             const std::vector<float> even(film_.pixels.size(), 1.0f);
@@ -152,8 +160,8 @@ class Session {
             const auto counts =
                 allocate(even, std::llround(cov_spp * double(pixels())), none, 1u << 30);
             result_.statistics.covariance = covariance_pass(
-                context_, occluders ? &*occluders : nullptr, options_.brdf_covariance, film_,
-                counts, buffer, monitor_, reporter("covariance", 0, fraction(cov_spp), 0, cov_spp));
+                context_, occluders, options_.brdf_covariance, film_, counts, buffer, monitor_,
+                reporter("covariance", 0, fraction(cov_spp), 0, cov_spp));
         }
         Prediction raw, smoothed;
         {

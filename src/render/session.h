@@ -13,8 +13,8 @@ namespace covtrace {
 
 struct RenderStatistics {
     PassStatistics covariance, radiance;
-    std::map<std::string, double>
-        seconds;  ///< per phase: "grid", "covariance", "plan", "radiance", "reconstruction"
+    std::map<std::string, double> seconds;  ///< per phase: "grid" or "outlines", "covariance",
+                                            ///< "plan", "radiance", "reconstruction"
     /// Bytes: "film"; "prediction" and "occluders" with covariance tracing.
     std::map<std::string, size_t> memory;
     double samples_per_pixel = 0;  ///< average taken

@@ -26,7 +26,8 @@ class Table {
         : scene_(read_pbrt_string(text, "test", ".")), rays_(scene_, film) {
         scene_.prepare_spectra();
         if (occlusion) grid_.emplace(scene_.geometry);
-        replay_.emplace(scene_, grid_ ? &*grid_ : nullptr);
+        replay_.emplace(scene_, Occluders{grid_ ? &*grid_ : nullptr, nullptr},
+                        BrdfCovariance::local);
     }
     Table(const Table&) = delete;
     Table& operator=(const Table&) = delete;

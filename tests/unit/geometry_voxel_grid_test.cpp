@@ -232,6 +232,42 @@ TEST(VoxelGrid, ABoxCutsAwayTheRest) {
     EXPECT_NEAR(found[0].s, 1e5f - 5, 0.1f);
 }
 
+TEST(VoxelGrid, AFarCornerDoesNotSwallowTheScene) {
+    TriangleMesh ball = sphere_mesh(2, 40, 60);
+    ball.positions.push_back({1e26f, 3e25f, -1e26f});
+    ball.triangles.push_back({0, 1, static_cast<uint32_t>(ball.positions.size() - 1)});
+    const Geometry g{scene_of({mesh(ball)})};
+    const VoxelGrid grid(g, {.width = 100});
+    EXPECT_LT(grid.voxel_size(), 0.5f);
+    EXPECT_GT(grid.occupied_voxels(), 1000u);
+    EXPECT_NE(grid.find({1.999f, 0, 0}), nullptr);
+}
+
+TEST(VoxelGrid, EndsEmptyWhenCancelled) {
+    const Geometry g{scene_of({mesh(sphere_mesh(2, 40, 60))})};
+    const VoxelGrid grid(g, {.width = 100, .cancelled = [] { return true; }});
+    EXPECT_EQ(grid.occupied_voxels(), 0u);
+    EXPECT_EQ(grid.find({1.999f, 0, 0}), nullptr);
+    EXPECT_TRUE(events(grid, {2.02f, 0, 5}, {2.02f, 0, -5}, 1).empty());
+}
+
+/// Bytes per occupied voxel: what lets 400 voxels of width stay below 1 GiB where a million
+/// triangles are scattered, at a size that is quick to test.
+TEST(VoxelGrid, ScatteredTrianglesNeedLittleMemory) {
+    Random random(4);
+    TriangleMesh dust;
+    for (uint32_t i = 0; i < 20000; ++i) {
+        const Vec3 p = random.in_box(5);
+        for (int k = 0; k < 3; ++k) dust.positions.push_back(p + random.in_box(0.02f));
+        dust.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    const Geometry g{scene_of({mesh(std::move(dust))})};
+    const VoxelGrid grid(g, {.width = 200});
+    EXPECT_GT(grid.occupied_voxels(), 20000u);
+    // 55 bytes a voxel, 340 a brick; at most 26^3 bricks and a margin around them.
+    EXPECT_LT(grid.memory(), 55 * grid.occupied_voxels() + 350 * 28 * 28 * 28 + 4096);
+}
+
 TEST(VoxelGrid, TheSameBitsForAnyNumberOfThreads) {
     SceneDescription scene =
         scene_of({mesh(sphere_mesh(2, 100, 200)), shape(sphere(1)),

@@ -1,0 +1,152 @@
+#include "frequency/occlusion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace covtrace {
+
+namespace cov = covariance;
+
+namespace {
+
+/// Pixels. The widest filter has a standard deviation of 15 pixels and passes, at c = 2, no signal
+/// narrower than twice that.
+constexpr double kWidestFeature = 30;
+/// How many times an edge's distance counts beside its blur when it is looked for, so that edges
+/// farther than 8 pixels are left out: there a filter could by itself be 0.25 * 8 pixels wide, and
+/// those of its neighbours nearer to the edge limit it to half a pixel + 0.1 * 8.
+constexpr double kDistance = kWidestFeature / 8;
+/// Of the angular windows of lobes that are sharp for this purpose, 1/rad^2.
+constexpr double kSharpWindow = 1e6;
+constexpr double kDiffuseWindow = 1 / (cov::pi<double> * cov::pi<double>);
+
+double feature_slope(const SensorGeometry& camera) {
+    return camera.orthographic ? 0 : kWidestFeature / camera.pixels_per_x;
+}
+
+double sharpest_window(const LobeShares& lobes) {
+    double window = kDiffuseWindow;
+    for (int i = 0; i < lobes.count; ++i) {
+        const LobeShare& lobe = lobes.lobes[size_t(i)];
+        switch (lobe.kind) {
+            case LobeKind::diffuse_reflection:
+            case LobeKind::diffuse_transmission:
+                break;
+            case LobeKind::specular_reflection:
+            case LobeKind::specular_transmission:
+                return kSharpWindow;
+            case LobeKind::glossy_reflection:
+            case LobeKind::glossy_transmission: {
+                // Of the half vector's slopes; outgoing slopes are twice as wide.
+                const auto micro = cov::micro_ggx<double>(lobe.alpha_x, lobe.alpha_y);
+                window = std::max(window, 0.25 * std::max(micro.xx, micro.yy));
+                break;
+            }
+        }
+    }
+    return std::min(window, kSharpWindow);
+}
+
+LightField past_voxels(const VoxelGrid& grid, LightField field,
+                       const OccluderQuery::Segment& segment, double length,
+                       EdgeMeasure::Range range, double& at) {
+    const float voxel = grid.voxel_size();
+    const auto total = static_cast<float>(length);
+    VoxelMarch march(grid, segment.begin, segment.end, total - range.hi, total - range.lo);
+    OccluderEvent e;
+    while (march.next(float(std::min(cov::footprint_radius(field.sigma), 3.0 * voxel)), e)) {
+        field = cov::travel(field, e.s - at);
+        at = e.s;
+        // So near that the direction to the centroid is chance: the surface's normals tell where
+        // its edge is.
+        const bool touches = covtrace::length(e.offset) < 0.5f * voxel;
+        const NormalTensor& n = e.normals;
+        field = touches ? cov::occlude(field, cov::Sym3<double>{n.xx, n.xy, n.xz, n.yy, n.yz, n.zz},
+                                       0.5 * voxel, e.velocity)
+                        : cov::occlude(field, e.offset, 0.5 * voxel, e.velocity);
+    }
+    return field;
+}
+
+LightField past_outlines(const OccluderQuery& query, LightField field,
+                         const OccluderQuery::Segment& segment, double length,
+                         const EdgeMeasure& measure, double smallest, double& at) {
+    const OutlineEvents found = query(segment, measure, static_cast<float>(smallest));
+    for (size_t i = 0; i < found.count; ++i) {
+        const OutlineEvent& e = found.events[i];
+        field = cov::travel(field, length - e.z - at);
+        at = length - e.z;
+        field =
+            cov::occlude(field, e.direction * std::max(e.distance, 1e-30f), smallest, e.velocity);
+    }
+    return field;
+}
+
+}  // namespace
+
+double sharpest_window(const PathVertex& vertex) {
+    return std::max(vertex.direct > 0 ? sharpest_window(vertex.direct_event.lobes) : 0,
+                    vertex.scatters ? sharpest_window(vertex.next_event.lobes) : 0);
+}
+Visibility first_visibility(const SensorGeometry& camera, double distance, double window) {
+    return {camera.orthographic ? kWidestFeature / camera.pixels_per_x
+                                : feature_slope(camera) * distance,
+            window};
+}
+
+Visibility next_visibility(const SensorGeometry& camera, const Visibility& nearer, double distance,
+                           double window) {
+    const double sharp = nearer.extent + feature_slope(camera) * distance;
+    const double blur = distance * distance / (cov::four_pi_sq<double> * nearer.window);
+    const double extent2 = sharp * sharp - blur;
+    if (!(nearer.extent > 0) || !(extent2 > 0)) return {};
+    return {std::sqrt(extent2), window};
+}
+
+EdgeMeasure measure_at_surface(const cov::SymmetricMatrix5<double>& sigma, double length,
+                               const Visibility& end) {
+    // The light as it arrives with nothing beside its way, then through the lobe: both axes in one.
+    // With M over (x, u) an edge q w w^T, w = (1, -z), raises the Schur complement by
+    // q h / (Muu + q z^2), h = w^T adj(M) w.
+    const auto arriving = cov::travel(sigma, length);
+    const double xx = arriving(0, 0) + arriving(1, 1), xu = arriving(0, 2) + arriving(1, 3),
+                 uu = arriving(2, 2) + arriving(3, 3) + 2 * end.window;
+    EdgeMeasure m;
+    const double scale = 1 / uu;
+    m.a1 = static_cast<float>(std::sqrt(scale) / (2 * cov::pi<double>));
+    m.b = static_cast<float>(kDistance * kDistance);
+    m.h0 = 1;
+    m.h1 = static_cast<float>(2 * xu * scale);
+    m.h2 = static_cast<float>(xx * scale);
+    m.widest = static_cast<float>(end.extent);
+    return m;
+}
+
+EdgeMeasure measure_at_camera(const SensorGeometry& camera) {
+    // In slopes, beside a circle of confusion; for parallel rays in lengths.
+    EdgeMeasure m;
+    m.a0 = 0.5f * camera.lens_radius;
+    m.a1 = -m.a0 / camera.focal_distance;
+    m.b = static_cast<float>(kDistance * kDistance);
+    m.h0 = camera.orthographic ? 1.0f : 0.0f;
+    m.h2 = camera.orthographic ? 0.0f : 1.0f;
+    m.widest = static_cast<float>(kWidestFeature) / camera.pixels_per_x;
+    return m;
+}
+
+LightField travel_past(const Occluders& occluders, LightField field,
+                       const OccluderQuery::Segment& segment, const EdgeMeasure& measure,
+                       double smallest) {
+    const double length = distance(segment.begin, segment.end);
+    double at = 0;
+    if (occluders.query) {
+        field = past_outlines(*occluders.query, field, segment, length, measure, smallest, at);
+    } else if (occluders.grid) {
+        const EdgeMeasure::Range range = measure.reach(static_cast<float>(length));
+        if (range.lo <= range.hi)
+            field = past_voxels(*occluders.grid, field, segment, length, range, at);
+    }
+    return cov::travel(field, length - at);
+}
+
+}  // namespace covtrace
