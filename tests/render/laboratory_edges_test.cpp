@@ -36,7 +36,7 @@ AreaLightSource "diffuse" "rgb L" [ 50 50 50 ]
 {}
 AttributeEnd
 Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
-Shape "trianglemesh" "point3 P" [ -5 -5 0  5 -5 0  5 5 0  -5 5 0 ] "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ -3 -3 0  3 -3 0  3 3 0  -3 3 0 ] "integer indices" [ 0 1 2 0 2 3 ]
 Material "diffuse" "rgb reflectance" [ 0 0 0 ]
 {})",
                        light, occluder);
@@ -47,7 +47,7 @@ const char* kDisc = "Translate 0 0 4\nRotate 180 0 1 0\nShape \"disk\" \"float r
 /// Half a plane x > edge at the height z.
 std::string half_plane(double z, double edge) {
     return fmt::format(
-        "Shape \"trianglemesh\" \"point3 P\" [ {1} -5 {0}  5 -5 {0}  5 5 {0}  {1} 5 {0} ] "
+        "Shape \"trianglemesh\" \"point3 P\" [ {1} -3 {0}  3 -3 {0}  3 3 {0}  {1} 3 {0} ] "
         "\"integer indices\" [ 0 1 2 0 2 3 ]",
         z, edge);
 }
@@ -58,8 +58,6 @@ Case penumbra(const char* name, Vec2 across, double reach, const char* light,
             scene("1", kBelow, kDown, lit_floor(light, ""))};
 }
 
-/// The grid looks three voxels far, here 0.15 units: edges of shadows that lie farther from a path
-/// to the light are not seen, and with finer voxels fewer of them are.
 const Case kPenumbrae[]{
     penumbra("penumbra of a half plane", {1, 0}, 14, kDisc, half_plane(1, 0)),
     penumbra("wider penumbra", {1, 0}, 30, kDisc, half_plane(2, 0)),
@@ -71,6 +69,8 @@ const Case kPenumbrae[]{
              "Rotate 45 0 0 1\n" + half_plane(1, 0)),
     penumbra("penumbra near its bright end", {1, 0}, 16, kDisc, half_plane(1, 0.083)),
     penumbra("penumbra near its dark end", {1, 0}, 16, kDisc, half_plane(1, -0.083)),
+    penumbra("penumbra of a ball", {1, 0}, 14, kDisc,
+             "Translate 1 0 1\nShape \"sphere\" \"float radius\" 1"),
     penumbra("contact shadow", {1, 0}, 8, kDisc, half_plane(0.5, 0)),
 };
 

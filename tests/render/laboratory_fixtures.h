@@ -9,7 +9,6 @@
 #include <span>
 #include <string>
 
-#include "geometry/voxel_grid.h"
 #include "laboratory/edge_spread.h"
 #include "laboratory/local_spectrum.h"
 #include "laboratory/prediction.h"
@@ -22,11 +21,12 @@ inline constexpr double kPiD = 3.14159265358979323846;
 /// A scene given as text, looked at through the middle of its film of 32 x 32 pixels.
 class Table {
   public:
+    /// `occlusion`: whether the outlines of the geometry are looked at.
     explicit Table(const std::string& text, bool occlusion = false, Vec2 film = {16, 16})
         : scene_(read_pbrt_string(text, "test", ".")), rays_(scene_, film) {
         scene_.prepare_spectra();
-        if (occlusion) grid_.emplace(scene_.geometry);
-        replay_.emplace(scene_, Occluders{grid_ ? &*grid_ : nullptr, nullptr},
+        if (occlusion) query_.emplace(scene_.geometry);
+        replay_.emplace(scene_, Occluders{nullptr, query_ ? &*query_ : nullptr},
                         BrdfCovariance::local);
     }
     Table(const Table&) = delete;
@@ -67,7 +67,7 @@ class Table {
   private:
     RenderScene scene_;
     SensorRays rays_;
-    std::optional<VoxelGrid> grid_;
+    std::optional<OccluderQuery> query_;
     std::optional<PathReplay> replay_;
 };
 
