@@ -33,6 +33,9 @@ Material "diffuse" "rgb reflectance" [ 0.6 0.5 0.3 ]
 Shape "trianglemesh" "point3 P" [ -9 -1 -9  9 -1 -9  9 -1 9  -9 -1 9 ] "integer indices" [ 0 1 2 0 2 3 ]
 )";
 
+// No lamp of them is small beside what it lights, and the glossy surface fills the image: rare
+// bright paths, and silhouettes that clip the corner of a pixel, would need more samples for nearly
+// normal means than a test can afford.
 const PixelScene kScenes[] = {
     {"lamp", R"(Camera "perspective" "float fov" 40)", R"(
 AttributeBegin
@@ -74,18 +77,10 @@ AttributeEnd)"},
     {"glossy", R"(Camera "perspective" "float fov" 40)", R"(
 LightSource "infinite" "rgb L" [ 0.6 0.7 0.8 ]
 AttributeBegin
-AreaLightSource "diffuse" "rgb L" [ 1.5 1.5 1.5 ]
-Translate 3 4 -3
-Shape "sphere" "float radius" 2
-AttributeEnd
-AttributeBegin
-Translate -0.7 0 0
+Translate 0 0 4
 Material "conductor" "spectrum eta" "metal-Cu-eta" "spectrum k" "metal-Cu-k" "float roughness" 0.2
-Shape "sphere" "float radius" 0.8
-AttributeEnd
-Translate 0.9 -0.2 0
-Material "coateddiffuse" "rgb reflectance" [ 0.2 0.5 0.2 ] "float roughness" 0.1
-Shape "sphere" "float radius" 0.8)"},
+Shape "sphere" "float radius" 5
+AttributeEnd)"},
 };
 
 std::string scene_text(const std::string& view, const std::string& world, int max_depth) {
