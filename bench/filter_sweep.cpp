@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "image/compare.h"
-#include "planner/covariance_buffer.h"
+#include "predicted_image.h"
 #include "reconstruction/gather.h"
 
 using namespace covtrace;
@@ -19,46 +19,20 @@ using namespace covtrace;
 namespace {
 
 struct Case {
-    Image image, reference;
-    Prediction prediction;
-    std::vector<Rgb> mean;
-    std::vector<float> variance;
-    std::vector<uint32_t> count;
+    PredictedImage rendered;
+    Image reference;
 };
 
-Case load(const char* image_file, const char* reference_file) {
-    Case c{read_image(image_file), read_image(reference_file), {}, {}, {}, {}};
-    CovarianceBuffer buffer(c.image.width(), c.image.height());
-    const auto channel = [&c](const std::string& name) -> const std::vector<float>& {
-        const Channel* found = c.image.find(name);
-        if (!found) throw Error(ErrorKind::usage, "no layer '" + name + "'");
-        return found->values;
-    };
-    for (size_t row = 0; row < 5; ++row)
-        for (size_t column = row; column < 5; ++column) {
-            const auto& values = channel(fmt::format("cov.{}{}", row, column));
-            for (size_t i = 0; i < values.size(); ++i)
-                buffer.covariance[i](row, column) = values[i];
-        }
-    buffer.weight = channel("covweight.Y");
-    c.prediction = preintegrate(smooth(buffer));
-    const auto &r = channel("raw.R"), &g = channel("raw.G"), &b = channel("raw.B");
-    for (size_t i = 0; i < r.size(); ++i) {
-        c.mean.emplace_back(r[i], g[i], b[i]);
-        c.count.push_back(uint32_t(channel("samples.Y")[i]));
-    }
-    c.variance.assign(r.size(), 0.0f);
-    return c;
-}
-
 double error(const Case& c, const FilterSettings& settings) {
-    FilterField field = filter_field(c.prediction.spectrum, c.prediction.width, c.prediction.height,
+    const Prediction& prediction = c.rendered.prediction;
+    FilterField field = filter_field(prediction.spectrum, prediction.width, prediction.height,
                                      FilterRule::verified, settings);
     limit_by_neighbours(field, settings);
-    const GatheredImage gathered = gather(c.mean, c.variance, c.count, field);
+    const GatheredImage gathered =
+        gather(c.rendered.mean, c.rendered.variance, c.rendered.count, field);
     Image result;
-    result.data = c.image.data;
-    result.display = c.image.display;
+    result.data = c.rendered.image.data;
+    result.display = c.rendered.image.display;
     for (int k = 0; k < 3; ++k) {
         Channel& out = result.add_channel(std::string(1, "RGB"[k]));
         for (size_t i = 0; i < gathered.color.size(); ++i) out.values[i] = gathered.color[i][k];
@@ -75,7 +49,8 @@ int main(int argc, char** argv) {
     }
     try {
         std::vector<Case> cases;
-        for (int i = 1; i < argc; i += 2) cases.push_back(load(argv[i], argv[i + 1]));
+        for (int i = 1; i < argc; i += 2)
+            cases.push_back({read_predicted_image(argv[i]), read_image(argv[i + 1])});
         fmt::print("    c  s_min  slope  geometric mean   relMSE x 1e5 per image\n");
         for (float c : {1.5f, 2.0f, 2.5f, 3.0f, 4.0f})
             for (float s_min : {0.25f, 0.32f, 0.4f, 0.5f, 0.6f})
