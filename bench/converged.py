@@ -10,6 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = pathlib.Path(os.environ.get("COVTRACE_BUILD", ROOT / "build/release"))
 SHARED = pathlib.Path(os.environ.get("COVTRACE_SHARED", ROOT.parent / "shared"))
 COVTRACE = BUILD / "covtrace"
+PREDICTED_LAYERS = "all,inview,inviewfilter,scatteredcov,scatteredcovweight"  # of predicted_image.h
 SEEDS = (1000, 1001)  # of the two halves; measured renders have small seeds
 
 
@@ -65,9 +66,17 @@ class Scene:
             tag = f"converged-{self.resolution}-{spp // 2}-{seed}"
             image = self.out / f"{self.label}-{tag}.exr"
             if not image.exists() or info(image, "covtrace:sceneHash") != info(self.path, "hash"):
-                self.render(tag, "--method", "uniform", "--spp", spp // 2, "--seed", seed)
+                self.render(tag, "--method", "uniform", "--spp", spp // 2, "--seed", seed, "--layers", "variance,inview")
             files.append(image)
         return files
+
+    def pixels(self, like, spp):
+        """A pixel of every block of the image by converged_pixels; kept until the scene changes."""
+        tag = f"pixels-{self.resolution}-{spp}-{info(self.path, 'hash')}"
+        image = self.out / f"{self.label}-{tag}.exr"
+        if not image.exists():
+            subprocess.run([str(tool("converged_pixels")), "--spp", str(spp), str(self.path), str(like), str(image)], check=True)
+        return image
 
     def reference(self, spp):
         """The mean of the halves."""

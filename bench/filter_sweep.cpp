@@ -2,9 +2,10 @@
 //
 //     filter_sweep IMAGE.exr REFERENCE.exr [IMAGE.exr REFERENCE.exr ...]
 //
-// IMAGE holds all layers of `render --method covariance`. Prints trimmed relMSE per image and the
-// geometric mean over the images, for the width factor c, the narrowest deviation s_min and the
-// slope by which a filter may widen away from a narrower one. docs/decisions/0004 has the table.
+// IMAGE holds the layers all,inview,inviewfilter,scatteredcov,scatteredcovweight of `render
+// --method covariance`. Prints trimmed relMSE per image and the geometric mean over the images, for
+// the width factor c, the narrowest deviation s_min and the slope by which a filter may widen away
+// from a narrower one. docs/decisions/0004 has the table.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -28,14 +29,17 @@ double error(const Case& c, const FilterSettings& settings) {
     FilterField field = filter_field(prediction.spectrum, prediction.width, prediction.height,
                                      FilterRule::verified, settings);
     limit_by_neighbours(field, settings);
-    const GatheredImage gathered =
-        gather(c.rendered.mean, c.rendered.variance, c.rendered.count, field);
+    const std::vector<float> no_variance(c.rendered.count.size(), 0.0f);
+    const auto scattered = gather(c.rendered.scattered, no_variance, c.rendered.count, field).color;
+    const auto in_view =
+        gather(c.rendered.in_view, no_variance, c.rendered.count, c.rendered.in_view_filters).color;
     Image result;
     result.data = c.rendered.image.data;
     result.display = c.rendered.image.display;
     for (int k = 0; k < 3; ++k) {
         Channel& out = result.add_channel(std::string(1, "RGB"[k]));
-        for (size_t i = 0; i < gathered.color.size(); ++i) out.values[i] = gathered.color[i][k];
+        for (size_t i = 0; i < scattered.size(); ++i)
+            out.values[i] = scattered[i][k] + in_view[i][k];
     }
     return compare(result, c.reference).relmse_trimmed;
 }

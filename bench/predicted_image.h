@@ -7,17 +7,22 @@
 
 #include "image/image.h"
 #include "planner/covariance_buffer.h"
+#include "reconstruction/filter_field.h"
 
 namespace covtrace {
 
 /// Row by row, image.width() * image.height() entries each.
 struct PredictedImage {
     Image image;
-    Prediction prediction;        ///< of the smoothed buffer, as the renderer's filters use it
-    std::vector<Rgb> mean;        ///< of each pixel's own samples
-    std::vector<float> variance;  ///< of the mean's luminance; zero: the tools don't need it
+    Prediction prediction;  ///< of scattered light, smoothed, as the renderer's filters use it
+    std::vector<Rgb> scattered,
+        in_view;                  ///< means of each pixel's own samples, which they add up to
+    FilterField in_view_filters;  ///< as the renderer applied them; the narrowest without emitters
     std::vector<uint32_t> count;
 };
+
+/// What must be asked for when the image is rendered.
+constexpr const char* kPredictedLayers = "all,inview,inviewfilter,scatteredcov,scatteredcovweight";
 
 /// Throws Error(usage) where a layer is missing, Error(scene) where the file can't be read.
 PredictedImage read_predicted_image(const std::filesystem::path& file);

@@ -71,7 +71,12 @@ LightField PathReplay::carry(LightField field, Vec3 from, Vec3 to, double share)
     return cov::travel(field, distance(from, to) - at);
 }
 
-PathCovariance PathReplay::operator()(const PathRecord& record) const {
+PathCovariance PathReplay::operator()(const PathRecord& record, LightPart part) const {
+    const auto taken = [part](float luminance, bool in_view) {
+        const bool takes = part == LightPart::all || (part == LightPart::in_view) == in_view;
+        return takes ? luminance : 0.0f;
+    };
+    const float escaped = taken(record.escaped, record.escape_in_view);
     const SensorGeometry camera = scene_.camera.sensor(record.camera_ray);
     /// Where light from infinity, seen from p in the direction w, enters the scene's bounding
     /// sphere.
@@ -81,18 +86,18 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         return p + w * std::max(0.0f, -b + safe_sqrt(b * b - c));
     };
 
-    double total = record.escaped;
+    double total = escaped;
     for (int i = 0; i < record.count; ++i) {
         const PathVertex& v = record.vertices[size_t(i)];
-        total += double(v.emitted) + v.direct;
+        total += double(taken(v.emitted, v.in_view)) + taken(v.direct, false);
     }
     if (!(total > 0)) return {};
 
     Arriving light;
-    if (record.escaped > 0) {
+    if (escaped > 0) {
         const SourceSpectrum s = scene_.lights.environment_spectrum(record.escape_direction);
         light.add(source_field(s, -record.escape_direction, record.escape_seen_sharply, smallest_),
-                  record.escaped);
+                  escaped);
         const Vec3 last = record.count > 0 ? record.vertices[size_t(record.count - 1)].hit.position
                                            : record.camera_ray.origin;
         light.field =
@@ -112,28 +117,29 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
 
     for (int i = record.count - 1; i >= 0; --i) {
         const PathVertex& v = record.vertices[size_t(i)];
+        const float emitted = taken(v.emitted, v.in_view), direct = taken(v.direct, false);
         Arriving leaving;
-        if (light.weight > 0 || v.direct > 0) {
+        if (light.weight > 0 || direct > 0) {
             const float extent = camera.orthographic ? 1.0f : distances[i];
             const ScatterPoint point =
                 scatter_point(scene_, v, 0.5f * extent / camera.pixels_per_x);
             if (light.weight > 0)
                 leaving.add(scatter(light.field, point, v.next_event.lobes), light.weight);
-            if (v.direct > 0) {
+            if (direct > 0) {
                 const SourceSpectrum s = scene_.lights.source_spectrum(v.light, v.hit.time);
                 const Vec3 from = std::isfinite(v.light.distance)
                                       ? v.hit.position + v.light.wi * v.light.distance
                                       : entry(v.hit.position, v.light.wi);
                 const LightField source = source_field(s, -v.light.wi, false, smallest_);
-                leaving.add(scatter(carry(source, from, v.hit.position, v.direct / total), point,
+                leaving.add(scatter(carry(source, from, v.hit.position, direct / total), point,
                                     v.direct_event.lobes),
-                            v.direct);
+                            direct);
             }
         }
-        if (v.emitted > 0)
+        if (emitted > 0)
             leaving.add(
                 source_field(scene_.lights.source_spectrum(v.hit), v.wo, v.seen_sharply, smallest_),
-                v.emitted);
+                emitted);
         light = leaving;
         if (!(light.weight > 0)) continue;
         const Vec3 next =

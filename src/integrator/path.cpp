@@ -93,6 +93,8 @@ class PathTracer {
     static constexpr int kMostInterfaces =
         1000;  // a ray caught between coincident interfaces must end
 
+    bool in_view() const { return sharp_so_far_ && sharp_probability_ > 0.5f; }
+
     void escape() {
         if (!scene_.lights.has_environment()) return;
         const Rgb light = scene_.lights.environment(ray_.direction);
@@ -104,10 +106,12 @@ class PathTracer {
         }
         const Rgb contribution = beta_ * light * weight;
         result_.radiance += contribution;
+        if (in_view()) result_.in_view += contribution;
         if (record_ && record_->count == static_cast<int>(result_.vertices)) {
             record_->escaped = luminance(contribution);
             record_->escape_direction = ray_.direction;
             record_->escape_seen_sharply = sharp_so_far_;
+            record_->escape_in_view = in_view();
         }
     }
 
@@ -120,6 +124,7 @@ class PathTracer {
         v->emitted = v->direct = 0;
         v->scatters = false;
         v->seen_sharply = sharp_so_far_;
+        v->in_view = in_view();
         return v;
     }
 
@@ -134,6 +139,7 @@ class PathTracer {
         }
         const Rgb contribution = beta_ * light * weight;
         result_.radiance += contribution;
+        if (in_view()) result_.in_view += contribution;
         if (vertex) vertex->emitted = luminance(contribution);
     }
 
@@ -228,6 +234,7 @@ class PathTracer {
         pdf_ = s->pdf;
         specular_ = is_specular(s->lobe);
         sharp_so_far_ = sharp_so_far_ && specular_;
+        sharp_probability_ *= s->pdf;
         if (is_transmission(s->lobe)) roulette_scale_ *= s->eta * s->eta;
         if (vertex) {
             vertex->scatters = true;
@@ -271,6 +278,7 @@ class PathTracer {
     bool specular_ =
         true;  // the last lobe (the camera counts as one): no light sampling could find it
     bool sharp_so_far_ = true;
+    float sharp_probability_ = 1;  // of the specular lobes that were chosen, while sharp so far
     float roulette_scale_ = 1;
     MediumId medium_ = -1;
     int passed_interfaces_ = 0;

@@ -13,6 +13,7 @@ namespace covtrace {
 /// Everything one path says about its pixel.
 struct PathResult {
     Rgb radiance;
+    Rgb in_view;      ///< the part of it that comes from emitters in view, see PathVertex::in_view
     Rgb albedo;       ///< of the first surface; 0 where the ray leaves the scene
     Vec3 normal;      ///< shading normal of the first surface towards the viewer
     float depth = 0;  ///< distance of the first surface from the camera, 0 where there is none

@@ -28,6 +28,10 @@ struct PathVertex {
     float emitted = 0;
     bool seen_sharply = false;  ///< no lobe but specular ones between the camera and this vertex
 
+    /// Seen by specular lobes alone that were all more likely than not: light found here shows the
+    /// emitter itself, almost without noise, in the full contrast of its border.
+    bool in_view = false;
+
     /// Luminance that reaches the sensor by the light sampled here; 0 where there is none.
     float direct = 0;
     LightSample light;
@@ -49,6 +53,7 @@ struct PathRecord {
     float escaped = 0;
     Vec3 escape_direction;
     bool escape_seen_sharply = false;
+    bool escape_in_view = false;
 
     void clear() {
         count = 0;

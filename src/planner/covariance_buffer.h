@@ -23,6 +23,16 @@ struct CovarianceBuffer {
     std::vector<float> weight;
 };
 
+/// The light of a pixel in two parts. An emitter in view outshines what is beside it a hundred
+/// times: in one mean it would decide the spectra around it, and the tails of filters would carry
+/// it over its border. `scattered` is all the light that surfaces sent on.
+struct CovarianceBuffers {
+    CovarianceBuffers(int w, int h) : scattered(w, h), in_view(w, h) {}
+    CovarianceBuffer scattered, in_view;
+};
+/// The covariances of all light: the mean of both parts, weighted by their radiance.
+CovarianceBuffer merge(const CovarianceBuffers& buffers);
+
 /// What a pixel needs, seen from its covariance after the integral over lens and shutter.
 struct Prediction {
     int width = 0, height = 0;

@@ -16,6 +16,12 @@ FilterSettings filter_settings(double samples_per_pixel) {
     return s;
 }
 
+FilterSettings filter_settings_in_view(double samples_per_pixel) {
+    FilterSettings s = filter_settings(samples_per_pixel);
+    s.limits.s_min = 0.1f;  // the next pixel gets exp(-50) of it
+    return s;
+}
+
 FilterField filter_field(std::span<const covariance::Sym2<float>> spectrum, int width, int height,
                          FilterRule rule, const FilterSettings& settings) {
     FilterField f{width, height, std::vector<covariance::Sym2<float>>(spectrum.size())};

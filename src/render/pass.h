@@ -50,11 +50,11 @@ PassStatistics radiance_pass(const PassContext& context, Film& film,
                              std::span<const uint32_t> counts, const Monitor& monitor,
                              const PassProgress& progress);
 
-/// The same with `counts` paths per pixel that also leave their covariance. Weights are limited to
-/// ten times the mean of the image's first paths, so that no single path owns a pixel. `occluders`
-/// may be null.
+/// The same with `counts` paths per pixel that also leave their covariance. Weights of scattered
+/// light are limited to ten times the mean of the image's first paths, so that no single path owns
+/// a pixel. `occluders` may be null.
 PassStatistics covariance_pass(const PassContext& context, const VoxelGrid* occluders, Film& film,
-                               std::span<const uint32_t> counts, CovarianceBuffer& buffer,
+                               std::span<const uint32_t> counts, CovarianceBuffers& buffers,
                                const Monitor& monitor, const PassProgress& progress);
 
 /// One sample as the passes take it, for replaying a pixel: returns the path and the film's sample.
