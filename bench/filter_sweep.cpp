@@ -24,22 +24,25 @@ struct Case {
     Image reference;
 };
 
-double error(const Case& c, const FilterSettings& settings) {
-    const Prediction& prediction = c.rendered.prediction;
-    FilterField field = filter_field(prediction.spectrum, prediction.width, prediction.height,
+/// `in_view`: factor on the deviations of the filters of emitters in view.
+double error(const Case& c, const FilterSettings& settings, float in_view) {
+    const PredictedImage& r = c.rendered;
+    FilterField field = filter_field(r.prediction.spectrum, r.prediction.width, r.prediction.height,
                                      FilterRule::verified, settings);
     limit_by_neighbours(field, settings);
-    const std::vector<float> no_variance(c.rendered.count.size(), 0.0f);
-    const auto scattered = gather(c.rendered.scattered, no_variance, c.rendered.count, field).color;
-    const auto in_view =
-        gather(c.rendered.in_view, no_variance, c.rendered.count, c.rendered.in_view_filters).color;
+    FilterField emitters = r.in_view_filters;
+    for (auto& s : emitters.covariance)
+        s = covariance::clamp_eigenvalues(
+            in_view * in_view * s, sqr(filter_settings_in_view(16).limits.s_min), sqr(15.0f));
+    const std::vector<float> no_variance(r.count.size(), 0.0f);
+    const auto scattered = gather(r.scattered, no_variance, r.count, field).color;
+    const auto seen = gather(r.in_view, no_variance, r.count, emitters).color;
     Image result;
     result.data = c.rendered.image.data;
     result.display = c.rendered.image.display;
     for (int k = 0; k < 3; ++k) {
         Channel& out = result.add_channel(std::string(1, "RGB"[k]));
-        for (size_t i = 0; i < scattered.size(); ++i)
-            out.values[i] = scattered[i][k] + in_view[i][k];
+        for (size_t i = 0; i < scattered.size(); ++i) out.values[i] = scattered[i][k] + seen[i][k];
     }
     return compare(result, c.reference).relmse_trimmed;
 }
@@ -55,20 +58,24 @@ int main(int argc, char** argv) {
         std::vector<Case> cases;
         for (int i = 1; i < argc; i += 2)
             cases.push_back({read_predicted_image(argv[i]), read_image(argv[i + 1])});
-        fmt::print("    c  s_min  slope  geometric mean   relMSE x 1e5 per image\n");
+        const auto print = [&](const FilterSettings& settings, float in_view) {
+            double log_sum = 0;
+            std::string each;
+            for (const Case& k : cases) {
+                const double e = error(k, settings, in_view);
+                log_sum += std::log(e);
+                each += fmt::format(" {:8.1f}", 1e5 * e);
+            }
+            fmt::print("{:5.2f} {:6.2f} {:6.2f} {:8.2f} {:15.6f} {}\n", settings.c,
+                       settings.limits.s_min, settings.slope, in_view,
+                       std::exp(log_sum / double(cases.size())), each);
+        };
+        fmt::print("    c  s_min  slope  in view  geometric mean   relMSE x 1e5 per image\n");
         for (float c : {1.5f, 2.0f, 2.5f, 3.0f, 4.0f})
             for (float s_min : {0.25f, 0.32f, 0.4f, 0.5f, 0.6f})
-                for (float slope : {0.03f, 0.05f, 0.1f, 0.2f}) {
-                    double log_sum = 0;
-                    std::string each;
-                    for (const Case& k : cases) {
-                        const double e = error(k, {c, {s_min, 15}, slope});
-                        log_sum += std::log(e);
-                        each += fmt::format(" {:8.1f}", 1e5 * e);
-                    }
-                    fmt::print("{:5.1f} {:6.2f} {:6.2f} {:15.6f} {}\n", c, s_min, slope,
-                               std::exp(log_sum / double(cases.size())), each);
-                }
+                for (float slope : {0.03f, 0.05f, 0.1f, 0.2f}) print({c, {s_min, 15}, slope}, 1);
+        for (float in_view : {2.0f, 1.4f, 1.0f, 0.71f, 0.5f, 0.35f, 0.25f, 0.0f})
+            print(FilterSettings{}, in_view);
     } catch (const std::exception& e) {
         fmt::print(stderr, "filter_sweep: {}\n", e.what());
         return 1;

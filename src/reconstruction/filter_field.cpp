@@ -18,6 +18,7 @@ FilterSettings filter_settings(double samples_per_pixel) {
 
 FilterSettings filter_settings_in_view(double samples_per_pixel) {
     FilterSettings s = filter_settings(samples_per_pixel);
+    s.c *= std::sqrt(2.0f);
     s.limits.s_min = 0.1f;  // the next pixel gets exp(-50) of it
     return s;
 }

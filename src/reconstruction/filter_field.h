@@ -22,8 +22,10 @@ struct FilterSettings {
 /// that the bias falls as the noise does.
 FilterSettings filter_settings(double samples_per_pixel);
 
-/// The same for light from emitters in view (CovarianceBuffers), with no floor to speak of: such
-/// light has no noise but at its border, and what the tail of a filter carries over it is seen.
+/// The same for light from emitters in view (CovarianceBuffers): with no floor to speak of, since
+/// such light has no noise but at its border and what the tail of a filter carries over it is seen;
+/// and half as wide in variance, since out of focus it shows the hard border of the aperture, whose
+/// spectrum reaches further than the Gaussian's with the same moments (docs/decisions/0012).
 FilterSettings filter_settings_in_view(double samples_per_pixel);
 
 /// Primal covariances (pixels^2), row by row: S_h = (4 pi^2 c^2 S2D)^-1 with eigenvalues in
