@@ -70,12 +70,12 @@ class Scene:
             files.append(image)
         return files
 
-    def pixels(self, like, spp):
-        """A pixel of every block of the image by converged_pixels; kept until the scene changes."""
-        tag = f"pixels-{self.resolution}-{spp}-{info(self.path, 'hash')}"
+    def pixels(self, like, every, spp):
+        """A pixel of every block of so many squared of the image by converged_pixels; kept until the scene changes."""
+        tag = f"pixels-{self.resolution}-{every}-{spp}-{info(self.path, 'hash')}"
         image = self.out / f"{self.label}-{tag}.exr"
         if not image.exists():
-            subprocess.run([str(tool("converged_pixels")), "--spp", str(spp), str(self.path), str(like), str(image)], check=True)
+            subprocess.run([str(tool("converged_pixels")), "--every", str(every), "--spp", str(spp), str(self.path), str(like), str(image)], check=True)
         return image
 
     def reference(self, spp):
