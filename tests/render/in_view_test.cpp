@@ -34,26 +34,27 @@ TEST(InView, NothingLeaksOverTheBorderOfALampInFocus) {
     for (size_t i = 0; i < lamp.size(); ++i) {
         if (lamp[i] > 0) continue;
         ++beside;
-        EXPECT_LT(image.rgb(i).r, 0.02f) << "pixel " << i;  // the wall has at most 0.0064
+        // 0.5 % of the lamp; the narrowest filter of scattered light would carry 10 % of it here.
+        EXPECT_LT(image.rgb(i).r, 0.3f) << "pixel " << i;
     }
     EXPECT_GT(beside, 700);
     EXPECT_LT(beside, 1000);
 }
 
 TEST(InView, ALampOutOfFocusIsSmoothedAndKeepsItsLight) {
-    const Image image =
-        render_text(lamp_before_wall(R"("float lensradius" 0.4 "float focaldistance" 2)"),
-                    covariance_method(16, 1))
-            .image;
-    double raw = 0, delivered = 0, raw_steps = 0, steps = 0;
-    for (size_t i = 0; i + 1 < image.pixel_count(); ++i) {
-        raw += image.rgb(i, "raw.").r;
-        delivered += image.rgb(i).r;
-        raw_steps += std::abs(image.rgb(i + 1, "raw.").r - image.rgb(i, "raw.").r);
-        steps += std::abs(image.rgb(i + 1).r - image.rgb(i).r);
+    const std::string scene = lamp_before_wall(R"("float lensradius" 0.4 "float focaldistance" 2)");
+    const Image image = render_text(scene, covariance_method(16, 1)).image;
+    const Image reference = render_text(scene, uniform(512, 2)).image;
+    double light = 0, reference_light = 0, error = 0, raw_error = 0;
+    for (size_t i = 0; i < image.pixel_count(); ++i) {
+        const float r = reference.rgb(i).r;
+        light += image.rgb(i).r;
+        reference_light += r;
+        error += sqr(image.rgb(i).r - r);
+        raw_error += sqr(image.rgb(i, "raw.").r - r);
     }
-    EXPECT_NEAR(delivered / raw, 1, 0.02);
-    EXPECT_LT(steps, 0.7 * raw_steps);
+    EXPECT_NEAR(light / reference_light, 1, 0.02);
+    EXPECT_LT(error, 0.7 * raw_error);
 }
 
 TEST(InView, BothPartsMakeUpTheCovarianceOfAllLight) {
