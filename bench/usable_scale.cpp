@@ -20,8 +20,9 @@
 /// give lies in between.
 ///
 /// Prints a row of a Markdown table for each. MAP shows the converged image, the deviation of the
-/// filter (fourth root of det S_h, pixels) and the usable scale (significant), a measured pixel
-/// standing for its block; pixels with the narrowest filter are greyed.
+/// filter of the larger part of the light (fourth root of det S_h, pixels) and the usable scale
+/// (significant), a measured pixel standing for its block; pixels with the narrowest filter are
+/// greyed.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -174,9 +175,10 @@ void print_row(std::string_view name, std::vector<float> scales, float narrowest
         100 * narrowest_share, 100 * noise);
 }
 
-bool is_narrowest(const FilterField& field, const MeasuredPixel& p) {
-    const auto& c = field.covariance[size_t(p.y) * size_t(field.width) + size_t(p.x)];
-    return covariance::eigen(c).high < sqr(1.01f * filter_settings(16).limits.s_min);
+/// The filter of the part that holds more of a pixel's light.
+const covariance::Sym2<float>& main_filter(const FilterField& field, const FilterField& in_view,
+                                           const Converged& image, size_t i) {
+    return image.in_view[i] > image.scattered[i] ? in_view.covariance[i] : field.covariance[i];
 }
 
 /// Index of the measured pixel nearest to a pixel.
@@ -190,8 +192,9 @@ size_t nearest(const std::vector<MeasuredPixel>& pixels, int x, int y) {
         pixels.begin());
 }
 
-void write_map(const char* file, const FilterField& field, const Converged& image,
-               const std::vector<MeasuredPixel>& pixels, const std::vector<float>& scales) {
+void write_map(const char* file, const FilterField& field, const FilterField& in_view,
+               const Converged& image, const std::vector<MeasuredPixel>& pixels,
+               const std::vector<float>& scales, const std::vector<bool>& narrowest) {
     const LogColours sizes{{{0.5f, {0, 0, 0.1f}},
                             {1, {0.05f, 0, 0.5f}},
                             {2, {0.6f, 0.02f, 0.3f}},
@@ -207,13 +210,13 @@ void write_map(const char* file, const FilterField& field, const Converged& imag
                                     {6.1f, {0, 0, 1}},
                                     {8, {0, 0, 0.3f}}}};
     std::vector<Rgb> size_map, scale_map;
-    for (const auto& c : field.covariance) size_map.push_back(sizes(covariance::filter_size(c)));
+    for (size_t i = 0; i < image.mean.size(); ++i)
+        size_map.push_back(sizes(covariance::filter_size(main_filter(field, in_view, image, i))));
     for (int y = 0; y < field.height; ++y)
         for (int x = 0; x < field.width; ++x) {
             const size_t k = nearest(pixels, x, y);
             const Rgb c = scale_colours(scales[k]);
-            const MeasuredPixel& p = pixels[k];
-            scale_map.push_back(is_narrowest(field, p) ? 0.3f * c + 0.7f * Rgb(0.2f) : c);
+            scale_map.push_back(narrowest[k] ? 0.3f * c + 0.7f * Rgb(0.2f) : c);
         }
     PanelPicture picture(field.width, field.height);
     picture.add(image.mean);
@@ -230,12 +233,17 @@ void report(std::span<const char* const> files, bool by_neighbours, const char* 
     const Prediction& p = predicted.prediction;
     FilterField field = filter_field(p.spectrum, p.width, p.height, FilterRule::verified, settings);
     if (by_neighbours) limit_by_neighbours(field, settings);
+    const FilterField& in_view = predicted.in_view_filters;
+    std::vector<bool> narrowest;
+    for (const MeasuredPixel& m : pixels) {
+        const size_t i = size_t(m.y) * size_t(field.width) + size_t(m.x);
+        narrowest.push_back(covariance::eigen(main_filter(field, in_view, image, i)).high <
+                            sqr(1.01f * settings.limits.s_min));
+    }
     const float share =
-        float(std::count_if(pixels.begin(), pixels.end(),
-                            [&](const MeasuredPixel& m) { return is_narrowest(field, m); })) /
-        float(pixels.size());
-    UsableScales scales = usable_scales(field, predicted.in_view_filters, image, pixels);
-    if (map) write_map(map, field, image, pixels, scales.significant);
+        float(std::count(narrowest.begin(), narrowest.end(), true)) / float(pixels.size());
+    UsableScales scales = usable_scales(field, in_view, image, pixels);
+    if (map) write_map(map, field, in_view, image, pixels, scales.significant, narrowest);
     std::nth_element(scales.noise.begin(), scales.noise.begin() + ptrdiff_t(pixels.size() / 2),
                      scales.noise.end());
     const float noise = scales.noise[pixels.size() / 2];

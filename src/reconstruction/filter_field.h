@@ -40,7 +40,9 @@ FilterField filter_field(std::span<const covariance::Sym2<float>> spectrum, int 
                          FilterRule rule, const FilterSettings& settings);
 
 /// Narrows filters near narrower ones: s = det(S_h)^(1/4) becomes min over q of s(q) + slope |p -
-/// q|.
-void limit_by_neighbours(FilterField& field, const FilterSettings& settings);
+/// q|. `others`, if not empty, are sizes s of other filters, one per pixel, that limit this field
+/// too: a border is one for all the light that meets there.
+void limit_by_neighbours(FilterField& field, const FilterSettings& settings,
+                         std::span<const float> others = {});
 
 }  // namespace covtrace

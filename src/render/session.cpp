@@ -168,10 +168,11 @@ class Session {
         reconstruct(buffers, density);
     }
 
-    FilterField predicted_filters(const CovarianceBuffer& buffer, const FilterSettings& settings) {
+    FilterField predicted_filters(const CovarianceBuffer& buffer, const FilterSettings& settings,
+                                  std::span<const float> others = {}) {
         const Prediction p = preintegrate(smooth(buffer));
         FilterField field = filter_field(p.spectrum, p.width, p.height, options_.filter, settings);
-        if (options_.filter == FilterRule::verified) limit_by_neighbours(field, settings);
+        if (options_.filter == FilterRule::verified) limit_by_neighbours(field, settings, others);
         return field;
     }
 
@@ -183,8 +184,13 @@ class Session {
         const bool emitters_found =
             std::any_of(buffers.in_view.weight.begin(), buffers.in_view.weight.end(),
                         [](float w) { return w > 0; });
+        // The edge of a surface before the sky is known from the surface: the sky has no detail.
+        std::vector<float> beside(field.covariance.size(), kInfinity);
+        for (size_t i = 0; i < beside.size(); ++i)
+            if (buffers.scattered.weight[i] > 0)
+                beside[i] = covariance::filter_size(field.covariance[i]);
         const FilterField in_view_field =
-            predicted_filters(buffers.in_view, filter_settings_in_view(taken));
+            predicted_filters(buffers.in_view, filter_settings_in_view(taken), beside);
         std::vector<Rgb> scattered(film_.pixels.size()), in_view(film_.pixels.size());
         std::vector<float> variance(film_.pixels.size());
         std::vector<uint32_t> count(film_.pixels.size());
