@@ -2,16 +2,17 @@
 //
 //     filter_sweep IMAGE.exr REFERENCE.exr [IMAGE.exr REFERENCE.exr ...]
 //
-// IMAGE holds all layers of `render --method covariance`. Prints trimmed relMSE per image and the
-// geometric mean over the images, for the width factor c, the narrowest deviation s_min and the
-// slope by which a filter may widen away from a narrower one. docs/decisions/0004 has the table.
+// IMAGE holds the layers all,inview,inviewfilter,scatteredcov,scatteredcovweight of `render
+// --method covariance`. Prints trimmed relMSE per image and the geometric mean over the images, for
+// the width factor c, the narrowest deviation s_min and the slope by which a filter may widen away
+// from a narrower one. docs/decisions/0004 has the table.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <vector>
 
 #include "image/compare.h"
-#include "planner/covariance_buffer.h"
+#include "predicted_image.h"
 #include "reconstruction/gather.h"
 
 using namespace covtrace;
@@ -19,49 +20,29 @@ using namespace covtrace;
 namespace {
 
 struct Case {
-    Image image, reference;
-    Prediction prediction;
-    std::vector<Rgb> mean;
-    std::vector<float> variance;
-    std::vector<uint32_t> count;
+    PredictedImage rendered;
+    Image reference;
 };
 
-Case load(const char* image_file, const char* reference_file) {
-    Case c{read_image(image_file), read_image(reference_file), {}, {}, {}, {}};
-    CovarianceBuffer buffer(c.image.width(), c.image.height());
-    const auto channel = [&c](const std::string& name) -> const std::vector<float>& {
-        const Channel* found = c.image.find(name);
-        if (!found) throw Error(ErrorKind::usage, "no layer '" + name + "'");
-        return found->values;
-    };
-    for (size_t row = 0; row < 5; ++row)
-        for (size_t column = row; column < 5; ++column) {
-            const auto& values = channel(fmt::format("cov.{}{}", row, column));
-            for (size_t i = 0; i < values.size(); ++i)
-                buffer.covariance[i](row, column) = values[i];
-        }
-    buffer.weight = channel("covweight.Y");
-    c.prediction = preintegrate(smooth(buffer));
-    const auto &r = channel("raw.R"), &g = channel("raw.G"), &b = channel("raw.B");
-    for (size_t i = 0; i < r.size(); ++i) {
-        c.mean.emplace_back(r[i], g[i], b[i]);
-        c.count.push_back(uint32_t(channel("samples.Y")[i]));
-    }
-    c.variance.assign(r.size(), 0.0f);
-    return c;
-}
-
-double error(const Case& c, const FilterSettings& settings) {
-    FilterField field = filter_field(c.prediction.spectrum, c.prediction.width, c.prediction.height,
+/// `in_view`: factor on the deviations of the filters of emitters in view.
+double error(const Case& c, const FilterSettings& settings, float in_view) {
+    const PredictedImage& r = c.rendered;
+    FilterField field = filter_field(r.prediction.spectrum, r.prediction.width, r.prediction.height,
                                      FilterRule::verified, settings);
     limit_by_neighbours(field, settings);
-    const GatheredImage gathered = gather(c.mean, c.variance, c.count, field);
+    FilterField emitters = r.in_view_filters;
+    for (auto& s : emitters.covariance)
+        s = covariance::clamp_eigenvalues(
+            in_view * in_view * s, sqr(filter_settings_in_view(16).limits.s_min), sqr(15.0f));
+    const std::vector<float> no_variance(r.count.size(), 0.0f);
+    const auto scattered = gather(r.scattered, no_variance, r.count, field).color;
+    const auto seen = gather(r.in_view, no_variance, r.count, emitters).color;
     Image result;
-    result.data = c.image.data;
-    result.display = c.image.display;
+    result.data = c.rendered.image.data;
+    result.display = c.rendered.image.display;
     for (int k = 0; k < 3; ++k) {
         Channel& out = result.add_channel(std::string(1, "RGB"[k]));
-        for (size_t i = 0; i < gathered.color.size(); ++i) out.values[i] = gathered.color[i][k];
+        for (size_t i = 0; i < scattered.size(); ++i) out.values[i] = scattered[i][k] + seen[i][k];
     }
     return compare(result, c.reference).relmse_trimmed;
 }
@@ -75,21 +56,26 @@ int main(int argc, char** argv) {
     }
     try {
         std::vector<Case> cases;
-        for (int i = 1; i < argc; i += 2) cases.push_back(load(argv[i], argv[i + 1]));
-        fmt::print("    c  s_min  slope  geometric mean   relMSE x 1e5 per image\n");
+        for (int i = 1; i < argc; i += 2)
+            cases.push_back({read_predicted_image(argv[i]), read_image(argv[i + 1])});
+        const auto print = [&](const FilterSettings& settings, float in_view) {
+            double log_sum = 0;
+            std::string each;
+            for (const Case& k : cases) {
+                const double e = error(k, settings, in_view);
+                log_sum += std::log(e);
+                each += fmt::format(" {:8.1f}", 1e5 * e);
+            }
+            fmt::print("{:5.2f} {:6.2f} {:6.2f} {:8.2f} {:15.6f} {}\n", settings.c,
+                       settings.limits.s_min, settings.slope, in_view,
+                       std::exp(log_sum / double(cases.size())), each);
+        };
+        fmt::print("    c  s_min  slope  in view  geometric mean   relMSE x 1e5 per image\n");
         for (float c : {1.5f, 2.0f, 2.5f, 3.0f, 4.0f})
             for (float s_min : {0.25f, 0.32f, 0.4f, 0.5f, 0.6f})
-                for (float slope : {0.03f, 0.05f, 0.1f, 0.2f}) {
-                    double log_sum = 0;
-                    std::string each;
-                    for (const Case& k : cases) {
-                        const double e = error(k, {c, {s_min, 15}, slope});
-                        log_sum += std::log(e);
-                        each += fmt::format(" {:8.1f}", 1e5 * e);
-                    }
-                    fmt::print("{:5.1f} {:6.2f} {:6.2f} {:15.6f} {}\n", c, s_min, slope,
-                               std::exp(log_sum / double(cases.size())), each);
-                }
+                for (float slope : {0.03f, 0.05f, 0.1f, 0.2f}) print({c, {s_min, 15}, slope}, 1);
+        for (float in_view : {2.0f, 1.4f, 1.0f, 0.71f, 0.5f, 0.35f, 0.25f, 0.0f})
+            print(FilterSettings{}, in_view);
     } catch (const std::exception& e) {
         fmt::print(stderr, "filter_sweep: {}\n", e.what());
         return 1;

@@ -158,30 +158,47 @@ nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& res
             {"complete", result.complete}};
 }
 
-/// "all" or names with commas; empty for all. Names are checked before the render, against what any
-/// method writes.
+/// Names with commas, where "all" (or nothing) stands for the first of them; what tells emitters in
+/// view apart from scattered light must be asked for. Names are checked before the render, against
+/// what any method writes.
 std::vector<std::string> parse_layers(const std::string& wanted) {
-    constexpr std::array<std::string_view, 13> kKnown{
-        "A",       "Z",       "raw",    "albedo",   "N",   "variance", "error",
-        "samples", "density", "filter", "spectrum", "cov", "covweight"};
+    constexpr size_t kAll = 13;
+    constexpr std::array<std::string_view, 17> kKnown{"A",
+                                                      "Z",
+                                                      "raw",
+                                                      "albedo",
+                                                      "N",
+                                                      "variance",
+                                                      "error",
+                                                      "samples",
+                                                      "density",
+                                                      "filter",
+                                                      "spectrum",
+                                                      "cov",
+                                                      "covweight",
+                                                      "inview",
+                                                      "inviewfilter",
+                                                      "scatteredcov",
+                                                      "scatteredcovweight"};
     std::vector<std::string> names;
-    if (wanted.empty() || wanted == "all") return names;
     for (size_t from = 0; from <= wanted.size();) {
         const size_t to = std::min(wanted.find(',', from), wanted.size());
-        names.push_back(wanted.substr(from, to - from));
-        from = to + 1;
-    }
-    for (const std::string& name : names)
-        if (std::find(kKnown.begin(), kKnown.end(), name) == kKnown.end())
+        const std::string name = wanted.substr(from, to - from);
+        if (name == "all" || wanted.empty())
+            names.insert(names.end(), kKnown.begin(), kKnown.begin() + kAll);
+        else if (std::find(kKnown.begin(), kKnown.end(), name) == kKnown.end())
             throw Error(ErrorKind::usage,
                         fmt::format("--layers: there is no layer '{}'; expected all or some of {}",
                                     name, fmt::join(kKnown, ",")));
+        else
+            names.push_back(name);
+        from = to + 1;
+    }
     return names;
 }
 
 /// Drops every layer but the root's R G B A and those that are named.
 void keep_layers(Image& image, const std::vector<std::string>& names) {
-    if (names.empty()) return;
     std::erase_if(image.channels, [&](const Channel& c) {
         const size_t dot = c.name.rfind('.');
         const bool root = dot == std::string::npos && c.name != "Z";

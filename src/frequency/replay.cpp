@@ -77,7 +77,12 @@ LightField PathReplay::to_camera(const LightField& field, const OccluderQuery::S
     return travel_past(occluders_, field, segment, measure_at_camera(camera), smallest_);
 }
 
-PathCovariance PathReplay::operator()(const PathRecord& record) const {
+PathCovariance PathReplay::operator()(const PathRecord& record, LightPart part) const {
+    const auto taken = [part](float luminance, bool in_view) {
+        const bool takes = part == LightPart::all || (part == LightPart::in_view) == in_view;
+        return takes ? luminance : 0.0f;
+    };
+    const float escaped = taken(record.escaped, record.escape_in_view);
     const SensorGeometry camera = scene_.camera.sensor(record.camera_ray);
     /// Where light from infinity, seen from p in the direction w, enters the scene's bounding
     /// sphere.
@@ -87,10 +92,11 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         return p + w * std::max(0.0f, -b + safe_sqrt(b * b - c));
     };
 
-    double total = double(record.escaped) + record.escape_glow;
+    double total = double(escaped) + taken(record.escape_glow, false);
     for (int i = 0; i < record.count; ++i) {
         const PathVertex& v = record.vertices[size_t(i)];
-        total += double(v.emitted) + v.direct + v.glow;
+        total +=
+            double(taken(v.emitted, v.in_view)) + taken(v.direct, false) + taken(v.glow, false);
     }
     if (!(total > 0)) return {};
 
@@ -119,10 +125,10 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
     };
 
     Arriving light;
-    if (record.escaped > 0) {
+    if (escaped > 0) {
         const SourceSpectrum s = scene_.lights.environment_spectrum(record.escape_direction);
         light.add(source_field(s, -record.escape_direction, record.escape_seen_sharply, smallest_),
-                  record.escaped);
+                  escaped);
         const Vec3 last = record.count > 0 ? record.vertices[size_t(record.count - 1)].hit.position
                                            : record.camera_ray.origin;
         const OccluderQuery::Segment segment{entry(last, record.escape_direction),
@@ -135,14 +141,13 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
                                        light.weight / total)
                           : to_camera(light.field, segment, camera, light.weight / total);
     }
-    if (record.escape_glow > 0) {
-        light.add(glow(-record.escape_direction), record.escape_glow);
-    }
+    light.add(glow(-record.escape_direction), taken(record.escape_glow, false));
 
     for (int i = record.count - 1; i >= 0; --i) {
         const PathVertex& v = record.vertices[size_t(i)];
+        const float emitted = taken(v.emitted, v.in_view), direct = taken(v.direct, false);
         Arriving leaving;
-        if (light.weight > 0 || v.direct > 0) {
+        if (light.weight > 0 || direct > 0) {
             std::optional<ScatterPoint> point;
             if (v.medium < 0) {
                 const float extent = camera.orthographic ? 1.0f : distances[size_t(i)];
@@ -159,7 +164,7 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
             if (light.weight > 0)
                 leaving.add(scattered(light.field, light.emitter, v.next_event.lobes),
                             light.weight);
-            if (v.direct > 0) {
+            if (direct > 0) {
                 const SourceSpectrum s = scene_.lights.source_spectrum(v.light, v.hit.time);
                 const Vec3 from = std::isfinite(v.light.distance)
                                       ? v.hit.position + v.light.wi * v.light.distance
@@ -167,20 +172,20 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
                 const LightField source = source_field(s, -v.light.wi, false, smallest_);
                 const LightField arriving =
                     to_surface(source, {from, v.hit.position, v.hit.time, {}, owner(i)},
-                               visible[size_t(i)], v.direct / total);
+                               visible[size_t(i)], direct / total);
                 leaving.add(
                     scattered(arriving, emitter_of(s, v.light.distance), v.direct_event.lobes),
-                    v.direct);
+                    direct);
             }
         }
         const Vec3 next =
             i > 0 ? record.vertices[size_t(i - 1)].hit.position : record.camera_ray.origin;
         const double way = distance(v.hit.position, next);
         leaving.emitter = emitter_at(v, way);
-        if (v.emitted > 0) {
+        if (emitted > 0) {
             const SourceSpectrum s = scene_.lights.source_spectrum(v.hit);
-            if (v.emitted > leaving.weight) leaving.emitter = emitter_of(s, way);
-            leaving.add(source_field(s, v.wo, v.seen_sharply, smallest_), v.emitted);
+            if (emitted > leaving.weight) leaving.emitter = emitter_of(s, way);
+            leaving.add(source_field(s, v.wo, v.seen_sharply, smallest_), emitted);
         }
         light = leaving;
         const OccluderQuery::Segment segment{v.hit.position, next, v.hit.time, owner(i),
@@ -189,7 +194,7 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
             light.field = i > 0 ? to_surface(light.field, segment, visible[size_t(i - 1)],
                                              light.weight / total)
                                 : to_camera(light.field, segment, camera, light.weight / total);
-        if (v.glow > 0) light.add(glow(v.wo), v.glow);
+        light.add(glow(v.wo), taken(v.glow, false));
     }
 
     if (!(light.weight > 0)) return {};

@@ -17,6 +17,10 @@ struct PathCovariance {
     double weight = 0;
 };
 
+/// Which of a path's light is followed. Emitters in view (PathVertex::in_view) and the light that
+/// they shed on surfaces have spectra, and contrasts, of their own.
+enum class LightPart { all, in_view, scattered };
+
 /// Walks the path once from its far end to the sensor. At every vertex the light found there (its
 /// own emission, a sampled light) and the light that arrives from further on are merged by
 /// luminance (an incoherent sum, covariance::merge), so that k vertices cost k steps.
@@ -24,7 +28,7 @@ class PathReplay {
   public:
     /// What is given must outlive this.
     PathReplay(const RenderScene& scene, const Occluders& occluders, BrdfCovariance rule);
-    PathCovariance operator()(const PathRecord& record) const;
+    PathCovariance operator()(const PathRecord& record, LightPart part = LightPart::all) const;
 
   private:
     /// Travel, past the occluders on the way where `share`, this light's part of the path's

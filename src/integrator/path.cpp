@@ -150,6 +150,8 @@ class PathTracer {
         return survives();
     }
 
+    bool in_view() const { return sharp_so_far_ && sharp_probability_ > 0.5f; }
+
     void escape() {
         if (record_ && record_->count == static_cast<int>(result_.vertices)) {
             record_->escape_direction = ray_.direction;
@@ -165,9 +167,11 @@ class PathTracer {
         }
         const Rgb contribution = beta_ * light * weight;
         result_.radiance += contribution;
+        if (in_view()) result_.in_view += contribution;
         if (record_ && record_->count == static_cast<int>(result_.vertices)) {
             record_->escaped = luminance(contribution);
             record_->escape_seen_sharply = sharp_so_far_;
+            record_->escape_in_view = in_view();
         }
     }
 
@@ -184,6 +188,7 @@ class PathTracer {
         v->seen_sharply = sharp_so_far_;
         v->glow = glow_;
         glow_ = 0;
+        v->in_view = in_view();
         return v;
     }
 
@@ -198,6 +203,7 @@ class PathTracer {
         }
         const Rgb contribution = beta_ * light * weight;
         result_.radiance += contribution;
+        if (in_view()) result_.in_view += contribution;
         if (vertex) vertex->emitted = luminance(contribution);
     }
 
@@ -302,6 +308,7 @@ class PathTracer {
         pdf_ = s->pdf;
         specular_ = is_specular(s->lobe);
         sharp_so_far_ = sharp_so_far_ && specular_;
+        sharp_probability_ *= s->pdf;
         if (is_transmission(s->lobe)) roulette_scale_ *= s->eta * s->eta;
         if (vertex) {
             vertex->scatters = true;
@@ -345,6 +352,7 @@ class PathTracer {
     bool specular_ =
         true;  // the last lobe (the camera counts as one): no light sampling could find it
     bool sharp_so_far_ = true;
+    float sharp_probability_ = 1;  // of the specular lobes that were chosen, while sharp so far
     float roulette_scale_ = 1;
     MediumId medium_ = -1;
     int passed_interfaces_ = 0;

@@ -26,6 +26,7 @@ struct RayCounts {
 /// place in a medium, where it scatters.
 struct PathResult {
     Rgb radiance;
+    Rgb in_view;      ///< the part of it that comes from emitters in view, see PathVertex::in_view
     Rgb albedo;       ///< of the first vertex; 0 where the ray leaves the scene
     Vec3 normal;      ///< shading normal of the first vertex towards the viewer; 0 in a medium
     float depth = 0;  ///< distance of the first vertex from the camera, 0 where there is none

@@ -33,6 +33,10 @@ struct PathVertex {
     /// Luminance that reaches the sensor from the media between this vertex and the previous one.
     float glow = 0;
 
+    /// Seen by specular lobes alone that were all more likely than not: light found here shows the
+    /// emitter itself, almost without noise, in the full contrast of its border.
+    bool in_view = false;
+
     /// Luminance that reaches the sensor by the light sampled here; 0 where there is none.
     float direct = 0;
     LightSample light;
@@ -55,6 +59,7 @@ struct PathRecord {
     Vec3 escape_direction;
     bool escape_seen_sharply = false;
     float escape_glow = 0;  ///< luminance from the media behind the last vertex
+    bool escape_in_view = false;
 
     void clear() {
         count = 0;

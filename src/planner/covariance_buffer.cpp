@@ -7,6 +7,21 @@
 
 namespace covtrace {
 
+CovarianceBuffer merge(const CovarianceBuffers& buffers) {
+    const CovarianceBuffer &a = buffers.scattered, &b = buffers.in_view;
+    CovarianceBuffer result(a.width, a.height);
+    parallel_for(a.height, [&](int64_t row) {
+        for (size_t i = size_t(row) * size_t(a.width), end = i + size_t(a.width); i < end; ++i) {
+            covariance::Accumulator<double> mean;
+            mean.add(covariance::cast<double>(a.covariance[i]), a.weight[i]);
+            mean.add(covariance::cast<double>(b.covariance[i]), b.weight[i]);
+            result.covariance[i] = covariance::cast<float>(mean.mean());
+            result.weight[i] = float(mean.weight());
+        }
+    });
+    return result;
+}
+
 Prediction preintegrate(const CovarianceBuffer& buffer) {
     Prediction p;
     p.width = buffer.width;

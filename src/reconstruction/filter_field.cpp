@@ -16,6 +16,13 @@ FilterSettings filter_settings(double samples_per_pixel) {
     return s;
 }
 
+FilterSettings filter_settings_in_view(double samples_per_pixel) {
+    FilterSettings s = filter_settings(samples_per_pixel);
+    s.c *= std::sqrt(2.0f);
+    s.limits.s_min = 0.1f;  // the next pixel gets exp(-50) of it
+    return s;
+}
+
 FilterField filter_field(std::span<const covariance::Sym2<float>> spectrum, int width, int height,
                          FilterRule rule, const FilterSettings& settings) {
     FilterField f{width, height, std::vector<covariance::Sym2<float>>(spectrum.size())};
@@ -31,11 +38,13 @@ FilterField filter_field(std::span<const covariance::Sym2<float>> spectrum, int 
     return f;
 }
 
-void limit_by_neighbours(FilterField& field, const FilterSettings& settings) {
+void limit_by_neighbours(FilterField& field, const FilterSettings& settings,
+                         std::span<const float> others) {
     const int w = field.width, h = field.height;
     std::vector<float> s(field.covariance.size());
     for (size_t i = 0; i < s.size(); ++i) s[i] = covariance::filter_size(field.covariance[i]);
     std::vector<float> limit = s;
+    for (size_t i = 0; i < others.size(); ++i) limit[i] = std::min(limit[i], others[i]);
     // Chamfer distance transform with steps 1 and sqrt 2: one pass down, one pass up.
     const float straight = settings.slope, diagonal = settings.slope * std::sqrt(2.0f);
     const auto relax = [&](int x, int y, int dx, int dy, float step) {

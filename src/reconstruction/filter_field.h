@@ -22,6 +22,12 @@ struct FilterSettings {
 /// that the bias falls as the noise does.
 FilterSettings filter_settings(double samples_per_pixel);
 
+/// The same for light from emitters in view (CovarianceBuffers): with no floor to speak of, since
+/// such light has no noise but at its border and what the tail of a filter carries over it is seen;
+/// and half as wide in variance, since out of focus it shows the hard border of the aperture, whose
+/// spectrum reaches further than the Gaussian's with the same moments (docs/decisions/0012).
+FilterSettings filter_settings_in_view(double samples_per_pixel);
+
 /// Primal covariances (pixels^2), row by row: S_h = (4 pi^2 c^2 S2D)^-1 with eigenvalues in
 /// [s_min^2, s_max^2].
 struct FilterField {
@@ -34,7 +40,9 @@ FilterField filter_field(std::span<const covariance::Sym2<float>> spectrum, int 
                          FilterRule rule, const FilterSettings& settings);
 
 /// Narrows filters near narrower ones: s = det(S_h)^(1/4) becomes min over q of s(q) + slope |p -
-/// q|.
-void limit_by_neighbours(FilterField& field, const FilterSettings& settings);
+/// q|. `others`, if not empty, are sizes s of other filters, one per pixel, that limit this field
+/// too: a border is one for all the light that meets there.
+void limit_by_neighbours(FilterField& field, const FilterSettings& settings,
+                         std::span<const float> others = {});
 
 }  // namespace covtrace

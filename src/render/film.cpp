@@ -7,6 +7,7 @@ void FilmPixel::add(const Sample& s) {
     const float share = 1.0f / static_cast<float>(count);
     const Rgb before = s.radiance - mean;
     mean += before * share;
+    in_view += (s.in_view - in_view) * share;
     squares += before * (s.radiance - mean);
     albedo += (s.albedo - albedo) * share;
     normal += (s.normal - normal) * share;

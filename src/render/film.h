@@ -10,10 +10,11 @@
 
 namespace covtrace {
 
-/// Running means over a pixel's samples in index order (Welford 1962). 60 bytes.
+/// Running means over a pixel's samples in index order (Welford 1962). 72 bytes.
 struct FilmPixel {
     uint32_t count = 0;  ///< samples taken; the next sample has this index
     Rgb mean;            ///< of the weighted radiance: the raw pixel
+    Rgb in_view;         ///< the part of it from emitters in view (PathResult::in_view)
     Rgb squares;         ///< sum of squared deviations from the mean
     Rgb albedo;
     Vec3 normal;
@@ -22,6 +23,7 @@ struct FilmPixel {
 
     struct Sample {
         Rgb radiance;  ///< filter weight and imaging scale applied; finite
+        Rgb in_view;   ///< likewise
         Rgb albedo;
         Vec3 normal;
         float depth = 0;

@@ -52,6 +52,7 @@ Image make_layers(const Film& film, PixelBounds display, bool has_holes,
         add_layer(image, "", std::array{"A"},
                   [&](size_t i) { return std::array{pixels[i].coverage}; });
     add_layer(image, "raw.", kRgb, [&](size_t i) { return array(pixels[i].mean); });
+    add_layer(image, "inview.", kRgb, [&](size_t i) { return array(pixels[i].in_view); });
     add_layer(image, "albedo.", kRgb, [&](size_t i) { return array(pixels[i].albedo); });
     add_layer(image, "N.", std::array{"X", "Y", "Z"}, [&](size_t i) {
         return std::array{pixels[i].normal.x, pixels[i].normal.y, pixels[i].normal.z};
@@ -76,6 +77,13 @@ Image make_layers(const Film& film, PixelBounds display, bool has_holes,
               [&](size_t i) { return covariance->buffer.covariance[i].values; });
     add_layer(image, "covweight.", std::array{"Y"},
               [&](size_t i) { return std::array{covariance->buffer.weight[i]}; });
+    if (!covariance->scattered) return image;
+    add_layer(image, "inviewfilter.", kSymmetric,
+              [&](size_t i) { return array(covariance->in_view_filter->covariance[i]); });
+    add_layer(image, "scatteredcov.", kFive,
+              [&](size_t i) { return covariance->scattered->covariance[i].values; });
+    add_layer(image, "scatteredcovweight.", std::array{"Y"},
+              [&](size_t i) { return std::array{covariance->scattered->weight[i]}; });
     return image;
 }
 

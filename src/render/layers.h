@@ -12,15 +12,19 @@ namespace covtrace {
 
 /// What the covariance method knows beyond the film, for its layers.
 struct CovarianceLayers {
-    const CovarianceBuffer& buffer;
-    const Prediction& prediction;   ///< before smoothing and clamps
-    std::vector<float> density;     ///< samples per pixel that the plan asked for
-    const FilterField& filter;      ///< as applied
-    const GatheredImage& gathered;  ///< the delivered image
+    const CovarianceBuffer& buffer;  ///< of all light
+    const Prediction& prediction;    ///< of all light, before smoothing and clamps
+    std::vector<float> density;      ///< samples per pixel that the plan asked for
+    const FilterField& filter;       ///< as applied to scattered light
+    const GatheredImage& gathered;   ///< the delivered image
+    /// Where emitters are in view, else null: covariances of scattered light alone, and the filters
+    /// as applied to the emitters.
+    const CovarianceBuffer* scattered = nullptr;
+    const FilterField* in_view_filter = nullptr;
 };
 
 /// Root R G B (A where `has_holes`): the gathered image, or the raw film without `covariance`;
-/// then raw, albedo, N, Z, variance, error, samples, and the layers of `covariance`.
+/// then raw, inview, albedo, N, Z, variance, error, samples, and the layers of `covariance`.
 Image make_layers(const Film& film, PixelBounds display, bool has_holes,
                   const std::optional<CovarianceLayers>& covariance);
 

@@ -56,7 +56,7 @@ void sample_pixel(const PassContext& context, FilmPixel& pixel, int x, int y, Pa
         ++statistics.rejected;
         if (statistics.first_rejected.size() < kMostRejectedKept)
             statistics.first_rejected.push_back({x, y, index});
-        s.radiance = Rgb(0);
+        s.radiance = s.in_view = Rgb(0);
     }
     pixel.add(s);
 }
@@ -83,10 +83,11 @@ FilmPixel::Sample take_sample(const PassContext& context, int x, int y, uint32_t
     const Ray ray = context.scene.camera.generate_ray(film, u.lens, u.time);
     path = trace_path(context.scene, ray, sampler, context.max_depth, record);
     FilmPixel::Sample s;
-    s.radiance = path.radiance * context.imaging_scale;
-    const float largest = max_component(s.radiance);
-    if (largest > context.max_component) s.radiance *= context.max_component / largest;
-    s.radiance *= position.weight;
+    const float largest = max_component(path.radiance) * context.imaging_scale;
+    const float limit = largest > context.max_component ? context.max_component / largest : 1.0f;
+    const float factor = context.imaging_scale * limit * position.weight;
+    s.radiance = path.radiance * factor;
+    s.in_view = path.in_view * factor;
     s.albedo = path.albedo;
     s.normal = path.normal;
     s.depth = path.depth;
@@ -104,15 +105,34 @@ PassStatistics radiance_pass(const PassContext& context, Film& film,
                           });
 }
 
+namespace {
+
+bool shows_emitter(const PathRecord& record) {
+    if (record.escaped > 0 && record.escape_in_view) return true;
+    for (int i = 0; i < record.count; ++i) {
+        const PathVertex& v = record.vertices[size_t(i)];
+        if (!v.in_view) return false;  // nor is any after it
+        if (v.emitted > 0) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
 PassStatistics covariance_pass(const PassContext& context, const Occluders& occluders,
                                BrdfCovariance rule, Film& film, std::span<const uint32_t> counts,
-                               CovarianceBuffer& buffer, const Monitor& monitor,
+                               CovarianceBuffers& buffers, const Monitor& monitor,
                                const PassProgress& progress) {
     const PathReplay replay(context.scene, occluders, rule);
+    struct Traced {
+        PathCovariance scattered, in_view;
+    };
     const auto traced = [&](size_t i, int x, int y, PassStatistics& statistics) {
         static thread_local PathRecord record;
         sample_pixel(context, film.pixels[i], x, y, &record, statistics);
-        return replay(record);
+        Traced t{replay(record, LightPart::scattered), {}};
+        if (shows_emitter(record)) t.in_view = replay(record, LightPart::in_view);
+        return t;
     };
     const auto share_of_first = [&counts] {
         uint64_t first = 0, all = 0;
@@ -122,36 +142,47 @@ PassStatistics covariance_pass(const PassContext& context, const Occluders& occl
         }
         return all > 0 ? double(first) / double(all) : 1.0;
     }();
+    const auto store = [](CovarianceBuffer& buffer, size_t i, const PathCovariance& p) {
+        buffer.covariance[i] = covariance::cast<float>(p.sigma);
+        buffer.weight[i] = float(p.weight);
+    };
 
     // The first path of every pixel alone: its weights give the limit for all.
     PassStatistics statistics = for_each_pixel(
         film.bounds, monitor, [&](double f) { progress(f * share_of_first); },
         [&](size_t i, int x, int y, PassStatistics& s) {
             if (counts[i] == 0) return;
-            const PathCovariance p = traced(i, x, y, s);
-            buffer.covariance[i] = covariance::cast<float>(p.sigma);
-            buffer.weight[i] = float(p.weight);
+            const Traced t = traced(i, x, y, s);
+            store(buffers.scattered, i, t.scattered);
+            store(buffers.in_view, i, t.in_view);
         });
     double sum = 0, lit = 0;
     for (size_t i = 0; i < counts.size(); ++i) {
-        sum += buffer.weight[i];
+        sum += buffers.scattered.weight[i];
         lit += counts[i] > 0;
     }
-    const float most = lit > 0 ? float(10 * sum / lit) : 0.0f;
+    const double most = lit > 0 ? 10 * sum / lit : 0.0;
 
     statistics.add(for_each_pixel(
         film.bounds, monitor,
         [&](double f) { progress(share_of_first + f * (1 - share_of_first)); },
         [&](size_t i, int x, int y, PassStatistics& s) {
-            covariance::Accumulator<double> mean;
-            mean.add(covariance::cast<double>(buffer.covariance[i]),
-                     std::min(buffer.weight[i], most));
+            if (counts[i] == 0) return;
+            covariance::Accumulator<double> scattered, in_view;
+            const auto add = [&](const PathCovariance& a, const PathCovariance& b) {
+                scattered.add(a.sigma, std::min(a.weight, most));
+                in_view.add(b.sigma, b.weight);
+            };
+            const auto stored = [i](const CovarianceBuffer& b) {
+                return PathCovariance{covariance::cast<double>(b.covariance[i]), b.weight[i]};
+            };
+            add(stored(buffers.scattered), stored(buffers.in_view));
             for (uint32_t k = 1; k < counts[i]; ++k) {
-                const PathCovariance p = traced(i, x, y, s);
-                mean.add(p.sigma, std::min(p.weight, double(most)));
+                const Traced t = traced(i, x, y, s);
+                add(t.scattered, t.in_view);
             }
-            buffer.covariance[i] = covariance::cast<float>(mean.mean());
-            buffer.weight[i] = counts[i] > 0 ? float(mean.weight() / counts[i]) : 0.0f;
+            store(buffers.scattered, i, {scattered.mean(), scattered.weight() / counts[i]});
+            store(buffers.in_view, i, {in_view.mean(), in_view.weight() / counts[i]});
         }));
     return statistics;
 }

@@ -57,11 +57,12 @@ PassStatistics radiance_pass(const PassContext& context, Film& film,
                              std::span<const uint32_t> counts, const Monitor& monitor,
                              const PassProgress& progress);
 
-/// The same with `counts` paths per pixel that also leave their covariance. Weights are limited to
-/// ten times the mean of the image's first paths, so that no single path owns a pixel.
+/// The same with `counts` paths per pixel that also leave their covariance. Weights of scattered
+/// light are limited to ten times the mean of the image's first paths, so that no single path owns
+/// a pixel.
 PassStatistics covariance_pass(const PassContext& context, const Occluders& occluders,
                                BrdfCovariance rule, Film& film, std::span<const uint32_t> counts,
-                               CovarianceBuffer& buffer, const Monitor& monitor,
+                               CovarianceBuffers& buffers, const Monitor& monitor,
                                const PassProgress& progress);
 
 /// One sample as the passes take it, for replaying a pixel: returns the path and the film's sample.

@@ -136,9 +136,8 @@ class Session {
         const double wanted =
             options_.cov_spp ? *options_.cov_spp : std::clamp(std::floor(spp / 4), 2.0, 4.0);
         const double cov_spp = target_spp_ ? std::min(wanted, spp) : wanted;
-        CovarianceBuffer buffer(film_.bounds.width(), film_.bounds.height());
-        result_.statistics.memory["prediction"] =
-            buffer.covariance.size() * (sizeof(buffer.covariance[0]) + sizeof(float));
+        CovarianceBuffers buffers(film_.bounds.width(), film_.bounds.height());
+        result_.statistics.memory["prediction"] = buffers.memory();
         std::optional<VoxelGrid> grid;
         std::optional<OccluderQuery> query;
         if (options_.occlusion == Occlusion::grid) {
@@ -160,51 +159,72 @@ class Session {
             const auto counts =
                 allocate(even, std::llround(cov_spp * double(pixels())), none, 1u << 30);
             result_.statistics.covariance = covariance_pass(
-                context_, occluders, options_.brdf_covariance, film_, counts, buffer, monitor_,
+                context_, occluders, options_.brdf_covariance, film_, counts, buffers, monitor_,
                 reporter("covariance", 0, fraction(cov_spp), 0, cov_spp));
         }
-        Prediction raw, smoothed;
+        Prediction planned_for;
         {
             const PhaseTimer timer(monitor_, phase("plan"));
-            raw = preintegrate(buffer);
-            smoothed = preintegrate(smooth(buffer));
+            planned_for = preintegrate(smooth(merge(buffers)));
         }
         // A covariance path costs a little more than a radiance path: good enough to plan the first
         // round.
         radiance_seconds_ = phase("covariance");
         radiance_spp_ = cov_spp;
-        reserve_ = kWriteSeconds + 4 * phase("plan");
+        reserve_ = kWriteSeconds + 6 * phase("plan");
         const FilterSettings planned = filter_settings(spp);
         const std::vector<float> density =
-            relative_density(smoothed, options_.density, planned.c, planned.limits);
+            relative_density(planned_for, options_.density, planned.c, planned.limits);
         trace_rounds(density, cov_spp);
-        reconstruct(buffer, raw, smoothed, density);
+        reconstruct(buffers, density);
     }
 
-    void reconstruct(const CovarianceBuffer& buffer, const Prediction& raw,
-                     const Prediction& smoothed, const std::vector<float>& density) {
+    FilterField predicted_filters(const CovarianceBuffer& buffer, const FilterSettings& settings,
+                                  std::span<const float> others = {}) {
+        const Prediction p = preintegrate(smooth(buffer));
+        FilterField field = filter_field(p.spectrum, p.width, p.height, options_.filter, settings);
+        if (options_.filter == FilterRule::verified) limit_by_neighbours(field, settings, others);
+        return field;
+    }
+
+    void reconstruct(const CovarianceBuffers& buffers, const std::vector<float>& density) {
         monitor_.update("reconstruction", kTracingShare, film_.mean_count());
         const PhaseTimer timer(monitor_, phase("reconstruction"));
         const double taken = film_.mean_count();
-        const FilterSettings settings = filter_settings(taken);
-        FilterField field = filter_field(smoothed.spectrum, smoothed.width, smoothed.height,
-                                         options_.filter, settings);
-        if (options_.filter == FilterRule::verified) limit_by_neighbours(field, settings);
-        std::vector<Rgb> mean(film_.pixels.size());
+        const FilterField field = predicted_filters(buffers.scattered, filter_settings(taken));
+        const bool emitters_found =
+            std::any_of(buffers.in_view.weight.begin(), buffers.in_view.weight.end(),
+                        [](float w) { return w > 0; });
+        // The edge of a surface before the sky is known from the surface: the sky has no detail.
+        std::vector<float> beside(field.covariance.size(), kInfinity);
+        for (size_t i = 0; i < beside.size(); ++i)
+            if (buffers.scattered.weight[i] > 0)
+                beside[i] = covariance::filter_size(field.covariance[i]);
+        const FilterField in_view_field =
+            predicted_filters(buffers.in_view, filter_settings_in_view(taken), beside);
+        std::vector<Rgb> scattered(film_.pixels.size()), in_view(film_.pixels.size());
         std::vector<float> variance(film_.pixels.size());
         std::vector<uint32_t> count(film_.pixels.size());
-        for (size_t i = 0; i < mean.size(); ++i) {
-            mean[i] = film_.pixels[i].mean;
-            const Rgb v = film_.pixels[i].variance_of_mean();
+        for (size_t i = 0; i < scattered.size(); ++i) {
+            const FilmPixel& pixel = film_.pixels[i];
+            scattered[i] = pixel.mean - pixel.in_view;
+            in_view[i] = pixel.in_view;
+            const Rgb v = pixel.variance_of_mean();
             variance[i] = sqr(luminance({std::sqrt(v.r), std::sqrt(v.g), std::sqrt(v.b)}));
-            count[i] = film_.pixels[i].count;
+            count[i] = pixel.count;
         }
-        const GatheredImage gathered = gather(mean, variance, count, field);
+        GatheredImage gathered = gather(scattered, variance, count, field);
+        // Where no covariance path met an emitter nothing is known of them: they stay as they are.
+        if (emitters_found) in_view = gather(in_view, variance, count, in_view_field).color;
+        for (size_t i = 0; i < scattered.size(); ++i) gathered.color[i] += in_view[i];
+        const CovarianceBuffer all = merge(buffers);
+        const Prediction raw = preintegrate(all);
         std::vector<float> asked(density.size());
         for (size_t i = 0; i < asked.size(); ++i) asked[i] = density[i] * float(taken);
-        result_.image =
-            make_layers(film_, display(), !scene_.lights.has_environment(),
-                        CovarianceLayers{buffer, raw, std::move(asked), field, gathered});
+        result_.image = make_layers(film_, display(), !scene_.lights.has_environment(),
+                                    CovarianceLayers{all, raw, std::move(asked), field, gathered,
+                                                     emitters_found ? &buffers.scattered : nullptr,
+                                                     emitters_found ? &in_view_field : nullptr});
     }
 
     PixelBounds display() const {

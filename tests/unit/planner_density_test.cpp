@@ -81,6 +81,21 @@ TEST(CovarianceBuffer, SmoothingFillsDarkPixelsFromTheNearestLitOnes) {
     EXPECT_EQ(smooth(dark).covariance[4](0, 0), 0);
 }
 
+TEST(CovarianceBuffer, MergingWeighsThePartsByRadiance) {
+    CovarianceBuffers b(2, 1);
+    b.scattered.covariance[0](0, 0) = 1;
+    b.scattered.weight[0] = 1;
+    b.in_view.covariance[0](0, 0) = 5;
+    b.in_view.weight[0] = 3;
+    b.scattered.covariance[1](0, 0) = 7;
+    b.scattered.weight[1] = 2;
+    const CovarianceBuffer all = merge(b);
+    EXPECT_FLOAT_EQ(all.covariance[0](0, 0), 4);
+    EXPECT_FLOAT_EQ(all.weight[0], 4);
+    EXPECT_FLOAT_EQ(all.covariance[1](0, 0), 7);
+    EXPECT_FLOAT_EQ(all.weight[1], 2);
+}
+
 TEST(CovarianceBuffer, SmoothingWeighsByRadiance) {
     CovarianceBuffer b(3, 1);
     b.weight = {1, 3, 0};

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace covtrace {
 namespace {
@@ -115,6 +116,18 @@ TEST(FilterField, NeighboursLimitTheWidth) {
     }
     // The shape stays: the long axis is still twice the short one where no clamp acts.
     EXPECT_NEAR(f.covariance[20].xx / f.covariance[20].yy, 4, 1e-3f);
+}
+
+TEST(FilterField, FiltersOfOtherLightLimitToo) {
+    FilterField f{21, 1, std::vector<Sym2<float>>(21, {25, 0, 25})};
+    std::vector<float> others(21, std::numeric_limits<float>::infinity());
+    others[4] = 0.5f;
+    const FilterSettings settings = filter_settings(16);
+    limit_by_neighbours(f, settings, others);
+    for (int x = 0; x < 21; ++x)
+        EXPECT_NEAR(covariance::filter_size(f.covariance[size_t(x)]),
+                    0.5f + 0.1f * float(std::abs(x - 4)), 1e-3f)
+            << x;
 }
 
 TEST(FilterField, ThesisRuleIsWiderByItsConstant) {

@@ -1,0 +1,50 @@
+#include "predicted_image.h"
+
+#include <fmt/format.h>
+
+namespace covtrace {
+
+PredictedImage read_predicted_image(const std::filesystem::path& file) {
+    PredictedImage p;
+    p.image = read_image(file);
+    const auto channel = [&](const std::string& name) -> const std::vector<float>& {
+        const Channel* found = p.image.find(name);
+        if (!found)
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: no layer '{}', expected a render of --method covariance "
+                                    "--layers {}",
+                                    file.string(), name, kPredictedLayers));
+        return found->values;
+    };
+    // Without emitters in view all light is scattered.
+    const bool emitters = p.image.find("inviewfilter.xx");
+    const std::string scattered = emitters ? "scattered" : "";
+    CovarianceBuffer buffer(p.image.width(), p.image.height());
+    for (size_t row = 0; row < 5; ++row)
+        for (size_t column = row; column < 5; ++column) {
+            const auto& values = channel(fmt::format("{}cov.{}{}", scattered, row, column));
+            for (size_t i = 0; i < values.size(); ++i)
+                buffer.covariance[i](row, column) = values[i];
+        }
+    buffer.weight = channel(scattered + "covweight.Y");
+    p.prediction = preintegrate(smooth(buffer));
+
+    channel("raw.R");
+    channel("inview.R");
+    const auto& samples = channel("samples.Y");
+    const float narrowest = sqr(filter_settings_in_view(16).limits.s_min);
+    p.in_view_filters = {p.image.width(), p.image.height(), {}};
+    for (size_t i = 0; i < samples.size(); ++i) {
+        p.in_view.push_back(p.image.rgb(i, "inview."));
+        p.scattered.push_back(p.image.rgb(i, "raw.") - p.in_view.back());
+        p.count.push_back(uint32_t(samples[i]));
+        p.in_view_filters.covariance.push_back(
+            emitters ? covariance::Sym2<float>{channel("inviewfilter.xx")[i],
+                                               channel("inviewfilter.xy")[i],
+                                               channel("inviewfilter.yy")[i]}
+                     : covariance::Sym2<float>{narrowest, 0, narrowest});
+    }
+    return p;
+}
+
+}  // namespace covtrace

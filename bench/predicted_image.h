@@ -1,0 +1,30 @@
+/// A finished render of `--method covariance` with all its layers, taken apart again.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "image/image.h"
+#include "planner/covariance_buffer.h"
+#include "reconstruction/filter_field.h"
+
+namespace covtrace {
+
+/// Row by row, image.width() * image.height() entries each.
+struct PredictedImage {
+    Image image;
+    Prediction prediction;  ///< of scattered light, smoothed, as the renderer's filters use it
+    std::vector<Rgb> scattered,
+        in_view;                  ///< means of each pixel's own samples, which they add up to
+    FilterField in_view_filters;  ///< as the renderer applied them; the narrowest without emitters
+    std::vector<uint32_t> count;
+};
+
+/// What must be asked for when the image is rendered.
+constexpr const char* kPredictedLayers = "all,inview,inviewfilter,scatteredcov,scatteredcovweight";
+
+/// Throws Error(usage) where a layer is missing, Error(scene) where the file can't be read.
+PredictedImage read_predicted_image(const std::filesystem::path& file);
+
+}  // namespace covtrace
