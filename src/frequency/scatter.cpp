@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "shading/normal_map.h"
+
 namespace covtrace {
 
 namespace cov = covariance;
@@ -48,6 +50,13 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
     const DifferentialGeometry d = scene.geometry.differential(vertex.hit);
     ScatterPoint p;
     p.surface = {d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}};
+    if (scene.materials.has_normal_map(vertex.material)) {
+        const NormalMap map(scene.materials.description(vertex.material), scene.textures,
+                            scene.geometry.shapes()[vertex.hit.shape], vertex.hit, d, footprint);
+        const Frame turned = Frame::from_z_x(vertex.shading.z, d.tangent.x);
+        const auto [k11, k12, k22] = map.curvature();
+        p.surface = {turned.z, turned.x, turned.y, {d.k11 + k11, d.k12 + k12, d.k22 + k22}};
+    }
     p.motion = {d.velocity, d.angular_velocity};
     p.outgoing = vertex.wo;
     const auto& m = d.uv_from_tangent;
@@ -60,6 +69,12 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
         texture_spectrum(scene, textures.reflectance, vertex.hit, uv_from_tangent, footprint_uv);
     p.transmittance =
         texture_spectrum(scene, textures.transmittance, vertex.hit, uv_from_tangent, footprint_uv);
+    // What alpha lets stand of the surface varies like its reflectance.
+    const TextureId alpha = scene.geometry.shapes()[vertex.hit.shape].description.alpha;
+    const cov::Sym2<double> edges =
+        texture_spectrum(scene, alpha, vertex.hit, uv_from_tangent, footprint_uv);
+    p.reflectance = p.reflectance + edges;
+    p.transmittance = p.transmittance + edges;
     return p;
 }
 

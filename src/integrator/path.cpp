@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "shading/normal_map.h"
+
 namespace covtrace {
 
 namespace {
@@ -21,7 +23,8 @@ Rgb transmittance(const RenderScene& scene, MediumId medium, float distance) {
 
 bool transmits(const Bsdf& bsdf) {
     return std::holds_alternative<DielectricBsdf>(bsdf) ||
-           std::holds_alternative<DiffuseTransmissionBsdf>(bsdf);
+           std::holds_alternative<DiffuseTransmissionBsdf>(bsdf) ||
+           std::holds_alternative<ThinDielectricBsdf>(bsdf);
 }
 
 /// The medium that a ray is in after it leaves `hit` in the direction `w`.
@@ -38,7 +41,12 @@ class PathTracer {
   public:
     PathTracer(const RenderScene& scene, Ray ray, Sampler& sampler, int max_depth,
                PathRecord* record)
-        : scene_(scene), ray_(ray), sampler_(sampler), max_depth_(max_depth), record_(record) {}
+        : scene_(scene),
+          ray_(ray),
+          sampler_(sampler),
+          max_depth_(max_depth),
+          record_(record),
+          camera_position_(ray.origin) {}
 
     PathResult run() {
         if (record_) {
@@ -54,8 +62,9 @@ class PathTracer {
             }
             beta_ *= transmittance(scene_, medium_, hit.t);
             const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
-            const Bsdf bsdf =
-                scene_.materials.bsdf(shape.description.material, hit, scene_.textures);
+            const MaterialId material =
+                scene_.materials.at(shape.description.material, hit, scene_.textures);
+            const Bsdf bsdf = scene_.materials.bsdf(material, hit, scene_.textures);
             if (std::holds_alternative<InterfaceBsdf>(bsdf)) {
                 medium_ = medium_beyond(shape, hit, ray_.direction, medium_);
                 ray_.origin = Geometry::offset_origin(hit, ray_.direction);
@@ -64,11 +73,11 @@ class PathTracer {
             }
             ++result_.vertices;
             const Vec3 wo = -ray_.direction;
-            PathVertex* vertex = begin_vertex(hit, shape, wo);
+            PathVertex* vertex = begin_vertex(hit, material, wo);
             add_emission(hit, wo, vertex);
-            const Frame frame = shading_frame(hit);
+            const Frame frame = frame_at(hit, shape, material);
             const Vec3 wo_local = frame.to_local(wo);
-            if (depth == 0) describe_first_hit(hit, wo, bsdf, wo_local);
+            if (depth == 0) describe_first_hit(hit, frame.z, wo, bsdf, wo_local);
             if (vertex) vertex->shading = frame;
             if (depth++ == max_depth_) break;
             sampler_.set_dimension(depth * kPairsPerBounce);
@@ -76,7 +85,7 @@ class PathTracer {
             const Vec2 u_light = sampler_.next_2d(), u_bsdf = sampler_.next_2d();
             // Lights are chosen for the side that can be lit: the viewer's, or both where light
             // passes through.
-            light_normal_ = transmits(bsdf) ? Vec3{} : face_forward(hit.ns, wo);
+            light_normal_ = transmits(bsdf) ? Vec3{} : face_forward(frame.z, wo);
             guide_ = has_diffuse_lobe(bsdf) && depth < max_depth_
                          ? scene_.guide.at(hit.position, light_normal_)
                          : GuideMixture{};
@@ -111,12 +120,12 @@ class PathTracer {
         }
     }
 
-    PathVertex* begin_vertex(const SurfaceHit& hit, const PlacedShape& shape, Vec3 wo) {
+    PathVertex* begin_vertex(const SurfaceHit& hit, MaterialId material, Vec3 wo) {
         if (!record_ || record_->count == PathRecord::kCapacity) return nullptr;
         PathVertex* v = &record_->vertices[static_cast<size_t>(record_->count++)];
         v->hit = hit;
         v->wo = wo;
-        v->material = shape.description.material;
+        v->material = material;
         v->emitted = v->direct = 0;
         v->scatters = false;
         v->seen_sharply = sharp_so_far_;
@@ -137,10 +146,31 @@ class PathTracer {
         if (vertex) vertex->emitted = luminance(contribution);
     }
 
-    void describe_first_hit(const SurfaceHit& hit, Vec3 wo, const Bsdf& bsdf, Vec3 wo_local) {
+    /// The frame of the BSDF, with the material's bump or normal map.
+    Frame frame_at(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material) {
+        is_mapped_ = scene_.materials.has_normal_map(material);
+        if (!is_mapped_) return shading_frame(hit);
+        // A step as pbrt takes it for 64 samples per pixel and more: an eighth of half a pixel.
+        const float footprint =
+            scene_.camera.half_pixel(distance(camera_position_, hit.position)) / 8;
+        const DifferentialGeometry base = scene_.geometry.differential(hit);
+        return NormalMap(scene_.materials.description(material), scene_.textures, shape, hit, base,
+                         footprint)
+            .frame();
+    }
+
+    /// Whether a mapped normal takes a reflection for a transmission or the other way round: light
+    /// from behind the surface would shine through it.
+    bool leaks(const SurfaceHit& hit, Vec3 wo, Vec3 wi, Vec3 wo_local, Vec3 wi_local) const {
+        return is_mapped_ &&
+               (dot(hit.ng, wo) * dot(hit.ng, wi) > 0) != (wo_local.z * wi_local.z > 0);
+    }
+
+    void describe_first_hit(const SurfaceHit& hit, Vec3 normal, Vec3 wo, const Bsdf& bsdf,
+                            Vec3 wo_local) {
         result_.hit = true;
         result_.albedo = albedo(bsdf, wo_local);
-        result_.normal = face_forward(hit.ns, wo);
+        result_.normal = face_forward(normal, wo);
         result_.depth = distance(ray_.origin, hit.position);
     }
 
@@ -149,6 +179,7 @@ class PathTracer {
         const auto light = scene_.lights.sample(hit.position, light_normal_, hit.time, u_select, u);
         if (!light || is_black(light->radiance) || !(light->pdf > 0)) return;
         const Vec3 wi_local = frame.to_local(light->wi);
+        if (leaks(hit, frame.to_world(wo_local), light->wi, wo_local, wi_local)) return;
         const Rgb f = eval(bsdf, wo_local, wi_local);
         if (is_black(f)) return;
         Ray shadow;
@@ -224,6 +255,7 @@ class PathTracer {
         const auto s = sample_direction(bsdf, frame, wo_local, u_lobe, u);
         if (!s || is_black(s->weight)) return false;
         const Vec3 wi = normalize(frame.to_world(s->wi));
+        if (leaks(hit, frame.to_world(wo_local), wi, wo_local, s->wi)) return false;
         beta_ *= s->weight;
         pdf_ = s->pdf;
         specular_ = is_specular(s->lobe);
@@ -264,6 +296,7 @@ class PathTracer {
     Sampler& sampler_;
     const int max_depth_;
     PathRecord* const record_;
+    const Vec3 camera_position_;
 
     PathResult result_;
     Rgb beta_{1};
@@ -275,6 +308,7 @@ class PathTracer {
     MediumId medium_ = -1;
     int passed_interfaces_ = 0;
     GuideMixture guide_;                        // at the current vertex
+    bool is_mapped_ = false;                    // whether a map turns the current vertex' normal
     Vec3 light_normal_;                         // what the lights are told at the current vertex
     Vec3 previous_position_, previous_normal_;  // and at the last one, for the weights
 };

@@ -7,11 +7,14 @@ namespace covtrace {
 RenderScene::RenderScene(SceneDescription scene_description, const std::string& isa)
     : description(std::move(scene_description)),
       geometry(description, isa),
-      lights(description, geometry),
       textures(description),
+      lights(description, geometry, &textures),
       materials(description, textures, IlluminantAdaptation(lights.total_power())),
       camera(description.camera, description.film.width, description.film.height),
       filter(description.filter) {
+    geometry.set_alpha([this](TextureId id, Vec2 uv, Vec3 position) {
+        return textures.eval_float(id, {uv, position});
+    });
     for (const MediumDescription& m : description.media) {
         extinction.push_back(m.sigma_a);
         if (!is_black(m.sigma_s))

@@ -81,7 +81,12 @@ FilmPixel::Sample take_sample(const PassContext& context, int x, int y, uint32_t
     const Ray ray = context.scene.camera.generate_ray(film, u.lens, u.time);
     path = trace_path(context.scene, ray, sampler, context.max_depth, record);
     FilmPixel::Sample s;
-    s.radiance = path.radiance * context.imaging_scale;
+    const Rgb light = path.radiance * context.imaging_scale;
+    const auto channel = [&](size_t i) {
+        const auto& row = context.white_balance[i];
+        return row[0] * light.r + row[1] * light.g + row[2] * light.b;
+    };
+    s.radiance = {channel(0), channel(1), channel(2)};
     const float largest = max_component(s.radiance);
     if (largest > context.max_component) s.radiance *= context.max_component / largest;
     s.radiance *= position.weight;
