@@ -110,13 +110,15 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
         previous = p;
     }
 
+    const auto half_pixel = [&](int i) {
+        return 0.5f * (camera.orthographic ? 1.0f : distances[i]) / camera.pixels_per_x;
+    };
+
     for (int i = record.count - 1; i >= 0; --i) {
         const PathVertex& v = record.vertices[size_t(i)];
         Arriving leaving;
         if (light.weight > 0 || v.direct > 0) {
-            const float extent = camera.orthographic ? 1.0f : distances[i];
-            const ScatterPoint point =
-                scatter_point(scene_, v, 0.5f * extent / camera.pixels_per_x);
+            const ScatterPoint point = scatter_point(scene_, v, half_pixel(i));
             if (light.weight > 0)
                 leaving.add(scatter(light.field, point, v.next_event.lobes), light.weight);
             if (v.direct > 0) {
@@ -130,10 +132,11 @@ PathCovariance PathReplay::operator()(const PathRecord& record) const {
                             v.direct);
             }
         }
-        if (v.emitted > 0)
-            leaving.add(
-                source_field(scene_.lights.source_spectrum(v.hit), v.wo, v.seen_sharply, smallest_),
-                v.emitted);
+        if (v.emitted > 0) {
+            const SourceSpectrum s = scene_.lights.source_spectrum(v.hit);
+            const auto texture = emission_texture(scene_, v, s.tangent, half_pixel(i));
+            leaving.add(source_field(s, v.wo, v.seen_sharply, smallest_, texture), v.emitted);
+        }
         light = leaving;
         if (!(light.weight > 0)) continue;
         const Vec3 next =

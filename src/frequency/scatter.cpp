@@ -78,6 +78,26 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
     return p;
 }
 
+cov::Sym2<double> emission_texture(const RenderScene& scene, const PathVertex& vertex,
+                                   const Frame& tangent, float footprint) {
+    const ShapeDescription& shape = scene.geometry.shapes()[vertex.hit.shape].description;
+    if (shape.area_light < 0) return {};
+    const TextureId image =
+        scene.description.area_lights[static_cast<size_t>(shape.area_light)].image;
+    if (image < 0 && shape.alpha < 0) return {};
+    const DifferentialGeometry d = scene.geometry.differential(vertex.hit);
+    const auto& m = d.uv_from_tangent;
+    const auto along = [&m, &d](int i, Vec3 axis) {
+        return m[i][0] * dot(d.tangent.x, axis) + m[i][1] * dot(d.tangent.y, axis);
+    };
+    const cov::Mat2<double> uv_from_tangent{along(0, tangent.x), along(0, tangent.y),
+                                            along(1, tangent.x), along(1, tangent.y)};
+    const float footprint_uv =
+        footprint * std::sqrt(0.5f * (sqr(m[0][0]) + sqr(m[0][1]) + sqr(m[1][0]) + sqr(m[1][1])));
+    return texture_spectrum(scene, image, vertex.hit, uv_from_tangent, footprint_uv) +
+           texture_spectrum(scene, shape.alpha, vertex.hit, uv_from_tangent, footprint_uv);
+}
+
 LightField scatter(const LightField& arriving, const ScatterPoint& point, const LobeShares& lobes) {
     const LightField entered =
         cov::surface_enter(cov::motion_enter(arriving, point.motion), point.surface);

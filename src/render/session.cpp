@@ -44,7 +44,7 @@ class Session {
               options.seed,
               options.max_depth.value_or(scene.description.max_depth),
               (scene.description.camera.shutter_close - scene.description.camera.shutter_open) *
-                  scene.description.film.iso / 100,
+                  scene.description.film.iso / 100 * scene.description.camera.film_irradiance,
               scene.description.film.max_component_value,
               scene.description.film.white_balance} {
         if (options.spp || !options.seconds)

@@ -34,6 +34,7 @@ LensSummary read_lens(std::string_view text, const std::string& name, const Sour
         const double next = numbers[i + 2] == 0 ? 1 : numbers[i + 2];
         if (radius == 0) {
             lens.aperture_diameter = static_cast<float>(numbers[i + 3]);
+            lens.stop_per_pupil = static_cast<float>(height);
         } else {
             slope -= height * (next - index) / radius;
             index = next;
@@ -41,7 +42,7 @@ LensSummary read_lens(std::string_view text, const std::string& name, const Sour
         if (i + 4 < numbers.size()) height += thickness * slope / index;
     }
     lens.focal_length = static_cast<float>(-1 / slope);
-    if (!(lens.focal_length > 0) || !std::isfinite(lens.focal_length))
+    if (!(lens.focal_length > 0) || !std::isfinite(lens.focal_length) || !(lens.stop_per_pupil > 0))
         throw refuse("does not focus light");
     return lens;
 }

@@ -10,6 +10,8 @@ namespace covtrace {
 struct LensSummary {
     float focal_length = 0;       ///< millimetres, paraxial, of all elements together
     float aperture_diameter = 0;  ///< millimetres, of the stop, as far as the file opens it
+    /// Of the stop over that of its image in front of the lens, the entrance pupil.
+    float stop_per_pupil = 1;
 };
 
 /// Rows of four numbers, front to rear: radius of curvature (0: the aperture stop), thickness to

@@ -261,6 +261,9 @@ struct CameraDescription {
     float frame_aspect_ratio = 0;       ///< 0: from the resolution
     std::optional<std::array<float, 4>> screen_window;  ///< x0, x1, y0, y1
     Mapping mapping = Mapping::equal_area;
+    /// What a radiance of 1 gives in the middle of the film; pi (radius / distance)^2 of real
+    /// lenses.
+    float film_irradiance = 1;
     float lens_radius = 0, focal_distance = 1e6f;
     float shutter_open = 0, shutter_close = 1;
     SourceLocation where;

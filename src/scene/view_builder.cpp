@@ -42,7 +42,7 @@ void thin_lens_camera(Entity& e, Entity& film_entity, BuildContext& context) {
                     "a realistic camera has no lens; expected \"string lensfile\"");
     const SourceLocation where = p.where("lensfile", e.where);
     // A double Gauss lens of full frame stands in where scenes come without their lens.
-    LensSummary lens{50, 0};
+    LensSummary lens{50, 0, 1};
     const auto found = context.files.find_optional(file, where);
     if (found) lens = read_lens(context.files.read(*found, where), file, where);
     camera.focal_distance = positive(e, "focusdistance", 10);
@@ -50,7 +50,7 @@ void thin_lens_camera(Entity& e, Entity& film_entity, BuildContext& context) {
     float diameter = positive(e, "aperturediameter", 1);
     if (lens.aperture_diameter > 0) diameter = std::min(diameter, lens.aperture_diameter);
     constexpr float kMetre = 1e-3f;
-    camera.lens_radius = 0.5f * diameter * kMetre;
+    camera.lens_radius = 0.5f * diameter / lens.stop_per_pupil * kMetre;
     const float focal_length = lens.focal_length * kMetre;
     const float behind = camera.focal_distance > 2 * focal_length
                              ? 1 / (1 / focal_length - 1 / camera.focal_distance)
@@ -59,9 +59,11 @@ void thin_lens_camera(Entity& e, Entity& film_entity, BuildContext& context) {
     const auto w = static_cast<float>(film.width), h = static_cast<float>(film.height);
     const float shorter = diagonal * std::min(w, h) / std::sqrt(w * w + h * h);
     camera.fov = 2 * std::atan(0.5f * shorter / behind) * (180 / kPi);
+    // pbrt's other cameras take radiance for what the film gets; this one takes irradiance.
+    camera.film_irradiance = kPi * sqr(camera.lens_radius / behind);
     context.log.add(
         e.where, found ? "camera \"realistic\" is not supported; a thin lens of the same focal "
-                         "length and field of view takes its place"
+                         "length, aperture and field of view takes its place"
                        : "camera \"realistic\" is not supported and its lens " + in_quotes(file) +
                              " was not found; a thin lens of 50 mm takes its place");
     p.ignore({"aperture"});

@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Known{"camera-screenwindow", Where::everywhere, Rgb(0.0625f)},
                     Known{"camera-spherical", Where::everywhere, Rgb(0.0669873f)},
                     Known{"camera-equirectangular", Where::everywhere, Rgb(1 / 6.0f)},
-                    Known{"camera-realistic", Where::everywhere, Rgb(0.51273f), 5e-3},
+                    Known{"camera-realistic", Where::everywhere, Rgb(4.0067e-03f), 5e-3},
                     Known{"film-iso", Where::everywhere, Rgb(2.5f)},
                     Known{"film-exposure", Where::everywhere, Rgb(0.25f)},
                     Known{"film-maxcomponentvalue", Where::everywhere, Rgb(2, 1, 0.5f)},

@@ -132,7 +132,9 @@ Camera "realistic" "string lensfile" "two.dat" "float aperturediameter" 20 "floa
 Film "rgb" "integer xresolution" 30 "integer yresolution" 40 "float diagonal" 50
 WorldBegin
 )"));
+    // The stop stands behind one of both lenses, so its image before it is hardly larger.
     EXPECT_NEAR(scene.camera.lens_radius, 6e-3f, 1e-6f) << "the stop's own radius";
+    EXPECT_NEAR(scene.camera.film_irradiance, kPi * sqr(6e-3f / 50.5e-3f), 1e-4f);
     EXPECT_NEAR(scene.camera.focal_distance, 5.05f, 1e-6f);
     // 50 mm, focused at 5.05 m: 50.5 mm behind the lens; the shorter side is 30 mm.
     EXPECT_NEAR(scene.camera.fov, 2 * std::atan(15 / 50.5f) * 180 / kPi, 0.01f);
