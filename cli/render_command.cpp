@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -30,6 +31,7 @@ namespace fs = std::filesystem;
 struct RenderArguments {
     std::string scene, output, png, stats, isa;
     std::string seconds, resolution, crop, shutter, layers;
+    std::vector<std::string> search_paths;
     RenderOptions options;
     SceneOverrides overrides;
     ProgressStyle progress = ProgressStyle::automatic;
@@ -116,19 +118,49 @@ void describe_render(Image& image, const RenderArguments& a, const RenderScene& 
     m["utcOffset"] = 0.0f;
 }
 
-nlohmann::json statistics_json(const RenderResult& result, const Monitor& monitor) {
+/// Largest resident size of the process so far, bytes.
+uint64_t peak_memory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& result,
+                               const Monitor& monitor) {
     const auto pass = [](const PassStatistics& s) {
         nlohmann::json rejected = nlohmann::json::array();
         for (const RejectedSample& r : s.first_rejected) rejected.push_back({r.x, r.y, r.sample});
-        return nlohmann::json{{"samples", s.samples},   {"rays", s.rays},
-                              {"vertices", s.vertices}, {"black_paths", s.black_paths},
-                              {"rejected", s.rejected}, {"first_rejected", rejected}};
+        const auto per_path = [&s](uint64_t n) {
+            return s.samples > 0 ? double(n) / double(s.samples) : 0.0;
+        };
+        return nlohmann::json{{"samples", s.samples},
+                              {"rays", s.rays},
+                              {"rays_per_path", per_path(s.rays)},
+                              {"vertices", s.vertices},
+                              {"vertices_per_path", per_path(s.vertices)},
+                              {"black_paths", s.black_paths},
+                              {"rejected", s.rejected},
+                              {"first_rejected", rejected}};
     };
+    uint64_t meshes = 0;
+    const auto add_mesh = [&meshes](const ShapeDescription& s) {
+        if (const auto* m = std::get_if<std::shared_ptr<const TriangleMesh>>(&s.geometry))
+            meshes += (*m)->positions.size() * sizeof(Vec3) + (*m)->normals.size() * sizeof(Vec3) +
+                      (*m)->uvs.size() * sizeof(Vec2) + (*m)->triangles.size() * 12;
+    };
+    for (const ShapeDescription& s : scene.description.shapes) add_mesh(s);
+    for (const ObjectDescription& o : scene.description.objects)
+        for (const ShapeDescription& s : o.shapes) add_mesh(s);
     return {{"seconds_total", monitor.elapsed()},
             {"seconds", result.statistics.seconds},
             {"spp", result.statistics.samples_per_pixel},
             {"covariance", pass(result.statistics.covariance)},
             {"radiance", pass(result.statistics.radiance)},
+            {"memory",
+             {{"meshes", meshes},
+              {"geometry", scene.geometry.memory()},
+              {"textures", scene.textures.memory()},
+              {"peak", peak_memory()}}},
             {"complete", result.complete}};
 }
 
@@ -185,25 +217,28 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
     Monitor monitor(reporter.report, reporter.interval, invocation.start);
     const InterruptGuard guard(monitor);
 
-    SceneDescription description = read_pbrt(a.scene);
+    SceneDescription description =
+        read_pbrt(a.scene, {{a.search_paths.begin(), a.search_paths.end()}});
     apply(a.overrides, description);
     const fs::path output = output_path(a, description);
     for (const fs::path& file : {output, fs::path(a.png), fs::path(a.stats)})
         if (!file.empty()) require_writable(file);
 
     RenderScene scene(std::move(description), a.isa);
+    const double loaded = monitor.elapsed();
     if (!a.quiet) {
         print_warnings(scene.description.warnings);
         print_warnings(scene.materials.warnings());
     }
     RenderResult result = render(scene, a.options, monitor);
+    result.statistics.seconds["load"] = loaded;
     finish_line(a.progress);
     keep_layers(result.image, layers);
     describe_render(result.image, a, scene, result, monitor, invocation.command_line);
     write_exr(result.image, output, threads.threads());
     if (!a.png.empty()) write_png(result.image, a.png);
     if (!a.stats.empty()) {
-        const std::string text = statistics_json(result, monitor).dump(2) + "\n";
+        const std::string text = statistics_json(scene, result, monitor).dump(2) + "\n";
         OutputFile file(a.stats);
         file.write(text.data(), text.size());
         file.commit();
@@ -303,6 +338,11 @@ void add_render(CLI::App& app, Invocation& invocation) {
                  "focal distance in place of the scene's");
     add_positive(c, "--fstop", a->overrides.f_number, 1e30,
                  "lens by f-number (full-frame sensor, metres)");
+    c->add_option("--search-path", a->search_paths,
+                  "also look here for the scene's files; may be given several times")
+        ->check(CLI::ExistingDirectory.description(""))
+        ->allow_extra_args(false)
+        ->option_text("DIR");
     c->add_option("--png", a->png, "also a tone-mapped sRGB picture")->option_text("FILE");
     c->add_option("--layers", a->layers, "all, or name,name…: layers beside the image")
         ->option_text("LIST");
