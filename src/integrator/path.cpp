@@ -147,9 +147,8 @@ class PathTracer {
     }
 
     /// The frame of the BSDF, with the material's bump or normal map.
-    Frame frame_at(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material) {
-        is_mapped_ = scene_.materials.has_normal_map(material);
-        if (!is_mapped_) return shading_frame(hit);
+    Frame frame_at(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material) const {
+        if (!scene_.materials.has_normal_map(material)) return shading_frame(hit);
         // A step as pbrt takes it for 64 samples per pixel and more: an eighth of half a pixel.
         const float footprint =
             scene_.camera.half_pixel(distance(camera_position_, hit.position)) / 8;
@@ -157,13 +156,6 @@ class PathTracer {
         return NormalMap(scene_.materials.description(material), scene_.textures, shape, hit, base,
                          footprint)
             .frame();
-    }
-
-    /// Whether a mapped normal takes a reflection for a transmission or the other way round: light
-    /// from behind the surface would shine through it.
-    bool leaks(const SurfaceHit& hit, Vec3 wo, Vec3 wi, Vec3 wo_local, Vec3 wi_local) const {
-        return is_mapped_ &&
-               (dot(hit.ng, wo) * dot(hit.ng, wi) > 0) != (wo_local.z * wi_local.z > 0);
     }
 
     void describe_first_hit(const SurfaceHit& hit, Vec3 normal, Vec3 wo, const Bsdf& bsdf,
@@ -179,7 +171,6 @@ class PathTracer {
         const auto light = scene_.lights.sample(hit.position, light_normal_, hit.time, u_select, u);
         if (!light || is_black(light->radiance) || !(light->pdf > 0)) return;
         const Vec3 wi_local = frame.to_local(light->wi);
-        if (leaks(hit, frame.to_world(wo_local), light->wi, wo_local, wi_local)) return;
         const Rgb f = eval(bsdf, wo_local, wi_local);
         if (is_black(f)) return;
         Ray shadow;
@@ -255,7 +246,6 @@ class PathTracer {
         const auto s = sample_direction(bsdf, frame, wo_local, u_lobe, u);
         if (!s || is_black(s->weight)) return false;
         const Vec3 wi = normalize(frame.to_world(s->wi));
-        if (leaks(hit, frame.to_world(wo_local), wi, wo_local, s->wi)) return false;
         beta_ *= s->weight;
         pdf_ = s->pdf;
         specular_ = is_specular(s->lobe);
@@ -308,7 +298,6 @@ class PathTracer {
     MediumId medium_ = -1;
     int passed_interfaces_ = 0;
     GuideMixture guide_;                        // at the current vertex
-    bool is_mapped_ = false;                    // whether a map turns the current vertex' normal
     Vec3 light_normal_;                         // what the lights are told at the current vertex
     Vec3 previous_position_, previous_normal_;  // and at the last one, for the weights
 };

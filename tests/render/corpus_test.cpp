@@ -125,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Known{"shape-loopsubdiv", Where::everywhere, Rgb(0.908605f), 0.0335},
                     Known{"shape-plymesh-gz", Where::everywhere, Rgb(0.75f)},
                     Known{"instances", Where::everywhere, Rgb(0.9018252f)},
-                    Known{"motion", Where::everywhere, Rgb(0.25f)},
+                    Known{"motion", Where::everywhere, Rgb(0.75f)},
                     Known{"coordinate-system", Where::everywhere, Rgb(0.25f)}));
 
 TEST(CorpusFile, SpotLightsItsMiddle) {
