@@ -126,7 +126,7 @@ int voxels_along(const VoxelGrid& grid, float y) {
     VoxelMarch march(grid, {-2, y, 0}, {2, y, 0});
     OccluderEvent e;
     int count = 0;
-    while (march.next(0, e)) ++count;
+    while (march.next(1.5f * grid.voxel_size(), e)) ++count;
     return count;
 }
 
