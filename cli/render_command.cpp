@@ -339,7 +339,7 @@ void add_render(CLI::App& app, Invocation& invocation) {
     add_positive(c, "--fstop", a->overrides.f_number, 1e30,
                  "lens by f-number (full-frame sensor, metres)");
     c->add_option("--search-path", a->search_paths,
-                  "also look here for the scene's files; may be given several times")
+                  "also look here for the scene's files; repeatable")
         ->check(CLI::ExistingDirectory.description(""))
         ->allow_extra_args(false)
         ->option_text("DIR");
