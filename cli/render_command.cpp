@@ -33,6 +33,7 @@ struct RenderArguments {
     std::string scene, output, png, stats, isa;
     std::string seconds, resolution, crop, shutter, layers;
     size_t texture_bytes = kNoTextureLimit;
+    std::vector<std::string> search_paths;
     RenderOptions options;
     SceneOverrides overrides;
     ProgressStyle progress = ProgressStyle::automatic;
@@ -137,13 +138,18 @@ nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& res
         const RayCounts& r = s.rays;
         auto longest = s.lengths.size();
         while (longest > 0 && s.lengths[longest - 1] == 0) --longest;
+        const auto per_path = [&s](uint64_t n) {
+            return s.samples > 0 ? double(n) / double(s.samples) : 0.0;
+        };
         return nlohmann::json{
             {"samples", s.samples},
             {"rays", r.camera + r.bounce + r.shadow},
+            {"rays_per_path", per_path(r.camera + r.bounce + r.shadow)},
             {"camera_rays", r.camera},
             {"bounce_rays", r.bounce},
             {"shadow_rays", r.shadow},
             {"vertices", s.vertices},
+            {"vertices_per_path", per_path(s.vertices)},
             {"path_lengths", std::vector(s.lengths.begin(), s.lengths.begin() + long(longest))},
             {"black_paths", s.black_paths},
             {"rejected", s.rejected},
@@ -221,7 +227,8 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
     Monitor monitor(reporter.report, reporter.interval, invocation.start);
     const InterruptGuard guard(monitor);
 
-    SceneDescription description = read_pbrt(a.scene);
+    SceneDescription description =
+        read_pbrt(a.scene, {{a.search_paths.begin(), a.search_paths.end()}});
     const double loaded = monitor.elapsed();
     apply(a.overrides, description);
     const fs::path output = output_path(a, description);
@@ -327,6 +334,11 @@ void add_render(CLI::App& app, Invocation& invocation) {
                  "focal distance in place of the scene's");
     add_positive(c, "--fstop", a->overrides.f_number, 1e30,
                  "lens by f-number (full-frame sensor, metres)");
+    c->add_option("--search-path", a->search_paths,
+                  "also look here for the scene's files; repeatable")
+        ->check(CLI::ExistingDirectory.description(""))
+        ->allow_extra_args(false)
+        ->option_text("DIR");
     c->add_option("--png", a->png, "also a tone-mapped sRGB picture")->option_text("FILE");
     c->add_option("--layers", a->layers, "all, or name,name…: layers beside the image")
         ->option_text("LIST");

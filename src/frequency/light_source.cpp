@@ -24,13 +24,15 @@ LightField ball_field(const SourceSpectrum& s, Vec3 travel, double cap) {
     return cov::motion_exit(cov::travel(disc, depth), motion);
 }
 
-LightField area_field(const SourceSpectrum& s, Vec3 travel, bool seen_sharply, double smallest) {
+LightField area_field(const SourceSpectrum& s, Vec3 travel, bool seen_sharply, double smallest,
+                      const cov::Sym2<double>& texture) {
     const cov::Surface<double> surface{
         s.tangent.z, s.tangent.x, s.tangent.y, {s.k11, s.k12, s.k22}};
     const double cap = cov::edge_variance(smallest);
     if (is_ball(s) && !seen_sharply) return ball_field(s, travel, cap);
     LightField field =
         cov::area_source<double>({s.s11, s.s12, s.s22}, cov::frame_along<double>(travel), cap);
+    if (seen_sharply) field = cov::add_texture(field, texture);
     if (seen_sharply && std::isfinite(s.border_distance)) {
         const double q = cov::edge_variance(std::max<double>(s.border_distance, smallest));
         const double dx = s.border_direction.x, dy = s.border_direction.y;
@@ -43,10 +45,10 @@ LightField area_field(const SourceSpectrum& s, Vec3 travel, bool seen_sharply, d
 }  // namespace
 
 LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sharply,
-                        double smallest) {
+                        double smallest, const cov::Sym2<double>& texture) {
     switch (source.kind) {
         case SourceSpectrum::Kind::area:
-            return area_field(source, travel, seen_sharply, smallest);
+            return area_field(source, travel, seen_sharply, smallest, texture);
         case SourceSpectrum::Kind::point: {
             const LightField field = cov::point_source(cov::frame_along<double>(travel), smallest);
             if (!(source.cone_variance > 0)) return field;

@@ -13,10 +13,10 @@ using LightField = covariance::LightField<double>;
 ///
 /// Area lights are Gaussian emitters with the moments of the whole shape; where the camera sees
 /// them sharply (directly or by specular lobes alone) their border is an image edge and its
-/// distance limits the bandwidth too. `smallest` is the extent that stands for a point, in scene
-/// units.
+/// distance limits the bandwidth too, as does what varies on the light: `texture`, along source.
+/// tangent's x and y. `smallest` is the extent that stands for a point, in scene units.
 LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sharply,
-                        double smallest);
+                        double smallest, const covariance::Sym2<double>& texture = {});
 
 /// What a diffuse receiver `distance` away (scene units) has to know of the light as an emitter.
 covariance::Emitter<double> emitter_of(const SourceSpectrum& source, double distance);

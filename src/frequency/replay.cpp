@@ -143,6 +143,10 @@ PathCovariance PathReplay::operator()(const PathRecord& record, LightPart part) 
     }
     light.add(glow(-record.escape_direction), taken(record.escape_glow, false));
 
+    const auto half_pixel = [&](int i) {
+        return 0.5f * (camera.orthographic ? 1.0f : distances[i]) / camera.pixels_per_x;
+    };
+
     for (int i = record.count - 1; i >= 0; --i) {
         const PathVertex& v = record.vertices[size_t(i)];
         const float emitted = taken(v.emitted, v.in_view), direct = taken(v.direct, false);
@@ -150,8 +154,7 @@ PathCovariance PathReplay::operator()(const PathRecord& record, LightPart part) 
         if (light.weight > 0 || direct > 0) {
             std::optional<ScatterPoint> point;
             if (v.medium < 0) {
-                const float extent = camera.orthographic ? 1.0f : distances[size_t(i)];
-                point = scatter_point(scene_, v, 0.5f * extent / camera.pixels_per_x);
+                point = scatter_point(scene_, v, half_pixel(i));
             }
             const auto scattered = [&](const LightField& arriving,
                                        const cov::Emitter<double>& emitter,
@@ -185,7 +188,8 @@ PathCovariance PathReplay::operator()(const PathRecord& record, LightPart part) 
         if (emitted > 0) {
             const SourceSpectrum s = scene_.lights.source_spectrum(v.hit);
             if (emitted > leaving.weight) leaving.emitter = emitter_of(s, way);
-            leaving.add(source_field(s, v.wo, v.seen_sharply, smallest_), emitted);
+            const auto texture = emission_texture(scene_, v, s.tangent, half_pixel(i));
+            leaving.add(source_field(s, v.wo, v.seen_sharply, smallest_, texture), emitted);
         }
         light = leaving;
         const OccluderQuery::Segment segment{v.hit.position, next, v.hit.time, owner(i),

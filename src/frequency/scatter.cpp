@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "shading/lobe_function.h"
+#include "shading/normal_map.h"
 
 namespace covtrace {
 
@@ -120,6 +121,16 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
     p.surface = {d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}};
     p.normals = cov::normal_field(p.surface);
     p.facing = p.surface;
+    if (scene.materials.has_normal_map(vertex.material)) {
+        const NormalMap map(scene.materials.description(vertex.material), scene.textures,
+                            scene.geometry.shapes()[vertex.hit.shape], vertex.hit, d, footprint);
+        // Positions stay on the geometry; the normal turns by both shape operators.
+        const Frame turned = Frame::from_z_x(vertex.shading.z, d.tangent.x);
+        const auto [k11, k12, k22] = map.curvature();
+        p.normals = {turned.z, turned.x * (d.k11 + k11) + turned.y * (d.k12 + k12),
+                     turned.x * (d.k12 + k12) + turned.y * (d.k22 + k22)};
+        p.facing = cov::shading_surface(p.surface, p.normals);
+    }
     p.motion = {d.velocity, d.angular_velocity};
     p.shading = vertex.shading;
     p.outgoing = vertex.wo;
@@ -133,7 +144,33 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
         texture_spectrum(scene, textures.reflectance, vertex.hit, uv_from_tangent, footprint_uv);
     p.transmittance =
         texture_spectrum(scene, textures.transmittance, vertex.hit, uv_from_tangent, footprint_uv);
+    // What alpha lets stand of the surface varies like its reflectance.
+    const TextureId alpha = scene.geometry.shapes()[vertex.hit.shape].description.alpha;
+    const cov::Sym2<double> edges =
+        texture_spectrum(scene, alpha, vertex.hit, uv_from_tangent, footprint_uv);
+    p.reflectance = p.reflectance + edges;
+    p.transmittance = p.transmittance + edges;
     return p;
+}
+
+cov::Sym2<double> emission_texture(const RenderScene& scene, const PathVertex& vertex,
+                                   const Frame& tangent, float footprint) {
+    const ShapeDescription& shape = scene.geometry.shapes()[vertex.hit.shape].description;
+    if (shape.area_light < 0) return {};
+    const TextureId image =
+        scene.description.area_lights[static_cast<size_t>(shape.area_light)].image;
+    if (image < 0 && shape.alpha < 0) return {};
+    const DifferentialGeometry d = scene.geometry.differential(vertex.hit);
+    const auto& m = d.uv_from_tangent;
+    const auto along = [&m, &d](int i, Vec3 axis) {
+        return m[i][0] * dot(d.tangent.x, axis) + m[i][1] * dot(d.tangent.y, axis);
+    };
+    const cov::Mat2<double> uv_from_tangent{along(0, tangent.x), along(0, tangent.y),
+                                            along(1, tangent.x), along(1, tangent.y)};
+    const float footprint_uv =
+        footprint * std::sqrt(0.5f * (sqr(m[0][0]) + sqr(m[0][1]) + sqr(m[1][0]) + sqr(m[1][1])));
+    return texture_spectrum(scene, image, vertex.hit, uv_from_tangent, footprint_uv) +
+           texture_spectrum(scene, shape.alpha, vertex.hit, uv_from_tangent, footprint_uv);
 }
 
 LightField scatter(const LightField& arriving, const cov::Emitter<double>& emitter,

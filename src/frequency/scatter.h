@@ -28,6 +28,11 @@ struct ScatterPoint {
 /// nearer.
 ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, float footprint);
 
+/// Spectrum of the image and the alpha of an emitter that was hit, along the axes of `tangent`
+/// (z: its normal), 1 / scene unit^2. `footprint` as above.
+covariance::Sym2<double> emission_texture(const RenderScene& scene, const PathVertex& vertex,
+                                          const Frame& tangent, float footprint);
+
 /// Sends `arriving` (its frame's z is the direction of travel towards the surface) through the
 /// lobes of the event and merges them by luminance. `emitter`: where the light was last sent out.
 /// The result is in the frame covariance::frame_along(point.outgoing), so that several of them can

@@ -125,12 +125,12 @@ GeometryHandle build(RTCDevice device, const Quadric& shape) {
 }  // namespace
 
 GeometryHandle new_shape_geometry(const EmbreeDevice& device, const LocalShape& shape,
-                                  bool is_interface) {
+                                  unsigned mask) {
     GeometryHandle geometry =
         std::visit([&](const auto& s) { return build(device.get(), s); }, shape);
     device.check();
     if (!geometry) return geometry;
-    rtcSetGeometryMask(geometry.get(), is_interface ? kInterfaceMask : kSolidMask);
+    rtcSetGeometryMask(geometry.get(), mask);
     rtcCommitGeometry(geometry.get());
     device.check();
     return geometry;

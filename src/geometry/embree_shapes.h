@@ -6,12 +6,13 @@
 
 namespace covtrace {
 
-/// Ray masks: interface surfaces are seen by `intersect` and not by `occluded`.
-inline constexpr unsigned kSolidMask = 1, kInterfaceMask = 2, kEveryMask = 3;
+/// Ray masks: interface surfaces are seen by `intersect` and not by `occluded`; those with alpha
+/// are solid where they are opaque.
+inline constexpr unsigned kSolidMask = 1, kInterfaceMask = 2, kAlphaMask = 4, kEveryMask = 7;
 
 /// A committed geometry that refers to `shape`, which must stay where it is; null where the shape
-/// has no primitives.
+/// has no primitives. `mask`: one of the masks above.
 GeometryHandle new_shape_geometry(const EmbreeDevice& device, const LocalShape& shape,
-                                  bool is_interface);
+                                  unsigned mask);
 
 }  // namespace covtrace

@@ -1,14 +1,28 @@
 #include "geometry/geometry.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <utility>
 
+#include "core/hash.h"
 #include "geometry/embree_shapes.h"
 #include "geometry/geometry_impl.h"
 
 namespace covtrace {
 
 namespace {
+
+/// A ray caught between coincident holes must end.
+constexpr int kMostLayers = 1000;
+
+/// In [0, 1), of all bits of origin, direction and time.
+float ray_hash(const Ray& ray) {
+    uint64_t h = std::bit_cast<uint32_t>(ray.time);
+    for (const Vec3 v : {ray.origin, ray.direction})
+        for (const float c : {v.x, v.y, v.z}) h = hash_combine(h, std::bit_cast<uint32_t>(c));
+    return to_unit_float(static_cast<uint32_t>(h >> 32));
+}
 
 void set_ray(RTCRay& out, const Ray& ray, const ShutterClock& clock, unsigned mask) {
     out.org_x = ray.origin.x, out.org_y = ray.origin.y, out.org_z = ray.origin.z;
@@ -58,14 +72,41 @@ Geometry::Geometry(const SceneDescription& scene, const std::string& isa)
     : impl_(std::make_unique<Impl>(scene, isa)) {}
 Geometry::~Geometry() = default;
 
+void Geometry::set_alpha(AlphaLookup lookup) {
+    impl_->alpha = std::move(lookup);
+}
+
 bool Geometry::intersect(const Ray& ray, SurfaceHit& hit) const {
+    return impl_->nearest_opaque(ray, kEveryMask, hit);
+}
+
+bool Geometry::Impl::nearest_opaque(Ray ray, unsigned mask, SurfaceHit& hit) const {
+    float passed = 0;
+    for (int layer = 0; layer < kMostLayers; ++layer) {
+        if (!nearest(ray, mask, hit)) return false;
+        const TextureId texture = placed[hit.shape].description.alpha;
+        const float opacity = texture >= 0 && alpha ? alpha(texture, hit.uv, hit.position) : 1.0f;
+        const bool stops = opacity >= 1 || (opacity > 0 && ray_hash(ray) < opacity);
+        if (stops) {
+            hit.t += passed;
+            return true;
+        }
+        passed += hit.t;
+        ray.t_max -= hit.t;
+        ray.origin = offset_origin(hit, ray.direction);
+        if (!(ray.t_max > 0)) return false;
+    }
+    return false;
+}
+
+bool Geometry::Impl::nearest(const Ray& ray, unsigned mask, SurfaceHit& hit) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit query;
-    set_ray(query.ray, ray, impl_->clock, kEveryMask);
+    set_ray(query.ray, ray, clock, mask);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(impl_->top.scene.get(), &context, &query);
+    rtcIntersect1(top.scene.get(), &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
 
     hit.t = query.ray.tfar;
@@ -75,16 +116,16 @@ bool Geometry::intersect(const Ray& ray, SurfaceHit& hit) const {
     const Vec3d near = Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t);
     if (query.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
         hit.instance = 0;
-        hit.shape = impl_->top.shape_of_geometry[query.hit.geomID];
-        fill_hit(surface_point(impl_->local[hit.shape], hit.primitive, hit.barycentric, near),
-                 nullptr, hit);
+        hit.shape = top.shape_of_geometry[query.hit.geomID];
+        fill_hit(surface_point(local[hit.shape], hit.primitive, hit.barycentric, near), nullptr,
+                 hit);
         return true;
     }
     hit.instance = query.hit.instID[0] + 1;
-    const EmbreeInstance& instance = impl_->instances[query.hit.instID[0]];
-    hit.shape = impl_->scenes[instance.scene].shape_of_geometry[query.hit.geomID];
-    const Affine map = impl_->world_from_local(instance, ray.time);
-    const LocalShape& shape = impl_->local[hit.shape];
+    const EmbreeInstance& instance = instances[query.hit.instID[0]];
+    hit.shape = scenes[instance.scene].shape_of_geometry[query.hit.geomID];
+    const Affine map = world_from_local(instance, ray.time);
+    const LocalShape& shape = local[hit.shape];
     const Vec3d local_near =
         std::holds_alternative<Quadric>(shape) ? map.inverse().point(near) : near;
     fill_hit(surface_point(shape, hit.primitive, hit.barycentric, local_near), &map, hit);
@@ -97,7 +138,9 @@ bool Geometry::occluded(const Ray& ray) const {
     RTCRay query;
     set_ray(query, ray, impl_->clock, kSolidMask);
     rtcOccluded1(impl_->top.scene.get(), &context, &query);
-    return query.tfar < 0;
+    if (query.tfar < 0) return true;
+    SurfaceHit hit;
+    return impl_->any_alpha && impl_->nearest_opaque(ray, kAlphaMask, hit);
 }
 
 Vec3 Geometry::offset_origin(const SurfaceHit& hit, Vec3 direction) {

@@ -1,9 +1,10 @@
 /// All shapes of a scene behind Embree: intersection, occlusion, and the local geometry of a hit.
 /// Embree's types stay in the .cpp files of this folder. Times are the scene's, clamped to the
-/// camera's shutter. Alpha textures are not looked at here. Interfaces with no medium on either
-/// side are not there.
+/// camera's shutter. Interfaces with no medium on either side are not there, nor are shapes that
+/// alpha hides altogether.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct WorldTriangle {
     Vec3 p0, p1, p2;
 };
 
+/// Opacity of a shape's alpha texture at a place: (u, v) of the surface, world position.
+using AlphaLookup = std::function<float(TextureId, Vec2 uv, Vec3 position)>;
+
 class Geometry {
   public:
     /// Builds the acceleration structures. `isa`: empty, or one of sse2, avx, avx2, avx512.
@@ -34,6 +38,13 @@ class Geometry {
     Geometry(const Geometry&) = delete;
     Geometry& operator=(const Geometry&) = delete;
 
+    /// Tells what alpha textures say; without it they count as opaque. `lookup` must be
+    /// thread-safe.
+    void set_alpha(AlphaLookup lookup);
+
+    /// Where alpha is between 0 and 1, a hash of the ray decides whether it passes, so the same ray
+    /// always does the same.
+    ///
     /// Nearest hit in (0, ray.t_max); false where there is none. Thread-safe.
     bool intersect(const Ray& ray, SurfaceHit& hit) const;
     /// Whether anything but interface surfaces lies in (0, ray.t_max). Thread-safe.

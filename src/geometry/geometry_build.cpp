@@ -13,8 +13,17 @@ bool has_interface_material(const SceneDescription& scene, const ShapeDescriptio
                                       scene.materials[static_cast<size_t>(shape.material)].value);
 }
 
+/// Whether alpha hides all of the shape: a light that can't be seen, for no other shape is kept.
+bool is_hidden(const SceneDescription& scene, const ShapeDescription& shape) {
+    if (shape.alpha < 0) return false;
+    const auto* constant =
+        std::get_if<ConstantTexture>(&scene.textures[static_cast<size_t>(shape.alpha)].value);
+    return constant && constant->value.r <= 0;
+}
+
 /// An interface between nothing and nothing has no effect on any path.
 bool is_left_out(const SceneDescription& scene, const ShapeDescription& shape) {
+    if (is_hidden(scene, shape)) return true;
     return has_interface_material(scene, shape) && shape.inside < 0 && shape.outside < 0 &&
            shape.area_light < 0;
 }
@@ -51,8 +60,12 @@ struct Geometry::Impl::Builder {
     ShapeScene new_scene() const { return {g.device.new_scene(), {}}; }
 
     void add(ShapeScene& target, uint32_t shape) const {
-        GeometryHandle geometry =
-            new_shape_geometry(g.device, g.local[shape], g.is_interface[shape]);
+        const bool has_alpha = g.placed[shape].description.alpha >= 0;
+        const unsigned mask = g.is_interface[shape] ? kInterfaceMask
+                              : has_alpha           ? kAlphaMask
+                                                    : kSolidMask;
+        g.any_alpha = g.any_alpha || mask == kAlphaMask;
+        GeometryHandle geometry = new_shape_geometry(g.device, g.local[shape], mask);
         if (geometry) attach(target, geometry.get(), shape);
     }
 

@@ -30,11 +30,18 @@ struct Geometry::Impl {
     std::vector<PlacedShape> placed;
     std::vector<LocalShape> local;  ///< of the shape of the same index in `placed`
     std::vector<bool> is_interface;
+    bool any_alpha = false;
+    AlphaLookup alpha;
     std::vector<AnimatedTransform> instance_motions;
     std::vector<ShapeScene> scenes;  ///< of objects and of moving shapes
     std::vector<EmbreeInstance> instances;
     ShapeScene top;
     Bounds3 bounds;
+
+    /// Nearest hit of the shapes in `mask`, whatever alpha says there.
+    bool nearest(const Ray& ray, unsigned mask, SurfaceHit& hit) const;
+    /// Nearest hit of the shapes in `mask` that alpha does not let through.
+    bool nearest_opaque(Ray ray, unsigned mask, SurfaceHit& hit) const;
 
     /// The world from the local space of an instance, as Embree has it at `time`.
     Affine world_from_local(const EmbreeInstance& instance, float time) const {

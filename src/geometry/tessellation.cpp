@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/hash.h"
 #include "geometry/quadric.h"
 
 namespace covtrace {
@@ -37,6 +38,62 @@ Tessellation::Tessellation(const LocalShape& shape, double piece, double scale) 
     add_grid(around, along, [&](double u, double v) {
         return map.point(quadric_object_point(quadric, u, v)).to_float();
     });
+}
+
+Tessellation::Tessellation(const LocalShape& shape, double piece, double scale,
+                           const Opacity& opacity) {
+    // Small pieces of large triangles would outgrow memory; holes of a 64th of a triangle do.
+    const auto count = [&](double edge) { return std::min(64, pieces(scale * edge, piece, 1)); };
+    if (const auto* mesh = std::get_if<TriangleShape>(&shape)) {
+        for (uint32_t i = 0; i < mesh->mesh->triangles.size(); ++i) {
+            const auto& t = mesh->mesh->triangles[i];
+            const Vec3d p0(mesh->positions[t[0]]), p1(mesh->positions[t[1]]),
+                p2(mesh->positions[t[2]]);
+            const int n = count(std::max({length(p1 - p0), length(p2 - p0), length(p2 - p1)}));
+            add_opaque(
+                n, n, true, [&](Vec2 b) { return triangle_point(*mesh, i, b); }, opacity);
+        }
+    } else if (const auto* patches = std::get_if<PatchShape>(&shape)) {
+        for (uint32_t i = 0; i < patches->mesh->patches.size(); ++i) {
+            const BilinearPatch p = patches->patch(i);
+            add_opaque(
+                count(std::max(length(p.du(0)), length(p.du(1)))),
+                count(std::max(length(p.dv(0)), length(p.dv(1)))), false,
+                [&](Vec2 uv) { return patch_point(*patches, i, uv); }, opacity);
+        }
+    } else {
+        const Quadric& quadric = std::get<Quadric>(shape);
+        const Affine& map = quadric.local_from_object;
+        const double radius =
+            quadric.radius * std::max({length(map.row[0]), length(map.row[1]), length(map.row[2])});
+        add_opaque(
+            std::max(16, count(quadric.phi_max * radius)), std::max(8, count(3.2 * radius)), false,
+            [&](Vec2 uv) {
+                return quadric_point(quadric, map.point(quadric_object_point(quadric, uv.x, uv.y)));
+            },
+            opacity);
+    }
+}
+
+template <class PointAt>
+void Tessellation::add_opaque(int nu, int nv, bool is_triangle, PointAt&& point_at,
+                              const Opacity& opacity) {
+    const auto at = [&](int i, int j) { return Vec2{float(i) / float(nu), float(j) / float(nv)}; };
+    const auto consider = [&](Vec2 a, Vec2 b, Vec2 c) {
+        const SurfacePoint centre = point_at((a + b + c) * (1.0f / 3));
+        const float chance = to_unit_float(static_cast<uint32_t>(mix_bits(++considered_) >> 32));
+        if (!(opacity(centre.uv, centre.position.to_float()) > chance)) return;
+        const auto first = static_cast<uint32_t>(positions_.size());
+        for (const Vec2 corner : {a, b, c})
+            positions_.push_back(point_at(corner).position.to_float());
+        triangles_.push_back({first, first + 1, first + 2});
+    };
+    for (int j = 0; j < nv; ++j)
+        for (int i = 0; i < (is_triangle ? nu - j : nu); ++i) {
+            consider(at(i, j), at(i + 1, j), at(i, j + 1));
+            if (!is_triangle || i + j + 1 < nu)
+                consider(at(i + 1, j + 1), at(i, j + 1), at(i + 1, j));
+        }
 }
 
 template <class PointAt>

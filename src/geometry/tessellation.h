@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "geometry/surface.h"
@@ -11,9 +12,16 @@ namespace covtrace {
 /// Triangles over positions; both may belong to the shape itself, which must outlive this.
 class Tessellation {
   public:
+    using Opacity = std::function<float(Vec2 uv, Vec3 local_position)>;
+
     /// Curved shapes are cut into pieces of about `piece` scene units, at most 512 along a
     /// parameter; `scale` is how much longer a local unit may be in the scene.
     Tessellation(const LocalShape& shape, double piece, double scale);
+
+    /// The same, as a surface with holes: cut into pieces of about `piece` everywhere, of which
+    /// those that `opacity` makes opaque are kept, a part of those that are partly so. `opacity`
+    /// gets the surface's (u, v) and a local position.
+    Tessellation(const LocalShape& shape, double piece, double scale, const Opacity& opacity);
 
     size_t size() const { return triangles().size(); }
     std::array<Vec3, 3> operator[](size_t i) const {
@@ -29,7 +37,10 @@ class Tessellation {
   private:
     template <class PointAt>
     void add_grid(int nu, int nv, PointAt&& point_at);
+    template <class PointAt>
+    void add_opaque(int nu, int nv, bool is_triangle, PointAt&& point_at, const Opacity& opacity);
 
+    uint64_t considered_ = 0;  ///< pieces looked at, of a shape with holes
     const TriangleShape* mesh_ = nullptr;
     std::vector<Vec3> positions_;
     std::vector<std::array<uint32_t, 3>> triangles_;

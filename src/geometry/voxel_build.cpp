@@ -108,16 +108,31 @@ class VoxelGridBuilder {
         // One tessellation per shape, fine enough for the largest of its occurrences.
         const LocalShape* first = geometry_.local.data();
         std::vector<double> scales(geometry_.local.size(), 0);
+        std::vector<const Occurrence*> firsts(scales.size(), nullptr);
         for (const Occurrence& o : occurrences_) {
             const Affine& m = o.world_from_local;
-            double& scale = scales[static_cast<size_t>(o.shape - first)];
+            const auto shape = static_cast<size_t>(o.shape - first);
+            if (!firsts[shape]) firsts[shape] = &o;
+            double& scale = scales[shape];
             scale = std::max({scale, length(m.row[0]), length(m.row[1]), length(m.row[2])});
         }
         surfaces_.resize(scales.size());
         for (size_t i = 0; i < scales.size(); ++i)
-            if (scales[i] > 0)
-                surfaces_[i] =
-                    std::make_unique<Tessellation>(geometry_.local[i], layout_.size, scales[i]);
+            if (scales[i] > 0) surfaces_[i] = tessellate(i, scales[i], *firsts[i]);
+    }
+
+    /// Holes of alpha textures that depend on the position are those of the `first` occurrence.
+    std::unique_ptr<Tessellation> tessellate(size_t shape, double scale,
+                                             const Occurrence& first) const {
+        const LocalShape& local = geometry_.local[shape];
+        const TextureId texture = geometry_.placed[shape].description.alpha;
+        if (texture < 0 || !geometry_.alpha)
+            return std::make_unique<Tessellation>(local, layout_.size, scale);
+        return std::make_unique<Tessellation>(
+            local, layout_.size, scale, [&](Vec2 uv, Vec3 position) {
+                return geometry_.alpha(texture, uv,
+                                       first.world_from_local.point(Vec3d(position)).to_float());
+            });
     }
 
     const Tessellation& surface_of(const Occurrence& o) const {

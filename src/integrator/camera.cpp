@@ -2,9 +2,22 @@
 
 #include <cmath>
 
+#include "core/frame.h"
 #include "core/warp.h"
+#include "shading/equal_area.h"
 
 namespace covtrace {
+
+namespace {
+
+/// The equal-area map goes on beyond an edge at the edge's other half.
+Vec2 wrap_equal_area(Vec2 uv) {
+    if (uv.x < 0 || uv.x > 1) uv = {uv.x < 0 ? -uv.x : 2 - uv.x, 1 - uv.y};
+    if (uv.y < 0 || uv.y > 1) uv = {1 - uv.x, uv.y < 0 ? -uv.y : 2 - uv.y};
+    return uv;
+}
+
+}  // namespace
 
 Camera::Camera(const CameraDescription& description, int width, int height)
     : description_(description),
@@ -37,7 +50,9 @@ const Transform& Camera::to_world(float time, Transform& storage) const {
 Ray Camera::generate_ray(Vec2 film, Vec2 lens, float shutter) const {
     const Vec2 s{origin_.x + film.x * per_pixel_.x, origin_.y + film.y * per_pixel_.y};
     Vec3 origin, direction{0, 0, 1};
-    if (description_.kind == CameraDescription::Kind::perspective)
+    if (description_.kind == CameraDescription::Kind::spherical)
+        direction = spherical_direction(film);
+    else if (description_.kind == CameraDescription::Kind::perspective)
         direction = {s.x, s.y, 1};
     else
         origin = {s.x, s.y, 0};
@@ -56,9 +71,67 @@ Ray Camera::generate_ray(Vec2 film, Vec2 lens, float shutter) const {
     return ray;
 }
 
+Vec3 Camera::spherical_direction(Vec2 film) const {
+    const Vec2 uv{film.x / static_cast<float>(width_), film.y / static_cast<float>(height_)};
+    if (description_.mapping == CameraDescription::Mapping::equal_area) {
+        const Vec3 w = equal_area_square_to_sphere(wrap_equal_area(uv));
+        return {w.x, w.z, w.y};
+    }
+    const float theta = kPi * uv.y, phi = 2 * kPi * uv.x;
+    return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
+}
+
+/// A pinhole that looks along the ray, with the map's own scale there.
+SensorGeometry Camera::spherical_sensor(const Ray& ray, const Transform& camera_to_world) const {
+    const Vec3 w = normalize(camera_to_world.inverse().vector(ray.direction));
+    Vec2 film;
+    if (description_.mapping == CameraDescription::Mapping::equal_area) {
+        film = equal_area_sphere_to_square({w.x, w.z, w.y});
+    } else {
+        const float turn = std::atan2(w.z, w.x) / (2 * kPi);
+        film = {turn < 0 ? turn + 1 : turn, std::acos(std::clamp(w.y, -1.0f, 1.0f)) / kPi};
+    }
+    film = {film.x * static_cast<float>(width_), film.y * static_cast<float>(height_)};
+    constexpr float kStep = 0.25f;  // pixels
+    const auto along = [&](Vec2 step) {
+        const Vec3 ahead = normalize(camera_to_world.vector(spherical_direction(film + step)));
+        const Vec3 behind = normalize(camera_to_world.vector(spherical_direction(film - step)));
+        return (ahead - behind) / (2 * kStep);
+    };
+    const Vec3 x = along({kStep, 0}), y = along({0, kStep});
+    SensorGeometry g;
+    g.forward = ray.direction;
+    const Frame frame = Frame::from_z_x(g.forward, x);
+    g.right = frame.x;
+    g.down = dot(frame.y, y) < 0 ? -frame.y : frame.y;
+    constexpr float kSmallest = 1e-6f;  // radians per pixel; less only where the map is torn
+    g.pixels_per_x = 1 / std::max(length(x), kSmallest);
+    g.pixels_per_y = 1 / std::max(std::abs(dot(g.down, y)), kSmallest);
+    return g;
+}
+
+float Camera::half_pixel(float distance) const {
+    switch (description_.kind) {
+        case CameraDescription::Kind::orthographic:
+            return 0.5f * per_pixel_.x;
+        case CameraDescription::Kind::spherical:
+            return 0.5f * kPi / static_cast<float>(height_) * distance;
+        case CameraDescription::Kind::perspective:
+            break;
+    }
+    return 0.5f * per_pixel_.x * distance;
+}
+
 SensorGeometry Camera::sensor(const Ray& ray) const {
     Transform storage;
     const Transform& camera_to_world = to_world(ray.time, storage);
+    if (description_.kind == CameraDescription::Kind::spherical) {
+        SensorGeometry g = spherical_sensor(ray, camera_to_world);
+        g.shutter = shutter_close_ - shutter_open_;
+        g.velocity = description_.camera_to_world.velocity(ray.origin, ray.time);
+        g.angular_velocity = description_.camera_to_world.angular_velocity(ray.time);
+        return g;
+    }
     const Vec3 x = camera_to_world.vector({per_pixel_.x, 0, 0});
     const Vec3 y = camera_to_world.vector({0, per_pixel_.y, 0});
     const Vec3 z = camera_to_world.vector({0, 0, 1});

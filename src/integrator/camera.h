@@ -30,12 +30,17 @@ class Camera {
     Ray generate_ray(Vec2 film, Vec2 lens, float shutter) const;
     SensorGeometry sensor(const Ray& ray) const;
     bool has_lens() const { return lens_radius_ > 0; }
+    /// What half a pixel covers at a distance from the camera, scene units.
+    float half_pixel(float distance) const;
     /// World to camera, and world to normalised device coordinates, at the shutter's opening.
     Matrix4 world_to_camera() const;
     Matrix4 world_to_ndc() const;
 
   private:
     const Transform& to_world(float time, Transform& storage) const;
+    /// Of a spherical camera, in camera space.
+    Vec3 spherical_direction(Vec2 film) const;
+    SensorGeometry spherical_sensor(const Ray& ray, const Transform& camera_to_world) const;
 
     CameraDescription description_;
     int width_, height_;

@@ -55,7 +55,9 @@ class Pilot {
         for (int i = 0; i < kMostInterfaces; ++i) {
             if (!scene_.geometry.intersect(ray, hit)) return false;
             const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
-            bsdf = scene_.materials.bsdf(shape.description.material, hit, scene_.textures);
+            const MaterialId material =
+                scene_.materials.at(shape.description.material, hit, scene_.textures);
+            bsdf = scene_.materials.bsdf(material, hit, scene_.textures);
             if (!std::holds_alternative<InterfaceBsdf>(bsdf)) return true;
             ray.origin = Geometry::offset_origin(hit, ray.direction);
         }

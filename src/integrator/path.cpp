@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "integrator/visibility.h"
+#include "shading/normal_map.h"
 #include "shading/phase_function.h"
 
 namespace covtrace {
@@ -17,7 +18,8 @@ float power_heuristic(float a, float b) {
 
 bool transmits(const Bsdf& bsdf) {
     return std::holds_alternative<DielectricBsdf>(bsdf) ||
-           std::holds_alternative<DiffuseTransmissionBsdf>(bsdf);
+           std::holds_alternative<DiffuseTransmissionBsdf>(bsdf) ||
+           std::holds_alternative<ThinDielectricBsdf>(bsdf);
 }
 
 /// One path in the making. The estimate is  sum over vertices of  beta * (emission + direct light),
@@ -63,22 +65,26 @@ class PathTracer {
             return false;
         }
         const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
-        const Bsdf bsdf = scene_.materials.bsdf(shape.description.material, hit, scene_.textures);
-        if (!std::holds_alternative<InterfaceBsdf>(bsdf)) return meet_surface(hit, shape, bsdf);
+        const MaterialId material =
+            scene_.materials.at(shape.description.material, hit, scene_.textures);
+        const Bsdf bsdf = scene_.materials.bsdf(material, hit, scene_.textures);
+        if (!std::holds_alternative<InterfaceBsdf>(bsdf))
+            return meet_surface(hit, shape, material, bsdf);
         medium_ = medium_beyond(shape, hit, ray_.direction, medium_);
         ray_.origin = Geometry::offset_origin(hit, ray_.direction);
         return ++passed_interfaces_ <= kMostInterfaces;
     }
 
-    bool meet_surface(const SurfaceHit& hit, const PlacedShape& shape, const Bsdf& bsdf) {
+    bool meet_surface(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material,
+                      const Bsdf& bsdf) {
         const Vec3 wo = -ray_.direction;
         PathVertex* vertex = begin_vertex(hit, -1, wo);
-        if (vertex) vertex->material = shape.description.material;
+        if (vertex) vertex->material = material;
         add_emission(hit, wo, vertex);
-        const Frame frame = shading_frame(hit);
+        const Frame frame = frame_at(hit, shape, material);
         const Vec3 wo_local = frame.to_local(wo);
         if (depth_ == 0)
-            describe_first_vertex(hit.position, albedo(bsdf, wo_local), face_forward(hit.ns, wo));
+            describe_first_vertex(hit.position, albedo(bsdf, wo_local), face_forward(frame.z, wo));
         if (vertex) vertex->shading = frame;
         if (depth_++ == max_depth_) return false;
         sampler_.set_dimension(static_cast<uint32_t>(depth_) * kPairsPerBounce);
@@ -86,7 +92,7 @@ class PathTracer {
         const Vec2 u_light = sampler_.next_2d(), u_bsdf = sampler_.next_2d();
         // Lights are chosen for the side that can be lit: the viewer's, or both where light
         // passes through.
-        light_normal_ = transmits(bsdf) ? Vec3{} : face_forward(hit.ns, wo);
+        light_normal_ = transmits(bsdf) ? Vec3{} : face_forward(frame.z, wo);
         guide_ = has_diffuse_lobe(bsdf) && depth_ < max_depth_
                      ? scene_.guide.at(hit.position, light_normal_)
                      : GuideMixture{};
@@ -205,6 +211,18 @@ class PathTracer {
         result_.radiance += contribution;
         if (in_view()) result_.in_view += contribution;
         if (vertex) vertex->emitted = luminance(contribution);
+    }
+
+    /// The frame of the BSDF, with the material's bump or normal map.
+    Frame frame_at(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material) const {
+        if (!scene_.materials.has_normal_map(material)) return shading_frame(hit);
+        // A step as pbrt takes it for 64 samples per pixel and more: an eighth of half a pixel.
+        const float footprint =
+            scene_.camera.half_pixel(distance(camera_origin_, hit.position)) / 8;
+        const DifferentialGeometry base = scene_.geometry.differential(hit);
+        return NormalMap(scene_.materials.description(material), scene_.textures, shape, hit, base,
+                         footprint)
+            .frame();
     }
 
     void describe_first_vertex(Vec3 position, Rgb albedo, Vec3 normal) {
@@ -345,6 +363,7 @@ class PathTracer {
     Sampler& sampler_;
     const int max_depth_;
     PathRecord* const record_;
+    const Vec3 camera_position_;
 
     PathResult result_;
     Rgb beta_{1};

@@ -8,11 +8,14 @@ RenderScene::RenderScene(SceneDescription scene_description, const std::string& 
                          size_t texture_bytes)
     : description(std::move(scene_description)),
       geometry(description, isa),
-      lights(description, geometry),
       textures(description, texture_bytes),
+      lights(description, geometry, &textures),
       materials(description, textures, IlluminantAdaptation(lights.total_power())),
       camera(description.camera, description.film.width, description.film.height),
       filter(description.filter) {
+    geometry.set_alpha([this](TextureId id, Vec2 uv, Vec3 position) {
+        return textures.eval_float(id, {uv, position});
+    });
     const Warnings& reduced = textures.warnings();
     description.warnings.insert(description.warnings.end(), reduced.begin(), reduced.end());
     for (const MediumDescription& m : description.media)

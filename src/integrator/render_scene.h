@@ -33,8 +33,8 @@ struct RenderScene {
 
     SceneDescription description;
     Geometry geometry;
-    Lights lights;
     TextureStore textures;
+    Lights lights;
     MaterialStore materials;  ///< reflectances as they are in the light of all `lights` together
     Camera camera;
     PixelFilter filter;

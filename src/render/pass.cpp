@@ -83,11 +83,20 @@ FilmPixel::Sample take_sample(const PassContext& context, int x, int y, uint32_t
     const Ray ray = context.scene.camera.generate_ray(film, u.lens, u.time);
     path = trace_path(context.scene, ray, sampler, context.max_depth, record);
     FilmPixel::Sample s;
-    const float largest = max_component(path.radiance) * context.imaging_scale;
+    const auto balanced = [&context](Rgb c) {
+        const Rgb light = c * context.imaging_scale;
+        const auto channel = [&](size_t i) {
+            const auto& row = context.white_balance[i];
+            return row[0] * light.r + row[1] * light.g + row[2] * light.b;
+        };
+        return Rgb{channel(0), channel(1), channel(2)};
+    };
+    s.radiance = balanced(path.radiance);
+    s.in_view = balanced(path.in_view);
+    const float largest = max_component(s.radiance);
     const float limit = largest > context.max_component ? context.max_component / largest : 1.0f;
-    const float factor = context.imaging_scale * limit * position.weight;
-    s.radiance = path.radiance * factor;
-    s.in_view = path.in_view * factor;
+    s.radiance *= limit * position.weight;
+    s.in_view *= limit * position.weight;
     s.albedo = path.albedo;
     s.normal = path.normal;
     s.depth = path.depth;

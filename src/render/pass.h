@@ -46,6 +46,7 @@ struct PassContext {
     uint64_t seed = 0;
     int max_depth = 5;
     float imaging_scale = 1, max_component = kInfinity;
+    std::array<std::array<float, 3>, 3> white_balance{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 };
 
 /// Called from worker threads with the share of the pass that is done.

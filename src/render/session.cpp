@@ -40,10 +40,13 @@ class Session {
           monitor_(monitor),
           film_(render_region(scene.description.film)),
           context_{
-              scene, options.seed, options.max_depth.value_or(scene.description.max_depth),
+              scene,
+              options.seed,
+              options.max_depth.value_or(scene.description.max_depth),
               (scene.description.camera.shutter_close - scene.description.camera.shutter_open) *
-                  scene.description.film.iso / 100,
-              scene.description.film.max_component_value} {
+                  scene.description.film.iso / 100 * scene.description.camera.film_irradiance,
+              scene.description.film.max_component_value,
+              scene.description.film.white_balance} {
         if (options.spp || !options.seconds)
             target_spp_ = options.spp.value_or(scene.description.samples_per_pixel);
     }

@@ -93,22 +93,32 @@ InfiniteLight infinite_light(Entity& e, BuildContext& context) {
     return light;
 }
 
-/// A spot without its picture in place of a slide projector, which looks along +z too.
-SpotLight projector(Entity& e) {
-    SpotLight light;
-    light.intensity = Rgb{light_scale(e)};
-    light.cone_angle = 0.5f * e.parameters.number("fov", 90);
-    if (!(light.cone_angle > 0 && light.cone_angle < 90))
-        throw Error(ErrorKind::scene, e.parameters.where("fov", e.where),
-                    "parameter \"fov\" must be between 0 and 180 degrees");
-    light.cone_delta_angle = 0.1f * light.cone_angle;
+GoniometricLight goniometric_light(Entity& e, BuildContext& context) {
+    GoniometricLight light;
+    light.intensity = light_colour(e.parameters, "I", context) * light_scale(e);
     light.power = target(e, "power", light.intensity);
+    if (const std::string file = e.parameters.text("filename"); file.empty())
+        context.log.add(e.where, "a goniometric light has no image; it shines alike to all sides");
+    else
+        light.image = context.files.find(file, e.parameters.where("filename", e.where));
     return light;
 }
 
-void replaced(const Entity& e, std::string_view by, BuildContext& context) {
-    context.log.add(e.where, "light " + in_quotes(e.type) + " is not supported; a " +
-                                 std::string(by) + " light without its image takes its place");
+ProjectionLight projection_light(Entity& e, BuildContext& context) {
+    ParameterList& p = e.parameters;
+    ProjectionLight light;
+    light.scale = light_scale(e);
+    light.power = target(e, "power", Rgb(light.scale));
+    light.fov = p.number("fov", 90);
+    if (!(light.fov > 0 && light.fov < 180))
+        throw Error(ErrorKind::scene, p.where("fov", e.where),
+                    "parameter \"fov\" must be between 0 and 180 degrees");
+    const std::string file = p.text("filename");
+    if (file.empty())
+        throw Error(ErrorKind::scene, e.where,
+                    "a projection light has no image; expected \"string filename\"");
+    light.image = context.files.find(file, p.where("filename", e.where));
+    return light;
 }
 
 }  // namespace
@@ -126,13 +136,9 @@ LightDescription build_light(Entity& e, const Transform& light_to_world, BuildCo
     } else if (e.type == "infinite") {
         light.value = infinite_light(e, context);
     } else if (e.type == "goniometric") {
-        replaced(e, "point", context);
-        light.value = point_light(e, context);
-        e.parameters.ignore_all();
+        light.value = goniometric_light(e, context);
     } else if (e.type == "projection") {
-        replaced(e, "spot", context);
-        light.value = projector(e);
-        e.parameters.ignore_all();
+        light.value = projection_light(e, context);
     } else {
         throw unknown_type_error(
             e.where, "light", e.type,
@@ -156,8 +162,11 @@ AreaLightDescription build_area_light(Entity& e, BuildContext& context) {
         if (has_colour)
             throw Error(ErrorKind::scene, e.where,
                         "an area light has both \"L\" and \"filename\"; expected one of them");
-        context.files.find(file, where);
-        context.log.add(where, "images on area lights are not supported; the light is uniform");
+        ImageTexture image;
+        image.file = context.files.find(file, where);
+        image.wrap = ImageTexture::Wrap::clamp;
+        light.image = static_cast<TextureId>(context.scene.textures.size());
+        context.scene.textures.push_back({{}, true, image, where});
     }
     p.warn_unused(context.log, "area light \"diffuse\"");
     return light;

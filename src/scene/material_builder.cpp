@@ -62,8 +62,13 @@ MaterialId MaterialBuilder::build(Declared& d) {
     if (d.entity.type == "mix") {
         d.id = build_mix(d);
     } else {
-        MaterialDescription m{d.name, material_model(d.entity, textures_, context_),
-                              d.entity.where};
+        const NormalMaps maps = normal_maps(d.entity, textures_, context_);
+        MaterialDescription m{d.name,
+                              material_model(d.entity, textures_, context_),
+                              d.entity.where,
+                              {},
+                              maps.displacement,
+                              maps.normal_map};
         d.id = static_cast<MaterialId>(context_.scene.materials.size());
         context_.scene.materials.push_back(std::move(m));
     }
@@ -79,14 +84,13 @@ MaterialId MaterialBuilder::build_mix(Declared& d) {
     if (parts.size() != 2)
         throw Error(ErrorKind::scene, where,
                     "a mix expects the names of two materials in \"string materials\"");
-    const float amount = textures_.mean(textures_.grey(p, "amount", 0.5f)).r;
-    const std::string& chosen = parts[amount > 0.5f ? 1 : 0];
-    context_.log.add(d.entity.where, "mixtures of materials are not supported; " +
-                                         in_quotes(chosen) + " takes the place of both");
-    p.ignore_all();
-    MaterialId ids[2];
-    for (size_t i = 0; i < 2; ++i) ids[i] = find({parts[i], 0, where});
-    return ids[amount > 0.5f ? 1 : 0];
+    MaterialMix mix;
+    mix.amount = textures_.grey(p, "amount", 0.5f);
+    p.warn_unused(context_.log, "material \"mix\"");
+    for (size_t i = 0; i < 2; ++i) mix.materials[i] = find({parts[i], 0, where});
+    const auto id = static_cast<MaterialId>(context_.scene.materials.size());
+    context_.scene.materials.push_back({d.name, DiffuseMaterial{}, d.entity.where, mix});
+    return id;
 }
 
 }  // namespace covtrace

@@ -40,9 +40,11 @@ struct Builder {
     void ignore_shared() { p.ignore({"roughness", "conductor.roughness", "interface.roughness"}); }
 
     DiffuseMaterial diffuse() { return {textures.reflectance(p, "reflectance", Rgb{0.5f})}; }
-    ConductorMaterial conductor(const std::string& prefix);
+    /// `outside`: index of what covers the metal, whose reflectance there its colours are made for.
+    ConductorMaterial conductor(const std::string& prefix, float outside);
     DielectricMaterial dielectric();
     CoatedDiffuseMaterial coated_diffuse();
+    CoatedConductorMaterial coated_conductor();
     DiffuseTransmissionMaterial diffuse_transmission();
     CoatedDiffuseMaterial subsurface();
     DiffuseMaterial hair();
@@ -56,7 +58,12 @@ TextureId index_texture(Builder& b, const Parameter& p) {
     return b.textures.constant(s ? channel_means(*s) : factor_colour(p, b.context), true);
 }
 
-ConductorMaterial Builder::conductor(const std::string& prefix) {
+Spectrum scaled(Spectrum s, float factor) {
+    for (float& v : s.values) v *= factor;
+    return s;
+}
+
+ConductorMaterial Builder::conductor(const std::string& prefix, float outside) {
     ConductorMaterial m;
     roughness(m, prefix);
     m.reflectance = textures.reflectance_or_none(p, "reflectance");
@@ -85,10 +92,12 @@ ConductorMaterial Builder::conductor(const std::string& prefix) {
     const auto k_spectrum = spectral(k, "metal-Cu-k");
     if (eta_spectrum && k_spectrum) {
         const bool is_rgb = eta && eta->type == ParameterType::rgb;
-        const ConductorColours c = conductor_colours(
-            *eta_spectrum, *k_spectrum, is_rgb ? rgb_value(*eta) : channel_means(*eta_spectrum));
-        m.eta = textures.constant(c.eta, true);
-        m.k = textures.constant(c.k, true);
+        const Rgb index = is_rgb ? rgb_value(*eta) : channel_means(*eta_spectrum);
+        const ConductorColours c =
+            conductor_colours(scaled(*eta_spectrum, 1 / outside), scaled(*k_spectrum, 1 / outside),
+                              index * (1 / outside));
+        m.eta = textures.constant(c.eta * outside, true);
+        m.k = textures.constant(c.k * outside, true);
     } else {
         m.eta = eta ? index_texture(*this, *eta)
                     : textures.constant(channel_means(*eta_spectrum), true);
@@ -112,6 +121,19 @@ CoatedDiffuseMaterial Builder::coated_diffuse() {
     m.g = textures.grey(p, "g", 0);
     m.albedo = textures.reflectance(p, "albedo", Rgb{0});
     m.eta = refractive_index(p, "eta", 1.5f, context);
+    m.max_depth = p.integer("maxdepth", 10);
+    m.samples = p.integer("nsamples", 1);
+    return m;
+}
+
+CoatedConductorMaterial Builder::coated_conductor() {
+    CoatedConductorMaterial m;
+    m.eta = refractive_index(p, "interface.eta", 1.5f, context);
+    roughness(m, "interface.");
+    m.conductor = conductor("conductor.", m.eta);
+    m.thickness = textures.grey(p, "thickness", 0.01f);
+    m.g = textures.grey(p, "g", 0);
+    m.albedo = textures.reflectance(p, "albedo", Rgb{0});
     m.max_depth = p.integer("maxdepth", 10);
     m.samples = p.integer("nsamples", 1);
     return m;
@@ -188,6 +210,25 @@ CoatedDiffuseMaterial measured(Builder& b) {
 
 }  // namespace
 
+NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& context) {
+    ParameterList& p = entity.parameters;
+    NormalMaps maps;
+    // A constant height turns no normal.
+    if (const Parameter* height =
+            p.find("displacement", {ParameterType::texture, ParameterType::floats});
+        height && height->type == ParameterType::texture)
+        maps.displacement = textures.grey_of(*height);
+    if (const std::string file = p.text("normalmap"); !file.empty()) {
+        const SourceLocation where = p.where("normalmap", entity.where);
+        ImageTexture image;
+        image.file = context.files.find(file, where);
+        image.encoding = ImageTexture::Encoding::linear;
+        maps.normal_map = static_cast<TextureId>(context.scene.textures.size());
+        context.scene.textures.push_back({{}, true, image, where});
+    }
+    return maps;
+}
+
 Model material_model(Entity& entity, TextureBuilder& textures, BuildContext& context) {
     Builder b{entity, entity.parameters, textures, context};
     const std::string& type = entity.type;
@@ -197,23 +238,15 @@ Model material_model(Entity& entity, TextureBuilder& textures, BuildContext& con
     } else if (type == "coateddiffuse") {
         model = b.coated_diffuse();
     } else if (type == "conductor") {
-        model = b.conductor("");
+        model = b.conductor("", 1);
     } else if (type == "dielectric") {
         model = b.dielectric();
     } else if (type == "diffusetransmission") {
         model = b.diffuse_transmission();
     } else if (type == "coatedconductor") {
-        b.warn("material \"coatedconductor\" is rendered without its coat");
-        model = b.conductor("conductor.");
-        b.p.ignore_all();
+        model = b.coated_conductor();
     } else if (type == "thindielectric") {
-        // Light leaves a pane parallel to how it came. An index of 1 keeps that; any other would
-        // bend the light once and fill one side of an open pane with glass.
-        b.warn("material \"thindielectric\" is rendered as clear glass without reflection");
-        DielectricMaterial clear = b.dielectric();
-        clear.eta = 1;
-        model = clear;
-        b.p.ignore_all();
+        model = ThinDielectricMaterial{refractive_index(b.p, "eta", 1.5f, context)};
     } else if (type == "subsurface") {
         model = b.subsurface();
     } else if (type == "hair") {
@@ -228,13 +261,6 @@ Model material_model(Entity& entity, TextureBuilder& textures, BuildContext& con
                                   "diffusetransmission", "coatedconductor", "thindielectric",
                                   "subsurface", "hair", "measured", "mix", "interface"});
     }
-    if (b.p.has("displacement"))
-        context.log.add(b.p.where("displacement", entity.where),
-                        "bump mapping (\"displacement\") is not rendered");
-    if (b.p.has("normalmap"))
-        context.log.add(b.p.where("normalmap", entity.where),
-                        "normal maps (\"normalmap\") are not rendered");
-    b.p.ignore({"displacement", "normalmap"});
     b.ignore_shared();
     b.p.warn_unused(context.log, "material " + in_quotes(type));
     return model;

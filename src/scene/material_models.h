@@ -12,4 +12,10 @@ class TextureBuilder;
 decltype(MaterialDescription::value) material_model(Entity& entity, TextureBuilder& textures,
                                                     BuildContext& context);
 
+/// What turns a material's normals: see MaterialDescription; -1 for what isn't given.
+struct NormalMaps {
+    TextureId displacement = -1, normal_map = -1;
+};
+NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& context);
+
 }  // namespace covtrace

@@ -102,14 +102,39 @@ struct DiffuseTransmissionMaterial {
     TextureId reflectance = -1, transmittance = -1;
     float scale = 1;
 };
+/// A metal under a dielectric coat, a thin gap between them.
+struct CoatedConductorMaterial {
+    ConductorMaterial conductor;  ///< indices relative to vacuum, as if there were no coat
+    TextureId u_roughness = -1, v_roughness = -1;  ///< of the coat
+    TextureId thickness = -1;
+    TextureId g = -1, albedo = -1;
+    float eta = 1.5f;  ///< of the coat
+    bool remap_roughness = true;
+    int max_depth = 10, samples = 1;
+};
+/// A pane whose two faces are so close that light leaves it where it entered.
+struct ThinDielectricMaterial {
+    float eta = 1.5f;
+};
 /// No surface at all: only separates media.
 struct InterfaceMaterial {};
+/// At each point one of two materials, the second one with probability `amount`.
+struct MaterialMix {
+    std::array<MaterialId, 2> materials{-1, -1};
+    TextureId amount = -1;
+};
 struct MaterialDescription {
     std::string name;
     std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, CoatedDiffuseMaterial,
-                 DiffuseTransmissionMaterial, InterfaceMaterial>
+                 DiffuseTransmissionMaterial, CoatedConductorMaterial, ThinDielectricMaterial,
+                 InterfaceMaterial>
         value;
     SourceLocation where;
+    std::optional<MaterialMix> mix = {};  ///< in place of `value`
+    /// Float texture: the height that bump mapping adds along the normal, scene units.
+    TextureId displacement = -1;
+    /// Image of tangent space normals, (n + 1) / 2; counts where both are given.
+    TextureId normal_map = -1;
 };
 
 // ---- media: the same everywhere inside
@@ -149,6 +174,7 @@ struct AreaLightDescription {
     Rgb radiance{1};
     std::optional<float> power;  ///< watts over the whole shape, in place of the radiance's size
     bool two_sided = false;
+    TextureId image = -1;  ///< multiplies the radiance, over the shape's (u, v)
     SourceLocation where;
 };
 
@@ -162,7 +188,7 @@ struct ShapeDescription {
     MaterialId material = -1;
     int area_light = -1;  ///< into SceneDescription::area_lights
     /// Constant 0 on a light that is not seen but lights the scene; other shapes never have that.
-    TextureId alpha = -1;
+    TextureId alpha = -1;  ///< opacity, in [0, 1]
     MediumId inside = -1, outside = -1;
     SourceLocation where;
 };
@@ -190,6 +216,19 @@ struct SpotLight {
     Vec3 from, to{0, 0, 1};
     float cone_angle = 30, cone_delta_angle = 5;
 };
+/// A point light whose intensity an image modulates, square and equal-area over all directions.
+struct GoniometricLight {
+    Rgb intensity{1};
+    std::optional<float> power;  ///< of all directions, in place of the intensity's size
+    std::optional<std::filesystem::path> image;
+};
+/// A slide projector at the origin that looks along +z.
+struct ProjectionLight {
+    float scale = 1;             ///< of the image's radiant intensity
+    std::optional<float> power;  ///< of all directions, in place of `scale`
+    float fov = 90;              ///< of the image's shorter side, degrees
+    std::filesystem::path image;
+};
 struct DistantLight {
     Rgb radiance{1};          ///< irradiance on a surface that faces it
     Vec3 direction{0, 0, 1};  ///< from the scene towards the light, light space, unit length
@@ -203,7 +242,9 @@ struct InfiniteLight {
     std::optional<float> illuminance;
 };
 struct LightDescription {
-    std::variant<PointLight, SpotLight, DistantLight, InfiniteLight> value;
+    std::variant<PointLight, SpotLight, GoniometricLight, ProjectionLight, DistantLight,
+                 InfiniteLight>
+        value;
     Transform light_to_world;  ///< at the start of the shutter
     SourceLocation where;
 };
@@ -211,12 +252,19 @@ struct LightDescription {
 // ---- view
 
 struct CameraDescription {
-    enum class Kind { perspective, orthographic };
+    enum class Kind { perspective, orthographic, spherical };
+    /// What a spherical camera makes of the film, top row first: the equal-area octahedral map, or
+    /// polar angle by azimuth; y is the pole.
+    enum class Mapping { equal_area, equirectangular };
     Kind kind = Kind::perspective;
     AnimatedTransform camera_to_world;  ///< x right, y up, z forward in camera space
     float fov = 90;                     ///< of the shorter axis, unless the screen window is given
     float frame_aspect_ratio = 0;       ///< 0: from the resolution
     std::optional<std::array<float, 4>> screen_window;  ///< x0, x1, y0, y1
+    Mapping mapping = Mapping::equal_area;
+    /// What a radiance of 1 gives in the middle of the film; pi (radius / distance)^2 of real
+    /// lenses.
+    float film_irradiance = 1;
     float lens_radius = 0, focal_distance = 1e6f;
     float shutter_open = 0, shutter_close = 1;
     MediumId medium = -1;  ///< around the lens
@@ -229,6 +277,8 @@ struct FilmDescription {
     std::optional<std::array<int, 4>> pixel_bounds;  ///< x0, x1, y0, y1 in pixels, end exclusive
     std::string filename;                            ///< empty: not given
     float iso = 100;
+    /// Linear Rec.709 to the same as the sensor's white balance shows it.
+    std::array<std::array<float, 3>, 3> white_balance{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     float max_component_value = kInfinity;
     SourceLocation where;
 };

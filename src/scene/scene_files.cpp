@@ -78,7 +78,8 @@ std::string read_compressed(const fs::path& file, const SourceLocation& where) {
 
 }  // namespace
 
-fs::path SceneFiles::find(const std::string& name, const SourceLocation& where) {
+std::optional<fs::path> SceneFiles::find_optional(const std::string& name,
+                                                  const SourceLocation& where) {
     if (name.empty()) throw Error(ErrorKind::scene, where, "the file name is empty");
     if (name.find('\0') != std::string::npos)
         throw Error(ErrorKind::scene, where, "the file name holds a zero byte");
@@ -99,6 +100,11 @@ fs::path SceneFiles::find(const std::string& name, const SourceLocation& where) 
                             path_in_quotes(p->lexically_normal().string()) + " is used");
         return p->lexically_normal();
     }
+    return std::nullopt;
+}
+
+fs::path SceneFiles::find(const std::string& name, const SourceLocation& where) {
+    if (const auto file = find_optional(name, where)) return *file;
     std::string text = "file " + path_in_quotes(name) + " not found";
     if (!fs::path(name).is_absolute()) {
         text += "; looked in " + path_in_quotes(folder_.empty() ? "." : folder_.string());

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,9 @@ class SceneFiles {
     /// folder, then once more with backslashes as slashes and without regard to upper and lower
     /// case (with a warning). Errors: Error(scene) with the places looked at.
     std::filesystem::path find(const std::string& name, const SourceLocation& where);
+    /// The same, empty where there is no such file.
+    std::optional<std::filesystem::path> find_optional(const std::string& name,
+                                                       const SourceLocation& where);
 
     /// The whole file, decompressed where its name ends in ".gz"; counts in the hash.
     /// Errors: Error(scene) where it can't be opened, Error(io) where reading fails in the middle.

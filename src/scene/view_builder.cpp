@@ -1,10 +1,13 @@
 #include "scene/view_builder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
+#include "scene/lens_file.h"
 #include "scene/names.h"
 #include "scene/version_three.h"
+#include "scene/white_balance.h"
 
 namespace covtrace {
 
@@ -27,21 +30,55 @@ std::string owner(std::string_view kind, const Entity& e) {
     return std::string(kind) + " " + in_quotes(e.type);
 }
 
-void substitute_camera(Entity& e, CameraDescription& camera, WarningLog& log) {
-    if (e.type == "realistic") {
-        log.add(e.where,
-                "camera \"realistic\" is not supported; a perspective camera with a thin lens and "
-                "fov 40 "
-                "takes its place");
-        camera.fov = 40;
-        camera.focal_distance = positive(e, "focusdistance", 10);
-        constexpr float metres_per_radius_in_millimetres = 0.5e-3f;
-        camera.lens_radius =
-            e.parameters.number("aperturediameter", 1) * metres_per_radius_in_millimetres;
-    } else {
-        log.add(e.where, "camera " + in_quotes(e.type) +
-                             " is not supported; a perspective camera with fov 90 takes its place");
-    }
+/// A thin lens of the same focal length, aperture and distance in focus in place of one of several
+/// elements, and so of the same field of view but for the lens' distortion.
+void thin_lens_camera(Entity& e, Entity& film_entity, BuildContext& context) {
+    ParameterList& p = e.parameters;
+    CameraDescription& camera = context.scene.camera;
+    const FilmDescription& film = context.scene.film;
+    const std::string file = p.text("lensfile");
+    if (file.empty())
+        throw Error(ErrorKind::scene, e.where,
+                    "a realistic camera has no lens; expected \"string lensfile\"");
+    const SourceLocation where = p.where("lensfile", e.where);
+    // A double Gauss lens of full frame stands in where scenes come without their lens.
+    LensSummary lens{50, 0, 1};
+    const auto found = context.files.find_optional(file, where);
+    if (found) lens = read_lens(context.files.read(*found, where), file, where);
+    camera.focal_distance = positive(e, "focusdistance", 10);
+    // The aperture is given in millimetres as the lens is, and can't open wider than the lens.
+    float diameter = positive(e, "aperturediameter", 1);
+    if (lens.aperture_diameter > 0) diameter = std::min(diameter, lens.aperture_diameter);
+    constexpr float kMetre = 1e-3f;
+    camera.lens_radius = 0.5f * diameter / lens.stop_per_pupil * kMetre;
+    const float focal_length = lens.focal_length * kMetre;
+    const float behind = camera.focal_distance > 2 * focal_length
+                             ? 1 / (1 / focal_length - 1 / camera.focal_distance)
+                             : focal_length;
+    const float diagonal = positive(film_entity, "diagonal", 35) * kMetre;
+    const auto w = static_cast<float>(film.width), h = static_cast<float>(film.height);
+    const float shorter = diagonal * std::min(w, h) / std::sqrt(w * w + h * h);
+    camera.fov = 2 * std::atan(0.5f * shorter / behind) * (180 / kPi);
+    // pbrt's other cameras take radiance for what the film gets; this one takes irradiance.
+    camera.film_irradiance = kPi * sqr(camera.lens_radius / behind);
+    context.log.add(
+        e.where, found ? "camera \"realistic\" is not supported; a thin lens of the same focal "
+                         "length, aperture and field of view takes its place"
+                       : "camera \"realistic\" is not supported and its lens " + in_quotes(file) +
+                             " was not found; a thin lens of 50 mm takes its place");
+    p.ignore({"aperture"});
+}
+
+void spherical_camera(Entity& e, CameraDescription& camera) {
+    camera.kind = CameraDescription::Kind::spherical;
+    const std::string mapping = e.parameters.text("mapping", "equalarea");
+    if (mapping == "equirectangular")
+        camera.mapping = CameraDescription::Mapping::equirectangular;
+    else if (mapping != "equalarea")
+        refuse(e, "mapping",
+               unknown_name("mapping of a spherical camera", mapping,
+                            {"equalarea", "equirectangular"}));
+    e.parameters.ignore({"lensradius", "focaldistance", "frameaspectratio", "screenwindow"});
 }
 
 void build_camera(ViewEntities& view, BuildContext& context) {
@@ -72,9 +109,10 @@ void build_camera(ViewEntities& view, BuildContext& context) {
                 refuse(e, "screenwindow", "parameter \"screenwindow\" expects x0 < x1 and y0 < y1");
             camera.screen_window = {window[0], window[1], window[2], window[3]};
         }
-    } else if (e.type == "realistic" || e.type == "spherical") {
-        substitute_camera(e, camera, context.log);
-        p.ignore_all();
+    } else if (e.type == "realistic") {
+        thin_lens_camera(e, view.film, context);
+    } else if (e.type == "spherical") {
+        spherical_camera(e, camera);
     } else {
         throw unknown_type_error(e.where, "camera", e.type,
                                  {"perspective", "orthographic", "realistic", "spherical"});
@@ -138,12 +176,18 @@ void build_film(ViewEntities& view, BuildContext& context) {
     film.iso = positive(e, "iso", 100);
     film.max_component_value = positive(e, "maxcomponentvalue", kInfinity);
     set_crop(e, film, context.log);
-    if (const std::string sensor = p.text("sensor", "cie1931"); sensor != "cie1931")
+    float balance = p.number("whitebalance", 0);
+    if (balance < 0) refuse(e, "whitebalance", "parameter \"whitebalance\" must not be negative");
+    if (const std::string sensor = p.text("sensor", "cie1931"); sensor != "cie1931") {
+        // pbrt solves for a matrix that brings the sensor's colours to those of the standard
+        // observer, under the light of the white balance.
         context.log.add(
             p.where("sensor", e.where),
-            "sensor " + in_quotes(sensor) + " is not supported; \"cie1931\" takes its place");
-    if (p.number("whitebalance", 0) != 0)
-        context.log.add(p.where("whitebalance", e.where), "parameter \"whitebalance\" is ignored");
+            "sensor " + in_quotes(sensor) +
+                " is not supported; \"cie1931\" with its white balance takes its place");
+        if (balance == 0) balance = 6500;
+    }
+    if (balance > 0) film.white_balance = white_balance(balance);
     if (view.film_colour_space != ColourSpace::srgb)
         context.log.add(e.where,
                         "the image is written in linear Rec.709, not in the film's colour space");
@@ -231,8 +275,8 @@ void build_integrator(Entity& e, BuildContext& context) {
 
 void build_view(ViewEntities& view, BuildContext& context) {
     const auto at = [&](const Entity& e) { context.log.set_order(e.directive); };
-    at(view.camera), build_camera(view, context);
     at(view.film), build_film(view, context);
+    at(view.camera), build_camera(view, context);
     at(view.filter), build_filter(view.filter, context);
     at(view.sampler), build_sampler(view.sampler, context);
     at(view.integrator), build_integrator(view.integrator, context);

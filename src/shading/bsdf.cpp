@@ -1,6 +1,9 @@
 #include "shading/bsdf.h"
 
+#include <cmath>
+
 #include "shading/bsdf_models.h"
+#include "shading/fresnel.h"
 
 namespace covtrace {
 namespace {
@@ -14,6 +17,15 @@ float pdf(const InterfaceBsdf&, Vec3, Vec3) {
 LobeShares lobe_shares(const InterfaceBsdf&, Vec3, Vec3) {
     return {};
 }
+Rgb eval(const ThinDielectricBsdf&, Vec3, Vec3) {
+    return {};
+}
+float pdf(const ThinDielectricBsdf&, Vec3, Vec3) {
+    return 0;
+}
+LobeShares lobe_shares(const ThinDielectricBsdf&, Vec3, Vec3) {
+    return {};
+}
 
 bool is_specular(const DiffuseBsdf&) {
     return false;
@@ -25,6 +37,9 @@ bool is_specular(const CoatedDiffuseBsdf&) {
     return false;
 }
 bool is_specular(const InterfaceBsdf&) {
+    return true;
+}
+bool is_specular(const ThinDielectricBsdf&) {
     return true;
 }
 bool is_specular(const ConductorBsdf& b) {
@@ -43,11 +58,23 @@ Rgb albedo(const DielectricBsdf&, Vec3) {
 Rgb albedo(const InterfaceBsdf&, Vec3) {
     return Rgb(1);
 }
+Rgb albedo(const ThinDielectricBsdf&, Vec3) {
+    return Rgb(1);
+}
 
 }  // namespace
 
 std::optional<BsdfSample> sample(const InterfaceBsdf&, Vec3 wo, float, Vec2) {
     return BsdfSample{-wo, Rgb(1), 1, LobeKind::specular_transmission};
+}
+
+std::optional<BsdfSample> sample(const ThinDielectricBsdf& b, Vec3 wo, float u_lobe, Vec2) {
+    // The geometric series of the light that goes to and fro between both faces.
+    float r = fresnel_dielectric(std::abs(wo.z), b.eta).reflectance;
+    if (r < 1) r += sqr(1 - r) * r / (1 - sqr(r));
+    if (u_lobe < r)
+        return BsdfSample{{-wo.x, -wo.y, wo.z}, Rgb(1), r, LobeKind::specular_reflection};
+    return BsdfSample{-wo, Rgb(1), 1 - r, LobeKind::specular_transmission};
 }
 
 Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
@@ -75,6 +102,7 @@ bool has_diffuse_lobe(const Bsdf& bsdf) {
 
 bool has_sharp_lobe(const Bsdf& bsdf) {
     return std::holds_alternative<ConductorBsdf>(bsdf) ||
+           std::holds_alternative<CoatedConductorBsdf>(bsdf) ||
            std::holds_alternative<DielectricBsdf>(bsdf) ||
            std::holds_alternative<CoatedDiffuseBsdf>(bsdf);
 }

@@ -81,15 +81,30 @@ struct CoatedDiffuseBsdf {
 struct DiffuseTransmissionBsdf {
     Rgb reflectance, transmittance;
 };
+/// A metal below a dielectric coat; two-sided. See bsdf_coated_conductor.cpp.
+struct CoatedConductorBsdf {
+    DielectricBsdf coat;
+    ConductorBsdf metal;  ///< indices relative to the coat's
+    float thickness = 0;  ///< of the gap between them, in optical depths
+    int bounces = 5;      ///< most reflections at the metal
+    int samples = 1;      ///< walks per evaluation
+};
+/// A pane without thickness; both faces' reflections together.
+struct ThinDielectricBsdf {
+    float eta = 1.5f;
+};
 /// Lets everything pass: the border between media.
 struct InterfaceBsdf {};
 
-using Bsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, CoatedDiffuseBsdf,
-                          DiffuseTransmissionBsdf, InterfaceBsdf>;
+using Bsdf =
+    std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, CoatedDiffuseBsdf,
+                 DiffuseTransmissionBsdf, CoatedConductorBsdf, ThinDielectricBsdf, InterfaceBsdf>;
 
 /// f(wo, wi) |cos(wi)|, without specular lobes.
 Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
-/// Density of `sample` to return wi for this wo, without specular lobes.
+/// Density of `sample` to return wi for this wo, without specular lobes. Of coated metals, whose
+/// density has no closed form, a function near it: good for weights between strategies, and no
+/// factor of any estimate. Their `weight` is a random walk's, whose expectation is what it says.
 float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
 /// Empty where sampling failed: the path ends with no contribution. `u_lobe` chooses the lobe.
 std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float u_lobe, Vec2 u);

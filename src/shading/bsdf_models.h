@@ -37,6 +37,15 @@ float pdf(const DiffuseTransmissionBsdf& b, Vec3 wo, Vec3 wi);
 std::optional<BsdfSample> sample(const DiffuseTransmissionBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
 LobeShares lobe_shares(const DiffuseTransmissionBsdf& b, Vec3 wo, Vec3 wi);
 
+Rgb eval(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi);
+float pdf(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi);
+std::optional<BsdfSample> sample(const CoatedConductorBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+LobeShares lobe_shares(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi);
+bool is_specular(const CoatedConductorBsdf& b);
+Rgb albedo(const CoatedConductorBsdf& b, Vec3 wo);
+
+std::optional<BsdfSample> sample(const ThinDielectricBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+
 std::optional<BsdfSample> sample(const InterfaceBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
 
 inline bool same_side(Vec3 wo, Vec3 wi) {

@@ -63,11 +63,40 @@ PointEmitter make_point_emitter(const SpotLight& light, const Transform& light_t
     return e;
 }
 
+PointEmitter make_point_emitter(const GoniometricLight& light, const Transform& light_to_world,
+                                const SourceLocation& where) {
+    PointEmitter e;
+    e.position = light_to_world.point({});
+    e.intensity = light.intensity;
+    if (light.image) {
+        e.image = LightImage::goniometric(*light.image, light_to_world, where);
+        e.image_integral = e.image->integral();
+    }
+    if (light.power) e.intensity *= normalisation(*light.power, luminance(power(e)));
+    return e;
+}
+
+PointEmitter make_point_emitter(const ProjectionLight& light, const Transform& light_to_world,
+                                const SourceLocation& where) {
+    PointEmitter e;
+    e.position = light_to_world.point({});
+    e.axis = normalize(light_to_world.vector({0, 0, 1}));
+    e.intensity = Rgb(light.scale);
+    e.image = LightImage::slide(light.image, light.fov, light_to_world, where);
+    e.image_integral = e.image->integral();
+    if (light.power) e.intensity *= normalisation(*light.power, luminance(power(e)));
+    e.cos_outer = e.image->cos_corner();
+    e.cos_inner = 1;
+    return e;
+}
+
 Rgb intensity(const PointEmitter& light, Vec3 w) {
+    if (light.image) return light.intensity * (*light.image)(w);
     return light.is_spot ? light.intensity * falloff(light, dot(light.axis, w)) : light.intensity;
 }
 
 Rgb power(const PointEmitter& light) {
+    if (light.image) return light.intensity * light.image_integral;
     // A smoothstep in the cosine lets half of its range through.
     const float angle =
         light.is_spot ? 2 * kPi * ((1 - light.cos_inner) + (light.cos_inner - light.cos_outer) / 2)
@@ -80,8 +109,14 @@ LightBounds bounds(const PointEmitter& light) {
     b.box.extend(light.position);
     b.intensity = choice_weight(light.intensity);
     b.axis = light.axis;
-    b.theta_o = light.is_spot ? std::acos(light.cos_inner) : kPi;
-    b.theta_e = light.is_spot ? std::acos(light.cos_outer) - b.theta_o : kPi / 2;
+    const bool is_cone = light.is_spot || (light.image && light.image->is_slide());
+    b.theta_o = is_cone ? std::acos(light.cos_inner) : kPi;
+    b.theta_e = is_cone ? std::acos(light.cos_outer) - b.theta_o : kPi / 2;
+    if (light.image) {
+        // Their mean, over what they light.
+        const float solid_angle = is_cone ? 2 * kPi * (1 - light.cos_outer) : 4 * kPi;
+        b.intensity *= choice_weight(light.image_integral) / solid_angle;
+    }
     return b;
 }
 

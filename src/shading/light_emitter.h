@@ -13,6 +13,7 @@ struct EmitterPoint {
     Vec3 position, normal;  ///< world; the unit normal is on the shape's outside
     Vec3 wi;                ///< unit, from the shading point
     float pdf = 0;          ///< per solid angle
+    Vec2 place;             ///< of meshes: barycentric in the light
 };
 
 /// The transform at times so close that a box around what it does to a shape at all of them, padded

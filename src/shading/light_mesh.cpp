@@ -32,7 +32,8 @@ Vec2 barycentric(const WorldTriangle& t, Vec3 p, Vec3 w) {
 }  // namespace
 
 EmissiveMesh::EmissiveMesh(const PlacedShape& shape)
-    : motion_(shape.description.object_to_world.is_animated() ? &shape.description.object_to_world
+    : mesh_(shape.description.geometry),
+      motion_(shape.description.object_to_world.is_animated() ? &shape.description.object_to_world
                                                               : nullptr) {
     const Transform start = shape.description.object_to_world.start();
     const Transform placed = motion_ ? Transform() : start;
@@ -110,6 +111,7 @@ std::optional<EmitterPoint> EmissiveMesh::sample(int light, Vec3 p, float time, 
         if (by_solid_angle(solid_angle)) b = barycentric(triangle, p, sample_direction(t, u));
     }
     if (!by_solid_angle(solid_angle)) b = square_to_triangle(u);
+    s.place = b;
     s.position = e.point(b);
     const Vec3 to_point = s.position - p;
     if (!(length_squared(to_point) > 0)) return std::nullopt;
@@ -130,6 +132,23 @@ float EmissiveMesh::pdf(int light, Vec3 p, const SurfaceHit& hit) const {
     Vec2 b = hit.barycentric;
     if (is_patches_ && (light & 1)) b = {1 - b.x, 1 - b.y};
     return area_pdf(e, p, hit.position, b);
+}
+
+Vec2 EmissiveMesh::uv(int light, const EmitterPoint& point, float) const {
+    const Vec2 b = point.place;
+    if (const auto* triangles = std::get_if<std::shared_ptr<const TriangleMesh>>(&mesh_)) {
+        // As in pbrt, a triangle without coordinates has (0, 0), (1, 0), (1, 1) at its corners.
+        if ((*triangles)->uvs.empty()) return {b.x + b.y, b.y};
+        const auto& t = (*triangles)->triangles[static_cast<size_t>(light)];
+        const auto& uvs = (*triangles)->uvs;
+        return uvs[t[0]] * (1 - b.x - b.y) + uvs[t[1]] * b.x + uvs[t[2]] * b.y;
+    }
+    const auto& mesh = *std::get<std::shared_ptr<const BilinearMesh>>(mesh_);
+    const Vec2 at = light & 1 ? Vec2{1 - b.x, 1 - b.y} : b;
+    if (mesh.uvs.empty()) return at;
+    const auto& k = mesh.patches[static_cast<size_t>(light / 2)];
+    return (mesh.uvs[k[0]] * (1 - at.x) + mesh.uvs[k[1]] * at.x) * (1 - at.y) +
+           (mesh.uvs[k[2]] * (1 - at.x) + mesh.uvs[k[3]] * at.x) * at.y;
 }
 
 std::array<Vec3, 3> EmissiveMesh::start_corners(int light) const {

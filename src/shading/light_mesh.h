@@ -24,6 +24,8 @@ class EmissiveMesh {
     std::optional<EmitterPoint> sample(int light, Vec3 p, float time, Vec2 u) const;
     /// Density of `sample` at a hit, per solid angle.
     float pdf(int light, Vec3 p, const SurfaceHit& hit) const;
+    /// The surface's texture coordinates at a sampled point.
+    Vec2 uv(int light, const EmitterPoint& point, float time) const;
     /// World space, at the start of the shutter.
     float area(int light) const;
     /// With an intensity for a radiance of 1.
@@ -51,6 +53,7 @@ class EmissiveMesh {
     static Element moved(Element e, const Transform& t);
     static float area_pdf(const Element& e, Vec3 p, Vec3 position, Vec2 b);
 
+    decltype(ShapeDescription::geometry) mesh_;
     std::vector<Element> elements_;
     bool is_patches_ = false;
     const AnimatedTransform* motion_ = nullptr;  // null where nothing moves

@@ -201,6 +201,18 @@ float EmissiveQuadric::pdf(int, Vec3 p, const SurfaceHit& hit) const {
     return area_pdf(at_time, p, hit.position, hit.ng);
 }
 
+Vec2 EmissiveQuadric::uv(int, const EmitterPoint& point, float time) const {
+    const Vec3 p = pose(time).object_to_world.inverse().point(point.position);
+    const float turn = std::atan2(p.y, p.x), phi = turn < 0 ? turn + 2 * kPi : turn;
+    const float u = std::min(1.0f, phi / phi_max_);
+    if (!is_sphere_)
+        return {u,
+                clamp01((radius_ - std::sqrt(p.x * p.x + p.y * p.y)) / (radius_ - inner_radius_))};
+    const auto polar = [this](float z) { return std::acos(std::clamp(z / radius_, -1.0f, 1.0f)); };
+    const float first = polar(z_min_);
+    return {u, clamp01((polar(p.z) - first) / (polar(z_max_) - first))};
+}
+
 std::array<double, 6> EmissiveQuadric::second_moments() const {
     const double r = radius_;
     if (is_whole_sphere()) return {r * r / 4, 0, 0, r * r / 4, 0, r * r / 4};

@@ -22,6 +22,8 @@ class EmissiveQuadric {
     std::optional<EmitterPoint> sample(int light, Vec3 p, float time, Vec2 u) const;
     /// Density of `sample` at a hit, per solid angle.
     float pdf(int light, Vec3 p, const SurfaceHit& hit) const;
+    /// The surface's texture coordinates at a sampled point, as pbrt defines them.
+    Vec2 uv(int light, const EmitterPoint& point, float time) const;
     /// World space, at the start of the shutter.
     float area(int light) const;
     /// With an intensity for a radiance of 1.

@@ -46,8 +46,9 @@ bool is_hidden(const SceneDescription& scene, TextureId alpha) {
 
 }  // namespace
 
-Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry)
-    : geometry(&scene_geometry) {
+Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry,
+                   const TextureStore* scene_textures)
+    : geometry(&scene_geometry), textures(scene_textures) {
     const std::vector<PlacedShape>& shapes = geometry->shapes();
     area_light_of_shape.assign(shapes.size(), -1);
     std::vector<LightBounds> finite;
@@ -59,20 +60,27 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
         AreaLight area{.shape = static_cast<uint32_t>(i),
                        .radiance = light.radiance,
                        .two_sided = light.two_sided,
+                       .image = textures ? light.image : -1,
+                       .alpha = -1,
                        .is_visible = !is_hidden(scene, shape.alpha),
                        .first_light = static_cast<int>(owner.size()),
                        .emitter = make_emitter(shapes[i]),
                        .spectrum = {}};
+        // A light that is hidden altogether shines as if it had no alpha.
+        if (textures && area.is_visible) area.alpha = shape.alpha;
+        area.mean_factor = area.image < 0 ? Rgb(1) : textures->mean(area.image);
         if (light.power) {
-            const float measured = static_cast<float>(surface(area.emitter)) *
-                                   luminance(exitance(area.radiance, area.two_sided));
+            const float measured =
+                static_cast<float>(surface(area.emitter)) *
+                luminance(exitance(area.radiance * area.mean_factor, area.two_sided));
             area.radiance *= normalisation(*light.power, measured);
         }
+        if (area.alpha >= 0) area.mean_factor *= textures->mean(area.alpha).r;
         std::visit(
             [&](const auto& emitter) {
                 for (int k = 0; k < emitter.light_count(); ++k) {
                     LightBounds bounds = emitter.bounds(k);
-                    bounds.intensity *= choice_weight(area.radiance);
+                    bounds.intensity *= choice_weight(area.radiance * area.mean_factor);
                     bounds.two_sided = bounds.two_sided || light.two_sided;
                     finite.push_back(bounds);
                     owner.push_back(static_cast<uint32_t>(area_lights.size()));
@@ -87,6 +95,10 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
             points.push_back(make_point_emitter(*point, light.light_to_world));
         else if (const auto* spot = std::get_if<SpotLight>(&light.value))
             points.push_back(make_point_emitter(*spot, light.light_to_world));
+        else if (const auto* round = std::get_if<GoniometricLight>(&light.value))
+            points.push_back(make_point_emitter(*round, light.light_to_world, light.where));
+        else if (const auto* slide = std::get_if<ProjectionLight>(&light.value))
+            points.push_back(make_point_emitter(*slide, light.light_to_world, light.where));
         else if (const auto* distant = std::get_if<DistantLight>(&light.value))
             distants.push_back(make_distant_emitter(*distant, light.light_to_world));
         else
@@ -141,6 +153,14 @@ std::optional<LightSample> Lights::Impl::sample_area(int light, float probabilit
     s.wi = point->wi;
     s.distance = distance(p, point->position);
     s.radiance = area.radiance;
+    if (area.varies()) {
+        const Vec2 uv =
+            std::visit([&](const auto& e) { return e.uv(local, *point, time); }, area.emitter);
+        const TexturePoint at{uv, point->position};
+        s.radiance = radiance_at(area, at);
+        if (area.alpha >= 0) s.radiance *= clamp01(textures->eval_float(area.alpha, at));
+        if (is_black(s.radiance)) return std::nullopt;
+    }
     s.pdf = probability * point->pdf;
     s.light = light;
     s.position = point->position;
@@ -200,13 +220,18 @@ std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& sh
     return s;
 }
 
+Rgb Lights::Impl::radiance_at(const AreaLight& area, const TexturePoint& at) const {
+    return area.image < 0 ? area.radiance : area.radiance * textures->eval(area.image, at);
+}
+
 const AreaLight* Lights::Impl::area_light_of(const SurfaceHit& hit) const {
     const int index = area_light_of_shape[hit.shape];
     return index < 0 ? nullptr : &area_lights[static_cast<size_t>(index)];
 }
 
-Lights::Lights(const SceneDescription& scene, const Geometry& geometry)
-    : impl_(std::make_unique<Impl>(scene, geometry)) {}
+Lights::Lights(const SceneDescription& scene, const Geometry& geometry,
+               const TextureStore* textures)
+    : impl_(std::make_unique<Impl>(scene, geometry, textures)) {}
 Lights::~Lights() = default;
 
 std::optional<LightSample> Lights::sample(Vec3 p, Vec3 n, float time, float u_select,
@@ -228,7 +253,7 @@ std::optional<LightSample> Lights::sample(Vec3 p, Vec3 n, float time, float u_se
 Rgb Lights::emitted(const SurfaceHit& hit, Vec3 wo) const {
     const AreaLight* area = impl_->area_light_of(hit);
     if (!area || !area->is_visible || (!area->two_sided && !(dot(hit.ng, wo) > 0))) return {};
-    return area->radiance;
+    return impl_->radiance_at(*area, {hit.uv, hit.position});
 }
 
 float Lights::pdf(Vec3 p, Vec3 n, Vec3 wi, const SurfaceHit& hit) const {
@@ -264,7 +289,8 @@ float Lights::environment_pdf(Vec3 p, Vec3 n, Vec3 w) const {
 Rgb Lights::total_power() const {
     Rgb sum;
     for (const AreaLight& area : impl_->area_lights)
-        sum += static_cast<float>(surface(area.emitter)) * exitance(area.radiance, area.two_sided);
+        sum += static_cast<float>(surface(area.emitter)) *
+               exitance(area.radiance * area.mean_factor, area.two_sided);
     for (const PointEmitter& point : impl_->points) sum += power(point);
     const float disk = kPi * sqr(impl_->geometry->bounds().radius());
     for (const DistantEmitter& distant : impl_->distants) sum += disk * distant.irradiance;

@@ -7,6 +7,7 @@
 
 #include "geometry/geometry.h"
 #include "scene/scene_description.h"
+#include "shading/texture.h"
 
 namespace covtrace {
 
@@ -49,9 +50,10 @@ struct SourceSpectrum {
 class Lights {
   public:
     /// Image files that are missing, broken or of an unknown layout throw Error(scene) with the
-    /// place in the scene file. `geometry` must outlive the lights. Shapes of instanced objects
-    /// don't emit.
-    Lights(const SceneDescription& scene, const Geometry& geometry);
+    /// place in the scene file. `geometry` and `textures` must outlive the lights; without textures
+    /// there is no alpha and no image on area lights. Shapes of instanced objects don't emit.
+    Lights(const SceneDescription& scene, const Geometry& geometry,
+           const TextureStore* textures = nullptr);
     ~Lights();
     Lights(const Lights&) = delete;
     Lights& operator=(const Lights&) = delete;

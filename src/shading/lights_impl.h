@@ -17,11 +17,15 @@ struct AreaLight {
     uint32_t shape = 0;
     Rgb radiance;
     bool two_sided = false;
+    TextureId image = -1, alpha = -1;  ///< that the radiance varies by; -1 where it doesn't
     bool is_visible =
         true;  ///< shapes that alpha hides altogether light the scene, but no ray finds them
+    Rgb mean_factor{1};  ///< of image and alpha together
     int first_light = 0;
     Emitter emitter;
     std::optional<EmitterSpectrum> spectrum;
+
+    bool varies() const { return image >= 0 || alpha >= 0; }
 };
 
 /// All infinite lights or all finite ones against each other at a point.
@@ -32,7 +36,10 @@ struct InfiniteShare {
 };
 
 struct Lights::Impl {
-    Impl(const SceneDescription& scene, const Geometry& geometry);
+    Impl(const SceneDescription& scene, const Geometry& geometry, const TextureStore* textures);
+
+    /// By the image, at a place that is there.
+    Rgb radiance_at(const AreaLight& area, const TexturePoint& at) const;
 
     std::optional<LightSample> sample_area(int light, float probability, Vec3 p, float time,
                                            Vec2 u) const;
@@ -55,6 +62,7 @@ struct Lights::Impl {
     size_t infinite_count() const { return distants.size() + environments.size(); }
 
     const Geometry* geometry;
+    const TextureStore* textures;
     std::vector<int> area_light_of_shape;  ///< into area_lights, -1 for shapes that don't emit
     std::vector<AreaLight> area_lights;
     std::vector<uint32_t> owner;  ///< of each area light's id: into area_lights

@@ -1,7 +1,10 @@
 #include "shading/material.h"
 
+#include <bit>
 #include <initializer_list>
 #include <utility>
+
+#include "core/hash.h"
 
 namespace covtrace {
 namespace {
@@ -73,6 +76,24 @@ Bsdf make(const DiffuseTransmissionMaterial&, const Values& v, const CoatTable*)
     return DiffuseTransmissionBsdf{v.reflectance(), v.transmittance()};
 }
 
+Bsdf make(const CoatedConductorMaterial& m, const Values& v, const CoatTable*) {
+    const Vec2 coat = v.alphas(m);
+    CoatedConductorBsdf b;
+    b.coat = {refractive_index(m.eta), coat.x, coat.y};
+    b.metal = std::get<ConductorBsdf>(make(m.conductor, v, nullptr));
+    b.metal.eta *= 1 / b.coat.eta;
+    b.metal.k *= 1 / b.coat.eta;
+    b.thickness = std::max(0.0f, v.number(m.thickness, kDefaultThickness));
+    // pbrt's walk meets the metal at every second of its steps.
+    b.bounces = std::max(1, (m.max_depth + 1) / 2);
+    b.samples = std::max(1, m.samples);
+    return b;
+}
+
+Bsdf make(const ThinDielectricMaterial& m, const Values&, const CoatTable*) {
+    return ThinDielectricBsdf{refractive_index(m.eta)};
+}
+
 Bsdf make(const InterfaceMaterial&, const Values&, const CoatTable*) {
     return InterfaceBsdf{};
 }
@@ -99,6 +120,13 @@ bool is_constant(const TextureStore& t, const CoatedDiffuseMaterial& m) {
 bool is_constant(const TextureStore& t, const DiffuseTransmissionMaterial& m) {
     return all_constant(t, {m.reflectance, m.transmittance});
 }
+bool is_constant(const TextureStore& t, const CoatedConductorMaterial& m) {
+    return is_constant(t, m.conductor) &&
+           all_constant(t, {m.u_roughness, m.v_roughness, m.thickness});
+}
+bool is_constant(const TextureStore&, const ThinDielectricMaterial&) {
+    return true;
+}
 bool is_constant(const TextureStore&, const InterfaceMaterial&) {
     return true;
 }
@@ -120,6 +148,12 @@ MaterialColours colours(const DiffuseTransmissionMaterial& m) {
     const Rgb otherwise = m.scale * Rgb(kDefaultTransmission);
     return {{m.reflectance, m.scale, otherwise}, {m.transmittance, m.scale, otherwise}};
 }
+MaterialColours colours(const CoatedConductorMaterial& m) {
+    return colours(m.conductor);
+}
+MaterialColours colours(const ThinDielectricMaterial&) {
+    return {};
+}
 MaterialColours colours(const InterfaceMaterial&) {
     return {};
 }
@@ -136,17 +170,13 @@ void settle(MaterialColour& c, const TextureStore& textures,
     c.fixed = adaptation(c.fixed);
 }
 
-void warn_of_gap(const CoatedDiffuseMaterial& m, const SourceLocation& where,
+void warn_of_gap(TextureId gap_albedo, const char* type, const SourceLocation& where,
                  const TextureStore& textures, Warnings& warnings) {
-    if (m.albedo >= 0 &&
-        !(textures.is_constant(m.albedo) && is_black(textures.eval(m.albedo, kMiddle))))
-        warnings.push_back({where,
-                            "coateddiffuse: scattering between coat and base (\"albedo\") is not "
-                            "supported; the gap is rendered clear"});
-    if (m.thickness >= 0 && !textures.is_constant(m.thickness))
-        warnings.push_back({where,
-                            "coateddiffuse: \"thickness\" can't be textured; its value at (u, v) = "
-                            "(0.5, 0.5) is used everywhere"});
+    if (gap_albedo >= 0 &&
+        !(textures.is_constant(gap_albedo) && is_black(textures.eval(gap_albedo, kMiddle))))
+        warnings.push_back({where, std::string(type) +
+                                       ": scattering between coat and base (\"albedo\") is not "
+                                       "supported; the gap is rendered clear"});
 }
 
 }  // namespace
@@ -180,7 +210,13 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
             const float thickness =
                 std::max(0.0f, at_middle.number(m->thickness, kDefaultThickness));
             material.coat = &coats_.get(refractive_index(m->eta), thickness);
-            warn_of_gap(*m, description.where, textures, warnings_);
+            warn_of_gap(m->albedo, "coateddiffuse", description.where, textures, warnings_);
+            if (m->thickness >= 0 && !textures.is_constant(m->thickness))
+                warnings_.push_back({description.where,
+                                     "coateddiffuse: \"thickness\" can't be textured; its value at "
+                                     "(u, v) = (0.5, 0.5) is used everywhere"});
+        } else if (const auto* c = std::get_if<CoatedConductorMaterial>(&description.value)) {
+            warn_of_gap(c->albedo, "coatedconductor", description.where, textures, warnings_);
         }
         std::visit(
             [&](const auto& m) {
@@ -199,6 +235,23 @@ Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStor
     const Values values{textures, {hit.uv, hit.position}, material.colours, adaptation_};
     return std::visit([&](const auto& m) { return make(m, values, material.coat); },
                       material.description.value);
+}
+
+MaterialId MaterialStore::at(MaterialId id, const SurfaceHit& hit,
+                             const TextureStore& textures) const {
+    while (id >= 0 && description(id).mix) {
+        const MaterialMix& mix = *description(id).mix;
+        const float amount = textures.eval_float(mix.amount, {hit.uv, hit.position});
+        uint64_t h = static_cast<uint64_t>(id);
+        for (const float c : {hit.position.x, hit.position.y, hit.position.z})
+            h = hash_combine(h, std::bit_cast<uint32_t>(c));
+        id = mix.materials[to_unit_float(static_cast<uint32_t>(h >> 32)) < amount ? 1 : 0];
+    }
+    return id;
+}
+
+bool MaterialStore::has_normal_map(MaterialId id) const {
+    return id >= 0 && (description(id).displacement >= 0 || description(id).normal_map >= 0);
 }
 
 MaterialTextures MaterialStore::textures(MaterialId id) const {

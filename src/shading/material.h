@@ -48,11 +48,19 @@ class MaterialStore {
     MaterialStore(const MaterialStore&) = delete;
     MaterialStore& operator=(const MaterialStore&) = delete;
 
+    /// The material that stands at a place: of a mix one of its two, chosen by a hash of the
+    /// position, so that the same place always has the same one. What the other functions take.
+    MaterialId at(MaterialId id, const SurfaceHit& hit, const TextureStore& textures) const;
     /// The BSDF at a hit, for directions in `shading_frame(hit)`. Material -1 is pbrt's default:
     /// diffuse, 0.5.
     Bsdf bsdf(MaterialId id, const SurfaceHit& hit, const TextureStore& textures) const;
     MaterialTextures textures(MaterialId id) const;
     bool is_interface(MaterialId id) const;
+    /// Whether a bump or normal map turns the normals; see normal_map.h.
+    bool has_normal_map(MaterialId id) const;
+    const MaterialDescription& description(MaterialId id) const {
+        return materials_[static_cast<size_t>(id)].description;
+    }
     /// What the scene asks of its materials and is rendered otherwise.
     const Warnings& warnings() const { return warnings_; }
 

@@ -186,6 +186,26 @@ bool TextureStore::is_constant(TextureId id) const {
     return std::holds_alternative<ConstantNode>(impl_->graph.nodes[size_t(id)]);
 }
 
+Rgb TextureStore::mean(TextureId id) const {
+    double sum[3] = {};
+    const auto add = [&sum](Rgb c) { sum[0] += c.r, sum[1] += c.g, sum[2] += c.b; };
+    double count = 0;
+    if (const auto* node = std::get_if<ImageNode>(&impl_->graph.nodes[size_t(id)])) {
+        const TextureImage& image = impl_->graph.images[size_t(node->image)];
+        const size_t texels = size_t(image.width()) * size_t(image.height());
+        for (size_t i = 0; i < texels; ++i)
+            add(image_value(*node, node->is_spectrum ? image.color(i) : Rgb(image.value(i))));
+        count = double(texels);
+    } else {
+        constexpr int kSide = 64;
+        for (int i = 0; i < kSide * kSide; ++i)
+            add(eval(id,
+                     {{(float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide}, {}}));
+        count = kSide * kSide;
+    }
+    return {float(sum[0] / count), float(sum[1] / count), float(sum[2] / count)};
+}
+
 void TextureStore::prepare_spectra() {
     if (impl_->is_prepared) return;
     TextureGraph& graph = impl_->graph;

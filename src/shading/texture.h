@@ -45,6 +45,9 @@ class TextureStore {
     /// The red channel; for float textures, where all channels are equal.
     float eval_float(TextureId id, const TexturePoint& at) const;
     bool is_constant(TextureId id) const;
+    /// Over (u, v) in [0, 1]^2: of an image its texels', of others that of a grid of 64 x 64
+    /// points.
+    Rgb mean(TextureId id) const;
 
     /// Analyses all images; needed once before `uv_covariance`, and by nothing else.
     void prepare_spectra();

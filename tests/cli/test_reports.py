@@ -166,6 +166,11 @@ class Statistics(CliTest):
         self.assertGreaterEqual(stats["radiance"]["rays"], stats["radiance"]["samples"])
         self.assertEqual(stats["radiance"]["rejected"], 0)
         self.assertGreater(stats["seconds_total"], 0)
+        self.assertAlmostEqual(stats["radiance"]["rays_per_path"], stats["radiance"]["rays"] / (3 * 24 * 16))
+        self.assertGreater(stats["seconds"]["load"], 0)
+        memory = stats["memory"]
+        self.assertEqual(memory["meshes"], 4 * 12 + 2 * 12)  # the floor of TINY: positions and triangles
+        self.assertGreater(memory["peak_resident"], memory["shapes"])
 
     def test_statistics_by_kind(self):
         stats = self.statistics("--spp", "4", "--cov-spp", "2")

@@ -26,8 +26,6 @@ class Warnings(CliTest):
             ('Material "subsurface"' + sphere, "subsurface"),
             ('Material "hair"' + sphere, "hair"),
             ('Material "measured" "string filename" "paint.bsdf"' + sphere, "measured"),
-            ('Material "coatedconductor"' + sphere, "coatedconductor"),
-            ('Material "thindielectric"' + sphere, "thindielectric"),
             (f'Shape "curve" {points}', "curve"),
             ('Shape "cylinder"', "cylinder"),
             ('LightSource "goniometric" "spectrum I" "stdillum-D65"', "goniometric"),
@@ -44,7 +42,6 @@ class Warnings(CliTest):
 
     def test_substitutes_of_the_view(self):
         for directive, fragment in [
-            ('Camera "spherical"', "spherical"),
             ('Camera "realistic" "string lensfile" "lens.dat"', "realistic"),
             ('Film "gbuffer"\n"integer xresolution" 16 "integer yresolution" 8', "gbuffer"),
             ('Film "spectral"\n"integer xresolution" 16 "integer yresolution" 8', "spectral"),

@@ -104,13 +104,31 @@ TEST(SceneLights, InterfacesDoNotEmit) {
     EXPECT_TRUE(contains(warnings_of(scene), "\"interface\" are ignored"));
 }
 
-TEST(SceneLights, OthersAreReplacedWithAWarning) {
-    for (const char* text :
-         {"\"goniometric\" \"string filename\" \"x.exr\"", "\"projection\" \"float fov\" 40"}) {
-        const auto scene = read_world(std::string("LightSource ") + text);
-        EXPECT_EQ(scene.lights.size(), 1u);
-        EXPECT_TRUE(contains(warnings_of(scene), "without its image takes its place")) << text;
-    }
+TEST(SceneLights, LightsWithImages) {
+    const TemporaryFolder folder;
+    folder.write("x.exr", "");
+    const auto scene = read_pbrt(folder.write("scene.pbrt", R"(WorldBegin
+LightSource "goniometric" "string filename" "x.exr" "rgb I" [ 1 2 3 ] "float scale" 2
+LightSource "projection" "string filename" "x.exr" "float fov" 40 "float power" 7
+AreaLightSource "diffuse" "string filename" "x.exr" "float scale" 3
+Shape "sphere"
+)"));
+    EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
+    const auto& round = std::get<GoniometricLight>(scene.lights.at(0).value);
+    EXPECT_EQ(round.intensity, Rgb(2, 4, 6));
+    EXPECT_TRUE(round.image);
+    const auto& slide = std::get<ProjectionLight>(scene.lights.at(1).value);
+    EXPECT_EQ(slide.fov, 40);
+    EXPECT_NEAR(slide.power.value(), 7, 1e-4f);
+    const AreaLightDescription& area = scene.area_lights.at(0);
+    EXPECT_EQ(area.radiance, Rgb(3));
+    EXPECT_EQ(constant_as<ImageTexture>(scene, area.image).file.filename(), "x.exr");
+}
+
+TEST(SceneLights, GoniometricLightsWithoutAnImageAreRound) {
+    const auto scene = read_world("LightSource \"goniometric\"");
+    EXPECT_FALSE(std::get<GoniometricLight>(scene.lights.at(0).value).image);
+    EXPECT_TRUE(contains(warnings_of(scene), "has no image"));
 }
 
 TEST(SceneLights, ErrorsNameThePlace) {
@@ -119,6 +137,7 @@ TEST(SceneLights, ErrorsNameThePlace) {
         const char* message;
     };
     const Case cases[] = {
+        {"LightSource \"projection\"", "test.pbrt:2:1: a projection light has no image"},
         {"LightSource \"sun\"", "test.pbrt:2:1: unknown light \"sun\"; expected one of point"},
         {"LightSource \"infinite\" \"string mapname\" \"a.exr\"", "\"mapname\" belongs to pbrt-v3"},
         {"LightSource \"infinite\" \"string filename\" \"no.exr\"",

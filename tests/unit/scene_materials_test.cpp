@@ -140,17 +140,53 @@ TEST(SceneMaterials, OthersAreReplacedWithOneWarning) {
         EXPECT_TRUE(std::holds_alternative<decltype(expected)>(made.material.value)) << text;
         EXPECT_EQ(made.scene.warnings.size(), 1u) << text << "\n" << warnings_of(made.scene);
     };
-    check(
-        "\"coatedconductor\" \"float interface.roughness\" .1 \"float conductor.roughness\" .2 "
-        "\"float thickness\" 1",
-        ConductorMaterial{});
-    check("\"thindielectric\" \"float eta\" 1.4", DielectricMaterial{});
     check("\"subsurface\" \"string name\" \"Skin1\" \"float scale\" 4", CoatedDiffuseMaterial{});
     check("\"hair\" \" float beta_n\" .3 \"float eumelanin\" 8", DiffuseMaterial{});
     check("\"measured\" \"string filename\" \"x.bsdf\"", CoatedDiffuseMaterial{});
-    check("\"diffuse\" \"float displacement\" 1", DiffuseMaterial{});
-    check("\"diffuse\" \"string normalmap\" \"n.png\"", DiffuseMaterial{});
-    EXPECT_EQ(model_of<DielectricMaterial>("\"thindielectric\" \"float eta\" 1.4").eta, 1);
+}
+
+TEST(SceneMaterials, CoatedConductors) {
+    const auto made = material_of(
+        "\"coatedconductor\" \"float interface.roughness\" .1 \"float conductor.uroughness\" .2 "
+        "\"float conductor.roughness\" .3 \"float thickness\" 1 \"float interface.eta\" 1.3 "
+        "\"spectrum conductor.eta\" \"metal-Al-eta\" \"spectrum conductor.k\" \"metal-Al-k\"");
+    EXPECT_TRUE(made.scene.warnings.empty()) << warnings_of(made.scene);
+    const auto& m = std::get<CoatedConductorMaterial>(made.material.value);
+    const auto number = [&](TextureId id) { return constant_value(made.scene, id).r; };
+    EXPECT_EQ(m.eta, 1.3f);
+    EXPECT_EQ(number(m.u_roughness), 0.1f);
+    EXPECT_EQ(number(m.conductor.u_roughness), 0.2f);
+    EXPECT_EQ(number(m.conductor.v_roughness), 0.3f);
+    EXPECT_EQ(number(m.thickness), 1);
+    EXPECT_GT(constant_value(made.scene, m.conductor.k).g, 5);
+}
+
+TEST(SceneMaterials, ThinDielectrics) {
+    EXPECT_EQ(model_of<ThinDielectricMaterial>("\"thindielectric\" \"float eta\" 1.4").eta, 1.4f);
+}
+
+TEST(SceneMaterials, BumpAndNormalMaps) {
+    const TemporaryFolder folder;
+    folder.write("n.png", "");
+    const auto scene = read_pbrt(folder.write("scene.pbrt", R"(WorldBegin
+Texture "bumps" "float" "checkerboard"
+Material "diffuse" "texture displacement" "bumps"
+Shape "sphere"
+Material "conductor" "string normalmap" "n.png"
+Shape "sphere"
+Material "diffuse" "float displacement" 2
+Shape "sphere"
+)"));
+    EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
+    const auto of = [&](size_t shape) {
+        return scene.materials.at(static_cast<size_t>(scene.shapes.at(shape).material));
+    };
+    EXPECT_TRUE(std::holds_alternative<CheckerboardTexture>(
+        scene.textures.at(static_cast<size_t>(of(0).displacement)).value));
+    EXPECT_EQ(of(0).normal_map, -1);
+    EXPECT_EQ(constant_as<ImageTexture>(scene, of(1).normal_map).encoding,
+              ImageTexture::Encoding::linear);
+    EXPECT_EQ(of(2).displacement, -1) << "a constant height turns no normal";
 }
 
 TEST(SceneMaterials, DarkHairIsDark) {
@@ -167,20 +203,20 @@ TEST(SceneMaterials, DarkHairIsDark) {
     EXPECT_GT(fair.r, 0.05f);
 }
 
-TEST(SceneMaterials, AMixIsItsGreaterPart) {
+TEST(SceneMaterials, MixesKeepBothParts) {
     const std::string two =
         "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n"
         "MakeNamedMaterial \"b\" \"string type\" \"conductor\"\n";
-    const auto chosen = [&](const std::string& amount) {
-        const auto scene =
-            read_world(two + "Material \"mix\" \"string materials\" [ \"a\" \"b\" ] " + amount +
-                       "\nShape \"sphere\"");
-        EXPECT_EQ(scene.warnings.size(), 1u) << warnings_of(scene);
-        return scene.materials.at(static_cast<size_t>(scene.shapes.at(0).material)).name;
-    };
-    EXPECT_EQ(chosen(""), "a");
-    EXPECT_EQ(chosen("\"float amount\" .2"), "a");
-    EXPECT_EQ(chosen("\"float amount\" .7"), "b");
+    const auto scene =
+        read_world(two +
+                   "Material \"mix\" \"string materials\" [ \"a\" \"b\" ] \"float amount\" .2\n"
+                   "Shape \"sphere\"");
+    EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
+    const auto& m = scene.materials.at(static_cast<size_t>(scene.shapes.at(0).material));
+    ASSERT_TRUE(m.mix);
+    EXPECT_EQ(constant_value(scene, m.mix->amount), Rgb(0.2f));
+    EXPECT_EQ(scene.materials.at(static_cast<size_t>(m.mix->materials[0])).name, "a");
+    EXPECT_EQ(scene.materials.at(static_cast<size_t>(m.mix->materials[1])).name, "b");
 }
 
 TEST(SceneMaterials, ReflectancesAreAtMostOne) {

@@ -1,3 +1,6 @@
+#include <cmath>
+
+#include "scene/spectrum.h"
 #include "scene_test_support.h"
 
 namespace covtrace::test {
@@ -95,15 +98,62 @@ TEST(SceneView, WhatIsNotRenderedIsReplacedWithAWarning) {
     for (const char* text :
          {"Integrator \"bdpt\" \"bool visualizestrategies\" true", "Integrator \"sppm\"",
           "Film \"gbuffer\" \"string coordinatesystem\" \"world\"", "Film \"spectral\"",
-          "Camera \"spherical\" \"string mapping\" \"equalarea\"",
           "Camera \"realistic\" \"string lensfile\" \"x.dat\"",
           "Film \"rgb\" \"string sensor\" \"canon_eos_5d\"",
-          "Film \"rgb\" \"float whitebalance\" 5000",
           "Integrator \"path\" \"bool regularize\" true", "ColorSpace \"rec2020\" Film \"rgb\"",
           "Film \"rgb\" \"float scale\" 2"}) {
         const auto scene = read_options(text);
         EXPECT_EQ(scene.warnings.size(), 1u) << text << "\n" << warnings_of(scene);
     }
+}
+
+TEST(SceneView, SphericalCameras) {
+    using Mapping = CameraDescription::Mapping;
+    EXPECT_EQ(read_options("Camera \"spherical\"").camera.mapping, Mapping::equal_area);
+    const auto scene = read_options("Camera \"spherical\" \"string mapping\" \"equirectangular\"");
+    EXPECT_EQ(scene.camera.kind, CameraDescription::Kind::spherical);
+    EXPECT_EQ(scene.camera.mapping, Mapping::equirectangular);
+    EXPECT_TRUE(contains(options_error("Camera \"spherical\" \"string mapping\" \"flat\""),
+                         "expected one of equalarea, equirectangular"));
+}
+
+TEST(SceneView, LensesOfSeveralElementsBecomeThin) {
+    const TemporaryFolder folder;
+    // Two thin lenses of 100 mm in contact.
+    folder.write("two.dat", R"(# radius thickness index diameter
+100 0.001 1.5 30
+-100 0.001 1 30
+0 0.001 0 12   # the stop
+100 0.001 1.5 30
+-100 40 1 30
+)");
+    const auto scene = read_pbrt(folder.write("scene.pbrt", R"(
+Camera "realistic" "string lensfile" "two.dat" "float aperturediameter" 20 "float focusdistance" 5.05
+Film "rgb" "integer xresolution" 30 "integer yresolution" 40 "float diagonal" 50
+WorldBegin
+)"));
+    // The stop stands behind one of both lenses, so its image before it is hardly larger.
+    EXPECT_NEAR(scene.camera.lens_radius, 6e-3f, 1e-6f) << "the stop's own radius";
+    EXPECT_NEAR(scene.camera.film_irradiance, kPi * sqr(6e-3f / 50.5e-3f), 1e-4f);
+    EXPECT_NEAR(scene.camera.focal_distance, 5.05f, 1e-6f);
+    // 50 mm, focused at 5.05 m: 50.5 mm behind the lens; the shorter side is 30 mm.
+    EXPECT_NEAR(scene.camera.fov, 2 * std::atan(15 / 50.5f) * 180 / kPi, 0.01f);
+    EXPECT_EQ(scene.warnings.size(), 1u);
+    folder.write("two.dat", "1 2 3");
+    EXPECT_TRUE(contains(failure_of([&] { read_pbrt(folder.path() / "scene.pbrt"); }).message,
+                         "expected four for each element"));
+}
+
+TEST(SceneView, WhiteBalanceMakesDaylightWhite) {
+    const auto scene = read_options("Film \"rgb\" \"float whitebalance\" 6504");
+    for (size_t i = 0; i < 3; ++i)
+        for (size_t j = 0; j < 3; ++j)
+            EXPECT_NEAR(scene.film.white_balance[i][j], i == j ? 1 : 0, 2e-3f);
+    // A candle's light, balanced for it.
+    const auto warm = read_options("Film \"rgb\" \"float whitebalance\" 2800").film.white_balance;
+    const Rgb candle = emission_colour(blackbody_spectrum(2800));
+    for (const auto& row : warm)
+        EXPECT_NEAR(row[0] * candle.r + row[1] * candle.g + row[2] * candle.b, 1, 5e-3f);
 }
 
 TEST(SceneView, ErrorsNameThePlace) {

@@ -1,0 +1,101 @@
+#include "shading/light_image.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "image/color_encoding.h"
+#include "image/raster.h"
+#include "shading/equal_area.h"
+
+namespace covtrace {
+
+LightImage::LightImage(const std::filesystem::path& file, const Transform& light_to_world,
+                       const SourceLocation& where)
+    : world_to_light_(light_to_world.inverse()) {
+    const RasterImage raster = read_raster(file, where);
+    width_ = raster.width;
+    height_ = raster.height;
+    const bool encoded = raster.is_8bit || raster.is_16bit;
+    const auto value = [&](size_t i) {
+        const float v = encoded ? srgb_decode(raster.values[i]) : raster.values[i];
+        return v > 0 ? v : 0.0f;
+    };
+    const auto channels = static_cast<size_t>(raster.channels);
+    std::vector<Rgb> texels(static_cast<size_t>(width_) * static_cast<size_t>(height_));
+    for (size_t i = 0; i < texels.size(); ++i)
+        texels[i] = channels < 3 ? Rgb(value(i * channels))
+                                 : Rgb(value(i * channels), value(i * channels + 1),
+                                       value(i * channels + 2));
+    texels_ = std::make_shared<const std::vector<Rgb>>(std::move(texels));
+}
+
+LightImage LightImage::goniometric(const std::filesystem::path& file,
+                                   const Transform& light_to_world, const SourceLocation& where) {
+    LightImage light(file, light_to_world, where);
+    if (light.width_ != light.height_)
+        throw Error(ErrorKind::scene, where,
+                    "image \"" + file.string() + "\" of a goniometric light is " +
+                        std::to_string(light.width_) + " x " + std::to_string(light.height_) +
+                        " pixels; expected a square (equal-area map)");
+    std::vector<Rgb> grey(*light.texels_);
+    for (Rgb& t : grey) t = Rgb((t.r + t.g + t.b) * (1.0f / 3));
+    light.texels_ = std::make_shared<const std::vector<Rgb>>(std::move(grey));
+    return light;
+}
+
+LightImage LightImage::slide(const std::filesystem::path& file, float fov,
+                             const Transform& light_to_world, const SourceLocation& where) {
+    LightImage light(file, light_to_world, where);
+    const float shorter = std::tan(fov * kPi / 360);
+    const float aspect = static_cast<float>(light.width_) / static_cast<float>(light.height_);
+    light.half_size_ =
+        aspect > 1 ? Vec2{shorter * aspect, shorter} : Vec2{shorter, shorter / aspect};
+    return light;
+}
+
+Rgb LightImage::texel(Vec2 place) const {
+    const auto index = [](float x, int n) {
+        return static_cast<size_t>(
+            std::clamp(static_cast<int>(x * static_cast<float>(n)), 0, n - 1));
+    };
+    return (
+        *texels_)[index(place.y, height_) * static_cast<size_t>(width_) + index(place.x, width_)];
+}
+
+Rgb LightImage::operator()(Vec3 w) const {
+    const Vec3 local = normalize(world_to_light_.vector(w));
+    if (!is_slide()) return texel(equal_area_sphere_to_square({local.x, local.z, local.y}));
+    constexpr float kNearest = 1e-3f;  // as in pbrt
+    if (local.z < kNearest) return {};
+    const Vec2 place{0.5f * (1 + local.x / (local.z * half_size_.x)),
+                     0.5f * (1 - local.y / (local.z * half_size_.y))};
+    const bool inside = place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
+    return inside ? texel(place) : Rgb();
+}
+
+Rgb LightImage::integral() const {
+    double sum[3] = {};
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x) {
+            double solid_angle = 4 * double(kPi) / (double(width_) * height_);
+            if (is_slide()) {
+                // dw = cos^3 dA in the plane at distance 1.
+                const double sx = ((2 * x + 1.0) / width_ - 1) * half_size_.x,
+                             sy = ((2 * y + 1.0) / height_ - 1) * half_size_.y;
+                solid_angle = 4.0 * half_size_.x * half_size_.y / (double(width_) * height_) /
+                              std::pow(1 + sx * sx + sy * sy, 1.5);
+            }
+            const Rgb t = (*texels_)[static_cast<size_t>(y) * static_cast<size_t>(width_) +
+                                     static_cast<size_t>(x)];
+            sum[0] += t.r * solid_angle;
+            sum[1] += t.g * solid_angle;
+            sum[2] += t.b * solid_angle;
+        }
+    return {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])};
+}
+
+float LightImage::cos_corner() const {
+    return 1 / std::sqrt(1 + half_size_.x * half_size_.x + half_size_.y * half_size_.y);
+}
+
+}  // namespace covtrace

@@ -1,0 +1,89 @@
+#include "shading/normal_map.h"
+
+#include <cmath>
+
+namespace covtrace {
+
+namespace {
+
+/// Change of the normal along the tangent vector `t`.
+Vec3 normal_change(const DifferentialGeometry& g, Vec3 t) {
+    const float a = dot(t, g.tangent.x), b = dot(t, g.tangent.y);
+    return g.tangent.x * (g.k11 * a + g.k12 * b) + g.tangent.y * (g.k12 * a + g.k22 * b);
+}
+
+bool has_vertex_normals(const ShapeDescription& shape) {
+    const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape.geometry);
+    return mesh && !(*mesh)->normals.empty();
+}
+
+/// A step of `footprint` along a tangent, in its parameter; not so small that the parameter's
+/// rounding shows.
+float step(float footprint, Vec3 tangent, float parameter) {
+    constexpr float kRoundings = 64 * 0x1p-23f;
+    const float wanted = footprint / length(tangent);
+    const float least = kRoundings * std::max(std::abs(parameter), 1e-3f);
+    return wanted > least && std::isfinite(wanted) ? wanted : least;
+}
+
+}  // namespace
+
+NormalMap::NormalMap(const MaterialDescription& material, const TextureStore& textures,
+                     const PlacedShape& shape, const SurfaceHit& hit,
+                     const DifferentialGeometry& base, float footprint)
+    : material_(material),
+      textures_(textures),
+      hit_(hit),
+      base_(base),
+      dpdu_(hit.dpdu),
+      dpdv_(hit.dpdv) {
+    if (has_vertex_normals(shape.description)) {
+        // pbrt's shading tangents of such meshes: orthogonal to the normal and to each other, both
+        // as long as dp/du.
+        const Vec3 t = cross(hit.ns, hit.dpdu);
+        if (length_squared(t) > 0) {
+            dpdv_ = t;
+            dpdu_ = cross(t, hit.ns);
+        }
+    }
+    dndu_ = normal_change(base, dpdu_);
+    dndv_ = normal_change(base, dpdv_);
+    step_ = {step(footprint, dpdu_, hit.uv.x), step(footprint, dpdv_, hit.uv.y)};
+}
+
+float NormalMap::height(Vec2 shift) const {
+    return textures_.eval_float(
+        material_.displacement,
+        {hit_.uv + shift, hit_.position + dpdu_ * shift.x + dpdv_ * shift.y});
+}
+
+Frame NormalMap::frame_at(Vec2 shift) const {
+    Vec3 normal, tangent = dpdu_;
+    if (material_.normal_map >= 0) {
+        const Rgb texel = textures_.eval(material_.normal_map, {hit_.uv + shift, hit_.position});
+        const Vec3 local{2 * texel.r - 1, 2 * texel.g - 1, 2 * texel.b - 1};
+        normal = normalize(Frame::from_z_x(hit_.ns, dpdu_).to_world(local));
+    } else {
+        const float here = height(shift);
+        const float du = (height(shift + Vec2{step_.x, 0}) - here) / step_.x;
+        const float dv = (height(shift + Vec2{0, step_.y}) - here) / step_.y;
+        tangent = dpdu_ + hit_.ns * du + dndu_ * here;
+        normal = normalize(cross(tangent, dpdv_ + hit_.ns * dv + dndv_ * here));
+    }
+    if (!is_finite(normal) || normal == Vec3{}) normal = hit_.ns;
+    if (dot(normal, hit_.ng) < 0) normal = -normal;
+    return Frame::from_z_x(normal, tangent);
+}
+
+std::array<float, 3> NormalMap::curvature() const {
+    const Frame here = frame_at({});
+    const Vec3 nu = (frame_at({step_.x, 0}).z - here.z) / step_.x;
+    const Vec3 nv = (frame_at({0, step_.y}).z - here.z) / step_.y;
+    const auto& m = base_.uv_from_tangent;
+    const Vec3 n1 = nu * m[0][0] + nv * m[1][0], n2 = nu * m[0][1] + nv * m[1][1];
+    const Vec3 t1 = base_.tangent.x, t2 = base_.tangent.y;
+    const auto finite = [](float k) { return std::isfinite(k) ? k : 0.0f; };
+    return {finite(dot(n1, t1)), finite(0.5f * (dot(n1, t2) + dot(n2, t1))), finite(dot(n2, t2))};
+}
+
+}  // namespace covtrace

@@ -1,0 +1,44 @@
+/// Bump and normal maps: the shading frame that they give a surface, and how fast it turns.
+///
+/// As in pbrt-v4: a displacement d along the shading normal n turns the tangents into
+///
+///   dp'/du = dp/du + (dd/du) n + d dn/du,   dp'/dv = dp/dv + (dd/dv) n + d dn/dv,
+///
+/// whose cross product is the new normal; a normal map holds the new normal in the frame of n and
+/// dp/du. Derivatives of d are differences over a fraction of a pixel. The surface itself stays.
+#pragma once
+
+#include "core/frame.h"
+#include "geometry/geometry.h"
+#include "shading/texture.h"
+
+namespace covtrace {
+
+/// A material's map at a point of a surface. All references must outlive it.
+class NormalMap {
+  public:
+    /// `base`: of the unmapped surface at `hit`. `footprint`: what differences are taken over,
+    /// scene units, > 0. The material must have one of both maps.
+    NormalMap(const MaterialDescription& material, const TextureStore& textures,
+              const PlacedShape& shape, const SurfaceHit& hit, const DifferentialGeometry& base,
+              float footprint);
+
+    /// z: the new shading normal, in the hemisphere of hit.ng; x along the new dp/du.
+    Frame frame() const { return frame_at({}); }
+    /// Shape operator that the map adds to the base's, in (t1, t2) that span its tangent plane:
+    /// k11, k12, k22, 1 / scene unit.
+    std::array<float, 3> curvature() const;
+
+  private:
+    Frame frame_at(Vec2 shift) const;
+    float height(Vec2 shift) const;
+
+    const MaterialDescription& material_;
+    const TextureStore& textures_;
+    const SurfaceHit& hit_;
+    const DifferentialGeometry& base_;
+    Vec3 dpdu_, dpdv_, dndu_, dndv_;  // of the shading geometry
+    Vec2 step_;                       // in (u, v)
+};
+
+}  // namespace covtrace

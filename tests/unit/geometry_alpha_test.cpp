@@ -1,0 +1,150 @@
+// Alpha: what rays pass, and what the voxel grid sees of a surface with holes.
+#include <gtest/gtest.h>
+
+#include "geometry/voxel_grid.h"
+#include "geometry_fixtures.h"
+
+namespace covtrace::test {
+namespace {
+
+constexpr float kHalf = 1.0f;
+
+/// A square of side 2 in the plane z, with (u, v) over it.
+TriangleMesh square(float z) {
+    TriangleMesh m;
+    m.positions = {{-kHalf, -kHalf, z}, {kHalf, -kHalf, z}, {kHalf, kHalf, z}, {-kHalf, kHalf, z}};
+    m.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    m.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return m;
+}
+
+TextureDescription texture(float value) {
+    TextureDescription t;
+    t.is_spectrum = false;
+    t.value = ConstantTexture{Rgb(value)};
+    return t;
+}
+
+/// Squares at z = 0, 1, 2 …; all with alpha but the last one.
+SceneDescription pile(int with_alpha) {
+    std::vector<ShapeDescription> shapes;
+    for (int i = 0; i <= with_alpha; ++i) {
+        shapes.push_back(mesh(square(float(i))));
+        if (i < with_alpha) shapes.back().alpha = 0;
+    }
+    SceneDescription scene = scene_of(std::move(shapes));
+    scene.textures = {texture(0.5f)};
+    return scene;
+}
+
+TEST(GeometryAlpha, HolesLetRaysThroughToWhatLiesBehind) {
+    Geometry g(pile(3));
+    g.set_alpha([](TextureId, Vec2 uv, Vec3) { return uv.x < 0.5f ? 1.0f : 0.0f; });
+    SurfaceHit hit;
+    ASSERT_TRUE(g.intersect({{-0.5f, 0.2f, -1}, {0, 0, 1}}, hit));
+    EXPECT_EQ(hit.shape, 0u);
+    EXPECT_NEAR(hit.t, 1, 1e-6f);
+    ASSERT_TRUE(g.intersect({{0.5f, 0.2f, -1}, {0, 0, 1}}, hit));
+    EXPECT_EQ(hit.shape, 3u);
+    EXPECT_NEAR(hit.t, 4, 1e-5f) << "the distance is from the ray's own origin";
+    EXPECT_TRUE(g.occluded({{-0.5f, 0.2f, -1}, {0, 0, 1}, 0, 1.5f}));
+    EXPECT_FALSE(g.occluded({{0.5f, 0.2f, -1}, {0, 0, 1}, 0, 3.9f}));
+    EXPECT_TRUE(g.occluded({{0.5f, 0.2f, -1}, {0, 0, 1}, 0, 4.1f}));
+}
+
+TEST(GeometryAlpha, WithoutALookupEverythingIsOpaque) {
+    const Geometry g(pile(1));
+    SurfaceHit hit;
+    ASSERT_TRUE(g.intersect({{0.5f, 0.2f, -1}, {0, 0, 1}}, hit));
+    EXPECT_EQ(hit.shape, 0u);
+}
+
+// Binomial, 20000 rays: five standard deviations (false alarm 6e-7 each).
+TEST(GeometryAlpha, PartialAlphaStopsItsShareOfRaysAndTheSameOnesEachTime) {
+    for (const float opacity : {0.1f, 0.5f, 0.8f}) {
+        Geometry g(pile(2));
+        g.set_alpha([opacity](TextureId, Vec2, Vec3) { return opacity; });
+        Random random(3);
+        constexpr int kRays = 20000;
+        int count[3] = {}, blocked = 0;
+        for (int i = 0; i < kRays; ++i) {
+            const Ray ray{{random.between(-0.9f, 0.9f), random.between(-0.9f, 0.9f), -1},
+                          {0, 0, 1},
+                          random.next()};
+            SurfaceHit hit, again;
+            ASSERT_TRUE(g.intersect(ray, hit));
+            ASSERT_TRUE(g.intersect(ray, again));
+            EXPECT_EQ(hit.shape, again.shape);
+            ++count[hit.shape];
+            Ray short_ray = ray;
+            short_ray.t_max = 2.5f;
+            blocked += g.occluded(short_ray);
+        }
+        const auto expect_share = [](int n, double p) {
+            EXPECT_NEAR(n, kRays * p, 5 * std::sqrt(kRays * p * (1 - p)));
+        };
+        const double a = opacity;
+        expect_share(count[0], a);
+        expect_share(count[1], (1 - a) * a);
+        expect_share(count[2], (1 - a) * (1 - a));
+        expect_share(blocked, 1 - (1 - a) * (1 - a));
+    }
+}
+
+TEST(GeometryAlpha, CurvedAndInstancedShapesHaveItToo) {
+    SceneDescription scene;
+    scene.textures = {texture(0.5f)};
+    ShapeDescription ball = shape(sphere(1));
+    ball.alpha = 0;
+    ObjectDescription object;
+    object.shapes = {ball};
+    scene.objects = {object};
+    scene.instances.push_back({0, AnimatedTransform(Transform::translate({5, 0, 0})), {}});
+    ball.object_to_world = AnimatedTransform(Transform::translate({-5, 0, 0}), 0,
+                                             Transform::translate({-5, 0, 0.5f}), 1);
+    scene.shapes = {ball};
+    Geometry g(scene);
+    for (const float x : {-5.0f, 5.0f}) {
+        SurfaceHit hit;
+        const Ray ray{{x, 0.3f, -9}, {0, 0, 1}, 0.5f};
+        g.set_alpha([](TextureId, Vec2, Vec3) { return 1.0f; });
+        EXPECT_TRUE(g.intersect(ray, hit)) << x;
+        EXPECT_TRUE(g.occluded(ray)) << x;
+        // The half that is turned to the ray is a hole; the far one is met from inside.
+        g.set_alpha([](TextureId, Vec2, Vec3 p) { return p.z > 0.3f ? 1.0f : 0.0f; });
+        ASSERT_TRUE(g.intersect(ray, hit)) << x;
+        EXPECT_GT(hit.position.z, 0.3f);
+        EXPECT_GT(dot(hit.ng, ray.direction), 0);
+        g.set_alpha([](TextureId, Vec2, Vec3) { return 0.0f; });
+        EXPECT_FALSE(g.intersect(ray, hit)) << x;
+        EXPECT_FALSE(g.occluded(ray)) << x;
+    }
+}
+
+/// Voxels that a march along x at height y, in the plane of the pile's first square, meets.
+int voxels_along(const VoxelGrid& grid, float y) {
+    VoxelMarch march(grid, {-2, y, 0}, {2, y, 0});
+    OccluderEvent e;
+    int count = 0;
+    while (march.next(1.5f * grid.voxel_size(), e)) ++count;
+    return count;
+}
+
+TEST(GeometryAlpha, TheVoxelGridHasTheHoles) {
+    SceneDescription scene = pile(1);
+    scene.shapes.resize(1);
+    Geometry whole(scene), cut(scene);
+    // Opaque below v = 1/2 only.
+    cut.set_alpha([](TextureId, Vec2 uv, Vec3) { return uv.y < 0.5f ? 1.0f : 0.0f; });
+    VoxelGridOptions options;
+    options.width = 40;
+    options.box = {{-2, -2, -2}, {2, 2, 2}};
+    const VoxelGrid all(whole, options), half(cut, options);
+    EXPECT_GT(voxels_along(all, -0.5f), 0);
+    EXPECT_GT(voxels_along(all, 0.5f), 0);
+    EXPECT_GT(voxels_along(half, -0.5f), 0);
+    EXPECT_EQ(voxels_along(half, 0.5f), 0);
+}
+
+}  // namespace
+}  // namespace covtrace::test
