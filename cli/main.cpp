@@ -65,6 +65,7 @@ int run(int argc, char** argv) {
     app.get_formatter()->column_width(30);
     covtrace::cli::add_render(app, invocation);
     covtrace::cli::add_compare(app, invocation);
+    covtrace::cli::add_inspect(app, invocation);
     covtrace::cli::add_info(app, invocation);
     try {
         app.parse(argc, argv);

@@ -79,6 +79,10 @@ PixelBounds parse_crop(const std::string& option, const std::string& text) {
     return crop;
 }
 
+std::array<int, 2> parse_pixel(const std::string& option, const std::string& text) {
+    return parse_list<int, 2>(option, text, ',', "a pixel such as 120,45");
+}
+
 std::array<float, 2> parse_interval(const std::string& option, const std::string& text) {
     constexpr auto kExpected = "a begin and a later end such as 0,0.5";
     const auto v = parse_list<float, 2>(option, text, ',', kExpected);

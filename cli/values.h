@@ -16,6 +16,8 @@ double parse_duration(const std::string& option, const std::string& text);
 std::array<int, 2> parse_resolution(const std::string& option, const std::string& text);
 /// "x0,y0,x1,y1" in pixels, end exclusive.
 PixelBounds parse_crop(const std::string& option, const std::string& text);
+/// "x,y", two whole numbers.
+std::array<int, 2> parse_pixel(const std::string& option, const std::string& text);
 /// "a,b", two finite numbers with a < b.
 std::array<float, 2> parse_interval(const std::string& option, const std::string& text);
 /// A finite number above zero and up to `most`.
