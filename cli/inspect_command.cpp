@@ -75,8 +75,7 @@ int inspect_image(const InspectArguments& a) {
 
 void add_inspect(CLI::App& app, Invocation& invocation) {
     auto a = std::make_shared<InspectArguments>();
-    CLI::App* c = app.add_subcommand(
-        "inspect", "Tell why an image is as it is: counts, filters, errors, a pixel");
+    CLI::App* c = app.add_subcommand("inspect", "Tell of samples, filters and errors");
     c->add_option("IMAGE", a->image, "an image, best with the layers of 'render'")
         ->required()
         ->option_text(" ");
