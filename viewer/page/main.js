@@ -64,6 +64,7 @@ function start() {
     if (!findLayer(imageA(), '')) state.layer = imageA().layers[0].name;
     showFacts();
     listen();
+    showControls();
     viewport.resize();
     paint().then(() => {
         showControls();
