@@ -77,13 +77,22 @@ export async function painting(page, action) {
     await page.waitForFunction((old) => document.getElementById('view').dataset.painted !== old, before);
 }
 
-/** Bytes [r, g, b] that the canvas shows in the middle of an image pixel of the first pane. */
-export function canvasColor(page, x, y) {
-    return page.$eval('#view', (canvas, [px, py]) => {
+/** Bytes [r, g, b] that the canvas shows in the middle of every image pixel of the first pane: row by row. */
+export function canvasColors(page, width, height) {
+    return page.$eval('#view', (canvas, [w, h]) => {
         const { left, top, scale } = canvas.dataset;
+        const bytes = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
         const at = (origin, p) => Math.floor(Number(origin) + (p + 0.5) * Number(scale));
-        return [...canvas.getContext('2d').getImageData(at(left, px), at(top, py), 1, 1).data.slice(0, 3)];
-    }, [x, y]);
+        return Array.from({ length: w * h }, (_, i) => {
+            const k = 4 * (at(top, Math.floor(i / w)) * canvas.width + at(left, i % w));
+            return [bytes[k], bytes[k + 1], bytes[k + 2]];
+        });
+    }, [width, height]);
+}
+
+/** The same of one pixel. */
+export async function canvasColor(page, x, y) {
+    return (await canvasColors(page, x + 1, y + 1)).at(-1);
 }
 
 export async function clickPixel(page, x, y) {
