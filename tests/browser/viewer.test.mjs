@@ -1,7 +1,7 @@
 // The viewer's pages in a real browser: what the canvas shows against the values in the files.
 
 import assert from 'node:assert/strict';
-import { copyFileSync, readFileSync } from 'node:fs';
+import { copyFileSync, readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 
@@ -93,6 +93,25 @@ test('the FLIP map has the mean that compare gives', async () => {
     const sum = (await canvasColors(page, kWidth, kHeight)).reduce((all, [grey]) => all + grey / 255, 0);
     assert.ok(flip > 0.01);
     assert.ok(Math.abs(sum / (kWidth * kHeight) - flip) < 0.5 / 255, `${sum / (kWidth * kHeight)} and ${flip}`);
+});
+
+test('of more than two images any two are compared', async () => {
+    // As `viewer::write_report` writes three: the last one is the first again.
+    const html = readFileSync(path.join(folder, 'ab.html'), 'utf8').replace(/(id="report">)(.*?)(<\/script>)/s, (_, before, json, behind) => {
+        const report = JSON.parse(json);
+        report.images.push({ ...report.images[0], name: 'third', flip: {} });
+        return before + JSON.stringify(report) + behind;
+    });
+    writeFileSync(path.join(folder, 'abc.html'), html);
+    const page = await open(browser, 'abc.html');
+    await painting(page, () => page.selectOption('#image-b', { label: 'C third' }));
+    await painting(page, () => page.keyboard.press('d'));
+    assert.deepEqual(await page.$$eval('#kind option', (all) => all.map((o) => o.value)), ['signed', 'absolute', 'relative']);
+    await painting(page, () => page.selectOption('#scale', 'grey'));
+    assert.ok((await canvasColors(page, kWidth, kHeight)).every(([grey]) => grey === 0));
+    await painting(page, () => page.selectOption('#image-a', { label: 'B b.pfm' }));
+    assert.ok((await canvasColors(page, kWidth, kHeight)).some(([grey]) => grey > 0));
+    assert.deepEqual(page.problems, []);
 });
 
 test('images side by side pan and zoom in step', async () => {
