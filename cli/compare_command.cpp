@@ -1,13 +1,17 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/pixel_description.h"
+#include "cli/report_file.h"
 #include "cli/values.h"
 #include "image/compare.h"
+#include "image/layer_names.h"
 #include "reconstruction/gather.h"
 
 namespace covtrace::cli {
@@ -15,7 +19,7 @@ namespace covtrace::cli {
 namespace {
 
 struct CompareArguments {
-    std::string image, reference, crop;
+    std::string image, reference, crop, report;
     bool json = false;
     double smooth = 0;
 };
@@ -37,13 +41,44 @@ void smooth_root(Image& image, double deviation) {
                 for (size_t i = 0; i < mean.size(); ++i) c.values[i] = smoothed.color[i][k];
 }
 
+/// Both images side by side, with the FLIP map and the measures.
+void write_comparison(const CompareArguments& a, const Image& image, const Image& reference,
+                      const Comparison& c) {
+    const auto name = [](const std::string& file) {
+        return std::filesystem::path(file).filename().string();
+    };
+    const auto part = [&](const Image& whole) {
+        return whole.data == c.bounds ? whole : cropped(whole, c.bounds);
+    };
+    const Image shown_image = part(image), shown_reference = part(reference);
+    viewer::Report report;
+    report.title = name(a.image) + " against " + name(a.reference);
+    report.images = {{name(a.image), &shown_image, {}, {{1, c.flip_map}}},
+                     {name(a.reference), &shown_reference, {}, {}}};
+    report.facts = {{"relMSE", format_number(c.relmse)},
+                    {"relMSE, trimmed", format_number(c.relmse_trimmed)},
+                    {"MSE", format_number(c.mse)},
+                    {"PSNR", format_number(c.psnr) + " dB"},
+                    {"FLIP", format_number(c.flip)},
+                    {"mean A / mean B",
+                     fmt::format("{} {} {}", format_number(c.mean_ratio[0]),
+                                 format_number(c.mean_ratio[1]), format_number(c.mean_ratio[2]))}};
+    write_report_file(report, a.report);
+}
+
 int compare_images(const CompareArguments& a) {
     std::optional<PixelBounds> crop;
     if (!a.crop.empty()) crop = parse_crop("--crop", a.crop);
-    Image image = read_image(a.image);
-    const Image reference = read_image(a.reference);
+    const auto read = [](const std::string& file) {
+        Image i = read_image(file);
+        if (!i.find("R")) restore_layer_names(i);
+        return i;
+    };
+    Image image = read(a.image);
+    const Image reference = read(a.reference);
     if (a.smooth > 0) smooth_root(image, a.smooth);
     const Comparison c = compare(image, reference, crop);
+    if (!a.report.empty()) write_comparison(a, image, reference, c);
     if (a.json) {
         // JSON has no infinity: the psnr of equal images is null.
         nlohmann::json j = {
@@ -82,6 +117,8 @@ void add_compare(CLI::App& app, Invocation& invocation) {
          [a](const std::string& text) { a->smooth = parse_positive("--smooth", text, 1000); },
          "first blur the image: a Gaussian of N pixels")
         ->option_text("N");
+    c->add_option("--report", a->report, "also a page for any browser with both images")
+        ->option_text("FILE.html");
     c->add_flag("--json", a->json, "one JSON object on standard output");
     c->callback([a, &invocation] { invocation.action = [a] { return compare_images(*a); }; });
 }

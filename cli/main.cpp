@@ -66,7 +66,16 @@ int run(int argc, char** argv) {
     covtrace::cli::add_render(app, invocation);
     covtrace::cli::add_compare(app, invocation);
     covtrace::cli::add_measure(app, invocation);
+    covtrace::cli::add_inspect(app, invocation);
     covtrace::cli::add_info(app, invocation);
+    covtrace::cli::add_completion(app, invocation);
+    // After the commands, which would inherit it.
+    app.footer(
+        "Examples:\n"
+        "  covtrace render scene.pbrt -o image.exr --png image.png --spp 32\n"
+        "  covtrace compare image.exr reference.exr --report compare.html\n"
+        "  covtrace inspect image.exr --pixel 120,45\n"
+        "'covtrace COMMAND --help' tells a command's options, 'man covtrace' tells more.");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

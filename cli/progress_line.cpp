@@ -1,10 +1,15 @@
 #include "cli/progress_line.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "cli/message.h"
 
@@ -24,46 +29,111 @@ std::string clock(double seconds) {
                      : fmt::format("{}:{:02}", s / 60, s % 60);
 }
 
-std::string line(const Progress& p) {
-    return fmt::format("{:<14} {:3.0f}%  {:.4g} spp  {} elapsed  {} left", p.phase,
-                       std::clamp(100 * p.fraction - 0.5, 0.0, 99.0), p.samples_per_pixel,
-                       clock(p.elapsed), clock(p.remaining));
+/// Rounded down, and below 100 until done().
+int percent(const Progress& p) {
+    return std::clamp(static_cast<int>(100 * p.fraction), 0, 99);
+}
+
+std::vector<std::string> details(const Progress& p) {
+    std::vector<std::string> parts{fmt::format("{:.4g} spp", p.samples_per_pixel)};
+    if (std::isfinite(p.error)) parts.push_back(fmt::format("error {:.2g}", p.error));
+    parts.push_back(clock(p.elapsed) + " elapsed");
+    if (std::isfinite(p.remaining)) parts.push_back(clock(p.remaining) + " left");
+    return parts;
+}
+
+std::string plain_line(const Progress& p) {
+    std::string text = fmt::format("{:<14} {:3}%", p.phase, percent(p));
+    for (const std::string& part : details(p)) text += "  " + part;
+    return text;
+}
+
+/// A line that is longer than the terminal is wide would wrap, and could not be redrawn.
+size_t terminal_width() {
+    winsize size{};
+    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+/// As much as fits: percent and phase, details from the left, then the bar.
+std::string bar_line(const Progress& p, size_t width) {
+    constexpr size_t kLeastBar = 8, kMostBar = 32;
+    std::string text = fmt::format("{:3}%  {}", percent(p), p.phase);
+    for (const std::string& part : details(p))
+        if (text.size() + 2 + part.size() < width) text += "  " + part;
+    text.resize(std::min(text.size(), width - 1));
+    if (text.size() + 1 + kLeastBar >= width) return text;
+    const size_t length = std::min(kMostBar, width - 2 - text.size());
+    const auto filled = std::min(length - 1, size_t(double(length) * std::max(0.0, p.fraction)));
+    return std::string(filled, '#') + std::string(length - filled, '.') + " " + text;
+}
+
+nlohmann::json number(double value) {
+    // JSON has no NaN: what is unknown is null.
+    if (!std::isfinite(value)) return {};
+    return std::round(value * 1e4) / 1e4;
 }
 
 }  // namespace
 
-ProgressReporter make_reporter(ProgressStyle style) {
-    switch (resolve(style)) {
-        case ProgressStyle::bar:
-            return {[](const Progress& p) {
-                        constexpr int kWidth = 24;
-                        const int filled = static_cast<int>(kWidth * p.fraction);
-                        say("\r{}{}  {}\x1b[K", std::string(size_t(filled), '#'),
-                            std::string(size_t(kWidth - filled), '.'), line(p));
-                        std::fflush(stderr);
-                    },
-                    0.1};
-        case ProgressStyle::plain:
-            return {[](const Progress& p) { say("{}\n", line(p)); }, 5};
-        case ProgressStyle::percent:
-            return {[](const Progress& p) { say("{}%\n", static_cast<int>(99 * p.fraction)); }, 1};
-        case ProgressStyle::json:
-            return {
-                [](const Progress& p) {
-                    say("{{\"phase\":\"{}\",\"fraction\":{:.4f},\"spp\":{:.4f},\"elapsed\":{:.3f},"
-                        "\"remaining\":{:.3f}}}\n",
-                        p.phase, p.fraction, p.samples_per_pixel, p.elapsed, p.remaining);
-                },
-                0.5};
-        case ProgressStyle::automatic:
-        case ProgressStyle::none:
-            break;
-    }
-    return {};
+ProgressLine::ProgressLine(ProgressStyle style) : style_(resolve(style)) {}
+
+void ProgressLine::begin() {
+    if (style_ != ProgressStyle::bar) return;
+    say("reading the scene");
+    open_ = true;
 }
 
-void finish_line(ProgressStyle style) {
-    if (resolve(style) == ProgressStyle::bar) say("\r\x1b[K");
+std::function<void(const Progress&)> ProgressLine::reporter() {
+    if (style_ == ProgressStyle::none) return {};
+    return [this](const Progress& p) { report(p); };
+}
+
+double ProgressLine::interval() const {
+    switch (style_) {
+        case ProgressStyle::plain:
+            return 5;
+        case ProgressStyle::percent:
+            return 1;
+        case ProgressStyle::json:
+            return 0.5;
+        default:
+            return 0.1;
+    }
+}
+
+void ProgressLine::report(const Progress& p) {
+    if (style_ == ProgressStyle::bar) {
+        say("\r{}\x1b[K", bar_line(p, terminal_width()));
+        open_ = true;
+    } else if (style_ == ProgressStyle::plain) {
+        say("{}\n", plain_line(p));
+    } else if (style_ == ProgressStyle::percent) {
+        say("{}%\n", percent(p));
+    } else if (style_ == ProgressStyle::json) {
+        const double rate = p.elapsed > 0 ? p.samples_per_pixel * pixels_ / p.elapsed : kUnknown;
+        const nlohmann::ordered_json j{{"phase", p.phase},
+                                       {"fraction", number(p.fraction)},
+                                       {"spp", number(p.samples_per_pixel)},
+                                       {"error", number(p.error)},
+                                       {"elapsed", number(p.elapsed)},
+                                       {"remaining", number(p.remaining)},
+                                       {"samples_per_second", number(rate)}};
+        say("{}\n", j.dump());
+    }
+}
+
+void ProgressLine::clear() {
+    if (open_) say("\r\x1b[K");
+    open_ = false;
+}
+
+void ProgressLine::done(double samples_per_pixel, double elapsed) {
+    if (style_ == ProgressStyle::percent) say("100%\n");
+    if (style_ == ProgressStyle::json) {
+        Progress p{"done", 1, samples_per_pixel, elapsed};
+        p.remaining = 0;
+        report(p);
+    }
 }
 
 }  // namespace covtrace::cli

@@ -1,22 +1,47 @@
-/// Progress on standard error: one line that is redrawn on a terminal, plain lines elsewhere.
+/// Progress on standard error: one line that is redrawn on a terminal, plain lines elsewhere, or
+/// lines for programs.
 #pragma once
 
 #include <functional>
-#include <string>
 
 #include "render/progress.h"
 
 namespace covtrace::cli {
 
-enum class ProgressStyle { automatic, bar, plain, percent, json, none };
-
-/// A reporter for Monitor and the seconds between two reports.
-struct ProgressReporter {
-    std::function<void(const Progress&)> report;
-    double interval = 0.1;
+enum class ProgressStyle {
+    automatic,  ///< bar on a terminal, plain elsewhere
+    bar,
+    plain,
+    percent,  ///< "42%"; whole, rounded down; "100%" only when all files are there
+    json,     ///< one object a line: phase, fraction, spp, error, elapsed, remaining,
+              ///< samples_per_second
+    none
 };
-ProgressReporter make_reporter(ProgressStyle style);
-/// Ends a line that `bar` keeps open.
-void finish_line(ProgressStyle style);
+
+class ProgressLine {
+  public:
+    explicit ProgressLine(ProgressStyle style);
+    ~ProgressLine() { clear(); }
+    ProgressLine(const ProgressLine&) = delete;
+    ProgressLine& operator=(const ProgressLine&) = delete;
+    /// Of the image, for the samples per second.
+    void set_pixels(double pixels) { pixels_ = pixels; }
+    /// Tells that the scene is being read.
+    void begin();
+    /// For Monitor: what reports, and the seconds between two reports.
+    std::function<void(const Progress&)> reporter();
+    double interval() const;
+    /// Removes the bar, if there is one, so that messages can be written.
+    void clear();
+    /// All files are there: the only 100 %.
+    void done(double samples_per_pixel, double elapsed);
+
+  private:
+    void report(const Progress& p);
+
+    ProgressStyle style_;
+    double pixels_ = 0;
+    bool open_ = false;  ///< a bar stands on the last line
+};
 
 }  // namespace covtrace::cli

@@ -9,16 +9,18 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string_view>
 
 #include "cli/commands.h"
+#include "cli/layer_selection.h"
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/progress_line.h"
 #include "cli/values.h"
 #include "core/parallel.h"
 #include "image/image.h"
+#include "image/layer_names.h"
 #include "image/output_file.h"
+#include "preview/tev_client.h"
 #include "render/session.h"
 #include "render/version.h"
 #include "scene/read_scene.h"
@@ -31,7 +33,9 @@ namespace fs = std::filesystem;
 
 struct RenderArguments {
     std::string scene, output, png, stats, isa;
-    std::string seconds, resolution, crop, shutter, layers;
+    std::string seconds, resolution, crop, shutter, tev;
+    LayerSelection layers{true, {}}, tev_layers;
+    LayerNames layer_names = LayerNames::standard;
     size_t texture_bytes = kNoTextureLimit;
     std::vector<std::string> search_paths;
     RenderOptions options;
@@ -164,52 +168,6 @@ nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& res
             {"complete", result.complete}};
 }
 
-/// Names with commas, where "all" (or nothing) stands for the first of them; what tells emitters in
-/// view apart from scattered light must be asked for. Names are checked before the render, against
-/// what any method writes.
-std::vector<std::string> parse_layers(const std::string& wanted) {
-    constexpr size_t kAll = 13;
-    constexpr std::array<std::string_view, 17> kKnown{"A",
-                                                      "Z",
-                                                      "raw",
-                                                      "albedo",
-                                                      "N",
-                                                      "variance",
-                                                      "error",
-                                                      "samples",
-                                                      "density",
-                                                      "filter",
-                                                      "spectrum",
-                                                      "cov",
-                                                      "covweight",
-                                                      "inview",
-                                                      "inviewfilter",
-                                                      "scatteredcov",
-                                                      "scatteredcovweight"};
-    std::vector<std::string> names;
-    for (size_t from = 0; from <= wanted.size();) {
-        const size_t to = std::min(wanted.find(',', from), wanted.size());
-        const std::string name = wanted.substr(from, to - from);
-        if (name == "all" || wanted.empty())
-            names.insert(names.end(), kKnown.begin(), kKnown.begin() + kAll);
-        else if (std::find(kKnown.begin(), kKnown.end(), name) == kKnown.end())
-            throw Error(ErrorKind::usage,
-                        fmt::format("--layers: there is no layer '{}'; expected all or some of {}",
-                                    name, fmt::join(kKnown, ",")));
-        else
-            names.push_back(name);
-        from = to + 1;
-    }
-    return names;
-}
-
-/// Drops every layer but the root's R G B A and those that are named.
-void keep_layers(Image& image, const std::vector<std::string>& names) {
-    std::erase_if(image.channels, [&](const Channel& c) {
-        const size_t dot = c.name.rfind('.');
-        const bool root = dot == std::string::npos && c.name != "Z";
-        return !root && std::find(names.begin(), names.end(), c.name.substr(0, dot)) == names.end();
-    });
 }
 
 int render_scene(RenderArguments a, const Invocation& invocation) {
@@ -221,10 +179,11 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
     if (!a.shutter.empty()) a.overrides.shutter = parse_interval("--shutter", a.shutter);
 
     if (a.quiet && a.progress == ProgressStyle::automatic) a.progress = ProgressStyle::none;
-    const std::vector<std::string> layers = parse_layers(a.layers);
-
-    const ProgressReporter reporter = make_reporter(a.progress);
-    Monitor monitor(reporter.report, reporter.interval, invocation.start);
+    std::array<std::string, 2> tev_address;
+    if (!a.tev.empty()) tev_address = parse_address("--tev", a.tev);
+    ProgressLine progress(a.progress);
+    Monitor monitor(progress.reporter(), progress.interval(), invocation.start);
+    progress.begin();
     const InterruptGuard guard(monitor);
 
     SceneDescription description =
@@ -237,17 +196,30 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
 
     RenderScene scene(std::move(description), a.isa, a.texture_bytes);
     const double built = monitor.elapsed();
+    progress.clear();
     if (!a.quiet) {
         print_warnings(scene.description.warnings);
         print_warnings(scene.materials.warnings());
+    }
+    const PixelBounds region = render_region(scene.description.film);
+    progress.set_pixels(double(region.width()) * region.height());
+    std::optional<TevClient> viewer;
+    if (!a.tev.empty()) {
+        viewer.emplace(tev_address[0], tev_address[1], output.string());
+        monitor.watcher = [&](Image image) {
+            keep_layers(image, a.tev_layers);
+            viewer->show(std::move(image));
+        };
     }
     RenderResult result = render(scene, a.options, monitor);
     result.statistics.seconds["load"] = loaded;
     result.statistics.seconds["build"] = built - loaded;
     const double rendered = monitor.elapsed();
-    finish_line(a.progress);
-    keep_layers(result.image, layers);
+    progress.clear();
+    if (viewer) viewer->show(copy_layers(result.image, a.tev_layers));
+    keep_layers(result.image, a.layers);
     describe_render(result.image, a, scene, result, monitor, invocation.command_line);
+    rename_layers(result.image, a.layer_names);
     write_exr(result.image, output, threads.threads());
     if (!a.png.empty()) write_png(result.image, a.png);
     result.statistics.seconds["write"] = monitor.elapsed() - rendered;
@@ -257,6 +229,7 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
         file.write(text.data(), text.size());
         file.commit();
     }
+    if (result.complete) progress.done(result.statistics.samples_per_pixel, monitor.elapsed());
     const uint64_t rejected =
         result.statistics.covariance.rejected + result.statistics.radiance.rejected;
     if (rejected > 0) {
@@ -270,7 +243,17 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
     if (!a.quiet)
         say("{}: {:.4g} samples per pixel in {:.1f} s\n", output.string(),
             result.statistics.samples_per_pixel, monitor.elapsed());
+    // A viewer that still takes the last image may; all else is done.
+    if (viewer) viewer->finish(std::max(0.25, 0.01 * monitor.elapsed()));
     return result.complete ? 0 : 6;
+}
+
+void add_layers(CLI::App* c, const std::string& name, LayerSelection& selection,
+                const std::string& help) {
+    const auto parse = [name, &selection](const std::string& text) {
+        selection = parse_layers(name, text);
+    };
+    c->add_option_function<std::string>(name, parse, help)->option_text("LIST");
 }
 
 }  // namespace
@@ -340,8 +323,15 @@ void add_render(CLI::App& app, Invocation& invocation) {
         ->allow_extra_args(false)
         ->option_text("DIR");
     c->add_option("--png", a->png, "also a tone-mapped sRGB picture")->option_text("FILE");
-    c->add_option("--layers", a->layers, "all, or name,name…: layers beside the image")
-        ->option_text("LIST");
+    add_layers(c, "--layers", a->layers, "all, or name,name…: layers beside the image");
+    add_choice<LayerNames>(c, "--layer-names", a->layer_names,
+                           {{"default", LayerNames::standard},
+                            {"pbrt", LayerNames::pbrt},
+                            {"blender", LayerNames::blender}},
+                           "whose names the layers get in the EXR");
+    c->add_option("--tev", a->tev, "show the image in the viewer tev while it renders")
+        ->option_text("HOST:PORT");
+    add_layers(c, "--tev-layers", a->tev_layers, "layers that tev shows, too (default: none)");
     add_choice<ProgressStyle>(c, "--progress", a->progress,
                               {{"auto", ProgressStyle::automatic},
                                {"bar", ProgressStyle::bar},

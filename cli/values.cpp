@@ -91,6 +91,29 @@ std::array<float, 2> parse_interval(const std::string& option, const std::string
     return v;
 }
 
+std::array<std::string, 2> parse_address(const std::string& option, const std::string& text) {
+    constexpr auto kExpected = "an address such as localhost:14158";
+    std::string host = text, port = "14158";
+    const size_t colon = text.rfind(':');
+    const bool bracketed = text.starts_with('[');
+    const size_t closing = text.rfind(']');
+    if (colon != std::string::npos && (!bracketed || colon > closing)) {
+        host = text.substr(0, colon);
+        port = text.substr(colon + 1);
+    }
+    if (bracketed) {
+        if (closing == std::string::npos || !host.ends_with(']')) refuse(option, text, kExpected);
+        host = host.substr(1, host.size() - 2);
+    }
+    std::string_view digits = port;
+    int number = 0;
+    const bool is_port =
+        take_number(digits, number) && digits.empty() && number > 0 && number < 65536;
+    if (host.empty() || (!bracketed && host.find(':') != std::string::npos) || !is_port)
+        refuse(option, text, kExpected);
+    return {host, port};
+}
+
 double parse_positive(const std::string& option, const std::string& text, double most) {
     std::string_view rest = text;
     double value = 0;

@@ -20,6 +20,8 @@ PixelBounds parse_crop(const std::string& option, const std::string& text);
 std::array<int, 2> parse_pixel(const std::string& option, const std::string& text);
 /// "a,b", two finite numbers with a < b.
 std::array<float, 2> parse_interval(const std::string& option, const std::string& text);
+/// "host:port", "host" with tev's own port 14158, or "[::1]:port".
+std::array<std::string, 2> parse_address(const std::string& option, const std::string& text);
 /// A finite number above zero and up to `most`.
 double parse_positive(const std::string& option, const std::string& text, double most);
 /// Bytes: "500M", "2G", "64k", "1.5T" (powers of 1024) or a plain number.

@@ -97,18 +97,17 @@ Rgb clamped(Rgb c) {
     return {clamp01(c.r), clamp01(c.g), clamp01(c.b)};
 }
 
-double mean_flip(std::vector<Rgb> image, std::vector<Rgb> reference,
-                 const std::vector<bool>& compared, const PixelBounds& bounds, int64_t pixels) {
+std::vector<float> flip_map(std::vector<Rgb> image, std::vector<Rgb> reference,
+                            const std::vector<bool>& compared, const PixelBounds& bounds) {
     for (size_t i = 0; i < image.size(); ++i) {
         // The eye's filters reach over pixels that are left out: the same value in both images.
         image[i] = compared[i] ? clamped(image[i]) : Rgb();
         reference[i] = compared[i] ? clamped(reference[i]) : Rgb();
     }
-    const auto errors = flip_error(image, reference, bounds.width(), bounds.height());
-    double sum = 0;
+    std::vector<float> errors = flip_error(image, reference, bounds.width(), bounds.height());
     for (size_t i = 0; i < errors.size(); ++i)
-        if (compared[i]) sum += errors[i];
-    return sum / double(pixels);
+        if (!compared[i]) errors[i] = 0;
+    return errors;
 }
 
 }  // namespace
@@ -121,6 +120,7 @@ Comparison compare(const Image& image, const Image& reference, std::optional<Pix
     Comparison result;
     result.identical = same_bits(image, reference);
     result.nonfinite = count_nonfinite(image, bounds);
+    result.bounds = bounds;
 
     std::vector<bool> compared(colors.size());
     std::vector<double> relative_errors;
@@ -157,7 +157,10 @@ Comparison compare(const Image& image, const Image& reference, std::optional<Pix
     result.relmse = relative_sum / double(result.pixels);
     result.relmse_trimmed = trimmed_mean(std::move(relative_errors));
     result.psnr = -10 * std::log10(encoded_sum / values);
-    result.flip = mean_flip(colors, references, compared, bounds, result.pixels);
+    result.flip_map = flip_map(colors, references, compared, bounds);
+    double flip_sum = 0;
+    for (float error : result.flip_map) flip_sum += error;
+    result.flip = flip_sum / double(result.pixels);
     return result;
 }
 

@@ -24,6 +24,9 @@ struct Comparison {
     std::array<double, 3> mean_ratio{};  ///< sum I / sum R of each channel; 0 / 0 is NaN
     int64_t nonfinite = 0;               ///< values that are not finite, all channels of the image
     int64_t pixels = 0;                  ///< that the measures are taken over
+    PixelBounds bounds;                  ///< the pixels that both images and the crop have
+    /// FLIP error of every pixel in `bounds`, row by row; 0 where a pixel is left out.
+    std::vector<float> flip_map;
     bool identical =
         false;  ///< same windows, channel names and bits; metadata and crop don't matter
 };

@@ -1,5 +1,6 @@
 #include "image/image.h"
 
+#include <cassert>
 #include <stdexcept>
 
 namespace covtrace {
@@ -12,6 +13,21 @@ const Channel* Image::find(std::string_view name) const {
 
 Channel& Image::add_channel(std::string name) {
     return channels.emplace_back(Channel{std::move(name), std::vector<float>(pixel_count())});
+}
+
+Image cropped(const Image& image, const PixelBounds& bounds) {
+    assert(!bounds.empty() && image.data.contains(bounds));
+    Image part{bounds, image.display, {}, image.metadata};
+    for (const Channel& from : image.channels) {
+        Channel& to = part.channels.emplace_back(Channel{from.name, {}});
+        to.values.reserve(part.pixel_count());
+        for (int y = bounds.y0; y < bounds.y1; ++y) {
+            const auto row = from.values.begin() + ptrdiff_t(y - image.data.y0) * image.width() +
+                             (bounds.x0 - image.data.x0);
+            to.values.insert(to.values.end(), row, row + bounds.width());
+        }
+    }
+    return part;
 }
 
 Rgb Image::rgb(size_t pixel, std::string_view prefix) const {

@@ -56,6 +56,10 @@ struct Image {
     Rgb rgb(size_t pixel, std::string_view prefix = {}) const;
 };
 
+/// The same image with the pixels of `bounds` only, which must lie inside its data window. The
+/// display window stays.
+Image cropped(const Image& image, const PixelBounds& bounds);
+
 /// Reads EXR, PNG, JPEG, TGA, Radiance HDR, PFM, PGM, PPM and QOI; the content decides, not the
 /// file's name (but for TGA, which has no signature). All channels become float; 8- and 16-bit
 /// integer colour is decoded from sRGB, alpha is not. EXR keeps its windows, metadata and channel

@@ -12,6 +12,17 @@ double Monitor::elapsed() const {
     return std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
+/// From the speed since the first report: what came before it (reading the scene) comes only once.
+double Monitor::remaining(double now, double fraction) {
+    constexpr double kLeast = 0.01;  // of the render: before, the estimate is a guess
+    if (begin_fraction_ < 0) {
+        begin_ = now;
+        begin_fraction_ = fraction;
+    }
+    const double done = fraction - begin_fraction_;
+    return done >= kLeast ? (now - begin_) * (1 - fraction) / done : kUnknown;
+}
+
 void Monitor::update(std::string_view phase, double fraction, double samples_per_pixel) {
     if (!report_) return;
     const std::unique_lock lock(mutex_, std::try_to_lock);
@@ -19,8 +30,7 @@ void Monitor::update(std::string_view phase, double fraction, double samples_per
     const double now = elapsed();
     if (last_report_ >= 0 && now - last_report_ < interval_) return;
     last_report_ = now;
-    const double remaining = fraction > 0 ? now * (1 - fraction) / fraction : 0;
-    report_({phase, fraction, samples_per_pixel, now, remaining});
+    report_({phase, fraction, samples_per_pixel, now, remaining(now, fraction), error_});
 }
 
 }  // namespace covtrace

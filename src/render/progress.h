@@ -4,17 +4,23 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <string_view>
 
+#include "image/image.h"
+
 namespace covtrace {
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct Progress {
     std::string_view phase;  ///< "covariance", "radiance", "reconstruction"
     double fraction = 0;     ///< of the whole render, in [0, 1); 1 only when the image is ready
     double samples_per_pixel = 0;  ///< taken so far
     double elapsed = 0;            ///< seconds
-    double remaining = 0;          ///< estimated seconds
+    double remaining = kUnknown;   ///< estimated seconds; kUnknown at first
+    double error = kUnknown;       ///< estimated sqrt(relMSE) after the last round; kUnknown before
 };
 
 /// Shared by a session and its caller; all members may be used from any thread.
@@ -31,14 +37,26 @@ class Monitor {
     double elapsed() const;
     /// Reports, unless the last report is too fresh or another thread is reporting.
     void update(std::string_view phase, double fraction, double samples_per_pixel);
+    /// What the following reports say of the error.
+    void set_error(double error) { error_ = error; }
+
+    /// To be set before the render: called between rounds, by one thread, with the image so far. It
+    /// must not take long.
+    std::function<void(Image)> watcher;
+    bool watched() const { return bool(watcher); }
+    void show(Image image) const { watcher(std::move(image)); }
 
   private:
+    double remaining(double now, double fraction);
+
     std::function<void(const Progress&)> report_;
     const double interval_;
     const Clock::time_point start_;
     std::atomic<bool> cancelled_{false};
+    std::atomic<double> error_{kUnknown};
     std::mutex mutex_;
     double last_report_ = -1;
+    double begin_ = 0, begin_fraction_ = -1;  ///< the first report of a fraction
 };
 
 }  // namespace covtrace

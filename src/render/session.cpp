@@ -8,6 +8,7 @@
 
 #include "reconstruction/gather.h"
 #include "render/layers.h"
+#include "render/round.h"
 
 namespace covtrace {
 
@@ -117,6 +118,7 @@ class Session {
             const double target = plan_round(taken);
             if (!(target > taken)) break;
             trace_round(density, taken, target);
+            report_round(monitor_, film_, display(), !scene_.lights.has_environment());
             if (film_.mean_count() <= taken) break;  // every pixel is at its limit
             taken = target;
         }

@@ -1,13 +1,19 @@
 """What the program tells: compare, info, statistics, progress."""
 
 import array
+import fcntl
 import json
 import math
+import os
+import pty
+import struct
+import subprocess
 import sys
+import termios
 import unittest
 
 import exr
-from support import DONE, SCENE, TINY, USAGE, CliTest
+from support import DONE, PROGRAM, SCENE, TINY, USAGE, CliTest
 
 KEYS = {"mse", "relmse", "relmse_trimmed", "psnr", "flip", "mean_ratio", "nonfinite", "identical"}
 
@@ -212,24 +218,88 @@ class Progress(CliTest):
         return result.stderr.splitlines()
 
     def test_json(self):
+        keys = {"phase", "fraction", "spp", "error", "elapsed", "remaining", "samples_per_second"}
         for method in ("uniform", "covariance"):
             with self.subTest(method=method):
-                reports = [json.loads(line) for line in self.lines("json", method)]
+                *reports, last = [json.loads(line) for line in self.lines("json", method)]
                 self.assertGreater(len(reports), 0)
                 for report in reports:
-                    self.assertEqual(set(report), {"phase", "fraction", "spp", "elapsed", "remaining"})
-                    self.assertTrue(0 <= report["fraction"] <= 1, report)
+                    self.assertEqual(set(report), keys)
+                    self.assertTrue(0 <= report["fraction"] < 1, report)
                     self.assertIn(report["phase"], {"covariance", "radiance", "reconstruction"})
                 elapsed = [r["elapsed"] for r in reports]
                 self.assertEqual(elapsed, sorted(elapsed))
+                self.assertEqual((last["phase"], last["fraction"], last["remaining"]), ("done", 1, 0))
+                self.assertEqual(set(last), keys)
+                self.assertAlmostEqual(last["spp"], 300, delta=1)
+
+    def test_the_error_falls_as_samples_come(self):
+        self.write("scene.pbrt", TINY)
+        arguments = ["-o", "out.exr", "--method", "uniform", "--time", "2", "--resolution", "64x48", "--quiet"]
+        result = self.run_program("render", "scene.pbrt", *arguments, "--progress", "json")
+        self.assertEqual(result.code, DONE, result)
+        reports = [json.loads(line) for line in result.stderr.splitlines()]
+        known = [r for r in reports if r["error"] is not None]
+        self.assertGreater(len(known), 1)
+        self.assertLess(known[-1]["error"], known[0]["error"])
+        # What was said last is about what the raw samples in the file say.
+        image = exr.read(self.folder / "out.exr")
+        n = len(image.pixels["R"])
+        mean = sum(image.pixels["variance." + c][i] / (image.pixels["raw." + c][i] ** 2 + 0.01) for c in "RGB" for i in range(n)) / (3 * n)
+        self.assertLess(math.sqrt(mean), 1.05 * known[-1]["error"])
+        self.assertGreater(math.sqrt(mean), known[-1]["error"] / 2)  # rounds grow by half
 
     def test_percent(self):
-        for line in self.lines("percent"):
+        *lines, last = self.lines("percent")
+        for line in lines:
             self.assertRegex(line, r"^\d{1,2}%$")
+        self.assertEqual(last, "100%")
+
+    def test_never_100_percent_without_a_file(self):
+        self.write("scene.pbrt", TINY)
+        scene = ["render", "scene.pbrt", "--progress", "percent", "--quiet", "-o", "out.exr"]
+        (self.folder / "out.exr").mkdir()
+        result = self.run_program(*scene, "--spp", "2")
+        self.assertNotEqual(result.code, DONE)
+        self.assertNotIn("100%", result.stderr)
 
     def test_plain(self):
         for line in self.lines("plain"):
             self.assertRegex(line, r"^\w+ +\d+% +\S+ spp")
+
+    def test_bar_fits_the_terminal(self):
+        for columns in (100, 40, 12):
+            with self.subTest(columns=columns):
+                text = self.on_terminal(columns, "--spp", "100", "--resolution", "64x48")
+                drawn = [part.replace("\x1b[K", "") for part in text.split("\r")]
+                bars = [part for part in drawn if "%" in part]
+                self.assertGreater(len(bars), 1)
+                for bar in bars:
+                    self.assertLess(len(bar), columns, bar)
+                    self.assertNotIn("100%", bar)
+                if columns == 100:
+                    for text in ("elapsed", "spp", "#", "."):
+                        self.assertIn(text, bars[-1])
+                # The bar is gone before the line that stays.
+                self.assertRegex(drawn[-1] if drawn[-1].strip() else drawn[-2], r"^out\.exr: 100 samples per pixel")
+
+    def on_terminal(self, columns, *arguments):
+        """Standard error of a render, as a terminal gets it."""
+        self.write("scene.pbrt", TINY)
+        master, slave = pty.openpty()
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+        command = [PROGRAM, "render", "scene.pbrt", "-o", "out.exr", *arguments]
+        process = subprocess.Popen(command, cwd=self.folder, stderr=slave)
+        os.close(slave)
+        text = b""
+        try:
+            while part := os.read(master, 4096):
+                text += part
+        except OSError:  # the terminal's other end is closed
+            pass
+        os.close(master)
+        self.assertEqual(process.wait(60), DONE)
+        return text.decode()
 
     def test_none_and_quiet(self):
         self.assertEqual(self.lines("none"), [])

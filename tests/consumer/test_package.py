@@ -12,6 +12,14 @@ BUILD = pathlib.Path(os.environ["COVTRACE_BUILD"])
 CMAKE = os.environ.get("CMAKE", "cmake")
 COMPILER = os.environ.get("CXX", "c++")
 CONSUMER = pathlib.Path(__file__).parent
+PROGRAM_FILES = {
+    "bin/covtrace",
+    "share/bash-completion/completions/covtrace",
+    "share/doc/covtrace/copyright",
+    "share/fish/vendor_completions.d/covtrace.fish",
+    "share/man/man1/covtrace.1",
+    "share/zsh/vendor-completions/_covtrace",
+}
 
 
 class Package(unittest.TestCase):
@@ -48,8 +56,34 @@ class Package(unittest.TestCase):
     def test_installed_program(self):
         prefix = self.folder / "prefix"
         self.run_command(CMAKE, "--install", BUILD, "--component", "program", "--prefix", prefix)
-        self.assertEqual(self.files(prefix), {pathlib.Path("bin/covtrace")})
+        installed = {str(p) for p in self.files(prefix)}
+        self.assertEqual(installed, PROGRAM_FILES)
         self.assertIn("covtrace", self.run_command(prefix / "bin" / "covtrace", "--version"))
+
+    def test_debian_package_installs_and_removes(self):
+        """Into a Debian system without any file of its own, so that nothing on this machine is touched."""
+        self.run_command("cpack", "--config", BUILD / "CPackConfig.cmake", "-B", self.folder)
+        (package,) = self.folder.glob("*.deb")
+        self.assertRegex(package.name, r"^covtrace_\d+\.\d+\.\d+_\w+\.deb$")
+        fields = self.run_command("dpkg-deb", "--field", package)
+        for library in ("libembree3", "libtbb", "libopenexr", "libc6"):
+            self.assertIn(library, fields)
+
+        root = self.folder / "root"
+        for folder in ("info", "updates", "triggers"):
+            (root / "var/lib/dpkg" / folder).mkdir(parents=True)
+        for file in ("status", "available"):
+            (root / "var/lib/dpkg" / file).touch()
+        as_root = [] if os.geteuid() == 0 else ["unshare", "--map-root-user"]
+        dpkg = [*as_root, "dpkg", f"--root={root}", "--force-depends", "--log=/dev/null"]
+        self.run_command(*dpkg, "--install", package)
+        installed = {str(p) for p in self.files(root / "usr")}
+        self.assertLessEqual(PROGRAM_FILES, installed)
+        self.assertIn("include/covariance/covariance.hpp", installed)
+        self.assertIn("covtrace", self.run_command(root / "usr/bin/covtrace", "--version"))
+        self.run_command(*dpkg, "--purge", "covtrace")
+        left = {str(p) for p in self.files(root) if "var/lib/dpkg" not in str(p)}
+        self.assertEqual(left, set())
 
     def test_installed_alone(self):
         prefix = self.folder / "prefix"

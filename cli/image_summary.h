@@ -1,0 +1,47 @@
+/// What an image's layers say about the whole image: counts, filters, errors, and where to look.
+#pragma once
+
+#include <array>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "image/image.h"
+
+namespace covtrace::cli {
+
+/// Of the finite values of a quantity; all 0 where there is none.
+struct Distribution {
+    double least = 0, low = 0, median = 0, high = 0, most = 0;  ///< low, high: 5 % and 95 %
+    double mean = 0;
+};
+
+struct Quantity {
+    std::string key;    ///< "samples", "density", "filter_width", "filter_elongation", "error"
+    std::string title;  ///< for people, with the unit
+    Distribution distribution;
+};
+
+struct UncertainPixel {
+    int x = 0, y = 0;
+    double relative_error = 0;  ///< estimated standard error over sqrt(luminance² + 0.01)
+};
+
+struct ImageSummary {
+    std::vector<Quantity> quantities;  ///< those whose layers the image has
+    int64_t nonfinite = 0;             ///< values, all channels
+    /// sqrt of the mean of the squared relative errors: what `render --error` compares; 0 without
+    /// the layer `error`.
+    double estimated_error = 0;
+    std::vector<UncertainPixel> uncertain;  ///< worst first, apart from each other
+};
+
+/// Reads the layers by the project's own names; sensible (few quantities) on other images.
+ImageSummary summarize(const Image& image);
+
+/// `name`: of the file. Metadata of ours in words, the quantities as a table, the layers with their
+/// ranges.
+std::string to_text(const ImageSummary& summary, const Image& image, const std::string& name);
+nlohmann::json to_json(const ImageSummary& summary, const Image& image, const std::string& name);
+
+}  // namespace covtrace::cli

@@ -1,0 +1,66 @@
+#include "cli/layer_selection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace covtrace::cli {
+
+namespace {
+
+constexpr std::array<std::string_view, 13> kStandard{
+    "A",       "Z",       "raw",    "albedo",   "N",   "variance", "error",
+    "samples", "density", "filter", "spectrum", "cov", "covweight"};
+/// What tells emitters in view apart from scattered light must be asked for by name.
+constexpr std::array<std::string_view, 4> kParts{"inview", "inviewfilter", "scatteredcov",
+                                                 "scatteredcovweight"};
+
+template <typename Names>
+bool contains(const Names& names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool is_selected(const Channel& c, const LayerSelection& selection) {
+    const size_t dot = c.name.rfind('.');
+    const bool root = dot == std::string::npos && c.name != "Z";
+    const std::string layer = c.name.substr(0, dot);
+    return root || (selection.all && !contains(kParts, layer)) || contains(selection.names, layer);
+}
+
+}  // namespace
+
+LayerSelection parse_layers(const std::string& option, const std::string& text) {
+    if (text == "none") return {};
+    LayerSelection selection;
+    for (size_t from = 0; from <= text.size();) {
+        const size_t to = std::min(text.find(',', from), text.size());
+        const std::string name = text.substr(from, to - from);
+        if (name == "all")
+            selection.all = true;
+        else if (contains(kStandard, name) || contains(kParts, name))
+            selection.names.push_back(name);
+        else
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("{}: there is no layer '{}'; expected none, all, or some of "
+                            "{},{}",
+                            option, name, fmt::join(kStandard, ","), fmt::join(kParts, ",")));
+        from = to + 1;
+    }
+    return selection;
+}
+
+void keep_layers(Image& image, const LayerSelection& selection) {
+    std::erase_if(image.channels, [&](const Channel& c) { return !is_selected(c, selection); });
+}
+
+Image copy_layers(const Image& image, const LayerSelection& selection) {
+    Image copy{image.data, image.display, {}, {}};
+    for (const Channel& c : image.channels)
+        if (is_selected(c, selection)) copy.channels.push_back(c);
+    return copy;
+}
+
+}  // namespace covtrace::cli

@@ -1,0 +1,185 @@
+#include "cli/pixel_description.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+namespace covtrace::cli {
+
+namespace {
+
+struct Axis {
+    const char *name, *unit;
+    double scale;  ///< from the covariance's unit to `unit`
+};
+constexpr std::array<Axis, 5> kAxes{Axis{"image x", "cycles/pixel", 1},
+                                    {"image y", "cycles/pixel", 1},
+                                    {"lens x", "cycles/aperture", 2},
+                                    {"lens y", "cycles/aperture", 2},
+                                    {"time", "cycles/shutter", 1}};
+
+/// The value of a channel at a place in memory.
+std::optional<float> find_value(const Image& image, const std::string& channel, size_t index) {
+    const Channel* c = image.find(channel);
+    return c ? std::optional(c->values[index]) : std::nullopt;
+}
+
+std::optional<PrincipalAxes> find_axes(const Image& image, const std::string& layer, size_t i) {
+    const auto xx = find_value(image, layer + ".xx", i), xy = find_value(image, layer + ".xy", i),
+               yy = find_value(image, layer + ".yy", i);
+    if (!xx || !xy || !yy) return std::nullopt;
+    return principal_axes(*xx, *xy, *yy);
+}
+
+std::optional<std::array<std::array<float, 5>, 5>> find_covariance(const Image& image, size_t i) {
+    std::array<std::array<float, 5>, 5> matrix{};
+    for (size_t r = 0; r < 5; ++r)
+        for (size_t c = r; c < 5; ++c) {
+            const auto entry = find_value(image, fmt::format("cov.{}{}", r, c), i);
+            if (!entry) return std::nullopt;
+            matrix[r][c] = matrix[c][r] = *entry;
+        }
+    return matrix;
+}
+
+/// The same words as bandwidthWords in the viewer's covariance.js.
+std::string bandwidth_words(size_t axis, double value) {
+    // Cycles over the whole aperture or shutter: the value changes by less than a third of its
+    // range.
+    constexpr double kStill = 0.05;
+    if (axis < 2) {
+        if (value < 0.001) return "does not vary";
+        if (value >= 0.5) return "finer than the pixels can show (0.5)";
+        return "one period in " + format_number(1 / value) + " pixels";
+    }
+    const std::string where = axis < 4 ? "across the aperture" : "while the shutter is open";
+    if (value < kStill) return (axis < 4 ? "in focus: constant " : "at rest: constant ") + where;
+    return format_number(value) + " periods " + where;
+}
+
+nlohmann::json number_or_null(double value) {
+    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+nlohmann::json to_json(const std::optional<PrincipalAxes>& axes, const char* unit) {
+    if (!axes) return {};
+    return {{"major", axes->major},
+            {"minor", axes->minor},
+            {"angle_degrees", axes->angle},
+            {"unit", unit}};
+}
+
+}  // namespace
+
+std::string format_number(double value) {
+    if (!std::isfinite(value)) return std::isnan(value) ? "NaN" : (value > 0 ? "inf" : "-inf");
+    if (value == 0) return "0";  // also -0
+    const double size = std::abs(value);
+    const std::string scientific = fmt::format("{:.3e}", value);
+    if (size >= 1e5 || size < 1e-4) return scientific;
+    return fmt::format("{}", std::strtod(scientific.c_str(), nullptr));
+}
+
+PrincipalAxes principal_axes(double xx, double xy, double yy) {
+    constexpr double kDegrees = 57.29577951308232;
+    const double mean = (xx + yy) / 2, radius = std::hypot((xx - yy) / 2, xy);
+    double angle = radius > 0 ? -std::atan2(xy, (xx - yy) / 2) / 2 * kDegrees : 0;
+    if (angle <= -90) angle += 180;
+    return {std::sqrt(std::max(0.0, mean + radius)), std::sqrt(std::max(0.0, mean - radius)),
+            angle + 0.0};  // not -0
+}
+
+PixelDescription describe_pixel(const Image& image, int x, int y) {
+    const PixelBounds& d = image.data;
+    if (!d.contains({x, y, x + 1, y + 1}))
+        throw Error(ErrorKind::usage,
+                    fmt::format("--pixel: {},{} is outside the image, which has x from {} to {} "
+                                "and y from {} to {}",
+                                x, y, d.x0, d.x1 - 1, d.y0, d.y1 - 1));
+    const size_t i = size_t(y - d.y0) * size_t(image.width()) + size_t(x - d.x0);
+    PixelDescription p;
+    p.x = x;
+    p.y = y;
+    p.covariance = find_covariance(image, i);
+    for (const Channel& c : image.channels)
+        if (!p.covariance || !c.name.starts_with("cov."))
+            p.values.emplace_back(c.name, c.values[i]);
+    if (p.covariance)
+        for (size_t k = 0; k < 5; ++k) {
+            const double value =
+                kAxes[k].scale * std::sqrt(std::max(0.0, double((*p.covariance)[k][k])));
+            p.bandwidth.push_back({kAxes[k].name, kAxes[k].unit, value, bandwidth_words(k, value)});
+        }
+    p.found_light = find_value(image, "covweight.Y", i).value_or(1) != 0;
+    p.spectrum = find_axes(image, "spectrum", i);
+    p.filter = find_axes(image, "filter", i);
+    p.samples = find_value(image, "samples.Y", i);
+    p.density = find_value(image, "density.Y", i);
+    p.error = find_value(image, "error.Y", i);
+    return p;
+}
+
+std::string to_text(const PixelDescription& p) {
+    std::string text = fmt::format("pixel {},{}\n", p.x, p.y);
+    for (const auto& [name, value] : p.values)
+        text += fmt::format("  {:<14} {}\n", name, format_number(value));
+    if (p.samples) text += "samples: " + format_number(*p.samples) + " taken";
+    if (p.samples && p.density) text += ", " + format_number(*p.density) + " predicted";
+    if (p.samples) text += "\n";
+    if (p.error) text += "estimated standard error: " + format_number(*p.error) + "\n";
+    if (p.filter)
+        text += fmt::format(
+            "filter: a Gaussian of {} by {} pixels (standard deviations), its long axis at {}°\n",
+            format_number(p.filter->major), format_number(p.filter->minor),
+            format_number(std::round(p.filter->angle * 10) / 10));
+    if (!p.covariance) return text;
+    if (!p.found_light)
+        return text +
+               "no path of the analysis found light here: the prediction comes from the "
+               "neighbours\n";
+    text += "how fast the light varies (standard deviation of its spectrum)\n";
+    for (const AxisBandwidth& b : p.bandwidth)
+        text += fmt::format("  {:<8} {:>10} {:<16} {}\n", b.name, format_number(b.value), b.unit,
+                            b.words);
+    if (p.spectrum)
+        text += fmt::format(
+            "integrated over lens and shutter: up to {} cycles/pixel at {}°, {} across\n",
+            format_number(p.spectrum->major),
+            format_number(std::round(p.spectrum->angle * 10) / 10),
+            format_number(p.spectrum->minor));
+    text +=
+        "covariance of the spectrum (products of cycles per pixel, per aperture radius, per "
+        "shutter)\n          ";
+    for (const Axis& axis : kAxes) text += fmt::format("{:>12}", axis.name);
+    for (size_t r = 0; r < 5; ++r) {
+        text += fmt::format("\n  {:<8}", kAxes[r].name);
+        for (size_t c = 0; c < 5; ++c)
+            text += fmt::format("{:>12}", format_number((*p.covariance)[r][c]));
+    }
+    return text + "\n";
+}
+
+nlohmann::json to_json(const PixelDescription& p) {
+    nlohmann::json values = nlohmann::json::object();
+    for (const auto& [name, value] : p.values) values[name] = number_or_null(value);
+    nlohmann::json j{{"x", p.x}, {"y", p.y}, {"values", std::move(values)}};
+    if (p.samples) j["samples"] = number_or_null(*p.samples);
+    if (p.density) j["density"] = number_or_null(*p.density);
+    if (p.error) j["error"] = number_or_null(*p.error);
+    if (p.filter) j["filter"] = to_json(p.filter, "pixels");
+    if (p.spectrum) j["spectrum"] = to_json(p.spectrum, "cycles/pixel");
+    if (!p.covariance) return j;
+    j["covariance"] = *p.covariance;
+    j["covariance_units"] = {"cycles/pixel", "cycles/pixel", "cycles/aperture radius",
+                             "cycles/aperture radius", "cycles/shutter"};
+    j["found_light"] = p.found_light;
+    for (const AxisBandwidth& b : p.bandwidth)
+        j["bandwidth"].push_back(
+            {{"axis", b.name}, {"value", b.value}, {"unit", b.unit}, {"words", b.words}});
+    return j;
+}
+
+}  // namespace covtrace::cli

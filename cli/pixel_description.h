@@ -1,0 +1,56 @@
+/// Everything an image knows about one of its pixels, with units and in words.
+#pragma once
+
+#include <array>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "image/image.h"
+
+namespace covtrace::cli {
+
+/// Principal axes of a symmetric 2x2 matrix: square roots of its eigenvalues, and the direction of
+/// the longer axis in degrees in (-90, 90], counter-clockwise on the screen from the direction of
+/// x.
+struct PrincipalAxes {
+    double major = 0, minor = 0, angle = 0;
+};
+/// `y` points down on the screen.
+PrincipalAxes principal_axes(double xx, double xy, double yy);
+
+/// One axis of the local light field: standard deviation of its spectrum. The lens axes count over
+/// the whole aperture, which is two of the radii that the covariance counts in (SPEC 2.12).
+struct AxisBandwidth {
+    std::string name;  ///< "image x", "image y", "lens x", "lens y", "time"
+    std::string unit;  ///< "cycles/pixel", "cycles/aperture", "cycles/shutter"
+    double value = 0;
+    std::string words;
+};
+
+struct PixelDescription {
+    int x = 0, y = 0;
+    std::vector<std::pair<std::string, float>> values;  ///< all channels but those of cov
+    /// Over (pixel x, pixel y, lens radius x, lens radius y, shutter); absent without the 15
+    /// channels of cov.
+    std::optional<std::array<std::array<float, 5>, 5>> covariance;
+    std::vector<AxisBandwidth> bandwidth;   ///< empty without covariance
+    bool found_light = true;                ///< false: no path of the analysis did, and cov is 0
+    std::optional<PrincipalAxes> spectrum;  ///< cycles/pixel, after lens and shutter
+    std::optional<PrincipalAxes> filter;    ///< standard deviations in pixels
+    std::optional<float> samples, density, error;
+};
+
+/// Reads the layers by the project's own names. Throws Error(usage) where the pixel is outside the
+/// data window.
+PixelDescription describe_pixel(const Image& image, int x, int y);
+
+std::string to_text(const PixelDescription& pixel);
+nlohmann::json to_json(const PixelDescription& pixel);
+
+/// Four significant digits; powers of ten below 1e-4 and from 1e5 on.
+std::string format_number(double value);
+
+}  // namespace covtrace::cli

@@ -1,0 +1,88 @@
+#include "image/layer_names.h"
+
+#include <array>
+#include <optional>
+
+namespace covtrace {
+
+namespace {
+
+/// Texts that begin a channel's name, here and elsewhere.
+struct Prefix {
+    std::string_view ours, theirs;
+};
+
+constexpr std::array<Prefix, 3> kPbrt{
+    Prefix{"albedo.", "Albedo."}, {"N.", "Ns."}, {"variance.", "Variance."}};
+
+// Whole names first: no name may begin with an earlier prefix that means something else.
+constexpr std::string_view kViewLayer = "ViewLayer.";
+constexpr std::array<Prefix, 9> kBlender{
+    Prefix{"filter.xx", "filter.X"}, {"filter.xy", "filter.Y"},
+    {"filter.yy", "filter.Z"},       {"spectrum.xx", "spectrum.X"},
+    {"spectrum.xy", "spectrum.Y"},   {"spectrum.yy", "spectrum.Z"},
+    {"raw.", "Noisy Image."},        {"albedo.", "Denoising Albedo."},
+    {"N.", "Denoising Normal."}};
+/// Single numbers are channel X of their pass.
+constexpr std::array<Prefix, 4> kBlenderNumbers{Prefix{"samples.Y", "Debug Sample Count.X"},
+                                                {"error.Y", "error.X"},
+                                                {"density.Y", "density.X"},
+                                                {"covweight.Y", "covweight.X"}};
+
+template <size_t N>
+std::optional<std::string> translate(const std::string& name, const std::array<Prefix, N>& table,
+                                     bool inverse) {
+    for (const auto& [ours, theirs] : table) {
+        const std::string_view from = inverse ? theirs : ours, to = inverse ? ours : theirs;
+        if (name.starts_with(from)) return std::string(to) + name.substr(from.size());
+    }
+    return std::nullopt;
+}
+
+std::string blender_name(const std::string& name) {
+    std::string pass = name;
+    if (name.find('.') == std::string::npos)
+        pass = (name == "Z" ? "Depth." : "Combined.") + name;
+    else if (name.starts_with("cov."))
+        pass = "cov " + name.substr(4) + ".X";
+    else if (const auto number = translate(name, kBlenderNumbers, false))
+        pass = *number;
+    else if (const auto known = translate(name, kBlender, false))
+        pass = *known;
+    return std::string(kViewLayer) + pass;
+}
+
+std::string name_from_blender(const std::string& pass) {
+    for (std::string_view root : {"Combined.", "Depth."})
+        if (pass.starts_with(root)) return pass.substr(root.size());
+    if (pass.starts_with("cov ") && pass.ends_with(".X"))
+        return "cov." + pass.substr(4, pass.size() - 6);
+    if (const auto number = translate(pass, kBlenderNumbers, true)) return *number;
+    return translate(pass, kBlender, true).value_or(pass);
+}
+
+}  // namespace
+
+void rename_layers(Image& image, LayerNames names) {
+    if (names == LayerNames::standard) return;
+    for (Channel& c : image.channels)
+        c.name = names == LayerNames::blender ? blender_name(c.name)
+                                              : translate(c.name, kPbrt, false).value_or(c.name);
+}
+
+void restore_layer_names(Image& image) {
+    if (image.find("Albedo.R")) {
+        for (Channel& c : image.channels) c.name = translate(c.name, kPbrt, true).value_or(c.name);
+        return;
+    }
+    constexpr std::string_view kCombined = ".Combined.R";
+    for (const Channel& first : image.channels) {
+        if (!first.name.ends_with(kCombined)) continue;
+        const std::string layer = first.name.substr(0, first.name.size() - kCombined.size() + 1);
+        for (Channel& c : image.channels)
+            if (c.name.starts_with(layer)) c.name = name_from_blender(c.name.substr(layer.size()));
+        return;
+    }
+}
+
+}  // namespace covtrace

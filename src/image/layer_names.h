@@ -1,0 +1,28 @@
+/// How the layers of an image are called in files: our own names, or those that tools of other
+/// renderers look for.
+#pragma once
+
+#include "image/image.h"
+
+namespace covtrace {
+
+enum class LayerNames {
+    standard,
+    /// pbrt-v4's "gbuffer" film: Albedo.R …, Ns.X … (our N is the shading normal), Variance.R …;
+    /// what pbrt has no name for keeps ours.
+    pbrt,
+    /// Blender's multilayer files, "layer.pass.channel" with one letter for the channel:
+    /// ViewLayer.Combined.R, ViewLayer.Depth.Z, "ViewLayer.Denoising Normal.X", "ViewLayer.Noisy
+    /// Image.R" (our raw) …; the entries of symmetric 2x2 layers become X, Y, Z, and each entry of
+    /// cov a pass of its own.
+    blender
+};
+
+/// Renames the channels of an image that has our own names.
+void rename_layers(Image& image, LayerNames names);
+
+/// The inverse of rename_layers for either convention, recognised by "Albedo.R" or by
+/// "….Combined.R"; other images stay as they are.
+void restore_layer_names(Image& image);
+
+}  // namespace covtrace

@@ -1,0 +1,200 @@
+#include "preview/tev_client.h"
+
+#include <fcntl.h>
+#include <netdb.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "preview/tev_messages.h"
+
+namespace covtrace {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPoll{50};  // how soon a request to stop is seen
+constexpr milliseconds kConnectTimeout{2000};
+constexpr milliseconds kRetry{500};        // between attempts to connect
+constexpr size_t kMessageBytes = 1 << 20;  // about: rows are sent in bands
+
+}  // namespace
+
+struct TevClient::State {
+    const std::string host, port, name;
+
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::optional<Image> waiting;               ///< the newest image that is not being sent
+    std::optional<Clock::time_point> deadline;  ///< set by finish()
+    bool ended = false;                         ///< the thread has
+
+    // Of the thread alone.
+    int socket = -1;
+    std::vector<std::string> created;  ///< channels of the image that the viewer has
+    std::pair<int, int> created_size;
+    bool had_focus = false;
+
+    State(std::string h, std::string p, std::string n)
+        : host(std::move(h)), port(std::move(p)), name(std::move(n)) {}
+    ~State() { disconnect(); }
+
+    void run();
+    bool send_image(const Image& image);
+    bool send_all(const std::string& bytes);
+    bool connect();
+    bool connect_to(const addrinfo& address);
+    void disconnect();
+    bool peer_is_gone() const;
+    /// Whether finish() gives no more time; `stalled`: the viewer has not moved for a while.
+    bool out_of_time(bool stalled) {
+        const std::lock_guard lock(mutex);
+        return deadline && (stalled || Clock::now() >= *deadline);
+    }
+};
+
+void TevClient::State::run() {
+    std::optional<Image> current;
+    while (true) {
+        {
+            std::unique_lock lock(mutex);
+            changed.wait(lock, [&] { return waiting || deadline || current; });
+            if (waiting) current = std::exchange(waiting, std::nullopt);
+            if (!current) break;  // asked to end, and everything is sent
+        }
+        if (out_of_time(false)) break;
+        if (socket >= 0 && peer_is_gone()) disconnect();
+        if ((socket >= 0 || connect()) && send_image(*current)) {
+            current.reset();
+            continue;
+        }
+        disconnect();
+        std::unique_lock lock(mutex);
+        if (deadline) break;
+        changed.wait_for(lock, kRetry, [&] { return deadline.has_value(); });
+    }
+    disconnect();
+    const std::lock_guard lock(mutex);
+    ended = true;
+    changed.notify_all();
+}
+
+bool TevClient::State::send_image(const Image& image) {
+    std::vector<std::string> channels;
+    for (const Channel& c : image.channels) channels.push_back(c.name);
+    const std::pair size(image.display.width(), image.display.height());
+    if (created != channels || created_size != size) {
+        if (!send_all(tev_create_image(name, !had_focus, size.first, size.second, channels)))
+            return false;
+        created = channels;
+        created_size = size;
+        had_focus = true;
+    }
+    const size_t row_bytes = size_t(image.width()) * channels.size() * sizeof(float);
+    const int rows = int(std::max<size_t>(1, kMessageBytes / row_bytes));
+    for (int y = image.data.y0; y < image.data.y1; y += rows)
+        if (!send_all(tev_update_image(name, image, y, std::min(y + rows, image.data.y1))))
+            return false;
+    return true;
+}
+
+bool TevClient::State::send_all(const std::string& bytes) {
+    size_t sent = 0;
+    while (sent < bytes.size()) {
+        pollfd waiting_for{socket, POLLOUT, 0};
+        const int ready = ::poll(&waiting_for, 1, int(kPoll.count()));
+        if (out_of_time(ready == 0)) return false;
+        if (ready <= 0) continue;
+        const ssize_t n =
+            ::send(socket, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (n < 0 && errno != EAGAIN && errno != EINTR) return false;
+        if (n > 0) sent += size_t(n);
+    }
+    return true;
+}
+
+bool TevClient::State::connect() {
+    addrinfo hints{};
+    hints.ai_family = AF_UNSPEC;
+    hints.ai_socktype = SOCK_STREAM;
+    addrinfo* found = nullptr;
+    if (::getaddrinfo(host.c_str(), port.c_str(), &hints, &found) != 0) return false;
+    const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> addresses(found, ::freeaddrinfo);
+    for (const addrinfo* a = found; a; a = a->ai_next)
+        if (connect_to(*a)) return true;
+    return false;
+}
+
+bool TevClient::State::connect_to(const addrinfo& address) {
+    disconnect();
+    socket = ::socket(address.ai_family, address.ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK,
+                      address.ai_protocol);
+    if (socket < 0) return false;
+    if (::connect(socket, address.ai_addr, address.ai_addrlen) == 0) return true;
+    if (errno != EINPROGRESS) return false;
+    const auto give_up = Clock::now() + kConnectTimeout;
+    while (Clock::now() < give_up) {
+        pollfd waiting_for{socket, POLLOUT, 0};
+        const int ready = ::poll(&waiting_for, 1, int(kPoll.count()));
+        if (ready > 0) {
+            int error = 0;
+            socklen_t size = sizeof error;
+            return ::getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0;
+        }
+        if (out_of_time(true)) return false;
+    }
+    return false;
+}
+
+void TevClient::State::disconnect() {
+    if (socket >= 0) ::close(socket);
+    socket = -1;
+    created.clear();
+}
+
+bool TevClient::State::peer_is_gone() const {
+    char byte;
+    const ssize_t n = ::recv(socket, &byte, 1, MSG_PEEK | MSG_DONTWAIT);
+    return n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR);
+}
+
+TevClient::TevClient(std::string host, std::string port, std::string name)
+    : state_(std::make_shared<State>(std::move(host), std::move(port), std::move(name))) {
+    // Detached, since a look-up of the host's name can neither be ended nor waited for; finish()
+    // waits for everything else.
+    std::thread([state = state_] { state->run(); }).detach();
+}
+
+TevClient::~TevClient() {
+    finish(0);
+}
+
+void TevClient::show(Image image) {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->deadline) return;
+    state_->waiting = std::move(image);
+    state_->changed.notify_all();
+}
+
+void TevClient::finish(double seconds) {
+    std::unique_lock lock(state_->mutex);
+    if (!state_->deadline)
+        state_->deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                              std::chrono::duration<double>(seconds));
+    state_->changed.notify_all();
+    state_->changed.wait_until(lock, *state_->deadline + 2 * kPoll, [&] { return state_->ended; });
+}
+
+}  // namespace covtrace

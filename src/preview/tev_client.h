@@ -1,0 +1,36 @@
+/// Shows images in the viewer tev while they are rendered, and never makes the renderer wait for
+/// it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "image/image.h"
+
+namespace covtrace {
+
+/// A thread of its own connects, sends, and connects again. A viewer that is absent, comes late,
+/// hangs, is slow or goes away costs the caller nothing: images wait in one place that the newest
+/// takes.
+class TevClient {
+  public:
+    /// `host`, `port`: as the system resolves them. `name`: of the image in tev.
+    TevClient(std::string host, std::string port, std::string name);
+    /// finish(0).
+    ~TevClient();
+    TevClient(const TevClient&) = delete;
+    TevClient& operator=(const TevClient&) = delete;
+
+    /// Hands the image over and returns at once.
+    void show(Image image);
+    /// Waits for the last image to be sent as long as the viewer keeps taking bytes, but at most
+    /// `seconds`; nothing is sent afterwards.
+    void finish(double seconds);
+
+  private:
+    struct State;
+    std::shared_ptr<State>
+        state_;  ///< shared with the thread, which may outlive this in a name look-up
+};
+
+}  // namespace covtrace

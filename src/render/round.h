@@ -1,0 +1,18 @@
+/// What a render tells at the end of a round: how far it is from done, and how the image looks.
+#pragma once
+
+#include "render/film.h"
+#include "render/progress.h"
+
+namespace covtrace {
+
+/// Estimated sqrt(relMSE) of the film's raw pixels: sqrt of the mean over pixels and channels of
+/// variance of the mean over (mean² + 0.01). Not a number where less than half of the pixels have
+/// two samples.
+double estimated_error(const Film& film);
+
+/// Gives the monitor the error and, where somebody watches, the image as it is without
+/// reconstruction.
+void report_round(Monitor& monitor, const Film& film, const PixelBounds& display, bool has_holes);
+
+}  // namespace covtrace

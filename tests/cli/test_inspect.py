@@ -1,0 +1,135 @@
+"""inspect: the summary of an image and all about a pixel; the pages of inspect and compare."""
+
+import json
+import math
+import unittest
+
+import exr
+from support import DONE, IO, SCENE, USAGE, CliTest
+
+ENTRIES = [f"{i}{j}" for i in range(5) for j in range(i, 5)]
+
+
+class Inspect(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.image = exr.read(self.rendered("--spp", "8", "--resolution", "40x30"))
+
+    def inspect(self, *arguments, image="out.exr"):
+        result = self.run_program("inspect", image, *arguments, "--json")
+        self.assertEqual((result.code, result.stderr), (DONE, ""), result)
+        return json.loads(result.stdout)
+
+    def value(self, channel, x, y):
+        return self.image.pixels[channel][y * self.image.width + x]
+
+    def test_summary(self):
+        found = self.inspect()
+        self.assertEqual((found["width"], found["height"], found["nonfinite"]), (40, 30, 0))
+        samples = self.image.pixels["samples.Y"]
+        self.assertEqual(found["samples"]["least"], min(samples))
+        self.assertEqual(found["samples"]["most"], max(samples))
+        self.assertAlmostEqual(found["samples"]["mean"], sum(samples) / len(samples), places=6)
+        self.assertEqual(found["metadata"]["covtrace:method"], "covariance")
+        self.assertEqual(set(found["channels"]), set(self.image.channels))
+
+        relative = [
+            self.value("error.Y", x, y)
+            / math.sqrt((0.2126 * self.value("R", x, y) + 0.7152 * self.value("G", x, y) + 0.0722 * self.value("B", x, y)) ** 2 + 0.01)
+            for y in range(30)
+            for x in range(40)
+        ]
+        self.assertAlmostEqual(found["estimated_error"], math.sqrt(sum(r * r for r in relative) / 1200), delta=1e-4)
+        worst = found["most_uncertain"][0]
+        self.assertEqual(relative.index(max(relative)), worst["y"] * 40 + worst["x"])
+
+    def test_summary_for_people(self):
+        result = self.run_program("inspect", "out.exr")
+        self.assertEqual((result.code, result.stderr), (DONE, ""), result)
+        for text in ("8 samples per pixel", "filter width", "standard error", "--pixel", "40x30"):
+            self.assertIn(text, result.stdout)
+
+    def test_pixel(self):
+        x, y = 21, 17
+        pixel = self.inspect("--pixel", f"{x},{y}")["pixel"]
+        self.assertEqual((pixel["x"], pixel["y"]), (x, y))
+        self.assertEqual(pixel["samples"], self.value("samples.Y", x, y))
+        for k, entry in enumerate(ENTRIES):
+            i, j = int(entry[0]), int(entry[1])
+            self.assertAlmostEqual(pixel["covariance"][i][j], self.value(f"cov.{entry}", x, y), delta=1e-6 * abs(self.value(f"cov.{entry}", x, y)))
+            self.assertEqual(pixel["covariance"][i][j], pixel["covariance"][j][i])
+        scale = [1, 1, 2, 2, 1]  # the aperture is two radii wide
+        units = ["cycles/pixel"] * 2 + ["cycles/aperture"] * 2 + ["cycles/shutter"]
+        for k, axis in enumerate(pixel["bandwidth"]):
+            self.assertAlmostEqual(axis["value"], scale[k] * math.sqrt(self.value(f"cov.{k}{k}", x, y)), delta=1e-5)
+            self.assertEqual(axis["unit"], units[k])
+        xx, xy, yy = (self.value(f"filter.{c}", x, y) for c in ("xx", "xy", "yy"))
+        f = pixel["filter"]
+        # The matrix from its axes: the angle counts against the y that points down.
+        c, s = math.cos(math.radians(f["angle_degrees"])), -math.sin(math.radians(f["angle_degrees"]))
+        a, b = f["major"] ** 2, f["minor"] ** 2
+        for found, expected in ((a * c * c + b * s * s, xx), ((a - b) * c * s, xy), (a * s * s + b * c * c, yy)):
+            self.assertAlmostEqual(found, expected, places=5)
+
+    def test_pixel_for_people(self):
+        result = self.run_program("inspect", "out.exr", "--pixel", "21,17")
+        self.assertEqual((result.code, result.stderr), (DONE, ""), result)
+        for text in ("pixel 21,17", "cycles/aperture", "while the shutter is open", "filter: a Gaussian", "covariance of the spectrum"):
+            self.assertIn(text, result.stdout)
+
+    def test_crop_keeps_coordinates(self):
+        found = self.inspect("--crop", "10,5,20,25", "--pixel", "12,8")
+        self.assertEqual((found["width"], found["height"]), (10, 20))
+        self.assertAlmostEqual(found["pixel"]["values"]["R"], self.value("R", 12, 8), places=6)
+
+    def test_plain_pictures(self):
+        self.rendered("--png", "out.png")
+        found = self.inspect("--pixel", "1,2", image="out.png")
+        self.assertEqual(set(found["pixel"]["values"]), {"R", "G", "B"})
+        self.assertNotIn("covariance", found["pixel"])
+        self.assertNotIn("samples", found)
+
+    def test_wrong_command_lines(self):
+        for pixel in ("40,0", "0,30", "-1,0"):
+            self.assert_fails(self.run_program("inspect", "out.exr", f"--pixel={pixel}"), USAGE, "--pixel")
+        for pixel in ("1", "1,2,3", "a,b", "1.5,2", ""):
+            self.assert_fails(self.run_program("inspect", "out.exr", f"--pixel={pixel}"), USAGE, "--pixel")
+        self.assert_fails(self.run_program("inspect", "out.exr", "--crop", "50,0,60,9"), USAGE, "--crop")
+        self.assert_fails(self.run_program("inspect", "missing.exr"), SCENE, "missing.exr")
+
+
+class Pages(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.rendered("--spp", "2", output="a.exr")
+        self.rendered("--spp", "2", "--seed", "3", output="b.exr")
+
+    def test_pages_are_whole_and_alone(self):
+        for arguments in (["inspect", "a.exr"], ["compare", "a.exr", "b.exr"]):
+            with self.subTest(command=arguments[0]):
+                result = self.run_program(*arguments, "--report", "page.html")
+                self.assertEqual((result.code, result.stderr), (DONE, ""), result)
+                page = (self.folder / "page.html").read_text()
+                self.assertTrue(page.startswith("<!doctype html>") and page.rstrip().endswith("</html>"))
+                self.assertIn("default-src 'none'", page)
+                self.assertNotRegex(page, r"""(src|href)\s*=|@import|url\(|https?://""")
+                self.assert_no_leftovers()
+
+    def test_json_stays_alone_on_stdout(self):
+        result = self.run_program("compare", "a.exr", "b.exr", "--json", "--report", "page.html")
+        self.assertIn("relmse", json.loads(result.stdout))
+
+    def test_a_part(self):
+        result = self.run_program("compare", "a.exr", "b.exr", "--crop", "4,2,12,10", "--report", "page.html")
+        self.assertEqual(result.code, DONE, result)
+        self.assertIn('"width":8', (self.folder / "page.html").read_text())
+
+    def test_cannot_be_written(self):
+        for arguments in (["inspect", "a.exr"], ["compare", "a.exr", "b.exr"]):
+            result = self.run_program(*arguments, "--report", "nowhere/page.html")
+            self.assertEqual(result.code, IO, result)
+            self.assertIn("nowhere/page.html", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

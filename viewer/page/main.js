@@ -1,0 +1,80 @@
+// Starts the page: connects its controls, lists what never changes, paints.
+
+import { change, fail, setSplit } from './actions.js';
+import { fillSelect, showControls } from './controls.js';
+import { make, makeTable } from './inspector.js';
+import { keyTexts, onKey } from './keys.js';
+import { findLayer } from './layers.js';
+import { paint } from './painting.js';
+import { pin } from './pixel.js';
+import { listenToCanvas } from './pointer.js';
+import { byId, imageA, images, layouts, report, several, state, viewport } from './session.js';
+
+function listen() {
+    document.addEventListener('keydown', onKey);
+    listenToCanvas(byId('view'));
+    for (const form of [byId('controls'), byId('pixel-form')]) form.addEventListener('submit', (e) => e.preventDefault());
+    byId('layout-choices').addEventListener('change', (e) => change({ layout: e.target.value }));
+    for (const name of ['layer', 'component', 'kind', 'scale'])
+        byId(name).addEventListener('change', (e) => change({ [name]: e.target.value }));
+    byId('image-a').addEventListener('change', (e) => change({ a: Number(e.target.value) }));
+    byId('image-b').addEventListener('change', (e) => change({ b: Number(e.target.value) }));
+    byId('exposure').addEventListener('input', (e) => change({ exposure: Number(e.target.value) }));
+    byId('split').addEventListener('input', (e) => setSplit(Number(e.target.value) / 100));
+    for (const name of ['low', 'high', 'logarithmic'])
+        byId(name).addEventListener('change', () => change({
+            range: { low: Number(byId('low').value), high: Number(byId('high').value), log: byId('logarithmic').checked },
+        }));
+    byId('automatic').addEventListener('click', () => change({ range: null }));
+    byId('zoom-in').addEventListener('click', () => viewport.zoom(1.5));
+    byId('zoom-out').addEventListener('click', () => viewport.zoom(1 / 1.5));
+    byId('zoom-fit').addEventListener('click', () => viewport.fit());
+    byId('zoom-actual').addEventListener('click', () => viewport.actualSize());
+    byId('help-button').addEventListener('click', () => byId('help').showModal());
+    byId('pixel-form').addEventListener('submit', () =>
+        pin(Number(byId('pixel-x').value), Number(byId('pixel-y').value), true).catch(fail));
+    new ResizeObserver(() => viewport.resize()).observe(byId('view'));
+}
+
+function showFacts() {
+    const parts = [];
+    if (report.facts.length > 0) parts.push(makeTable('Measures', null, report.facts));
+    for (const image of images) {
+        if (image.facts.length > 0) parts.push(makeTable(several ? image.short : 'Summary', null, image.facts));
+        if (image.omitted.length > 0)
+            parts.push(make('p', {}, `Left out of ${image.short} to keep this page small: ${image.omitted.join(', ')}.`));
+        if (image.metadata.length > 0)
+            parts.push(make('details', {}, make('summary', {}, several ? `Metadata of ${image.short}` : 'Metadata'),
+                makeTable('', null, image.metadata)));
+    }
+    byId('facts').classList.add('facts');
+    byId('facts').replaceChildren(...parts);
+    byId('facts').hidden = parts.length === 0;
+}
+
+function start() {
+    document.title = byId('title').textContent = report.title;
+    byId('subtitle').textContent = `${report.width}×${report.height} pixels`;
+    byId('layout-choices').replaceChildren(...layouts.map(([id, label]) =>
+        make('label', {}, make('input', { type: 'radio', name: 'layout', value: id }), label)));
+    const names = images.map((image, k) => [k, image.short]);
+    fillSelect(byId('image-a'), names, state.a);
+    fillSelect(byId('image-b'), names, state.b);
+    byId('keys').replaceChildren(makeTable('', null, keyTexts));
+    if (!findLayer(imageA(), '')) state.layer = imageA().layers[0].name;
+    showFacts();
+    listen();
+    showControls();
+    viewport.resize();
+    paint().then(() => {
+        showControls();
+        viewport.fit();
+        if (report.pixel) return pin(...report.pixel, true);
+    }).catch(fail);
+}
+
+try {
+    start();
+} catch (error) {
+    fail(error);
+}
