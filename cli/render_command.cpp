@@ -256,7 +256,9 @@ void add_render(CLI::App& app, Invocation& invocation) {
     c->add_option("-o,--output", a->output, "the image (default: the film's name or SCENE.exr)")
         ->option_text("FILE");
     add_choice<Method>(c, "--method", a->options.method,
-                       {{"uniform", Method::uniform}, {"covariance", Method::covariance}},
+                       {{"uniform", Method::uniform},
+                        {"covariance", Method::covariance},
+                        {"hybrid", Method::hybrid}},
                        "covariance tracing (default), or plain paths");
     add_positive(c, "--spp", a->options.spp, 1 << 30,
                  "average samples per pixel (default: the scene's)");

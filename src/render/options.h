@@ -14,7 +14,8 @@ namespace covtrace {
 
 enum class Method {
     uniform,    ///< the plain path tracer: every pixel the same count, the scene's filter
-    covariance  ///< the thesis' method: prediction, counts, Gaussian gather
+    covariance,  ///< the thesis' method: prediction, counts, Gaussian gather
+    hybrid       ///< prediction and samples together: adaptive counts, candidates, selection
 };
 
 /// Where the frequency analysis learns of what stands beside a ray.

@@ -1,0 +1,191 @@
+#include <algorithm>
+#include <cmath>
+
+#include "reconstruction/hybrid.h"
+#include "render/hybrid_film.h"
+#include "render/job.h"
+#include "render/layers.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Samples per pixel of the pilot, both halves together.
+constexpr double kPilot = 4;
+
+class HybridRender {
+  public:
+    explicit HybridRender(RenderJob& job) : job_(job), film_(job.region) {
+        for (int k = 0; k < 2; ++k) {
+            contexts_.push_back(job.context);
+            contexts_.back().seed = half_seed(job.context.seed, k);
+        }
+    }
+
+    void run() {
+        {
+            const PhaseTimer timer(job_.monitor, job_.phase("spectra"));
+            job_.scene.prepare_spectra();
+        }
+        double taken = trace_pilot();
+        while (!job_.monitor.cancelled()) {
+            const double target = job_.plan_round(taken, std::max(2 * taken, kPilot));
+            if (!(target > taken)) break;
+            trace_round(taken, target);
+            if (film_.mean_count() <= taken) break;  // every pixel is at its limit
+            taken = target;
+        }
+        job_.result.statistics.samples_per_pixel = film_.mean_count();
+        finish();
+    }
+
+  private:
+    size_t size() const { return film_.half[0].pixels.size(); }
+
+    /// Counts of the next samples for a half, given how many each pixel should have in the end.
+    std::vector<uint32_t> missing(int k, std::vector<uint32_t> wanted) const {
+        for (size_t i = 0; i < wanted.size(); ++i)
+            wanted[i] -= std::min(wanted[i], film_.half[size_t(k)].pixels[i].count);
+        return wanted;
+    }
+
+    /// The first samples: every pixel alike, and the first of them leave their covariances.
+    double trace_pilot() {
+        const double pilot = job_.target_spp ? std::min(kPilot, *job_.target_spp) : kPilot;
+        const double covariance =
+            std::min(pilot, job_.options.cov_spp ? double(*job_.options.cov_spp) : 2.0);
+        const std::optional<VoxelGrid> occluders = occluder_grid(job_);
+        const std::vector<float> even(size(), 1.0f);
+        const std::vector<uint32_t> none(size(), 0);
+        const double start = job_.monitor.elapsed();
+        {
+            const PhaseTimer timer(job_.monitor, job_.phase("covariance"));
+            std::array<CovarianceBuffer, 2> buffer{film_.covariance, film_.covariance};
+            for (int k = 0; k < 2; ++k) {
+                const auto counts = share_between_halves(k, covariance);
+                job_.result.statistics.covariance.add(covariance_pass(
+                    contexts_[size_t(k)], occluders ? &*occluders : nullptr, film_.half[size_t(k)],
+                    counts, buffer[size_t(k)], job_.monitor,
+                    job_.reporter("covariance", 0.5 * k * covariance, 0.5 * (k + 1) * covariance)));
+            }
+            film_.covariance = merge(buffer[0], buffer[1]);
+        }
+        {
+            const PhaseTimer timer(job_.monitor, job_.phase("plan"));
+            raw_prediction_ = preintegrate(film_.covariance);
+            prediction_ = preintegrate(smooth(film_.covariance));
+        }
+        for (int k = 0; k < 2; ++k)
+            trace(k, missing(k, share_between_halves(k, pilot)), covariance, pilot);
+        job_.traced(pilot, job_.monitor.elapsed() - start);
+        return pilot;
+    }
+
+    /// The counts of one half when both together take `spp` per pixel evenly. Where that is not
+    /// even, a checkerboard decides which half gets the odd sample.
+    std::vector<uint32_t> share_between_halves(int k, double spp) const {
+        const std::vector<float> even(size(), 1.0f);
+        const std::vector<uint32_t> none(size(), 0);
+        const auto both = allocate(even, std::llround(spp * double(size())), none, 1u << 30);
+        std::vector<uint32_t> counts(size());
+        const int w = job_.region.width();
+        for (size_t i = 0; i < counts.size(); ++i) {
+            const bool odd = ((i % size_t(w)) + i / size_t(w)) % 2 == size_t(k);
+            counts[i] = both[i] / 2 + (both[i] % 2 && odd ? 1 : 0);
+        }
+        return counts;
+    }
+
+    static CovarianceBuffer merge(const CovarianceBuffer& a, const CovarianceBuffer& b) {
+        CovarianceBuffer sum = a;
+        for (size_t i = 0; i < sum.weight.size(); ++i) {
+            const float total = a.weight[i] + b.weight[i];
+            if (!(total > 0)) continue;
+            sum.covariance[i] =
+                (a.weight[i] / total) * a.covariance[i] + (b.weight[i] / total) * b.covariance[i];
+            sum.weight[i] = 0.5f * total;
+        }
+        return sum;
+    }
+
+    void trace(int k, const std::vector<uint32_t>& counts, double from, double to) {
+        const PhaseTimer timer(job_.monitor, job_.phase("radiance"));
+        const double middle = 0.5 * (from + to);
+        job_.result.statistics.radiance.add(
+            radiance_pass(contexts_[size_t(k)], film_.half[size_t(k)], counts, job_.monitor,
+                          job_.reporter("radiance", k == 0 ? from : middle, k == 0 ? middle : to)));
+    }
+
+    /// What the planner may know for one half: the samples of the other one.
+    std::vector<float> density_from(const Film& film) const {
+        const int w = film.bounds.width(), h = film.bounds.height();
+        SampleKnowledge known{Plane(w, h), Plane(w, h), Plane(w, h), prediction_.spectrum};
+        for (size_t i = 0; i < film.pixels.size(); ++i) {
+            const FilmPixel& p = film.pixels[i];
+            known.brightness[i] = luminance(p.mean);
+            if (p.count > 1) {
+                const Rgb v = p.squares / float(p.count - 1);
+                known.variance[i] =
+                    sqr(luminance({std::sqrt(v.r), std::sqrt(v.g), std::sqrt(v.b)}));
+            }
+            known.cost[i] = p.count > 0 ? float(p.rays) / float(p.count) : 1.0f;
+        }
+        return adaptive_density(known, 0.25f);
+    }
+
+    void trace_round(double taken, double target) {
+        const double most =
+            0.5 * (job_.options.max_spp ? double(*job_.options.max_spp) : std::ceil(16 * target));
+        std::array<std::vector<uint32_t>, 2> counts;
+        {
+            const PhaseTimer timer(job_.monitor, job_.phase("plan"));
+            const std::array<std::vector<float>, 2> density{density_from(film_.half[1]),
+                                                            density_from(film_.half[0])};
+            for (int k = 0; k < 2; ++k) {
+                std::vector<uint32_t> have(size());
+                for (size_t i = 0; i < have.size(); ++i)
+                    have[i] = film_.half[size_t(k)].pixels[i].count;
+                counts[size_t(k)] = missing(
+                    k, allocate(density[size_t(k)], std::llround(target / 2 * double(size())), have,
+                                uint32_t(std::clamp(most, 1.0, 4e9))));
+            }
+            density_ = density[0];
+            for (size_t i = 0; i < size(); ++i)
+                density_[i] = 0.5f * (density[0][i] + density[1][i]) * float(target);
+        }
+        const double start = job_.monitor.elapsed();
+        for (int k = 0; k < 2; ++k) trace(k, counts[size_t(k)], taken, target);
+        job_.traced(target - taken, job_.monitor.elapsed() - start);
+    }
+
+    void finish() {
+        job_.monitor.update("reconstruction", RenderJob::kTracingShare, film_.mean_count());
+        const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
+        Halves halves{half_buffer(film_.half[0]), half_buffer(film_.half[1])};
+        const HybridImage image = reconstruct(std::move(halves), prediction_.spectrum);
+        GatheredImage delivered{std::vector<Rgb>(size()), image.error.values};
+        for (size_t i = 0; i < size(); ++i)
+            delivered.color[i] = {image.color[0][i], image.color[1][i], image.color[2][i]};
+        if (density_.empty()) density_.assign(size(), float(film_.mean_count()));
+        const FilterField field =
+            filter_field(prediction_.spectrum, job_.region.width(), job_.region.height(),
+                         FilterRule::verified, filter_settings(film_.mean_count()));
+        job_.result.image = make_layers(
+            film_.merged(), job_.display, !job_.scene.lights.has_environment(),
+            CovarianceLayers{film_.covariance, raw_prediction_, density_, field, delivered});
+    }
+
+    RenderJob& job_;
+    HybridFilm film_;
+    std::vector<PassContext> contexts_;
+    Prediction raw_prediction_, prediction_;
+    std::vector<float> density_;  // what the last plan asked for, samples per pixel
+};
+
+}  // namespace
+
+void render_hybrid(RenderJob& job) {
+    HybridRender(job).run();
+}
+
+}  // namespace covtrace
