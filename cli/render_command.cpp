@@ -96,8 +96,9 @@ void describe_render(Image& image, const RenderArguments& a, const RenderScene& 
     m["covtrace:version"] = std::string(kVersion);
     m["covtrace:commit"] = std::string(kCommit);
     m["covtrace:seed"] = std::to_string(a.options.seed);
-    m["covtrace:method"] =
-        std::string(a.options.method == Method::uniform ? "uniform" : "covariance");
+    m["covtrace:method"] = std::string(a.options.method == Method::uniform      ? "uniform"
+                                       : a.options.method == Method::covariance ? "covariance"
+                                                                                : "hybrid");
     m["covtrace:isa"] = scene.geometry.isa();
     m["covtrace:sceneHash"] = fmt::format("{:016x}", scene.description.content_hash);
     m["spp"] = static_cast<float>(result.statistics.samples_per_pixel);
@@ -263,6 +264,7 @@ void add_render(CLI::App& app, Invocation& invocation) {
     add_positive(c, "--spp", a->options.spp, 1 << 30,
                  "average samples per pixel (default: the scene's)");
     c->add_option("--time", a->seconds, "wall-clock budget: 2.5, 45s, 3m, 1h30m")->option_text("T");
+    add_positive(c, "--error", a->options.error, 1e6, "stop at this estimated sqrt(relMSE)");
     c->add_option("--cov-spp", a->options.cov_spp,
                   "covariance paths per pixel (default: spp/4, 2-4)")
         ->check(CLI::Range(1, 1 << 20))
@@ -274,6 +276,7 @@ void add_render(CLI::App& app, Invocation& invocation) {
                   "most samples in a pixel (default: 16 x average)")
         ->check(CLI::Range(1, 1 << 30))
         ->option_text("N");
+    c->add_flag("--even-counts", a->options.even_counts, "hybrid: the same count in every pixel");
     add_choice<Occlusion>(c, "--occlusion", a->options.occlusion,
                           {{"grid", Occlusion::grid}, {"none", Occlusion::none}},
                           "occluders beside the rays of the analysis");

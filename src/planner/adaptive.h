@@ -24,9 +24,9 @@ struct SampleKnowledge {
 ///     n_q ~ sigma_q sqrt(A_q / c_q),   A_q = sum_p g_p a_pq^2.
 /// For the predicted Gaussian, whose squares sum to 1 / (4 pi sqrt|C|) ~ sqrt|S_2D|,
 ///     n ~ sigma |S_2D|^(1/4) / (sqrt(I^2 + eps) sqrt(c)).
-/// `tempering`: the power of |S_2D|; 1/4 for that filter, 0 for none. sigma and I are smoothed, as
-/// few samples know little of them. A share is given out evenly, so that nothing that the samples
+/// sigma / I is averaged over a few pixels, as few samples know little of it: not its square, which
+/// one rare bright path would own. A share is given out evenly, so that nothing that the samples
 /// have not seen yet is starved.
-std::vector<float> adaptive_density(const SampleKnowledge& known, float tempering);
+std::vector<float> adaptive_density(const SampleKnowledge& known);
 
 }  // namespace covtrace

@@ -25,10 +25,12 @@ struct HalfBuffer {
 
 using Halves = std::array<HalfBuffer, 2>;
 
-/// Low-discrepancy samples vary less in the mean than their own spread says. Scales the variances
-/// of the colours by what the difference of the halves shows: box13((A - B)^2 / 2) over
-/// box13((var A + var B) / 2), clamped to [0.1, 1], and then smooths them over 3x3 pixels
-/// (Rousselle, Knaus and Zwicker 2012, section 4).
-void rescale_variance(Halves& halves);
+/// Gives every pixel without samples the mean of what is around it, colours and features alike; its
+/// count stays 0.
+void fill_holes(HalfBuffer& half);
+
+/// Where no pixel has two samples their spread is unknown: sets the variances of both halves to
+/// what the difference of the halves says, box13((A - B)^2) / 2.
+void set_variance_from_difference(Halves& halves);
 
 }  // namespace covtrace

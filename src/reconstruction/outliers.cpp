@@ -11,7 +11,7 @@ namespace {
 /// How many times brighter than all that the other half saw around it a pixel may be.
 constexpr float kMostTimes = 2;
 /// Deviation of the Gaussian that spreads the excess, pixels.
-constexpr float kSpread = 6;
+constexpr float kSpread = 12;
 
 /// Largest value within 3 x 3 pixels.
 Plane largest_around(const Plane& p) {

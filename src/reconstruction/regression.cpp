@@ -13,7 +13,7 @@ namespace covtrace {
 namespace {
 
 constexpr int kReach = kRegressionReach, kSide = 2 * kReach + 1;
-constexpr int kBlock = PatchDistance::kBlock, kStride = 2, kPatchRadius = 3;
+constexpr int kBlock = PatchDistance::kBlock, kStride = 2, kPatchRadius = 1;
 constexpr size_t kOffsets = size_t(kSide) * kSide;
 constexpr size_t kCells = (kOffsets + kLanes - 1) / kLanes * kLanes;  // offsets, padded
 constexpr size_t kPositions = 3;                                      // 1, x, y
@@ -71,14 +71,14 @@ class Window {
 
     /// Fits the colours with the weights and writes the fit's value at every pixel. False where
     /// there is nothing to fit.
-    bool fit(const Cells& weight, size_t basis, std::array<Cells, 3>& fitted) {
-        solve_normal_equations(weight, basis);
+    bool fit(const Cells& weight, std::array<Cells, 3>& fitted) {
+        solve_normal_equations(weight);
         if (!(total_ > 0)) return false;
         for (size_t c = 0; c < 3; ++c) {
             Cells& out = fitted[c];
             const float b0 = coefficient_[c][0];
             for (size_t o = 0; o < kCells; ++o) out[o] = b0;
-            for (size_t i = 1; i < basis; ++i) {
+            for (size_t i = 1; i < kBasis; ++i) {
                 const float b = coefficient_[c][i];
                 const Cells& x = *basis_[i];
                 for (size_t o = 0; o < kCells; ++o) out[o] += b * x[o];
@@ -88,7 +88,8 @@ class Window {
     }
 
   private:
-    void solve_normal_equations(const Cells& weight, size_t n) {
+    void solve_normal_equations(const Cells& weight) {
+        constexpr size_t n = kBasis;
         for (size_t i = 0; i < n; ++i) {
             const Cells& x = *basis_[i];
             Cells& z = weighted_[i];
@@ -117,13 +118,14 @@ class Window {
         if (!(total_ > 0)) return;
         // The ridge, relative to each function's own spread, and a floor below which a feature
         // counts as constant: what differs by less is rounding and left-over noise.
-        constexpr double kRidge = 1e-3, kFloor = 1e-4;
+        constexpr double kRidge = 1e-3, kFloor = 1e-5;
         for (size_t i = 1; i < n; ++i) a[i][i] += kRidge * a[i][i] + kFloor * a[0][0];
-        eliminate(a, n);
+        eliminate(a);
     }
 
     /// Gauss elimination of the symmetric positive definite system; only its upper half is read.
-    void eliminate(double (&a)[kBasis][kBasis + 3], size_t n) {
+    void eliminate(double (&a)[kBasis][kBasis + 3]) {
+        constexpr size_t n = kBasis;
         for (size_t i = 0; i < n; ++i) {
             const double inverse = 1 / a[i][i];
             for (size_t r = i + 1; r < n; ++r) {
@@ -188,8 +190,7 @@ class Block {
                                 kOffsets];
                 for (size_t k = 0; k < windows_.size(); ++k) {
                     set_weights(windows_[k], d, window_.valid(), x0 + x, y0 + y, weight_);
-                    const size_t basis = windows_[k].with_features ? kBasis : kPositions;
-                    if (window_.fit(weight_, basis, fitted_)) add(x, y, out[k]);
+                    if (window_.fit(weight_, fitted_)) add(x, y, out[k]);
                 }
             }
     }

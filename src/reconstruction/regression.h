@@ -17,8 +17,6 @@ struct RegressionWindow {
     /// times `widen`^2. Null: every pixel within the reach counts alike.
     const FilterField* shape = nullptr;
     float widen = 1;
-    /// Whether the features explain the colours too, or the position alone.
-    bool with_features = true;
 };
 
 constexpr int kRegressionReach = 9;  ///< windows are 19 x 19 pixels

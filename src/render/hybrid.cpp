@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "planner/adaptive.h"
 #include "reconstruction/hybrid.h"
 #include "render/hybrid_film.h"
 #include "render/job.h"
@@ -12,6 +14,14 @@ namespace {
 
 /// Samples per pixel of the pilot, both halves together.
 constexpr double kPilot = 4;
+
+/// Where the round after an average of `taken` ends: the rounds double the total, whatever the
+/// budget.
+double round_end(double taken) {
+    double end = kPilot;
+    while (end <= taken) end *= 2;
+    return end;
+}
 
 class HybridRender {
   public:
@@ -28,15 +38,17 @@ class HybridRender {
             job_.scene.prepare_spectra();
         }
         double taken = trace_pilot();
-        while (!job_.monitor.cancelled()) {
-            const double target = job_.plan_round(taken, std::max(2 * taken, kPilot));
+        if (job_.options.seconds) job_.reserve(reconstruction_time());
+        while (!job_.monitor.cancelled() && !good_enough()) {
+            const double target = job_.plan_round(taken, round_end(taken));
             if (!(target > taken)) break;
+            image_.reset();  // of fewer samples
             trace_round(taken, target);
             if (film_.mean_count() <= taken) break;  // every pixel is at its limit
             taken = target;
         }
         job_.result.statistics.samples_per_pixel = film_.mean_count();
-        finish();
+        deliver();
     }
 
   private:
@@ -130,7 +142,7 @@ class HybridRender {
             }
             known.cost[i] = p.count > 0 ? float(p.rays) / float(p.count) : 1.0f;
         }
-        return adaptive_density(known, 0.25f);
+        return adaptive_density(known);
     }
 
     void trace_round(double taken, double target) {
@@ -141,15 +153,17 @@ class HybridRender {
             const PhaseTimer timer(job_.monitor, job_.phase("plan"));
             const std::array<std::vector<float>, 2> density{density_from(film_.half[1]),
                                                             density_from(film_.half[0])};
+            const std::vector<float> even(size(), 1.0f);
             for (int k = 0; k < 2; ++k) {
                 std::vector<uint32_t> have(size());
                 for (size_t i = 0; i < have.size(); ++i)
                     have[i] = film_.half[size_t(k)].pixels[i].count;
-                counts[size_t(k)] = missing(
-                    k, allocate(density[size_t(k)], std::llround(target / 2 * double(size())), have,
-                                uint32_t(std::clamp(most, 1.0, 4e9))));
+                counts[size_t(k)] =
+                    missing(k, allocate(job_.options.even_counts ? even : density[size_t(k)],
+                                        std::llround(target / 2 * double(size())), have,
+                                        uint32_t(std::clamp(most, 1.0, 4e9))));
             }
-            density_ = density[0];
+            density_.resize(size());
             for (size_t i = 0; i < size(); ++i)
                 density_[i] = 0.5f * (density[0][i] + density[1][i]) * float(target);
         }
@@ -158,14 +172,53 @@ class HybridRender {
         job_.traced(target - taken, job_.monitor.elapsed() - start);
     }
 
-    void finish() {
-        job_.monitor.update("reconstruction", RenderJob::kTracingShare, film_.mean_count());
+    void reconstruct_image() {
+        job_.monitor.update("reconstruction", job_.fraction(film_.mean_count()),
+                            film_.mean_count());
         const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
-        Halves halves{half_buffer(film_.half[0]), half_buffer(film_.half[1])};
-        const HybridImage image = reconstruct(std::move(halves), prediction_.spectrum);
-        GatheredImage delivered{std::vector<Rgb>(size()), image.error.values};
+        image_ = reconstruct(halves_of(film_), prediction_.spectrum);
+    }
+
+    /// Whether the image is as good as was asked for, by its own estimate.
+    bool good_enough() {
+        if (!job_.options.error) return false;
+        reconstruct_image();
+        double sum = 0;
+        for (float e : image_->relative_error.values) sum += double(e);
+        return std::sqrt(sum / double(size())) < *job_.options.error;
+    }
+
+    /// Seconds that the reconstruction of this image will take, by that of a part of it. It decides
+    /// when to stop and nothing else.
+    double reconstruction_time() {
+        constexpr int kSide = 96;
+        const PixelBounds all = job_.region;
+        const PixelBounds part{all.x0, all.y0, std::min(all.x1, all.x0 + kSide),
+                               std::min(all.y1, all.y0 + kSide)};
+        const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
+        const double start = job_.monitor.elapsed();
+        HybridFilm film(part);
+        std::vector<Covariance2> spectrum;
+        for (int y = part.y0; y < part.y1; ++y)
+            for (int x = part.x0; x < part.x1; ++x) {
+                const size_t to = size_t(y - part.y0) * size_t(part.width()) + size_t(x - part.x0);
+                const size_t from = size_t(y - all.y0) * size_t(all.width()) + size_t(x - all.x0);
+                for (size_t k = 0; k < 2; ++k) {
+                    film.half[k].pixels[to] = film_.half[k].pixels[from];
+                    film.half[k].feature_squares[to] = film_.half[k].feature_squares[from];
+                }
+                spectrum.push_back(prediction_.spectrum[from]);
+            }
+        reconstruct(halves_of(film), spectrum);
+        return (job_.monitor.elapsed() - start) * double(size()) / double(spectrum.size());
+    }
+
+    void deliver() {
+        if (!image_) reconstruct_image();
+        const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
+        GatheredImage delivered{std::vector<Rgb>(size()), image_->variance.values};
         for (size_t i = 0; i < size(); ++i)
-            delivered.color[i] = {image.color[0][i], image.color[1][i], image.color[2][i]};
+            delivered.color[i] = {image_->color[0][i], image_->color[1][i], image_->color[2][i]};
         if (density_.empty()) density_.assign(size(), float(film_.mean_count()));
         const FilterField field =
             filter_field(prediction_.spectrum, job_.region.width(), job_.region.height(),
@@ -179,7 +232,8 @@ class HybridRender {
     HybridFilm film_;
     std::vector<PassContext> contexts_;
     Prediction raw_prediction_, prediction_;
-    std::vector<float> density_;  // what the last plan asked for, samples per pixel
+    std::optional<HybridImage> image_;  // of the film as it is
+    std::vector<float> density_;        // what the last plan asked for, samples per pixel
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "render/hybrid_film.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/hash.h"
@@ -67,8 +68,6 @@ class PooledVariance {
     Plane freedom_, around_;
 };
 
-}  // namespace
-
 HalfBuffer half_buffer(const Film& film) {
     HalfBuffer out(film.bounds.width(), film.bounds.height());
     const PooledVariance variance(film);
@@ -98,6 +97,18 @@ HalfBuffer half_buffer(const Film& film) {
         return z > 0 ? squares[i].depth / (z * z) : 0.0f;  // of the logarithm
     });
     return out;
+}
+
+}  // namespace
+
+Halves halves_of(const HybridFilm& film) {
+    Halves halves{half_buffer(film.half[0]), half_buffer(film.half[1])};
+    const auto repeated = [](const Film& half) {
+        return std::any_of(half.pixels.begin(), half.pixels.end(),
+                           [](const FilmPixel& p) { return p.count > 1; });
+    };
+    if (!repeated(film.half[0]) || !repeated(film.half[1])) set_variance_from_difference(halves);
+    return halves;
 }
 
 }  // namespace covtrace

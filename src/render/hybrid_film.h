@@ -28,7 +28,8 @@ struct HybridFilm {
 /// The seed of half `k` in a render with `seed`.
 uint64_t half_seed(uint64_t seed, int k);
 
-/// A half as the reconstruction reads it.
-HalfBuffer half_buffer(const Film& half);
+/// The halves as the reconstruction reads them. Where no pixel of a half has two samples the
+/// variances come from the difference of the halves.
+Halves halves_of(const HybridFilm& film);
 
 }  // namespace covtrace

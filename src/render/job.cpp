@@ -16,7 +16,7 @@ RenderJob::RenderJob(RenderScene& render_scene, const RenderOptions& render_opti
               (scene.description.camera.shutter_close - scene.description.camera.shutter_open) *
                   scene.description.film.iso / 100,
               scene.description.film.max_component_value} {
-    if (options.spp || !options.seconds)
+    if (options.spp || (!options.seconds && !options.error))
         target_spp = options.spp.value_or(scene.description.samples_per_pixel);
 }
 

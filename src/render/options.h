@@ -13,7 +13,7 @@
 namespace covtrace {
 
 enum class Method {
-    uniform,    ///< the plain path tracer: every pixel the same count, the scene's filter
+    uniform,     ///< the plain path tracer: every pixel the same count, the scene's filter
     covariance,  ///< the thesis' method: prediction, counts, Gaussian gather
     hybrid       ///< prediction and samples together: adaptive counts, candidates, selection
 };
@@ -28,13 +28,16 @@ struct RenderOptions {
     Method method = Method::covariance;
     std::optional<double> spp;      ///< average samples per pixel; default: the scene's
     std::optional<double> seconds;  ///< wall clock, from `start_time` to the finished file
-    std::optional<int> cov_spp;     ///< covariance paths per pixel; default spp/4 in [2, 4]
+    std::optional<double>
+        error;  ///< stop at this estimated sqrt(relMSE) of the image; not covariance
+    std::optional<int> cov_spp;  ///< covariance paths per pixel; default spp/4 in [2, 4]
     DensityRule density = DensityRule::tempered;
     Occlusion occlusion = Occlusion::grid;
     int voxels = 200;  ///< width of the grid
     FilterRule filter = FilterRule::verified;
     std::optional<int> max_spp;    ///< most samples in any pixel; default 16 times the average
     std::optional<int> max_depth;  ///< default: the scene's
+    bool even_counts = false;      ///< hybrid: every pixel the same count, for comparisons
     uint64_t seed = 0;
 };
 

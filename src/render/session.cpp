@@ -38,8 +38,21 @@ void trace_round(RenderJob& job, Film& film, std::span<const float> density, dou
     job.traced(target - taken, job.monitor.elapsed() - start);
 }
 
+/// Estimated sqrt(relMSE) of the film's means, by the spread of their samples.
+double estimated_error(const Film& film) {
+    double sum = 0;
+    for (const FilmPixel& p : film.pixels) {
+        if (p.count < 2) return kInfinity;
+        const Rgb v = p.variance_of_mean();
+        for (int c = 0; c < 3; ++c)
+            sum += double(v[c]) / (double(p.mean[c]) * double(p.mean[c]) + 0.01) / 3;
+    }
+    return std::sqrt(sum / double(film.pixels.size()));
+}
+
 void trace_rounds(RenderJob& job, Film& film, std::span<const float> density, double taken) {
     while (!job.monitor.cancelled()) {
+        if (job.options.error && estimated_error(film) < *job.options.error) break;
         const double target = job.plan_round(taken, next_round(taken));
         if (!(target > taken)) break;
         trace_round(job, film, density, taken, target);
@@ -130,6 +143,10 @@ RenderResult render(RenderScene& scene, const RenderOptions& options, Monitor& m
     if (region.width() <= 0 || region.height() <= 0)
         throw Error(ErrorKind::scene, scene.description.film.where,
                     "the film's crop window holds no pixel");
+    if (options.error && options.method == Method::covariance)
+        throw Error(ErrorKind::usage,
+                    "--error: covariance tracing does not measure its error; expected --method "
+                    "hybrid or uniform");
     const Error too_large(ErrorKind::limit, "not enough memory for an image of " +
                                                 std::to_string(region.width()) + "x" +
                                                 std::to_string(region.height()) + " pixels");
