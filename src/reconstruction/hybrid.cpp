@@ -67,6 +67,14 @@ std::vector<Candidate> make_candidates(const Halves& halves,
     return candidates;
 }
 
+ColorPlanes mean_of(const Halves& halves) {
+    ColorPlanes mean = halves[0].color;
+    for (size_t c = 0; c < 3; ++c)
+        for (size_t i = 0; i < mean[c].size(); ++i)
+            mean[c][i] = 0.5f * (mean[c][i] + halves[1].color[c][i]);
+    return mean;
+}
+
 /// The brightness that errors are measured against: the mean over all candidates but the raw one.
 Plane common_brightness(std::span<const Candidate> candidates) {
     const size_t first = candidates.size() > 1 ? 1 : 0;
@@ -85,7 +93,12 @@ Plane common_brightness(std::span<const Candidate> candidates) {
 HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> spectrum,
                         const HybridSettings& settings) {
     for (HalfBuffer& half : halves) fill_holes(half);
-    const ColorPlanes excess = split_outliers(halves);
+    const ColorPlanes all = mean_of(halves);
+    limit_outliers(halves);
+    // Variances that know of their own pixel's mean would let bright pixels accept dark ones and
+    // not the other way round.
+    for (HalfBuffer& half : halves)
+        for (Plane& v : half.color_variance) v = box_blur(v, 1);
     const std::vector<Candidate> candidates = make_candidates(halves, spectrum, settings);
     const Plane brightness = common_brightness(candidates);
     Selection s = select(halves, candidates, brightness, settings.sigma);
@@ -95,7 +108,7 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < brightness.size(); ++i)
             image.color[c][i] = std::max(0.0f, 0.5f * (image.color[c][i] + s.half[1][c][i]));
-    add_excess(excess, image.color);
+    return_energy(all, image.color);
     image.variance = image.relative_error;
     for (size_t i = 0; i < brightness.size(); ++i)
         image.variance[i] *= sqr(brightness[i]) + kDarkSquared;

@@ -10,7 +10,7 @@ namespace {
 
 /// How many times brighter than all that the other half saw around it a pixel may be.
 constexpr float kMostTimes = 2;
-/// Deviation of the Gaussian that spreads the excess, pixels.
+/// Deviation of the Gaussian that spreads what is given back, pixels.
 constexpr float kSpread = 12;
 
 /// Largest value within 3 x 3 pixels.
@@ -36,10 +36,8 @@ Plane luminance(const ColorPlanes& color) {
     return y;
 }
 
-ColorPlanes split_outliers(Halves& halves) {
+void limit_outliers(Halves& halves) {
     const std::array<Plane, 2> bright{luminance(halves[0].color), luminance(halves[1].color)};
-    ColorPlanes excess;
-    excess.fill(Plane(bright[0].width, bright[0].height));
     for (size_t k = 0; k < 2; ++k) {
         const Plane limit = largest_around(bright[1 - k]);
         for (size_t i = 0; i < limit.size(); ++i) {
@@ -47,30 +45,26 @@ ColorPlanes split_outliers(Halves& halves) {
             if (!(bright[k][i] > most)) continue;
             const float keep = most / bright[k][i];
             for (size_t c = 0; c < 3; ++c) {
-                excess[c][i] += 0.5f * (1 - keep) * halves[k].color[c][i];
                 halves[k].color[c][i] *= keep;
                 // The rare path made the variance too; what is left of the pixel varies less.
                 halves[k].color_variance[c][i] *= keep * keep;
             }
         }
     }
-    return excess;
 }
 
-void add_excess(const ColorPlanes& excess, ColorPlanes& color) {
+void return_energy(const ColorPlanes& raw, ColorPlanes& color) {
     const Plane light = luminance(color);
     // Where everything around is black the light goes everywhere alike.
-    const float floor = 1e-6f;
-    Plane around = gaussian_blur(light, kSpread);
+    constexpr float kFloor = 1e-6f;
+    const Plane around = gaussian_blur(light, kSpread);
     for (size_t c = 0; c < 3; ++c) {
-        if (std::none_of(excess[c].values.begin(), excess[c].values.end(),
-                         [](float e) { return e > 0; }))
-            continue;
-        Plane share = excess[c];
-        for (size_t i = 0; i < share.size(); ++i) share[i] /= std::max(0.0f, around[i]) + floor;
+        Plane share = raw[c];
+        for (size_t i = 0; i < share.size(); ++i)
+            share[i] = (share[i] - color[c][i]) / (around[i] + kFloor);
         share = gaussian_blur(share, kSpread);
         for (size_t i = 0; i < share.size(); ++i)
-            color[c][i] += share[i] * (std::max(0.0f, light[i]) + floor);
+            color[c][i] = std::max(0.0f, color[c][i] + share[i] * (light[i] + kFloor));
     }
 }
 
