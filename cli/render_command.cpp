@@ -260,13 +260,12 @@ void add_render(CLI::App& app, Invocation& invocation) {
                        {{"uniform", Method::uniform},
                         {"covariance", Method::covariance},
                         {"hybrid", Method::hybrid}},
-                       "covariance tracing (default), or plain paths");
+                       "plain paths, covariance tracing, or the best: hybrid (default)");
     add_positive(c, "--spp", a->options.spp, 1 << 30,
                  "average samples per pixel (default: the scene's)");
     c->add_option("--time", a->seconds, "wall-clock budget: 2.5, 45s, 3m, 1h30m")->option_text("T");
     add_positive(c, "--error", a->options.error, 1e6, "stop at this estimated sqrt(relMSE)");
-    c->add_option("--cov-spp", a->options.cov_spp,
-                  "covariance paths per pixel (default: spp/4, 2-4)")
+    c->add_option("--cov-spp", a->options.cov_spp, "covariance paths per pixel (default: 2 to 4)")
         ->check(CLI::Range(1, 1 << 20))
         ->option_text("N");
     add_choice<DensityRule>(c, "--density", a->options.density,

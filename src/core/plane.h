@@ -26,4 +26,7 @@ Plane box_blur(const Plane& plane, int radius);
 /// Gaussian mean with deviation `sigma` pixels, cut at 3 sigma; over the image's own pixels only.
 Plane gaussian_blur(const Plane& plane, float sigma);
 
+/// The same as a sum: the image is black beyond its border, and the kernel stays symmetric there.
+Plane gaussian_sum(const Plane& plane, float sigma);
+
 }  // namespace covtrace

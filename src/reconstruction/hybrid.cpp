@@ -101,7 +101,7 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
         for (Plane& v : half.color_variance) v = box_blur(v, 1);
     const std::vector<Candidate> candidates = make_candidates(halves, spectrum, settings);
     const Plane brightness = common_brightness(candidates);
-    Selection s = select(halves, candidates, brightness, settings.sigma);
+    Selection s = select(halves, candidates, brightness, settings.sigma, settings.mix);
 
     HybridImage image{std::move(s.half[0]), std::move(s.error), {}, std::move(s.share)};
     // A fit may leave the range of its colours: light is never negative.

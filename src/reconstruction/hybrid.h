@@ -21,6 +21,7 @@ struct HybridSettings {
     };
     std::vector<Fit> fits{{0.5f, false}, {1.0f, false}, {2.0f, true}};
     float sigma = 3;  ///< of the neighbourhood over which candidates are judged, pixels
+    bool mix = true;  ///< false: the best single candidate, for comparisons
 };
 
 struct HybridImage {

@@ -57,12 +57,12 @@ void return_energy(const ColorPlanes& raw, ColorPlanes& color) {
     const Plane light = luminance(color);
     // Where everything around is black the light goes everywhere alike.
     constexpr float kFloor = 1e-6f;
-    const Plane around = gaussian_blur(light, kSpread);
+    const Plane around = gaussian_sum(light, kSpread);
     for (size_t c = 0; c < 3; ++c) {
         Plane share = raw[c];
         for (size_t i = 0; i < share.size(); ++i)
             share[i] = (share[i] - color[c][i]) / (around[i] + kFloor);
-        share = gaussian_blur(share, kSpread);
+        share = gaussian_sum(share, kSpread);
         for (size_t i = 0; i < share.size(); ++i)
             color[c][i] = std::max(0.0f, color[c][i] + share[i] * (light[i] + kFloor));
     }

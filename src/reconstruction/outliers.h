@@ -12,8 +12,8 @@ void limit_outliers(Halves& halves);
 
 /// Gives the neighbourhoods of `color` the energy of `raw` back: what was cut off, and what filters
 /// took from small bright things. The difference e = raw - color of p goes to q as
-/// G(q - p) Y(q) / (G * Y)(p), in proportion to the light Y that is there, G a wide Gaussian: its
-/// sum over the image is kept but for what falls on the border.
+/// G(q - p) Y(q) / (G * Y)(p), in proportion to the light Y that is there, G a wide Gaussian: the
+/// sum over the image is that of `raw`, but for pixels that would become negative.
 void return_energy(const ColorPlanes& raw, ColorPlanes& color);
 
 /// Luminance of every pixel.

@@ -30,7 +30,8 @@ using Contribution = std::array<std::vector<float>, 4>;
 struct Inputs {
     std::array<PaddedPlane, kFeatures> feature;
     std::array<PaddedPlane, 3> color;
-    PaddedPlane valid;  // 1 where a pixel has samples, 0 elsewhere and outside
+    PaddedPlane inside;   // 1 in the image, 0 outside
+    PaddedPlane sampled;  // 1 where a pixel has samples, 0 elsewhere and outside
     int width, height;
 };
 
@@ -65,9 +66,10 @@ class Window {
             for (size_t o = 0; o < kOffsets; ++o) feature_[f][o] -= centre;
         }
         for (size_t c = 0; c < 3; ++c) gather(in.color[c], x, y, color_[c]);
-        gather(in.valid, x, y, valid_);
+        gather(in.inside, x, y, inside_);
+        gather(in.sampled, x, y, sampled_);
     }
-    const Cells& valid() const { return valid_; }
+    const Cells& inside() const { return inside_; }
 
     /// Fits the colours with the weights and writes the fit's value at every pixel. False where
     /// there is nothing to fit.
@@ -93,7 +95,7 @@ class Window {
         for (size_t i = 0; i < n; ++i) {
             const Cells& x = *basis_[i];
             Cells& z = weighted_[i];
-            for (size_t o = 0; o < kCells; ++o) z[o] = weight[o] * x[o];
+            for (size_t o = 0; o < kCells; ++o) z[o] = weight[o] * sampled_[o] * x[o];
         }
         // Columns beyond the basis: the colours.
         std::array<const float*, kBasis + 3> column{};
@@ -144,7 +146,7 @@ class Window {
     const Positions positions_;
     std::array<Cells, kFeatures> feature_{};
     std::array<Cells, 3> color_{};
-    Cells valid_{};
+    Cells inside_{}, sampled_{};
     const std::array<const Cells*, kBasis> basis_ = [this] {
         std::array<const Cells*, kBasis> b{&positions_.one, &positions_.x, &positions_.y};
         for (size_t f = 0; f < kFeatures; ++f) b[kPositions + f] = &feature_[f];
@@ -156,10 +158,10 @@ class Window {
 };
 
 /// The weights of all pixels around the centre (x, y).
-void set_weights(const RegressionWindow& window, const float* distance, const Cells& valid, int x,
+void set_weights(const RegressionWindow& window, const float* distance, const Cells& inside, int x,
                  int y, Cells& weight) {
     const float scale = 1 / (window.k * window.k);
-    for (size_t o = 0; o < kOffsets; ++o) weight[o] = valid[o] * patch_weight(scale * distance[o]);
+    for (size_t o = 0; o < kOffsets; ++o) weight[o] = inside[o] * patch_weight(scale * distance[o]);
     if (!window.shape) return;
     const auto& s = window.shape->covariance[size_t(y) * size_t(window.shape->width) + size_t(x)];
     const float norm = 0.5f / ((s.xx * s.yy - s.xy * s.xy) * window.widen * window.widen);
@@ -189,7 +191,7 @@ class Block {
                     &distances_[(size_t(y / kStride) * (kBlock / kStride) + size_t(x / kStride)) *
                                 kOffsets];
                 for (size_t k = 0; k < windows_.size(); ++k) {
-                    set_weights(windows_[k], d, window_.valid(), x0 + x, y0 + y, weight_);
+                    set_weights(windows_[k], d, window_.inside(), x0 + x, y0 + y, weight_);
                     if (window_.fit(weight_, fitted_)) add(x, y, out[k]);
                 }
             }
@@ -241,9 +243,10 @@ std::vector<ColorPlanes> regress(const HalfBuffer& half, const HalfBuffer& guide
     in.height = h;
     for (size_t f = 0; f < kFeatures; ++f) in.feature[f] = PaddedPlane(features[f], kReach);
     for (size_t c = 0; c < 3; ++c) in.color[c] = PaddedPlane(half.color[c], kReach);
-    Plane valid(w, h);
-    for (size_t i = 0; i < valid.size(); ++i) valid[i] = half.count[i] > 0 ? 1.0f : 0.0f;
-    in.valid = PaddedPlane(valid, kReach, 0);
+    Plane sampled(w, h);
+    for (size_t i = 0; i < sampled.size(); ++i) sampled[i] = half.count[i] > 0 ? 1.0f : 0.0f;
+    in.sampled = PaddedPlane(sampled, kReach, 0);
+    in.inside = PaddedPlane(Plane(w, h, 1), kReach, 0);
     const PatchDistance distance(guide.color, guide.color_variance, kReach, kPatchRadius);
 
     const int blocks_x = (w + kBlock - 1) / kBlock, blocks_y = (h + kBlock - 1) / kBlock;

@@ -21,13 +21,13 @@ size_t entry(size_t c, size_t d) {
 /// Minimises w^T G w over the simplex: the best single candidate, then steps that move weight from
 /// the worst to the best one (pairwise Frank-Wolfe; Lacoste-Julien and Jaggi 2015). Stopping early
 /// keeps it near that candidate.
-void minimise(const float (&g)[kMost][kMost], size_t n, float (&w)[kMost]) {
+void minimise(const float (&g)[kMost][kMost], size_t n, int steps, float (&w)[kMost]) {
     size_t best = 0;
     for (size_t c = 1; c < n; ++c)
         if (g[c][c] <= g[best][best]) best = c;
     std::fill(w, w + n, 0.0f);
     w[best] = 1;
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < steps; ++step) {
         float slope[kMost];
         for (size_t c = 0; c < n; ++c) {
             slope[c] = 0;
@@ -94,7 +94,7 @@ Plane error_of_mean(const Halves& halves, const std::array<ColorPlanes, 2>& mixt
 }  // namespace
 
 Selection select(const Halves& halves, std::span<const Candidate> candidates,
-                 const Plane& brightness, float sigma) {
+                 const Plane& brightness, float sigma, bool mix) {
     const int w = brightness.width, h = brightness.height;
     const size_t n = candidates.size();
     const Plane g = normaliser(halves, brightness);
@@ -112,7 +112,7 @@ Selection select(const Halves& halves, std::span<const Candidate> candidates,
             float errors[kMost][kMost], share[kMost];
             for (size_t d = 0; d < n; ++d)
                 for (size_t c = 0; c <= d; ++c) errors[c][d] = errors[d][c] = gram[entry(c, d)][i];
-            minimise(errors, n, share);
+            minimise(errors, n, mix ? kSteps : 0, share);
             for (size_t c = 0; c < n; ++c) s.share[c][i] = share[c];
         }
     });

@@ -33,9 +33,9 @@ struct Selection {
 /// is noise.
 ///
 /// `brightness`: I, the same scale as the colours. `sigma`: of the Gaussian neighbourhood, pixels.
-/// The last candidate is taken where nothing judges.
+/// The last candidate is taken where nothing judges. Without `mix`: the best single one.
 Selection select(const Halves& halves, std::span<const Candidate> candidates,
-                 const Plane& brightness, float sigma);
+                 const Plane& brightness, float sigma, bool mix = true);
 
 /// eps of relMSE: the errors of pixels darker than a tenth count as they are.
 constexpr float kDarkSquared = 0.01f;

@@ -4,8 +4,7 @@
 
 #include "planner/adaptive.h"
 #include "reconstruction/hybrid.h"
-#include "render/hybrid_film.h"
-#include "render/job.h"
+#include "render/hybrid.h"
 #include "render/layers.h"
 
 namespace covtrace {
@@ -32,7 +31,9 @@ class HybridRender {
         }
     }
 
-    void run() {
+    HybridSamples samples() && { return {std::move(film_), std::move(prediction_)}; }
+
+    void trace() {
         {
             const PhaseTimer timer(job_.monitor, job_.phase("spectra"));
             job_.scene.prepare_spectra();
@@ -48,7 +49,22 @@ class HybridRender {
             taken = target;
         }
         job_.result.statistics.samples_per_pixel = film_.mean_count();
-        deliver();
+    }
+
+    /// The image, made from the samples.
+    void deliver() {
+        if (!image_) reconstruct_image();
+        const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
+        GatheredImage delivered{std::vector<Rgb>(size()), image_->variance.values};
+        for (size_t i = 0; i < size(); ++i)
+            delivered.color[i] = {image_->color[0][i], image_->color[1][i], image_->color[2][i]};
+        if (density_.empty()) density_.assign(size(), float(film_.mean_count()));
+        const FilterField field =
+            filter_field(prediction_.spectrum, job_.region.width(), job_.region.height(),
+                         FilterRule::verified, filter_settings(film_.mean_count()));
+        job_.result.image = make_layers(
+            film_.merged(), job_.display, !job_.scene.lights.has_environment(),
+            CovarianceLayers{film_.covariance, raw_prediction_, density_, field, delivered});
     }
 
   private:
@@ -213,21 +229,6 @@ class HybridRender {
         return (job_.monitor.elapsed() - start) * double(size()) / double(spectrum.size());
     }
 
-    void deliver() {
-        if (!image_) reconstruct_image();
-        const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
-        GatheredImage delivered{std::vector<Rgb>(size()), image_->variance.values};
-        for (size_t i = 0; i < size(); ++i)
-            delivered.color[i] = {image_->color[0][i], image_->color[1][i], image_->color[2][i]};
-        if (density_.empty()) density_.assign(size(), float(film_.mean_count()));
-        const FilterField field =
-            filter_field(prediction_.spectrum, job_.region.width(), job_.region.height(),
-                         FilterRule::verified, filter_settings(film_.mean_count()));
-        job_.result.image = make_layers(
-            film_.merged(), job_.display, !job_.scene.lights.has_environment(),
-            CovarianceLayers{film_.covariance, raw_prediction_, density_, field, delivered});
-    }
-
     RenderJob& job_;
     HybridFilm film_;
     std::vector<PassContext> contexts_;
@@ -239,7 +240,15 @@ class HybridRender {
 }  // namespace
 
 void render_hybrid(RenderJob& job) {
-    HybridRender(job).run();
+    HybridRender render(job);
+    render.trace();
+    render.deliver();
+}
+
+HybridSamples trace_hybrid(RenderJob& job) {
+    HybridRender render(job);
+    render.trace();
+    return std::move(render).samples();
 }
 
 }  // namespace covtrace

@@ -25,7 +25,7 @@ enum class Occlusion {
 };
 
 struct RenderOptions {
-    Method method = Method::covariance;
+    Method method = Method::hybrid;
     std::optional<double> spp;      ///< average samples per pixel; default: the scene's
     std::optional<double> seconds;  ///< wall clock, from `start_time` to the finished file
     std::optional<double>

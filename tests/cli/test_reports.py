@@ -190,7 +190,7 @@ class Progress(CliTest):
         return result.stderr.splitlines()
 
     def test_json(self):
-        for method in ("uniform", "covariance"):
+        for method in ("uniform", "covariance", "hybrid"):
             with self.subTest(method=method):
                 reports = [json.loads(line) for line in self.lines("json", method)]
                 self.assertGreater(len(reports), 0)
