@@ -14,6 +14,7 @@ RenderOptions hybrid(double spp, uint64_t seed = 0) {
     o.method = Method::hybrid;
     o.spp = spp;
     o.seed = seed;
+    o.occlusion = Occlusion::none;  // the grid would cost more than these images
     return o;
 }
 
