@@ -260,7 +260,7 @@ void add_render(CLI::App& app, Invocation& invocation) {
                        {{"uniform", Method::uniform},
                         {"covariance", Method::covariance},
                         {"hybrid", Method::hybrid}},
-                       "plain paths, covariance tracing, or the best: hybrid (default)");
+                       "plain, the thesis' method, or hybrid (default)");
     add_positive(c, "--spp", a->options.spp, 1 << 30,
                  "average samples per pixel (default: the scene's)");
     c->add_option("--time", a->seconds, "wall-clock budget: 2.5, 45s, 3m, 1h30m")->option_text("T");
