@@ -104,8 +104,9 @@ void describe_render(Image& image, const RenderArguments& a, const RenderScene& 
     m["covtrace:version"] = std::string(kVersion);
     m["covtrace:commit"] = std::string(kCommit);
     m["covtrace:seed"] = std::to_string(a.options.seed);
-    m["covtrace:method"] =
-        std::string(a.options.method == Method::uniform ? "uniform" : "covariance");
+    m["covtrace:method"] = std::string(a.options.method == Method::uniform      ? "uniform"
+                                       : a.options.method == Method::covariance ? "covariance"
+                                                                                : "hybrid");
     m["covtrace:isa"] = scene.geometry.isa();
     m["covtrace:sceneHash"] = fmt::format("{:016x}", scene.description.content_hash);
     m["spp"] = static_cast<float>(result.statistics.samples_per_pixel);
@@ -166,8 +167,6 @@ nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& res
             {"covariance", pass(result.statistics.covariance)},
             {"radiance", pass(result.statistics.radiance)},
             {"complete", result.complete}};
-}
-
 }
 
 int render_scene(RenderArguments a, const Invocation& invocation) {
@@ -265,13 +264,15 @@ void add_render(CLI::App& app, Invocation& invocation) {
     c->add_option("-o,--output", a->output, "the image (default: the film's name or SCENE.exr)")
         ->option_text("FILE");
     add_choice<Method>(c, "--method", a->options.method,
-                       {{"uniform", Method::uniform}, {"covariance", Method::covariance}},
-                       "covariance tracing (default), or plain paths");
+                       {{"uniform", Method::uniform},
+                        {"covariance", Method::covariance},
+                        {"hybrid", Method::hybrid}},
+                       "plain, the thesis' method, or hybrid (default)");
     add_positive(c, "--spp", a->options.spp, 1 << 30,
                  "average samples per pixel (default: the scene's)");
     c->add_option("--time", a->seconds, "wall-clock budget: 2.5, 45s, 3m, 1h30m")->option_text("T");
-    c->add_option("--cov-spp", a->options.cov_spp,
-                  "covariance paths per pixel (default: spp/4, 2-4)")
+    add_positive(c, "--error", a->options.error, 1e6, "stop at this estimated sqrt(relMSE)");
+    c->add_option("--cov-spp", a->options.cov_spp, "covariance paths per pixel (default: 2 to 4)")
         ->check(CLI::Range(1, 1 << 20))
         ->option_text("N");
     add_choice<DensityRule>(c, "--density", a->options.density,
@@ -281,6 +282,7 @@ void add_render(CLI::App& app, Invocation& invocation) {
                   "most samples in a pixel (default: 16 x average)")
         ->check(CLI::Range(1, 1 << 30))
         ->option_text("N");
+    c->add_flag("--even-counts", a->options.even_counts, "hybrid: the same count in every pixel");
     add_choice<Occlusion>(
         c, "--occlusion", a->options.occlusion,
         {{"grid", Occlusion::grid}, {"query", Occlusion::query}, {"none", Occlusion::none}},

@@ -15,6 +15,7 @@ struct RayCounts {
     uint64_t camera = 0;  ///< up to the first place that scatters
     uint64_t bounce = 0;  ///< behind it
     uint64_t shadow = 0;  ///< towards sampled lights
+    uint64_t total() const { return camera + bounce + shadow; }
     void add(const RayCounts& other) {
         camera += other.camera;
         bounce += other.bounce;

@@ -4,6 +4,7 @@ namespace covtrace {
 
 void FilmPixel::add(const Sample& s) {
     ++count;
+    rays += s.rays;
     const float share = 1.0f / static_cast<float>(count);
     const Rgb before = s.radiance - mean;
     mean += before * share;
@@ -19,6 +20,23 @@ Rgb FilmPixel::variance_of_mean() const {
     if (count < 2) return Rgb(0);
     const float n = static_cast<float>(count);
     return squares / (n * (n - 1));
+}
+
+void Film::add(size_t i, const FilmPixel::Sample& s) {
+    FilmPixel& p = pixels[i];
+    if (feature_squares.empty()) {
+        p.add(s);
+        return;
+    }
+    const Rgb albedo = s.albedo - p.albedo;
+    const Vec3 normal = s.normal - p.normal;
+    const float depth = s.depth - p.depth;
+    p.add(s);
+    FeatureSquares& q = feature_squares[i];
+    q.albedo += albedo * (s.albedo - p.albedo);
+    const Vec3 rest = s.normal - p.normal;
+    q.normal += Vec3{normal.x * rest.x, normal.y * rest.y, normal.z * rest.z};
+    if (s.hit) q.depth += depth * (s.depth - p.depth);
 }
 
 double Film::mean_count() const {

@@ -14,8 +14,9 @@
 namespace covtrace {
 
 enum class Method {
-    uniform,    ///< the plain path tracer: every pixel the same count, the scene's filter
-    covariance  ///< the thesis' method: prediction, counts, Gaussian gather
+    uniform,     ///< the plain path tracer: every pixel the same count, the scene's filter
+    covariance,  ///< the thesis' method: prediction, counts, Gaussian gather
+    hybrid       ///< prediction and samples together: adaptive counts, candidates, selection
 };
 
 /// Where the frequency analysis learns of what stands beside a ray.
@@ -26,10 +27,12 @@ enum class Occlusion {
 };
 
 struct RenderOptions {
-    Method method = Method::covariance;
+    Method method = Method::hybrid;
     std::optional<double> spp;      ///< average samples per pixel; default: the scene's
     std::optional<double> seconds;  ///< wall clock, from `start_time` to the finished file
-    std::optional<int> cov_spp;     ///< covariance paths per pixel; default spp/4 in [2, 4]
+    std::optional<double>
+        error;  ///< stop at this estimated sqrt(relMSE) of the image; not covariance
+    std::optional<int> cov_spp;  ///< covariance paths per pixel; default spp/4 in [2, 4]
     DensityRule density = DensityRule::tempered;
     Occlusion occlusion = Occlusion::query;
     int voxels = 200;  ///< width of the grid
@@ -37,6 +40,7 @@ struct RenderOptions {
     FilterRule filter = FilterRule::verified;
     std::optional<int> max_spp;    ///< most samples in any pixel; default 16 times the average
     std::optional<int> max_depth;  ///< default: the scene's
+    bool even_counts = false;      ///< hybrid: every pixel the same count, for comparisons
     uint64_t seed = 0;
 };
 

@@ -42,10 +42,10 @@ PassStatistics for_each_pixel(const PixelBounds& b, const Monitor& monitor,
 }
 
 /// Takes the pixel's next sample into the film.
-void sample_pixel(const PassContext& context, FilmPixel& pixel, int x, int y, PathRecord* record,
-                  PassStatistics& statistics) {
+void sample_pixel(const PassContext& context, Film& film, size_t pixel, int x, int y,
+                  PathRecord* record, PassStatistics& statistics) {
     PathResult path;
-    const uint32_t index = pixel.count;
+    const uint32_t index = film.pixels[pixel].count;
     FilmPixel::Sample s = take_sample(context, x, y, index, record, path);
     ++statistics.samples;
     statistics.rays.add(path.rays);
@@ -58,7 +58,7 @@ void sample_pixel(const PassContext& context, FilmPixel& pixel, int x, int y, Pa
             statistics.first_rejected.push_back({x, y, index});
         s.radiance = s.in_view = Rgb(0);
     }
-    pixel.add(s);
+    film.add(pixel, s);
 }
 
 }  // namespace
@@ -83,6 +83,7 @@ FilmPixel::Sample take_sample(const PassContext& context, int x, int y, uint32_t
     const Ray ray = context.scene.camera.generate_ray(film, u.lens, u.time);
     path = trace_path(context.scene, ray, sampler, context.max_depth, record);
     FilmPixel::Sample s;
+    s.rays = uint32_t(path.rays.total());
     const auto balanced = [&context](Rgb c) {
         const Rgb light = c * context.imaging_scale;
         const auto channel = [&](size_t i) {
@@ -110,7 +111,7 @@ PassStatistics radiance_pass(const PassContext& context, Film& film,
     return for_each_pixel(film.bounds, monitor, progress,
                           [&](size_t i, int x, int y, PassStatistics& statistics) {
                               for (uint32_t s = 0; s < counts[i]; ++s)
-                                  sample_pixel(context, film.pixels[i], x, y, nullptr, statistics);
+                                  sample_pixel(context, film, i, x, y, nullptr, statistics);
                           });
 }
 
@@ -138,7 +139,7 @@ PassStatistics covariance_pass(const PassContext& context, const Occluders& occl
     };
     const auto traced = [&](size_t i, int x, int y, PassStatistics& statistics) {
         static thread_local PathRecord record;
-        sample_pixel(context, film.pixels[i], x, y, &record, statistics);
+        sample_pixel(context, film, i, x, y, &record, statistics);
         Traced t{replay(record, LightPart::scattered), {}};
         if (shows_emitter(record)) t.in_view = replay(record, LightPart::in_view);
         return t;

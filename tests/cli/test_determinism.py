@@ -25,7 +25,7 @@ class Determinism(CliTest):
         return json.loads(result.stdout)
 
     def test_threads_do_not_matter(self):
-        for method in ("uniform", "covariance"):
+        for method in ("uniform", "covariance", "hybrid"):
             images = [
                 self.rendered(
                     "--method", method, "--threads", threads, "--resolution", "48x36", "--spp", "6", "--reproducible",
@@ -39,7 +39,7 @@ class Determinism(CliTest):
                     self.assertEqual(images[0].read_bytes(), other.read_bytes())
 
     def test_two_runs_give_the_same_file(self):
-        for method in ("uniform", "covariance"):
+        for method in ("uniform", "covariance", "hybrid"):
             with self.subTest(method=method):
                 first = self.rendered("--method", method, "--reproducible", output="1.exr")
                 second = self.rendered("--method", method, "--reproducible", output="2.exr")
@@ -52,7 +52,7 @@ class Determinism(CliTest):
         self.assertIs(self.compare(first, second)["identical"], True)
 
     def test_the_seed_changes_the_noise(self):
-        for method in ("uniform", "covariance"):
+        for method in ("uniform", "covariance", "hybrid"):
             with self.subTest(method=method):
                 first = self.rendered("--method", method, "--seed", "1", output="1.exr")
                 second = self.rendered("--method", method, "--seed", "2", output="2.exr")

@@ -29,15 +29,17 @@ class Layers(CliTest):
         self.assertCountEqual(self.layers("--method", "uniform").channels, PLAIN)
         self.assertCountEqual(self.layers("--method", "covariance").channels, PLAIN + COVARIANCE)
 
-    def test_covariance_is_the_default(self):
-        self.assertEqual(self.layers().value("covtrace:method"), "covariance")
+        self.assertCountEqual(self.layers("--method", "hybrid").channels, PLAIN + COVARIANCE)
+
+    def test_hybrid_is_the_default(self):
+        self.assertEqual(self.layers().value("covtrace:method"), "hybrid")
 
     def test_alpha_only_where_the_scene_leaves_holes(self):
         self.assertIn("A", self.layers().channels)
         self.assertNotIn("A", self.layers(scene=TINY + ENVIRONMENT).channels)
 
     def test_everything_is_finite(self):
-        for method in ("uniform", "covariance"):
+        for method in ("uniform", "covariance", "hybrid"):
             image = self.layers("--method", method)
             for name, values in image.pixels.items():
                 self.assertTrue(all(map(math.isfinite, values)), f"{method}: {name}")
@@ -49,7 +51,7 @@ class Layers(CliTest):
             self.assertEqual(image.pixels[c], image.pixels[f"raw.{c}"])
 
     def test_average_of_the_samples_is_what_was_asked_for(self):
-        for method in ("uniform", "covariance"):
+        for method in ("uniform", "covariance", "hybrid"):
             for spp in (0.5, 1, 4, 6.25):
                 with self.subTest(method=method, spp=spp):
                     samples = self.layers("--method", method, "--spp", spp).pixels["samples.Y"]
@@ -93,7 +95,7 @@ class Windows(CliTest):
         self.assertEqual(image.data_window, (0, 0, 31, 17))
 
     def test_one_pixel(self):
-        for method in ("uniform", "covariance"):
+        for method in ("uniform", "covariance", "hybrid"):
             self.assertEqual(exr.read(self.rendered("--resolution", "1x1", "--method", method)).width, 1)
             image = exr.read(self.rendered("--crop", "23,15,24,16", "--method", method))
             self.assertEqual(image.data_window, (23, 15, 24, 16))
@@ -223,7 +225,7 @@ class Overrides(CliTest):
 
     def test_a_world_without_anything(self):
         empty = TINY[: TINY.index("WorldBegin")] + "WorldBegin\n"
-        for method in ("uniform", "covariance"):
+        for method in ("uniform", "covariance", "hybrid"):
             with self.subTest(method=method):
                 result = self.render(empty, "--method", method)
                 self.assertEqual(result.code, DONE, result)

@@ -219,7 +219,7 @@ class Progress(CliTest):
 
     def test_json(self):
         keys = {"phase", "fraction", "spp", "error", "elapsed", "remaining", "samples_per_second"}
-        for method in ("uniform", "covariance"):
+        for method in ("uniform", "covariance", "hybrid"):
             with self.subTest(method=method):
                 *reports, last = [json.loads(line) for line in self.lines("json", method)]
                 self.assertGreater(len(reports), 0)

@@ -33,7 +33,7 @@ class Interrupts(CliTest):
             program.communicate()
 
     def test_interrupt_leaves_a_usable_image(self):
-        for method in ("uniform", "covariance"):
+        for method in ("uniform", "covariance", "hybrid"):
             for number in (signal.SIGINT, signal.SIGTERM):
                 with self.subTest(method=method, signal=number.name):
                     code, seconds, stdout = self.interrupt(method, number)
@@ -51,7 +51,7 @@ class Interrupts(CliTest):
 
 class Budgets(CliTest):
     def test_time_is_kept(self):
-        for method in ("uniform", "covariance"):
+        for method in ("uniform", "covariance", "hybrid"):
             with self.subTest(method=method):
                 start = time.monotonic()
                 image = exr.read(self.rendered("--time", "2", "--method", method, "--resolution", "120x80"))
@@ -76,7 +76,7 @@ class Budgets(CliTest):
         self.assertLess(image.value("spp"), 1000000)
 
     def test_a_budget_too_small_for_one_sample_still_gives_an_image(self):
-        for method in ("uniform", "covariance"):
+        for method in ("uniform", "covariance", "hybrid"):
             with self.subTest(method=method):
                 result = self.render(TINY, "--time", "0.001", "--method", method)
                 self.assertEqual(result.code, DONE, result)

@@ -57,6 +57,7 @@ class WrongCommandLines(CliTest):
             "--time": ["garbage", "0", "-3", "5x", "3m5", "1h30", "1m-3s", "s", "nan", "inf", "1e400", "m"],
             "--method": ["magic", "Uniform", "0"],
             "--cov-spp": ["0", "-2", "x"],
+            "--error": ["0", "-1", "x", "nan"],
             "--max-spp": ["0", "x"],
             "--density": ["even"],
             "--filter": ["none"],

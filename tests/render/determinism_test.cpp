@@ -67,7 +67,7 @@ TEST_P(Determinism, ThreadsDoNotMatter) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Determinism,
-                         testing::Values(Method::uniform, Method::covariance));
+                         testing::Values(Method::uniform, Method::covariance, Method::hybrid));
 
 TEST(Budget, TheAverageIsExact) {
     for (double spp : {0.5, 3.0, 6.25, 16.0}) {

@@ -36,7 +36,7 @@ void expect_block(const Image& image, int x0, int y0, int size, float expected) 
 
 TEST_P(FurnaceFile, ShowsItsValue) {
     const Furnace& f = GetParam();
-    for (Method method : {Method::uniform, Method::covariance}) {
+    for (Method method : {Method::uniform, Method::covariance, Method::hybrid}) {
         RenderScene scene(read_pbrt(std::filesystem::path(COVTRACE_SCENES_FOLDER) / "tests" /
                                     (std::string(f.name) + ".pbrt")));
         RenderOptions options = uniform(64, 7);

@@ -1,0 +1,34 @@
+#include "planner/adaptive.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace covtrace {
+
+std::vector<float> adaptive_density(const SampleKnowledge& known) {
+    constexpr float kDark = 0.01f;  // the measure's: errors of dark pixels count as they are
+    constexpr float kSmoothing = 1.5f;
+    constexpr float kEvenShare = 0.3f;
+    // Filters between these deviations exist (pixels), so spectra beyond them ask for nothing more.
+    constexpr float kNarrowest = 0.35f, kWidest = 15, kSharpness = 2;
+    const Plane brightness = gaussian_blur(known.brightness, kSmoothing);
+    Plane noise(known.variance.width, known.variance.height);
+    for (size_t i = 0; i < noise.size(); ++i)
+        noise[i] = std::sqrt(known.variance[i] / (brightness[i] * brightness[i] + kDark));
+    noise = gaussian_blur(noise, kSmoothing);
+    std::vector<float> density(noise.size());
+    double sum = 0;
+    for (size_t i = 0; i < density.size(); ++i) {
+        const auto usable =
+            covariance::limit_spectrum(known.spectrum[i], kSharpness, kNarrowest, kWidest);
+        const float detail = std::pow(std::max(covariance::det(usable), 0.0f), 0.25f);
+        density[i] = noise[i] * detail / std::sqrt(std::max(known.cost[i], 1.0f));
+        if (!std::isfinite(density[i])) density[i] = 0;
+        sum += density[i];
+    }
+    const float mean = density.empty() ? 0.0f : float(sum / double(density.size()));
+    for (float& v : density) v = covariance::share_of_budget(v, mean, 1.0f, kEvenShare);
+    return density;
+}
+
+}  // namespace covtrace

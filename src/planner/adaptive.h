@@ -1,0 +1,32 @@
+/// Where the next samples lower the error of the reconstructed image most.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/plane.h"
+#include "covariance/covariance.hpp"
+
+namespace covtrace {
+
+/// What is known of every pixel, row by row.
+struct SampleKnowledge {
+    Plane brightness;                                   ///< mean luminance
+    Plane variance;                                     ///< of the luminance of one sample
+    Plane cost;                                         ///< of one sample, any unit
+    std::span<const covariance::Sym2<float>> spectrum;  ///< predicted, (cycles/pixel)^2
+};
+
+/// Relative densities with mean 1.
+///
+/// A filter F_p = sum_q a_pq y_q has the variance sum_q a_pq^2 sigma_q^2 / n_q; the counts that
+/// minimise the sum over p of g_p times it, g = 1 / (I^2 + eps), at a given total cost are
+///     n_q ~ sigma_q sqrt(A_q / c_q),   A_q = sum_p g_p a_pq^2.
+/// For the predicted Gaussian, whose squares sum to 1 / (4 pi sqrt|C|) ~ sqrt|S_2D|,
+///     n ~ sigma |S_2D|^(1/4) / (sqrt(I^2 + eps) sqrt(c)).
+/// sigma / I is averaged over a few pixels, as few samples know little of it: not its square, which
+/// one rare bright path would own. A share is given out evenly, so that nothing that the samples
+/// have not seen yet is starved.
+std::vector<float> adaptive_density(const SampleKnowledge& known);
+
+}  // namespace covtrace

@@ -1,0 +1,70 @@
+#include "reconstruction/feature_filter.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/parallel.h"
+#include "reconstruction/patch_distance.h"
+
+namespace covtrace {
+
+namespace {
+
+constexpr int kReach = 5, kPatchRadius = 3, kBlock = PatchDistance::kBlock;
+
+/// Adds to `sum` the features [first, first + n) of one half, filtered with weights from `guide`.
+void add_filtered(const HalfBuffer& half, const HalfBuffer& guide, size_t first, size_t n,
+                  FeaturePlanes& sum) {
+    const int w = half.count.width, h = half.count.height;
+    const PatchDistance distance(std::span(guide.feature).subspan(first, n),
+                                 std::span(guide.feature_variance).subspan(first, n), kReach,
+                                 kPatchRadius);
+    std::vector<PaddedPlane> source;
+    for (size_t f = first; f < first + n; ++f) source.emplace_back(half.feature[f], kReach);
+    const Plane ones(w, h, 1);
+    const PaddedPlane inside(ones, kReach, 0);
+    const int blocks_x = (w + kBlock - 1) / kBlock, blocks_y = (h + kBlock - 1) / kBlock;
+    parallel_for(int64_t(blocks_x) * blocks_y, [&](int64_t block) {
+        const int x0 = int(block % blocks_x) * kBlock, y0 = int(block / blocks_x) * kBlock;
+        std::array<float, kBlock * kBlock> d;
+        std::array<std::array<float, kBlock * kBlock>, 4> total{};
+        for (int dy = -kReach; dy <= kReach; ++dy)
+            for (int dx = -kReach; dx <= kReach; ++dx) {
+                distance.block(x0, y0, dx, dy, d.data());
+                for (int y = 0; y < kBlock; ++y) {
+                    std::array<float, kBlock> weight;
+                    const float* mask = inside.at(x0 + dx, y0 + y + dy);
+                    for (size_t x = 0; x < kBlock; ++x)
+                        weight[x] = mask[x] * patch_weight(d[size_t(y) * kBlock + x]);
+                    for (size_t x = 0; x < kBlock; ++x)
+                        total[3][size_t(y) * kBlock + x] += weight[x];
+                    for (size_t f = 0; f < n; ++f) {
+                        const float* value = source[f].at(x0 + dx, y0 + y + dy);
+                        float* to = &total[f][size_t(y) * kBlock];
+                        for (size_t x = 0; x < kBlock; ++x) to[x] += weight[x] * value[x];
+                    }
+                }
+            }
+        for (int y = y0; y < std::min(y0 + kBlock, h); ++y)
+            for (int x = x0; x < std::min(x0 + kBlock, w); ++x) {
+                const size_t i = size_t(y - y0) * kBlock + size_t(x - x0);
+                // The pixel itself always has the weight 1.
+                for (size_t f = 0; f < n; ++f)
+                    sum[first + f](x, y) += 0.5f * total[f][i] / total[3][i];
+            }
+    });
+}
+
+}  // namespace
+
+FeaturePlanes filter_features(const Halves& halves) {
+    FeaturePlanes sum;
+    sum.fill(Plane(halves[0].count.width, halves[0].count.height));
+    for (const auto& [first, n] : {std::pair<size_t, size_t>{0, 3}, {3, 3}, {6, 1}}) {
+        add_filtered(halves[0], halves[1], first, n, sum);
+        add_filtered(halves[1], halves[0], first, n, sum);
+    }
+    return sum;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,60 @@
+#include "reconstruction/half_buffer.h"
+
+#include <algorithm>
+
+namespace covtrace {
+
+HalfBuffer::HalfBuffer(int w, int h) : count(w, h) {
+    for (auto* planes : {&color, &color_variance}) planes->fill(Plane(w, h));
+    for (auto* planes : {&feature, &feature_variance}) planes->fill(Plane(w, h));
+}
+
+void fill_holes(HalfBuffer& half) {
+    const int w = half.count.width, h = half.count.height;
+    Plane filled(w, h);  // 1 where a pixel has values
+    bool any = false, all = true;
+    for (size_t i = 0; i < filled.size(); ++i) {
+        filled[i] = half.count[i] > 0 ? 1.0f : 0.0f;
+        any = any || filled[i] > 0;
+        all = all && filled[i] > 0;
+    }
+    if (!any || all) return;
+    // Ever wider means until no hole is left.
+    for (float sigma = 1; !all; sigma *= 2) {
+        const Plane weight = gaussian_blur(filled, sigma);
+        const auto fill = [&](Plane& p) {
+            Plane known = p;
+            for (size_t i = 0; i < p.size(); ++i) known[i] *= filled[i];
+            known = gaussian_blur(known, sigma);
+            for (size_t i = 0; i < p.size(); ++i)
+                if (filled[i] == 0 && weight[i] > 0) p[i] = known[i] / weight[i];
+        };
+        for (auto* planes : {&half.color, &half.color_variance})
+            for (Plane& p : *planes) fill(p);
+        for (auto* planes : {&half.feature, &half.feature_variance})
+            for (Plane& p : *planes) fill(p);
+        all = true;
+        for (size_t i = 0; i < filled.size(); ++i) {
+            if (weight[i] > 0) filled[i] = 1;
+            all = all && filled[i] > 0;
+        }
+    }
+}
+
+void set_variance_from_difference(Halves& halves) {
+    for (size_t c = 0; c < 3; ++c) {
+        const Plane &a = halves[0].color[c], &b = halves[1].color[c];
+        Plane squares(a.width, a.height);
+        for (size_t i = 0; i < squares.size(); ++i) squares[i] = (a[i] - b[i]) * (a[i] - b[i]) / 2;
+        squares = box_blur(squares, 6);
+        for (HalfBuffer& half : halves) half.color_variance[c] = squares;
+    }
+    for (size_t f = 0; f < kFeatures; ++f) {
+        const Plane &a = halves[0].feature[f], &b = halves[1].feature[f];
+        Plane squares(a.width, a.height);
+        for (size_t i = 0; i < squares.size(); ++i) squares[i] = (a[i] - b[i]) * (a[i] - b[i]) / 2;
+        for (HalfBuffer& half : halves) half.feature_variance[f] = squares;
+    }
+}
+
+}  // namespace covtrace

@@ -1,0 +1,56 @@
+/// How unlike the neighbourhoods of two pixels are, in units of their noise.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/plane.h"
+
+namespace covtrace {
+
+/// A plane with a border on all sides that repeats its outermost pixels (or holds `outside`), so
+/// that windows need no bounds.
+struct PaddedPlane {
+    PaddedPlane() = default;
+    PaddedPlane(const Plane& plane, int border);
+    PaddedPlane(const Plane& plane, int border, float outside);
+    /// Pointer to pixel (x, y) of the plane; x and y may reach `border` beyond it.
+    const float* at(int x, int y) const {
+        return &values[size_t(y + border) * size_t(stride) + size_t(x + border)];
+    }
+    int border = 0, stride = 0;
+    std::vector<float> values;
+};
+
+/// The squared distance of patches, less what noise alone explains (Rousselle, Knaus and Zwicker
+/// 2012):  d(p, q) = mean over the patch and all channels of
+///     ((u_p - u_q)^2 - (v_p + min(v_p, v_q))) / (v_p + v_q)
+/// with u the values and v their variances. About -1/2..0 for pixels that differ by noise.
+/// The channels share one denominator.
+class PatchDistance {
+  public:
+    /// The side of the blocks of pixels that are worked on at once.
+    static constexpr int kBlock = 32;
+    static constexpr int kLargestPatch = 3;
+
+    /// Planes of one size. `reach`: largest offset along an axis; `patch_radius` <= kLargestPatch.
+    PatchDistance(std::span<const Plane> values, std::span<const Plane> variances, int reach,
+                  int patch_radius);
+
+    /// d(p, p + (dx, dy)) for the kBlock x kBlock pixels from (x0, y0), row by row. Pixels outside
+    /// the image get some value.
+    void block(int x0, int y0, int dx, int dy, float* out) const;
+
+  private:
+    std::vector<PaddedPlane> values_, variances_;
+    int patch_radius_;
+};
+
+/// 1 at d <= 0, falls as exp(-d), 0 from d = 4 on: (1 - d/4)^4.
+inline float patch_weight(float d) {
+    const float clipped = d > 0 ? d : 0.0f;
+    const float t = clipped < 4 ? 1 - 0.25f * clipped : 0.0f;
+    return t * t * t * t;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,35 @@
+/// First-order regression of the colours on the features (Bitterli et al. 2016; Moon et al. 2014).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "reconstruction/filter_field.h"
+#include "reconstruction/half_buffer.h"
+
+namespace covtrace {
+
+/// The weights of the pixels q around a centre p, beside those of the colours' patches.
+struct RegressionWindow {
+    /// Patches count as alike up to k times the noise: weight exp(-d / k^2), d of PatchDistance.
+    float k = 1;
+    /// Where given: also exp(-(q - p)^T C_p^-1 (q - p) / 2), C_p the covariance of `shape` at p
+    /// times `widen`^2. Null: every pixel within the reach counts alike.
+    const FilterField* shape = nullptr;
+    float widen = 1;
+};
+
+constexpr int kRegressionReach = 9;  ///< windows are 19 x 19 pixels
+
+/// For every window: around each centre p (every second pixel of every second row) the colours of
+/// `half` are fitted by  b_0 + b_x (x_q - x_p) + b_y (y_q - y_p) + sum_i b_i (f_i(q) - f_i(p))
+/// with weights w_pq that come from the patches of `guide`, the other half, so that the noise of a
+/// pixel does not choose its own weights. A ridge keeps the fit from following noise. Every pixel
+/// then is the mean of what the fits around it say, weighted by w_pq; one without any weight, or
+/// without samples in all of its window, keeps its own colour. Colours that are linear in features
+/// and position come out unchanged but for the ridge.
+std::vector<ColorPlanes> regress(const HalfBuffer& half, const HalfBuffer& guide,
+                                 const FeaturePlanes& features,
+                                 std::span<const RegressionWindow> windows);
+
+}  // namespace covtrace

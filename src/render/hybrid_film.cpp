@@ -1,0 +1,114 @@
+#include "render/hybrid_film.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/hash.h"
+
+namespace covtrace {
+
+uint64_t half_seed(uint64_t seed, int k) {
+    return hash_combine(seed, 0x68616c66, uint64_t(k));
+}
+
+Film HybridFilm::merged() const {
+    Film film(half[0].bounds);
+    for (size_t i = 0; i < film.pixels.size(); ++i) {
+        const FilmPixel &a = half[0].pixels[i], &b = half[1].pixels[i];
+        FilmPixel& p = film.pixels[i];
+        if (a.count == 0 || b.count == 0) {
+            p = a.count == 0 ? b : a;
+            continue;
+        }
+        p.count = a.count + b.count;
+        p.rays = a.rays + b.rays;
+        p.mean = 0.5f * (a.mean + b.mean);
+        const float n = float(p.count);
+        // Of a mean with weights 1/2 each; as the squares that give it.
+        p.squares = 0.25f * (a.variance_of_mean() + b.variance_of_mean()) * (n * (n - 1));
+        p.albedo = 0.5f * (a.albedo + b.albedo);
+        p.normal = 0.5f * (a.normal + b.normal);
+        p.coverage = 0.5f * (a.coverage + b.coverage);
+        const float hit = a.coverage + b.coverage;
+        p.depth = hit > 0 ? (a.coverage * a.depth + b.coverage * b.depth) / hit : 0.0f;
+    }
+    return film;
+}
+
+namespace {
+
+/// Variances of the mean from sums of squared deviations. A pixel with a single sample knows
+/// nothing of its own spread: the spread of the 7 x 7 pixels around it stands in, as one more
+/// sample does for all.
+class PooledVariance {
+  public:
+    explicit PooledVariance(const Film& film)
+        : film_(film), freedom_(film.bounds.width(), film.bounds.height()) {
+        for (size_t i = 0; i < freedom_.size(); ++i)
+            freedom_[i] = film.pixels[i].count > 1 ? float(film.pixels[i].count - 1) : 0.0f;
+        around_ = box_blur(freedom_, kReach);
+    }
+    /// squares(i): of pixel i.
+    template <typename Squares>
+    Plane operator()(const Squares& squares) const {
+        Plane sum(freedom_.width, freedom_.height);
+        for (size_t i = 0; i < sum.size(); ++i) sum[i] = squares(i);
+        const Plane pooled = box_blur(sum, kReach);
+        for (size_t i = 0; i < sum.size(); ++i) {
+            const float spread = around_[i] > 0 ? pooled[i] / around_[i] : 0.0f;
+            const float count = float(film_.pixels[i].count);
+            sum[i] = count > 0 ? (sum[i] + spread) / ((freedom_[i] + 1) * count) : spread;
+        }
+        return sum;
+    }
+
+  private:
+    static constexpr int kReach = 3;
+    const Film& film_;
+    Plane freedom_, around_;
+};
+
+HalfBuffer half_buffer(const Film& film) {
+    HalfBuffer out(film.bounds.width(), film.bounds.height());
+    const PooledVariance variance(film);
+    const auto& pixels = film.pixels;
+    const auto& squares = film.feature_squares;
+    for (size_t i = 0; i < pixels.size(); ++i) {
+        const FilmPixel& p = pixels[i];
+        out.count[i] = float(p.count);
+        for (int c = 0; c < 3; ++c) {
+            out.color[size_t(c)][i] = p.mean[c];
+            out.feature[size_t(c)][i] = p.albedo[c];
+        }
+        out.feature[3][i] = p.normal.x;
+        out.feature[4][i] = p.normal.y;
+        out.feature[5][i] = p.normal.z;
+        out.feature[6][i] = p.depth > 0 ? std::log(p.depth) : 0.0f;
+    }
+    for (int c = 0; c < 3; ++c) {
+        out.color_variance[size_t(c)] = variance([&](size_t i) { return pixels[i].squares[c]; });
+        out.feature_variance[size_t(c)] = variance([&](size_t i) { return squares[i].albedo[c]; });
+    }
+    out.feature_variance[3] = variance([&](size_t i) { return squares[i].normal.x; });
+    out.feature_variance[4] = variance([&](size_t i) { return squares[i].normal.y; });
+    out.feature_variance[5] = variance([&](size_t i) { return squares[i].normal.z; });
+    out.feature_variance[6] = variance([&](size_t i) {
+        const float z = pixels[i].depth;
+        return z > 0 ? squares[i].depth / (z * z) : 0.0f;  // of the logarithm
+    });
+    return out;
+}
+
+}  // namespace
+
+Halves halves_of(const HybridFilm& film) {
+    Halves halves{half_buffer(film.half[0]), half_buffer(film.half[1])};
+    const auto repeated = [](const Film& half) {
+        return std::any_of(half.pixels.begin(), half.pixels.end(),
+                           [](const FilmPixel& p) { return p.count > 1; });
+    };
+    if (!repeated(film.half[0]) || !repeated(film.half[1])) set_variance_from_difference(halves);
+    return halves;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,60 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "render/session.h"
+
+namespace covtrace {
+
+void apply(const SceneOverrides& overrides, SceneDescription& scene) {
+    if (overrides.resolution) {
+        // The same picture with other pixels: a crop given in pixels keeps its place in the frame.
+        FilmDescription& film = scene.film;
+        if (film.pixel_bounds) {
+            const auto& b = *film.pixel_bounds;
+            film.crop_window = {float(b[0]) / float(film.width), float(b[1]) / float(film.width),
+                                float(b[2]) / float(film.height), float(b[3]) / float(film.height)};
+            film.pixel_bounds.reset();
+        }
+        film.width = (*overrides.resolution)[0];
+        film.height = (*overrides.resolution)[1];
+    }
+    if (overrides.crop) {
+        const PixelBounds& c = *overrides.crop;
+        if (c.x0 < 0 || c.y0 < 0 || c.x1 > scene.film.width || c.y1 > scene.film.height ||
+            c.x0 >= c.x1 || c.y0 >= c.y1)
+            throw Error(ErrorKind::usage, "--crop must lie inside the frame of " +
+                                              std::to_string(scene.film.width) + "x" +
+                                              std::to_string(scene.film.height) +
+                                              " pixels and hold at least one");
+        scene.film.pixel_bounds = {c.x0, c.x1, c.y0, c.y1};
+    }
+    if (overrides.shutter) {
+        scene.camera.shutter_open = (*overrides.shutter)[0];
+        scene.camera.shutter_close = (*overrides.shutter)[1];
+    }
+    if (overrides.focal_distance) scene.camera.focal_distance = *overrides.focal_distance;
+    if (overrides.f_number) {
+        // A full-frame sensor, 24 mm high: focal length from the field of view, in metres.
+        const float focal_length = 0.012f / std::tan(scene.camera.fov * kPi / 360);
+        scene.camera.lens_radius = focal_length / (2 * *overrides.f_number);
+    }
+}
+
+PixelBounds render_region(const FilmDescription& film) {
+    if (film.pixel_bounds) {
+        const auto& b = *film.pixel_bounds;
+        return {std::max(0, b[0]), std::max(0, b[2]), std::min(film.width, b[1]),
+                std::min(film.height, b[3])};
+    }
+    const auto pixel = [](float fraction, int size) {
+        return int(std::ceil(fraction * float(size)));
+    };
+    const auto& c = film.crop_window;
+    return {std::clamp(pixel(c[0], film.width), 0, film.width),
+            std::clamp(pixel(c[2], film.height), 0, film.height),
+            std::clamp(pixel(c[1], film.width), 0, film.width),
+            std::clamp(pixel(c[3], film.height), 0, film.height)};
+}
+
+}  // namespace covtrace

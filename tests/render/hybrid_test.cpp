@@ -1,0 +1,109 @@
+// The hybrid method in real renders: no bias from adapting, never worse than the path tracer,
+// budgets.
+#include <gtest/gtest.h>
+
+#include "tests/render/fixtures.h"
+
+namespace covtrace {
+namespace {
+
+using namespace test;
+
+RenderOptions hybrid(double spp, uint64_t seed = 0) {
+    RenderOptions o;
+    o.method = Method::hybrid;
+    o.spp = spp;
+    o.seed = seed;
+    o.occlusion = Occlusion::none;  // the grid would cost more than these images
+    return o;
+}
+
+// A sphere that emits 0.2 and reflects 0.75 seen from inside: 0.8 everywhere, by paths whose
+// lengths, and so whose values, vary.
+const std::string kInside = R"(
+Integrator "path" "integer maxdepth" 100
+Film "rgb" "integer xresolution" 12 "integer yresolution" 12
+PixelFilter "box"
+Camera "perspective"
+WorldBegin
+AttributeBegin
+ReverseOrientation
+AreaLightSource "diffuse" "rgb L" [ 0.2 0.2 0.2 ]
+Material "diffuse" "rgb reflectance" [ 0.75 0.75 0.75 ]
+Shape "sphere" "float radius" 3
+AttributeEnd
+)";
+
+TEST(Hybrid, AdaptiveCountsLeaveTheRawMeanUnbiased) {
+    // Over 100 seeds and three rounds; 4.5 standard errors of the mean over the seeds (false alarm
+    // 7e-6), and 0.1 % that adapting may leave.
+    constexpr int kSeeds = 100;
+    double sum = 0, squares = 0;
+    for (uint64_t seed = 0; seed < kSeeds; ++seed) {
+        const Image image = render_text(kInside, hybrid(16, seed)).image;
+        double mean = 0;
+        for (size_t i = 0; i < image.pixel_count(); ++i)
+            mean += double(image.rgb(i, "raw.").g) / double(image.pixel_count());
+        sum += mean;
+        squares += mean * mean;
+    }
+    const double mean = sum / kSeeds;
+    const double error = std::sqrt((squares / kSeeds - mean * mean) / (kSeeds - 1));
+    EXPECT_LT(error, 2e-3);
+    EXPECT_NEAR(mean, 0.8, 4.5 * error + 0.8e-3);
+}
+
+double squared_error(const Image& image, float truth) {
+    double sum = 0;
+    for (size_t i = 0; i < image.pixel_count(); ++i)
+        sum += std::pow(double(image.rgb(i).g - truth), 2);
+    return sum / double(image.pixel_count());
+}
+
+TEST(Hybrid, IsNeverWorseThanThePathTracer) {
+    for (double spp : {4.0, 16.0, 128.0}) {
+        double ours = 0, plain = 0;
+        for (uint64_t seed = 0; seed < 4; ++seed) {
+            ours += squared_error(render_text(kInside, hybrid(spp, seed)).image, 0.8f);
+            plain += squared_error(render_text(kInside, uniform(spp, seed)).image, 0.8f);
+        }
+        EXPECT_LT(ours, plain) << spp << " samples per pixel";
+    }
+}
+
+TEST(Hybrid, BudgetsAreKept) {
+    for (double spp : {0.5, 1.0, 3.0, 6.25, 20.0}) {
+        const RenderResult r = render_text(kInside, hybrid(spp));
+        EXPECT_NEAR(r.statistics.samples_per_pixel, spp, 2.0 / 144);
+        EXPECT_EQ(summarize_image(r.image).nonfinite, 0);
+    }
+}
+
+TEST(Hybrid, StopsAtTheErrorThatIsAskedFor) {
+    RenderOptions options;
+    options.method = Method::hybrid;
+    options.error = 0.02;
+    const RenderResult r = render_text(kInside, options);
+    // The true relative error of a flat image; the estimate may be off by half.
+    EXPECT_LT(std::sqrt(squared_error(r.image, 0.8f)) / 0.8, 0.03);
+    options.error = 0.005;
+    EXPECT_GT(render_text(kInside, options).statistics.samples_per_pixel,
+              r.statistics.samples_per_pixel);
+}
+
+TEST(Hybrid, ErrorNeedsAMethodThatMeasuresIt) {
+    RenderOptions options;
+    options.method = Method::covariance;
+    options.error = 0.1;
+    EXPECT_THROW(render_text(kInside, options), Error);
+}
+
+TEST(Hybrid, EvenCountsAreEven) {
+    RenderOptions options = hybrid(8);
+    options.even_counts = true;
+    const Image image = render_text(kInside, options).image;
+    for (float n : image.find("samples.Y")->values) EXPECT_FLOAT_EQ(n, 8);
+}
+
+}  // namespace
+}  // namespace covtrace

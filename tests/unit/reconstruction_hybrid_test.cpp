@@ -1,0 +1,134 @@
+// Mixing by measured error, energy, and the limit of many samples, on images that are known.
+#include "reconstruction/hybrid.h"
+
+#include <gtest/gtest.h>
+
+#include "reconstruction/outliers.h"
+#include "reconstruction/selector.h"
+#include "reconstruction_fixtures.h"
+
+namespace covtrace {
+namespace {
+
+using namespace test;
+
+constexpr int kSize = 64;
+const std::vector<covariance::Sym2<float>> kSpectrum(size_t(kSize) * kSize,
+                                                     covariance::Sym2<float>{0.01f, 0, 0.01f});
+
+float smooth_truth(int x, int y) {
+    return 1 + 0.3f * std::sin(0.1f * float(x)) * std::cos(0.07f * float(y));
+}
+/// Hard squares that no feature and no prediction knows of.
+float checks(int x, int y) {
+    return (x / 3 + y / 3) % 2 ? 1.0f : 0.2f;
+}
+
+ColorPlanes constant(float value) {
+    ColorPlanes p;
+    p.fill(Plane(kSize, kSize, value));
+    return p;
+}
+
+TEST(Selector, TakesTheTruthAndLeavesTheBias) {
+    const auto one = [](int, int) { return 1.0f; };
+    const Halves halves = noisy_halves(kSize, kSize, one, 0.5f, 1);
+    const std::vector<Candidate> candidates{{halves[0].color, halves[1].color},
+                                            {constant(1), constant(1)},
+                                            {constant(1.4f), constant(1.4f)}};
+    const Selection s = select(halves, candidates, Plane(kSize, kSize, 1), 3);
+    double truth = 0;
+    for (float v : s.share[1].values) truth += double(v);
+    EXPECT_GT(truth / (kSize * kSize), 0.8);
+    EXPECT_LT(mean_squared_error(s.half[0], one), 0.25 * 0.25 * 0.1);
+}
+
+TEST(Selector, MixesOppositeBiases) {
+    const auto one = [](int, int) { return 1.0f; };
+    const Halves halves = noisy_halves(kSize, kSize, one, 0.1f, 2);
+    const std::vector<Candidate> candidates{{constant(0.8f), constant(0.8f)},
+                                            {constant(1.3f), constant(1.3f)}};
+    const Selection s = select(halves, candidates, Plane(kSize, kSize, 1), 3);
+    // The best single candidate has 0.04; the mixture 0.6 : 0.4 has none.
+    EXPECT_LT(mean_squared_error(s.half[0], one), 0.004);
+}
+
+TEST(Selector, ErrorEstimateIsTheError) {
+    // Raw halves of noise 0.5: the error of their mean is 0.125, over 1 + 0.01. Estimated as the
+    // mean over 4096 pixels of products of normal numbers: its deviation is about 0.003.
+    const auto one = [](int, int) { return 1.0f; };
+    const Halves halves = noisy_halves(kSize, kSize, one, 0.5f, 3);
+    for (float bias : {0.0f, 0.3f}) {
+        Candidate c{halves[0].color, halves[1].color};
+        for (ColorPlanes& half : c)
+            for (Plane& p : half)
+                for (float& v : p.values) v += bias;
+        const Selection s = select(halves, std::span(&c, 1), Plane(kSize, kSize, 1), 3);
+        double mean = 0;
+        for (float e : s.error.values) mean += double(e) / (kSize * kSize);
+        EXPECT_NEAR(mean, (0.125 + double(bias) * double(bias)) / 1.01, 0.015);
+    }
+}
+
+TEST(Selector, WithoutJudgesTakesTheLast) {
+    Halves halves{HalfBuffer(kSize, kSize), HalfBuffer(kSize, kSize)};
+    const std::vector<Candidate> candidates{{constant(0), constant(0)}, {constant(3), constant(3)}};
+    const Selection s = select(halves, candidates, Plane(kSize, kSize, 1), 3);
+    for (float v : s.half[0][0].values) EXPECT_FLOAT_EQ(v, 3);
+}
+
+TEST(Outliers, EnergyIsKeptAndThePeakIsGone) {
+    const auto one = [](int, int) { return 1.0f; };
+    Halves halves = noisy_halves(kSize, kSize, one, 0.1f, 4);
+    for (size_t c = 0; c < 3; ++c) halves[0].color[c](31, 33) = 500;
+    const double before = 0.5 * (mean_of(halves[0].color) + mean_of(halves[1].color));
+    const HybridImage image = reconstruct(halves, kSpectrum);
+    EXPECT_NEAR(mean_of(image.color) / before, 1, 2e-3);
+    float brightest = 0;
+    for (float v : image.color[0].values) brightest = std::max(brightest, v);
+    EXPECT_LT(brightest, 2.0f);
+}
+
+TEST(Outliers, WhatBothHalvesSeeStays) {
+    const auto lamp = [](int x, int y) { return x == 30 && y == 30 ? 500.0f : 1.0f; };
+    Halves halves = noisy_halves(kSize, kSize, lamp, 0.1f, 5);
+    limit_outliers(halves);
+    EXPECT_NEAR(halves[0].color[0](30, 30), 500, 1);
+    const HybridImage image = reconstruct(halves, kSpectrum);
+    EXPECT_NEAR(image.color[0](30, 30), 500, 25);
+}
+
+TEST(Hybrid, CleansASmoothImage) {
+    const Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.3f, 6);
+    const double raw = 0.3 * 0.3 / 2;
+    EXPECT_LT(mean_squared_error(reconstruct(halves, kSpectrum).color, smooth_truth), 0.1 * raw);
+}
+
+TEST(Hybrid, IsNeverWorseThanThePixelsAndBecomesThem) {
+    // Noise as of n = 4 ... 16384 samples. The predicted filters of 0.8 pixels blur these squares
+    // whatever the noise; the error must fall with it all the same.
+    double before = 1e9;
+    for (float sigma : {0.5f, 0.125f, 0.031f, 0.0078f}) {
+        const Halves halves = noisy_halves(kSize, kSize, checks, sigma, 7);
+        const double raw = double(sigma) * double(sigma) / 2;
+        const double error = mean_squared_error(reconstruct(halves, kSpectrum).color, checks);
+        EXPECT_LT(error, 1.05 * raw) << "sigma " << sigma;
+        EXPECT_LT(error, before / 4) << "sigma " << sigma;
+        before = error;
+    }
+}
+
+TEST(Hybrid, HolesAreFilled) {
+    Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.1f, 8);
+    Rng rng(9);
+    for (HalfBuffer& half : halves)
+        for (size_t i = 0; i < half.count.size(); ++i)
+            if (rng.next_float() < 0.6f) {
+                half.count[i] = 0;
+                for (Plane& p : half.color) p[i] = 0;
+            }
+    EXPECT_LT(mean_squared_error(reconstruct(halves, kSpectrum).color, smooth_truth), 0.01);
+}
+
+}  // namespace
+}  // namespace covtrace

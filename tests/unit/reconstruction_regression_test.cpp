@@ -1,0 +1,80 @@
+// First-order regression: exact for what is linear, and blind to what has no samples.
+#include "reconstruction/regression.h"
+
+#include <gtest/gtest.h>
+
+#include "reconstruction_fixtures.h"
+
+namespace covtrace {
+namespace {
+
+constexpr int kWidth = 41, kHeight = 37;
+
+struct Linear {
+    Halves halves{HalfBuffer(kWidth, kHeight), HalfBuffer(kWidth, kHeight)};
+    FeaturePlanes features;
+};
+
+/// Colours that are linear in random features and in the position; variances so large that all
+/// patches count as alike.
+Linear linear_image() {
+    Linear l;
+    Rng rng(3);
+    for (Plane& f : l.features) {
+        f = Plane(kWidth, kHeight);
+        for (float& v : f.values) v = rng.next_float();
+    }
+    for (HalfBuffer& half : l.halves)
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                half.count(x, y) = 4;
+                for (size_t c = 0; c < 3; ++c) {
+                    float value = 1 + 0.02f * float(x) - 0.03f * float(y);
+                    for (size_t f = 0; f < kFeatures; ++f)
+                        value += (0.3f * float(f) - float(c)) * l.features[f](x, y);
+                    half.color[c](x, y) = value;
+                    half.color_variance[c](x, y) = 1e3f;
+                }
+            }
+    return l;
+}
+
+TEST(Regression, ReproducesLinearFunctionsOfFeaturesAndPosition) {
+    const Linear l = linear_image();
+    const RegressionWindow window;
+    const auto fitted = regress(l.halves[0], l.halves[1], l.features, std::span(&window, 1));
+    // Seven slopes of up to 2 over features in [0, 1]: the ridge takes 0.1 % of each.
+    for (size_t c = 0; c < 3; ++c)
+        for (size_t i = 0; i < fitted[0][c].size(); ++i)
+            EXPECT_NEAR(fitted[0][c][i], l.halves[0].color[c][i], 14e-3f);
+}
+
+TEST(Regression, PixelsWithoutSamplesTakeNoPart) {
+    Linear l = linear_image();
+    Rng rng(5);
+    for (size_t i = 0; i < l.halves[0].count.size(); ++i)
+        if (rng.next_float() < 0.3f) {
+            l.halves[0].count[i] = 0;
+            for (Plane& p : l.halves[0].color) p[i] = 1e6f;
+        }
+    const RegressionWindow window;
+    const auto fitted = regress(l.halves[0], l.halves[1], l.features, std::span(&window, 1));
+    for (size_t c = 0; c < 3; ++c)
+        for (size_t i = 0; i < fitted[0][c].size(); ++i)
+            EXPECT_NEAR(fitted[0][c][i], l.halves[1].color[c][i], 20e-3f);
+}
+
+TEST(Regression, DoesNotMixWhatTheOtherHalfTellsApart) {
+    // Two flat halves of the image, far apart in units of the noise: the border stays sharp.
+    const auto step = [](int x, int) { return x < 20 ? 1.0f : 2.0f; };
+    const Halves halves = test::noisy_halves(kWidth, kHeight, step, 0.01f, 1);
+    FeaturePlanes features;
+    features.fill(Plane(kWidth, kHeight));
+    const RegressionWindow window;
+    const auto fitted = regress(halves[0], halves[1], features, std::span(&window, 1));
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) EXPECT_NEAR(fitted[0][0](x, y), step(x, y), 0.03f);
+}
+
+}  // namespace
+}  // namespace covtrace
