@@ -155,14 +155,12 @@ int measure_pixel(MeasureArguments a) {
 
 void add_measure(CLI::App& app, Invocation& invocation) {
     auto a = std::make_shared<MeasureArguments>();
-    CLI::App* c = app.add_subcommand(
-        "measure", "Hold a pixel's predicted covariance against the measured light field");
+    CLI::App* c = app.add_subcommand("measure", "Hold a pixel's prediction against measurement");
     c->add_option("SCENE", a->scene, "the scene, a pbrt-v4 file")->required()->option_text(" ");
     c->add_option("--pixel", a->pixel, "the pixel whose middle is looked through")
         ->required()
         ->option_text("x,y");
-    c->add_option("--samples", a->measure.samples,
-                  "radiance samples of the measurement (default 262144, twice)")
+    c->add_option("--samples", a->measure.samples, "radiance samples (default 262144, twice)")
         ->check(CLI::Range(1u << 12, 1u << 28))
         ->option_text("N");
     c->add_option("--paths", a->paths, "covariance paths of the prediction (default 1024)")
@@ -175,7 +173,7 @@ void add_measure(CLI::App& app, Invocation& invocation) {
     add_choice<BrdfCovariance>(
         c, "--brdf-covariance", a->brdf_covariance,
         {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}},
-        "what the prediction knows of a BRDF: at the path's directions, or its peak");
+        "a BRDF's frequencies: at the path, or its peak's");
     c->add_option("--voxels", a->voxels, "width of the occlusion grid (default 200)")
         ->check(CLI::Range(1, 2048))
         ->option_text("N");

@@ -293,7 +293,7 @@ void add_render(CLI::App& app, Invocation& invocation) {
     add_choice<BrdfCovariance>(
         c, "--brdf-covariance", a->options.brdf_covariance,
         {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}},
-        "a BRDF's frequencies: at the path's directions, or its peak's");
+        "a BRDF's frequencies: at the path, or its peak's");
     add_choice<FilterRule>(c, "--filter", a->options.filter,
                            {{"verified", FilterRule::verified}, {"thesis", FilterRule::thesis}},
                            "its constant: verified, or the thesis' eq. 5.7");

@@ -53,11 +53,19 @@ void trace_rounds(RenderJob& job, Film& film, std::span<const float> density, do
 }
 
 FilterField predicted_filters(const RenderOptions& options, const CovarianceBuffer& buffer,
-                              const FilterSettings& settings, std::span<const float> others = {}) {
+                              const FilterSettings& settings) {
     const Prediction p = preintegrate(smooth(buffer));
-    FilterField field = filter_field(p.spectrum, p.width, p.height, options.filter, settings);
-    if (options.filter == FilterRule::verified) limit_by_neighbours(field, settings, others);
-    return field;
+    return filter_field(p.spectrum, p.width, p.height, options.filter, settings);
+}
+
+/// The sizes of filters where the buffer knows light, at least `smallest`; infinite elsewhere.
+std::vector<float> known_sizes(const FilterField& field, const CovarianceBuffer& buffer,
+                               float smallest) {
+    std::vector<float> sizes(field.covariance.size(), kInfinity);
+    for (size_t i = 0; i < sizes.size(); ++i)
+        if (buffer.weight[i] > 0)
+            sizes[i] = std::max(smallest, covariance::filter_size(field.covariance[i]));
+    return sizes;
 }
 
 void gather_image(RenderJob& job, const Film& film, const CovarianceBuffers& buffers,
@@ -65,18 +73,22 @@ void gather_image(RenderJob& job, const Film& film, const CovarianceBuffers& buf
     job.monitor.update("reconstruction", RenderJob::kTracingShare, film.mean_count());
     const PhaseTimer timer(job.monitor, job.phase("reconstruction"));
     const double taken = film.mean_count();
-    const FilterField field =
-        predicted_filters(job.options, buffers.scattered, filter_settings(taken));
+    const FilterSettings settings = filter_settings(taken),
+                         settings_in_view = filter_settings_in_view(taken);
+    FilterField field = predicted_filters(job.options, buffers.scattered, settings);
+    FilterField in_view_field = predicted_filters(job.options, buffers.in_view, settings_in_view);
+    if (job.options.filter == FilterRule::verified) {
+        // The border between a surface and the sky behind it is known to the light that passes
+        // beside it: the surface where the sky has no detail, the sky where the surface has none.
+        const auto beside_scattered =
+            known_sizes(in_view_field, buffers.in_view, settings.limits.s_min);
+        limit_by_neighbours(field, settings, beside_scattered);
+        limit_by_neighbours(in_view_field, settings_in_view,
+                            known_sizes(field, buffers.scattered, 0));
+    }
     const bool emitters_found =
         std::any_of(buffers.in_view.weight.begin(), buffers.in_view.weight.end(),
                     [](float w) { return w > 0; });
-    // The edge of a surface before the sky is known from the surface: the sky has no detail.
-    std::vector<float> beside(field.covariance.size(), kInfinity);
-    for (size_t i = 0; i < beside.size(); ++i)
-        if (buffers.scattered.weight[i] > 0)
-            beside[i] = covariance::filter_size(field.covariance[i]);
-    const FilterField in_view_field =
-        predicted_filters(job.options, buffers.in_view, filter_settings_in_view(taken), beside);
     std::vector<Rgb> scattered(film.pixels.size()), in_view(film.pixels.size());
     std::vector<float> variance(film.pixels.size());
     std::vector<uint32_t> count(film.pixels.size());

@@ -30,7 +30,7 @@ class Inspect(CliTest):
         self.assertEqual(found["samples"]["least"], min(samples))
         self.assertEqual(found["samples"]["most"], max(samples))
         self.assertAlmostEqual(found["samples"]["mean"], sum(samples) / len(samples), places=6)
-        self.assertEqual(found["metadata"]["covtrace:method"], "covariance")
+        self.assertEqual(found["metadata"]["covtrace:method"], "hybrid")
         self.assertEqual(set(found["channels"]), set(self.image.channels))
 
         relative = [
