@@ -1,0 +1,25 @@
+"""covtrace: a path tracer that predicts the samples and the filter of every pixel.
+
+>>> import covtrace
+>>> image = covtrace.render("scene.pbrt", spp=16)
+>>> image.rgb.shape, image["samples"].mean(), image.complete
+>>> image.write("scene.exr")
+
+`render` takes the path of a scene, a `Scene` (from a file or a string) or a `SceneBuilder` (from
+numpy arrays). Layers are numpy views of the renderer's own memory. `covtrace.covariance` holds the
+operators of the covariance library on arrays.
+"""
+
+from . import covariance
+from ._covtrace import __version__
+from .builder import SceneBuilder
+from .errors import (Error, FileError, InternalError, Interrupted, LimitError, SceneError,
+                     SceneWarning, UsageError)
+from .image import Comparison, Image, compare
+from .progress import Progress
+from .rendering import render
+from .scene import Scene
+
+__all__ = ["Comparison", "Error", "FileError", "Image", "InternalError", "Interrupted",
+           "LimitError", "Progress", "Scene", "SceneBuilder", "SceneError", "SceneWarning",
+           "UsageError", "__version__", "compare", "covariance", "render"]

@@ -1,0 +1,230 @@
+"""Scenes built from Python values and numpy arrays."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import numpy
+from numpy.typing import ArrayLike
+
+from .image import Image
+
+_NAME = re.compile(r"[^\x00-\x1f\"\\]+")
+
+
+def _quoted(text):
+    if not isinstance(text, str) or not _NAME.fullmatch(text):
+        raise ValueError(f"{text!r}: expected a text without quotes, backslashes and line ends")
+    return f'"{text}"'
+
+
+def _numbers(values):
+    return "[ " + " ".join(repr(float(v)) for v in numpy.ravel(values)) + " ]"
+
+
+def _parameter(name, value):
+    """`name` may carry pbrt's type, "texture reflectance"; else the value tells: a number, a text,
+    a truth value, three numbers for a colour."""
+    if " " in name:
+        kind = name.split()[0]
+        if isinstance(value, bool):
+            return f"{_quoted(name)} {'true' if value else 'false'}"
+        if isinstance(value, str):
+            return f"{_quoted(name)} {_quoted(value)}"
+        if kind == "integer":
+            return f"{_quoted(name)} [ {' '.join(str(int(v)) for v in numpy.ravel(value))} ]"
+        return f"{_quoted(name)} {_numbers(value)}"
+    if isinstance(value, (bool, numpy.bool_)):
+        return f'"bool {name}" {"true" if value else "false"}'
+    if isinstance(value, str):
+        return f'"string {name}" {_quoted(value)}'
+    if isinstance(value, (int, numpy.integer)) and name in _INTEGERS:
+        return f'"integer {name}" {int(value)}'
+    if isinstance(value, (int, float, numpy.number)):
+        return f'"float {name}" {float(value)!r}'
+    values = numpy.asarray(value, dtype=float)
+    if values.shape == (3,):
+        kind = "point3" if name in ("from", "to") else "rgb"
+        return f'"{kind} {name}" {_numbers(values)}'
+    raise TypeError(f"parameter {name!r}: give its type as in 'float {name}' or 'spectrum {name}'")
+
+
+_INTEGERS = {"maxdepth", "pixelsamples", "xresolution", "yresolution", "levels", "nsamples"}
+
+
+def _parameters(values):
+    return " ".join(_parameter(name, value) for name, value in values.items())
+
+
+def _matrix(transform):
+    """pbrt writes the columns of the matrix that maps column vectors."""
+    m = numpy.asarray(transform, dtype=float)
+    if m.shape != (4, 4):
+        raise ValueError(f"a transform has the shape {m.shape}; expected (4, 4)")
+    return "[ " + " ".join(repr(float(v)) for v in m.T.ravel()) + " ]"
+
+
+def _moved(transform, end_transform):
+    lines = []
+    if end_transform is None:
+        if transform is not None:
+            lines.append(f"ConcatTransform {_matrix(transform)}")
+    else:
+        start = numpy.eye(4) if transform is None else transform
+        lines += ["ActiveTransform StartTime", f"ConcatTransform {_matrix(start)}",
+                  "ActiveTransform EndTime", f"ConcatTransform {_matrix(end_transform)}",
+                  "ActiveTransform All"]
+    return lines
+
+
+class SceneBuilder:
+    """Collects a scene and renders it, or writes it as a pbrt-v4 file with its meshes and textures.
+
+    >>> scene = covtrace.SceneBuilder()
+    >>> scene.camera(eye=(0, 1, 4), target=(0, 0, 0), fov=40, resolution=(320, 180))
+    >>> scene.material("red", "diffuse", reflectance=(0.6, 0.1, 0.1))
+    >>> scene.mesh(vertices, triangles, material="red")
+    >>> scene.light("infinite", L=(1, 1, 1))
+    >>> image = covtrace.render(scene, spp=16)
+
+    Parameters of pbrt are keyword arguments. Their type follows from the value (a number, a text, a
+    truth value, three numbers for a colour); others are given with their type:
+    `**{"spectrum eta": "metal-Cu-eta"}`, `**{"texture reflectance": "checks"}`.
+    Transforms are 4x4 matrices for column vectors; `end_transform` is the one at the shutter's end.
+    """
+
+    def __init__(self) -> None:
+        self._view: list[str] = []
+        self._world: list[str] = []
+        self._meshes: list[tuple[str, list[str], numpy.ndarray, numpy.ndarray]] = []
+        self._textures: list[tuple[str, Image]] = []
+        self._camera_given = False
+
+    def camera(self, eye: Sequence[float] = (0, 0, 0), target: Sequence[float] = (0, 0, 1),
+               up: Sequence[float] = (0, 1, 0), kind: str = "perspective",
+               resolution: tuple[int, int] = (640, 360), shutter: tuple[float, float] = (0, 1),
+               **parameters: Any) -> None:
+        """kind and parameters as pbrt's Camera: fov, lensradius, focaldistance ..."""
+        self._camera_given = True
+        width, height = resolution
+        self._view += [
+            "LookAt " + " ".join(repr(float(v)) for v in (*eye, *target, *up)),
+            f"Camera {_quoted(kind)} "
+            + _parameters({"float shutteropen": shutter[0], "float shutterclose": shutter[1],
+                           **parameters}),
+            f'Film "rgb" "integer xresolution" {int(width)} "integer yresolution" {int(height)}'
+            # The sensor's exposure is the shutter's length; the image should not depend on it.
+            + ('' if shutter[1] == shutter[0]
+               else f' "float iso" {100 / (shutter[1] - shutter[0])!r}'),
+        ]
+
+    def integrator(self, max_depth: int = 8, spp: int = 16) -> None:
+        self._view += [f'Integrator "volpath" "integer maxdepth" {int(max_depth)}',
+                       f'Sampler "zsobol" "integer pixelsamples" {int(spp)}']
+
+    def texture(self, name: str, values: ArrayLike, **parameters: Any) -> None:
+        """An image as texture: (height, width) or (height, width, 3), linear values; rows from the
+        top. Use it as `**{"texture reflectance": name}`."""
+        values = numpy.asarray(values, dtype=numpy.float32)
+        rgb = values if values.ndim == 3 else numpy.repeat(values[:, :, None], 3, axis=2)
+        image = Image.from_arrays(rgb)
+        file = f"texture-{len(self._textures)}.exr"
+        kind = "spectrum" if values.ndim == 3 else "float"
+        self._textures.append((file, image))
+        self._world.append(f"Texture {_quoted(name)} \"{kind}\" \"imagemap\" "
+                           f"\"string filename\" \"{file}\" " + _parameters(parameters))
+
+    def material(self, name: str, kind: str, **parameters: Any) -> None:
+        """kind and parameters as pbrt's MakeNamedMaterial."""
+        self._world.append(f"MakeNamedMaterial {_quoted(name)} \"string type\" {_quoted(kind)} "
+                           + _parameters(parameters))
+
+    def light(self, kind: str, transform: ArrayLike | None = None, **parameters: Any) -> None:
+        """kind and parameters as pbrt's LightSource."""
+        self._world += ["AttributeBegin", *_moved(transform, None),
+                        f"LightSource {_quoted(kind)} " + _parameters(parameters), "AttributeEnd"]
+
+    def mesh(self, vertices: ArrayLike, triangles: ArrayLike, normals: ArrayLike | None = None,
+             uv: ArrayLike | None = None, material: str | None = None,
+             emission: ArrayLike | None = None, transform: ArrayLike | None = None,
+             end_transform: ArrayLike | None = None, two_sided: bool = False) -> None:
+        """vertices (n, 3), triangles (m, 3) indices; normals (n, 3), uv (n, 2); `emission`: radiance."""
+        vertices = _array(vertices, 3, "vertices")
+        triangles = numpy.asarray(triangles)
+        if triangles.ndim != 2 or triangles.shape[1] != 3 or triangles.dtype.kind not in "iu":
+            raise ValueError("triangles: expected an integer array of the shape (m, 3)")
+        if triangles.size and (triangles.min() < 0 or triangles.max() >= len(vertices)):
+            raise ValueError("triangles: an index is out of range")
+        columns = [vertices]
+        names = ["x", "y", "z"]
+        if normals is not None:
+            columns.append(_array(normals, 3, "normals", len(vertices)))
+            names += ["nx", "ny", "nz"]
+        if uv is not None:
+            columns.append(_array(uv, 2, "uv", len(vertices)))
+            names += ["u", "v"]
+        file = f"mesh-{len(self._meshes)}.ply"
+        self._meshes.append((file, names, numpy.concatenate(columns, axis=1),
+                             triangles.astype(numpy.int32)))
+        self._shape(f'Shape "plymesh" "string filename" "{file}"', material, emission, transform,
+                    end_transform, two_sided)
+
+    def shape(self, kind: str, material: str | None = None, emission: ArrayLike | None = None,
+              transform: ArrayLike | None = None, end_transform: ArrayLike | None = None,
+              two_sided: bool = False, **parameters: Any) -> None:
+        """kind and parameters as pbrt's Shape: sphere, disk, ..."""
+        self._shape(f"Shape {_quoted(kind)} " + _parameters(parameters), material, emission,
+                    transform, end_transform, two_sided)
+
+    def _shape(self, directive, material, emission, transform, end_transform, two_sided):
+        lines = ["AttributeBegin", *_moved(transform, end_transform)]
+        if material is not None:
+            lines.append(f"NamedMaterial {_quoted(material)}")
+        if emission is not None:
+            lines.append('AreaLightSource "diffuse" '
+                         + _parameters({"L": numpy.broadcast_to(emission, 3),
+                                        "twosided": bool(two_sided)}))
+        self._world += [*lines, directive, "AttributeEnd"]
+
+    def text(self) -> str:
+        """The scene as pbrt-v4 text; meshes and textures are files beside it."""
+        if not self._camera_given:
+            raise ValueError("the scene has no camera; call camera()")
+        return "\n".join([*self._view, "WorldBegin", *self._world, ""])
+
+    def write(self, folder: str | os.PathLike[str], name: str = "scene.pbrt") -> str:
+        """Writes the scene with its meshes and textures into a folder; returns the scene's path."""
+        os.makedirs(folder, exist_ok=True)
+        text = self.text()
+        for file, names, columns, triangles in self._meshes:
+            _write_ply(os.path.join(folder, file), names, columns, triangles)
+        for file, image in self._textures:
+            image.write(os.path.join(folder, file))
+        path = os.path.join(folder, name)
+        with open(path, "w", encoding="utf-8") as out:
+            out.write(text)
+        return path
+
+
+def _array(values, width, what, length=None):
+    values = numpy.asarray(values, dtype=numpy.float32)
+    if values.ndim != 2 or values.shape[1] != width or (length is not None and len(values) != length):
+        expected = f"({'n' if length is None else length}, {width})"
+        raise ValueError(f"{what} has the shape {values.shape}; expected {expected}")
+    return values
+
+
+def _write_ply(path, names, columns, triangles):
+    header = "\n".join(["ply", "format binary_little_endian 1.0", f"element vertex {len(columns)}",
+                        *(f"property float {n}" for n in names), f"element face {len(triangles)}",
+                        "property list uchar int vertex_indices", "end_header", ""])
+    faces = numpy.empty(len(triangles), dtype=[("n", "u1"), ("i", "<i4", 3)])
+    faces["n"] = 3
+    faces["i"] = triangles
+    with open(path, "wb") as out:
+        out.write(header.encode())
+        columns.astype("<f4").tofile(out)
+        faces.tofile(out)

@@ -1,0 +1,172 @@
+"""Images with named layers, as numpy arrays."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy
+from numpy.typing import ArrayLike, NDArray
+
+from . import _covtrace
+
+Array = NDArray[numpy.float32]
+
+
+class Image:
+    """A rendered or loaded image.
+
+    Layers and channels are float32 views of the image's own memory: no copy is made, writing into
+    them changes the image. Rows run from the top, so `image.rgb[y, x]`.
+
+    rgb: (height, width, 3), the delivered image.
+    layers: name -> (height, width, n), or (height, width) for layers of one channel such as "Z",
+        "samples", "error"; the delivered image is layer "".
+    channels: name -> (height, width): "R", "raw.R", "cov.00", ...
+    metadata: what the file's header holds.
+    complete: False where the render was stopped before its end.
+    statistics: counters, seconds per phase, memory; empty for images that were read.
+    """
+
+    layers: Mapping[str, Array]
+    channels: Mapping[str, Array]
+    complete: bool
+    statistics: dict[str, Any]
+
+    def __init__(self, planes: _covtrace.Planes, complete: bool | None = None,
+                 statistics: dict[str, Any] | None = None) -> None:
+        self._planes = planes
+        self.layers = MappingProxyType(planes.layers())
+        self.channels = MappingProxyType(planes.channels())
+        self.statistics = statistics or {}
+        if complete is None:
+            complete = bool(planes.metadata.get("complete", 1))
+        self.complete = complete
+
+    @classmethod
+    def read(cls, file: str | os.PathLike[str]) -> Image:
+        """An EXR, PNG, JPEG, TGA, HDR, PFM, PGM, PPM or QOI file; integer colours become linear."""
+        return cls(_covtrace.Planes.read(os.fspath(file)))
+
+    @classmethod
+    def from_arrays(cls, rgb: ArrayLike | None = None,
+                    layers: Mapping[str, ArrayLike | Mapping[str, ArrayLike]] | None = None,
+                    metadata: Mapping[str, Any] | None = None) -> Image:
+        """An image of arrays (copied): `rgb` (height, width, 3), `layers` name -> (height, width)
+        or {channel name: (height, width)} such as {"N": {"X": x, "Y": y, "Z": z}}."""
+        channels = []
+        if rgb is not None:
+            rgb = numpy.asarray(rgb, dtype=numpy.float32)
+            if rgb.ndim != 3 or rgb.shape[2] not in (3, 4):
+                raise ValueError(f"rgb has the shape {rgb.shape}; expected (height, width, 3)")
+            channels += [("RGBA"[c], rgb[:, :, c]) for c in range(rgb.shape[2])]
+        for name, values in (layers or {}).items():
+            if isinstance(values, Mapping):
+                channels += [(f"{name}.{c}", numpy.asarray(v)) for c, v in values.items()]
+            else:
+                channels.append((name, numpy.asarray(values)))
+        planes = _covtrace.Planes.from_channels(channels)
+        if metadata:
+            planes.metadata = dict(metadata)
+        return cls(planes)
+
+    def __getitem__(self, name: str) -> Array:
+        """A layer, or a single channel by its full name."""
+        if name in self.layers:
+            return self.layers[name]
+        if name in self.channels:
+            return self.channels[name]
+        raise KeyError(f"no layer or channel {name!r}; there are "
+                       + ", ".join(repr(k) for k in self.layers))
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.layers or name in self.channels
+
+    @property
+    def rgb(self) -> Array:
+        root = self.layers.get("")
+        if root is None:
+            raise KeyError("the image has no root layer")
+        return root[:, :, :3]
+
+    def matrices(self, name: str) -> Array:
+        """A layer of symmetric matrices written out (a copy): "filter" and "spectrum" as
+        (height, width, 2, 2), "cov" as (height, width, 5, 5) over pixel x, pixel y, lens u, lens v,
+        shutter t."""
+        values = self.layers[name]
+        n = {3: 2, 15: 5}.get(values.shape[2] if values.ndim == 3 else 1)
+        if n is None:
+            raise ValueError(f"layer {name!r} holds no symmetric matrices")
+        rows, columns = numpy.triu_indices(n)
+        full = numpy.empty(values.shape[:2] + (n, n), dtype=values.dtype)
+        full[:, :, rows, columns] = values
+        full[:, :, columns, rows] = values
+        return full
+
+    @property
+    def metadata(self) -> dict[str, Any]:
+        return self._planes.metadata
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """(width, height) of the stored pixels."""
+        return self._planes.size
+
+    @property
+    def data_window(self) -> tuple[int, int, int, int]:
+        """(x0, y0, x1, y1), end exclusive, of the stored pixels inside the display window."""
+        return self._planes.data_window
+
+    @property
+    def display_window(self) -> tuple[int, int, int, int]:
+        return self._planes.display_window
+
+    def write(self, file: str | os.PathLike[str]) -> None:
+        """Writes all layers (.exr) or the tone-mapped picture (.png); beside and renamed."""
+        file = os.fspath(file)
+        if file.endswith(".png"):
+            self._planes.write_png(file)
+        elif file.endswith(".exr"):
+            self._planes.write_exr(file)
+        else:
+            raise ValueError(f"{file!r}: expected a name that ends in .exr or .png")
+
+    def describe(self) -> str:
+        """Several lines for people: windows, channels with their ranges, metadata."""
+        return self._planes.describe()
+
+    def __repr__(self) -> str:
+        width, height = self.size
+        return f"<covtrace.Image {width}x{height}, layers {', '.join(map(repr, self.layers))}>"
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The measures of `covtrace compare`; flip_map is (height, width)."""
+
+    mse: float
+    relmse: float
+    relmse_trimmed: float
+    psnr: float
+    flip: float
+    mean_ratio: tuple[float, float, float]
+    nonfinite: int
+    identical: bool
+    flip_map: Array
+
+
+def _planes(image: Image | Array | str | os.PathLike[str]) -> _covtrace.Planes:
+    if isinstance(image, Image):
+        return image._planes
+    if isinstance(image, numpy.ndarray):
+        return Image.from_arrays(image)._planes
+    return Image.read(image)._planes
+
+
+def compare(image: Image | Array | str | os.PathLike[str],
+            reference: Image | Array | str | os.PathLike[str]) -> Comparison:
+    """How far `image` is from `reference`: images, (height, width, 3) arrays or files."""
+    return Comparison(**_planes(image).compare(_planes(reference)))

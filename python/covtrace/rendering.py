@@ -1,0 +1,91 @@
+"""The one function that renders."""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+import warnings
+from collections.abc import Callable, Iterable
+from typing import Any, Literal, Protocol
+
+from . import _covtrace
+from .builder import SceneBuilder
+from .errors import SceneWarning, UsageError
+from .image import Image
+from .progress import Progress
+from .scene import Scene
+
+_UNITS = {"": 1, "k": 1 << 10, "m": 1 << 20, "g": 1 << 30, "t": 1 << 40}
+
+
+def _bytes(size: int | str | None) -> int | None:
+    """A number of bytes, or a text such as "500M" or "2G"."""
+    if size is None or isinstance(size, int):
+        return size
+    found = re.fullmatch(r"(\d+(?:\.\d+)?)([kmgt]?)", size.strip().lower())
+    if not found:
+        raise UsageError(f"texture_memory is {size!r}; expected a size such as '500M' or '2G'")
+    return int(float(found[1]) * _UNITS[found[2]])
+
+
+class Cancel(Protocol):
+    """What `cancel` must be like: a threading.Event is."""
+
+    def is_set(self) -> bool: ...
+
+
+def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
+           method: Literal["uniform", "covariance", "hybrid"] = "hybrid",
+           spp: float | None = None, time: float | None = None, error: float | None = None,
+           cov_spp: int | None = None, max_spp: int | None = None, max_depth: int | None = None,
+           density: Literal["tempered", "thesis"] = "tempered",
+           occlusion: Literal["grid", "query", "none"] = "query", voxels: int = 200,
+           brdf_covariance: Literal["local", "global"] = "local",
+           filter: Literal["verified", "thesis"] = "verified", even_counts: bool = False,
+           resolution: tuple[int, int] | None = None,
+           crop: tuple[int, int, int, int] | None = None,
+           shutter: tuple[float, float] | None = None, focus: float | None = None,
+           fstop: float | None = None, seed: int = 0, threads: int = 0,
+           isa: Literal["sse2", "avx", "avx2", "avx512"] | None = None,
+           texture_memory: int | str | None = None,
+           search_paths: Iterable[str | os.PathLike[str]] = (),
+           progress: Callable[[Progress], Any] | None = None,
+           cancel: Cancel | None = None) -> Image:
+    """Renders a scene into an `Image`.
+
+    scene: path of a pbrt-v4 file, `Scene`, or `SceneBuilder`.
+    method: "uniform" (the plain path tracer), "covariance" (the thesis' method) or "hybrid".
+    spp, time, error: budgets: average samples per pixel (default: the scene's), seconds, estimated
+        sqrt(relMSE); of several the first one stops.
+    resolution (w, h), crop (x0, y0, x1, y1), shutter (t0, t1), focus, fstop: in place of the scene's.
+    threads: 0 for all cores; holds for the process while the render runs.
+    progress: called with a `Progress` about ten times a second, in the calling thread.
+    cancel: anything with `is_set()`, for example a threading.Event; the image that is there when it
+        is set comes back with `complete` False.
+    All else as the options of `covtrace render`.
+
+    Python's lock is released while it renders. An exception from `progress`, and Ctrl-C, end the
+    render and come out of this call. Raises the classes of `covtrace.errors`.
+    """
+    options = {"method": method, "spp": spp, "time": time, "error": error, "cov_spp": cov_spp,
+               "max_spp": max_spp, "max_depth": max_depth, "density": density,
+               "occlusion": occlusion, "voxels": voxels, "brdf_covariance": brdf_covariance,
+               "filter": filter, "even_counts": even_counts, "resolution": resolution,
+               "crop": crop, "shutter": shutter, "focus": focus, "fstop": fstop, "seed": seed,
+               "threads": threads, "isa": isa, "texture_memory": _bytes(texture_memory),
+               "progress": progress, "cancel": cancel}
+    if isinstance(scene, SceneBuilder):
+        # Textures are read when the scene is built, so the files must last as long.
+        with tempfile.TemporaryDirectory(prefix="covtrace-") as folder:
+            return _render(Scene(scene.write(folder), search_paths), options)
+    if not isinstance(scene, Scene):
+        scene = Scene(os.fspath(scene), search_paths)
+    return _render(scene, options)
+
+
+def _render(scene: Scene, options: dict[str, Any]) -> Image:
+    planes, complete, statistics, texts = _covtrace.render(scene._description, options)
+    for text in texts:
+        warnings.warn(text, SceneWarning, stacklevel=3)
+    return Image(planes, complete, statistics)

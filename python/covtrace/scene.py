@@ -1,0 +1,66 @@
+"""Scenes from files and strings."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterable
+
+from . import _covtrace
+from .errors import SceneWarning
+
+
+class Scene:
+    """A scene in the pbrt-v4 format, read and checked, not yet built.
+
+    `Scene(file)` reads a file and the meshes that it names; `Scene.from_string` a text. What the
+    scene asks for and covtrace replaces or ignores is in `warnings`, and is warned of.
+    """
+
+    def __init__(self, file: str | os.PathLike[str],
+                 search_paths: Iterable[str | os.PathLike[str]] = ()) -> None:
+        self._take(_covtrace.SceneDescription.read(os.fspath(file), _paths(search_paths)))
+
+    @classmethod
+    def from_string(cls, text: str, folder: str | os.PathLike[str] = ".", name: str = "scene",
+                    search_paths: Iterable[str | os.PathLike[str]] = ()) -> Scene:
+        """`folder` is what relative file names in the text refer to, `name` what messages call it."""
+        scene = cls.__new__(cls)
+        scene._take(_covtrace.SceneDescription.read_string(text, name, os.fspath(folder),
+                                                           _paths(search_paths)))
+        return scene
+
+    def _take(self, description: _covtrace.SceneDescription) -> None:
+        self._description = description
+        for text in description.warnings:
+            warnings.warn(text, SceneWarning, stacklevel=3)
+
+    @property
+    def name(self) -> str:
+        return self._description.name
+
+    @property
+    def resolution(self) -> tuple[int, int]:
+        """(width, height)"""
+        return self._description.resolution
+
+    @property
+    def spp(self) -> int:
+        """Samples per pixel that the scene asks for."""
+        return self._description.spp
+
+    @property
+    def warnings(self) -> list[str]:
+        return self._description.warnings
+
+    def summary(self) -> str:
+        """Several lines for people, as `covtrace info`."""
+        return self._description.summary()
+
+    def __repr__(self) -> str:
+        width, height = self.resolution
+        return f"<covtrace.Scene {self.name!r}, {width}x{height}>"
+
+
+def _paths(search_paths: Iterable[str | os.PathLike[str]]) -> list[str]:
+    return [os.fspath(p) for p in search_paths]

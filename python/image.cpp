@@ -1,0 +1,155 @@
+#include "image/image.h"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+
+#include "bindings.h"
+#include "core/parallel.h"
+#include "image/compare.h"
+#include "image/layer_names.h"
+#include "planes.h"
+
+namespace covtrace::python {
+
+namespace py = pybind11;
+
+namespace {
+
+/// Channels [first, first + count) as an array (height, width) or (height, width, count) on the
+/// image's own memory, which it keeps alive.
+py::array_t<float> view(const SharedPlanes& planes, size_t first, size_t count, bool flat) {
+    const auto w = py::ssize_t(planes->data.width()), h = py::ssize_t(planes->data.height());
+    const auto item = py::ssize_t(sizeof(float));
+    std::vector<py::ssize_t> shape{h, w}, strides{w * item, item};
+    if (!flat) {
+        shape.push_back(py::ssize_t(count));
+        strides.push_back(w * h * item);
+    }
+    return py::array_t<float>(shape, strides,
+                              planes->values.data() + first * planes->plane_size(),
+                              py::cast(planes));
+}
+
+/// The entries of an exported image by layer: name, first channel, number of channels.
+struct Layer {
+    std::string name;
+    size_t first, count;
+};
+
+std::vector<Layer> layers_of(const Planes& planes) {
+    std::vector<Layer> layers;
+    for (size_t c = 0; c < planes.names.size(); ++c) {
+        const size_t dot = planes.names[c].rfind('.');
+        const std::string name = dot == std::string::npos ? "" : planes.names[c].substr(0, dot);
+        // "Z" beside R, G, B is a layer of its own.
+        const bool depth = name.empty() && planes.names[c] == "Z";
+        const std::string layer = depth ? "Z" : name;
+        if (layers.empty() || layers.back().name != layer)
+            layers.push_back({layer, c, 1});
+        else
+            ++layers.back().count;
+    }
+    return layers;
+}
+
+py::dict layer_views(const SharedPlanes& planes) {
+    py::dict result;
+    for (const Layer& l : layers_of(*planes))
+        result[py::str(l.name)] = view(planes, l.first, l.count, l.count == 1 && !l.name.empty());
+    return result;
+}
+
+py::dict channel_views(const SharedPlanes& planes) {
+    py::dict result;
+    for (size_t c = 0; c < planes->names.size(); ++c)
+        result[py::str(planes->names[c])] = view(planes, c, 1, true);
+    return result;
+}
+
+using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+/// From channel name to (height, width) values, all of one size.
+SharedPlanes from_channels(const std::vector<std::pair<std::string, FloatArray>>& channels) {
+    if (channels.empty()) throw py::value_error("an image needs at least one channel");
+    const FloatArray& first = channels.front().second;
+    std::vector<std::string> names;
+    for (const auto& [name, values] : channels) {
+        if (values.ndim() != 2 || values.shape(0) != first.shape(0) ||
+            values.shape(1) != first.shape(1) || values.size() == 0)
+            throw py::value_error("channel '" + name +
+                                  "' must be a (height, width) array of the image's size");
+        names.push_back(name);
+    }
+    auto planes = std::make_shared<Planes>(
+        PixelBounds{0, 0, int(first.shape(1)), int(first.shape(0))}, std::move(names));
+    float* next = planes->values.data();
+    for (const auto& [name, values] : channels)
+        next = std::copy(values.data(), values.data() + values.size(), next);
+    return planes;
+}
+
+py::dict comparison(const SharedPlanes& image, const SharedPlanes& reference) {
+    Comparison c;
+    {
+        const py::gil_scoped_release release;
+        c = compare(image->image(), reference->image());
+    }
+    const py::ssize_t w = c.bounds.width(), h = c.bounds.height();
+    py::array_t<float> flip_map({h, w});
+    std::copy(c.flip_map.begin(), c.flip_map.end(), flip_map.mutable_data());
+    py::dict result;
+    result["mse"] = c.mse;
+    result["relmse"] = c.relmse;
+    result["relmse_trimmed"] = c.relmse_trimmed;
+    result["psnr"] = c.psnr;
+    result["flip"] = c.flip;
+    result["mean_ratio"] = py::make_tuple(c.mean_ratio[0], c.mean_ratio[1], c.mean_ratio[2]);
+    result["nonfinite"] = c.nonfinite;
+    result["identical"] = c.identical;
+    result["flip_map"] = flip_map;
+    return result;
+}
+
+}  // namespace
+
+void bind_image(py::module_& module) {
+    const auto window = [](const PixelBounds& b) { return py::make_tuple(b.x0, b.y0, b.x1, b.y1); };
+    py::class_<Planes, SharedPlanes>(module, "Planes")
+        .def_static("from_channels", &from_channels)
+        .def_static("read",
+                    [](const std::filesystem::path& file) {
+                        const py::gil_scoped_release release;
+                        Image image = read_image(file);
+                        restore_layer_names(image);
+                        return std::make_shared<Planes>(std::move(image));
+                    })
+        .def("write_exr",
+             [](const Planes& p, const std::filesystem::path& file) {
+                 const py::gil_scoped_release release;
+                 write_exr(p.image(), file, ThreadLimit(0).threads());
+             })
+        .def("write_png",
+             [](const Planes& p, const std::filesystem::path& file) {
+                 const py::gil_scoped_release release;
+                 write_png(p.image(), file);
+             })
+        .def("channels", &channel_views)
+        .def("layers", &layer_views)
+        .def("compare", &comparison)
+        .def("describe", [](const Planes& p) { return describe(p.image()); })
+        .def_property_readonly("size",
+                               [](const Planes& p) {
+                                   return py::make_tuple(p.data.width(), p.data.height());
+                               })
+        .def_property_readonly("data_window", [window](const Planes& p) { return window(p.data); })
+        .def_property_readonly("display_window",
+                               [window](const Planes& p) { return window(p.display); })
+        .def_property(
+            "metadata", [](const Planes& p) { return p.metadata; },
+            [](Planes& p, Metadata metadata) { p.metadata = std::move(metadata); });
+}
+
+}  // namespace covtrace::python

@@ -1,0 +1,272 @@
+"""covtrace.render: layers without copies, progress, cancelling, threads, errors."""
+
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import warnings
+
+import numpy
+
+import covtrace
+import scenes
+
+
+class Rendering(unittest.TestCase):
+    def test_known_radiance(self):
+        image = covtrace.render(covtrace.Scene.from_string(scenes.FURNACE), method="uniform", spp=1)
+        self.assertEqual(image.rgb.shape, (6, 8, 3))
+        self.assertEqual(image.rgb.dtype, numpy.float32)
+        numpy.testing.assert_allclose(image.rgb, 0.25, rtol=1e-5)
+        self.assertTrue(image.complete)
+        self.assertEqual(image.statistics["spp"], 1)
+
+    def test_layers_are_views(self):
+        image = covtrace.render(scenes.builder(), spp=4)
+        for name in ("raw", "albedo", "N", "variance", "filter", "spectrum"):
+            self.assertEqual(image[name].shape, (27, 48, 3), name)
+        for name in ("Z", "samples", "error", "density"):
+            self.assertEqual(image[name].shape, (27, 48), name)
+        self.assertEqual(image["cov"].shape, (27, 48, 15))
+        self.assertTrue(numpy.shares_memory(image["raw"], image["raw.G"]))
+        image["raw.G"][3, 5] = 17
+        self.assertEqual(image["raw"][3, 5, 1], 17)
+        self.assertAlmostEqual(float(image["samples"].mean()), 4, places=3)
+        # The views keep the memory alive.
+        raw = image["raw"]
+        mean = raw.mean()
+        del image
+        self.assertEqual(raw.mean(), mean)
+
+    def test_matrices_are_written_out(self):
+        image = covtrace.render(scenes.builder(), spp=4)
+        cov, full = image["cov"], image.matrices("cov")
+        self.assertEqual(full.shape, (27, 48, 5, 5))
+        numpy.testing.assert_array_equal(full, full.swapaxes(2, 3))
+        numpy.testing.assert_array_equal(full[..., 1, 3], cov[..., 7])
+        numpy.testing.assert_array_equal(image["cov.13"], full[..., 3, 1])
+        with self.assertRaises(ValueError):
+            image.matrices("Z")
+
+    def test_same_image_as_the_program(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = scenes.builder().write(folder)
+            out = os.path.join(folder, "program.exr")
+            subprocess.run([os.environ["COVTRACE"], "render", path, "-o", out, "--spp", "4",
+                            "--seed", "7", "--progress", "none"], check=True, capture_output=True)
+            image = covtrace.render(path, spp=4, seed=7, threads=1)
+            self.assertTrue(covtrace.compare(image, out).identical)
+
+    def test_progress_and_exceptions_in_it(self):
+        seen = []
+        covtrace.render(scenes.builder((160, 90)), spp=64, progress=seen.append)
+        self.assertTrue(seen)
+        self.assertTrue(all(0 <= p.fraction <= 1 for p in seen))
+        self.assertLessEqual({p.phase for p in seen},
+                             {"covariance", "plan", "radiance", "reconstruction"})
+
+        class Stop(Exception):
+            pass
+
+        def fail(progress):
+            raise Stop(progress.phase)
+
+        with self.assertRaises(Stop):
+            covtrace.render(scenes.builder((160, 90)), spp=4096, progress=fail)
+
+    def test_cancel_gives_what_is_there(self):
+        stop = threading.Event()
+        threading.Timer(0.3, stop.set).start()
+        image = covtrace.render(scenes.builder((160, 90)), method="uniform", spp=1 << 20,
+                                cancel=stop)
+        self.assertFalse(image.complete)
+        self.assertGreater(image["samples"].max(), 0)
+        self.assertTrue(numpy.isfinite(image.rgb).all())
+
+    def test_interrupt(self):
+        signal.signal(signal.SIGALRM, signal.default_int_handler)
+        signal.setitimer(signal.ITIMER_REAL, 0.3)
+        with self.assertRaises(KeyboardInterrupt):
+            covtrace.render(scenes.builder((160, 90)), method="uniform", spp=1 << 20)
+
+    def test_lock_is_released(self):
+        # Another thread goes on counting while this one renders.
+        counted, stop = [0], threading.Event()
+
+        def count():
+            while not stop.is_set():
+                counted[0] += 1
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        start = time.monotonic()
+        covtrace.render(scenes.builder((160, 90)), spp=64)
+        seconds = time.monotonic() - start
+        stop.set()
+        thread.join()
+        # It would count once or twice if the lock were held.
+        self.assertGreater(counted[0], min(20, 50 * seconds))
+
+    def test_threads_do_not_change_the_image(self):
+        one = covtrace.render(scenes.builder(), spp=4, threads=1)
+        three = covtrace.render(scenes.builder(), spp=4, threads=3)
+        self.assertTrue(covtrace.compare(one, three).identical)
+
+
+class Errors(unittest.TestCase):
+    def test_place_in_the_scene(self):
+        with self.assertRaises(covtrace.SceneError) as caught:
+            covtrace.Scene.from_string('WorldBegin\n\n   Shape "spere"\n', name="ball.pbrt")
+        e = caught.exception
+        self.assertEqual((e.file, e.line, e.column), ("ball.pbrt", 3, 4))
+        self.assertIn("spere", e.message)
+        self.assertNotIn("ball.pbrt", e.message)
+        self.assertEqual(e.exit_code, 3)
+
+    def test_missing_file(self):
+        with self.assertRaises(covtrace.SceneError):
+            covtrace.render("no/such/scene.pbrt")
+
+    def test_arguments(self):
+        scene = covtrace.Scene.from_string(scenes.FURNACE)
+        for wrong in ({"method": "best"}, {"spp": -1}, {"spp": "many"}, {"threads": -2},
+                      {"crop": (0, 0, 100, 100)}, {"error": 0.1, "method": "covariance"},
+                      {"texture_memory": "much"}, {"voxels": 0}):
+            with self.subTest(wrong), self.assertRaises(covtrace.UsageError):
+                covtrace.render(scene, **wrong)
+        with self.assertRaises(TypeError):
+            covtrace.render(scene, samples=4)
+
+    def test_warnings(self):
+        text = scenes.FURNACE + 'Material "subsurface"\nShape "sphere"\n'
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            scene = covtrace.Scene.from_string(text)
+        self.assertTrue(scene.warnings)
+        self.assertEqual([str(w.message) for w in caught], scene.warnings)
+        self.assertTrue(all(w.category is covtrace.SceneWarning for w in caught))
+
+    def test_unwritable_file(self):
+        image = covtrace.Image.from_arrays(numpy.zeros((2, 2, 3)))
+        with self.assertRaises(covtrace.FileError):
+            image.write("/no/such/folder/x.exr")
+        with self.assertRaises(ValueError):
+            image.write("x.tiff")
+
+
+class Images(unittest.TestCase):
+    def test_round_trip(self):
+        rng = numpy.random.default_rng(1)
+        rgb = rng.random((5, 7, 3), dtype=numpy.float32)
+        normal = {c: rng.random((5, 7)) for c in "XYZ"}
+        image = covtrace.Image.from_arrays(rgb, {"N": normal, "Z": rng.random((5, 7))},
+                                           {"note": "hello"})
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "a.exr"
+            image.write(file)
+            again = covtrace.Image.read(file)
+            image.write(pathlib.Path(folder) / "a.png")
+            self.assertEqual(covtrace.Image.read(pathlib.Path(folder) / "a.png").size, (7, 5))
+        numpy.testing.assert_array_equal(again.rgb, rgb)
+        numpy.testing.assert_array_equal(again["N.Y"], normal["Y"].astype(numpy.float32))
+        self.assertEqual(again["N"].shape, (5, 7, 3))
+        self.assertEqual(again.metadata["note"], "hello")
+        self.assertTrue(covtrace.compare(image, again).identical)
+        self.assertIn("N", again)
+        self.assertNotIn("M", again)
+        with self.assertRaises(KeyError):
+            again["M"]
+
+    def test_compare(self):
+        reference = numpy.full((8, 8, 3), 0.5)
+        c = covtrace.compare(1.1 * reference, reference)
+        self.assertAlmostEqual(c.mse, 0.0025, places=6)
+        self.assertAlmostEqual(c.relmse, 0.0025 / 0.26, places=6)
+        numpy.testing.assert_allclose(c.mean_ratio, 1.1, rtol=1e-6)
+        self.assertEqual(c.flip_map.shape, (8, 8))
+        self.assertFalse(c.identical)
+        with self.assertRaises(covtrace.UsageError):
+            covtrace.compare(reference, numpy.zeros((4, 4, 3)))
+
+
+class Builder(unittest.TestCase):
+    def test_a_moving_mesh_is_blurred(self):
+        def centre_spread(distance):
+            scene = covtrace.SceneBuilder()
+            scene.camera(eye=(0, 0, -5), target=(0, 0, 0), fov=40, resolution=(60, 20))
+            end = numpy.eye(4)
+            end[0, 3] = distance
+            vertices = [[-0.3, -9, 0], [0.3, -9, 0], [0.3, 9, 0], [-0.3, 9, 0]]
+            scene.mesh(vertices, numpy.array([[0, 1, 2], [0, 2, 3]]), emission=(1, 1, 1),
+                       transform=numpy.eye(4), end_transform=end, two_sided=True)
+            row = covtrace.render(scene, method="uniform", spp=64).rgb[:, :, 1].mean(axis=0)
+            return (row > 0.02).sum() / 60
+
+        # 40 degrees over the 20 rows: 2 * 5 * tan(20 degrees) units high, three times as wide.
+        width = 3 * 10 * numpy.tan(numpy.radians(20))
+        self.assertAlmostEqual(centre_spread(0.0), 0.6 / width, delta=2.5 / 60)
+        self.assertAlmostEqual(centre_spread(2.0), 2.6 / width, delta=2.5 / 60)
+
+    def test_wrong_arrays(self):
+        scene = covtrace.SceneBuilder()
+        good = numpy.array([[0, 1, 2]])
+        for vertices, triangles in (([[0, 0]], good), (numpy.zeros((3, 3)), good + 1),
+                                    (numpy.zeros((3, 3)), good - 1),
+                                    (numpy.zeros((3, 3)), good * 1.0)):
+            with self.assertRaises(ValueError):
+                scene.mesh(vertices, triangles)
+        with self.assertRaises(ValueError):
+            scene.mesh(numpy.zeros((3, 3)), good, uv=numpy.zeros((2, 2)))
+        with self.assertRaises(ValueError):
+            scene.material('x" "float roughness" 3', "diffuse")
+        with self.assertRaises(ValueError):
+            scene.text()  # no camera
+
+
+class Package(unittest.TestCase):
+    def test_stubs_name_everything(self):
+        import ast
+        from covtrace import _covtrace
+        stub = pathlib.Path(covtrace.__file__).with_name("_covtrace.pyi").read_text()
+        classes = {n.name: n for n in ast.walk(ast.parse(stub)) if isinstance(n, ast.ClassDef)}
+        for name in ("Planes", "SceneDescription"):
+            declared = {n.name for n in classes[name].body if isinstance(n, ast.FunctionDef)}
+            declared |= {n.target.id for n in classes[name].body if isinstance(n, ast.AnnAssign)}
+            present = {n for n in vars(getattr(_covtrace, name)) if not n.startswith("_")}
+            self.assertEqual(declared, present)
+        self.assertTrue(pathlib.Path(covtrace.__file__).with_name("py.typed").exists())
+
+    def test_everything_public_is_typed_and_described(self):
+        import inspect
+        for owner in (covtrace, covtrace.covariance, covtrace.Image, covtrace.Scene,
+                      covtrace.SceneBuilder):
+            for name, value in vars(owner).items():
+                if name.startswith("_") or not inspect.isfunction(value):
+                    continue
+                signature = inspect.signature(value)
+                self.assertIsNot(signature.return_annotation, inspect.Signature.empty, name)
+        for name in covtrace.__all__:
+            self.assertTrue(getattr(covtrace, name).__doc__, name)
+
+    def test_version(self):
+        program = subprocess.run([os.environ["COVTRACE"], "--version"], capture_output=True,
+                                 text=True, check=True)
+        self.assertIn(covtrace.__version__, program.stdout)
+
+    def test_example_runs(self):
+        source = pathlib.Path(os.environ["COVTRACE_SOURCE"]) / "python/examples/why_is_it_noisy.py"
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([sys.executable, str(source), "--size", "96x54", "-o", folder],
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertTrue(list(pathlib.Path(folder).glob("*.png")))
+
+
+if __name__ == "__main__":
+    unittest.main()
