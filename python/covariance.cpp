@@ -74,8 +74,7 @@ void bind_surface(py::module_& m) {
     m.def("reflect_diffuse", vectorized(+[](Sigma s, Frame f, Frame rows, Vec3 out) {
               return cov::reflect_diffuse(Field{s, f}, surface_of(rows, {}), out);
           }));
-    m.def("refract",
-          vectorized(+[](Sigma s, Frame f, Frame rows, Vec3 out, double n1, double n2) {
+    m.def("refract", vectorized(+[](Sigma s, Frame f, Frame rows, Vec3 out, double n1, double n2) {
               return cov::refract(Field{s, f}, surface_of(rows, {}), out, n1, n2);
           }));
     m.def("refract_glossy",
@@ -98,9 +97,8 @@ void bind_ends(py::module_& m) {
     m.def("disc_moments", vectorized(+[](double radius) { return cov::disc_moments(radius); }));
     m.def("rectangle_moments",
           vectorized(+[](double a, double b) { return cov::rectangle_moments(a, b); }));
-    m.def("area_source", vectorized(+[](Sym2 moments) {
-              return cov::area_source(moments, Frame{}).sigma;
-          }));
+    m.def("area_source",
+          vectorized(+[](Sym2 moments) { return cov::area_source(moments, Frame{}).sigma; }));
     m.def("point_source",
           vectorized(+[](double r_min) { return cov::point_source(Frame{}, r_min).sigma; }));
     m.def("sun_source",
@@ -116,29 +114,25 @@ void bind_ends(py::module_& m) {
                          double py_, double shutter) {
               return cov::sensor(s, f, orthographic(axes, focus, radius, px, py_, shutter));
           }));
-    m.def("preintegrate", vectorized(+[](Sigma s, Sigma window) {
-              return cov::preintegrate(s, window);
-          }));
+    m.def("preintegrate",
+          vectorized(+[](Sigma s, Sigma window) { return cov::preintegrate(s, window); }));
     m.def("sensor_window", vectorized(+[](double lens, double shutter) {
               return cov::sensor_window(lens, shutter);
           }));
     m.attr("disc_lens_window") = cov::disc_lens_window<double>;
     m.attr("square_lens_window") = cov::square_lens_window<double>;
     m.attr("box_shutter_window") = cov::box_shutter_window<double>;
-    m.def("integration_count", vectorized(+[](Sigma s, Sigma window) {
-              return cov::integration_count(s, window);
-          }));
-    m.def("image_density",
-          vectorized(+[](Sym2 spectrum) { return cov::image_density(spectrum); }));
-    m.def("filter_sharpness",
-          vectorized(+[](double spp) { return cov::filter_sharpness(spp); }));
+    m.def("integration_count",
+          vectorized(+[](Sigma s, Sigma window) { return cov::integration_count(s, window); }));
+    m.def("image_density", vectorized(+[](Sym2 spectrum) { return cov::image_density(spectrum); }));
+    m.def("filter_sharpness", vectorized(+[](double spp) { return cov::filter_sharpness(spp); }));
     m.def("filter_covariance", vectorized(+[](Sym2 spectrum, double c, double s_min, double s_max) {
               return cov::filter_covariance(
                   cov::filter_quadratic(spectrum, c, cov::FilterLimits<double>{s_min, s_max}));
           }));
     m.def("thesis_filter_covariance", vectorized(+[](Sym2 spectrum, double s_min, double s_max) {
-              return cov::filter_covariance(cov::thesis_filter_quadratic(
-                  spectrum, cov::FilterLimits<double>{s_min, s_max}));
+              return cov::filter_covariance(
+                  cov::thesis_filter_quadratic(spectrum, cov::FilterLimits<double>{s_min, s_max}));
           }));
 }
 

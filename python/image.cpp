@@ -28,8 +28,7 @@ py::array_t<float> view(const SharedPlanes& planes, size_t first, size_t count, 
         shape.push_back(py::ssize_t(count));
         strides.push_back(w * h * item);
     }
-    return py::array_t<float>(shape, strides,
-                              planes->values.data() + first * planes->plane_size(),
+    return py::array_t<float>(shape, strides, planes->values.data() + first * planes->plane_size(),
                               py::cast(planes));
 }
 
@@ -140,10 +139,8 @@ void bind_image(py::module_& module) {
         .def("layers", &layer_views)
         .def("compare", &comparison)
         .def("describe", [](const Planes& p) { return describe(p.image()); })
-        .def_property_readonly("size",
-                               [](const Planes& p) {
-                                   return py::make_tuple(p.data.width(), p.data.height());
-                               })
+        .def_property_readonly(
+            "size", [](const Planes& p) { return py::make_tuple(p.data.width(), p.data.height()); })
         .def_property_readonly("data_window", [window](const Planes& p) { return window(p.data); })
         .def_property_readonly("display_window",
                                [window](const Planes& p) { return window(p.display); })

@@ -1,5 +1,5 @@
-/// An image whose channels lie one after the other in one block, so that numpy can show a channel or
-/// a whole layer without copying it.
+/// An image whose channels lie one after the other in one block, so that numpy can show a channel
+/// or a whole layer without copying it.
 #pragma once
 
 #include <memory>

@@ -218,9 +218,8 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
     const int threads = o["threads"].cast<int>();
     require(threads >= 0, "threads must not be negative");
     const auto isa = o["isa"].is_none() ? std::string() : o["isa"].cast<std::string>();
-    const size_t texture_bytes = o["texture_memory"].is_none()
-                                     ? kNoTextureLimit
-                                     : o["texture_memory"].cast<size_t>();
+    const size_t texture_bytes =
+        o["texture_memory"].is_none() ? kNoTextureLimit : o["texture_memory"].cast<size_t>();
     const auto progress = o["progress"].cast<py::object>();
     const auto cancel = o["cancel"].cast<py::object>();
 
@@ -254,7 +253,9 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
                           texts_of(rendered->warnings));
 }
 
-ReadOptions read_options(const std::vector<fs::path>& search_paths) { return {search_paths}; }
+ReadOptions read_options(const std::vector<fs::path>& search_paths) {
+    return {search_paths};
+}
 
 }  // namespace
 

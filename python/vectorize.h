@@ -1,5 +1,5 @@
-/// Makes a function of single matrices, vectors and numbers into one of numpy arrays: every argument
-/// may have leading dimensions, and these are broadcast against each other as numpy does.
+/// Makes a function of single matrices, vectors and numbers into one of numpy arrays: every
+/// argument may have leading dimensions, and these are broadcast against each other as numpy does.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -191,7 +191,7 @@ using ArrayFor = Array;
 template <typename R, typename... Arguments>
 auto vectorized(R (*function)(Arguments...)) {
     return [function](const ArrayFor<Arguments>&... arrays) -> py::object {
-        return [&]<size_t... I>(std::index_sequence<I...>) -> py::object {
+        return [&]<size_t... I>(std::index_sequence<I...>)->py::object {
             using Items = std::tuple<std::decay_t<Arguments>...>;
             const std::array<std::vector<py::ssize_t>, sizeof...(I)> own{
                 leading_shape<std::tuple_element_t<I, Items>>(arrays, I)...};
@@ -206,8 +206,8 @@ auto vectorized(R (*function)(Arguments...)) {
                 const py::gil_scoped_release release;
                 std::vector<py::ssize_t> index(shape.size(), 0);
                 for (py::ssize_t i = 0; i < count; ++i) {
-                    result.put(function(Item<std::tuple_element_t<I, Items>>::load(
-                        cursors[I].at(index))...));
+                    result.put(function(
+                        Item<std::tuple_element_t<I, Items>>::load(cursors[I].at(index))...));
                     for (size_t k = index.size(); k-- > 0;) {
                         if (++index[k] < shape[k]) break;
                         index[k] = 0;
@@ -220,7 +220,8 @@ auto vectorized(R (*function)(Arguments...)) {
                 taken.attr("ndim").cast<int>() == 0)
                 return taken.attr("item")();
             return taken;
-        }(std::index_sequence_for<Arguments...>{});
+        }
+        (std::index_sequence_for<Arguments...>{});
     };
 }
 

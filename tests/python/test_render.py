@@ -58,7 +58,8 @@ class Rendering(unittest.TestCase):
             path = scenes.builder().write(folder)
             out = os.path.join(folder, "program.exr")
             subprocess.run([os.environ["COVTRACE"], "render", path, "-o", out, "--spp", "4",
-                            "--seed", "7", "--progress", "none"], check=True, capture_output=True)
+                            "--seed", "7", "--progress", "none",
+                            "--layers", "all,inview"], check=True, capture_output=True)
             image = covtrace.render(path, spp=4, seed=7, threads=1)
             self.assertTrue(covtrace.compare(image, out).identical)
 
@@ -81,9 +82,13 @@ class Rendering(unittest.TestCase):
 
     def test_cancel_gives_what_is_there(self):
         stop = threading.Event()
-        threading.Timer(0.3, stop.set).start()
+
+        def stop_once_sampled(progress):
+            if progress.samples_per_pixel > 0.5:
+                stop.set()
+
         image = covtrace.render(scenes.builder((160, 90)), method="uniform", spp=1 << 20,
-                                cancel=stop)
+                                cancel=stop, progress=stop_once_sampled)
         self.assertFalse(image.complete)
         self.assertGreater(image["samples"].max(), 0)
         self.assertTrue(numpy.isfinite(image.rgb).all())
@@ -209,9 +214,10 @@ class Builder(unittest.TestCase):
             return (row > 0.02).sum() / 60
 
         # 40 degrees over the 20 rows: 2 * 5 * tan(20 degrees) units high, three times as wide.
+        # The pixel filter adds up to its radius of 1.5 pixels on both sides.
         width = 3 * 10 * numpy.tan(numpy.radians(20))
-        self.assertAlmostEqual(centre_spread(0.0), 0.6 / width, delta=2.5 / 60)
-        self.assertAlmostEqual(centre_spread(2.0), 2.6 / width, delta=2.5 / 60)
+        self.assertAlmostEqual(centre_spread(0.0), 0.6 / width + 1.5 / 60, delta=2.5 / 60)
+        self.assertAlmostEqual(centre_spread(2.0), 2.6 / width + 1.5 / 60, delta=2.5 / 60)
 
     def test_wrong_arrays(self):
         scene = covtrace.SceneBuilder()
