@@ -16,9 +16,12 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 
 from generator import (  # noqa: E402
+    bulbs,
     defocus_checker,
     foliage,
+    glossy_lens,
     helicopter,
+    mirror_motion,
     motion,
     shininess,
     snooker,
@@ -30,6 +33,9 @@ _WRITERS = (
     helicopter,
     defocus_checker,
     motion,
+    mirror_motion,
+    glossy_lens,
+    bulbs,
     foliage,
     shininess,
     textured_plane.Lens,

@@ -1,17 +1,17 @@
-"""A toy helicopter over its landing pad: a fast rotor, glossy paint, glass, and a ground out of focus."""
+"""A toy helicopter over its landing pad: fast rotors, paint, glass, a ground out of focus."""
 
 from math import pi
 
 from . import helicopter_body as body
 from . import helicopter_rotors as rotors
 from .camera import Camera
-from .files import write_ply
 from .helicopter_textures import CREAM, NAVY, RED, write_blade, write_livery, write_pad, write_tiles
 from .mesh import arc, lathe, rounded_prism
 from .pbrt_text import SceneText
 from .stage import (
     add_floor,
     add_image_texture,
+    add_mesh,
     add_options,
     add_quad_light,
     facing_square,
@@ -44,12 +44,6 @@ def _focal_distance():
     return CAMERA.depth((0.6, 0.6, _HOVER))
 
 
-def _add_mesh(scene, folder, name, material, mesh):
-    write_ply(folder / "meshes" / f"{name}.ply", mesh)
-    scene.entity("NamedMaterial", material)
-    scene.entity("Shape", "plymesh", {"string filename": f"meshes/{name}.ply"})
-
-
 def _add_materials(scene):
     for name in _TEXTURES:
         add_image_texture(scene, name)
@@ -73,17 +67,17 @@ def _add_materials(scene):
 
 
 def _add_body(scene, folder):
-    _add_mesh(scene, folder, "cabin", "livery", body.cabin_and_boom())
-    _add_mesh(scene, folder, "chin", "cream", body.chin())
-    _add_mesh(scene, folder, "glass", "glass", body.glass())
-    _add_mesh(scene, folder, "frames", "cream", body.frames())
-    _add_mesh(scene, folder, "interior", "cockpit", body.interior())
+    add_mesh(scene, folder, "cabin", "livery", body.cabin_and_boom())
+    add_mesh(scene, folder, "chin", "cream", body.chin())
+    add_mesh(scene, folder, "glass", "glass", body.glass())
+    add_mesh(scene, folder, "frames", "cream", body.frames())
+    add_mesh(scene, folder, "interior", "cockpit", body.interior())
     for (name, mesh), material in zip(body.pilot().items(), ("navy", "wood", "yellow")):
-        _add_mesh(scene, folder, name, material, mesh)
-    _add_mesh(scene, folder, "engine", "red", body.engine())
-    _add_mesh(scene, folder, "exhausts", "steel", body.exhausts())
-    _add_mesh(scene, folder, "skids", "steel", body.skids())
-    _add_mesh(scene, folder, "fins", "red", body.fins())
+        add_mesh(scene, folder, name, material, mesh)
+    add_mesh(scene, folder, "engine", "red", body.engine())
+    add_mesh(scene, folder, "exhausts", "steel", body.exhausts())
+    add_mesh(scene, folder, "skids", "steel", body.skids())
+    add_mesh(scene, folder, "fins", "red", body.fins())
 
 
 def _add_rotors(scene, folder):
@@ -92,16 +86,16 @@ def _add_rotors(scene, folder):
         scene.plain("Translate", *body.MAST)
         scene.plain("Rotate", 17, 0, 0, 1)
         scene.moving([], [("Rotate", MAIN_TURN, 0, 0, 1)])
-        _add_mesh(scene, folder, "main-blades", "blade", rotors.main_blades(_BLADES, _RADIUS))
-        _add_mesh(scene, folder, "main-hub", "steel", rotors.main_hub(_BLADES))
+        add_mesh(scene, folder, "main-blades", "blade", rotors.main_blades(_BLADES, _RADIUS))
+        add_mesh(scene, folder, "main-hub", "steel", rotors.main_hub(_BLADES))
     scene.comment(f"The tail rotor turns by {TAIL_TURN} degrees.")
     with scene.attributes():
         scene.plain("Translate", *body.TAIL_HUB)
         scene.plain("Rotate", -90, 1, 0, 0)
         scene.plain("Rotate", 35, 0, 0, 1)
         scene.moving([], [("Rotate", TAIL_TURN, 0, 0, 1)])
-        _add_mesh(scene, folder, "tail-blades", "blade", rotors.tail_blades(0.56))
-        _add_mesh(scene, folder, "tail-hub", "steel", rotors.tail_hub())
+        add_mesh(scene, folder, "tail-blades", "blade", rotors.tail_blades(0.56))
+        add_mesh(scene, folder, "tail-hub", "steel", rotors.tail_hub())
 
 
 def _pad():
@@ -120,7 +114,7 @@ def _add_ground(scene, folder):
     add_floor(scene, half, 2 * half / _TILE)
     with scene.attributes():
         scene.plain("Rotate", _YAW, 0, 0, 1)
-        _add_mesh(scene, folder, "pad", "pad", _pad())
+        add_mesh(scene, folder, "pad", "pad", _pad())
 
 
 # Material, size, position, turn (degrees).
@@ -147,7 +141,7 @@ def _add_toys(scene, folder):
             scene.plain("Translate", x, y, 1.5 if i == 2 else 0)
             scene.plain("Rotate", turn, 0, 0, 1)
             block = rounded_prism(outline, 0.0, size, 0.1, lambda x, y, z: (x, y))
-            _add_mesh(scene, folder, f"block-{i + 1}", material, block)
+            add_mesh(scene, folder, f"block-{i + 1}", material, block)
     for material, radius, (x, y) in _BALLS:
         with scene.attributes():
             scene.plain("Translate", x, y, radius)

@@ -1,4 +1,4 @@
-"""The toy helicopter's rotors: hubs and blades as meshes. Decimetres; the axis is z, through the origin."""
+"""The toy helicopter's rotors: hubs and blades as meshes. Decimetres; they turn about z."""
 
 from math import cos, pi, radians, sin, sqrt
 

@@ -1,4 +1,4 @@
-"""Image textures of the helicopter scene: livery, blades, the landing pad and the tiles around it."""
+"""Image textures of the helicopter scene: livery, blades, landing pad and tiles."""
 
 from math import atan2, cos, hypot, pi
 

@@ -60,6 +60,10 @@ def tube(path, radius, segments=20):
     return loft(sections)
 
 
+def _catmull_rom(t, p, q, r, s):
+    return q + t / 2 * (r - p + t * (2 * p - 5 * q + 4 * r - s + t * (3 * (q - r) + s - p)))
+
+
 def smooth_path(points, steps):
     """Catmull-Rom curve through the points, `steps` pieces between two of them."""
     ends = [points[0], *points, points[-1]]
@@ -67,10 +71,5 @@ def smooth_path(points, steps):
     for a, b, c, d in zip(ends, ends[1:], ends[2:], ends[3:]):
         for k in range(steps):
             t = k / steps
-            path.append(
-                tuple(
-                    q + 0.5 * t * (r - p + t * (2 * p - 5 * q + 4 * r - s + t * (3 * (q - r) + s - p)))
-                    for p, q, r, s in zip(a, b, c, d)
-                )
-            )
+            path.append(tuple(_catmull_rom(t, *values) for values in zip(a, b, c, d)))
     return [*path, tuple(points[-1])]

@@ -1,12 +1,14 @@
-"""What most scenes begin with: film, filter, sampler, integrator, camera, and flat quads, lit or not."""
+"""What most scenes have: options before the world, quads that are lit or shine, materials."""
 
 from .camera import cross, dot, normalize, subtract
+from .files import write_ply
 
 _QUAD = [0, 1, 2, 0, 2, 3]
 
 
-def add_options(scene, name, camera, max_depth, camera_parameters=None, pixel_filter=True):
-    """Adds everything before WorldBegin; the film is called after the scene.
+def add_options(scene, name, camera, max_depth, parameters=None, pixel_filter=True):
+    """Adds everything before WorldBegin; the film is called after the scene, and
+    `parameters` go to the camera.
 
     Without `pixel_filter` the format's default stays; with it, a Gaussian of 1.5 pixels.
     """
@@ -17,11 +19,11 @@ def add_options(scene, name, camera, max_depth, camera_parameters=None, pixel_fi
         scene.entity("PixelFilter", "gaussian", {"float xradius": 1.5, "float yradius": 1.5})
     scene.entity("Sampler", "zsobol", {"integer pixelsamples": 64})
     scene.entity("Integrator", "path", {"integer maxdepth": max_depth})
-    camera.emit(scene, camera_parameters or {})
+    camera.emit(scene, parameters or {})
 
 
 def add_quad(scene, corners, uv=None):
-    """Adds a quad of four points; its front is where they run counter-clockwise. `uv`: 8 numbers."""
+    """Adds a quad; its four corners run counter-clockwise seen from its front. `uv`: 8 numbers."""
     parameters = {"point3 P": [number for corner in corners for number in corner]}
     if uv:
         parameters["point2 uv"] = uv
@@ -36,7 +38,7 @@ def add_floor(scene, half, repeats=None):
 
 
 def add_quad_light(scene, radiance, corners):
-    """Adds a quad that shines from its front and reflects nothing. To be called within attributes()."""
+    """Adds a quad that shines from its front and reflects nothing; belongs in attributes()."""
     scene.entity("AreaLightSource", "diffuse", {"rgb L": radiance})
     scene.entity("Material", "diffuse", {"rgb reflectance": [0, 0, 0]})
     add_quad(scene, corners)
@@ -54,16 +56,31 @@ def facing_square(center, target, half):
     ]
 
 
+def add_mesh(scene, folder, name, material, mesh):
+    """Writes meshes/NAME.ply into the scene's folder and adds it.
+
+    `material`: a named one, or a type and its parameters.
+    """
+    write_ply(folder / "meshes" / f"{name}.ply", mesh)
+    if isinstance(material, str):
+        scene.entity("NamedMaterial", material)
+    else:
+        scene.entity("Material", *material)
+    scene.entity("Shape", "plymesh", {"string filename": f"meshes/{name}.ply"})
+
+
 def add_image_texture(scene, name, parameters=None, kind="spectrum"):
     """Adds the texture `name` from textures/NAME.png."""
     file = {"string filename": f"textures/{name}.png"}
     scene.entity("Texture", [name, kind, "imagemap"], {**file, **(parameters or {})})
 
 
-def metal(name, roughness):
-    """Material type and parameters of one of pbrt's named metals."""
-    spectra = {"spectrum eta": f"metal-{name}-eta", "spectrum k": f"metal-{name}-k"}
-    return "conductor", {**spectra, "float roughness": roughness}
+def metal(name, roughness=None):
+    """Material type and parameters of one of pbrt's named metals, by default a perfect mirror."""
+    parameters = {"spectrum eta": f"metal-{name}-eta", "spectrum k": f"metal-{name}-k"}
+    if roughness is not None:
+        parameters["float roughness"] = roughness
+    return "conductor", parameters
 
 
 def glossy(color, roughness):
