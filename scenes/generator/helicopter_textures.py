@@ -17,7 +17,7 @@ def _encode(color):
 
 def write_livery(path):
     """Red above, cream below, a navy line between; a number on both sides. uv as in the body."""
-    width, height = 384, 1024  # u around, v along
+    width, height = 256, 768  # u around, v along
     text = text_segments("511", 0.36)
     rows = []
     for y in range(height):
@@ -58,7 +58,7 @@ def write_blade(path):
 
 def write_pad(path):
     """The landing pad from above: rings, dashes and an H on worn blue paint."""
-    size = 512
+    size = 384
     wear = fractal_field(size, size, 9, 9, 4, 83)
     soft = 2.5 / size
     rows = []
