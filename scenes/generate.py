@@ -8,19 +8,34 @@
 
 import argparse
 import hashlib
-import shutil
+import os
 import sys
 import tempfile
 from pathlib import Path
 
 sys.dont_write_bytecode = True
 
-from generator import defocus_checker, foliage, motion, shininess, snooker, textured_plane  # noqa: E402
+from generator import (  # noqa: E402
+    bulbs,
+    defocus_checker,
+    foliage,
+    glossy_lens,
+    helicopter,
+    mirror_motion,
+    motion,
+    shininess,
+    snooker,
+    textured_plane,
+)
 
 _WRITERS = (
     snooker,
+    helicopter,
     defocus_checker,
     motion,
+    mirror_motion,
+    glossy_lens,
+    bulbs,
     foliage,
     shininess,
     textured_plane.Lens,
@@ -30,13 +45,25 @@ _SCENES = {writer.NAME: writer for writer in _WRITERS}
 
 
 def _write_scene(name, output):
+    """Writes the scene beside its folder, then moves what changed into it, the scene file last.
+
+    So another process that reads the scene, or writes it too, never meets a part of a file.
+    """
     folder = output / name
-    if folder.exists():
-        if any(folder.iterdir()) and not (folder / "scene.pbrt").is_file():
-            sys.exit(f"{folder}: is in the way, and is not a generated scene")
-        shutil.rmtree(folder)
-    folder.mkdir(parents=True)
-    _SCENES[name].write(folder)
+    if folder.exists() and any(folder.iterdir()) and not (folder / "scene.pbrt").is_file():
+        sys.exit(f"{folder}: is in the way, and is not a generated scene")
+    output.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=output, prefix=f".{name}-") as scratch:
+        fresh = Path(scratch) / name
+        fresh.mkdir()
+        _SCENES[name].write(fresh)
+        new, old = _hashes(fresh), _hashes(folder)
+        for file in sorted(new, key=lambda file: (file == "scene.pbrt", file)):
+            if new[file] != old.get(file):
+                (folder / file).parent.mkdir(parents=True, exist_ok=True)
+                os.replace(fresh / file, folder / file)
+        for file in old.keys() - new.keys():
+            (folder / file).unlink(missing_ok=True)
 
 
 def _hashes(folder):

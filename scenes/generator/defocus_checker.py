@@ -2,6 +2,7 @@
 
 from .camera import Camera
 from .pbrt_text import SceneText
+from .stage import add_floor, add_options, add_quad_light, glossy, matt, metal
 
 NAME = "defocus-checker"
 HEADER = """
@@ -15,28 +16,15 @@ _FOCUS = (0.0, 0.0, 0.5)
 _HALF_FLOOR, _SQUARE = 24.0, 0.4
 
 
-def _glossy(color, roughness):
-    return "coateddiffuse", {"rgb reflectance": color, "float roughness": roughness}
-
-
-def _metal(name, roughness):
-    spectra = {"spectrum eta": f"metal-{name}-eta", "spectrum k": f"metal-{name}-k"}
-    return "conductor", {**spectra, "float roughness": roughness}
-
-
-def _matt(color):
-    return "diffuse", {"rgb reflectance": color}
-
-
 # Material, radius, position on the floor.
 _SPHERES = [
-    (_glossy([0.60, 0.05, 0.04], 0.0), 0.5, (0.0, 0.0)),
-    (_glossy([0.05, 0.13, 0.50], 0.15), 0.4, (-1.3, 0.1)),
-    (_matt([0.75, 0.55, 0.12]), 0.4, (1.25, -0.05)),
-    (_metal("Al", 0.0), 0.45, (-0.95, 1.9)),
-    (_metal("Cu", 0.1), 0.55, (1.6, 3.2)),
-    (_matt([0.10, 0.42, 0.16]), 0.6, (-2.9, 5.5)),
-    (_glossy([0.50, 0.50, 0.48], 0.05), 0.26, (-0.55, -2.2)),
+    (glossy([0.60, 0.05, 0.04], 0.0), 0.5, (0.0, 0.0)),
+    (glossy([0.05, 0.13, 0.50], 0.15), 0.4, (-1.3, 0.1)),
+    (matt([0.75, 0.55, 0.12]), 0.4, (1.25, -0.05)),
+    (metal("Al", 0.0), 0.45, (-0.95, 1.9)),
+    (metal("Cu", 0.1), 0.55, (1.6, 3.2)),
+    (matt([0.10, 0.42, 0.16]), 0.6, (-2.9, 5.5)),
+    (glossy([0.50, 0.50, 0.48], 0.05), 0.26, (-0.55, -2.2)),
     (("dielectric", {"float eta": 1.5}), 0.28, (1.05, -1.75)),
 ]
 
@@ -44,29 +32,14 @@ _SPHERES = [
 def write(folder):
     """Writes the scene."""
     scene = SceneText(HEADER)
-    scene.entity(
-        "Film",
-        "rgb",
-        {
-            "string filename": f"{NAME}.exr",
-            "integer xresolution": _CAMERA.resolution[0],
-            "integer yresolution": _CAMERA.resolution[1],
-        },
-    )
-    scene.entity("PixelFilter", "gaussian", {"float xradius": 1.5, "float yradius": 1.5})
-    scene.entity("Sampler", "zsobol", {"integer pixelsamples": 64})
-    scene.entity("Integrator", "path", {"integer maxdepth": 8})
-    _CAMERA.emit(scene, {"float lensradius": 0.22, "float focaldistance": _CAMERA.depth(_FOCUS)})
+    lens = {"float lensradius": 0.22, "float focaldistance": _CAMERA.depth(_FOCUS)}
+    add_options(scene, NAME, _CAMERA, 8, lens)
     scene.plain("WorldBegin")
     scene.entity("LightSource", "infinite", {"rgb L": [0.40, 0.47, 0.60]})
     with scene.attributes():
         scene.comment("The light: 2 m wide, 4 m up, shining down.")
-        scene.entity("AreaLightSource", "diffuse", {"rgb L": [9.0, 8.4, 7.4]})
-        scene.entity("Material", "diffuse", {"rgb reflectance": [0, 0, 0]})
-        corners = [-3, -2, 4, -3, 0, 4, -1, 0, 4, -1, -2, 4]
-        scene.entity(
-            "Shape", "trianglemesh", {"point3 P": corners, "integer indices": [0, 1, 2, 0, 2, 3]}
-        )
+        corners = [(-3, -2, 4), (-3, 0, 4), (-1, 0, 4), (-1, -2, 4)]
+        add_quad_light(scene, [9.0, 8.4, 7.4], corners)
     scene.comment(f"The floor: squares of {_SQUARE} m.")
     squares = 2 * _HALF_FLOOR / _SQUARE
     scene.entity(
@@ -80,16 +53,7 @@ def write(folder):
         },
     )
     scene.entity("Material", "diffuse", {"texture reflectance": "squares"})
-    h = _HALF_FLOOR
-    scene.entity(
-        "Shape",
-        "trianglemesh",
-        {
-            "point3 P": [-h, -h, 0, h, -h, 0, h, h, 0, -h, h, 0],
-            "point2 uv": [0, 0, 1, 0, 1, 1, 0, 1],
-            "integer indices": [0, 1, 2, 0, 2, 3],
-        },
-    )
+    add_floor(scene, _HALF_FLOOR, 1)
     scene.comment("The spheres.")
     for (kind, parameters), radius, (x, y) in _SPHERES:
         with scene.attributes():

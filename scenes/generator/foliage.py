@@ -1,12 +1,12 @@
-"""Thin leaves and bars under an area light: an occluder with far more edges than a voxel grid resolves."""
+"""Thin leaves and bars under an area light: an occluder finer than a voxel grid resolves."""
 
 from math import cos, pi, sin
 from random import Random
 
 from .camera import Camera, cross, normalize
-from .files import write_ply
 from .mesh import Mesh
 from .pbrt_text import SceneText
+from .stage import add_floor, add_mesh, add_options, add_quad_light, matt
 
 NAME = "foliage"
 HEADER = """
@@ -66,46 +66,18 @@ def _fence():
 def write(folder):
     """Writes the scene and its meshes."""
     (folder / "meshes").mkdir()
-    write_ply(folder / "meshes" / "leaves.ply", _crown())
-    write_ply(folder / "meshes" / "bars.ply", _fence())
     scene = SceneText(HEADER)
-    scene.entity(
-        "Film",
-        "rgb",
-        {
-            "string filename": f"{NAME}.exr",
-            "integer xresolution": _CAMERA.resolution[0],
-            "integer yresolution": _CAMERA.resolution[1],
-        },
-    )
-    scene.entity("PixelFilter", "gaussian", {"float xradius": 1.5, "float yradius": 1.5})
-    scene.entity("Sampler", "zsobol", {"integer pixelsamples": 64})
-    scene.entity("Integrator", "path", {"integer maxdepth": 5})
-    _CAMERA.emit(scene, {})
+    add_options(scene, NAME, _CAMERA, 5)
     scene.plain("WorldBegin")
     scene.entity("LightSource", "infinite", {"rgb L": [0.25, 0.30, 0.40]})
     with scene.attributes():
         scene.comment("The light: 0.6 m wide, 6 m up, shining down.")
-        scene.entity("AreaLightSource", "diffuse", {"rgb L": [260.0, 243.0, 214.0]})
-        scene.entity("Material", "diffuse", {"rgb reflectance": [0, 0, 0]})
-        corners = [-0.5, -0.7, 6, -0.5, -0.1, 6, 0.1, -0.1, 6, 0.1, -0.7, 6]
-        scene.entity(
-            "Shape", "trianglemesh", {"point3 P": corners, "integer indices": [0, 1, 2, 0, 2, 3]}
-        )
+        corners = [(-0.5, -0.7, 6), (-0.5, -0.1, 6), (0.1, -0.1, 6), (0.1, -0.7, 6)]
+        add_quad_light(scene, [260.0, 243.0, 214.0], corners)
     scene.comment("The floor.")
-    scene.entity("Material", "diffuse", {"rgb reflectance": [0.6, 0.57, 0.52]})
-    h = 12
-    scene.entity(
-        "Shape",
-        "trianglemesh",
-        {
-            "point3 P": [-h, -h, 0, h, -h, 0, h, h, 0, -h, h, 0],
-            "integer indices": [0, 1, 2, 0, 2, 3],
-        },
-    )
+    scene.entity("Material", *matt([0.6, 0.57, 0.52]))
+    add_floor(scene, 12)
     scene.comment("The leaves and the fence.")
-    scene.entity("Material", "diffuse", {"rgb reflectance": [0.12, 0.3, 0.07]})
-    scene.entity("Shape", "plymesh", {"string filename": "meshes/leaves.ply"})
-    scene.entity("Material", "diffuse", {"rgb reflectance": [0.35, 0.3, 0.27]})
-    scene.entity("Shape", "plymesh", {"string filename": "meshes/bars.ply"})
+    add_mesh(scene, folder, "leaves", matt([0.12, 0.3, 0.07]), _crown())
+    add_mesh(scene, folder, "bars", matt([0.35, 0.3, 0.27]), _fence())
     scene.write(folder / "scene.pbrt")

@@ -77,17 +77,21 @@ def flat_polygon(polygon, z, uv):
     return mesh
 
 
-def grid(rows, uv_rows):
+def grid(rows, uv_rows, closed=False):
     """A surface through a grid of points with smooth normals from neighbouring points.
 
-    Its outside is along (next point in the row) x (same point in the next row).
+    Its outside is along (next point in the row) x (same point in the next row). In a `closed`
+    grid the rows end with their first point, and are smooth there.
     """
     mesh = Mesh()
     count = len(rows[0])
     for i, row in enumerate(rows):
         above, below = rows[max(i - 1, 0)], rows[min(i + 1, len(rows) - 1)]
         for j, point in enumerate(row):
-            along = subtract(row[min(j + 1, count - 1)], row[max(j - 1, 0)])
+            if closed:
+                along = subtract(row[j + 1 if j + 1 < count else 1], row[j - 1 if j > 0 else -2])
+            else:
+                along = subtract(row[min(j + 1, count - 1)], row[max(j - 1, 0)])
             normal = cross(along, subtract(below[j], above[j]))
             mesh.add_vertex(point, normalize(normal), uv_rows[i][j])
     for i in range(len(rows) - 1):

@@ -2,10 +2,10 @@
 
 from .ball_decals import write_spotted
 from .camera import Camera
-from .files import write_ply
 from .mesh import Mesh
 from .motion_textures import write_target, write_tiles, write_wear
 from .pbrt_text import SceneText
+from .stage import add_floor, add_image_texture, add_mesh, add_options, add_quad_light, metal
 
 NAME = "motion"
 HEADER = """
@@ -38,89 +38,47 @@ def _box(half):
     return mesh
 
 
-def _add_options(scene):
-    scene.entity(
-        "Film",
-        "rgb",
-        {
-            "string filename": f"{NAME}.exr",
-            "integer xresolution": _CAMERA.resolution[0],
-            "integer yresolution": _CAMERA.resolution[1],
-        },
-    )
-    scene.entity("PixelFilter", "gaussian", {"float xradius": 1.5, "float yradius": 1.5})
-    scene.entity("Sampler", "zsobol", {"integer pixelsamples": 64})
-    scene.entity("Integrator", "path", {"integer maxdepth": 8})
-    _CAMERA.emit(scene, {"float shutteropen": 0, "float shutterclose": 1})
-
-
-def _image_texture(scene, name):
-    file = {"string filename": f"textures/{name}.png"}
-    scene.entity("Texture", [name, "spectrum", "imagemap"], file)
-
-
 def _add_lights(scene):
     scene.entity("LightSource", "infinite", {"rgb L": [0.16, 0.19, 0.25]})
     with scene.attributes():
         scene.comment("The light: 2.4 m wide, above the camera's view, tilted towards the objects.")
         scene.plain("Translate", -1.2, -3.2, 4.4)
         scene.plain("Rotate", 38, 1, 0, 0)
-        scene.entity("AreaLightSource", "diffuse", {"rgb L": [11.0, 10.2, 9.0]})
-        scene.entity("Material", "diffuse", {"rgb reflectance": [0, 0, 0]})
-        corners = [-1.2, -1.2, 0, -1.2, 1.2, 0, 1.2, 1.2, 0, 1.2, -1.2, 0]
-        scene.entity(
-            "Shape", "trianglemesh", {"point3 P": corners, "integer indices": [0, 1, 2, 0, 2, 3]}
-        )
+        corners = [(-1.2, -1.2, 0), (-1.2, 1.2, 0), (1.2, 1.2, 0), (1.2, -1.2, 0)]
+        add_quad_light(scene, [11.0, 10.2, 9.0], corners)
 
 
 def _add_floor(scene):
     scene.comment("The floor: tiles of 0.4 m, darkened by a map of wear at another scale.")
-    _image_texture(scene, "tiles")
-    scene.entity(
-        "Texture",
-        ["wear", "float", "imagemap"],
-        {
-            "string filename": "textures/wear.png",
-            "string encoding": "linear",
-            "float uscale": 0.37,
-            "float vscale": 0.37,
-        },
-    )
+    add_image_texture(scene, "tiles")
+    mapping = {"float uscale": 0.37, "float vscale": 0.37}
+    add_image_texture(scene, "wear", {"string encoding": "linear", **mapping}, "float")
     scene.entity(
         "Texture", ["floor", "spectrum", "scale"], {"texture tex": "tiles", "texture scale": "wear"}
     )
     scene.entity(
         "Material", "coateddiffuse", {"texture reflectance": "floor", "float roughness": 0.2}
     )
-    half, repeats = 12, 15
-    scene.entity(
-        "Shape",
-        "trianglemesh",
-        {
-            "point3 P": [-half, -half, 0, half, -half, 0, half, half, 0, -half, half, 0],
-            "point2 uv": [0, 0, repeats, 0, repeats, repeats, 0, repeats],
-            "integer indices": [0, 1, 2, 0, 2, 3],
-        },
-    )
+    add_floor(scene, 12, 15)
 
 
-def _add_objects(scene):
+def _add_objects(scene, folder):
     scene.comment("The box slides 0.6 m to the right and spins by 50 degrees.")
     with scene.attributes():
         scene.moving(
             [("Translate", -1.85, -0.15, 0.55), ("Rotate", 15, 0, 0, 1)],
             [("Translate", -1.25, -0.25, 0.55), ("Rotate", 65, 0, 0, 1)],
         )
-        _image_texture(scene, "target")
-        scene.entity("Material", "diffuse", {"texture reflectance": "target"})
-        scene.entity("Shape", "plymesh", {"string filename": "meshes/box.ply"})
+        add_image_texture(scene, "target")
+        box = ("diffuse", {"texture reflectance": "target"})
+        add_mesh(scene, folder, "box", box, _box(0.55))
     scene.comment("The ball flies upwards and tumbles by 80 degrees.")
     with scene.attributes():
         scene.moving(
             [("Translate", 1.55, -0.95, 0.62)],
             [("Translate", 1.85, -0.80, 0.98), ("Rotate", 80, 0.4, 1, 0.2)],
         )
-        _image_texture(scene, "spots")
+        add_image_texture(scene, "spots")
         scene.entity(
             "Material", "coateddiffuse", {"texture reflectance": "spots", "float roughness": 0.02}
         )
@@ -128,9 +86,7 @@ def _add_objects(scene):
     scene.comment("The mirror ball between them, at rest.")
     with scene.attributes():
         scene.plain("Translate", 0.55, 0.75, 0.85)
-        scene.entity(
-            "Material", "conductor", {"spectrum eta": "metal-Ag-eta", "spectrum k": "metal-Ag-k"}
-        )
+        scene.entity("Material", *metal("Ag"))
         scene.entity("Shape", "sphere", {"float radius": 0.85})
 
 
@@ -142,11 +98,10 @@ def write(folder):
     write_tiles(folder / "textures" / "tiles.png")
     write_wear(folder / "textures" / "wear.png")
     write_spotted(folder / "textures" / "spots.png", (0.03, 0.20, 0.42), (0.82, 0.62, 0.10))
-    write_ply(folder / "meshes" / "box.ply", _box(0.55))
     scene = SceneText(HEADER)
-    _add_options(scene)
+    add_options(scene, NAME, _CAMERA, 8, {"float shutteropen": 0, "float shutterclose": 1})
     scene.plain("WorldBegin")
     _add_lights(scene)
     _add_floor(scene)
-    _add_objects(scene)
+    _add_objects(scene, folder)
     scene.write(folder / "scene.pbrt")

@@ -2,6 +2,7 @@
 
 from .camera import Camera
 from .pbrt_text import SceneText
+from .stage import add_options, add_quad_light
 
 NAME = "shininess"
 HEADER = """
@@ -24,28 +25,14 @@ _ROWS = (
 def write(folder):
     """Writes the scene."""
     scene = SceneText(HEADER)
-    scene.entity(
-        "Film",
-        "rgb",
-        {
-            "string filename": f"{NAME}.exr",
-            "integer xresolution": _CAMERA.resolution[0],
-            "integer yresolution": _CAMERA.resolution[1],
-        },
-    )
-    scene.entity("Sampler", "zsobol", {"integer pixelsamples": 64})
-    scene.entity("Integrator", "path", {"integer maxdepth": 3})
-    _CAMERA.emit(scene, {})
+    add_options(scene, NAME, _CAMERA, 3, pixel_filter=False)
     scene.plain("WorldBegin")
     scene.entity("LightSource", "infinite", {"rgb L": [0.02, 0.02, 0.02]})
     with scene.attributes():
         scene.comment("The light: 1 m wide, before the spheres and above them.")
-        scene.entity("AreaLightSource", "diffuse", {"rgb L": [40, 40, 40]})
-        scene.entity("Material", "diffuse", {"rgb reflectance": [0, 0, 0]})
-        corners = [-0.5, -4.35, 4.35, -0.5, -3.65, 5.05, 0.5, -3.65, 5.05, 0.5, -4.35, 4.35]
-        scene.entity(
-            "Shape", "trianglemesh", {"point3 P": corners, "integer indices": [0, 1, 2, 0, 2, 3]}
-        )
+        lower, upper = (-4.35, 4.35), (-3.65, 5.05)
+        corners = [(-0.5, *lower), (-0.5, *upper), (0.5, *upper), (0.5, *lower)]
+        add_quad_light(scene, [40, 40, 40], corners)
     for height, kind, parameters in _ROWS:
         for i, roughness in enumerate(ROUGHNESS):
             with scene.attributes():

@@ -6,11 +6,11 @@ from . import cue, table
 from .ball_decals import write_numbered, write_spotted
 from .camera import Camera
 from .cloth import write_chalk, write_weave
-from .files import write_ply
 from .mesh import rounded_prism
 from .pbrt_text import SceneText
 from .room import write_room
 from .snooker_balls import NUMBERED, PLAIN, RADIUS, RESTING, ROLLING, pack, place, require_clearance
+from .stage import add_mesh, add_options
 from .wood import write_wood
 
 NAME = "snooker"
@@ -41,7 +41,8 @@ def write(folder):
     (folder / "meshes").mkdir()
     _write_textures(folder / "textures")
     scene = SceneText(HEADER)
-    _add_options(scene)
+    lens = {"float lensradius": _LENS_RADIUS, "float focaldistance": _focal_distance()}
+    add_options(scene, NAME, CAMERA, 8, {**lens, "float shutteropen": 0, "float shutterclose": 1})
     scene.plain("WorldBegin")
     room = {"string filename": "textures/room.pfm", "float scale": 1.3}
     scene.entity("LightSource", "infinite", room)
@@ -91,26 +92,6 @@ def _write_textures(folder):
     write_room(folder / "room.pfm", 512, 2)
 
 
-def _add_options(scene):
-    scene.entity(
-        "Film",
-        "rgb",
-        {"string filename": "snooker.exr", "integer xresolution": 640, "integer yresolution": 360},
-    )
-    scene.entity("PixelFilter", "gaussian", {"float xradius": 1.5, "float yradius": 1.5})
-    scene.entity("Sampler", "zsobol", {"integer pixelsamples": 64})
-    scene.entity("Integrator", "path", {"integer maxdepth": 8})
-    CAMERA.emit(
-        scene,
-        {
-            "float lensradius": _LENS_RADIUS,
-            "float focaldistance": _focal_distance(),
-            "float shutteropen": 0,
-            "float shutterclose": 1,
-        },
-    )
-
-
 def _image_texture(scene, name, file, scale_u=1.0, scale_v=1.0):
     parameters = {"string filename": f"textures/{file}"}
     if (scale_u, scale_v) != (1.0, 1.0):
@@ -154,12 +135,6 @@ def _glossy_material(scene, name, texture, roughness):
     _named_material(scene, name, "coateddiffuse", parameters)
 
 
-def _add_mesh(scene, folder, name, material, mesh):
-    write_ply(folder / "meshes" / f"{name}.ply", mesh)
-    scene.entity("NamedMaterial", material)
-    scene.entity("Shape", "plymesh", {"string filename": f"meshes/{name}.ply"})
-
-
 def _add_table(scene, folder):
     scene.comment("The table.")
     _named_material(scene, "cloth", "diffuse", {"texture reflectance": "cloth"})
@@ -176,11 +151,11 @@ def _add_table(scene, folder):
         "conductor",
         {"spectrum eta": "metal-CuZn-eta", "spectrum k": "metal-CuZn-k", "float roughness": 0.05},
     )
-    _add_mesh(scene, folder, "bed", "cloth", table.bed())
-    _add_mesh(scene, folder, "cushions", "cloth", table.cushions())
-    _add_mesh(scene, folder, "rails", "varnish", table.rails())
-    _add_mesh(scene, folder, "pockets", "leather", table.pocket_liners())
-    _add_mesh(scene, folder, "pocket-rims", "brass", table.pocket_rims())
+    add_mesh(scene, folder, "bed", "cloth", table.bed())
+    add_mesh(scene, folder, "cushions", "cloth", table.cushions())
+    add_mesh(scene, folder, "rails", "varnish", table.rails())
+    add_mesh(scene, folder, "pockets", "leather", table.pocket_liners())
+    add_mesh(scene, folder, "pocket-rims", "brass", table.pocket_rims())
 
 
 def _add_cue(scene, folder):
@@ -195,7 +170,7 @@ def _add_cue(scene, folder):
     with scene.attributes():
         scene.plain("Transform", "[", *cue.placement(tip, back), "]")
         for part, mesh in cue.parts().items():
-            _add_mesh(scene, folder, f"cue-{part}", materials[part], mesh)
+            add_mesh(scene, folder, f"cue-{part}", materials[part], mesh)
     half = 0.011
     square = [(-half, -half), (half, -half), (half, half), (-half, half)]
     cube = rounded_prism(square, 0.0, 0.021, 0.0015, lambda x, y, z: (x, y))
@@ -203,7 +178,7 @@ def _add_cue(scene, folder):
         x = table.HALF_LENGTH + table.CUSHION_DEPTH + 0.05
         scene.plain("Translate", x, 0.19, table.RAIL_TOP)
         scene.plain("Rotate", 24, 0, 0, 1)
-        _add_mesh(scene, folder, "chalk", "chalk", cube)
+        add_mesh(scene, folder, "chalk", "chalk", cube)
 
 
 def _add_sphere(scene):
