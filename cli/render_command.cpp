@@ -174,7 +174,8 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
     const double rendered = monitor.elapsed();
     progress.clear();
     if (viewer) viewer->show(copy_layers(result.image, a.tev_layers));
-    if (!is_shard) deliver(result, a, output, monitor, invocation.command_line, threads.threads());
+    if (!is_shard && is_first)
+        deliver(result, a, output, monitor, invocation.command_line, threads.threads());
     result.statistics.seconds["write"] = monitor.elapsed() - rendered;
     if (!a.stats.empty())
         write_text(statistics_json(scene, result, monitor).dump(2) + "\n", a.stats);
