@@ -49,16 +49,16 @@ ConvergedPixel converge(PassContext context, int x, int y, const Arguments& a) {
     PathResult path;
     while (p.batches < a.most_batches) {
         context.seed = kFirstSeed + uint64_t(p.batches);
-        FilmPixel batch;
+        Film batch({0, 0, 1, 1}, {.in_view = true});
         for (uint32_t i = 0; i < kBatch; ++i) {
-            FilmPixel::Sample s = take_sample(context, x, y, i, nullptr, path);
+            FilmSample s = take_sample(context, x, y, i, nullptr, path);
             if (!is_finite(s.radiance)) s.radiance = s.in_view = Rgb(0);
-            batch.add(s);
+            batch.add(0, s);
         }
         ++p.batches;
-        p.mean += (batch.mean - p.mean) / float(p.batches);
-        p.in_view += (batch.in_view - p.in_view) / float(p.batches);
-        const double value = luminance(batch.mean), deviation = value - mean;
+        p.mean += (batch.pixels[0].mean - p.mean) / float(p.batches);
+        p.in_view += (batch.in_view[0] - p.in_view) / float(p.batches);
+        const double value = luminance(batch.pixels[0].mean), deviation = value - mean;
         mean += deviation / p.batches;
         squares += deviation * (value - mean);
         p.variance = p.batches > 1 ? squares / (p.batches * (p.batches - 1.0)) : 0;

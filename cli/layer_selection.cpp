@@ -52,6 +52,18 @@ LayerSelection parse_layers(const std::string& option, const std::string& text) 
     return selection;
 }
 
+void add_layers(CLI::App* c, const std::string& name, LayerSelection& selection,
+                const std::string& help) {
+    const auto parse = [name, &selection](const std::string& text) {
+        selection = parse_layers(name, text);
+    };
+    c->add_option_function<std::string>(name, parse, help)->option_text("LIST");
+}
+
+bool names(const LayerSelection& selection, const std::string& layer) {
+    return contains(selection.names, layer);
+}
+
 void keep_layers(Image& image, const LayerSelection& selection) {
     std::erase_if(image.channels, [&](const Channel& c) { return !is_selected(c, selection); });
 }

@@ -1,6 +1,7 @@
 /// Which layers go with an image: the options --layers and --tev-layers.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,13 @@ struct LayerSelection {
 /// "none", or "all" and names with commas. Names are checked before a render, against what any
 /// method writes; throws Error(usage) whose message begins with `option`.
 LayerSelection parse_layers(const std::string& option, const std::string& text);
+
+/// Adds an option that takes such a list; `selection` must outlive the parser.
+void add_layers(CLI::App* command, const std::string& name, LayerSelection& selection,
+                const std::string& help);
+
+/// Whether a layer is among the names.
+bool names(const LayerSelection& selection, const std::string& layer);
 
 /// Drops every layer that is not selected.
 void keep_layers(Image& image, const LayerSelection& selection);

@@ -64,6 +64,7 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     app.get_formatter()->column_width(30);
     covtrace::cli::add_render(app, invocation);
+    covtrace::cli::add_merge(app, invocation);
     covtrace::cli::add_compare(app, invocation);
     covtrace::cli::add_measure(app, invocation);
     covtrace::cli::add_inspect(app, invocation);

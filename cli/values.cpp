@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <string_view>
 
 #include "core/error.h"
@@ -135,6 +136,23 @@ size_t parse_size(const std::string& option, const std::string& text) {
     }
     if (!(bytes >= 0) || !(bytes < 1e18)) refuse(option, text, kExpected);
     return size_t(bytes);
+}
+
+Shard parse_shard(const std::string& option, const std::string& text) {
+    constexpr auto kExpected = "a share k/n with 1 <= k <= n, such as 2/8";
+    constexpr int kMost = 1 << 20;
+    const auto v = parse_list<int, 2>(option, text, '/', kExpected);
+    if (v[0] < 1 || v[1] < v[0] || v[1] > kMost) refuse(option, text, kExpected);
+    return {v[0] - 1, v[1]};
+}
+
+DebugPixel parse_sample(const std::string& option, const std::string& text) {
+    constexpr auto kExpected = "a pixel and its sample x,y,sample such as 320,180,0";
+    const auto v = parse_list<int64_t, 3>(option, text, ',', kExpected);
+    constexpr int64_t kMost = int64_t{1} << 24;
+    if (std::abs(v[0]) > kMost || std::abs(v[1]) > kMost || v[2] < 0)
+        refuse(option, text, kExpected);
+    return {int(v[0]), int(v[1]), uint64_t(v[2])};
 }
 
 uint64_t parse_seed(const std::string& option, const std::string& text) {

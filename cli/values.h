@@ -7,6 +7,7 @@
 #include <string>
 
 #include "image/image.h"
+#include "render/shard.h"
 
 namespace covtrace::cli {
 
@@ -26,6 +27,16 @@ std::array<std::string, 2> parse_address(const std::string& option, const std::s
 double parse_positive(const std::string& option, const std::string& text, double most);
 /// Bytes: "500M", "2G", "64k", "1.5T" (powers of 1024) or a plain number.
 size_t parse_size(const std::string& option, const std::string& text);
+/// "k/n", the k-th of n shares, from 1.
+Shard parse_shard(const std::string& option, const std::string& text);
+
+/// One sample of one pixel.
+struct DebugPixel {
+    int x = 0, y = 0;
+    uint64_t sample = 0;  ///< from 0
+};
+/// "x,y,sample".
+DebugPixel parse_sample(const std::string& option, const std::string& text);
 /// A whole number in [0, 2^64).
 uint64_t parse_seed(const std::string& option, const std::string& text);
 

@@ -35,7 +35,7 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
     int flags = O_WRONLY | O_CLOEXEC;
     if (!exists || S_ISREG(status.st_mode)) {
         temporary_ = final_;
-        temporary_ += ".part-" + std::to_string(::getpid());
+        temporary_ += kPartSuffix + std::to_string(::getpid());
         opened = temporary_;
         flags |= O_CREAT | O_TRUNC;
     }
@@ -88,7 +88,24 @@ void OutputFile::flush() {
     buffer_.clear();
 }
 
-void OutputFile::commit() {
+void OutputFile::keep_older(const std::filesystem::path& earlier) {
+    // A second name for the older file first, which then takes the place of the one before it.
+    // Where the file system knows no second names the older file itself is moved: whoever looks for
+    // it must look for `earlier` too.
+    std::filesystem::path second = earlier;
+    second += kPartSuffix + std::to_string(::getpid());
+    ::unlink(second.c_str());
+    if (::link(final_.c_str(), second.c_str()) == 0) {
+        if (::rename(second.c_str(), earlier.c_str()) == 0) return;
+        const int error_number = errno;
+        ::unlink(second.c_str());
+        fail(error_number);
+    }
+    if (errno == ENOENT) return;
+    if (::rename(final_.c_str(), earlier.c_str()) != 0) fail(errno);
+}
+
+void OutputFile::commit(const std::filesystem::path& earlier) {
     // A caller may have lost the exception of an earlier failure, as OpenEXR's destructors do.
     if (error_ != 0) fail(error_);
     flush();
@@ -97,6 +114,7 @@ void OutputFile::commit() {
     const int descriptor = std::exchange(descriptor_, -1);
     if (::close(descriptor) != 0) fail(errno);
     if (temporary_.empty()) return;
+    if (!earlier.empty()) keep_older(earlier);
     if (::rename(temporary_.c_str(), final_.c_str()) != 0) fail(errno);
     temporary_.clear();
     // Makes the new name last through a power cut; file systems that cannot do it lose nothing

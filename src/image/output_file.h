@@ -15,6 +15,7 @@ namespace covtrace {
 /// All functions throw Error(io) that names the target and the reason of the system.
 class OutputFile {
   public:
+    static constexpr const char* kPartSuffix = ".part-";
     /// Creates the temporary file, target + ".part-<process id>". Constructing and dropping one
     /// therefore tells early whether the target can be written.
     explicit OutputFile(std::filesystem::path target);
@@ -25,12 +26,15 @@ class OutputFile {
     void write(const void* bytes, size_t count);
     uint64_t position() const { return position_; }
     void seek(uint64_t position);
-    void commit();
+    /// `earlier`: the name under which an older file of the target's name lives on. There is no
+    /// moment without a file of the target's name.
+    void commit(const std::filesystem::path& earlier = {});
     const std::filesystem::path& target() const { return target_; }
 
   private:
     [[noreturn]] void fail(int error_number);
     void flush();
+    void keep_older(const std::filesystem::path& earlier);
 
     std::filesystem::path target_;     ///< as the caller named it
     std::filesystem::path final_;      ///< links resolved

@@ -2,13 +2,11 @@
 
 namespace covtrace {
 
-void FilmPixel::add(const Sample& s) {
+void FilmPixel::add(const FilmSample& s) {
     ++count;
-    rays += s.rays;
     const float share = 1.0f / static_cast<float>(count);
     const Rgb before = s.radiance - mean;
     mean += before * share;
-    in_view += (s.in_view - in_view) * share;
     squares += before * (s.radiance - mean);
     albedo += (s.albedo - albedo) * share;
     normal += (s.normal - normal) * share;
@@ -22,16 +20,16 @@ Rgb FilmPixel::variance_of_mean() const {
     return squares / (n * (n - 1));
 }
 
-void Film::add(size_t i, const FilmPixel::Sample& s) {
+void Film::add(size_t i, const FilmSample& s) {
     FilmPixel& p = pixels[i];
-    if (feature_squares.empty()) {
-        p.add(s);
-        return;
-    }
     const Rgb albedo = s.albedo - p.albedo;
     const Vec3 normal = s.normal - p.normal;
     const float depth = s.depth - p.depth;
     p.add(s);
+    if (!in_view.empty())
+        in_view[i] += (s.in_view - in_view[i]) * (1.0f / static_cast<float>(p.count));
+    if (!rays.empty()) rays[i] += s.rays;
+    if (feature_squares.empty()) return;
     FeatureSquares& q = feature_squares[i];
     q.albedo += albedo * (s.albedo - p.albedo);
     const Vec3 rest = s.normal - p.normal;

@@ -10,28 +10,28 @@
 
 namespace covtrace {
 
-/// Running means over a pixel's samples in index order (Welford 1962). 76 bytes.
+/// What one sample adds to its pixel.
+struct FilmSample {
+    uint32_t rays = 0;  ///< traced for it, shadow rays included: what it cost
+    Rgb radiance;       ///< filter weight and imaging scale applied; finite
+    Rgb in_view;        ///< the part of it from emitters in view (PathResult::in_view)
+    Rgb albedo;
+    Vec3 normal;
+    float depth = 0;
+    bool hit = false;
+};
+
+/// Running means over a pixel's samples in index order (Welford 1962). 60 bytes.
 struct FilmPixel {
     uint32_t count = 0;  ///< samples taken; the next sample has this index
-    uint32_t rays = 0;   ///< traced for them, shadow rays included: what they cost
     Rgb mean;            ///< of the weighted radiance: the raw pixel
-    Rgb in_view;         ///< the part of it from emitters in view (PathResult::in_view)
     Rgb squares;         ///< sum of squared deviations from the mean
     Rgb albedo;
     Vec3 normal;
     float depth = 0;     ///< mean over the samples that hit something
     float coverage = 0;  ///< share of the samples that hit something
 
-    struct Sample {
-        uint32_t rays = 0;
-        Rgb radiance;  ///< filter weight and imaging scale applied; finite
-        Rgb in_view;   ///< likewise
-        Rgb albedo;
-        Vec3 normal;
-        float depth = 0;
-        bool hit = false;
-    };
-    void add(const Sample& s);
+    void add(const FilmSample& s);
     /// Variance of the mean per channel; 0 below two samples.
     Rgb variance_of_mean() const;
 };
@@ -43,25 +43,39 @@ struct FeatureSquares {
     float depth = 0;
 };
 
+/// What a film keeps beside its pixels.
+struct FilmParts {
+    bool in_view = false;   ///< the light of emitters in view
+    bool features = false;  ///< deviations of the features, and rays
+    bool operator==(const FilmParts&) const = default;
+};
+
 struct Film {
-    /// `with_features`: whether the deviations of the features are kept too.
-    explicit Film(PixelBounds region, bool with_features = false)
+    explicit Film(PixelBounds region, FilmParts parts = {})
         : bounds(region), pixels(size_t(region.width()) * size_t(region.height())) {
-        if (with_features) feature_squares.resize(pixels.size());
+        if (parts.in_view) in_view.resize(pixels.size());
+        if (parts.features) {
+            feature_squares.resize(pixels.size());
+            rays.resize(pixels.size());
+        }
     }
     PixelBounds bounds;
     std::vector<FilmPixel> pixels;
-    std::vector<FeatureSquares> feature_squares;  ///< as `pixels`, or empty
+    // As `pixels`, or empty:
+    std::vector<Rgb> in_view;                     ///< mean of FilmSample::in_view
+    std::vector<FeatureSquares> feature_squares;  ///< of the features in `pixels`
+    std::vector<uint32_t> rays;                   ///< of all samples of a pixel
 
-    /// x, y in [bounds.x0, bounds.x1) x [bounds.y0, bounds.y1).
-    FilmPixel& at(int x, int y) {
-        return pixels[size_t(y - bounds.y0) * size_t(bounds.width()) + size_t(x - bounds.x0)];
+    /// Where x, y in [bounds.x0, bounds.x1) x [bounds.y0, bounds.y1) stands in `pixels`.
+    size_t index(int x, int y) const {
+        return size_t(y - bounds.y0) * size_t(bounds.width()) + size_t(x - bounds.x0);
     }
     /// Adds the next sample of pixel i.
-    void add(size_t i, const FilmPixel::Sample& sample);
+    void add(size_t i, const FilmSample& sample);
     double mean_count() const;
     size_t memory() const {  ///< bytes
-        return pixels.size() * sizeof(FilmPixel) + feature_squares.size() * sizeof(FeatureSquares);
+        return pixels.size() * sizeof(FilmPixel) + in_view.size() * sizeof(Rgb) +
+               feature_squares.size() * sizeof(FeatureSquares) + rays.size() * sizeof(uint32_t);
     }
 };
 

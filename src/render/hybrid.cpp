@@ -4,9 +4,9 @@
 
 #include "planner/adaptive.h"
 #include "reconstruction/hybrid.h"
+#include "render/develop.h"
 #include "render/hybrid.h"
-#include "render/layers.h"
-#include "render/round.h"
+#include "render/job.h"
 
 namespace covtrace {
 
@@ -15,147 +15,125 @@ namespace {
 /// Samples per pixel of the pilot, both halves together.
 constexpr double kPilot = 4;
 
-/// Where the round after an average of `taken` ends: the rounds double the total, whatever the
-/// budget.
-double round_end(double taken) {
-    double end = kPilot;
-    while (end <= taken) end *= 2;
-    return end;
-}
-
 class HybridRender {
   public:
-    explicit HybridRender(RenderJob& job) : job_(job), film_(job.region) {
-        for (int k = 0; k < 2; ++k) {
-            contexts_.push_back(job.context);
-            contexts_.back().seed = half_seed(job.context.seed, k);
-        }
+    explicit HybridRender(RenderJob& job) : job_(job), s_(job.state) {
+        for (uint32_t k = 0; k < 2; ++k) contexts_.push_back(half_context(job.context, k));
+        if (s_.stage == Stage::rounds) return;
+        const PhaseTimer timer(job_.monitor, job_.phase("spectra"));
+        job_.scene.prepare_spectra();
+        occluders_.emplace(job_);
     }
 
-    HybridSamples samples() && { return {std::move(film_), std::move(prediction_)}; }
-
     void trace() {
-        {
-            const PhaseTimer timer(job_.monitor, job_.phase("spectra"));
-            job_.scene.prepare_spectra();
-        }
-        double taken = trace_pilot();
-        if (job_.options.seconds) job_.reserve(reconstruction_time());
-        while (!job_.monitor.cancelled() && !good_enough()) {
-            const double target = job_.plan_round(taken, round_end(taken));
-            if (!(target > taken)) break;
-            image_.reset();  // of fewer samples
-            trace_round(taken, target);
-            if (job_.monitor.watched()) report();
-            if (film_.mean_count() <= taken) break;  // every pixel is at its limit
-            taken = target;
-        }
-        job_.result.statistics.samples_per_pixel = film_.mean_count();
-        auto& memory = job_.result.statistics.memory;
-        memory["film"] = film_.half[0].memory() + film_.half[1].memory();
-        memory["prediction"] = film_.covariance.memory();
+        trace_rounds(job_, {[this] { return plan(); }, [this] { trace_round(); }});
     }
 
     /// The image, made from the samples.
     void deliver() {
-        if (!image_) reconstruct_image();
+        if (!job_.delivers()) return;
+        reconstruct_image();
         const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
-        GatheredImage delivered{std::vector<Rgb>(size()), image_->variance.values};
-        for (size_t i = 0; i < size(); ++i)
-            delivered.color[i] = {image_->color[0][i], image_->color[1][i], image_->color[2][i]};
-        if (density_.empty()) density_.assign(size(), float(film_.mean_count()));
-        const FilterField field =
-            filter_field(prediction_.spectrum, job_.region.width(), job_.region.height(),
-                         FilterRule::verified, filter_settings(film_.mean_count()));
-        job_.result.image = make_layers(
-            film_.merged(), job_.display, !job_.scene.lights.has_environment(),
-            CovarianceLayers{film_.covariance, raw_prediction_, density_, field, delivered});
+        job_.result.image = develop(s_, &*image_);
+    }
+
+    HybridSamples samples() && {
+        predict();
+        return {std::move(s_.films), std::move(*prediction_)};
     }
 
   private:
-    size_t size() const { return film_.half[0].pixels.size(); }
+    size_t size() const { return s_.pixels(); }
+    double pilot() const { return job_.target_spp ? std::min(kPilot, *job_.target_spp) : kPilot; }
 
-    /// Counts of the next samples for a half, given how many each pixel should have in the end.
-    std::vector<uint32_t> missing(int k, std::vector<uint32_t> wanted) const {
-        for (size_t i = 0; i < wanted.size(); ++i)
-            wanted[i] -= std::min(wanted[i], film_.half[size_t(k)].pixels[i].count);
-        return wanted;
-    }
-
-    /// The first samples: every pixel alike, and the first of them leave their covariances.
-    double trace_pilot() {
-        const double pilot = job_.target_spp ? std::min(kPilot, *job_.target_spp) : kPilot;
-        const double covariance =
-            std::min(pilot, job_.options.cov_spp ? double(*job_.options.cov_spp) : 2.0);
-        const SceneOccluders occluders(job_);
-        const std::vector<float> even(size(), 1.0f);
-        const std::vector<uint32_t> none(size(), 0);
-        const double start = job_.monitor.elapsed();
-        {
-            const PhaseTimer timer(job_.monitor, job_.phase("covariance"));
-            std::array<CovarianceBuffers, 2> buffers{
-                CovarianceBuffers(job_.region.width(), job_.region.height()),
-                CovarianceBuffers(job_.region.width(), job_.region.height())};
-            for (int k = 0; k < 2; ++k) {
-                const auto counts = share_between_halves(k, covariance);
-                job_.result.statistics.covariance.add(covariance_pass(
-                    contexts_[size_t(k)], occluders.view(), job_.options.brdf_covariance,
-                    film_.half[size_t(k)], counts, buffers[size_t(k)], job_.monitor,
-                    job_.reporter("covariance", 0.5 * k * covariance, 0.5 * (k + 1) * covariance)));
-            }
-            film_.covariance = mean(merge(buffers[0]), merge(buffers[1]));
-        }
-        {
-            const PhaseTimer timer(job_.monitor, job_.phase("plan"));
-            raw_prediction_ = preintegrate(film_.covariance);
-            prediction_ = preintegrate(smooth(film_.covariance));
-        }
-        for (int k = 0; k < 2; ++k)
-            trace(k, missing(k, share_between_halves(k, pilot)), covariance, pilot);
-        job_.traced(pilot, job_.monitor.elapsed() - start);
-        return pilot;
-    }
-
-    /// The counts of one half when both together take `spp` per pixel evenly. Where that is not
-    /// even, a checkerboard decides which half gets the odd sample.
-    std::vector<uint32_t> share_between_halves(int k, double spp) const {
-        const std::vector<float> even(size(), 1.0f);
-        const std::vector<uint32_t> none(size(), 0);
-        const auto both = allocate(even, std::llround(spp * double(size())), none, 1u << 30);
-        std::vector<uint32_t> counts(size());
-        const int w = job_.region.width();
+    /// The same count in every pixel, `spp` for both halves together; the checkerboard decides
+    /// which half gets the odd sample.
+    std::vector<uint32_t> share_between_halves(size_t k, double spp) const {
+        std::vector<uint32_t> counts = job_.even_counts(spp);
+        const size_t w = size_t(job_.region.width());
         for (size_t i = 0; i < counts.size(); ++i) {
-            const bool odd = ((i % size_t(w)) + i / size_t(w)) % 2 == size_t(k);
-            counts[i] = both[i] / 2 + (both[i] % 2 && odd ? 1 : 0);
+            const bool odd = (i % w + i / w) % 2 == k;
+            counts[i] = counts[i] / 2 + (counts[i] % 2 && odd ? 1 : 0);
         }
         return counts;
     }
 
-    /// Of the two halves, by weight.
-    static CovarianceBuffer mean(const CovarianceBuffer& a, const CovarianceBuffer& b) {
-        CovarianceBuffer sum = a;
-        for (size_t i = 0; i < sum.weight.size(); ++i) {
-            const float total = a.weight[i] + b.weight[i];
-            if (!(total > 0)) continue;
-            sum.covariance[i] =
-                (a.weight[i] / total) * a.covariance[i] + (b.weight[i] / total) * b.covariance[i];
-            sum.weight[i] = 0.5f * total;
+    bool plan() {
+        switch (s_.stage) {
+            case Stage::first_paths: {
+                std::vector<uint32_t> first = share_between_halves(0, s_.covariance_spp);
+                for (uint32_t& c : first) c = std::min(c, 1u);
+                s_.plan = {std::move(first), std::vector<uint32_t>(size(), 0)};
+                s_.target = std::min(1.0, 0.5 * s_.covariance_spp);
+                return true;
+            }
+            case Stage::pilot:
+                s_.plan = {share_between_halves(0, pilot()), share_between_halves(1, pilot())};
+                s_.target = pilot();
+                return true;
+            case Stage::rounds:
+                break;
         }
-        return sum;
+        const bool first_here = !prediction_;
+        predict();
+        if (first_here && job_.options.seconds) job_.reserve(reconstruction_time());
+        if (good_enough()) return false;
+        const double target = job_.plan_round(round_end(s_.taken));
+        return target > s_.taken && plan_samples(target);
     }
 
-    void trace(int k, const std::vector<uint32_t>& counts, double from, double to) {
+    /// What the covariances say.
+    void predict() {
+        if (prediction_) return;
+        const PhaseTimer timer(job_.monitor, job_.phase("plan"));
+        prediction_ = preintegrate(smooth(s_.covariance()));
+    }
+
+    void trace_round() {
+        image_.reset();  // of fewer samples
+        if (s_.stage == Stage::first_paths) {
+            trace_covariance(0, s_.plan[0], {});
+            return;
+        }
+        if (s_.stage == Stage::pilot) {
+            const std::array<std::vector<uint32_t>, 2> paths{
+                share_between_halves(0, s_.covariance_spp),
+                share_between_halves(1, s_.covariance_spp)};
+            trace_covariance(0, paths[0], {});
+            // The paths of a pixel count in their order: all of the first half come before.
+            if (!s_.has(0, paths[0], job_.tiles())) return;
+            trace_covariance(1, paths[1], paths[0]);
+            if (!s_.has(1, paths[1], job_.tiles())) return;
+        }
+        for (size_t k = 0; k < 2; ++k) trace_radiance(k);
+    }
+
+    PassProgress reporter(const char* name, size_t k) {
+        const double step = 0.5 * (s_.target - s_.taken);
+        return job_.reporter(name, s_.taken + double(k) * step, s_.taken + double(k + 1) * step);
+    }
+
+    void trace_covariance(size_t k, std::span<const uint32_t> counts,
+                          std::span<const uint32_t> earlier) {
+        const PhaseTimer timer(job_.monitor, job_.phase("covariance"));
+        job_.counted(job_.result.statistics.covariance,
+                     covariance_pass(contexts_[k], occluders_->view(), job_.options.brdf_covariance,
+                                     s_.films[k], counts,
+                                     {*s_.parts, earlier, s_.weight_limit.value_or(kInfinity)},
+                                     job_.monitor, reporter("covariance", k)));
+    }
+
+    void trace_radiance(size_t k) {
         const PhaseTimer timer(job_.monitor, job_.phase("radiance"));
-        const double middle = 0.5 * (from + to);
-        job_.result.statistics.radiance.add(
-            radiance_pass(contexts_[size_t(k)], film_.half[size_t(k)], counts, job_.monitor,
-                          job_.reporter("radiance", k == 0 ? from : middle, k == 0 ? middle : to)));
+        job_.counted(job_.result.statistics.radiance,
+                     radiance_pass(contexts_[k], s_.films[k], s_.plan[k], job_.monitor,
+                                   reporter("radiance", k)));
     }
 
     /// What the planner may know for one half: the samples of the other one.
     std::vector<float> density_from(const Film& film) const {
         const int w = film.bounds.width(), h = film.bounds.height();
-        SampleKnowledge known{Plane(w, h), Plane(w, h), Plane(w, h), prediction_.spectrum};
+        SampleKnowledge known{Plane(w, h), Plane(w, h), Plane(w, h), prediction_->spectrum};
         for (size_t i = 0; i < film.pixels.size(); ++i) {
             const FilmPixel& p = film.pixels[i];
             known.brightness[i] = luminance(p.mean);
@@ -164,49 +142,39 @@ class HybridRender {
                 known.variance[i] =
                     sqr(luminance({std::sqrt(v.r), std::sqrt(v.g), std::sqrt(v.b)}));
             }
-            known.cost[i] = p.count > 0 ? float(p.rays) / float(p.count) : 1.0f;
+            known.cost[i] = p.count > 0 ? float(film.rays[i]) / float(p.count) : 1.0f;
         }
         return adaptive_density(known);
     }
 
-    void trace_round(double taken, double target) {
-        const double most =
-            0.5 * (job_.options.max_spp ? double(*job_.options.max_spp) : std::ceil(16 * target));
-        std::array<std::vector<uint32_t>, 2> counts;
-        {
-            const PhaseTimer timer(job_.monitor, job_.phase("plan"));
-            const std::array<std::vector<float>, 2> density{density_from(film_.half[1]),
-                                                            density_from(film_.half[0])};
-            const std::vector<float> even(size(), 1.0f);
-            for (int k = 0; k < 2; ++k) {
-                std::vector<uint32_t> have(size());
-                for (size_t i = 0; i < have.size(); ++i)
-                    have[i] = film_.half[size_t(k)].pixels[i].count;
-                counts[size_t(k)] =
-                    missing(k, allocate(job_.options.even_counts ? even : density[size_t(k)],
-                                        std::llround(target / 2 * double(size())), have,
-                                        uint32_t(std::clamp(most, 1.0, 4e9))));
-            }
-            density_.resize(size());
-            for (size_t i = 0; i < size(); ++i)
-                density_[i] = 0.5f * (density[0][i] + density[1][i]) * float(target);
+    bool plan_samples(double target) {
+        const PhaseTimer timer(job_.monitor, job_.phase("plan"));
+        const double most = std::clamp(0.5 * job_.most_samples(target), 1.0, 4e9);
+        const std::array<std::vector<float>, 2> density{density_from(s_.films[1]),
+                                                        density_from(s_.films[0])};
+        const std::vector<float> even(size(), 1.0f);
+        std::vector<std::vector<uint32_t>> counts;
+        for (size_t k = 0; k < 2; ++k) {
+            std::vector<uint32_t> have(size());
+            for (size_t i = 0; i < have.size(); ++i) have[i] = s_.films[k].pixels[i].count;
+            counts.push_back(allocate(job_.options.even_counts ? even : density[k],
+                                      std::llround(target / 2 * double(size())), have,
+                                      uint32_t(most)));
         }
-        const double start = job_.monitor.elapsed();
-        for (int k = 0; k < 2; ++k) trace(k, counts[size_t(k)], taken, target);
-        job_.traced(target - taken, job_.monitor.elapsed() - start);
+        if (!job_.begin_round(target, std::move(counts))) return false;
+        s_.density.resize(size());
+        for (size_t i = 0; i < size(); ++i)
+            s_.density[i] = 0.5f * (density[0][i] + density[1][i]) * float(target);
+        return true;
     }
 
     void reconstruct_image() {
-        job_.monitor.update("reconstruction", job_.fraction(film_.mean_count()),
-                            film_.mean_count());
+        if (image_) return;
+        predict();
+        const double count = s_.mean_count();
+        job_.monitor.update("reconstruction", job_.fraction(count), count);
         const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
-        image_ = reconstruct(halves_of(film_), prediction_.spectrum);
-    }
-
-    /// Shows the samples so far to who watches.
-    void report() const {
-        report_round(job_.monitor, film_.merged(), job_.display,
-                     !job_.scene.lights.has_environment());
+        image_ = reconstruct(halves_of(s_.films), prediction_->spectrum);
     }
 
     /// Whether the image is as good as was asked for, by its own estimate.
@@ -227,28 +195,28 @@ class HybridRender {
                                std::min(all.y1, all.y0 + kSide)};
         const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
         const double start = job_.monitor.elapsed();
-        HybridFilm film(part);
+        std::vector<Film> films(2, Film(part, film_parts(Method::hybrid)));
         std::vector<Covariance2> spectrum;
         for (int y = part.y0; y < part.y1; ++y)
             for (int x = part.x0; x < part.x1; ++x) {
                 const size_t to = size_t(y - part.y0) * size_t(part.width()) + size_t(x - part.x0);
                 const size_t from = size_t(y - all.y0) * size_t(all.width()) + size_t(x - all.x0);
                 for (size_t k = 0; k < 2; ++k) {
-                    film.half[k].pixels[to] = film_.half[k].pixels[from];
-                    film.half[k].feature_squares[to] = film_.half[k].feature_squares[from];
+                    films[k].pixels[to] = s_.films[k].pixels[from];
+                    films[k].feature_squares[to] = s_.films[k].feature_squares[from];
                 }
-                spectrum.push_back(prediction_.spectrum[from]);
+                spectrum.push_back(prediction_->spectrum[from]);
             }
-        reconstruct(halves_of(film), spectrum);
+        reconstruct(halves_of(films), spectrum);
         return (job_.monitor.elapsed() - start) * double(size()) / double(spectrum.size());
     }
 
     RenderJob& job_;
-    HybridFilm film_;
+    RenderState& s_;
     std::vector<PassContext> contexts_;
-    Prediction raw_prediction_, prediction_;
-    std::optional<HybridImage> image_;  // of the film as it is
-    std::vector<float> density_;        // what the last plan asked for, samples per pixel
+    std::optional<SceneOccluders> occluders_;  // while covariance paths are traced
+    std::optional<Prediction> prediction_;     // smoothed, from their end on
+    std::optional<HybridImage> image_;         // of the film as it is
 };
 
 }  // namespace

@@ -8,8 +8,8 @@
 namespace covtrace {
 
 struct HybridSamples {
-    HybridFilm film;
-    Prediction prediction;  ///< smoothed, as the reconstruction uses it
+    std::vector<Film> film;  ///< both halves
+    Prediction prediction;   ///< smoothed, as the reconstruction uses it
 };
 
 /// Pilot, plans and rounds up to the job's budget.

@@ -11,7 +11,7 @@ uint64_t half_seed(uint64_t seed, int k) {
     return hash_combine(seed, 0x68616c66, uint64_t(k));
 }
 
-Film HybridFilm::merged() const {
+Film merged(std::span<const Film> half) {
     Film film(half[0].bounds);
     for (size_t i = 0; i < film.pixels.size(); ++i) {
         const FilmPixel &a = half[0].pixels[i], &b = half[1].pixels[i];
@@ -21,7 +21,6 @@ Film HybridFilm::merged() const {
             continue;
         }
         p.count = a.count + b.count;
-        p.rays = a.rays + b.rays;
         p.mean = 0.5f * (a.mean + b.mean);
         const float n = float(p.count);
         // Of a mean with weights 1/2 each; as the squares that give it.
@@ -101,13 +100,13 @@ HalfBuffer half_buffer(const Film& film) {
 
 }  // namespace
 
-Halves halves_of(const HybridFilm& film) {
-    Halves halves{half_buffer(film.half[0]), half_buffer(film.half[1])};
+Halves halves_of(std::span<const Film> film) {
+    Halves halves{half_buffer(film[0]), half_buffer(film[1])};
     const auto repeated = [](const Film& half) {
         return std::any_of(half.pixels.begin(), half.pixels.end(),
                            [](const FilmPixel& p) { return p.count > 1; });
     };
-    if (!repeated(film.half[0]) || !repeated(film.half[1])) set_variance_from_difference(halves);
+    if (!repeated(film[0]) || !repeated(film[1])) set_variance_from_difference(halves);
     return halves;
 }
 

@@ -2,25 +2,77 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "render/hybrid_film.h"
+#include "render/image_hash.h"
+#include "render/ranks.h"
 
 namespace covtrace {
 
+PassContext pass_context(const RenderScene& scene, const RenderOptions& options) {
+    const SceneDescription& d = scene.description;
+    return {scene,
+            options.seed,
+            options.max_depth.value_or(d.max_depth),
+            (d.camera.shutter_close - d.camera.shutter_open) * d.film.iso / 100 *
+                d.camera.film_irradiance,
+            d.film.max_component_value,
+            d.film.white_balance,
+            {}};
+}
+
+PassContext half_context(const PassContext& whole, uint32_t k) {
+    PassContext half = whole;
+    half.seed = half_seed(whole.seed, int(k));
+    half.half = k;
+    half.halves = 2;
+    return half;
+}
+
+namespace {
+
+RenderState initial_state(const RenderScene& scene, const RenderOptions& options,
+                          const FilmKeeping& keeping) {
+    RenderState fresh(scene, options);
+    // Only who keeps a film, or goes on from one, has to know.
+    if (keeping.from || keeping.keep) fresh.identity["images"] = image_hash(scene.description);
+    if (!keeping.from) return fresh;
+    if (const auto other = difference(keeping.from->identity, fresh.identity))
+        throw Error(ErrorKind::usage, "cannot go on from '" + keeping.name +
+                                          "', the film of another render: " + *other);
+    if (keeping.from->shards > 1)
+        throw Error(ErrorKind::usage,
+                    "cannot go on from '" + keeping.name +
+                        "', which holds the pixels of some shards only; expected a film that "
+                        "'covtrace merge' made of all of them");
+    RenderState state = *keeping.from;
+    state.spp = fresh.spp;
+    state.complete = false;
+    return state;
+}
+
+}  // namespace
+
 RenderJob::RenderJob(RenderScene& render_scene, const RenderOptions& render_options,
-                     Monitor& render_monitor)
+                     Monitor& render_monitor, FilmKeeping film_keeping)
     : scene(render_scene),
       options(render_options),
       monitor(render_monitor),
-      region(render_region(scene.description.film)),
-      display{0, 0, scene.description.film.width, scene.description.film.height},
-      context{scene,
-              options.seed,
-              options.max_depth.value_or(scene.description.max_depth),
-              (scene.description.camera.shutter_close - scene.description.camera.shutter_open) *
-                  scene.description.film.iso / 100 * scene.description.camera.film_irradiance,
-              scene.description.film.max_component_value,
-              scene.description.film.white_balance} {
-    if (options.spp || (!options.seconds && !options.error))
-        target_spp = options.spp.value_or(scene.description.samples_per_pixel);
+      keeping(std::move(film_keeping)),
+      state(initial_state(render_scene, render_options, keeping)),
+      region(state.region),
+      context(pass_context(scene, options)),
+      target_spp(covtrace::target_spp(scene.description, options)) {
+    context.shard = tiles();
+}
+
+Shard RenderJob::tiles() const {
+    return keeping.ranks ? Shard{keeping.ranks->index(), keeping.ranks->count()} : keeping.shard;
+}
+
+bool RenderJob::delivers() const {
+    return keeping.shard.is_all() && (!keeping.ranks || keeping.ranks->index() == 0);
 }
 
 PassProgress RenderJob::reporter(const char* name, double from, double to) {
@@ -37,21 +89,73 @@ double RenderJob::fraction(double spp) const {
     return std::clamp(f, 0.0, 1.0) * kTracingShare;
 }
 
-double RenderJob::plan_round(double taken, double round_end) const {
+double RenderJob::plan_round(double round_end) const {
     double target = round_end;
     if (target_spp) target = std::min(target, *target_spp);
-    if (options.seconds && traced_spp_ > 0) {
-        const double left = *options.seconds - reserve_ - monitor.elapsed();
+    if (options.seconds && state.seconds_spp > 0) {
+        const double left = tracing_end() - monitor.elapsed();
         const double affordable =
-            taken + std::floor(left / (traced_seconds_ / traced_spp_) * 16) / 16;
+            state.taken + std::floor(left / (state.seconds / state.seconds_spp) * 16) / 16;
         target = std::min(target, affordable);
     }
-    return std::max(target, taken);
+    target = std::max(target, state.taken);
+    return keeping.ranks ? keeping.ranks->of_first(target) : target;
 }
 
-void RenderJob::traced(double spp, double seconds) {
-    traced_seconds_ += seconds;
-    traced_spp_ += spp;
+double RenderJob::tracing_end() const {
+    return options.seconds ? *options.seconds - reserve_ - keeping_seconds() : kInfinity;
+}
+
+double RenderJob::keeping_seconds() const {
+    constexpr double kBytesPerSecond = 1.5e8;
+    if (!keeping.keep) return 0;
+    double bytes = 0;
+    for (const auto& [name, count] : state.memory()) bytes += double(count);
+    return bytes / kBytesPerSecond;
+}
+
+double RenderJob::most_samples(double target) const {
+    return options.max_spp ? double(*options.max_spp) : std::ceil(16 * target);
+}
+
+bool RenderJob::begin_round(double target, std::vector<std::vector<uint32_t>> plan) {
+    bool more = false;
+    for (size_t k = 0; k < plan.size(); ++k)
+        for (size_t i = 0; i < plan[k].size() && !more; ++i)
+            more = plan[k][i] > state.films[k].pixels[i].count;
+    if (!more) return false;
+    state.target = target;
+    state.plan = std::move(plan);
+    return true;
+}
+
+std::vector<uint32_t> RenderJob::even_counts(double spp) const {
+    const int64_t total = std::llround(spp * double(pixels()));
+    std::vector<uint32_t> counts(state.pixels());
+    int64_t carried = pixels() / 2;  // in parts of a sample, as many as there are pixels
+    for (uint32_t& count : counts) {
+        carried += total;
+        count = uint32_t(carried / pixels());
+        carried %= pixels();
+    }
+    return counts;
+}
+
+void RenderJob::counted(PassStatistics& sum, const PassStatistics& pass) {
+    sum.add(pass);
+    state.rejected += pass.rejected;
+    for (const RejectedSample& r : pass.first_rejected)
+        if (state.first_rejected.size() < PassStatistics::kMostRejectedKept)
+            state.first_rejected.push_back(r);
+}
+
+void RenderJob::note_memory() {
+    size_t sum = 0;
+    const auto bytes = state.memory();
+    for (const auto& [name, count] : bytes) sum += count;
+    if (sum < most_memory_) return;
+    most_memory_ = sum;
+    for (const auto& [name, count] : bytes) result.statistics.memory[name] = count;
 }
 
 SceneOccluders::SceneOccluders(RenderJob& job) {

@@ -4,6 +4,8 @@
 #include <functional>
 #include <optional>
 
+#include "render/keeping.h"
+#include "render/render_state.h"
 #include "render/session.h"
 
 namespace covtrace {
@@ -23,19 +25,31 @@ class PhaseTimer {
     const double start_;
 };
 
+/// What the passes of a render share.
+PassContext pass_context(const RenderScene& scene, const RenderOptions& options);
+/// The same for half k of `hybrid`.
+PassContext half_context(const PassContext& whole, uint32_t k);
+
 class RenderJob {
   public:
-    RenderJob(RenderScene& scene, const RenderOptions& options, Monitor& monitor);
+    /// Throws Error(usage) where `keeping` holds a film of another render.
+    RenderJob(RenderScene& scene, const RenderOptions& options, Monitor& monitor,
+              FilmKeeping keeping = {});
 
     RenderScene& scene;
     const RenderOptions& options;
     Monitor& monitor;
-    const PixelBounds region;   ///< the pixels to render
-    const PixelBounds display;  ///< the full frame
+    const FilmKeeping keeping;
+    RenderState state;
+    const PixelBounds region;  ///< the pixels to render
     PassContext context;
     RenderResult result;
-    std::optional<double> target_spp;  ///< none: the time alone decides
+    const std::optional<double> target_spp;  ///< none: the time alone decides
 
+    /// The tiles that this process traces.
+    Shard tiles() const;
+    /// Whether this process makes the image.
+    bool delivers() const;
     double& phase(const char* name) { return result.statistics.seconds[name]; }
     int64_t pixels() const { return int64_t(region.width()) * region.height(); }
 
@@ -44,11 +58,22 @@ class RenderJob {
     /// Share of the tracing that is done at an average of `spp`, in [0, kTracingShare].
     double fraction(double spp) const;
 
-    /// The average to trace up to next, given what is taken and where the round would end; equal to
-    /// `taken` where the budget is spent.
-    double plan_round(double taken, double round_end) const;
-    /// Tells what tracing cost: `spp` samples per pixel in `seconds`.
-    void traced(double spp, double seconds);
+    /// The average to trace up to next, given where the round would end; what is taken already
+    /// where the budget is spent.
+    double plan_round(double round_end) const;
+    /// When tracing must end for the rest to be done in time; infinite without a budget of time.
+    double tracing_end() const;
+    /// The most samples of any pixel in a round up to an average of `target`.
+    double most_samples(double target) const;
+    /// Begins a round: how many samples each pixel, of each film, has at its end. False, and no
+    /// round, where all have them already.
+    bool begin_round(double target, std::vector<std::vector<uint32_t>> plan);
+    /// The same count, as near as whole samples allow, in every pixel.
+    std::vector<uint32_t> even_counts(double spp) const;
+    /// Adds what a pass counted to the sums of its kind.
+    void counted(PassStatistics& sum, const PassStatistics& pass);
+    /// Puts what the state holds now into the statistics, where that is the most it ever held.
+    void note_memory();
     /// Seconds to keep for all that follows the last sample, beside the writing.
     void reserve(double seconds) { reserve_ = kWriteSeconds + seconds; }
 
@@ -56,8 +81,11 @@ class RenderJob {
     static constexpr double kTracingShare = 0.97;
 
   private:
+    /// About what the last writing of the film takes.
+    double keeping_seconds() const;
+
     static constexpr double kWriteSeconds = 0.1;
-    double traced_seconds_ = 0, traced_spp_ = 0;  // so far: what a sample per pixel costs
+    size_t most_memory_ = 0;
     double reserve_ = kWriteSeconds;
 };
 
@@ -73,7 +101,20 @@ class SceneOccluders {
     std::optional<OccluderQuery> query_;
 };
 
-/// The three methods. Each leaves image and statistics in the job's result.
+/// What a method does in its rounds.
+struct Rounds {
+    std::function<bool()> plan;   ///< begins the next round; false: the budget is spent
+    std::function<void()> trace;  ///< takes samples of the round, until the monitor ends it
+};
+/// Goes on from where the job's state stands until the budget is spent, the monitor is cancelled
+/// or, for a shard, the other shards' samples are needed. Keeps the film as the job asks.
+void trace_rounds(RenderJob& job, const Rounds& rounds);
+
+/// The end of the round after an average of `taken`: rounds double the total, whatever the budget.
+double round_end(double taken);
+
+/// The three methods. Each leaves image, unless it is only a shard's, and statistics in the job's
+/// result.
 void render_uniform(RenderJob& job);
 void render_covariance(RenderJob& job);
 void render_hybrid(RenderJob& job);

@@ -52,7 +52,8 @@ Image make_layers(const Film& film, PixelBounds display, bool has_holes,
         add_layer(image, "", std::array{"A"},
                   [&](size_t i) { return std::array{pixels[i].coverage}; });
     add_layer(image, "raw.", kRgb, [&](size_t i) { return array(pixels[i].mean); });
-    add_layer(image, "inview.", kRgb, [&](size_t i) { return array(pixels[i].in_view); });
+    if (!film.in_view.empty())
+        add_layer(image, "inview.", kRgb, [&](size_t i) { return array(film.in_view[i]); });
     add_layer(image, "albedo.", kRgb, [&](size_t i) { return array(pixels[i].albedo); });
     add_layer(image, "N.", std::array{"X", "Y", "Z"}, [&](size_t i) {
         return std::array{pixels[i].normal.x, pixels[i].normal.y, pixels[i].normal.z};

@@ -24,7 +24,8 @@ struct CovarianceLayers {
 };
 
 /// Root R G B (A where `has_holes`): the gathered image, or the raw film without `covariance`;
-/// then raw, inview, albedo, N, Z, variance, error, samples, and the layers of `covariance`.
+/// then raw, inview where the film knows it, albedo, N, Z, variance, error, samples, and the layers
+/// of `covariance`.
 Image make_layers(const Film& film, PixelBounds display, bool has_holes,
                   const std::optional<CovarianceLayers>& covariance);
 

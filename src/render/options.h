@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "frequency/brdf_covariance.h"
 #include "image/image.h"
@@ -18,6 +19,11 @@ enum class Method {
     covariance,  ///< the thesis' method: prediction, counts, Gaussian gather
     hybrid       ///< prediction and samples together: adaptive counts, candidates, selection
 };
+
+/// As the command line calls it.
+constexpr std::string_view name_of(Method m) {
+    return m == Method::uniform ? "uniform" : m == Method::covariance ? "covariance" : "hybrid";
+}
 
 /// Where the frequency analysis learns of what stands beside a ray.
 enum class Occlusion {
@@ -41,6 +47,7 @@ struct RenderOptions {
     std::optional<int> max_spp;    ///< most samples in any pixel; default 16 times the average
     std::optional<int> max_depth;  ///< default: the scene's
     bool even_counts = false;      ///< hybrid: every pixel the same count, for comparisons
+    bool emitters_apart = false;   ///< uniform: keeps the light of emitters in view apart
     uint64_t seed = 0;
 };
 

@@ -11,30 +11,52 @@ namespace covtrace {
 
 namespace {
 
-constexpr int kTileSize = 16;
-constexpr size_t kMostRejectedKept = 8;
+/// When a pass has to stop before its end.
+class Stop {
+  public:
+    explicit Stop(const Monitor& monitor) : monitor_(monitor) {}
+    /// Only a pass that took a sample may pause: a render must get on, however short the time
+    /// between its checkpoints.
+    bool operator()() const {
+        return monitor_.cancelled() ||
+               (taken_.load(std::memory_order_relaxed) && paused_.load(std::memory_order_relaxed));
+    }
+    void took_samples() {
+        taken_.store(true, std::memory_order_relaxed);
+        if (monitor_.pause_is_due()) paused_.store(true, std::memory_order_relaxed);
+    }
 
-/// Runs body(film pixel index, x, y, statistics) for all pixels, tile by tile, and sums the
-/// statistics in tile order.
-template <typename Body>
-PassStatistics for_each_pixel(const PixelBounds& b, const Monitor& monitor,
-                              const PassProgress& progress, const Body& body) {
-    const int tiles_x = (b.width() + kTileSize - 1) / kTileSize;
-    const int tiles_y = (b.height() + kTileSize - 1) / kTileSize;
-    const int64_t tiles = int64_t(tiles_x) * tiles_y;
-    std::vector<PassStatistics> per_tile(static_cast<size_t>(tiles));
+  private:
+    const Monitor& monitor_;
+    std::atomic<bool> taken_{false}, paused_{false};
+};
+
+/// Takes samples up to `counts` by take(film pixel index, x, y, statistics), tile by tile, and sums
+/// the statistics in tile order.
+template <typename Take>
+PassStatistics take_samples(const PassContext& context, const Film& film,
+                            std::span<const uint32_t> counts, const Monitor& monitor,
+                            const PassProgress& progress, const Take& take) {
+    constexpr uint32_t kBetweenLooks = 64;  // samples between looks at the clock
+    const Tiles tiles(film.bounds);
+    std::vector<PassStatistics> per_tile(static_cast<size_t>(tiles.count()));
+    const double own_tiles = double(tiles.count(context.shard));
     std::atomic<int64_t> done{0};
-    parallel_for(tiles, [&](int64_t tile) {
-        if (monitor.cancelled()) return;
-        const int x0 = b.x0 + int(tile % tiles_x) * kTileSize,
-                  y0 = b.y0 + int(tile / tiles_x) * kTileSize;
+    Stop stop(monitor);
+    parallel_for(tiles.count(), [&](int64_t tile) {
+        if (!tiles.belongs_to(tile, context.shard)) return;
         PassStatistics& statistics = per_tile[static_cast<size_t>(tile)];
-        for (int y = y0; y < std::min(y0 + kTileSize, b.y1); ++y)
-            for (int x = x0; x < std::min(x0 + kTileSize, b.x1); ++x) {
-                const size_t i = size_t(y - b.y0) * size_t(b.width()) + size_t(x - b.x0);
-                body(i, x, y, statistics);
+        const PixelBounds b = tiles.bounds(tile);
+        for (int y = b.y0; y < b.y1; ++y)
+            for (int x = b.x0; x < b.x1; ++x) {
+                const size_t i = film.index(x, y);
+                while (film.pixels[i].count < counts[i]) {
+                    if (stop()) return;
+                    take(i, x, y, statistics);
+                    if (statistics.samples % kBetweenLooks == 1) stop.took_samples();
+                }
             }
-        progress(double(++done) / double(tiles));
+        progress(double(++done) / own_tiles);
     });
     PassStatistics sum;
     for (const PassStatistics& s : per_tile) sum.add(s);
@@ -46,7 +68,7 @@ void sample_pixel(const PassContext& context, Film& film, size_t pixel, int x, i
                   PathRecord* record, PassStatistics& statistics) {
     PathResult path;
     const uint32_t index = film.pixels[pixel].count;
-    FilmPixel::Sample s = take_sample(context, x, y, index, record, path);
+    FilmSample s = take_sample(context, x, y, index, record, path);
     ++statistics.samples;
     statistics.rays.add(path.rays);
     statistics.vertices += path.vertices;
@@ -54,8 +76,8 @@ void sample_pixel(const PassContext& context, Film& film, size_t pixel, int x, i
     if (is_black(path.radiance)) ++statistics.black_paths;
     if (!is_finite(s.radiance)) {
         ++statistics.rejected;
-        if (statistics.first_rejected.size() < kMostRejectedKept)
-            statistics.first_rejected.push_back({x, y, index});
+        if (statistics.first_rejected.size() < PassStatistics::kMostRejectedKept)
+            statistics.first_rejected.push_back({x, y, context.sample_name(index)});
         s.radiance = s.in_view = Rgb(0);
     }
     film.add(pixel, s);
@@ -74,15 +96,15 @@ void PassStatistics::add(const PassStatistics& other) {
         if (first_rejected.size() < kMostRejectedKept) first_rejected.push_back(r);
 }
 
-FilmPixel::Sample take_sample(const PassContext& context, int x, int y, uint32_t index,
-                              PathRecord* record, PathResult& path) {
+FilmSample take_sample(const PassContext& context, int x, int y, uint32_t index, PathRecord* record,
+                       PathResult& path) {
     Sampler sampler(context.seed, x, y, index);
     const Sampler::CameraSample u = sampler.camera();
     const PixelFilter::Sample position = context.scene.filter.sample(u.film);
     const Vec2 film{float(x) + 0.5f + position.offset.x, float(y) + 0.5f + position.offset.y};
     const Ray ray = context.scene.camera.generate_ray(film, u.lens, u.time);
     path = trace_path(context.scene, ray, sampler, context.max_depth, record);
-    FilmPixel::Sample s;
+    FilmSample s;
     s.rays = uint32_t(path.rays.total());
     const auto balanced = [&context](Rgb c) {
         const Rgb light = c * context.imaging_scale;
@@ -108,11 +130,10 @@ FilmPixel::Sample take_sample(const PassContext& context, int x, int y, uint32_t
 PassStatistics radiance_pass(const PassContext& context, Film& film,
                              std::span<const uint32_t> counts, const Monitor& monitor,
                              const PassProgress& progress) {
-    return for_each_pixel(film.bounds, monitor, progress,
-                          [&](size_t i, int x, int y, PassStatistics& statistics) {
-                              for (uint32_t s = 0; s < counts[i]; ++s)
-                                  sample_pixel(context, film, i, x, y, nullptr, statistics);
-                          });
+    return take_samples(context, film, counts, monitor, progress,
+                        [&](size_t i, int x, int y, PassStatistics& statistics) {
+                            sample_pixel(context, film, i, x, y, nullptr, statistics);
+                        });
 }
 
 namespace {
@@ -127,74 +148,48 @@ bool shows_emitter(const PathRecord& record) {
     return false;
 }
 
+/// Takes one more path into the mean of `paths` of them.
+void add_path(CovarianceBuffer& buffer, size_t i, uint32_t paths, const PathCovariance& path,
+              double weight_limit) {
+    covariance::Accumulator<double> sum;
+    sum.add(covariance::cast<double>(buffer.covariance[i]), double(buffer.weight[i]) * paths);
+    sum.add(path.sigma, std::min(path.weight, weight_limit));
+    buffer.covariance[i] = covariance::cast<float>(sum.mean());
+    buffer.weight[i] = float(sum.weight() / (paths + 1.0));
+}
+
 }  // namespace
 
 PassStatistics covariance_pass(const PassContext& context, const Occluders& occluders,
                                BrdfCovariance rule, Film& film, std::span<const uint32_t> counts,
-                               CovarianceBuffers& buffers, const Monitor& monitor,
+                               const CovarianceTarget& target, const Monitor& monitor,
                                const PassProgress& progress) {
     const PathReplay replay(context.scene, occluders, rule);
-    struct Traced {
-        PathCovariance scattered, in_view;
-    };
-    const auto traced = [&](size_t i, int x, int y, PassStatistics& statistics) {
-        static thread_local PathRecord record;
-        sample_pixel(context, film, i, x, y, &record, statistics);
-        Traced t{replay(record, LightPart::scattered), {}};
-        if (shows_emitter(record)) t.in_view = replay(record, LightPart::in_view);
-        return t;
-    };
-    const auto share_of_first = [&counts] {
-        uint64_t first = 0, all = 0;
-        for (uint32_t c : counts) {
-            first += c > 0;
-            all += c;
-        }
-        return all > 0 ? double(first) / double(all) : 1.0;
-    }();
-    const auto store = [](CovarianceBuffer& buffer, size_t i, const PathCovariance& p) {
-        buffer.covariance[i] = covariance::cast<float>(p.sigma);
-        buffer.weight[i] = float(p.weight);
-    };
+    return take_samples(context, film, counts, monitor, progress,
+                        [&](size_t i, int x, int y, PassStatistics& statistics) {
+                            static thread_local PathRecord record;
+                            const uint32_t paths = film.pixels[i].count +
+                                                   (target.earlier.empty() ? 0 : target.earlier[i]);
+                            sample_pixel(context, film, i, x, y, &record, statistics);
+                            add_path(target.buffers.scattered, i, paths,
+                                     replay(record, LightPart::scattered), target.weight_limit);
+                            const PathCovariance in_view = shows_emitter(record)
+                                                               ? replay(record, LightPart::in_view)
+                                                               : PathCovariance{};
+                            add_path(target.buffers.in_view, i, paths, in_view, kInfinity);
+                        });
+}
 
-    // The first path of every pixel alone: its weights give the limit for all.
-    PassStatistics statistics = for_each_pixel(
-        film.bounds, monitor, [&](double f) { progress(f * share_of_first); },
-        [&](size_t i, int x, int y, PassStatistics& s) {
-            if (counts[i] == 0) return;
-            const Traced t = traced(i, x, y, s);
-            store(buffers.scattered, i, t.scattered);
-            store(buffers.in_view, i, t.in_view);
-        });
-    double sum = 0, lit = 0;
-    for (size_t i = 0; i < counts.size(); ++i) {
+double limit_weights(const Film& film, CovarianceBuffers& buffers) {
+    constexpr double kMost = 10;  // times the mean
+    double sum = 0, paths = 0;
+    for (size_t i = 0; i < film.pixels.size(); ++i) {
         sum += buffers.scattered.weight[i];
-        lit += counts[i] > 0;
+        paths += film.pixels[i].count;
     }
-    const double most = lit > 0 ? 10 * sum / lit : 0.0;
-
-    statistics.add(for_each_pixel(
-        film.bounds, monitor,
-        [&](double f) { progress(share_of_first + f * (1 - share_of_first)); },
-        [&](size_t i, int x, int y, PassStatistics& s) {
-            if (counts[i] == 0) return;
-            covariance::Accumulator<double> scattered, in_view;
-            const auto add = [&](const PathCovariance& a, const PathCovariance& b) {
-                scattered.add(a.sigma, std::min(a.weight, most));
-                in_view.add(b.sigma, b.weight);
-            };
-            const auto stored = [i](const CovarianceBuffer& b) {
-                return PathCovariance{covariance::cast<double>(b.covariance[i]), b.weight[i]};
-            };
-            add(stored(buffers.scattered), stored(buffers.in_view));
-            for (uint32_t k = 1; k < counts[i]; ++k) {
-                const Traced t = traced(i, x, y, s);
-                add(t.scattered, t.in_view);
-            }
-            store(buffers.scattered, i, {scattered.mean(), scattered.weight() / counts[i]});
-            store(buffers.in_view, i, {in_view.mean(), in_view.weight() / counts[i]});
-        }));
-    return statistics;
+    const double limit = paths > 0 ? kMost * sum / paths : 0.0;
+    for (float& w : buffers.scattered.weight) w = float(std::min(double(w), limit));
+    return limit;
 }
 
 }  // namespace covtrace

@@ -16,18 +16,19 @@
 #include "planner/covariance_buffer.h"
 #include "render/film.h"
 #include "render/progress.h"
+#include "render/shard.h"
 
 namespace covtrace {
 
 /// A sample whose value was not a finite number; it counted as black.
 struct RejectedSample {
     int x = 0, y = 0;
-    uint32_t sample = 0;
+    uint64_t sample = 0;  ///< as PassContext::sample_name
 };
 
 /// Sums over all samples of a render.
 struct PassStatistics {
-    static constexpr size_t kLengths = 33;
+    static constexpr size_t kLengths = 33, kMostRejectedKept = 8;
     uint64_t samples = 0, vertices = 0;
     RayCounts rays;
     /// Paths by their number of vertices, emitters at the end included; the last counts all that
@@ -47,27 +48,45 @@ struct PassContext {
     int max_depth = 5;
     float imaging_scale = 1, max_component = kInfinity;
     std::array<std::array<float, 3>, 3> white_balance{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    Shard shard;  ///< the tiles to trace
+    uint32_t half = 0, halves = 1;
+
+    /// How people name a sample: the halves take turns, so that one number finds it again.
+    uint64_t sample_name(uint32_t index) const { return uint64_t(index) * halves + half; }
 };
 
 /// Called from worker threads with the share of the pass that is done.
 using PassProgress = std::function<void(double)>;
 
-/// Takes `count(pixel index)` more samples in every pixel. One thread owns a pixel and adds its
-/// samples in index order. Returns early, with whole tiles done, once the monitor is cancelled.
+/// Takes samples up to `counts`, one number per pixel, in every pixel of the context's tiles. One
+/// thread owns a pixel and adds its samples in index order. Returns early once the monitor is
+/// cancelled or its pause is due: between any two samples, so that calling it again goes on to the
+/// same bits.
 PassStatistics radiance_pass(const PassContext& context, Film& film,
                              std::span<const uint32_t> counts, const Monitor& monitor,
                              const PassProgress& progress);
 
-/// The same with `counts` paths per pixel that also leave their covariance. Weights of scattered
-/// light are limited to ten times the mean of the image's first paths, so that no single path owns
-/// a pixel.
+/// The paths of a covariance pass and where their covariances go.
+struct CovarianceTarget {
+    CovarianceBuffers& buffers;         ///< means over the paths so far
+    std::span<const uint32_t> earlier;  ///< paths of each pixel that other films took; may be empty
+    double weight_limit = kInfinity;    ///< of scattered light, see limit_weights
+};
+
+/// The same with paths that also leave their covariances. All samples that the film has so far are
+/// such paths.
 PassStatistics covariance_pass(const PassContext& context, const Occluders& occluders,
                                BrdfCovariance rule, Film& film, std::span<const uint32_t> counts,
-                               CovarianceBuffers& buffers, const Monitor& monitor,
+                               const CovarianceTarget& target, const Monitor& monitor,
                                const PassProgress& progress);
 
+/// Limits the weights of scattered light to ten times the mean of the image's first paths, so that
+/// no single path owns a pixel; to be called when `film` has at most one path in every pixel, which
+/// are all that `buffers` know. Returns the limit for the paths to come.
+double limit_weights(const Film& film, CovarianceBuffers& buffers);
+
 /// One sample as the passes take it, for replaying a pixel: returns the path and the film's sample.
-FilmPixel::Sample take_sample(const PassContext& context, int x, int y, uint32_t index,
-                              PathRecord* record, PathResult& path);
+FilmSample take_sample(const PassContext& context, int x, int y, uint32_t index, PathRecord* record,
+                       PathResult& path);
 
 }  // namespace covtrace

@@ -35,6 +35,9 @@ class Monitor {
     void cancel() { cancelled_ = true; }
     bool cancelled() const { return cancelled_; }
     double elapsed() const;
+    /// Asks passes to return early from `elapsed` seconds on, so that the film can be kept.
+    void pause_at(double elapsed) { pause_at_ = elapsed; }
+    bool pause_is_due() const { return elapsed() >= pause_at_; }
     /// Reports, unless the last report is too fresh or another thread is reporting.
     void update(std::string_view phase, double fraction, double samples_per_pixel);
     /// What the following reports say of the error.
@@ -54,6 +57,7 @@ class Monitor {
     const Clock::time_point start_;
     std::atomic<bool> cancelled_{false};
     std::atomic<double> error_{kUnknown};
+    std::atomic<double> pause_at_{std::numeric_limits<double>::infinity()};
     std::mutex mutex_;
     double last_report_ = -1;
     double begin_ = 0, begin_fraction_ = -1;  ///< the first report of a fraction

@@ -3,8 +3,10 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "render/film.h"
+#include "render/keeping.h"
 #include "render/options.h"
 #include "render/pass.h"
 #include "render/progress.h"
@@ -15,13 +17,16 @@ struct RenderStatistics {
     PassStatistics covariance, radiance;
     std::map<std::string, double> seconds;  ///< per phase: "grid" or "outlines", "covariance",
                                             ///< "plan", "radiance", "reconstruction"
-    /// Bytes: "film"; "prediction" and "occluders" with covariance tracing.
+    /// Bytes: "film" and "plan"; "prediction" and "occluders" with covariance tracing.
     std::map<std::string, size_t> memory;
     double samples_per_pixel = 0;  ///< average taken
+    uint64_t rejected = 0;         ///< of all samples of the film, also those of earlier processes
+    std::vector<RejectedSample> first_rejected;
 };
 
 struct RenderResult {
-    Image image;  ///< all layers of the method, without the metadata that only the caller knows
+    /// All layers of the method; of the metadata what the film knows. Empty for a shard.
+    Image image;
     RenderStatistics statistics;
     bool complete = false;  ///< false: cancelled, or not all samples taken
 };
@@ -33,8 +38,17 @@ void apply(const SceneOverrides& overrides, SceneDescription& scene);
 /// The pixels that a description asks for: its crop window or pixel bounds within the frame.
 PixelBounds render_region(const FilmDescription& film);
 
+/// The average of samples per pixel that is asked for; none where time or error alone decide.
+std::optional<double> target_spp(const SceneDescription& scene, const RenderOptions& options);
+
+/// Bytes that a render takes beside its scene: "film", with plan and prediction, and "image": the
+/// layers and the buffers of the reconstruction, as measured.
+std::map<std::string, size_t> render_memory(const FilmDescription& film,
+                                            const RenderOptions& options);
+
 /// Renders. Calls scene.prepare_spectra() where the method needs it. Throws Error(limit) where
-/// memory runs out.
-RenderResult render(RenderScene& scene, const RenderOptions& options, Monitor& monitor);
+/// memory runs out, Error(usage) where `keeping` asks for what cannot be.
+RenderResult render(RenderScene& scene, const RenderOptions& options, Monitor& monitor,
+                    FilmKeeping keeping = {});
 
 }  // namespace covtrace

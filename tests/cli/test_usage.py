@@ -12,7 +12,7 @@ class Help(CliTest):
             self.assertLessEqual(len(line), 80, line)
 
     def test_help_goes_to_stdout_and_fits_a_screen(self):
-        for arguments in (["--help"], ["-h"], ["render", "--help"], ["compare", "--help"], ["inspect", "--help"], ["info", "--help"]):
+        for arguments in (["--help"], ["-h"], ["render", "--help"], ["compare", "--help"], ["inspect", "--help"], ["info", "--help"], ["merge", "--help"]):
             with self.subTest(arguments=arguments):
                 result = self.run_program(*arguments)
                 self.assertEqual(result.code, DONE, result)
@@ -21,12 +21,13 @@ class Help(CliTest):
 
     def test_help_names_commands_and_options(self):
         overview = self.run_program("--help").stdout
-        for command in ("render", "compare", "inspect", "info", "completion"):
+        for command in ("render", "merge", "compare", "inspect", "info", "completion"):
             self.assertIn(command, overview)
         options = self.run_program("render", "--help").stdout
         for option in (
             "--output --method --spp --time --cov-spp --density --max-spp --filter --resolution --crop --max-depth --seed "
-            "--threads --isa --shutter --focus --fstop --png --layers --layer-names --tev --tev-layers --progress --texture-memory --stats --reproducible"
+            "--threads --isa --shutter --focus --fstop --png --layers --layer-names --tev --tev-layers --progress --texture-memory --stats --reproducible "
+            "--film --checkpoint --every --resume --shard --max-memory --debug-pixel"
         ).split():
             self.assertIn(option, options)
 
@@ -68,6 +69,10 @@ class WrongCommandLines(CliTest):
             "--threads": ["0", "-1", "x", "5000"],
             "--isa": ["mmx"],
             "--texture-memory": ["", "x", "-1", "5X", "5MB", "nan", "inf", "1e30"],
+            "--every": ["0", "soon"],
+            "--shard": ["0/4", "5/4", "1", "1/0", "a/b", "1/4/4", "-1/4"],
+            "--max-memory": ["x", "-1", "5X"],
+            "--debug-pixel": ["1,2", "a,b,c", "1,2,-3", "24,0,0"],
             "--shutter": ["1,0", "0,0", "0", "nan,1", "0,inf", "a,b"],
             "--focus": ["0", "-1", "nan"],
             "--fstop": ["0", "-1", "nan", "inf"],

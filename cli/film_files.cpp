@@ -1,0 +1,79 @@
+#include "cli/film_files.h"
+
+#include <utility>
+
+#include "cli/message.h"
+#include "render/film_file.h"
+
+namespace covtrace::cli {
+
+namespace {
+
+constexpr double kEvery = 60;                     // seconds
+constexpr size_t kSlowBytes = size_t(100) << 20;  // may take more than a second
+constexpr double kMostShare = 0.01;               // of the time, unless --every is given
+
+}  // namespace
+
+FilmFiles::FilmFiles(const FilmArguments& arguments, std::function<void()> clear_line)
+    : arguments_(arguments), clear_line_(std::move(clear_line)) {}
+
+std::shared_ptr<const RenderState> FilmFiles::found(const std::filesystem::path& file) const {
+    FoundFilm film = find_film(file);
+    if (!film.state) return nullptr;
+    if (!film.damage.empty()) {
+        clear_line_();
+        say("warning: {}; going on from '{}'\n", film.damage, earlier_film(file).string());
+    }
+    return std::make_shared<const RenderState>(std::move(*film.state));
+}
+
+FilmKeeping FilmFiles::keeping(bool writes) {
+    FilmKeeping k;
+    const auto& a = arguments_;
+    if (a.shard) k.shard = *a.shard;
+    for (const std::string& file : {a.film, a.checkpoint})
+        if (writes && !file.empty()) remove_leftovers(file);
+    if (a.resume && !a.checkpoint.empty()) k.from = found(a.checkpoint);
+    if (a.resume && a.shard) k.part = found(a.film);
+    if (k.from) k.name = a.checkpoint;
+    if (a.film.empty() && a.checkpoint.empty()) return k;
+    if (writes)
+        k.keep = [this](const RenderState& state, KeepReason reason) { keep(state, reason); };
+    if (a.shard || !a.checkpoint.empty()) {
+        k.interval = a.every.value_or(kEvery);
+        if (!a.every) k.most_share = kMostShare;
+    }
+    return k;
+}
+
+void FilmFiles::keep(const RenderState& state, KeepReason reason) {
+    const auto& a = arguments_;
+    failure_.reset();
+    size_t bytes = 0;
+    for (const auto& [name, count] : state.memory()) bytes += count;
+    if (reason == KeepReason::interrupted && bytes > kSlowBytes) {
+        clear_line_();
+        say("interrupted: keeping a film of {} MB, which takes a while\n", bytes >> 20);
+    }
+    if (a.shard || (reason != KeepReason::checkpoint && a.film != a.checkpoint))
+        write(state, a.film);
+    if (!a.shard) write(state, a.checkpoint);
+}
+
+void FilmFiles::write(const RenderState& state, const std::filesystem::path& file) {
+    if (file.empty()) return;
+    try {
+        write_film(state, file);
+    } catch (const Error& e) {
+        clear_line_();
+        say("warning: {}\n", e.what());
+        failure_ = e;
+    }
+}
+
+void FilmFiles::finish() const {
+    if (failure_) throw *failure_;
+}
+
+}  // namespace covtrace::cli

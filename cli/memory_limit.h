@@ -1,0 +1,17 @@
+/// The option --max-memory.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+
+#include "integrator/render_scene.h"
+
+namespace covtrace::cli {
+
+/// Throws Error(limit), with the sum by category, where the process would hold more than `most`
+/// bytes: what it holds now, and `coming`. `scene`: tells what the bytes so far are for.
+void require_memory(size_t most, const std::map<std::string, size_t>& coming,
+                    const RenderScene* scene = nullptr);
+
+}  // namespace covtrace::cli

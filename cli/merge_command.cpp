@@ -1,0 +1,63 @@
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/layer_selection.h"
+#include "cli/message.h"
+#include "core/parallel.h"
+#include "image/image.h"
+#include "render/develop.h"
+#include "render/film_file.h"
+#include "render/merge.h"
+
+namespace covtrace::cli {
+
+namespace {
+
+struct MergeArguments {
+    std::vector<std::string> films;
+    std::string output, film, png;
+    LayerSelection layers{true, {}};
+    bool quiet = false;
+};
+
+int merge_films(const MergeArguments& a) {
+    const ThreadLimit threads(0);
+    if (a.output.empty() && a.film.empty() && a.png.empty())
+        throw Error(ErrorKind::usage, "merge: expected --output OUT.exr or --film FILE");
+    FilmMerge merge;
+    for (const std::string& file : a.films) merge.add(file, read_film(file));
+    const RenderState state = std::move(merge).result();
+    if (!a.film.empty()) write_film(state, a.film);
+    if (!a.output.empty() || !a.png.empty()) {
+        Image image = develop(state);
+        keep_layers(image, a.layers);
+        if (!a.output.empty()) write_exr(image, a.output, threads.threads());
+        if (!a.png.empty()) write_png(image, a.png);
+    }
+    if (!a.quiet)
+        say("{}{:.4g} samples per pixel, {}\n",
+            state.shards > 1 ? std::to_string(state.present.size()) + " of " +
+                                   std::to_string(state.shards) + " shards, "
+                             : "",
+            state.mean_count(), state.complete ? "complete" : "not complete");
+    return 0;
+}
+
+}  // namespace
+
+void add_merge(CLI::App& app, Invocation& invocation) {
+    auto a = std::make_shared<MergeArguments>();
+    CLI::App* c = app.add_subcommand("merge", "Join the films of shards, and make their image");
+    c->add_option("FILM", a->films, "the films, in any order")->required()->option_text(" ");
+    c->add_option("-o,--output", a->output, "the image")->option_text("FILE");
+    c->add_option("--film", a->film, "the joined film, to go on from")->option_text("FILE");
+    c->add_option("--png", a->png, "also a tone-mapped sRGB picture")->option_text("FILE");
+    add_layers(c, "--layers", a->layers, "all, or name,name…: layers beside the image");
+    c->add_flag("--quiet", a->quiet, "errors only");
+    c->callback([a, &invocation] { invocation.action = [a] { return merge_films(*a); }; });
+}
+
+}  // namespace covtrace::cli

@@ -1,0 +1,15 @@
+/// MPI, where mpirun started the program.
+#pragma once
+
+#include <memory>
+
+#include "render/ranks.h"
+
+namespace covtrace::cli {
+
+/// Joins the processes that mpirun started beside this one; null where it did not. MPI is in a
+/// module of its own, so that nothing else needs it. Throws Error(usage) where the module is
+/// missing.
+std::unique_ptr<Ranks> join_ranks();
+
+}  // namespace covtrace::cli

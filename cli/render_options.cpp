@@ -1,0 +1,110 @@
+#include "cli/render_options.h"
+
+#include "cli/options.h"
+
+namespace covtrace::cli {
+
+void add_render_options(CLI::App* c, RenderArguments& a) {
+    c->add_option("SCENE", a.scene, "the scene, a pbrt-v4 file")->required()->option_text(" ");
+    c->add_option("-o,--output", a.output, "the image (default: the film's name or SCENE.exr)")
+        ->option_text("FILE");
+    add_choice<Method>(c, "--method", a.options.method,
+                       {{"uniform", Method::uniform},
+                        {"covariance", Method::covariance},
+                        {"hybrid", Method::hybrid}},
+                       "plain, the thesis' method, or hybrid (default)");
+    add_positive(c, "--spp", a.options.spp, 1 << 30,
+                 "average samples per pixel (default: the scene's)");
+    c->add_option("--time", a.seconds, "wall-clock budget: 2.5, 45s, 3m, 1h30m")->option_text("T");
+    add_positive(c, "--error", a.options.error, 1e6, "stop at this estimated sqrt(relMSE)");
+    c->add_option("--cov-spp", a.options.cov_spp, "covariance paths per pixel (default: 2 to 4)")
+        ->check(CLI::Range(1, 1 << 20))
+        ->option_text("N");
+    add_choice<DensityRule>(c, "--density", a.options.density,
+                            {{"tempered", DensityRule::tempered}, {"thesis", DensityRule::thesis}},
+                            "how counts follow from the prediction");
+    c->add_option("--max-spp", a.options.max_spp, "most samples in a pixel (default: 16 x average)")
+        ->check(CLI::Range(1, 1 << 30))
+        ->option_text("N");
+    c->add_flag("--even-counts", a.options.even_counts, "hybrid: the same count in every pixel");
+    add_choice<Occlusion>(
+        c, "--occlusion", a.options.occlusion,
+        {{"grid", Occlusion::grid}, {"query", Occlusion::query}, {"none", Occlusion::none}},
+        "occluders beside the rays of the analysis");
+    c->add_option("--voxels", a.options.voxels, "width of the occlusion grid (default 200)")
+        ->check(CLI::Range(1, 2048))
+        ->option_text("N");
+    add_choice<BrdfCovariance>(
+        c, "--brdf-covariance", a.options.brdf_covariance,
+        {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}},
+        "a BRDF's frequencies: at the path, or its peak's");
+    add_choice<FilterRule>(c, "--filter", a.options.filter,
+                           {{"verified", FilterRule::verified}, {"thesis", FilterRule::thesis}},
+                           "its constant: verified, or the thesis' eq. 5.7");
+    c->add_option("--resolution", a.resolution, "in place of the scene's")->option_text("WxH");
+    c->add_option("--crop", a.crop, "only these pixels, end exclusive")->option_text("x0,y0,x1,y1");
+    c->add_option("--max-depth", a.options.max_depth,
+                  "most scattering events (default: the scene's)")
+        ->check(CLI::NonNegativeNumber)
+        ->option_text("N");
+    c->add_option_function<std::string>(
+         "--seed", [&a](const std::string& text) { a.options.seed = parse_seed("--seed", text); },
+         "seed of all random numbers (default 0)")
+        ->option_text("N");
+    c->add_option("--threads", a.threads, "worker threads (default: all cores)")
+        ->check(CLI::Range(1, 4096))
+        ->option_text("N");
+    c->add_option("--isa", a.isa, "instruction set of the ray tracing")
+        ->check(CLI::IsMember({"sse2", "avx", "avx2", "avx512"}).description(""))
+        ->option_text("sse2|avx|avx2|avx512");
+    c->add_option("--shutter", a.shutter, "in place of the scene's")->option_text("T0,T1");
+    add_positive(c, "--focus", a.overrides.focal_distance, 1e30,
+                 "focal distance in place of the scene's");
+    add_positive(c, "--fstop", a.overrides.f_number, 1e30,
+                 "lens by f-number (full-frame sensor, metres)");
+    c->add_option("--search-path", a.search_paths,
+                  "also look here for the scene's files; repeatable")
+        ->check(CLI::ExistingDirectory.description(""))
+        ->allow_extra_args(false)
+        ->option_text("DIR");
+    c->add_option("--png", a.png, "also a tone-mapped sRGB picture")->option_text("FILE");
+    add_layers(c, "--layers", a.layers, "all, or name,name…: layers beside the image");
+    add_choice<LayerNames>(c, "--layer-names", a.layer_names,
+                           {{"default", LayerNames::standard},
+                            {"pbrt", LayerNames::pbrt},
+                            {"blender", LayerNames::blender}},
+                           "whose names the layers get in the EXR");
+    c->add_option("--tev", a.tev, "show the image in the viewer tev while it renders")
+        ->option_text("HOST:PORT");
+    add_layers(c, "--tev-layers", a.tev_layers, "layers that tev shows, too (default: none)");
+    add_choice<ProgressStyle>(c, "--progress", a.progress,
+                              {{"auto", ProgressStyle::automatic},
+                               {"bar", ProgressStyle::bar},
+                               {"plain", ProgressStyle::plain},
+                               {"percent", ProgressStyle::percent},
+                               {"json", ProgressStyle::json},
+                               {"none", ProgressStyle::none}},
+                              "how progress is shown on standard error");
+    c->add_option_function<std::string>(
+         "--texture-memory",
+         [&a](const std::string& text) { a.texture_bytes = parse_size("--texture-memory", text); },
+         "most bytes of texture images: 500M, 2G")
+        ->option_text("SIZE");
+    add_film_options(c, a.film);
+    c->add_option_function<std::string>(
+         "--max-memory",
+         [&a](const std::string& text) { a.max_memory = parse_size("--max-memory", text); },
+         "refuse renders that need more than 500M, 2G")
+        ->option_text("SIZE");
+    c->add_option_function<std::string>(
+         "--debug-pixel",
+         [&a](const std::string& text) { a.debug_pixel = parse_sample("--debug-pixel", text); },
+         "trace this one sample and tell its path")
+        ->option_text("x,y,sample");
+    c->add_option("--stats", a.stats, "counters, phase times and memory as JSON")
+        ->option_text("FILE");
+    c->add_flag("--reproducible", a.reproducible, "write no command, seconds and date");
+    c->add_flag("--quiet", a.quiet, "errors only");
+}
+
+}  // namespace covtrace::cli

@@ -1,0 +1,41 @@
+/// The options of `covtrace render`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/film_options.h"
+#include "cli/layer_selection.h"
+#include "cli/progress_line.h"
+#include "cli/values.h"
+#include "image/layer_names.h"
+#include "render/options.h"
+#include "shading/texture.h"
+
+namespace covtrace::cli {
+
+inline constexpr size_t kNoMemoryLimit = std::numeric_limits<size_t>::max();
+
+struct RenderArguments {
+    std::string scene, output, png, stats, isa;
+    std::string seconds, resolution, crop, shutter, tev;
+    FilmArguments film;
+    std::optional<DebugPixel> debug_pixel;
+    LayerSelection layers{true, {}}, tev_layers;
+    LayerNames layer_names = LayerNames::standard;
+    size_t texture_bytes = kNoTextureLimit, max_memory = kNoMemoryLimit;
+    std::vector<std::string> search_paths;
+    RenderOptions options;
+    SceneOverrides overrides;
+    ProgressStyle progress = ProgressStyle::automatic;
+    int threads = 0;
+    bool reproducible = false, quiet = false;
+};
+
+/// Adds them to the command; `arguments` must outlive the parser.
+void add_render_options(CLI::App* command, RenderArguments& arguments);
+
+}  // namespace covtrace::cli

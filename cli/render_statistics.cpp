@@ -1,0 +1,58 @@
+#include "cli/render_statistics.h"
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace covtrace::cli {
+
+namespace {
+
+/// Bytes by what they are for, and the most that the process ever had in memory.
+nlohmann::json memory_json(const RenderScene& scene, const RenderResult& result) {
+    nlohmann::json memory = scene.memory();
+    memory.update(nlohmann::json(result.statistics.memory));
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    memory["peak_resident"] = int64_t(usage.ru_maxrss) * 1024;
+    return memory;
+}
+
+}  // namespace
+
+nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& result,
+                               const Monitor& monitor) {
+    const auto pass = [](const PassStatistics& s) {
+        nlohmann::json rejected = nlohmann::json::array();
+        for (const RejectedSample& r : s.first_rejected) rejected.push_back({r.x, r.y, r.sample});
+        const RayCounts& r = s.rays;
+        auto longest = s.lengths.size();
+        while (longest > 0 && s.lengths[longest - 1] == 0) --longest;
+        const auto per_path = [&s](uint64_t n) {
+            return s.samples > 0 ? double(n) / double(s.samples) : 0.0;
+        };
+        return nlohmann::json{
+            {"samples", s.samples},
+            {"rays", r.camera + r.bounce + r.shadow},
+            {"rays_per_path", per_path(r.camera + r.bounce + r.shadow)},
+            {"camera_rays", r.camera},
+            {"bounce_rays", r.bounce},
+            {"shadow_rays", r.shadow},
+            {"vertices", s.vertices},
+            {"vertices_per_path", per_path(s.vertices)},
+            {"path_lengths", std::vector(s.lengths.begin(), s.lengths.begin() + long(longest))},
+            {"black_paths", s.black_paths},
+            {"rejected", s.rejected},
+            {"first_rejected", rejected}};
+    };
+    return {{"seconds_total", monitor.elapsed()},
+            {"seconds", result.statistics.seconds},
+            {"memory", memory_json(scene, result)},
+            {"spp", result.statistics.samples_per_pixel},
+            {"covariance", pass(result.statistics.covariance)},
+            {"radiance", pass(result.statistics.radiance)},
+            {"complete", result.complete}};
+}
+
+}  // namespace covtrace::cli

@@ -1,0 +1,13 @@
+/// What `render --stats` writes.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "render/session.h"
+
+namespace covtrace::cli {
+
+nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& result,
+                               const Monitor& monitor);
+
+}  // namespace covtrace::cli

@@ -1,0 +1,95 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "planner/density.h"
+#include "reconstruction/filter_field.h"
+#include "render/develop.h"
+#include "render/job.h"
+
+namespace covtrace {
+
+namespace {
+
+class CovarianceRender {
+  public:
+    explicit CovarianceRender(RenderJob& job) : job_(job), s_(job.state) {
+        if (s_.stage == Stage::rounds) return;
+        const PhaseTimer timer(job.monitor, job.phase("spectra"));
+        job.scene.prepare_spectra();
+        occluders_.emplace(job);
+    }
+
+    void run() {
+        trace_rounds(job_, {[this] { return plan(); }, [this] { trace(); }});
+        if (!job_.delivers()) return;
+        job_.monitor.update("reconstruction", RenderJob::kTracingShare, s_.mean_count());
+        const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
+        job_.result.image = develop(s_);
+    }
+
+  private:
+    bool plan() {
+        if (s_.stage != Stage::rounds) {
+            std::vector<uint32_t> counts = job_.even_counts(s_.covariance_spp);
+            if (s_.stage == Stage::first_paths)
+                for (uint32_t& c : counts) c = std::min(c, 1u);
+            s_.plan = {std::move(counts)};
+            s_.target = s_.stage == Stage::first_paths ? std::min(1.0, s_.covariance_spp)
+                                                       : s_.covariance_spp;
+            return true;
+        }
+        if (!prediction_) {
+            const PhaseTimer timer(job_.monitor, job_.phase("plan"));
+            const double start = job_.monitor.elapsed();
+            prediction_ = preintegrate(smooth(merge(*s_.parts)));
+            job_.reserve(6 * (job_.monitor.elapsed() - start));
+        }
+        const double end = round_end(s_.taken), target = job_.plan_round(end);
+        if (!(target > s_.taken)) return false;
+        const PhaseTimer timer(job_.monitor, job_.phase("plan"));
+        // The filters that the whole round leads to: a budget must not change what it begins with.
+        const FilterSettings settings = filter_settings(end);
+        std::vector<float> density =
+            relative_density(*prediction_, job_.options.density, settings.c, settings.limits);
+        std::vector<uint32_t> have(s_.pixels());
+        for (size_t i = 0; i < have.size(); ++i) have[i] = s_.films[0].pixels[i].count;
+        std::vector<uint32_t> counts =
+            allocate(density, std::llround(target * double(job_.pixels())), have,
+                     uint32_t(std::clamp(job_.most_samples(target), 1.0, 4e9)));
+        if (!job_.begin_round(target, {std::move(counts)})) return false;
+        for (float& d : density) d *= float(target);
+        s_.density = std::move(density);
+        return true;
+    }
+
+    void trace() {
+        const bool radiance = s_.stage == Stage::rounds;
+        const char* name = radiance ? "radiance" : "covariance";
+        const PhaseTimer timer(job_.monitor, job_.phase(name));
+        const PassProgress progress = job_.reporter(name, s_.taken, s_.target);
+        auto& statistics = job_.result.statistics;
+        if (radiance)
+            job_.counted(statistics.radiance, radiance_pass(job_.context, s_.films[0], s_.plan[0],
+                                                            job_.monitor, progress));
+        else
+            job_.counted(statistics.covariance,
+                         covariance_pass(job_.context, occluders_->view(),
+                                         job_.options.brdf_covariance, s_.films[0], s_.plan[0],
+                                         {*s_.parts, {}, s_.weight_limit.value_or(kInfinity)},
+                                         job_.monitor, progress));
+    }
+
+    RenderJob& job_;
+    RenderState& s_;
+    std::optional<SceneOccluders> occluders_;  // while covariance paths are traced
+    std::optional<Prediction> prediction_;     // from their end on
+};
+
+}  // namespace
+
+void render_covariance(RenderJob& job) {
+    CovarianceRender(job).run();
+}
+
+}  // namespace covtrace

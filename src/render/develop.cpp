@@ -1,0 +1,120 @@
+#include "render/develop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "reconstruction/gather.h"
+#include "render/hybrid_film.h"
+#include "render/layers.h"
+
+namespace covtrace {
+
+namespace {
+
+FilterField predicted_filters(FilterRule rule, const CovarianceBuffer& buffer,
+                              const FilterSettings& settings) {
+    const Prediction p = preintegrate(smooth(buffer));
+    return filter_field(p.spectrum, p.width, p.height, rule, settings);
+}
+
+/// The sizes of filters where the buffer knows light, at least `smallest`; infinite elsewhere.
+std::vector<float> known_sizes(const FilterField& field, const CovarianceBuffer& buffer,
+                               float smallest) {
+    std::vector<float> sizes(field.covariance.size(), kInfinity);
+    for (size_t i = 0; i < sizes.size(); ++i)
+        if (buffer.weight[i] > 0)
+            sizes[i] = std::max(smallest, covariance::filter_size(field.covariance[i]));
+    return sizes;
+}
+
+/// What the last plan wanted; before the first one what all pixels have.
+std::vector<float> density_layer(const RenderState& state) {
+    if (!state.density.empty()) return state.density;
+    return std::vector<float>(state.pixels(), float(state.mean_count()));
+}
+
+Image gathered_image(const RenderState& state) {
+    const Film& film = state.films[0];
+    const CovarianceBuffers& buffers = *state.parts;
+    const double taken = film.mean_count();
+    const FilterSettings settings = filter_settings(taken),
+                         settings_in_view = filter_settings_in_view(taken);
+    FilterField field = predicted_filters(state.filter, buffers.scattered, settings);
+    FilterField in_view_field = predicted_filters(state.filter, buffers.in_view, settings_in_view);
+    if (state.filter == FilterRule::verified) {
+        // The border between a surface and the sky behind it is known to the light that passes
+        // beside it: the surface where the sky has no detail, the sky where the surface has none.
+        const auto beside_scattered =
+            known_sizes(in_view_field, buffers.in_view, settings.limits.s_min);
+        limit_by_neighbours(field, settings, beside_scattered);
+        limit_by_neighbours(in_view_field, settings_in_view,
+                            known_sizes(field, buffers.scattered, 0));
+    }
+    const bool emitters_found =
+        std::any_of(buffers.in_view.weight.begin(), buffers.in_view.weight.end(),
+                    [](float w) { return w > 0; });
+    std::vector<Rgb> scattered(film.pixels.size()), in_view = film.in_view;
+    std::vector<float> variance(film.pixels.size());
+    std::vector<uint32_t> count(film.pixels.size());
+    for (size_t i = 0; i < scattered.size(); ++i) {
+        const FilmPixel& pixel = film.pixels[i];
+        scattered[i] = pixel.mean - in_view[i];
+        const Rgb v = pixel.variance_of_mean();
+        variance[i] = sqr(luminance({std::sqrt(v.r), std::sqrt(v.g), std::sqrt(v.b)}));
+        count[i] = pixel.count;
+    }
+    GatheredImage gathered = gather(scattered, variance, count, field);
+    // Where no covariance path met an emitter nothing is known of them: they stay as they are.
+    if (emitters_found) in_view = gather(in_view, variance, count, in_view_field).color;
+    for (size_t i = 0; i < scattered.size(); ++i) gathered.color[i] += in_view[i];
+    const CovarianceBuffer all = merge(buffers);
+    const Prediction raw = preintegrate(all);
+    return make_layers(film, state.display, state.has_holes,
+                       CovarianceLayers{all, raw, density_layer(state), field, gathered,
+                                        emitters_found ? &buffers.scattered : nullptr,
+                                        emitters_found ? &in_view_field : nullptr});
+}
+
+Image mixed_image(const RenderState& state, const HybridImage& mixed) {
+    GatheredImage delivered{std::vector<Rgb>(state.pixels()), mixed.variance.values};
+    for (size_t i = 0; i < state.pixels(); ++i)
+        delivered.color[i] = {mixed.color[0][i], mixed.color[1][i], mixed.color[2][i]};
+    const CovarianceBuffer all = state.covariance();
+    const Prediction raw = preintegrate(all), smoothed = preintegrate(smooth(all));
+    const FilterField field =
+        filter_field(smoothed.spectrum, state.region.width(), state.region.height(),
+                     FilterRule::verified, filter_settings(state.mean_count()));
+    return make_layers(whole_film(state), state.display, state.has_holes,
+                       CovarianceLayers{all, raw, density_layer(state), field, delivered});
+}
+
+Image layers_of(const RenderState& state, const HybridImage* reconstructed) {
+    switch (state.method) {
+        case Method::uniform:
+            return make_layers(state.films[0], state.display, state.has_holes, std::nullopt);
+        case Method::covariance:
+            return gathered_image(state);
+        case Method::hybrid:
+            break;
+    }
+    if (reconstructed) return mixed_image(state, *reconstructed);
+    const Prediction prediction = preintegrate(smooth(state.covariance()));
+    return mixed_image(state, reconstruct(halves_of(state.films), prediction.spectrum));
+}
+
+}  // namespace
+
+Film whole_film(const RenderState& state) {
+    return state.films.size() == 1 ? state.films[0] : merged(state.films);
+}
+
+Image develop(const RenderState& state, const HybridImage* reconstructed) {
+    Image image = layers_of(state, reconstructed);
+    image.metadata = state.metadata;
+    image.metadata["spp"] = static_cast<float>(state.mean_count());
+    image.metadata["complete"] = state.complete ? 1 : 0;
+    return image;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,49 @@
+/// The arrays that a film file holds, in their order.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "render/render_state.h"
+
+namespace covtrace {
+
+/// One record per pixel, row by row; all their fields are 4 bytes.
+struct FilmArray {
+    std::string name;
+    void* records = nullptr;
+    size_t record_size = 0;  ///< bytes
+    size_t count = 0;
+};
+
+/// Those that the state has, as it is.
+inline std::vector<FilmArray> film_arrays(RenderState& state) {
+    std::vector<FilmArray> arrays;
+    const auto add = [&](const std::string& name, auto& values) {
+        if (!values.empty())
+            arrays.push_back({name, values.data(), sizeof values[0], values.size()});
+    };
+    const auto add_buffer = [&](const std::string& name, CovarianceBuffer& buffer) {
+        add(name + ".covariance", buffer.covariance);
+        add(name + ".weight", buffer.weight);
+    };
+    for (size_t k = 0; k < state.films.size(); ++k) {
+        const std::string film = "film" + std::to_string(k);
+        add(film + ".pixels", state.films[k].pixels);
+        add(film + ".in_view", state.films[k].in_view);
+        add(film + ".feature_squares", state.films[k].feature_squares);
+        add(film + ".rays", state.films[k].rays);
+        if (state.in_round()) add(film + ".plan", state.plan[k]);
+    }
+    if (state.parts) {
+        add_buffer("scattered", state.parts->scattered);
+        add_buffer("in_view", state.parts->in_view);
+    }
+    if (state.all) add_buffer("all", *state.all);
+    add("density", state.density);
+    return arrays;
+}
+
+}  // namespace covtrace

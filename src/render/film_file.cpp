@@ -1,0 +1,269 @@
+#include "render/film_file.h"
+
+#include <signal.h>
+#include <unistd.h>
+#include <xxhash.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <system_error>
+
+#include "core/parallel.h"
+#include "image/output_file.h"
+#include "render/film_arrays.h"
+#include "render/film_header.h"
+
+namespace covtrace {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<char, 8> kMagic{'\x89', 'C', 'V', 'F', '\r', '\n', '\x1a', '\n'};
+constexpr std::array<char, 8> kEnd{'c', 'v', 'f', ' ', 'e', 'n', 'd', '\n'};
+constexpr uint32_t kFormat = 1;
+constexpr uint32_t kMostHeader = 1 << 20;  // bytes
+constexpr size_t kBlockRecords = 1 << 16;  // pixels in a block
+constexpr size_t kBlocksAtOnce = 32;       // in memory, compressed or being so
+constexpr int kLevel = 1;                  // noise does not compress better at any other
+
+struct BlockHead {
+    uint32_t stored_size;
+    uint32_t raw_size;
+    uint64_t hash;  // XXH3-64 of the stored bytes
+};
+static_assert(sizeof(BlockHead) == 16);
+
+/// A piece of an array.
+struct Block {
+    char* records;
+    size_t record_size, count;
+    size_t raw_size() const { return record_size * count; }
+};
+
+std::vector<Block> blocks_of(const std::vector<FilmArray>& arrays) {
+    std::vector<Block> blocks;
+    for (const FilmArray& a : arrays)
+        for (size_t i = 0; i < a.count; i += kBlockRecords)
+            blocks.push_back({static_cast<char*>(a.records) + i * a.record_size, a.record_size,
+                              std::min(kBlockRecords, a.count - i)});
+    return blocks;
+}
+
+/// Puts the first bytes of all records together, then the second ones …: signs and exponents of
+/// neighbours are alike.
+void shuffle(const Block& b, char* out) {
+    for (size_t byte = 0; byte < b.record_size; ++byte)
+        for (size_t i = 0; i < b.count; ++i) *out++ = b.records[i * b.record_size + byte];
+}
+void unshuffle(const char* in, const Block& b) {
+    for (size_t byte = 0; byte < b.record_size; ++byte)
+        for (size_t i = 0; i < b.count; ++i) b.records[i * b.record_size + byte] = *in++;
+}
+
+struct Compressor {
+    ZSTD_CCtx* context = ZSTD_createCCtx();
+    ~Compressor() { ZSTD_freeCCtx(context); }
+};
+
+std::string compressed(const Block& block) {
+    static thread_local Compressor compressor;
+    std::string raw(block.raw_size(), '\0'), stored(ZSTD_compressBound(raw.size()), '\0');
+    shuffle(block, raw.data());
+    const size_t size = ZSTD_compressCCtx(compressor.context, stored.data(), stored.size(),
+                                          raw.data(), raw.size(), kLevel);
+    if (ZSTD_isError(size))
+        throw Error(ErrorKind::internal,
+                    std::string("cannot compress a film: ") + ZSTD_getErrorName(size));
+    stored.resize(size);
+    return stored;
+}
+
+class FilmReader {
+  public:
+    explicit FilmReader(const fs::path& file) : file_(file), in_(file, std::ios::binary) {
+        if (!in_) fail(std::generic_category().message(errno));
+        std::error_code error;
+        left_ = fs::file_size(file, error);
+        if (error) fail(error.message());
+    }
+
+    RenderState read() {
+        std::array<char, 8> magic{};
+        uint32_t format = 0, header_size = 0;
+        uint64_t header_hash = 0;
+        get(magic.data(), magic.size());
+        if (magic != kMagic) fail("this is no film file");
+        get(&format, sizeof format);
+        if (format != kFormat)
+            fail("a film of format " + std::to_string(format) + "; expected " +
+                 std::to_string(kFormat));
+        get(&header_size, sizeof header_size);
+        get(&header_hash, sizeof header_hash);
+        if (header_size > kMostHeader) fail("the header is damaged");
+        std::string header(header_size, '\0');
+        get(header.data(), header.size());
+        if (XXH3_64bits(header.data(), header.size()) != header_hash) fail("the header is damaged");
+        RenderState state = parsed(header);
+        read_blocks(blocks_of(film_arrays(state)));
+        return state;
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& what) const {
+        throw Error(ErrorKind::scene, file_.string() + ": " + what);
+    }
+
+    void get(void* bytes, size_t count) {
+        if (count > left_) fail("the film ends too early: it is damaged");
+        in_.read(static_cast<char*>(bytes), std::streamsize(count));
+        if (!in_) fail("cannot be read to its end");
+        left_ -= count;
+    }
+
+    RenderState parsed(const std::string& header) const {
+        const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+        // Of a block nothing but zeros may be left, yet its head is there.
+        const double plausible = double(left_) / double(sizeof(BlockHead)) * double(kBlockRecords) *
+                                 double(sizeof(FeatureSquares) + 2 * sizeof(FilmPixel));
+        try {
+            return parse_film_header(header, size_t(std::min(memory, plausible)));
+        } catch (const Error& e) {
+            throw Error(e.kind(), file_.string() + ": " + e.what());
+        }
+    }
+
+    void read_blocks(const std::vector<Block>& blocks) {
+        std::vector<std::string> stored(std::min(kBlocksAtOnce, blocks.size()));
+        std::vector<char> wrong(stored.size());
+        XXH64_hash_t all = 0;
+        for (size_t first = 0; first < blocks.size(); first += stored.size()) {
+            const size_t count = std::min(stored.size(), blocks.size() - first);
+            std::vector<BlockHead> heads(count);
+            for (size_t i = 0; i < count; ++i) {
+                get(&heads[i], sizeof(BlockHead));
+                if (heads[i].raw_size != blocks[first + i].raw_size() ||
+                    heads[i].stored_size > ZSTD_compressBound(heads[i].raw_size))
+                    fail("a block has a size that cannot be: the film is damaged");
+                stored[i].resize(heads[i].stored_size);
+                get(stored[i].data(), stored[i].size());
+                all = XXH3_64bits_withSeed(&heads[i].hash, sizeof heads[i].hash, all);
+            }
+            parallel_for(int64_t(count), [&](int64_t i) {
+                wrong[size_t(i)] =
+                    !expand(stored[size_t(i)], heads[size_t(i)].hash, blocks[first + size_t(i)]);
+            });
+            if (std::find(wrong.begin(), wrong.begin() + long(count), 1) !=
+                wrong.begin() + long(count))
+                fail("the checksum of a block is wrong: the film is damaged");
+        }
+        std::array<char, 8> end{};
+        XXH64_hash_t expected = 0;
+        get(end.data(), end.size());
+        get(&expected, sizeof expected);
+        if (end != kEnd || expected != all || left_ != 0)
+            fail("its end is wrong: the film is damaged");
+    }
+
+    static bool expand(const std::string& stored, uint64_t hash, const Block& block) {
+        if (XXH3_64bits(stored.data(), stored.size()) != hash) return false;
+        std::string raw(block.raw_size(), '\0');
+        if (ZSTD_decompress(raw.data(), raw.size(), stored.data(), stored.size()) != raw.size())
+            return false;
+        unshuffle(raw.data(), block);
+        return true;
+    }
+
+    const fs::path file_;
+    std::ifstream in_;
+    uint64_t left_ = 0;
+};
+
+}  // namespace
+
+fs::path earlier_film(const fs::path& file) {
+    fs::path earlier = file;
+    earlier += ".prev";
+    return earlier;
+}
+
+void write_film(const RenderState& state, const fs::path& file) {
+    OutputFile out(file);
+    const auto put = [&out](const auto& value) { out.write(&value, sizeof value); };
+    const std::string header = film_header(state);
+    put(kMagic);
+    put(kFormat);
+    put(uint32_t(header.size()));
+    put(uint64_t(XXH3_64bits(header.data(), header.size())));
+    out.write(header.data(), header.size());
+
+    const std::vector<Block> blocks = blocks_of(film_arrays(const_cast<RenderState&>(state)));
+    XXH64_hash_t all = 0;
+    for (size_t first = 0; first < blocks.size(); first += kBlocksAtOnce) {
+        const size_t count = std::min(kBlocksAtOnce, blocks.size() - first);
+        std::vector<std::string> stored(count);
+        parallel_for(int64_t(count),
+                     [&](int64_t i) { stored[size_t(i)] = compressed(blocks[first + size_t(i)]); });
+        for (size_t i = 0; i < count; ++i) {
+            const BlockHead head{uint32_t(stored[i].size()), uint32_t(blocks[first + i].raw_size()),
+                                 XXH3_64bits(stored[i].data(), stored[i].size())};
+            put(head);
+            out.write(stored[i].data(), stored[i].size());
+            all = XXH3_64bits_withSeed(&head.hash, sizeof head.hash, all);
+        }
+    }
+    put(kEnd);
+    put(uint64_t(all));
+    out.commit(earlier_film(file));
+}
+
+bool is_film(const fs::path& file) {
+    std::array<char, 8> magic{};
+    std::ifstream in(file, std::ios::binary);
+    return in.read(magic.data(), magic.size()) && magic == kMagic;
+}
+
+RenderState read_film(const fs::path& file) {
+    try {
+        return FilmReader(file).read();
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::limit, file.string() + ": not enough memory for the film");
+    }
+}
+
+FoundFilm find_film(const fs::path& file) {
+    const fs::path earlier = earlier_film(file);
+    std::error_code ignored;
+    const bool has_earlier = fs::exists(earlier, ignored);
+    if (!fs::exists(file, ignored)) {
+        if (!has_earlier) return {};
+        return {read_film(earlier), file.string() + ": does not exist"};
+    }
+    try {
+        return {read_film(file), {}};
+    } catch (const Error& e) {
+        if (e.kind() != ErrorKind::scene || !has_earlier) throw;
+        return {read_film(earlier), e.what()};
+    }
+}
+
+void remove_leftovers(const fs::path& file) {
+    const std::string newer = file.filename().string() + OutputFile::kPartSuffix;
+    const std::string older = earlier_film(file).filename().string() + OutputFile::kPartSuffix;
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with(newer) && !name.starts_with(older)) continue;
+        const long process = std::strtol(name.c_str() + name.rfind('-') + 1, nullptr, 10);
+        if (process > 0 && ::kill(pid_t(process), 0) != 0 && errno == ESRCH)
+            fs::remove(entry.path(), ignored);
+    }
+}
+
+}  // namespace covtrace

@@ -1,0 +1,37 @@
+/// Film files: a render's whole state on disk. docs/film.md describes every byte.
+#pragma once
+
+#include <filesystem>
+
+#include "render/render_state.h"
+
+namespace covtrace {
+
+/// The name that an older film of the same name keeps beside a newer one.
+std::filesystem::path earlier_film(const std::filesystem::path& file);
+
+/// Writes beside and renames (OutputFile): at any moment `file` is the older or the newer film, and
+/// whole. The older one lives on as earlier_film(file). Blocks are compressed in parallel; the
+/// bytes do not depend on the number of threads. Throws Error(io).
+void write_film(const RenderState& state, const std::filesystem::path& file);
+
+/// Whether a file begins as a film does. False where it can't be read.
+bool is_film(const std::filesystem::path& file);
+
+/// Throws Error(scene), whose message begins with the file's name, for what is no film, is damaged
+/// or of another format; Error(limit) for one that this machine's memory can't hold. Whatever the
+/// file says, nothing is allocated before its length makes it plausible.
+RenderState read_film(const std::filesystem::path& file);
+
+/// The film, or the earlier one where it is damaged or missing: `damage` then says why. None where
+/// there is neither.
+struct FoundFilm {
+    std::optional<RenderState> state;
+    std::string damage;  ///< empty: the film itself was read
+};
+FoundFilm find_film(const std::filesystem::path& file);
+
+/// Removes what processes that were killed while they wrote `file` have left beside it.
+void remove_leftovers(const std::filesystem::path& file);
+
+}  // namespace covtrace

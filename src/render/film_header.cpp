@@ -1,0 +1,186 @@
+#include "render/film_header.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "render/film_arrays.h"
+
+namespace covtrace {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array<const char*, 3> kStages{"first_paths", "pilot", "rounds"};
+constexpr std::array<const char*, 2> kFilters{"verified", "thesis"};
+
+json to_json(const PixelBounds& b) {
+    return {b.x0, b.y0, b.x1, b.y1};
+}
+json to_json(const Metadata& metadata) {
+    json object = json::object();
+    for (const auto& [name, value] : metadata)
+        std::visit([&, &key = name](const auto& v) { object[key] = v; }, value);
+    return object;
+}
+json to_json(const std::optional<double>& v) {
+    return v ? json(*v) : json(nullptr);
+}
+
+[[noreturn]] void refuse(const std::string& what) {
+    throw Error(ErrorKind::scene, "the header of the film is wrong: " + what);
+}
+
+PixelBounds bounds(const json& j) {
+    constexpr int kMost = 1 << 24;  // pixels a side
+    const PixelBounds b{j.at(0), j.at(1), j.at(2), j.at(3)};
+    for (int v : {b.x0, b.y0, b.x1, b.y1})
+        if (v < -kMost || v > kMost) refuse("a window of " + j.dump());
+    if (b.empty()) refuse("an empty window");
+    return b;
+}
+
+Metadata metadata(const json& j) {
+    Metadata m;
+    for (const auto& [name, value] : j.items()) {
+        if (value.is_number_integer())
+            m[name] = value.get<int>();
+        else if (value.is_number_float())
+            m[name] = value.get<float>();
+        else if (value.is_string())
+            m[name] = value.get<std::string>();
+        else
+            m[name] = value.get<std::vector<float>>();
+    }
+    return m;
+}
+
+std::optional<double> number(const json& j) {
+    return j.is_null() ? std::nullopt : std::optional(j.get<double>());
+}
+
+template <size_t N>
+size_t choice(const json& j, const std::array<const char*, N>& names) {
+    for (size_t i = 0; i < N; ++i)
+        if (j.get<std::string>() == names[i]) return i;
+    refuse("'" + j.get<std::string>() + "'");
+}
+
+Method method(const json& j) {
+    for (Method m : {Method::uniform, Method::covariance, Method::hybrid})
+        if (j.get<std::string>() == name_of(m)) return m;
+    refuse("the method '" + j.get<std::string>() + "'");
+}
+
+/// Gives a state all arrays that the header names.
+void add_arrays(RenderState& s, const json& arrays) {
+    const auto has = [&](const std::string& name) {
+        return std::any_of(arrays.begin(), arrays.end(),
+                           [&](const json& a) { return a.at("name") == name; });
+    };
+    FilmParts kept = film_parts(s.method);
+    kept.in_view |= has("film0.in_view");
+    for (size_t k = 0; k < (s.method == Method::hybrid ? 2 : 1); ++k) {
+        s.films.emplace_back(s.region, kept);
+        if (has("film0.plan")) s.plan.emplace_back(s.pixels());
+    }
+    if (has("all.weight"))
+        s.all.emplace(s.region.width(), s.region.height());
+    else if (s.method != Method::uniform)
+        s.parts.emplace(s.region.width(), s.region.height());
+    if (has("density")) s.density.resize(s.pixels());
+}
+
+/// Bytes that every pixel needs. Refuses arrays that are not those of the method.
+size_t bytes_per_pixel(RenderState s, const json& arrays) {
+    s.region = {0, 0, 1, 1};
+    add_arrays(s, arrays);
+    const std::vector<FilmArray> expected = film_arrays(s);
+    bool agree = expected.size() == arrays.size();
+    size_t sum = 0;
+    for (size_t i = 0; agree && i < expected.size(); ++i) {
+        agree = arrays[i].at("name") == expected[i].name &&
+                arrays[i].at("record") == expected[i].record_size;
+        sum += expected[i].record_size;
+    }
+    if (!agree) refuse("its arrays are not those of its method and stage");
+    return sum;
+}
+
+RenderState parse(const json& j, size_t most_bytes) {
+    RenderState s;
+    s.identity = j.at("identity").get<RenderIdentity>();
+    s.method = method(j.at("method"));
+    s.filter = FilterRule(choice(j.at("filter"), kFilters));
+    s.region = bounds(j.at("region"));
+    s.display = bounds(j.at("display"));
+    s.has_holes = j.at("has_holes");
+    s.metadata = metadata(j.at("metadata"));
+    s.stage = Stage(choice(j.at("stage"), kStages));
+    s.covariance_spp = j.at("covariance_spp");
+    s.weight_limit = number(j.at("weight_limit"));
+    s.taken = j.at("taken");
+    s.target = j.at("target");
+    s.spp = number(j.at("spp"));
+    s.complete = j.at("complete");
+    s.seconds = j.at("seconds");
+    s.seconds_spp = j.at("seconds_spp");
+    s.rejected = j.at("rejected");
+    for (const json& r : j.at("first_rejected"))
+        s.first_rejected.push_back({r.at(0), r.at(1), r.at(2)});
+    s.shards = j.at("shards");
+    s.present = j.at("present").get<std::vector<int>>();
+    if (s.shards < 1) refuse("the number of shards");
+    for (int k : s.present)
+        if (k < 0 || k >= s.shards) refuse("the shards");
+
+    const json& arrays = j.at("arrays");
+    if (bytes_per_pixel(s, arrays) > most_bytes / s.pixels())
+        throw Error(ErrorKind::limit, "not enough memory for a film of " +
+                                          std::to_string(s.region.width()) + "x" +
+                                          std::to_string(s.region.height()) + " pixels");
+    add_arrays(s, arrays);
+    return s;
+}
+
+}  // namespace
+
+std::string film_header(const RenderState& s) {
+    json arrays = json::array(), rejected = json::array();
+    for (const FilmArray& a : film_arrays(const_cast<RenderState&>(s)))
+        arrays.push_back({{"name", a.name}, {"record", a.record_size}});
+    for (const RejectedSample& r : s.first_rejected) rejected.push_back({r.x, r.y, r.sample});
+    const json j{{"identity", s.identity},
+                 {"method", name_of(s.method)},
+                 {"filter", kFilters[size_t(s.filter)]},
+                 {"region", to_json(s.region)},
+                 {"display", to_json(s.display)},
+                 {"has_holes", s.has_holes},
+                 {"metadata", to_json(s.metadata)},
+                 {"stage", kStages[size_t(s.stage)]},
+                 {"covariance_spp", s.covariance_spp},
+                 {"weight_limit", to_json(s.weight_limit)},
+                 {"taken", s.taken},
+                 {"target", s.target},
+                 {"spp", to_json(s.spp)},
+                 {"complete", s.complete},
+                 {"seconds", s.seconds},
+                 {"seconds_spp", s.seconds_spp},
+                 {"rejected", s.rejected},
+                 {"first_rejected", rejected},
+                 {"shards", s.shards},
+                 {"present", s.present},
+                 {"arrays", arrays}};
+    return j.dump(1);
+}
+
+RenderState parse_film_header(const std::string& text, size_t most_bytes) {
+    try {
+        return parse(json::parse(text), most_bytes);
+    } catch (const json::exception& e) {
+        refuse(e.what());
+    }
+}
+
+}  // namespace covtrace

@@ -1,0 +1,16 @@
+/// The header of a film file: a render's state without its arrays, as JSON.
+#pragma once
+
+#include <string>
+
+#include "render/render_state.h"
+
+namespace covtrace {
+
+std::string film_header(const RenderState& state);
+
+/// A state with arrays of the right size, filled with zeros. `most_bytes` limits them. Throws
+/// Error(scene) for text that is no header, Error(limit) beyond the limit.
+RenderState parse_film_header(const std::string& text, size_t most_bytes);
+
+}  // namespace covtrace

@@ -1,0 +1,226 @@
+#include "render/render_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "render/session.h"
+#include "render/version.h"
+
+namespace covtrace {
+
+namespace {
+
+std::string text(double v) {
+    std::ostringstream out;
+    out << std::setprecision(9) << v;  // tells any two floats apart
+    return out.str();
+}
+std::string text(const PixelBounds& b) {
+    return text(b.x0) + "," + text(b.y0) + "," + text(b.x1) + "," + text(b.y1);
+}
+template <typename T>
+std::string text(const std::optional<T>& v) {
+    return v ? text(double(*v)) : "by default";
+}
+
+std::vector<float> flat(const Matrix4& m) {
+    // OpenEXR's convention: row vectors times matrix.
+    std::vector<float> v;
+    for (size_t c = 0; c < 4; ++c)
+        for (size_t r = 0; r < 4; ++r) v.push_back(static_cast<float>(m.m[r][c]));
+    return v;
+}
+
+std::string scene_hash(const RenderScene& scene) {
+    std::ostringstream out;
+    out << std::hex << std::setw(16) << std::setfill('0') << scene.description.content_hash;
+    return out.str();
+}
+
+/// What any image of the render says of its scene.
+Metadata scene_metadata(const RenderScene& scene, const RenderOptions& options) {
+    Metadata m;
+    m["covtrace:version"] = std::string(kVersion);
+    m["covtrace:commit"] = std::string(kCommit);
+    m["covtrace:seed"] = std::to_string(options.seed);
+    m["covtrace:method"] = std::string(name_of(options.method));
+    m["covtrace:isa"] = scene.geometry.isa();
+    m["covtrace:sceneHash"] = scene_hash(scene);
+    m["worldToCamera"] = flat(scene.camera.world_to_camera());
+    m["worldToNDC"] = flat(scene.camera.world_to_ndc());
+    return m;
+}
+
+/// Covariance paths per pixel. A budget of few samples takes few of them.
+double covariance_paths(const RenderOptions& options, std::optional<double> spp) {
+    constexpr double kHybrid = 2, kFewest = 2, kMost = 4;
+    if (options.method == Method::uniform) return 0;
+    double paths = kHybrid;
+    if (options.cov_spp)
+        paths = *options.cov_spp;
+    else if (options.method == Method::covariance)
+        paths = spp ? std::clamp(std::floor(*spp / 4), kFewest, kMost) : kMost;
+    return spp ? std::min(paths, *spp) : paths;
+}
+
+/// Calls visit(film pixel index) for all pixels of tiles that belong, or don't belong, to the
+/// shard.
+template <typename Visit>
+void for_each_pixel(const PixelBounds& region, const Shard& shard, bool belonging,
+                    const Visit& visit) {
+    const Tiles tiles(region);
+    for (int64_t tile = 0; tile < tiles.count(); ++tile) {
+        if (tiles.belongs_to(tile, shard) != belonging) continue;
+        const PixelBounds b = tiles.bounds(tile);
+        for (int y = b.y0; y < b.y1; ++y)
+            for (int x = b.x0; x < b.x1; ++x)
+                visit(size_t(y - region.y0) * size_t(region.width()) + size_t(x - region.x0));
+    }
+}
+
+template <typename T>
+void clear_at(std::vector<T>& values, size_t i) {
+    if (!values.empty()) values[i] = T{};
+}
+
+}  // namespace
+
+FilmParts film_parts(Method method) {
+    return {.in_view = method == Method::covariance, .features = method == Method::hybrid};
+}
+
+RenderState::RenderState(const RenderScene& scene, const RenderOptions& options)
+    : identity(render_identity(scene, options)),
+      method(options.method),
+      filter(options.filter),
+      region(render_region(scene.description.film)),
+      display{0, 0, scene.description.film.width, scene.description.film.height},
+      has_holes(!scene.lights.has_environment()),
+      metadata(scene_metadata(scene, options)),
+      stage(method == Method::uniform ? Stage::rounds : Stage::first_paths),
+      spp(target_spp(scene.description, options)) {
+    covariance_spp = covariance_paths(options, spp);
+    FilmParts kept = film_parts(method);
+    kept.in_view |= options.emitters_apart;
+    for (int k = 0; k < (method == Method::hybrid ? 2 : 1); ++k) films.emplace_back(region, kept);
+    if (method != Method::uniform) parts.emplace(region.width(), region.height());
+}
+
+bool RenderState::has(size_t k, std::span<const uint32_t> counts, const Shard& shard) const {
+    bool all_of_them = true;
+    for_each_pixel(region, shard, true,
+                   [&](size_t i) { all_of_them &= films[k].pixels[i].count >= counts[i]; });
+    return all_of_them;
+}
+
+bool RenderState::reached(const Shard& shard) const {
+    for (size_t k = 0; k < plan.size(); ++k)
+        if (!has(k, plan[k], shard)) return false;
+    return true;
+}
+
+double RenderState::mean_count() const {
+    double sum = 0;
+    for (const Film& film : films) sum += film.mean_count();
+    return sum;
+}
+
+std::map<std::string, size_t> RenderState::memory() const {
+    std::map<std::string, size_t> bytes;
+    for (const Film& film : films) bytes["film"] += film.memory();
+    for (const auto& counts : plan) bytes["plan"] += counts.size() * sizeof(uint32_t);
+    bytes["plan"] += density.size() * sizeof(float);
+    if (parts) bytes["prediction"] += parts->memory();
+    if (all) bytes["prediction"] += all->memory();
+    return bytes;
+}
+
+void RenderState::keep_only(const Shard& shard) {
+    const auto clear = [&](CovarianceBuffer& buffer, size_t i) {
+        clear_at(buffer.covariance, i);
+        clear_at(buffer.weight, i);
+    };
+    for_each_pixel(region, shard, false, [&](size_t i) {
+        for (Film& film : films) {
+            clear_at(film.pixels, i);
+            clear_at(film.in_view, i);
+            clear_at(film.feature_squares, i);
+            clear_at(film.rays, i);
+        }
+        for (auto& counts : plan) clear_at(counts, i);
+        if (parts) {
+            clear(parts->scattered, i);
+            clear(parts->in_view, i);
+        }
+        if (all) clear(*all, i);
+        clear_at(density, i);
+    });
+}
+
+void finish_round(RenderState& state) {
+    if (state.stage == Stage::first_paths) {
+        state.weight_limit = limit_weights(state.films[0], *state.parts);
+        state.stage = Stage::pilot;
+    } else if (state.stage == Stage::pilot) {
+        if (state.method == Method::hybrid) {
+            state.all = merge(*state.parts);
+            state.parts.reset();
+        }
+        state.stage = Stage::rounds;
+    }
+    state.taken = state.target;
+    state.plan.clear();
+}
+
+RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& options) {
+    const SceneDescription& d = scene.description;
+    RenderIdentity id{
+        {"version", std::string(kVersion) + " (" + std::string(kCommit) + ")"},
+        {"scene", scene_hash(scene)},
+        {"instruction set", scene.geometry.isa()},
+        {"--method", std::string(name_of(options.method))},
+        {"--seed", std::to_string(options.seed)},
+        {"--resolution", text(d.film.width) + "x" + text(d.film.height)},
+        {"--crop", text(render_region(d.film))},
+        {"--max-depth", text(options.max_depth.value_or(d.max_depth))},
+        {"--shutter", text(d.camera.shutter_open) + "," + text(d.camera.shutter_close)},
+        {"--focus", text(d.camera.focal_distance)},
+        {"lens radius (--fstop)", text(d.camera.lens_radius)},
+        {"texture memory (--texture-memory)", text(double(scene.memory().at("textures")))},
+    };
+    id["--max-spp"] = text(options.max_spp);
+    if (options.method == Method::uniform) {
+        id["light of emitters (--layers)"] = options.emitters_apart ? "apart" : "not apart";
+        return id;
+    }
+    id["--cov-spp"] = text(options.cov_spp);
+    id["--brdf-covariance"] = options.brdf_covariance == BrdfCovariance::local ? "local" : "global";
+    id["--occlusion"] = options.occlusion == Occlusion::none   ? "none"
+                        : options.occlusion == Occlusion::grid ? "grid"
+                                                               : "query";
+    if (options.occlusion == Occlusion::grid) id["--voxels"] = text(options.voxels);
+    if (options.method == Method::covariance) {
+        id["--density"] = options.density == DensityRule::tempered ? "tempered" : "thesis";
+        id["--filter"] = options.filter == FilterRule::verified ? "verified" : "thesis";
+    } else {
+        id["--even-counts"] = options.even_counts ? "given" : "not given";
+    }
+    return id;
+}
+
+std::optional<std::string> difference(const RenderIdentity& is, const RenderIdentity& expected) {
+    // What was asked for comes first: it explains the rest.
+    for (const char* first : {"version", "scene", "images", "--method", "--resolution"})
+        if (is.count(first) && expected.count(first) && is.at(first) != expected.at(first))
+            return std::string(first) + ": " + is.at(first) + ", not " + expected.at(first);
+    for (const auto& [name, value] : expected) {
+        const auto it = is.find(name);
+        if (it == is.end()) return name + ": not told, not " + value;
+        if (it->second != value) return name + ": " + it->second + ", not " + value;
+    }
+    return std::nullopt;
+}
+
+}  // namespace covtrace

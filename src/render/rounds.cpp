@@ -1,0 +1,139 @@
+#include <algorithm>
+#include <cmath>
+
+#include "render/develop.h"
+#include "render/job.h"
+#include "render/ranks.h"
+#include "render/round.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Keeps the film when it is time, and sees to it that passes end for it.
+class Checkpoints {
+  public:
+    /// A round that another process began was not planned for this one's time: it ends early where
+    /// that is over.
+    explicit Checkpoints(RenderJob& job)
+        : job_(job), deadline_(job.state.in_round() ? job.tracing_end() : kInfinity) {
+        schedule(0);
+    }
+    ~Checkpoints() { job_.monitor.pause_at(kInfinity); }
+    Checkpoints(const Checkpoints&) = delete;
+    Checkpoints& operator=(const Checkpoints&) = delete;
+
+    bool out_of_time() const { return job_.monitor.elapsed() >= deadline_; }
+    void round_ended() {
+        if (!std::isfinite(deadline_)) return;
+        deadline_ = kInfinity;
+        schedule(0);
+    }
+
+    void keep(KeepReason reason) {
+        const double start = job_.monitor.elapsed();
+        if (job_.keeping.keep) {
+            const PhaseTimer timer(job_.monitor, job_.phase("checkpoint"));
+            job_.keeping.keep(job_.state, reason);
+        }
+        schedule(job_.monitor.elapsed() - start);
+    }
+
+  private:
+    void schedule(double cost) {
+        const double wait = std::max(job_.keeping.interval, cost / job_.keeping.most_share);
+        job_.monitor.pause_at(std::min(deadline_, job_.monitor.elapsed() + wait));
+    }
+    RenderJob& job_;
+    double deadline_;
+};
+
+/// Whether a film is what another process left of the same round of the same shard.
+bool is_same_part(const RenderState& part, const RenderState& s) {
+    return !difference(part.identity, s.identity) && part.shards == s.shards &&
+           part.present == s.present && part.stage == s.stage && part.taken == s.taken &&
+           part.target == s.target && part.plan == s.plan;
+}
+
+/// Once the plan is made, from all pixels, a shard needs its own ones alone.
+void begin_shard(RenderJob& job) {
+    const Shard& shard = job.keeping.shard;
+    if (shard.is_all()) return;
+    RenderState& s = job.state;
+    s.shards = shard.count;
+    s.present = {shard.index};
+    s.keep_only(shard);
+    if (shard.index > 0) {  // what was counted before counts once
+        s.rejected = 0;
+        s.first_rejected.clear();
+    }
+    if (s.in_round() && job.keeping.part && is_same_part(*job.keeping.part, s))
+        s = *job.keeping.part;
+}
+
+void report(RenderJob& job) {
+    RenderState& s = job.state;
+    if (s.films.size() == 1)
+        report_round(job.monitor, s.films[0], s.display, s.has_holes);
+    else if (job.monitor.watched())
+        report_round(job.monitor, whole_film(s), s.display, s.has_holes);
+}
+
+/// Traces the round in progress, in this process and in all that take part.
+void trace(RenderJob& job, const Rounds& rounds) {
+    RenderState& s = job.state;
+    const double start = job.monitor.elapsed(), before = s.mean_count();
+    const uint64_t rejected = s.rejected;
+    rounds.trace();
+    if (const Ranks* ranks = job.keeping.ranks) {
+        ranks->share_pixels(s);
+        s.rejected = rejected + ranks->sum(s.rejected - rejected);
+    }
+    s.seconds += job.monitor.elapsed() - start;
+    s.seconds_spp += s.mean_count() - before;
+}
+
+}  // namespace
+
+double round_end(double taken) {
+    double end = 1;
+    while (end <= taken) end *= 2;
+    return end;
+}
+
+void trace_rounds(RenderJob& job, const Rounds& rounds) {
+    RenderState& s = job.state;
+    const Ranks* ranks = job.keeping.ranks;
+    const auto for_any = [ranks](bool v) { return ranks ? ranks->any(v) : v; };
+    Checkpoints checkpoints(job);
+    if (s.in_round()) begin_shard(job);
+    while (true) {
+        if (!s.in_round()) {
+            if (for_any(job.monitor.cancelled())) break;
+            s.complete = !rounds.plan();
+            begin_shard(job);
+            if (s.complete) break;
+        }
+        trace(job, rounds);
+        if (!s.reached(job.keeping.shard)) {
+            s.complete = for_any(checkpoints.out_of_time());
+            if (for_any(job.monitor.cancelled()) || s.complete) break;
+            checkpoints.keep(KeepReason::checkpoint);
+            continue;
+        }
+        checkpoints.round_ended();
+        job.note_memory();
+        if (!job.keeping.shard.is_all()) break;
+        const bool of_rounds = s.stage == Stage::rounds;
+        finish_round(s);
+        if (of_rounds) report(job);
+    }
+    checkpoints.keep(job.monitor.cancelled() && !s.complete ? KeepReason::interrupted
+                                                            : KeepReason::done);
+    job.note_memory();
+    job.result.statistics.samples_per_pixel = s.mean_count();
+    job.result.statistics.rejected = s.rejected;
+    job.result.statistics.first_rejected = s.first_rejected;
+}
+
+}  // namespace covtrace

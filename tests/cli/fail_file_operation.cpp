@@ -1,0 +1,97 @@
+// Preloaded into the program by test_file_failures.py: lets one operation on a file that is being
+// written fail, or every write be short.
+//   COVTRACE_FAIL_AT=n         the n-th operation fails with EIO (a write with ENOSPC), counted
+//   from 0 COVTRACE_FAIL_COUNT=FILE   the number of operations goes there when the process ends
+//   COVTRACE_SHORT_WRITES=1    each write takes at most 1000 bytes
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+
+namespace {
+
+std::atomic<long> operations{0};
+std::atomic<bool> written[1024];  // by descriptor: opened for writing
+std::atomic<bool> filled[1024];   // and written to: only then does closing it matter
+
+template <typename Function>
+Function next(const char* name) {
+    return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+
+bool fails() {
+    const char* at = std::getenv("COVTRACE_FAIL_AT");
+    return operations++ == (at ? std::atol(at) : -1);
+}
+
+int failure(int error) {
+    errno = error;
+    return -1;
+}
+
+bool is_written(int descriptor) {
+    return descriptor >= 0 && descriptor < 1024 && written[descriptor];
+}
+
+struct Report {
+    ~Report() {
+        if (const char* file = std::getenv("COVTRACE_FAIL_COUNT"))
+            if (std::FILE* out = std::fopen(file, "w")) {
+                std::fprintf(out, "%ld", operations.load());
+                std::fclose(out);
+            }
+    }
+} report;
+
+}  // namespace
+
+extern "C" {
+
+int open(const char* path, int flags, ...) {
+    va_list arguments;
+    va_start(arguments, flags);
+    const mode_t mode = va_arg(arguments, mode_t);
+    va_end(arguments);
+    const bool writes = (flags & O_ACCMODE) != O_RDONLY && (flags & O_CREAT);
+    if (writes && fails()) return failure(EIO);
+    const int descriptor = next<int (*)(const char*, int, ...)>("open")(path, flags, mode);
+    if (descriptor >= 0 && descriptor < 1024) {
+        written[descriptor] = writes;
+        filled[descriptor] = false;
+    }
+    return descriptor;
+}
+
+ssize_t write(int descriptor, const void* bytes, size_t count) {
+    if (is_written(descriptor)) {
+        if (fails()) return failure(ENOSPC);
+        filled[descriptor] = true;
+        if (std::getenv("COVTRACE_SHORT_WRITES")) count = std::min<size_t>(count, 1000);
+    }
+    return next<ssize_t (*)(int, const void*, size_t)>("write")(descriptor, bytes, count);
+}
+
+int fsync(int descriptor) {
+    if (is_written(descriptor) && fails()) return failure(EIO);
+    return next<int (*)(int)>("fsync")(descriptor);
+}
+
+int close(int descriptor) {
+    const bool failing = is_written(descriptor) && filled[descriptor] && fails();
+    if (descriptor >= 0 && descriptor < 1024) written[descriptor] = false;
+    const int result = next<int (*)(int)>("close")(descriptor);
+    return failing ? failure(EIO) : result;
+}
+
+int rename(const char* from, const char* to) {
+    if (fails()) return failure(EIO);
+    return next<int (*)(const char*, const char*)>("rename")(from, to);
+}
+
+}  // extern "C"

@@ -1,0 +1,95 @@
+"""Memory: what films take, and what is refused. Samples that are not finite."""
+
+import json
+import math
+import re
+import unittest
+
+import exr
+from films import METHODS, FilmTest
+from support import DONE, HEADER, LIMIT, USAGE, WORLD
+
+# Close to its light the sphere is brighter than the largest float; elsewhere the film limits it.
+TOO_BRIGHT = HEADER.replace('Film "rgb"', 'Film "rgb" "float maxcomponentvalue" 10') + """\
+WorldBegin
+LightSource "point" "point3 from" [0 0.5 1] "rgb I" [1 1 1] "float scale" 3e38
+Material "diffuse" "rgb reflectance" [.9 .9 .9]
+Shape "sphere" "float radius" 1
+"""
+
+
+class Memory(FilmTest):
+    def test_bytes_per_pixel(self):
+        most = {"uniform": 64, "hybrid": 320}
+        for method in METHODS:
+            for spp in ("2", "16"):
+                with self.subTest(method=method, spp=spp):
+                    self.run_render("moving", method, "--spp", spp, "--stats", "s.json")
+                    memory = json.loads((self.folder / "s.json").read_text())["memory"]
+                    pixel = {name: memory.get(name, 0) / (70 * 50) for name in ("film", "plan", "prediction")}
+                    self.assertLessEqual(pixel["film"] + pixel["plan"], 160 if method == "covariance" else most[method])
+                    if method == "hybrid":
+                        self.assertLessEqual(sum(pixel.values()), most[method])
+                    self.assertGreaterEqual(pixel["film"], 60)
+
+    def test_most_memory(self):
+        for method, size in (("uniform", "100M"), ("covariance", "200M"), ("hybrid", "500M")):
+            with self.subTest(method=method):
+                result = self.run_program(
+                    "render", "plain.pbrt", "-o", "out.exr", "--method", method, "--resolution", "2000x1500", "--max-memory", size
+                )
+                self.assert_fails(result, LIMIT, "--max-memory", "film", "image")
+                parts = re.findall(r" ([0-9.]+)M(?:,|$)", result.stderr.split(": ")[-1].strip())
+                whole = float(re.search(r"needs ([0-9.]+)M", result.stderr)[1])
+                self.assertAlmostEqual(sum(map(float, parts)), whole, delta=0.5)
+                self.assert_no_file()
+        self.run_render("plain", "hybrid", "--max-memory", "4G", "--spp", "1")
+
+    def test_what_is_refused_would_not_have_fit(self):
+        """The estimate is near the most that the process then has in memory."""
+        for method, factor in (("uniform", 1.6), ("covariance", 1.6)):
+            with self.subTest(method=method):
+                size = ["--resolution", "500x400", "--spp", "1", "--max-depth", "1"]
+                self.run_render("plain", method, *size, "--stats", "s.json")
+                peak = json.loads((self.folder / "s.json").read_text())["memory"]["peak_resident"]
+                self.run_render("plain", method, *size, "--max-memory", str(int(factor * peak)))
+                result = self.run_program("render", "plain.pbrt", "-o", "x.exr", "--method", method, *size, "--max-memory", str(int(peak / factor)))
+                self.assert_fails(result, LIMIT, "--max-memory")
+
+
+class NotFinite(FilmTest):
+    def test_counted_located_and_reproducible(self):
+        self.write("bright.pbrt", TOO_BRIGHT)
+        for method in METHODS:
+            with self.subTest(method=method):
+                result = self.run_render("bright", method, "--stats", "s.json", "--film", "a.film")
+                where = re.search(r"(\d+) samples were not finite .*--debug-pixel (\d+,\d+,\d+)", result.stderr)
+                self.assertIsNotNone(where, result)
+                stats = json.loads((self.folder / "s.json").read_text())
+                self.assertEqual(int(where[1]), stats["covariance"]["rejected"] + stats["radiance"]["rejected"])
+                self.assertIn(f"{where[1]} samples, at x,y,sample = ", self.assert_sound("a.film"))
+                image = exr.read(self.folder / "out.exr")
+                for name, values in image.pixels.items():
+                    self.assertTrue(all(map(math.isfinite, values)), name)
+                places = stats["covariance"]["first_rejected"] + stats["radiance"]["first_rejected"]
+                for place in places:
+                    shown = self.run_program("render", "bright.pbrt", "--method", method, "--debug-pixel", ",".join(map(str, place)))
+                    self.assertEqual(shown.code, DONE, shown)
+                    self.assertIn("not finite", shown.stdout)
+                    self.assertIn("vertex 0", shown.stdout)
+
+    def test_finite_samples(self):
+        """The mean of a pixel's samples is the pixel."""
+        self.run_render("plain", "uniform", "--spp", "2")
+        raw = exr.read(self.folder / "out.exr").pixels["raw.G"]
+        for x, y in ((35, 25), (10, 40), (60, 5)):
+            values = []
+            for sample in range(2):
+                shown = self.run_program("render", "plain.pbrt", "--method", "uniform", "--debug-pixel", f"{x},{y},{sample}")
+                values.append(float(re.search(r"radiance [^,]+,([^,]+),", shown.stdout)[1]))
+            self.assertAlmostEqual(sum(values) / 2, raw[y * 70 + x], delta=1e-5 * (1 + abs(sum(values))))
+        self.assert_fails(self.run_program("render", "plain.pbrt", "--debug-pixel", "70,1,0"), USAGE, "70,1")
+
+
+if __name__ == "__main__":
+    unittest.main()

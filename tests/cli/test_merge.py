@@ -1,0 +1,117 @@
+"""Shards: several machines, one image, the bits of one machine."""
+
+import itertools
+import json
+import unittest
+
+from films import METHODS, FilmTest
+from support import DONE, USAGE
+
+SHARDS = 4
+
+
+class Merge(FilmTest):
+    def shard(self, k, scene, method, *arguments, n=SHARDS):
+        self.run_render(
+            scene, method, "--shard", f"{k}/{n}", "--film", f"part-{k}.film", "--checkpoint", "all.film", "--resume",
+            *arguments, output=None,
+        )
+
+    def merge(self, films, *arguments):
+        result = self.run_program("merge", *films, *arguments)
+        self.assertEqual(result.code, DONE, result)
+        return result
+
+    def rounds(self, scene, method, *arguments, n=SHARDS, order=lambda parts: parts):
+        """As the job array of the documentation does it. Returns the rounds it took."""
+        parts = [f"part-{k}.film" for k in range(1, n + 1)]
+        for r in range(1, 20):
+            for k in range(1, n + 1):
+                self.shard(k, scene, method, *arguments, n=n)
+            if "; complete" not in self.merge(order(parts), "--film", "all.film", "--quiet").stdout + self.assert_sound("all.film"):
+                continue
+            self.merge(["all.film"], "-o", "merged.exr")
+            return r
+        self.fail("the rounds do not end")
+
+    def test_rounds_of_shards(self):
+        for method, rounds in (("uniform", 1), ("covariance", 4), ("hybrid", 4)):
+            for scene in ("moving", "sky"):
+                with self.subTest(method=method, scene=scene):
+                    for film in self.folder.glob("*.film*"):
+                        film.unlink()
+                    taken = self.rounds(scene, method, "--spp", "16", order=lambda parts: parts[::-1])
+                    self.assertEqual(taken, rounds)
+                    self.run_render(scene, method, "--spp", "16", output="whole.exr")
+                    self.assert_identical("whole.exr", "merged.exr")
+
+    def test_more_shards_than_tiles(self):
+        self.rounds("plain", "hybrid", "--spp", "4", n=30)
+        self.run_render("plain", "hybrid", "--spp", "4", output="whole.exr")
+        self.assert_identical("whole.exr", "merged.exr")
+
+    def test_all_orders(self):
+        """Of the last round of each method: the same film, byte by byte, and the same image."""
+        for method in METHODS:
+            with self.subTest(method=method):
+                for film in self.folder.glob("*.film*"):
+                    film.unlink()
+                self.rounds("sky", method, "--spp", "8")
+                (self.folder / "all.film").rename(self.folder / "done.film")
+                films = set()
+                parts = [f"part-{k}.film" for k in range(1, SHARDS + 1)]
+                for order in itertools.permutations(parts):
+                    self.merge(order, "--film", "all.film", "--quiet")
+                    films.add((self.folder / "all.film").read_bytes())
+                self.assertEqual(len(films), 1)
+                self.merge([*parts[:2]], "--film", "ab.film")
+                self.merge([*parts[2:]], "--film", "cd.film")
+                self.merge(["cd.film", "ab.film"], "--film", "tree.film", "-o", "tree.exr")
+                self.assertEqual((self.folder / "tree.film").read_bytes(), films.pop())
+                self.run_render("sky", method, "--spp", "8", output="whole.exr")
+                self.assert_identical("whole.exr", "tree.exr")
+
+    def test_a_missing_shard_leaves_a_hole(self):
+        self.shard(1, "plain", "uniform", "--spp", "2")
+        self.shard(3, "plain", "uniform", "--spp", "2")
+        result = self.merge(["part-3.film", "part-1.film"], "-o", "half.exr")
+        self.assertIn("2 of 4 shards", result.stderr)
+        result = self.run_program("info", "half.exr")
+        self.assertRegex(result.stdout, r"complete = 0")
+
+    def test_a_shard_goes_on_from_its_own_film(self):
+        self.shard(1, "plain", "uniform", "--spp", "8")
+        first = (self.folder / "part-1.film").read_bytes()
+        result = self.run_program(
+            "render", "plain.pbrt", "--method", "uniform", "--spp", "8", "--shard", "1/4", "--film", "part-1.film",
+            "--resume", "--stats", "stats.json", "--quiet",
+        )
+        self.assertEqual(result.code, DONE, result)
+        self.assertEqual(json.loads((self.folder / "stats.json").read_text())["radiance"]["samples"], 0)
+        del first
+
+    def test_refused(self):
+        spp = ["--spp", "2"]
+        for k in (1, 2):
+            self.shard(k, "plain", "uniform", *spp)
+        (self.folder / "part-1.film").rename(self.folder / "first.film")
+        self.run_render("plain", "uniform", *spp, "--film", "whole.film")
+        self.run_render("plain", "uniform", "--seed", "7", *spp, "--film", "foreign.film", "--shard", "3/4", output=None)
+        self.run_render("plain", "uniform", "--spp", "3", "--film", "other.film", "--shard", "3/4", output=None)
+        self.run_render("plain", "uniform", *spp, "--film", "third.film", "--shard", "3/5", output=None)
+        for films, fragments in (
+            (["first.film", "first.film"], ["overlaps", "shard 1/4"]),
+            (["whole.film", "whole.film"], ["overlaps"]),
+            (["first.film", "foreign.film"], ["foreign.film", "--seed: 7, not 0"]),
+            (["first.film", "other.film"], ["other.film", "round or budget"]),
+            (["first.film", "third.film"], ["third.film", "5 shards"]),
+        ):
+            with self.subTest(films=films):
+                self.assert_fails(self.run_program("merge", *films, "-o", "out.exr"), USAGE, *fragments)
+        self.assert_fails(self.run_program("merge", "first.film"), USAGE, "--output")
+        result = self.run_program("render", "plain.pbrt", "--method", "uniform", "--checkpoint", "first.film", "--resume")
+        self.assert_fails(result, USAGE, "first.film", "shards")
+
+
+if __name__ == "__main__":
+    unittest.main()

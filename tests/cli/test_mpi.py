@@ -1,0 +1,66 @@
+"""Processes of mpirun: the bits of one process, for any number of them, and after one was killed."""
+
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from films import METHODS, FilmTest
+from support import DONE, PROGRAM
+
+MODULE = pathlib.Path(PROGRAM).resolve().parent / "covtrace_mpi.so"
+MPIRUN = shutil.which("mpirun")
+ENVIRONMENT = {
+    **os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+}
+
+
+@unittest.skipUnless(MPIRUN and MODULE.exists(), "OpenMPI is not installed")
+@unittest.skipIf(os.environ.get("COVTRACE_SANITIZE") == "1", "OpenMPI leaks")
+class Ranks(FilmTest):
+    def command(self, ranks, scene, method, *arguments):
+        return [MPIRUN, "--oversubscribe", "-n", str(ranks), PROGRAM, "render", f"{scene}.pbrt", "--method", method,
+                "-o", "out.exr", "--threads", "1", "--quiet", *arguments]
+
+    def run_ranks(self, *arguments):
+        done = subprocess.run(self.command(*arguments), cwd=self.folder, env=ENVIRONMENT, capture_output=True, timeout=120)
+        self.assertEqual(done.returncode, DONE, done)
+
+    def test_any_number_of_ranks(self):
+        for method in METHODS:
+            self.run_render("sky", method, "--spp", "16", output="whole.exr")
+            for ranks in (2, 4):
+                with self.subTest(method=method, ranks=ranks):
+                    self.run_ranks(ranks, "sky", method, "--spp", "16")
+                    self.assert_identical("whole.exr", "out.exr")
+
+    def test_a_killed_rank_and_the_same_command_again(self):
+        spp = ["--spp", "96", "--checkpoint", "c.film", "--every", "0.1", "--resume"]
+        self.run_render("moving", "hybrid", "--spp", "96", output="whole.exr")
+        for killed in (0, 1):
+            with self.subTest(rank=killed):
+                for old in self.folder.glob("c.film*"):
+                    old.unlink()
+                run = subprocess.Popen(
+                    self.command(2, "moving", "hybrid", *spp), cwd=self.folder, env=ENVIRONMENT,
+                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                )
+                deadline = time.monotonic() + 30
+                while not (self.folder / "c.film").exists() and run.poll() is None and time.monotonic() < deadline:
+                    time.sleep(0.02)
+                for child in pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children").read_text().split():
+                    environment = pathlib.Path(f"/proc/{child}/environ").read_bytes()
+                    if f"OMPI_COMM_WORLD_RANK={killed}\0".encode() in environment:
+                        os.kill(int(child), signal.SIGKILL)
+                self.assertNotEqual(run.wait(timeout=60), DONE)
+                self.assert_sound("c.film")
+                self.run_ranks(2, "moving", "hybrid", *spp)
+                self.assert_identical("whole.exr", "out.exr")
+
+
+if __name__ == "__main__":
+    unittest.main()

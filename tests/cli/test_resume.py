@@ -1,0 +1,204 @@
+"""Checkpoints: a render that was ended, in whatever way and moment, goes on to the same bits."""
+
+import math
+import os
+import re
+import signal
+import subprocess
+import time
+import unittest
+
+import exr
+from films import METHODS, SCENES, FilmTest, render_killed
+from support import DONE, INTERRUPTED, PROGRAM, SCENE, USAGE
+
+KILLS = int(os.environ.get("COVTRACE_KILLS", "3"))  # at least, of each scene and method; the nightly test wants more
+
+
+class Killed(FilmTest):
+    def test_killed_renders_end_the_same(self):
+        for method in METHODS:
+            for i, scene in enumerate(SCENES):
+                with self.subTest(method=method, scene=scene):
+                    spp = ["--spp", "48"]
+                    start = time.monotonic()
+                    self.run_render(scene, method, *spp, output="whole.exr")
+                    seconds = time.monotonic() - start
+                    film = f"{method}-{scene}.film"
+                    arguments = ["render", f"{scene}.pbrt", "--method", method, "-o", "out.exr", *spp, "--quiet",
+                                 "--checkpoint", film, "--every", "0.02", "--resume", "--threads", 1 + i]
+                    kills, renders = 0, 0
+                    while kills < KILLS:
+                        for old in self.folder.glob(film + "*"):
+                            old.unlink()
+                        kills += render_killed(self, self.folder, arguments, f"{method}{scene}{renders}", 0.7 * seconds)
+                        renders += 1
+                        self.assert_identical("whole.exr", "out.exr", f"after {kills} kills, {renders} renders")
+                        self.assertIn("; complete", self.assert_sound(film))
+                        self.assert_no_leftovers()
+
+    def test_something_is_kept_between_two_kills(self):
+        """Killed each time after a while that is too short for the whole, it ends nevertheless."""
+        start = time.monotonic()
+        self.run_render("moving", "hybrid", "--spp", "128", output="whole.exr")
+        seconds = time.monotonic() - start
+        arguments = ["render", "moving.pbrt", "-o", "out.exr", "--spp", "128", "--quiet",
+                     "--checkpoint", "c.film", "--every", "0.02", "--resume"]
+        for _ in range(60):
+            try:
+                done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, timeout=0.6 * seconds, capture_output=True)
+                self.assertEqual(done.returncode, DONE, done)
+                break
+            except subprocess.TimeoutExpired:
+                pass
+        else:
+            self.fail("it never came to its end")
+        self.assert_identical("whole.exr", "out.exr")
+
+
+class Interrupted(FilmTest):
+    def interrupt(self, arguments, number, after):
+        program = subprocess.Popen(
+            [PROGRAM, *arguments, "--progress", "json"], cwd=self.folder, stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        )
+        try:
+            for line in program.stderr:
+                match = re.search(r'"fraction":\s*([0-9.e-]+)', line)
+                if match and float(match[1]) >= after:
+                    break
+            sent = time.monotonic()
+            program.send_signal(number)
+            program.communicate(timeout=60)
+            return program.returncode, time.monotonic() - sent
+        finally:
+            program.kill()
+            program.communicate()
+
+    def test_signals_leave_a_checkpoint_and_an_image(self):
+        for method in METHODS:
+            for number, after in ((signal.SIGINT, 0.001), (signal.SIGTERM, 0.3)):
+                with self.subTest(method=method, signal=number.name):
+                    common = ["render", "moving.pbrt", "--method", method, "--spp", "200", "--checkpoint", "c.film"]
+                    for film in self.folder.glob("c.film*"):
+                        film.unlink()
+                    code, seconds = self.interrupt([*common, "-o", "part.exr"], number, after)
+                    self.assertEqual(code, INTERRUPTED)
+                    self.assertLess(seconds, 3)  # one second, and what a loaded machine adds
+                    image = exr.read(self.folder / "part.exr")
+                    self.assertEqual(image.value("complete"), 0)
+                    self.assertTrue(all(map(math.isfinite, image.pixels["R"])))
+                    self.assertGreater(sum(image.pixels["samples.Y"]), 0)
+                    self.assertIn("not complete", self.assert_sound("c.film"))
+                    self.run_render("moving", method, *common[4:], "--resume")
+                    self.run_render("moving", method, "--spp", "200", output="whole.exr")
+                    self.assert_identical("whole.exr", "out.exr")
+
+
+class MoreSamples(FilmTest):
+    def test_a_finished_film_takes_more_samples(self):
+        """From the end of one round to that of another: as in one call."""
+        for method in METHODS:
+            for first in ("16", "32"):
+                with self.subTest(method=method, first=first):
+                    film = f"{method}{first}.film"
+                    self.run_render("sky", method, "--spp", first, "--film", film)
+                    self.run_render("sky", method, "--spp", "64", "--checkpoint", film, "--resume")
+                    self.run_render("sky", method, "--spp", "64", output="whole.exr")
+                    self.assert_identical("whole.exr", "out.exr")
+                    self.assertAlmostEqual(exr.read(self.folder / "out.exr").value("spp"), 64, delta=0.1)
+
+    def test_any_other_count_is_reached_too(self):
+        for method in METHODS:
+            with self.subTest(method=method):
+                self.run_render("plain", method, "--spp", "3", "--film", f"{method}.film")
+                self.run_render("plain", method, "--spp", "20", "--checkpoint", f"{method}.film", "--resume")
+                image = exr.read(self.folder / "out.exr")
+                self.assertAlmostEqual(image.value("spp"), 20, delta=0.1)
+                self.assertEqual(image.value("complete"), 1)
+
+    def test_the_same_again_gives_the_same_image(self):
+        for method in METHODS:
+            with self.subTest(method=method):
+                film = f"{method}.film"
+                self.run_render("sky", method, "--spp", "12", "--film", film, output="1.exr")
+                self.run_render("sky", method, "--spp", "12", "--checkpoint", film, "--resume", output="2.exr")
+                self.run_program("merge", film, "-o", "3.exr")
+                self.assert_identical("1.exr", "2.exr")
+                self.assert_identical("1.exr", "3.exr")
+
+
+class Refused(FilmTest):
+    def refuse(self, *arguments, scene="plain", code=USAGE, fragments=()):
+        result = self.run_program(
+            "render", f"{scene}.pbrt", "-o", "out.exr", "--checkpoint", "c.film", "--resume", "--quiet", *arguments
+        )
+        self.assert_fails(result, code, *fragments)
+
+    def test_other_renders(self):
+        self.run_render("plain", "covariance", "--spp", "2", "--film", "c.film", "--seed", "5", output="first.exr")
+        same = ["--method", "covariance", "--seed", "5"]
+        for arguments, name in (
+            (["--method", "uniform", "--seed", "5"], "--method"),
+            (["--method", "covariance", "--seed", "6"], "--seed: 5, not 6"),
+            ([*same, "--max-depth", "2"], "--max-depth"),
+            ([*same, "--cov-spp", "3"], "--cov-spp"),
+            ([*same, "--max-spp", "30"], "--max-spp"),
+            ([*same, "--density", "thesis"], "--density"),
+            ([*same, "--filter", "thesis"], "--filter"),
+            ([*same, "--occlusion", "none"], "--occlusion"),
+            ([*same, "--brdf-covariance", "global"], "--brdf-covariance"),
+            ([*same, "--resolution", "64x50"], "--resolution"),
+            ([*same, "--crop", "0,0,20,20"], "--crop"),
+            ([*same, "--focus", "3"], "--focus"),
+            ([*same, "--fstop", "3"], "--fstop"),
+            ([*same, "--shutter", "0,0.5"], "--shutter"),
+            ([*same, "--isa", "sse2"], "instruction set"),
+        ):
+            with self.subTest(arguments=arguments):
+                self.refuse(*arguments, fragments=("c.film", name))
+                self.assert_no_file()
+        self.refuse(*same, scene="sky", fragments=("c.film", "scene: "))
+        for arguments in (["--spp", "3"], ["--threads", "1", "--spp", "2"], ["--png", "x.png", "--spp", "1"], ["--time", "0.5"]):
+            with self.subTest(changed=arguments):
+                self.run_render("plain", "covariance", *same[2:], *arguments, "--checkpoint", "c.film", "--resume")
+
+    def test_damaged_films(self):
+        self.run_render("plain", "uniform", "--spp", "1", "--film", "c.film")
+        film = (self.folder / "c.film").read_bytes()
+        for name, content in {"cut": film[:-30], "changed": film[:3000] + b"x" + film[3001:], "other": b"text"}.items():
+            with self.subTest(name=name):
+                self.write("c.film", content)
+                self.refuse("--method", "uniform", code=SCENE, fragments=("c.film",))
+        self.write("c.film.prev", film)
+        self.run_render("plain", "uniform", "--spp", "1", "--checkpoint", "c.film", "--resume")
+
+    def test_other_images(self):
+        self.run_render("plain", "uniform", "--spp", "1", "--png", "map.png")
+        textured = SCENES["plain"].replace(
+            'Material "diffuse" "rgb reflectance" [.5 .4 .3]',
+            'Texture "map" "spectrum" "imagemap" "string filename" "map.png"\nMaterial "diffuse" "texture reflectance" "map"',
+        )
+        self.write("textured.pbrt", textured)
+        film = ["--spp", "1", "--checkpoint", "t.film", "--resume"]
+        self.run_render("textured", "uniform", *film)
+        self.run_render("textured", "uniform", *film)
+        self.run_render("plain", "uniform", "--spp", "1", "--seed", "3", "--png", "map.png")
+        result = self.run_program("render", "textured.pbrt", "-o", "out.exr", "--method", "uniform", *film, "--quiet")
+        self.assert_fails(result, USAGE, "images: ")
+
+    def test_without_a_checkpoint_it_starts_afresh(self):
+        self.run_render("plain", "hybrid", "--spp", "2", "--checkpoint", "c.film", "--resume")
+        self.run_render("plain", "hybrid", "--spp", "2", output="whole.exr")
+        self.assert_identical("whole.exr", "out.exr")
+
+    def test_options_that_need_others(self):
+        for arguments in (["--resume"], ["--every", "5"], ["--shard", "1/2"], ["--shard", "1/2", "--film", "a", "--png", "b"],
+                          ["--shard", "1/2", "--film", "a", "--time", "5"]):
+            with self.subTest(arguments=arguments):
+                result = self.run_program("render", "plain.pbrt", *arguments)
+                self.assert_fails(result, USAGE, arguments[0])
+
+
+if __name__ == "__main__":
+    unittest.main()

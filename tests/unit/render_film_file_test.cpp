@@ -1,0 +1,225 @@
+// Film files: what is written is read back, and nothing else is.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "core/error.h"
+#include "render/film_arrays.h"
+#include "render/film_file.h"
+#include "render/film_header.h"
+
+namespace covtrace {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FilmFile : public testing::Test {
+  protected:
+    FilmFile() {
+        const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+        folder_ = fs::temp_directory_path() /
+                  ("covtrace-film-" + name + "-" + std::to_string(::getpid()));
+        fs::create_directories(folder_);
+        file_ = folder_ / "a.film";
+    }
+    ~FilmFile() override { fs::remove_all(folder_); }
+
+    static std::string content(const fs::path& file) {
+        std::ifstream in(file, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    void write(const std::string& bytes) const { std::ofstream(file_, std::ios::binary) << bytes; }
+    /// The kind of error that reading gives; none where it succeeds.
+    std::optional<ErrorKind> error() const {
+        try {
+            read_film(file_);
+            return std::nullopt;
+        } catch (const Error& e) {
+            EXPECT_TRUE(std::string(e.what()).starts_with(file_.string())) << e.what();
+            return e.kind();
+        }
+    }
+
+    fs::path folder_, file_;
+};
+
+/// A state with random bits in all of its arrays.
+RenderState random_state(Method method, Stage stage, bool in_round, PixelBounds region) {
+    RenderState s;
+    s.identity = {{"version", "1"}, {"--seed", "18446744073709551615"}, {"scene", "äöü\n\"x\""}};
+    s.method = method;
+    s.region = region;
+    s.display = {0, 0, 4000, 3000};
+    s.has_holes = true;
+    s.metadata = {
+        {"spp", 1.0f}, {"n", 3}, {"text", std::string("t")}, {"m", std::vector{0.1f, 2.f}}};
+    s.stage = stage;
+    s.covariance_spp = 0.1;
+    if (stage != Stage::first_paths) s.weight_limit = 1.0 / 3;
+    s.taken = 1e-300;
+    s.target = 7.1;
+    s.spp = 0.3;
+    s.seconds = 12.125;
+    s.rejected = 1ull << 60;
+    s.first_rejected = {{1, 2, 1ull << 40}};
+    s.shards = 5;
+    s.present = {1, 3};
+    const bool hybrid = method == Method::hybrid;
+    for (int k = 0; k < (hybrid ? 2 : 1); ++k) {
+        s.films.emplace_back(region, film_parts(method));
+        if (in_round) s.plan.emplace_back(s.pixels());
+    }
+    if (hybrid && stage == Stage::rounds)
+        s.all.emplace(region.width(), region.height());
+    else if (method != Method::uniform)
+        s.parts.emplace(region.width(), region.height());
+    if (stage == Stage::rounds && method != Method::uniform) s.density.resize(s.pixels());
+    std::mt19937 bits(17);
+    for (const FilmArray& a : film_arrays(s)) {
+        auto* words = static_cast<uint32_t*>(a.records);
+        for (size_t i = 0; i < a.count * a.record_size / 4; ++i) words[i] = uint32_t(bits());
+    }
+    return s;
+}
+
+void expect_same(RenderState& a, RenderState& b) {
+    EXPECT_EQ(film_header(a), film_header(b));
+    const auto of_a = film_arrays(a), of_b = film_arrays(b);
+    ASSERT_EQ(of_a.size(), of_b.size());
+    for (size_t i = 0; i < of_a.size(); ++i)
+        EXPECT_EQ(
+            std::memcmp(of_a[i].records, of_b[i].records, of_a[i].count * of_a[i].record_size), 0)
+            << of_a[i].name;
+}
+
+TEST_F(FilmFile, KeepsEveryBit) {
+    for (Method method : {Method::uniform, Method::covariance, Method::hybrid})
+        for (Stage stage : {Stage::first_paths, Stage::pilot, Stage::rounds})
+            for (bool in_round : {true, false}) {
+                // Once with two blocks an array.
+                const bool large = method == Method::uniform && in_round && stage == Stage::rounds;
+                RenderState s = random_state(method, stage, in_round,
+                                             {-7, 3, large ? 293 : 20, large ? 233 : 11});
+                write_film(s, file_);
+                EXPECT_TRUE(is_film(file_));
+                RenderState read = read_film(file_);
+                expect_same(s, read);
+                EXPECT_EQ(read.identity, s.identity);
+                EXPECT_EQ(read.metadata, s.metadata);
+                EXPECT_EQ(read.weight_limit, s.weight_limit);
+                EXPECT_EQ(read.first_rejected[0].sample, s.first_rejected[0].sample);
+            }
+}
+
+TEST_F(FilmFile, KeepsTheEarlierOne) {
+    RenderState first = random_state(Method::uniform, Stage::rounds, true, {0, 0, 20, 10});
+    RenderState second = first;
+    second.taken = 5;
+    write_film(first, file_);
+    EXPECT_FALSE(fs::exists(earlier_film(file_)));
+    write_film(second, file_);
+    RenderState is = read_film(file_), was = read_film(earlier_film(file_));
+    expect_same(is, second);
+    expect_same(was, first);
+
+    EXPECT_TRUE(find_film(file_).damage.empty());
+    write("damaged");
+    EXPECT_NE(find_film(file_).damage, "");
+    EXPECT_EQ(find_film(file_).state->taken, first.taken);
+    fs::remove(file_);
+    EXPECT_EQ(find_film(file_).state->taken, first.taken);
+    EXPECT_FALSE(find_film(folder_ / "none.film").state);
+}
+
+TEST_F(FilmFile, AnyChangedByteIsFound) {
+    write_film(random_state(Method::uniform, Stage::rounds, true, {0, 0, 2, 1}), file_);
+    const std::string good = content(file_);
+    for (size_t i = 0; i < good.size(); ++i) {
+        std::string bad = good;
+        bad[i] = char(bad[i] ^ (1 << (i % 8)));
+        write(bad);
+        EXPECT_EQ(error(), ErrorKind::scene) << "byte " << i;
+    }
+}
+
+TEST_F(FilmFile, AnyOtherLengthIsFound) {
+    write_film(random_state(Method::covariance, Stage::rounds, true, {0, 0, 3, 2}), file_);
+    const std::string good = content(file_);
+    for (size_t i = 0; i < good.size(); i += 3) {
+        write(good.substr(0, i));
+        EXPECT_TRUE(error()) << "length " << i;  // scene, or limit: too short for so many pixels
+    }
+    write(good + "x");
+    EXPECT_EQ(error(), ErrorKind::scene);
+    fs::remove(file_);
+    EXPECT_EQ(error(), ErrorKind::scene);
+}
+
+TEST_F(FilmFile, LyingHeadersAllocateNothing) {
+    RenderState s = random_state(Method::hybrid, Stage::pilot, true, {0, 0, 3, 2});
+    s.region = {0, 0, 1 << 24, 1 << 24};
+    const std::string huge = film_header(s);
+    try {
+        parse_film_header(huge, size_t{1} << 34);
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::limit);
+    }
+}
+
+/// Headers with random changes, their checksums right: refused or read, with no other error.
+TEST_F(FilmFile, ChangedHeadersAreRefused) {
+    const std::string good =
+        film_header(random_state(Method::hybrid, Stage::rounds, true, {0, 0, 3, 2}));
+    const std::string pieces[] = {"-1",
+                                  "1e999",
+                                  "null",
+                                  "[]",
+                                  "{}",
+                                  "\"\"",
+                                  "true",
+                                  "0.5",
+                                  "9e18",
+                                  "[[[[",
+                                  "\xff",
+                                  "",
+                                  "18446744073709551616",
+                                  "\"rounds\""};
+    std::mt19937 random(3);
+    const auto below = [&](size_t n) {
+        return std::uniform_int_distribution<size_t>(0, n - 1)(random);
+    };
+    int refused = 0;
+    for (int i = 0; i < 20000; ++i) {
+        std::string text = good;
+        const size_t at = below(text.size());
+        text.replace(at, below(12), pieces[below(std::size(pieces))]);
+        try {
+            parse_film_header(text, 1 << 20);
+        } catch (const Error&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 10000);
+}
+
+TEST(Tiles, EveryTileHasOneOwner) {
+    const Tiles tiles({5, 7, 205, 107});
+    int64_t pixels = 0;
+    for (int64_t t = 0; t < tiles.count(); ++t) {
+        pixels += int64_t(tiles.bounds(t).width()) * tiles.bounds(t).height();
+        int owners = 0;
+        for (int k = 0; k < 6; ++k) owners += tiles.belongs_to(t, {k, 6});
+        EXPECT_EQ(owners, 1);
+    }
+    EXPECT_EQ(pixels, 200 * 100);
+    int64_t sum = 0;
+    for (int k = 0; k < 6; ++k) sum += tiles.count({k, 6});
+    EXPECT_EQ(sum, tiles.count());
+}
+
+}  // namespace
+}  // namespace covtrace
