@@ -37,7 +37,7 @@ class HybridRender {
     void trace() {
         {
             const PhaseTimer timer(job_.monitor, job_.phase("spectra"));
-            job_.scene.prepare_spectra();
+            job_.scene.prepare_spectra(job_.options.texture_bandwidth);
         }
         double taken = trace_pilot();
         if (job_.options.seconds) job_.reserve(reconstruction_time());

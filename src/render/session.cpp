@@ -27,8 +27,11 @@ void trace_round(RenderJob& job, Film& film, std::span<const float> density, dou
     std::vector<uint32_t> have(film.pixels.size());
     for (size_t i = 0; i < have.size(); ++i) have[i] = film.pixels[i].count;
     const double most = job.options.max_spp ? double(*job.options.max_spp) : std::ceil(16 * target);
-    std::vector<uint32_t> counts = allocate(density, std::llround(target * double(job.pixels())),
-                                            have, uint32_t(std::clamp(most, 1.0, 4e9)));
+    const int64_t total = std::llround(target * double(job.pixels()));
+    const auto limit = uint32_t(std::clamp(most, 1.0, 4e9));
+    std::vector<uint32_t> counts = job.options.progressive
+                                       ? allocate_unmet(density, total, have, limit)
+                                       : allocate(density, total, have, limit);
     for (size_t i = 0; i < counts.size(); ++i) counts[i] -= std::min(counts[i], have[i]);
     const double start = job.monitor.elapsed();
     {
@@ -128,7 +131,7 @@ void render_uniform(RenderJob& job) {
 void render_covariance(RenderJob& job) {
     {
         const PhaseTimer timer(job.monitor, job.phase("spectra"));
-        job.scene.prepare_spectra();
+        job.scene.prepare_spectra(job.options.texture_bandwidth);
     }
     Film film(job.region);
     const double spp = job.target_spp.value_or(16);
