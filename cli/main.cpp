@@ -69,6 +69,7 @@ int run(int argc, char** argv) {
     covtrace::cli::add_measure(app, invocation);
     covtrace::cli::add_inspect(app, invocation);
     covtrace::cli::add_info(app, invocation);
+    covtrace::cli::add_reproduce(app, invocation);
     covtrace::cli::add_completion(app, invocation);
     // After the commands, which would inherit it.
     app.footer(

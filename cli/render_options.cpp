@@ -26,6 +26,8 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
     c->add_option("--max-spp", a.options.max_spp, "most samples in a pixel (default: 16 x average)")
         ->check(CLI::Range(1, 1 << 30))
         ->option_text("N");
+    c->add_flag("--progressive", a.options.progressive,
+                "covariance: rounds where most samples are missing");
     c->add_flag("--even-counts", a.options.even_counts, "hybrid: the same count in every pixel");
     add_choice<Occlusion>(
         c, "--occlusion", a.options.occlusion,
@@ -38,6 +40,10 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
         c, "--brdf-covariance", a.options.brdf_covariance,
         {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}},
         "a BRDF's frequencies: at the path, or its peak's");
+    add_choice<TextureBandwidth>(
+        c, "--texture-bandwidth", a.options.texture_bandwidth,
+        {{"own", TextureBandwidth::own}, {"highest", TextureBandwidth::highest}},
+        "textures' frequencies: own, or the image's");
     add_choice<FilterRule>(c, "--filter", a.options.filter,
                            {{"verified", FilterRule::verified}, {"thesis", FilterRule::thesis}},
                            "its constant: verified, or the thesis' eq. 5.7");

@@ -7,9 +7,6 @@
 
 namespace covtrace::viewer {
 
-/// RFC 4648, with padding.
-std::string base64(std::span<const uint8_t> bytes);
-
 /// Lossless but for the payload of NaNs. The values as 16-bit floats where all of them are such,
 /// else as 32-bit floats, little endian; byte k of all values before byte k + 1 of all values
 /// (neighbouring values share their high bytes, so that these compress well); deflated (zlib);

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base64.h"
 #include "core/error.h"
-#include "viewer/encode_plane.h"
 
 namespace covtrace::viewer {
 

@@ -83,8 +83,11 @@ void write_exr(const Image& image, const std::filesystem::path& file, int thread
 /// R, G, B, or Y. Written beside and renamed. Throws Error(io).
 void write_png(const Image& image, const std::filesystem::path& file);
 
-/// 8-bit display values as they are: width * height * 3 bytes, row by row from the top. Written
-/// beside and renamed. Throws Error(io).
+/// A PNG file's bytes from 8-bit display values as they are: width * height * 3 bytes, row by row
+/// from the top.
+std::string encode_png_rgb8(std::span<const uint8_t> rgb, int width, int height);
+
+/// The same into a file, written beside and renamed. Throws Error(io).
 void write_png_rgb8(std::span<const uint8_t> rgb, int width, int height,
                     const std::filesystem::path& file);
 

@@ -60,20 +60,24 @@ bool encode(PngWriter& writer, const uint8_t* rgb, int width, int height) {
 
 }  // namespace
 
-void write_png_rgb8(std::span<const uint8_t> rgb, int width, int height,
-                    const std::filesystem::path& file) {
-    const std::string problem = "cannot write '" + file.string() + "': ";
+std::string encode_png_rgb8(std::span<const uint8_t> rgb, int width, int height) {
     if (width <= 0 || height <= 0 || rgb.size() != size_t(width) * size_t(height) * 3)
-        throw Error(ErrorKind::internal, problem + "the pixels do not match the image's size");
-    // Opened first: a target that cannot be written is no reason to compress.
-    OutputFile output(file);
+        throw Error(ErrorKind::internal, "PNG: the pixels do not match the image's size");
     PngWriter writer;
     writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning);
     writer.info = writer.png ? png_create_info_struct(writer.png) : nullptr;
     if (!writer.info) throw std::bad_alloc();
     if (!encode(writer, rgb.data(), width, height))
-        throw Error(ErrorKind::io, problem + writer.error);
-    output.write(writer.encoded.data(), writer.encoded.size());
+        throw Error(ErrorKind::io, "cannot encode a PNG: " + writer.error);
+    return std::move(writer.encoded);
+}
+
+void write_png_rgb8(std::span<const uint8_t> rgb, int width, int height,
+                    const std::filesystem::path& file) {
+    // Opened first: a target that cannot be written is no reason to compress.
+    OutputFile output(file);
+    const std::string encoded = encode_png_rgb8(rgb, width, height);
+    output.write(encoded.data(), encoded.size());
     output.commit();
 }
 

@@ -26,8 +26,8 @@ RenderScene::RenderScene(SceneDescription scene_description, const std::string& 
     guide = CausticGuide(*this);
 }
 
-void RenderScene::prepare_spectra() {
-    textures.prepare_spectra();
+void RenderScene::prepare_spectra(TextureBandwidth bandwidth) {
+    textures.prepare_spectra(bandwidth);
     lights.prepare_spectra();
 }
 

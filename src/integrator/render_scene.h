@@ -26,7 +26,7 @@ struct RenderScene {
 
     /// What only the frequency analysis needs: spectra of textures and environments. Not
     /// thread-safe.
-    void prepare_spectra();
+    void prepare_spectra(TextureBandwidth bandwidth = TextureBandwidth::own);
 
     /// Bytes held, by what they are for: "meshes", "shapes", "embree" (at its peak), "textures".
     std::map<std::string, size_t> memory() const;

@@ -26,4 +26,12 @@ std::vector<float> relative_density(const Prediction& prediction, DensityRule ru
 std::vector<uint32_t> allocate(std::span<const float> density, int64_t total,
                                std::span<const uint32_t> at_least, uint32_t at_most);
 
+/// The same, but what is left of `total` goes where most is missing. Of the samples that a density
+/// asks for, N = total / pixels * density, a pixel that has n lacks N - n: the largest lacks are
+/// brought down to one level, those below it get nothing. `at_most` is what one call may add to a
+/// pixel, so that repeated calls, in rounds, can go beyond it: the thesis' progressive method
+/// (section 5.1.3), which samples again where the limit of samples left noise.
+std::vector<uint32_t> allocate_unmet(std::span<const float> density, int64_t total,
+                                     std::span<const uint32_t> have, uint32_t at_most);
+
 }  // namespace covtrace

@@ -16,7 +16,7 @@ class CovarianceRender {
     explicit CovarianceRender(RenderJob& job) : job_(job), s_(job.state) {
         if (s_.stage == Stage::rounds) return;
         const PhaseTimer timer(job.monitor, job.phase("spectra"));
-        job.scene.prepare_spectra();
+        job.scene.prepare_spectra(job.options.texture_bandwidth);
         occluders_.emplace(job);
     }
 
@@ -54,9 +54,11 @@ class CovarianceRender {
             relative_density(*prediction_, job_.options.density, settings.c, settings.limits);
         std::vector<uint32_t> have(s_.pixels());
         for (size_t i = 0; i < have.size(); ++i) have[i] = s_.films[0].pixels[i].count;
-        std::vector<uint32_t> counts =
-            allocate(density, std::llround(target * double(job_.pixels())), have,
-                     uint32_t(std::clamp(job_.most_samples(target), 1.0, 4e9)));
+        const int64_t total = std::llround(target * double(job_.pixels()));
+        const auto most = uint32_t(std::clamp(job_.most_samples(target), 1.0, 4e9));
+        std::vector<uint32_t> counts = job_.options.progressive
+                                           ? allocate_unmet(density, total, have, most)
+                                           : allocate(density, total, have, most);
         if (!job_.begin_round(target, {std::move(counts)})) return false;
         for (float& d : density) d *= float(target);
         s_.density = std::move(density);

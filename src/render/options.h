@@ -11,6 +11,7 @@
 #include "image/image.h"
 #include "planner/density.h"
 #include "reconstruction/filter_field.h"
+#include "shading/texture.h"
 
 namespace covtrace {
 
@@ -43,11 +44,15 @@ struct RenderOptions {
     Occlusion occlusion = Occlusion::query;
     int voxels = 200;  ///< width of the grid
     BrdfCovariance brdf_covariance = BrdfCovariance::local;
+    TextureBandwidth texture_bandwidth = TextureBandwidth::own;
     FilterRule filter = FilterRule::verified;
     std::optional<int> max_spp;    ///< most samples in any pixel; default 16 times the average
     std::optional<int> max_depth;  ///< default: the scene's
-    bool even_counts = false;      ///< hybrid: every pixel the same count, for comparisons
-    bool emitters_apart = false;   ///< uniform: keeps the light of emitters in view apart
+    /// covariance: each round traces the pixels that lack most of what the prediction asks for, and
+    /// `max_spp` limits what a pixel gets in one round, not in all.
+    bool progressive = false;
+    bool even_counts = false;  ///< hybrid: every pixel the same count, for comparisons
+    bool emitters_apart = false;  ///< uniform: keeps the light of emitters in view apart
     uint64_t seed = 0;
 };
 

@@ -197,12 +197,15 @@ RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& op
     }
     id["--cov-spp"] = text(options.cov_spp);
     id["--brdf-covariance"] = options.brdf_covariance == BrdfCovariance::local ? "local" : "global";
+    id["--texture-bandwidth"] =
+        options.texture_bandwidth == TextureBandwidth::own ? "own" : "highest";
     id["--occlusion"] = options.occlusion == Occlusion::none   ? "none"
                         : options.occlusion == Occlusion::grid ? "grid"
                                                                : "query";
     if (options.occlusion == Occlusion::grid) id["--voxels"] = text(options.voxels);
     if (options.method == Method::covariance) {
         id["--density"] = options.density == DensityRule::tempered ? "tempered" : "thesis";
+        id["--progressive"] = options.progressive ? "given" : "not given";
         id["--filter"] = options.filter == FilterRule::verified ? "verified" : "thesis";
     } else {
         id["--even-counts"] = options.even_counts ? "given" : "not given";

@@ -166,6 +166,7 @@ struct TextureStore::Impl {
     TextureGraph graph;
     Warnings warnings;
     bool is_prepared = false;
+    TextureBandwidth bandwidth = TextureBandwidth::own;
 };
 
 TextureStore::TextureStore(const SceneDescription& scene, size_t most_bytes)
@@ -206,7 +207,8 @@ Rgb TextureStore::mean(TextureId id) const {
     return {float(sum[0] / count), float(sum[1] / count), float(sum[2] / count)};
 }
 
-void TextureStore::prepare_spectra() {
+void TextureStore::prepare_spectra(TextureBandwidth bandwidth) {
+    impl_->bandwidth = bandwidth;
     if (impl_->is_prepared) return;
     TextureGraph& graph = impl_->graph;
     // One job per distinct image, in parallel: most images are too small to fill the cores alone.
@@ -239,6 +241,7 @@ void TextureStore::prepare_spectra() {
 SpatialCovariance2 TextureStore::uv_covariance(TextureId id, const TexturePoint& at, Vec3 dpdu,
                                                Vec3 dpdv, float footprint_uv) const {
     assert(impl_->is_prepared);
+    if (impl_->bandwidth == TextureBandwidth::highest) return highest_covariance(footprint_uv);
     return covtrace::uv_covariance(impl_->graph, id, at, dpdu, dpdv, footprint_uv);
 }
 

@@ -17,6 +17,12 @@ struct TexturePoint {
     Vec3 position;  ///< world space
 };
 
+/// What the frequency analysis takes textures for.
+enum class TextureBandwidth {
+    own,     ///< what their values show
+    highest  ///< the image's: as if every pixel saw an edge along both axes
+};
+
 /// All textures of a scene, images loaded once per file, encoding and wrap mode. Thread-safe once
 /// constructed and, where covariances are wanted, prepared.
 ///
@@ -49,8 +55,9 @@ class TextureStore {
     /// points.
     Rgb mean(TextureId id) const;
 
-    /// Analyses all images; needed once before `uv_covariance`, and by nothing else.
-    void prepare_spectra();
+    /// Analyses all images; needed before `uv_covariance`, and by nothing else. May be called again
+    /// for another bandwidth.
+    void prepare_spectra(TextureBandwidth bandwidth = TextureBandwidth::own);
     /// Covariance of the texture's amplitude spectrum per unit of the surface's (u, v) around `at`:
     /// edges by their distance (never closer than `footprint_uv`, half a pixel's footprint in uv
     /// units), images by windows of all sizes. Textures that are mapped by position are first

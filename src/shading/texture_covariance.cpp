@@ -135,6 +135,10 @@ struct Analyser {
 
 }  // namespace
 
+SpatialCovariance2 highest_covariance(float footprint_uv) {
+    return edge(0, {1, 0}, footprint_uv) + edge(0, {0, 1}, footprint_uv);
+}
+
 SpatialCovariance2 uv_covariance(const TextureGraph& graph, TextureId id, const TexturePoint& at,
                                  Vec3 dpdu, Vec3 dpdv, float footprint_uv) {
     return Analyser{graph, at, dpdu, dpdv, footprint_uv}.of(id);

@@ -59,6 +59,10 @@ TextureId active_texture(const CheckerboardNode& node, const TexturePoint& at);
 
 Rgb eval(const TextureGraph& graph, TextureId id, const TexturePoint& at);
 
+/// As if an edge along u and one along v went through every point: what TextureBandwidth::highest
+/// takes for every texture.
+SpatialCovariance2 highest_covariance(float footprint_uv);
+
 /// As TextureStore::uv_covariance.
 SpatialCovariance2 uv_covariance(const TextureGraph& graph, TextureId id, const TexturePoint& at,
                                  Vec3 dpdu, Vec3 dpdv, float footprint_uv);

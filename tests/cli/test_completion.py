@@ -9,7 +9,7 @@ import unittest
 
 from support import DONE, USAGE, CliTest
 
-COMMANDS = ["render", "merge", "measure", "compare", "inspect", "info", "completion"]
+COMMANDS = ["render", "merge", "measure", "compare", "inspect", "info", "reproduce", "completion"]
 MANUAL = pathlib.Path(os.environ.get("COVTRACE_SOURCE", pathlib.Path(__file__).parents[2])) / "docs/covtrace.1.in"
 
 

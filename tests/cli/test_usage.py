@@ -12,7 +12,7 @@ class Help(CliTest):
             self.assertLessEqual(len(line), 80, line)
 
     def test_help_goes_to_stdout_and_fits_a_screen(self):
-        for arguments in (["--help"], ["-h"], ["render", "--help"], ["compare", "--help"], ["inspect", "--help"], ["info", "--help"], ["merge", "--help"]):
+        for arguments in (["--help"], ["-h"], ["render", "--help"], ["compare", "--help"], ["inspect", "--help"], ["info", "--help"], ["merge", "--help"], ["reproduce", "--help"]):
             with self.subTest(arguments=arguments):
                 result = self.run_program(*arguments)
                 self.assertEqual(result.code, DONE, result)
@@ -21,7 +21,7 @@ class Help(CliTest):
 
     def test_help_names_commands_and_options(self):
         overview = self.run_program("--help").stdout
-        for command in ("render", "merge", "compare", "inspect", "info", "completion"):
+        for command in ("render", "merge", "compare", "inspect", "info", "reproduce", "completion"):
             self.assertIn(command, overview)
         options = self.run_program("render", "--help").stdout
         for option in (

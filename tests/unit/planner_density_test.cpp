@@ -55,6 +55,42 @@ TEST(Allocate, SpreadsLessThanOneSamplePerPixel) {
             25u);
 }
 
+RC_GTEST_PROP(AllocateUnmet, MeetsTheBudgetAndLevelsWhatIsMissing, ()) {
+    const auto n = *rc::gen::inRange<size_t>(1, 200);
+    std::vector<float> density(n);
+    std::vector<uint32_t> have(n);
+    int64_t taken = 0;
+    double sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+        sum += density[i] = float(*rc::gen::inRange(0, 1000)) * 0.01f + 0.01f;
+        taken += have[i] = uint32_t(*rc::gen::inRange(0, 20));
+    }
+    for (float& d : density) d *= float(double(n) / sum);
+    const int64_t budget = taken + *rc::gen::inRange<int64_t>(0, 3000);
+    const auto counts = allocate_unmet(density, budget, have, 1u << 20);
+    RC_ASSERT(total(counts) == budget);
+    // Nobody who was given anything lacks less than somebody who was not, but for roundings.
+    const auto lack = [&](size_t i) {
+        return double(budget) / double(n) * double(density[i]) - double(counts[i]);
+    };
+    double least_given = 1e30, most_left = -1e30;
+    for (size_t i = 0; i < n; ++i) {
+        RC_ASSERT(counts[i] >= have[i]);
+        most_left = std::max(most_left, lack(i));
+        if (counts[i] > have[i]) least_given = std::min(least_given, lack(i));
+    }
+    RC_ASSERT(least_given >= most_left - 3);
+}
+
+TEST(AllocateUnmet, SamplesOnlyWhereMostIsMissing) {
+    const std::vector<float> density{0.1f, 0.4f, 3.5f};
+    const std::vector<uint32_t> capped{4, 4, 4};
+    // 1, 4 and 35 are asked for: only the last lacks anything.
+    EXPECT_EQ(allocate_unmet(density, 30, capped, 1000), (std::vector<uint32_t>{4, 4, 22}));
+    // But no more than a round may give it, and then the others have their turn.
+    EXPECT_EQ(allocate_unmet(density, 30, capped, 10), (std::vector<uint32_t>{7, 9, 14}));
+}
+
 TEST(RelativeDensity, HasMeanOneAndAnEvenShare) {
     Prediction p{2,
                  2,

@@ -8,6 +8,7 @@
 #include <limits>
 #include <sstream>
 
+#include "core/base64.h"
 #include "viewer/encode_plane.h"
 #include "viewer/report.h"
 

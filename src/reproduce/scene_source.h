@@ -1,0 +1,34 @@
+/// Where the experiments' scenes come from.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+namespace covtrace::reproduce {
+
+namespace fs = std::filesystem;
+
+/// Scenes by name, as folders with a scene.pbrt.
+class SceneSource {
+  public:
+    /// `given`: a folder that holds the generated scenes already; empty: they are made in `made_in`
+    /// by the generator, which comes with the source and is installed with the program.
+    SceneSource(fs::path given, fs::path made_in);
+
+    /// Made once per run, or found in the given folder. Throws Error(scene) where it is not there
+    /// or the generator fails.
+    fs::path generated(const std::string& name);
+    /// A scene that is written here. Throws Error(io).
+    fs::path written(const std::string& name, const std::string& text);
+
+  private:
+    fs::path given_, made_in_;
+    std::set<std::string> made_;
+};
+
+/// scenes/generate.py: beside the installed program (../share/covtrace/scenes), else in the source
+/// that it was built from; empty where neither is there.
+fs::path find_generator();
+
+}  // namespace covtrace::reproduce

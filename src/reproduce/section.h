@@ -1,0 +1,52 @@
+/// What an experiment hands back: what the page shows and results.json holds.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reproduce/drawing.h"
+
+namespace covtrace::reproduce {
+
+struct Figure {
+    std::string name;  ///< of the files figures/NAME.png and .svg
+    std::string caption;
+    Drawing drawing;
+    std::vector<std::string> commands;  ///< that render what it shows
+};
+
+struct Table {
+    std::string caption;
+    std::vector<std::string> columns;
+    std::vector<std::vector<std::string>> rows;
+    std::vector<std::string> commands;
+};
+
+/// A statement that is a number.
+struct Claim {
+    std::string name;  ///< key in results.json
+    std::string statement;
+    std::string thesis;    ///< what the thesis reports, or empty
+    std::string required;  ///< in words, or empty where nothing is
+    std::string found;     ///< in words, with the spread where there is one
+    double value = 0;      ///< the same as one number
+    std::optional<bool> holds;
+    std::string command;  ///< that finds it
+};
+
+struct Section {
+    std::string name, title;
+    std::string thesis;              ///< what the thesis shows
+    std::vector<std::string> notes;  ///< also: what could not be reproduced, and why
+    std::vector<Figure> figures;
+    std::vector<Table> tables;
+    std::vector<Claim> claims;
+    std::vector<std::string> pages;                  ///< files of the viewer beside the page
+    std::string failure;                             ///< why it was not run
+    nlohmann::json data = nlohmann::json::object();  ///< all numbers
+    double cpu = 0, wall = 0;                        ///< seconds it took
+};
+
+}  // namespace covtrace::reproduce

@@ -1,0 +1,241 @@
+#include "reproduce/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "image/compare.h"
+#include "reconstruction/gather.h"
+#include "reproduce/panels.h"
+
+namespace covtrace::reproduce {
+
+namespace {
+
+Breakdown breakdown_of(const Timed& timed, const SceneStudy& study) {
+    const auto& seconds = timed.result.statistics.seconds;
+    // Phases are measured by the clock; their shares of the render's CPU time are taken alike.
+    const double rate = timed.cpu / timed.wall;
+    const auto phase = [&](const char* name) {
+        const auto found = seconds.find(name);
+        return found == seconds.end() ? 0.0 : rate * found->second;
+    };
+    const double pixels = double(study.scene->resolution[0]) * study.scene->resolution[1];
+    const double delivered =
+        study.curve->cpu_per_spp() / pixels * double(timed.result.statistics.covariance.samples);
+    Breakdown b;
+    b.analysis =
+        phase("covariance") - delivered + phase("grid") + phase("outlines") + phase("plan");
+    b.radiance = phase("radiance") + delivered;
+    b.reconstruction = phase("reconstruction");
+    b.total = timed.cpu;
+    return b;
+}
+
+/// The image after the filters that another render applied, `count` samples in every pixel.
+Image filtered(const Image& image, const Image& filters) {
+    const size_t n = image.pixel_count();
+    std::vector<Rgb> scattered(n), in_view(n);
+    for (size_t i = 0; i < n; ++i) {
+        in_view[i] = image.rgb(i, "inview.");
+        scattered[i] = image.rgb(i) - in_view[i];
+    }
+    const std::vector<float> variance(n, 0);
+    const std::vector<uint32_t> count(n, 1);
+    const auto pass = [&](const std::vector<Rgb>& mean, const char* layer) {
+        return gather(mean, variance, count,
+                      {image.width(), image.height(), matrices(filters, layer)})
+            .color;
+    };
+    scattered = pass(scattered, "filter.");
+    if (filters.find("inviewfilter.xx")) in_view = pass(in_view, "inviewfilter.");
+    Image result;
+    result.data = image.data;
+    result.display = image.display;
+    for (int c = 0; c < 3; ++c) {
+        Channel& channel = result.add_channel(std::string(1, "RGB"[c]));
+        for (size_t i = 0; i < n; ++i) channel.values[i] = scattered[i][c] + in_view[i][c];
+    }
+    return result;
+}
+
+/// Error that filters make of an image without noise: one half of the reference is filtered, the
+/// other is what it should be.
+double bias_floor(const Reference& reference, const Image& filters) {
+    const double against =
+        0.5 * (compare(filtered(reference.half(0), filters), reference.half(1)).relmse_trimmed +
+               compare(filtered(reference.half(1), filters), reference.half(0)).relmse_trimmed);
+    return against - reference.noise();
+}
+
+RenderOptions thesis_options(const Workshop& workshop, const ThesisChoices& choices, int cap) {
+    RenderOptions o;
+    o.method = Method::covariance;
+    o.spp = workshop.settings.spp + choices.cov_spp;
+    o.cov_spp = choices.cov_spp;
+    o.max_spp = cap;
+    o.density = DensityRule::thesis;
+    o.filter = FilterRule::thesis;
+    o.occlusion = Occlusion::grid;
+    o.brdf_covariance = BrdfCovariance::global;
+    o.seed = workshop.settings.seeds.front();
+    return o;
+}
+
+double interpolated_error(const UniformCurve& curve, double spp) {
+    const auto& points = curve.points();
+    for (size_t i = 1; i < points.size(); ++i) {
+        if (points[i].spp < spp && i + 1 < points.size()) continue;
+        const auto &a = points[i - 1], &b = points[i];
+        const double t = std::log(spp / a.spp) / std::log(b.spp / a.spp);
+        return a.error * std::pow(std::max(b.error, 1e-9) / a.error, t);
+    }
+    return points.back().error;
+}
+
+}  // namespace
+
+SceneStudy& study(Workshop& workshop, const std::string& name, const ThesisChoices& choices) {
+    return workshop.shared<SceneStudy>("study " + name, [&] {
+        SceneStudy s;
+        s.name = name;
+        s.scene = &shared_scene(workshop, name);
+        s.reference = &shared_reference(workshop, name);
+        for (const Method method : {Method::covariance, Method::hybrid}) {
+            MethodStudy m;
+            m.name = method == Method::covariance ? "covariance" : "hybrid";
+            m.label = m.name;
+            workshop.tell(fmt::format("{}: {}", name, m.name));
+            RenderOptions options;
+            options.method = method;
+            options.spp = workshop.settings.spp;
+            m.ours = sample(workshop, *s.scene, *s.reference, options);
+            if (method == Method::covariance)
+                m.bias_floor = bias_floor(*s.reference, m.ours.first.result.image);
+            s.methods.push_back(std::move(m));
+        }
+        double least_error = s.methods[0].ours.mean_error();
+        for (const MethodStudy& m : s.methods)
+            least_error = std::min(least_error, m.ours.mean_error());
+        s.curve = std::make_unique<UniformCurve>(workshop, *s.scene, *s.reference,
+                                                 workshop.settings.thesis_uniform_spp, least_error,
+                                                 workshop.settings.most_spp);
+        for (MethodStudy& m : s.methods) {
+            workshop.tell(
+                fmt::format("{}: the path tracer at the time and the error of {}", name, m.name));
+            m.breakdown = breakdown_of(m.ours.first, s);
+            m.equal_time =
+                match_time(workshop, *s.scene, *s.reference, *s.curve, m.ours.mean_cpu());
+            m.equal_error =
+                match_error(workshop, *s.scene, *s.reference, *s.curve, m.ours.mean_error());
+        }
+        for (const int cap : choices.caps) {
+            workshop.tell(
+                fmt::format("{}: the thesis' choices, at most {} samples a pixel", name, cap));
+            ThesisStudy t;
+            t.label = fmt::format("thesis' choices, at most {}", cap);
+            t.timed = workshop.render(*s.scene, thesis_options(workshop, choices, cap));
+            t.error = s.reference->error(t.timed.result.image);
+            t.breakdown = breakdown_of(t.timed, s);
+            t.uniform_error_same_time = interpolated_error(*s.curve, s.curve->spp_in(t.timed.cpu));
+            t.uniform_cpu_same_error = s.curve->spp_for(t.error) * s.curve->cpu_per_spp();
+            s.thesis.push_back(std::move(t));
+        }
+        return s;
+    });
+}
+
+Table comparison_table(const SceneStudy& s) {
+    Table t;
+    t.caption = fmt::format(
+        "Trimmed relMSE and CPU seconds (means over the seeds; ratios are the path tracer over "
+        "ours, "
+        "geometric mean with the least and the most). The reference's own error is {:.5f}.",
+        s.reference->own_error());
+    t.columns = {"method",
+                 "samples per pixel",
+                 "seconds",
+                 "error",
+                 "path tracer, same time",
+                 "ratio of errors",
+                 "path tracer, same error",
+                 "ratio of times"};
+    for (const MethodStudy& m : s.methods) {
+        const Sampled& same_time = m.equal_time.uniform;
+        std::vector<std::string> row{
+            m.label,
+            fmt::format("{:.1f}", m.ours.mean_spp()),
+            fmt::format("{:.2f}", m.ours.mean_cpu()),
+            fmt::format("{:.5f}", m.ours.mean_error()),
+            fmt::format("{:.5f} ({:.1f} samples, {:.2f} s)", same_time.mean_error(),
+                        m.equal_time.spp, same_time.mean_cpu()),
+            ratios(same_time.error, m.ours.error).text()};
+        if (m.equal_error.found) {
+            const Sampled& same_error = m.equal_error.uniform;
+            row.push_back(fmt::format("{:.2f} s ({:.1f} samples, error {:.5f})",
+                                      same_error.mean_cpu(), m.equal_error.spp,
+                                      same_error.mean_error()));
+            row.push_back(ratios(same_error.cpu, m.ours.cpu).text());
+        } else {
+            row.insert(row.end(), {"not reached", ""});
+        }
+        t.rows.push_back(std::move(row));
+        t.commands.push_back(m.ours.first.command);
+        t.commands.push_back(same_time.first.command);
+        if (m.equal_error.found) t.commands.push_back(m.equal_error.uniform.first.command);
+    }
+    for (const ThesisStudy& c : s.thesis) {
+        const bool reached = std::isfinite(c.uniform_cpu_same_error);
+        t.rows.push_back(
+            {c.label, fmt::format("{:.1f}", c.timed.result.statistics.samples_per_pixel),
+             fmt::format("{:.2f}", c.timed.cpu), fmt::format("{:.5f}", c.error),
+             fmt::format("{:.5f} (from the rounds)", c.uniform_error_same_time),
+             fmt::format("{:.2f}", c.uniform_error_same_time / c.error),
+             reached ? fmt::format("{:.2f} s (from the rounds)", c.uniform_cpu_same_error)
+                     : "not reached",
+             reached ? fmt::format("{:.2f}", c.uniform_cpu_same_error / c.timed.cpu) : ""});
+        t.commands.push_back(c.timed.command);
+    }
+    return t;
+}
+
+nlohmann::json to_json(const SceneStudy& s) {
+    using nlohmann::json;
+    const auto sampled = [](const Sampled& v) {
+        return json{{"error", v.error}, {"cpu", v.cpu}, {"spp", v.spp}};
+    };
+    const auto parts = [](const Breakdown& b) {
+        return json{{"analysis", b.analysis},
+                    {"radiance", b.radiance},
+                    {"reconstruction", b.reconstruction},
+                    {"total", b.total}};
+    };
+    json j = {{"reference_error", s.reference->own_error()},
+              {"load_cpu", s.scene->load_cpu},
+              {"spectra_cpu", s.scene->spectra_cpu},
+              {"uniform_cpu_per_spp", s.curve->cpu_per_spp()}};
+    for (const UniformCurve::Point& p : s.curve->points())
+        j["uniform"].push_back({{"spp", p.spp}, {"cpu", p.cpu}, {"error", p.error}});
+    for (const MethodStudy& m : s.methods) {
+        json& o = j["methods"][m.name];
+        o = {{"ours", sampled(m.ours)},
+             {"breakdown", parts(m.breakdown)},
+             {"equal_time", sampled(m.equal_time.uniform)},
+             {"equal_time_mismatch", m.equal_time.mismatch}};
+        if (m.bias_floor) o["bias_floor"] = *m.bias_floor;
+        if (m.equal_error.found) {
+            o["equal_error"] = sampled(m.equal_error.uniform);
+            o["equal_error_mismatch"] = m.equal_error.mismatch;
+        }
+    }
+    for (const ThesisStudy& t : s.thesis)
+        j["thesis"].push_back({{"label", t.label},
+                               {"cpu", t.timed.cpu},
+                               {"error", t.error},
+                               {"spp", t.timed.result.statistics.samples_per_pixel},
+                               {"breakdown", parts(t.breakdown)}});
+    return j;
+}
+
+}  // namespace covtrace::reproduce

@@ -1,0 +1,111 @@
+#include "reproduce/thesis.h"
+
+#include <fmt/format.h>
+
+namespace covtrace::reproduce {
+
+namespace {
+
+/// The experiment's own command, that finds the match again.
+std::string search_command(const SceneStudy& study, const Workshop& workshop) {
+    return fmt::format("covtrace reproduce {} -o {}{}", study.name, workshop.output.string(),
+                       workshop.size == Size::full    ? ""
+                       : workshop.size == Size::quick ? " --quick"
+                                                      : " --tiny");
+}
+
+std::string at_least(double least, const Workshop& workshop) {
+    return fmt::format("at least {:g}{}", least,
+                       workshop.size == Size::full ? "" : " at the full size");
+}
+
+}  // namespace
+
+void add_equal_error_claims(Section& section, const SceneStudy& study,
+                            const std::map<std::string, double>& least, const std::string& thesis,
+                            const Workshop& workshop) {
+    for (const MethodStudy& m : study.methods) {
+        const auto required = least.find(m.name);
+        if (required == least.end()) continue;
+        Claim c;
+        c.name = study.name + "_equal_error_" + m.name;
+        c.statement = fmt::format("{}: the path tracer's time over that of {}, at equal error",
+                                  study.name, m.name);
+        c.thesis = thesis;
+        c.required = at_least(required->second, workshop);
+        c.command = search_command(study, workshop);
+        bool above_floor = true;
+        std::string floor;
+        if (m.bias_floor) {
+            above_floor = m.ours.mean_error() > *m.bias_floor;
+            floor = fmt::format("; error {:.5f}, of which the filters' bias makes {:.5f}",
+                                m.ours.mean_error(), *m.bias_floor);
+        }
+        if (m.equal_error.found) {
+            const Spread r = ratios(m.equal_error.uniform.cpu, m.ours.cpu);
+            c.value = r.mean;
+            c.found = r.text() + " times" + floor +
+                      fmt::format("; errors equal within {:.1f} %",
+                                  100 * std::abs(m.equal_error.mismatch));
+        } else {
+            c.value = 0;
+            c.found = fmt::format("more than {:g} samples are not enough for the path tracer{}",
+                                  workshop.settings.most_spp, floor);
+        }
+        if (workshop.size == Size::full)
+            c.holds = (!m.equal_error.found || c.value >= required->second) && above_floor;
+        section.claims.push_back(std::move(c));
+    }
+}
+
+void add_equal_time_claims(Section& section, const SceneStudy& study,
+                           const std::map<std::string, double>& least, const Workshop& workshop) {
+    for (const MethodStudy& m : study.methods) {
+        const auto required = least.find(m.name);
+        if (required == least.end()) continue;
+        const Spread r = ratios(m.equal_time.uniform.error, m.ours.error);
+        Claim c;
+        c.name = study.name + "_equal_time_" + m.name;
+        c.statement = fmt::format("{}: the path tracer's error over that of {}, in equal time",
+                                  study.name, m.name);
+        c.thesis = "shown, without figures";
+        c.required = at_least(required->second, workshop);
+        c.command = search_command(study, workshop);
+        c.value = r.mean;
+        c.found =
+            r.text() + " times" +
+            fmt::format("; times equal within {:.1f} %", 100 * std::abs(m.equal_time.mismatch));
+        if (workshop.size == Size::full) c.holds = r.mean >= required->second;
+        section.claims.push_back(std::move(c));
+    }
+}
+
+void add_share_claims(Section& section, const SceneStudy& study) {
+    const auto share = [](double part, const Breakdown& b) { return 100 * part / b.total; };
+    for (const MethodStudy& m : study.methods) {
+        if (m.name != "covariance") continue;
+        const double analysis = share(m.breakdown.analysis, m.breakdown);
+        const double reconstruction = share(m.breakdown.reconstruction, m.breakdown);
+        std::string thesis_paths;
+        if (!study.thesis.empty())
+            thesis_paths =
+                fmt::format("; with the thesis' {} paths and its grid {:.1f} %",
+                            study.thesis[0].timed.result.statistics.covariance.samples /
+                                uint64_t(study.scene->resolution[0] * study.scene->resolution[1]),
+                            share(study.thesis[0].breakdown.analysis, study.thesis[0].breakdown));
+        section.claims.push_back({study.name + "_analysis_share",
+                                  "analysis (recording, replay, occluders; beyond the radiance "
+                                  "that its paths deliver) of "
+                                  "the total",
+                                  "10 % (2 min 36 s of 25 min, its paths' radiance included)",
+                                  "at most 15 % with the default number of paths",
+                                  fmt::format("{:.1f} %{}", analysis, thesis_paths), analysis,
+                                  analysis <= 15, m.ours.first.command + " --stats FILE.json"});
+        section.claims.push_back(
+            {study.name + "_reconstruction_share", "reconstruction of the total",
+             "1.1 % (16 s of 25 min)", "at most 2 %", fmt::format("{:.2f} %", reconstruction),
+             reconstruction, reconstruction <= 2, m.ours.first.command + " --stats FILE.json"});
+    }
+}
+
+}  // namespace covtrace::reproduce

@@ -1,0 +1,139 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reproduce/experiment.h"
+#include "reproduce/panels.h"
+#include "reproduce/search.h"
+
+namespace covtrace::reproduce {
+
+namespace {
+
+constexpr std::array<int, 5> kWidths{25, 50, 100, 200, 400};
+
+/// Of all pixels, in the logarithm.
+double mean_size(const std::vector<float>& sizes) {
+    double sum = 0;
+    for (const float s : sizes) sum += std::log(double(s));
+    return std::exp(sum / double(sizes.size()));
+}
+
+/// Seconds by the clock that learning of occluders and asking them took.
+double occluder_seconds(const RenderStatistics& s) {
+    double sum = 0;
+    for (const char* phase : {"grid", "outlines", "covariance"})
+        if (const auto found = s.seconds.find(phase); found != s.seconds.end())
+            sum += found->second;
+    return sum;
+}
+
+struct Kind {
+    std::string label;
+    RenderOptions options;
+};
+
+std::vector<Kind> kinds(const Workshop& workshop) {
+    std::vector<Kind> list;
+    RenderOptions o;
+    o.method = Method::covariance;
+    o.spp = workshop.settings.spp;
+    o.occlusion = Occlusion::grid;
+    for (const int width : kWidths) {
+        o.voxels = width;
+        list.push_back({fmt::format("grid {} wide", width), o});
+    }
+    o = {};
+    o.method = Method::covariance;
+    o.spp = workshop.settings.spp;
+    list.push_back({"direct query", o});
+    return list;
+}
+
+}  // namespace
+
+Section voxels(Workshop& workshop) {
+    Section s;
+    s.name = "voxels";
+    s.title = "voxels: the width of the occlusion grid (figure 5.12)";
+    s.thesis =
+        "The thesis compares filters in the shadow of a complex occluder for several widths of its "
+        "voxel grid: a coarse grid sees more occlusion than there is, makes filters small, and "
+        "costs "
+        "samples.";
+    const auto size = workshop.settings.shadows;
+    LoadedScene scene = workshop.load("foliage", workshop.scenes.generated("foliage"), size);
+    const Reference reference(workshop, scene);
+    Sheet sheet(size, 1.5f, 3, 3, {false, true, true});
+    Figure figure{"voxels", "", Drawing(1, 1), {}};
+    Table table{fmt::format("Means over the seeds. The reference's own error is {:.5f}.",
+                            reference.own_error()),
+                {"occlusion", "mean deviation of the filters", "error", "CPU seconds",
+                 "of these, grid or outlines and the covariance pass (clock)", "memory"},
+                {},
+                {}};
+    std::vector<double> grid_error, query_error;
+    std::vector<std::vector<float>> sizes;
+    std::vector<Sampled> sampled;
+    const std::vector<Kind> all = kinds(workshop);
+    for (const Kind& kind : all) {
+        workshop.tell("voxels: " + kind.label);
+        sampled.push_back(sample(workshop, scene, reference, kind.options));
+        const Sampled& r = sampled.back();
+        const RenderStatistics& statistics = r.first.result.statistics;
+        sizes.push_back(sizes_of(matrices(r.first.result.image, "filter.")));
+        const auto memory = statistics.memory.find("occluders");
+        const double bytes = memory == statistics.memory.end() ? 0 : double(memory->second);
+        table.rows.push_back({kind.label, fmt::format("{:.2f} px", mean_size(sizes.back())),
+                              fmt::format("{:.5f}", r.mean_error()),
+                              fmt::format("{:.2f}", r.mean_cpu()),
+                              fmt::format("{:.2f}", occluder_seconds(statistics)),
+                              fmt::format("{:.1f} MB", bytes / 1e6)});
+        table.commands.push_back(r.first.command);
+        s.data["occlusion"].push_back({{"label", kind.label},
+                                       {"filter_size", mean_size(sizes.back())},
+                                       {"error", r.error},
+                                       {"cpu", r.cpu},
+                                       {"occluder_seconds", occluder_seconds(statistics)},
+                                       {"bytes", bytes}});
+    }
+    const ColourMap map = map_for(sizes.back(), "geometric mean deviation of the filter, pixels");
+    sheet.picture(0, 0, "reference", display(reference.mean()));
+    const auto show_filters = [&](int column, size_t kind) {
+        const Image& image = sampled[kind].first.result.image;
+        sheet.picture(column, 0, "filters, " + all[kind].label, display(image, 0.5f));
+        sheet.ellipses(column, 0, matrices(image, "filter."), 26, 2, kOrange);
+    };
+    show_filters(1, 0);
+    show_filters(2, all.size() - 1);
+    for (size_t i = 0; i < all.size(); ++i)
+        sheet.map(int(i % 3), 1 + int(i / 3), all[i].label, sizes[i], map);
+    figure.drawing = sheet.drawing;
+    figure.commands = table.commands;
+    figure.caption = fmt::format(
+        "The soft shadow of 700 leaves and a fence, {:g} samples a pixel. Top: the image, filters "
+        "at "
+        "two standard deviations with the coarsest grid and with the query of the geometry. Below: "
+        "their sizes.",
+        workshop.settings.spp);
+    s.figures.push_back(std::move(figure));
+    s.tables.push_back(std::move(table));
+
+    const Sampled &finest = sampled[kWidths.size() - 1], &query = sampled.back();
+    const Spread r = ratios(query.error, finest.error);
+    s.claims.push_back({"voxels_query",
+                        "the direct query's error is not larger than that of the 400-wide grid", "",
+                        "ratio at most 1 within the spread of the seeds",
+                        fmt::format("{} times; {:.2f} against {:.2f} CPU seconds in all", r.text(),
+                                    query.mean_cpu(), finest.mean_cpu()),
+                        r.mean, r.mean <= 1 || r.least <= 1, s.tables[0].commands.back()});
+    const double coarse = mean_size(sizes.front()), fine = mean_size(sizes[kWidths.size() - 1]);
+    s.claims.push_back({"voxels_coarse_is_small",
+                        "a coarse grid makes filters smaller than a fine one", "shown",
+                        "25 wide against 400 wide: smaller",
+                        fmt::format("{:.2f} px against {:.2f} px", coarse, fine), coarse / fine,
+                        coarse < fine, s.tables[0].commands.front()});
+    return s;
+}
+
+}  // namespace covtrace::reproduce

@@ -1,0 +1,81 @@
+/// What the experiments work with: scenes, renders whose time is taken, and where results go.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/session.h"
+#include "reproduce/scene_source.h"
+#include "reproduce/settings.h"
+
+namespace covtrace::reproduce {
+
+/// User and system seconds of all threads of this process so far.
+double cpu_seconds();
+
+struct Timed {
+    RenderResult result;
+    double cpu = 0, wall = 0;  ///< seconds, the scene being loaded already
+    std::string command;       ///< that renders the same image
+};
+
+/// A scene at one resolution, loaded once.
+struct LoadedScene {
+    std::string name;
+    fs::path file;
+    std::array<int, 2> resolution;
+    std::unique_ptr<RenderScene> scene;
+    double load_cpu = 0;     ///< seconds to read and build it
+    double spectra_cpu = 0;  ///< seconds to analyse its textures and environment, once per scene
+};
+
+class Workshop {
+  public:
+    using Say = std::function<void(const std::string&)>;
+
+    /// `output`: an existing folder.
+    Workshop(Size size, fs::path output, const fs::path& scenes, Say say);
+
+    const Size size;
+    const Settings& settings;
+    const fs::path output;
+    SceneSource scenes;
+
+    /// Tells what is being done; one line.
+    void tell(const std::string& line) const { say_(line); }
+
+    LoadedScene load(const std::string& name, const fs::path& file, std::array<int, 2> resolution);
+    /// Throws Error(interrupted) once interrupt() was called. `watcher`: as Monitor's.
+    Timed render(LoadedScene& scene, const RenderOptions& options,
+                 std::function<void(Monitor&, Image)> watcher = {});
+
+    /// From any thread or signal handler: ends the render that is running and all that follow.
+    void interrupt();
+    bool interrupted() const { return interrupted_; }
+    /// Seconds of rendering so far, scene loading included.
+    double cpu() const { return cpu_seconds() - start_; }
+
+    /// What experiments share: made by `make` at the first call with this key.
+    template <typename T>
+    T& shared(const std::string& key, const std::function<T()>& make) {
+        auto& entry = shared_[key];
+        if (!entry) entry = std::make_shared<T>(make());
+        return *std::static_pointer_cast<T>(entry);
+    }
+
+  private:
+    const Say say_;
+    const double start_;
+    std::atomic<bool> interrupted_{false};
+    std::atomic<Monitor*> running_{nullptr};
+    std::map<std::string, std::shared_ptr<void>> shared_;
+};
+
+/// `covtrace render …` with all options that are not the defaults.
+std::string render_command(const LoadedScene& scene, const RenderOptions& options);
+
+}  // namespace covtrace::reproduce

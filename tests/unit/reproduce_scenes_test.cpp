@@ -1,0 +1,74 @@
+// Scenes of one cause of blur, and where they are found.
+#include "reproduce/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "reproduce/scene_source.h"
+#include "scene/read_scene.h"
+
+namespace covtrace::reproduce {
+namespace {
+
+TEST(LensBoard, IsSharpInTheMiddleAndBlursToBothSides) {
+    const LensBoard board{0.05};
+    EXPECT_LT(board.blur(90, 181), 0.05);
+    EXPECT_GT(board.blur(0, 181), 2);
+    EXPECT_GT(board.blur(180, 181), 2);
+    EXPECT_NEAR(LensBoard{0.1}.blur(20, 181), 2 * board.blur(20, 181), 1e-9);
+    EXPECT_EQ(LensBoard{}.blur(0, 181), 0);
+    const SceneDescription scene = read_pbrt_string(board.text({320, 181}), "lens");
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_FLOAT_EQ(scene.camera.lens_radius, 0.05f);
+}
+
+TEST(MovingBoard, IsReadWithoutAWarning) {
+    const SceneDescription scene = read_pbrt_string(MovingBoard{{0, 0.1}}.text({64, 36}), "motion");
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_EQ(scene.film.width, 64);
+}
+
+TEST(SphereRows, CirclesAreInsideTheImageAndApart) {
+    const SphereRows rows;
+    EXPECT_TRUE(read_pbrt_string(rows.text({300, 135}), "shininess").warnings.empty());
+    double last = -1e9;
+    for (int i = 0; i < int(SphereRows::kExponents.size()); ++i) {
+        const auto [x, y, r] = rows.circle(0, i, {300, 135});
+        EXPECT_GT(x - r, std::max(0.0, last));
+        EXPECT_LT(x + r, 300);
+        EXPECT_GT(y - r, 0);
+        EXPECT_LT(y + r, 0.5 * 135);
+        last = x + r;
+    }
+    EXPECT_DOUBLE_EQ(SphereRows::roughness(64), 0.125);
+}
+
+TEST(SceneSource, NamesAGivenFolderThatLacksAScene) {
+    SceneSource source("/nowhere", std::filesystem::temp_directory_path() / "covtrace-scenes");
+    try {
+        source.generated("snooker");
+        FAIL() << "expected an error";
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::scene);
+        EXPECT_NE(std::string(e.what()).find("/nowhere/snooker/scene.pbrt"), std::string::npos);
+    }
+}
+
+TEST(SceneSource, SaysWhyTheGeneratorFailed) {
+    const auto folder = std::filesystem::temp_directory_path() / "covtrace-scenes";
+    SceneSource source({}, folder);
+    try {
+        source.generated("no-such-scene");
+        FAIL() << "expected an error";
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::scene);
+        EXPECT_NE(std::string(e.what()).find("unknown scene 'no-such-scene'"), std::string::npos)
+            << e.what();
+    }
+    std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace covtrace::reproduce
