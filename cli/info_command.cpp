@@ -5,7 +5,7 @@
 
 #include "cli/commands.h"
 #include "image/image.h"
-#include "scene/read_scene.h"
+#include "render/scene_file.h"
 #include "scene/summary.h"
 
 namespace covtrace::cli {
@@ -13,13 +13,12 @@ namespace covtrace::cli {
 void add_info(CLI::App& app, Invocation& invocation) {
     auto file = std::make_shared<std::string>();
     CLI::App* c = app.add_subcommand("info", "Tell what a scene or an image holds");
-    c->add_option("FILE", *file, "a pbrt-v4 scene or an image")->required()->option_text(" ");
+    c->add_option("FILE", *file, "a scene or an image")->required()->option_text(" ");
     c->callback([file, &invocation] {
         invocation.action = [file] {
             const std::filesystem::path path = *file;
-            const bool is_scene =
-                path.extension() == ".pbrt" || path.string().ends_with(".pbrt.gz");
-            fmt::print("{}", is_scene ? summarize(read_pbrt(path)) : describe(read_image(path)));
+            fmt::print("{}", is_scene_file(path) ? summarize(read_scene_file(path))
+                                                 : describe(read_image(path)));
             return 0;
         };
     });

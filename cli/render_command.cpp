@@ -21,9 +21,9 @@
 #include "image/layer_names.h"
 #include "image/output_file.h"
 #include "preview/tev_client.h"
+#include "render/scene_file.h"
 #include "render/session.h"
 #include "render/version.h"
-#include "scene/read_scene.h"
 
 namespace covtrace::cli {
 
@@ -185,8 +185,8 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
     progress.begin();
     const InterruptGuard guard(monitor);
 
-    SceneDescription description =
-        read_pbrt(a.scene, {{a.search_paths.begin(), a.search_paths.end()}});
+    SceneDescription description = read_scene_file(
+        a.scene, {{a.search_paths.begin(), a.search_paths.end()}, a.overrides.shutter});
     const double loaded = monitor.elapsed();
     apply(a.overrides, description);
     const fs::path output = output_path(a, description);
@@ -259,8 +259,10 @@ void add_layers(CLI::App* c, const std::string& name, LayerSelection& selection,
 
 void add_render(CLI::App& app, Invocation& invocation) {
     auto a = std::make_shared<RenderArguments>();
-    CLI::App* c = app.add_subcommand("render", "Render a pbrt-v4 scene into an EXR with layers");
-    c->add_option("SCENE", a->scene, "the scene, a pbrt-v4 file")->required()->option_text(" ");
+    CLI::App* c = app.add_subcommand("render", "Render a scene into an EXR with layers");
+    c->add_option("SCENE", a->scene, "the scene: a pbrt-v4 or glTF 2.0 file")
+        ->required()
+        ->option_text(" ");
     c->add_option("-o,--output", a->output, "the image (default: the film's name or SCENE.exr)")
         ->option_text("FILE");
     add_choice<Method>(c, "--method", a->options.method,
