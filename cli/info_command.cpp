@@ -6,7 +6,7 @@
 #include "cli/commands.h"
 #include "image/image.h"
 #include "render/film_file.h"
-#include "scene/read_scene.h"
+#include "render/scene_file.h"
 #include "scene/summary.h"
 
 namespace covtrace::cli {
@@ -14,19 +14,16 @@ namespace covtrace::cli {
 void add_info(CLI::App& app, Invocation& invocation) {
     auto file = std::make_shared<std::string>();
     CLI::App* c = app.add_subcommand("info", "Tell what a scene, image or film holds");
-    c->add_option("FILE", *file, "a pbrt-v4 scene, an image or a film")
-        ->required()
-        ->option_text(" ");
+    c->add_option("FILE", *file, "a scene, an image or a film")->required()->option_text(" ");
     c->callback([file, &invocation] {
         invocation.action = [file] {
             const std::filesystem::path path = *file;
-            const bool is_scene =
-                path.extension() == ".pbrt" || path.string().ends_with(".pbrt.gz");
             if (is_film(path)) {
                 fmt::print("{}", describe(read_film(path)));
                 return 0;
             }
-            fmt::print("{}", is_scene ? summarize(read_pbrt(path)) : describe(read_image(path)));
+            fmt::print("{}", is_scene_file(path) ? summarize(read_scene_file(path))
+                                                 : describe(read_image(path)));
             return 0;
         };
     });

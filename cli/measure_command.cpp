@@ -12,8 +12,8 @@
 #include "geometry/voxel_grid.h"
 #include "laboratory/local_spectrum.h"
 #include "laboratory/prediction.h"
+#include "render/scene_file.h"
 #include "render/session.h"
-#include "scene/read_scene.h"
 
 namespace covtrace::cli {
 
@@ -115,7 +115,7 @@ int measure_pixel(MeasureArguments a) {
     if (!a.shutter.empty()) a.overrides.shutter = parse_interval("--shutter", a.shutter);
     const std::array<int, 2> pixel = parse_pixel("--pixel", a.pixel);
 
-    SceneDescription description = read_pbrt(a.scene);
+    SceneDescription description = read_scene_file(a.scene, {{}, a.overrides.shutter});
     apply(a.overrides, description);
     const int width = description.film.width, height = description.film.height;
     if (pixel[0] < 0 || pixel[1] < 0 || pixel[0] >= width || pixel[1] >= height)

@@ -21,9 +21,6 @@
 #include "image/image.h"
 #include "image/output_file.h"
 #include "preview/tev_client.h"
-#include "render/film_file.h"
-#include "render/session.h"
-#include "scene/read_scene.h"
 
 namespace covtrace::cli {
 
@@ -129,8 +126,8 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
     progress.begin();
     const InterruptGuard guard(monitor);
 
-    SceneDescription description =
-        read_pbrt(a.scene, {{a.search_paths.begin(), a.search_paths.end()}});
+    SceneDescription description = read_scene_file(
+        a.scene, {{a.search_paths.begin(), a.search_paths.end()}, a.overrides.shutter});
     const double loaded = monitor.elapsed();
     apply(a.overrides, description);
     const bool is_shard = a.film.shard.has_value();
@@ -195,7 +192,7 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
 
 void add_render(CLI::App& app, Invocation& invocation) {
     auto a = std::make_shared<RenderArguments>();
-    CLI::App* c = app.add_subcommand("render", "Render a pbrt-v4 scene into an EXR with layers");
+    CLI::App* c = app.add_subcommand("render", "Render a scene into an EXR with layers");
     add_render_options(c, *a);
     c->callback([a, &invocation] {
         invocation.action = [a, &invocation] { return render_scene(*a, invocation); };

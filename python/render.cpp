@@ -12,9 +12,9 @@
 #include "bindings.h"
 #include "core/parallel.h"
 #include "planes.h"
+#include "render/scene_file.h"
 #include "render/session.h"
 #include "render/version.h"
-#include "scene/read_scene.h"
 #include "scene/summary.h"
 
 namespace covtrace::python {
@@ -265,7 +265,7 @@ void bind_render(py::module_& module) {
                     [](const fs::path& file, const std::vector<fs::path>& search_paths) {
                         const py::gil_scoped_release release;
                         return std::make_shared<SceneDescription>(
-                            read_pbrt(file, read_options(search_paths)));
+                            read_scene_file(file, read_options(search_paths)));
                     })
         .def_static("read_string",
                     [](const std::string& text, const std::string& name, const fs::path& folder,

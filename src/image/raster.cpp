@@ -71,4 +71,11 @@ RasterImage read_raster(const std::filesystem::path& file, const SourceLocation&
     return raster;
 }
 
+RasterImage decode_raster(std::string_view bytes, const std::filesystem::path& name,
+                          const SourceLocation& where) {
+    RasterImage raster = from_plain(decode_plain(bytes, name, where));
+    repair(raster);
+    return raster;
+}
+
 }  // namespace covtrace

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "core/error.h"
@@ -25,5 +26,9 @@ struct RasterImage {
 ///
 /// Throws Error(scene) at `where` with one line that names the file, as read_image does.
 RasterImage read_raster(const std::filesystem::path& file, const SourceLocation& where = {});
+/// The same of a file in memory, which messages call `name`; PNG, JPEG and the other formats but
+/// EXR and Targa.
+RasterImage decode_raster(std::string_view bytes, const std::filesystem::path& name,
+                          const SourceLocation& where = {});
 
 }  // namespace covtrace

@@ -44,23 +44,28 @@ std::string lower_case_extension(const std::filesystem::path& file) {
     return extension;
 }
 
-}  // namespace
-
-ImageFormat detect_image_format(const std::filesystem::path& file, const SourceLocation& where) {
+ImageFormat format_of(std::string_view bytes, const std::filesystem::path& file,
+                      const SourceLocation& where) {
     using namespace std::string_view_literals;
-    const std::string bytes = first_bytes(file, where);
     if (bytes.empty()) throw_unreadable(file, where, "the file is empty");
     if (bytes.starts_with("\x76\x2f\x31\x01"sv)) return ImageFormat::exr;
     if (bytes.starts_with("\x89PNG\r\n\x1a\n"sv)) return ImageFormat::png;
     if (bytes.starts_with("\xff\xd8\xff"sv)) return ImageFormat::jpeg;
     if (bytes.starts_with("#?RADIANCE"sv) || bytes.starts_with("#?RGBE"sv)) return ImageFormat::hdr;
     if (bytes.starts_with("qoif"sv)) return ImageFormat::qoi;
-    if (bytes.size() > 2 && bytes[0] == 'P' && "123456fF"sv.find(bytes[1]) != std::string::npos &&
+    if (bytes.size() > 2 && bytes[0] == 'P' &&
+        "123456fF"sv.find(bytes[1]) != std::string_view::npos &&
         std::isspace(static_cast<unsigned char>(bytes[2])))
         return ImageFormat::pnm;
     if (lower_case_extension(file) == ".tga") return ImageFormat::targa;
     throw_unreadable(file, where,
                      "it is no image of a known format (EXR, PNG, JPEG, TGA, HDR, PFM, QOI)");
+}
+
+}  // namespace
+
+ImageFormat detect_image_format(const std::filesystem::path& file, const SourceLocation& where) {
+    return format_of(first_bytes(file, where), file, where);
 }
 
 namespace {
@@ -96,17 +101,31 @@ PlainImage decode(Bytes bytes, ImageFormat format) {
     throw DecodeError("EXR is not a plain image");
 }
 
-}  // namespace
-
-PlainImage read_plain(const std::filesystem::path& file, ImageFormat format,
-                      const SourceLocation& where) {
+/// What decoding throws, as an error that names the file.
+template <typename Decode>
+PlainImage with_name(const std::filesystem::path& file, const SourceLocation& where,
+                     Decode decode_it) {
     try {
-        return decode(read_bytes(file), format);
+        return decode_it();
     } catch (const std::bad_alloc&) {
         throw_unreadable(file, where, "not enough memory");
     } catch (const std::exception& e) {
         throw_unreadable(file, where, e.what());
     }
+}
+
+}  // namespace
+
+PlainImage read_plain(const std::filesystem::path& file, ImageFormat format,
+                      const SourceLocation& where) {
+    return with_name(file, where, [&] { return decode(read_bytes(file), format); });
+}
+
+PlainImage decode_plain(std::string_view bytes, const std::filesystem::path& name,
+                        const SourceLocation& where) {
+    const ImageFormat format = format_of(bytes, name, where);
+    const Bytes all(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
+    return with_name(name, where, [&] { return decode(all, format); });
 }
 
 void throw_unreadable(const std::filesystem::path& file, const SourceLocation& where,

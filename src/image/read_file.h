@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "core/error.h"
 #include "image/image.h"
@@ -20,6 +21,10 @@ ImageFormat detect_image_format(const std::filesystem::path& file, const SourceL
 /// Every format but EXR.
 PlainImage read_plain(const std::filesystem::path& file, ImageFormat format,
                       const SourceLocation& where);
+
+/// The same of a file in memory, which messages call `name`.
+PlainImage decode_plain(std::string_view bytes, const std::filesystem::path& name,
+                        const SourceLocation& where);
 
 /// All parts of an EXR, their channels in the order of the file.
 Image read_exr(const std::filesystem::path& file, const SourceLocation& where);

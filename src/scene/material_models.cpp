@@ -110,6 +110,8 @@ DielectricMaterial Builder::dielectric() {
     DielectricMaterial m;
     roughness(m);
     m.eta = refractive_index(p, "eta", 1.5f, context);
+    // Ours, not pbrt's: the colour of glass, as exporters of other models need it.
+    m.transmittance = textures.reflectance_or_none(p, "transmittance");
     return m;
 }
 
@@ -123,6 +125,8 @@ CoatedDiffuseMaterial Builder::coated_diffuse() {
     m.eta = refractive_index(p, "eta", 1.5f, context);
     m.max_depth = p.integer("maxdepth", 10);
     m.samples = p.integer("nsamples", 1);
+    // Ours, not pbrt's: diffuse under specular as glTF and Blender have it.
+    m.reflects_through_coat = p.flag("reflectsthroughcoat", false);
     return m;
 }
 
@@ -246,7 +250,8 @@ Model material_model(Entity& entity, TextureBuilder& textures, BuildContext& con
     } else if (type == "coatedconductor") {
         model = b.coated_conductor();
     } else if (type == "thindielectric") {
-        model = ThinDielectricMaterial{refractive_index(b.p, "eta", 1.5f, context)};
+        model = ThinDielectricMaterial{refractive_index(b.p, "eta", 1.5f, context),
+                                       textures.reflectance_or_none(b.p, "transmittance")};
     } else if (type == "subsurface") {
         model = b.subsurface();
     } else if (type == "hair") {

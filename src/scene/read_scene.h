@@ -4,7 +4,9 @@
 /// place; what pbrt-v4 doesn't have either is an error.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +18,9 @@ namespace covtrace {
 struct ReadOptions {
     /// Folders to look in for files that are not where the scene says.
     std::vector<std::filesystem::path> search_paths;
+    /// Seconds at which the shutter opens and closes, for formats whose animations have a time
+    /// line; pbrt's transforms say for themselves when they hold.
+    std::optional<std::array<float, 2>> shutter = {};
 };
 
 /// Reads a scene and every file it includes; meshes too, but no images.

@@ -30,8 +30,9 @@ struct TextureMapping {
     enum class Kind { uv, spherical, cylindrical, planar };
     Kind kind = Kind::uv;
     float scale_u = 1, scale_v = 1, delta_u = 0, delta_v = 0;
-    Vec3 v1{1, 0, 0}, v2{0, 1, 0};  ///< planar only
-    Transform texture_from_world;   ///< all but uv
+    float u_per_v = 0, v_per_u = 0;  ///< uv only: what rotates them
+    Vec3 v1{1, 0, 0}, v2{0, 1, 0};   ///< planar only
+    Transform texture_from_world;    ///< all but uv
 };
 
 struct ConstantTexture {
@@ -39,14 +40,20 @@ struct ConstantTexture {
 };
 struct ImageTexture {
     enum class Encoding { srgb, linear, gamma };
-    enum class Wrap { repeat, black, clamp, octahedral_sphere };
+    enum class Wrap { repeat, black, clamp, octahedral_sphere, mirror };
     enum class Filter { point, bilinear, trilinear, ewa };
+    /// What a float texture reads. Automatic: alpha where there is one, else the mean of R, G, B.
+    enum class Channel { automatic, red, green, blue, alpha };
     std::filesystem::path file;
+    /// The encoded image, where it is embedded in the scene; `file` is then its name in messages.
+    std::shared_ptr<const std::string> content;
     /// Empty: sRGB for integer files; float files are always linear.
     std::optional<Encoding> encoding;
     float gamma = 1;
     Wrap wrap = Wrap::repeat;
     Filter filter = Filter::bilinear;
+    Channel channel = Channel::automatic;  ///< float textures only
+    std::optional<float> cutoff;           ///< float textures: 1 from there on, 0 below
     float scale = 1;
     bool invert = false;
     TextureMapping mapping;
@@ -87,6 +94,7 @@ struct DielectricMaterial {
     float eta = 1.5f;
     TextureId u_roughness = -1, v_roughness = -1;
     bool remap_roughness = true;
+    TextureId transmittance = -1;  ///< tints what crosses the border, each time; none: 1
 };
 /// A diffuse base under a dielectric coat, a thin gap between them.
 struct CoatedDiffuseMaterial {
@@ -97,6 +105,9 @@ struct CoatedDiffuseMaterial {
     float eta = 1.5f;
     bool remap_roughness = true;
     int max_depth = 10, samples = 1;
+    /// `reflectance` is the share that leaves of all light that the coat doesn't reflect: diffuse
+    /// under specular, as in glTF; `thickness` and what follows it don't count.
+    bool reflects_through_coat = false;
 };
 struct DiffuseTransmissionMaterial {
     TextureId reflectance = -1, transmittance = -1;
@@ -115,6 +126,7 @@ struct CoatedConductorMaterial {
 /// A pane whose two faces are so close that light leaves it where it entered.
 struct ThinDielectricMaterial {
     float eta = 1.5f;
+    TextureId transmittance = -1;  ///< of the pane; none: 1
 };
 /// No surface at all: only separates media.
 struct InterfaceMaterial {};
@@ -135,6 +147,10 @@ struct MaterialDescription {
     TextureId displacement = -1;
     /// Image of tangent space normals, (n + 1) / 2; counts where both are given.
     TextureId normal_map = -1;
+    float normal_scale = 1;  ///< of the map's x and y
+    /// The map's y follows increasing v, on mirrored texture coordinates too; else it stands left
+    /// of x on the surface, as in pbrt.
+    bool normal_map_follows_v = false;
 };
 
 // ---- media: the same everywhere inside

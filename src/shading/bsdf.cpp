@@ -52,14 +52,14 @@ Rgb albedo(const DiffuseBsdf& b, Vec3) {
 Rgb albedo(const DiffuseTransmissionBsdf& b, Vec3) {
     return b.reflectance + b.transmittance;
 }
-Rgb albedo(const DielectricBsdf&, Vec3) {
-    return Rgb(1);
+Rgb albedo(const DielectricBsdf& b, Vec3) {
+    return b.transmittance;
 }
 Rgb albedo(const InterfaceBsdf&, Vec3) {
     return Rgb(1);
 }
-Rgb albedo(const ThinDielectricBsdf&, Vec3) {
-    return Rgb(1);
+Rgb albedo(const ThinDielectricBsdf& b, Vec3) {
+    return b.transmittance;
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ std::optional<BsdfSample> sample(const ThinDielectricBsdf& b, Vec3 wo, float u_l
     if (r < 1) r += sqr(1 - r) * r / (1 - sqr(r));
     if (u_lobe < r)
         return BsdfSample{{-wo.x, -wo.y, wo.z}, Rgb(1), r, LobeKind::specular_reflection};
-    return BsdfSample{-wo, Rgb(1), 1 - r, LobeKind::specular_transmission};
+    return BsdfSample{-wo, b.transmittance, 1 - r, LobeKind::specular_transmission};
 }
 
 Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {

@@ -67,6 +67,7 @@ struct ConductorBsdf {
 struct DielectricBsdf {
     float eta = 1.5f;  ///< inside (-z) over outside (+z)
     float alpha_x = 0, alpha_y = 0;
+    Rgb transmittance{1};  ///< multiplies what crosses the border
 };
 class CoatTable;  // hemispherical transmission of a rough dielectric coat
 /// Lambertian base below a dielectric coat; two-sided. Made by make_coated_diffuse (coat_table.h).
@@ -76,7 +77,8 @@ struct CoatedDiffuseBsdf {
     float eta = 1.5f;
     float alpha_x = 0, alpha_y = 0;
     const CoatTable* table = nullptr;
-    float table_row = 0;  ///< of the mean roughness
+    float table_row = 0;    ///< of the mean roughness
+    bool is_total = false;  ///< what the coat doesn't reflect enters; see make_coated_total
 };
 struct DiffuseTransmissionBsdf {
     Rgb reflectance, transmittance;
@@ -92,6 +94,7 @@ struct CoatedConductorBsdf {
 /// A pane without thickness; both faces' reflections together.
 struct ThinDielectricBsdf {
     float eta = 1.5f;
+    Rgb transmittance{1};  ///< multiplies what passes both faces
 };
 /// Lets everything pass: the border between media.
 struct InterfaceBsdf {};

@@ -24,12 +24,23 @@ float table_row(const CoatedDiffuseBsdf& b, Vec3 w) {
         std::sqrt(x2 * sqr(w.x) + y2 * sqr(w.y) + 0.5f * (x2 + y2) * sqr(w.z)));
 }
 
-/// T of coat_table.h, for w.z > 0 as in the rest of these helpers.
+float coat_albedo(const CoatedDiffuseBsdf& b, Vec3 wo) {
+    return is_smooth(b) ? fresnel_dielectric(wo.z, b.eta).reflectance
+                        : b.table->reflection(table_row(b, wo), wo.z);
+}
+
+/// T of coat_table.h, or 1 - E, for w.z > 0 as in the rest of these helpers.
 float transmission(const CoatedDiffuseBsdf& b, Vec3 w) {
+    if (b.is_total) return 1 - coat_albedo(b, w);
     if (!is_smooth(b)) return b.table->transmission(table_row(b, w), w.z);
     const DielectricFresnel f = fresnel_dielectric(w.z, b.eta);
     if (f.cos_t == 0) return 0;
     return (1 - f.reflectance) * std::exp(-b.table->thickness() / f.cos_t);
+}
+
+float mean_transmission(const CoatedDiffuseBsdf& b) {
+    return b.is_total ? 1 - b.table->mean_reflection(b.table_row)
+                      : b.table->mean_transmission(b.table_row);
 }
 
 Rgb eval_base(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi) {
@@ -44,13 +55,8 @@ float eval_coat(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi) {
            ggx.g2_over_cos_o(wo, wi);
 }
 
-float coat_albedo(const CoatedDiffuseBsdf& b, Vec3 wo) {
-    return is_smooth(b) ? fresnel_dielectric(wo.z, b.eta).reflectance
-                        : b.table->reflection(table_row(b, wo), wo.z);
-}
-
 Rgb base_albedo(const CoatedDiffuseBsdf& b, Vec3 wo) {
-    return b.base * (kPi * transmission(b, wo) * b.table->mean_transmission(b.table_row));
+    return b.base * (kPi * transmission(b, wo) * mean_transmission(b));
 }
 
 /// Probability of sampling the coat: its share of the reflected energy. Below 0 where nothing is

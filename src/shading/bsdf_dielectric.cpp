@@ -52,8 +52,8 @@ Rgb eval(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
     if (f->reflects) return Rgb(0.25f * f->fresnel * d_g);
     // Equation 21 of Walter et al. with |eta wi + wo|^2 for the denominator and its 1 / eta^2 for
     // radiance.
-    return Rgb((1 - f->fresnel) * d_g * std::abs(dot(f->wo, f->m) * dot(f->wi, f->m)) /
-               f->half_length2);
+    return b.transmittance * ((1 - f->fresnel) * d_g *
+                              std::abs(dot(f->wo, f->m) * dot(f->wi, f->m)) / f->half_length2);
 }
 
 float pdf(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
@@ -77,8 +77,8 @@ std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe,
             return BsdfSample{wi, Rgb(1), f.reflectance, LobeKind::specular_reflection};
         }
         const Vec3 wi{-wo.x / eta, -wo.y / eta, below ? f.cos_t : -f.cos_t};
-        return BsdfSample{wi, Rgb(1 / sqr(eta)), 1 - f.reflectance, LobeKind::specular_transmission,
-                          eta};
+        return BsdfSample{wi, b.transmittance / sqr(eta), 1 - f.reflectance,
+                          LobeKind::specular_transmission, eta};
     }
 
     const Ggx ggx{b.alpha_x, b.alpha_y};
@@ -99,8 +99,9 @@ std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe,
     const float density =
         (1 - f.reflectance) * ggx.visible_normal_pdf(wo, m) * sqr(eta) * f.cos_t / half_length2;
     if (!(density > 0) || !std::isfinite(density)) return {};
-    return BsdfSample{below ? mirror_z(wi) : wi, Rgb(ggx.g2_over_g1(wo, mirror_z(wi)) / sqr(eta)),
-                      density, LobeKind::glossy_transmission, eta};
+    return BsdfSample{below ? mirror_z(wi) : wi,
+                      b.transmittance * (ggx.g2_over_g1(wo, mirror_z(wi)) / sqr(eta)), density,
+                      LobeKind::glossy_transmission, eta};
 }
 
 LobeShares lobe_shares(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {

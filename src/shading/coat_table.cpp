@@ -128,6 +128,10 @@ CoatTable::CoatTable(float eta, float thickness) : eta_(eta), thickness_(thickne
             return row == 0 ? shares(outside, 0, cos_theta).transmitted
                             : lookup(transmission_, static_cast<float>(row), cos_theta);
         });
+        mean_reflection_[row] = cosine_weighted_mean(outside_kink, [&](float cos_theta) {
+            return row == 0 ? shares(outside, 0, cos_theta).reflected
+                            : lookup(reflection_, static_cast<float>(row), cos_theta);
+        });
     }
 }
 
@@ -138,19 +142,37 @@ const CoatTable& CoatTables::get(float eta, float thickness) {
     return *tables_.back();
 }
 
-CoatedDiffuseBsdf make_coated_diffuse(const CoatTable& table, Rgb reflectance, float alpha_x,
-                                      float alpha_y, int bounces) {
+namespace {
+
+CoatedDiffuseBsdf coat_alone(const CoatTable& table, float alpha_x, float alpha_y) {
     CoatedDiffuseBsdf b;
-    b.reflectance = reflectance;
     b.eta = table.eta();
     b.alpha_x = alpha_x;
     b.alpha_y = alpha_y;
     b.table = &table;
     b.table_row = CoatTable::row_of(std::sqrt(0.5f * (sqr(alpha_x) + sqr(alpha_y))));
+    return b;
+}
+
+}  // namespace
+
+CoatedDiffuseBsdf make_coated_diffuse(const CoatTable& table, Rgb reflectance, float alpha_x,
+                                      float alpha_y, int bounces) {
+    CoatedDiffuseBsdf b = coat_alone(table, alpha_x, alpha_y);
+    b.reflectance = reflectance;
     const Rgb again = reflectance * table.internal_reflectance(b.table_row);
     Rgb series;
     for (int i = 0; i < bounces; ++i) series = Rgb(1) + again * series;
     b.base = reflectance * series * (kInvPi / sqr(table.eta()));
+    return b;
+}
+
+CoatedDiffuseBsdf make_coated_total(const CoatTable& table, Rgb reflectance, float alpha_x,
+                                    float alpha_y) {
+    CoatedDiffuseBsdf b = coat_alone(table, alpha_x, alpha_y);
+    b.reflectance = reflectance;
+    b.is_total = true;
+    b.base = reflectance * (kInvPi / (1 - table.mean_reflection(b.table_row)));
     return b;
 }
 

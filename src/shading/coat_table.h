@@ -56,6 +56,8 @@ class CoatTable {
     }
     /// Share of the base's flux that the coat sends back to it: R_int.
     float internal_reflectance(float row) const { return lookup(internal_reflectance_, row); }
+    /// Cosine-weighted mean of `reflection` over the hemisphere.
+    float mean_reflection(float row) const { return lookup(mean_reflection_, row); }
     /// Cosine-weighted mean of T over the hemisphere.
     float mean_transmission(float row) const { return lookup(mean_transmission_, row); }
 
@@ -68,8 +70,21 @@ class CoatTable {
 
     float eta_, thickness_;
     PerAngle transmission_, reflection_;
-    PerRow internal_reflectance_, mean_transmission_;
+    PerRow internal_reflectance_, mean_transmission_, mean_reflection_;
 };
+
+/// glTF's and Blender's diffuse under specular: of the light that the coat doesn't reflect
+/// (1 - E, with E its directional albedo) the share `reflectance` leaves again, whatever goes on
+/// inside. Reciprocal and complete for E(wo) and its cosine-weighted mean,
+///
+///    f(wo, wi) = f_coat(wo, wi) + (1 - E(wo)) (1 - E(wi)) reflectance / (pi (1 - mean E))
+///
+/// (Kelemen and Szirmay-Kalos 2001), so white reflects all light at any roughness. For a smooth
+/// coat without a gap this is the layered model with the base rho = reflectance / (1 - R_int +
+/// R_int reflectance); for a rough one it keeps what single scattering loses. The table's thickness
+/// doesn't count.
+CoatedDiffuseBsdf make_coated_total(const CoatTable& table, Rgb reflectance, float alpha_x,
+                                    float alpha_y);
 
 /// The tables of all coats of a scene, one for each distinct pair (eta, thickness).
 class CoatTables {

@@ -63,11 +63,13 @@ Bsdf make(const ConductorMaterial& m, const Values& v, const CoatTable*) {
 
 Bsdf make(const DielectricMaterial& m, const Values& v, const CoatTable*) {
     const Vec2 alpha = v.alphas(m);
-    return DielectricBsdf{refractive_index(m.eta), alpha.x, alpha.y};
+    return DielectricBsdf{refractive_index(m.eta), alpha.x, alpha.y,
+                          m.transmittance < 0 ? Rgb(1) : v.transmittance()};
 }
 
 Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const CoatTable* coat) {
     const Vec2 alpha = v.alphas(m);
+    if (m.reflects_through_coat) return make_coated_total(*coat, v.reflectance(), alpha.x, alpha.y);
     // pbrt's walk meets the base at every second of its steps.
     return make_coated_diffuse(*coat, v.reflectance(), alpha.x, alpha.y, (m.max_depth + 1) / 2);
 }
@@ -90,8 +92,9 @@ Bsdf make(const CoatedConductorMaterial& m, const Values& v, const CoatTable*) {
     return b;
 }
 
-Bsdf make(const ThinDielectricMaterial& m, const Values&, const CoatTable*) {
-    return ThinDielectricBsdf{refractive_index(m.eta)};
+Bsdf make(const ThinDielectricMaterial& m, const Values& v, const CoatTable*) {
+    return ThinDielectricBsdf{refractive_index(m.eta),
+                              m.transmittance < 0 ? Rgb(1) : v.transmittance()};
 }
 
 Bsdf make(const InterfaceMaterial&, const Values&, const CoatTable*) {
@@ -112,7 +115,7 @@ bool is_constant(const TextureStore& t, const ConductorMaterial& m) {
     return all_constant(t, {m.eta, m.k, m.reflectance, m.u_roughness, m.v_roughness});
 }
 bool is_constant(const TextureStore& t, const DielectricMaterial& m) {
-    return all_constant(t, {m.u_roughness, m.v_roughness});
+    return all_constant(t, {m.u_roughness, m.v_roughness, m.transmittance});
 }
 bool is_constant(const TextureStore& t, const CoatedDiffuseMaterial& m) {
     return all_constant(t, {m.reflectance, m.u_roughness, m.v_roughness});
@@ -124,8 +127,8 @@ bool is_constant(const TextureStore& t, const CoatedConductorMaterial& m) {
     return is_constant(t, m.conductor) &&
            all_constant(t, {m.u_roughness, m.v_roughness, m.thickness});
 }
-bool is_constant(const TextureStore&, const ThinDielectricMaterial&) {
-    return true;
+bool is_constant(const TextureStore& t, const ThinDielectricMaterial& m) {
+    return all_constant(t, {m.transmittance});
 }
 bool is_constant(const TextureStore&, const InterfaceMaterial&) {
     return true;
@@ -138,8 +141,8 @@ MaterialColours colours(const DiffuseMaterial& m) {
 MaterialColours colours(const ConductorMaterial& m) {
     return {{m.reflectance, 1, Rgb(1)}, {}};
 }
-MaterialColours colours(const DielectricMaterial&) {
-    return {};
+MaterialColours colours(const DielectricMaterial& m) {
+    return {{}, {m.transmittance, 1, Rgb(1)}};
 }
 MaterialColours colours(const CoatedDiffuseMaterial& m) {
     return {{m.reflectance, 1, Rgb(kDefaultReflectance)}, {}};
@@ -151,8 +154,8 @@ MaterialColours colours(const DiffuseTransmissionMaterial& m) {
 MaterialColours colours(const CoatedConductorMaterial& m) {
     return colours(m.conductor);
 }
-MaterialColours colours(const ThinDielectricMaterial&) {
-    return {};
+MaterialColours colours(const ThinDielectricMaterial& m) {
+    return {{}, {m.transmittance, 1, Rgb(1)}};
 }
 MaterialColours colours(const InterfaceMaterial&) {
     return {};
@@ -208,7 +211,9 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
         const Values at_middle{textures, kMiddle, material.colours, adaptation_};
         if (const auto* m = std::get_if<CoatedDiffuseMaterial>(&description.value)) {
             const float thickness =
-                std::max(0.0f, at_middle.number(m->thickness, kDefaultThickness));
+                m->reflects_through_coat
+                    ? 0
+                    : std::max(0.0f, at_middle.number(m->thickness, kDefaultThickness));
             material.coat = &coats_.get(refractive_index(m->eta), thickness);
             warn_of_gap(m->albedo, "coateddiffuse", description.where, textures, warnings_);
             if (m->thickness >= 0 && !textures.is_constant(m->thickness))

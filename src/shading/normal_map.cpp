@@ -37,6 +37,7 @@ NormalMap::NormalMap(const MaterialDescription& material, const TextureStore& te
       base_(base),
       dpdu_(hit.dpdu),
       dpdv_(hit.dpdv) {
+    if (material.normal_map_follows_v && dot(cross(hit.dpdu, hit.dpdv), hit.ns) < 0) y_sign_ = -1;
     if (has_vertex_normals(shape.description)) {
         // pbrt's shading tangents of such meshes: orthogonal to the normal and to each other, both
         // as long as dp/du.
@@ -61,7 +62,9 @@ Frame NormalMap::frame_at(Vec2 shift) const {
     Vec3 normal, tangent = dpdu_;
     if (material_.normal_map >= 0) {
         const Rgb texel = textures_.eval(material_.normal_map, {hit_.uv + shift, hit_.position});
-        const Vec3 local{2 * texel.r - 1, 2 * texel.g - 1, 2 * texel.b - 1};
+        Vec3 local{2 * texel.r - 1, 2 * texel.g - 1, 2 * texel.b - 1};
+        local.x *= material_.normal_scale;
+        local.y *= material_.normal_scale * y_sign_;
         normal = normalize(Frame::from_z_x(hit_.ns, dpdu_).to_world(local));
     } else {
         const float here = height(shift);

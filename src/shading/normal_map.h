@@ -39,6 +39,7 @@ class NormalMap {
     const DifferentialGeometry& base_;
     Vec3 dpdu_, dpdv_, dndu_, dndv_;  // of the shading geometry
     Vec2 step_;                       // in (u, v)
+    float y_sign_ = 1;                // of the map's y in the shading frame
 };
 
 }  // namespace covtrace

@@ -18,12 +18,13 @@ constexpr int kMaxNesting = 1000;
 
 using Encoding = ImageTexture::Encoding;
 /// Textures with equal keys share an image. The encoding is empty where the file decides.
-using ImageKey =
-    std::tuple<std::filesystem::path, std::optional<Encoding>, float, ImageTexture::Wrap>;
+using ImageKey = std::tuple<std::filesystem::path, const std::string*, std::optional<Encoding>,
+                            float, ImageTexture::Wrap>;
 
 ImageKey key_of(const ImageTexture& t) {
     const bool uses_gamma = t.encoding == Encoding::gamma;
-    return {t.file.lexically_normal(), t.encoding, uses_gamma ? t.gamma : 1.0f, t.wrap};
+    return {t.file.lexically_normal(), t.content.get(), t.encoding, uses_gamma ? t.gamma : 1.0f,
+            t.wrap};
 }
 
 /// Turns descriptions into nodes, children first, and folds what is constant.
@@ -72,6 +73,8 @@ class GraphBuilder {
         node.image = entry->second;
         node.is_spectrum = d.is_spectrum;
         node.nearest = t.filter == ImageTexture::Filter::point;
+        node.channel = t.channel;
+        node.cutoff = t.cutoff;
         node.scale = t.scale;
         node.invert = t.invert;
         node.mapping = t.mapping;
@@ -127,10 +130,8 @@ ImageSpectrum::Wrap spectrum_wrap(TextureImage::Wrap wrap) {
 
 ImageSpectrum analyse(const TextureImage& image, const ImageNode& node) {
     std::vector<float> values(size_t(image.width()) * size_t(image.height()));
-    for (size_t i = 0; i < values.size(); ++i) {
-        const Rgb decoded = node.is_spectrum ? image.color(i) : Rgb(image.value(i));
-        values[i] = luminance(image_value(node, decoded));
-    }
+    for (size_t i = 0; i < values.size(); ++i)
+        values[i] = luminance(image_value_at(node, image, i));
     return {values, image.width(), image.height(), spectrum_wrap(image.wrap())};
 }
 
@@ -153,10 +154,8 @@ ImageSpectrum analyse_mixture(const TextureGraph& graph, const MixNode& mix,
     const TextureImage& image = graph.images[size_t(amount.image)];
     const float a = mean_luminance(graph, mix.tex1), b = mean_luminance(graph, mix.tex2);
     std::vector<float> values(size_t(image.width()) * size_t(image.height()));
-    for (size_t i = 0; i < values.size(); ++i) {
-        const Rgb decoded = amount.is_spectrum ? image.color(i) : Rgb(image.value(i));
-        values[i] = a + luminance(image_value(amount, decoded)) * (b - a);
-    }
+    for (size_t i = 0; i < values.size(); ++i)
+        values[i] = a + luminance(image_value_at(amount, image, i)) * (b - a);
     return {values, image.width(), image.height(), spectrum_wrap(image.wrap())};
 }
 
@@ -194,8 +193,7 @@ Rgb TextureStore::mean(TextureId id) const {
     if (const auto* node = std::get_if<ImageNode>(&impl_->graph.nodes[size_t(id)])) {
         const TextureImage& image = impl_->graph.images[size_t(node->image)];
         const size_t texels = size_t(image.width()) * size_t(image.height());
-        for (size_t i = 0; i < texels; ++i)
-            add(image_value(*node, node->is_spectrum ? image.color(i) : Rgb(image.value(i))));
+        for (size_t i = 0; i < texels; ++i) add(image_value_at(*node, image, i));
         count = double(texels);
     } else {
         constexpr int kSide = 64;
@@ -213,13 +211,16 @@ void TextureStore::prepare_spectra(TextureBandwidth bandwidth) {
     TextureGraph& graph = impl_->graph;
     // One job per distinct image, in parallel: most images are too small to fill the cores alone.
     std::vector<std::function<ImageSpectrum()>> jobs;
-    // The analysis is relative: a scale matters only where it is followed by an inversion.
-    std::map<std::tuple<int, bool, bool, float>, int> ids;
+    // The analysis is relative: a scale matters only where an inversion or a cutoff follows it.
+    std::map<std::tuple<int, bool, bool, float, TextureImage::Channel, std::optional<float>>, int>
+        ids;
     for (TextureNode& node : graph.nodes) {
         auto* n = std::get_if<ImageNode>(&node);
         if (!n) continue;
-        const auto [entry, is_new] = ids.try_emplace(
-            {n->image, n->is_spectrum, n->invert, n->invert ? n->scale : 1.0f}, int(jobs.size()));
+        const auto [entry, is_new] =
+            ids.try_emplace({n->image, n->is_spectrum, n->invert,
+                             n->invert || n->cutoff ? n->scale : 1.0f, n->channel, n->cutoff},
+                            int(jobs.size()));
         if (is_new)
             jobs.push_back([&graph, n] { return analyse(graph.images[size_t(n->image)], *n); });
         n->spectrum = entry->second;

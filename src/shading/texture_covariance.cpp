@@ -37,6 +37,11 @@ SpatialCovariance2 edge(float distance, Vec2 gradient, float footprint_uv) {
             variance * gradient.y * gradient.y};
 }
 
+/// Where a mirrored image shows its columns or rows in reverse order.
+bool runs_back(float v) {
+    return std::floor(v) != 2 * std::floor(0.5f * v);
+}
+
 float distance_to_integer(float v) {
     return std::abs(v - std::round(v));
 }
@@ -74,11 +79,16 @@ struct Analyser {
     SpatialCovariance2 of_image(const ImageNode& node, int spectrum) const {
         const TextureImage& image = graph.images[size_t(node.image)];
         const StGradient gradient = st_gradient(node.mapping, at, dpdu, dpdv);
-        const Vec2 st = flip_t(map_to_st(node.mapping, at));
+        Vec2 st = flip_t(map_to_st(node.mapping, at));
+        float turns = -1;  // the image's rows run against t
+        if (image.wrap() == TextureImage::Wrap::mirror) {
+            if (runs_back(st.x) != runs_back(st.y)) turns = 1;
+            st = {mirrored(st.x), mirrored(st.y)};
+        }
         const float pixel_uv = 2 * footprint_uv;
         SpatialCovariance2 c = graph.spectra[size_t(spectrum)].at(
             st.x, st.y, {pixel_uv * length(gradient.s), pixel_uv * length(gradient.t)});
-        c.st = -c.st;  // the image's rows run against t
+        c.st *= turns;
         SpatialCovariance2 result = to_uv(c, gradient);
         if (image.wrap() == TextureImage::Wrap::black) {
             // The image ends in hard edges that its own analysis, on clamped values, doesn't see.

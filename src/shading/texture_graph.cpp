@@ -20,7 +20,7 @@ struct Evaluator {
         const TextureImage& image = graph.images[size_t(node.image)];
         const Vec2 st = flip_t(map_to_st(node.mapping, at));
         const auto taps = node.nearest ? image.nearest(st) : image.bilinear(st);
-        return image_value(node, node.is_spectrum ? image.color(taps) : Rgb(image.value(taps)));
+        return image_value_at(node, image, taps);
     }
     Rgb operator()(const CheckerboardNode& node) const {
         return eval(graph, active_texture(node, at), at);

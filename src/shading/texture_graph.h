@@ -1,6 +1,7 @@
 /// The textures of a scene as a graph of small nodes, ready for evaluation.
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct ImageNode {
     int spectrum = -1;        ///< into TextureGraph::spectra, once prepared
     bool is_spectrum = true;  ///< else the value of a float texture, in all channels
     bool nearest = false;
+    TextureImage::Channel channel = TextureImage::Channel::automatic;
+    std::optional<float> cutoff;
     float scale = 1;
     bool invert = false;
     TextureMapping mapping;
@@ -51,8 +54,15 @@ constexpr Vec2 flip_t(Vec2 st) {
 /// What an image texture makes of a decoded value.
 constexpr Rgb image_value(const ImageNode& node, Rgb decoded) {
     const Rgb v = decoded * node.scale;
+    if (node.cutoff) return Rgb(v.r >= *node.cutoff ? 1.0f : 0.0f);
     if (!node.invert) return v;
     return {std::max(0.0f, 1 - v.r), std::max(0.0f, 1 - v.g), std::max(0.0f, 1 - v.b)};
+}
+/// What it makes of one texel, or of a mean of several.
+template <typename Texels>
+Rgb image_value_at(const ImageNode& node, const TextureImage& image, const Texels& texels) {
+    return image_value(
+        node, node.is_spectrum ? image.color(texels) : Rgb(image.value(texels, node.channel)));
 }
 /// The checkerboard's texture at this point: tex1 where the sum of the cell's coordinates is even.
 TextureId active_texture(const CheckerboardNode& node, const TexturePoint& at);

@@ -38,6 +38,11 @@ float fraction(float v) {
 
 }  // namespace
 
+float mirrored(float v) {
+    const float there = 2 * fraction(0.5f * v);
+    return there > 1 ? 2 - there : there;
+}
+
 TextureImage::TextureImage(const RasterImage& raster, Encoding encoding, float gamma, Wrap wrap)
     : width_(raster.width), height_(raster.height), channels_(kept_channels(raster)), wrap_(wrap) {
     const size_t texels = size_t(width_) * size_t(height_);
@@ -93,6 +98,7 @@ void TextureImage::halve() {
 
 Vec2 TextureImage::wrap_st(Vec2 st) const {
     if (wrap_ == Wrap::repeat) return {fraction(st.x), fraction(st.y)};
+    if (wrap_ == Wrap::mirror) return {mirrored(st.x), mirrored(st.y)};
     // More than an image away from the image nothing changes any more.
     return {limit(st.x, -1, 2), limit(st.y, -1, 2)};
 }
@@ -117,6 +123,7 @@ void TextureImage::add_tap(Taps& taps, int x, int y, float weight) const {
                 x = width_ - 1 - x;
             }
             [[fallthrough]];
+        case Wrap::mirror:
         case Wrap::clamp:
             x = std::clamp(x, 0, width_ - 1);
             y = std::clamp(y, 0, height_ - 1);
@@ -154,8 +161,17 @@ Rgb TextureImage::color(size_t texel) const {
     return {channel(i), channel(i + 1), channel(i + 2)};
 }
 
-float TextureImage::value(size_t texel) const {
+float TextureImage::value(size_t texel, Channel which) const {
     const size_t i = texel * channels_;
+    switch (which) {
+        case Channel::automatic:
+            break;
+        case Channel::alpha:
+            return channels_ == 4 ? channel(i + 3) : 1;
+        default:
+            if (channels_ == 1) return channel(i);
+            return channel(i + (which == Channel::red ? 0 : which == Channel::green ? 1 : 2));
+    }
     if (channels_ == 1) return channel(i);
     if (channels_ == 4) return channel(i + 3);
     return (channel(i) + channel(i + 1) + channel(i + 2)) / 3;
@@ -167,9 +183,10 @@ Rgb TextureImage::color(const Taps& taps) const {
     return sum;
 }
 
-float TextureImage::value(const Taps& taps) const {
+float TextureImage::value(const Taps& taps, Channel which) const {
     float sum = 0;
-    for (size_t i = 0; i < size_t(taps.count); ++i) sum += value(taps.texel[i]) * taps.weight[i];
+    for (size_t i = 0; i < size_t(taps.count); ++i)
+        sum += value(taps.texel[i], which) * taps.weight[i];
     return sum;
 }
 

@@ -12,6 +12,9 @@
 namespace covtrace {
 
 /// Texels of the first row lie at t = 0 here: callers flip t where they mean a texture's.
+/// The coordinate in [0, 1] whose texel a mirrored image shows at v: it runs back and forth.
+float mirrored(float v);
+
 class TextureImage {
   public:
     using Encoding = ImageTexture::Encoding;
@@ -34,10 +37,11 @@ class TextureImage {
 
     /// Decoded colour.
     Rgb color(const Taps& taps) const;
-    /// Decoded value of a float texture: alpha where there is one, else the mean of R, G and B.
-    float value(const Taps& taps) const;
+    using Channel = ImageTexture::Channel;
+    /// Decoded value of a float texture; 1 for the alpha of an image without.
+    float value(const Taps& taps, Channel channel = Channel::automatic) const;
     Rgb color(size_t texel) const;
-    float value(size_t texel) const;
+    float value(size_t texel, Channel channel = Channel::automatic) const;
 
     /// Drops the finest mip level: means over 2 x 2 texels (fewer at the far borders of odd sizes),
     /// taken of decoded values and encoded again. Images of one texel stay as they are.

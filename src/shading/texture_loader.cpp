@@ -16,7 +16,8 @@ using Encoding = ImageTexture::Encoding;
 
 TextureImage load(const ImageRequest& request) {
     const ImageTexture& t = *request.texture;
-    const RasterImage raster = read_raster(t.file, *request.where);
+    const RasterImage raster = t.content ? decode_raster(*t.content, t.file, *request.where)
+                                         : read_raster(t.file, *request.where);
     // Floating-point files are linear by definition, whatever the scene says, as in pbrt-v4.
     const bool is_encoded = raster.is_8bit || raster.is_16bit;
     const Encoding encoding = is_encoded ? t.encoding.value_or(Encoding::srgb) : Encoding::linear;

@@ -34,8 +34,8 @@ StGradient3 gradient_by_position(const TextureMapping& mapping, Vec3 p) {
 
 Vec2 map_to_st(const TextureMapping& mapping, const TexturePoint& at) {
     if (mapping.kind == TextureMapping::Kind::uv)
-        return {mapping.scale_u * at.uv.x + mapping.delta_u,
-                mapping.scale_v * at.uv.y + mapping.delta_v};
+        return {mapping.scale_u * at.uv.x + mapping.u_per_v * at.uv.y + mapping.delta_u,
+                mapping.v_per_u * at.uv.x + mapping.scale_v * at.uv.y + mapping.delta_v};
     const Vec3 p = mapping.texture_from_world.point(at.position);
     switch (mapping.kind) {
         case TextureMapping::Kind::spherical: {
@@ -52,7 +52,7 @@ Vec2 map_to_st(const TextureMapping& mapping, const TexturePoint& at) {
 StGradient st_gradient(const TextureMapping& mapping, const TexturePoint& at, Vec3 dpdu,
                        Vec3 dpdv) {
     if (mapping.kind == TextureMapping::Kind::uv)
-        return {{mapping.scale_u, 0}, {0, mapping.scale_v}};
+        return {{mapping.scale_u, mapping.u_per_v}, {mapping.v_per_u, mapping.scale_v}};
     const Transform& to_texture = mapping.texture_from_world;
     const StGradient3 g = gradient_by_position(mapping, to_texture.point(at.position));
     const Vec3 pu = to_texture.vector(dpdu), pv = to_texture.vector(dpdv);

@@ -1,0 +1,29 @@
+"""Renders Blender's scenes with covtrace: docs/blender.md."""
+
+bl_info = {
+    "name": "covtrace",
+    "author": "The covtrace authors",
+    "version": (0, 1, 0),
+    "blender": (3, 4, 0),
+    "location": "Render Properties > Render Engine",
+    "description": "Covariance tracing renderer",
+    "category": "Render",
+}
+
+import bpy
+
+from . import engine, settings
+
+CLASSES = (*settings.CLASSES, engine.CovtraceEngine)
+
+
+def register():
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    settings.register()
+
+
+def unregister():
+    settings.unregister()
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

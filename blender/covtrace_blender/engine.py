@@ -1,0 +1,141 @@
+"""The render engine: exports the scene, runs the program beside Blender, reads the layers back."""
+
+import json
+import os
+import signal
+import subprocess
+import tempfile
+import threading
+
+import bpy
+import numpy as np
+
+from . import export_scene, layers, settings
+
+# Passes beside the image: (name as covtrace's Blender layer names have it, channels, their names, type).
+PASSES = (
+    ("Depth", 1, "Z", "VALUE"),
+    ("Denoising Normal", 3, "XYZ", "VECTOR"),
+    ("Denoising Albedo", 3, "RGB", "COLOR"),
+    ("Noisy Image", 3, "RGB", "COLOR"),
+    ("variance", 3, "RGB", "COLOR"),
+    ("error", 1, "X", "VALUE"),
+    ("Debug Sample Count", 1, "X", "VALUE"),
+    ("density", 1, "X", "VALUE"),
+    ("filter", 3, "XYZ", "VECTOR"),
+)
+
+
+# The same by covtrace's own names.
+LAYERS = "Z,N,albedo,raw,variance,error,samples,density,filter"
+
+
+class CovtraceEngine(bpy.types.RenderEngine):
+    bl_idname = settings.ENGINE
+    bl_label = "covtrace"
+    bl_use_preview = False
+    bl_use_shading_nodes_custom = False
+    bl_use_eevee_viewport = True
+
+    def update_render_passes(self, scene=None, renderlayer=None):
+        self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
+        for name, channels, letters, kind in PASSES:
+            self.register_pass(scene, renderlayer, name, channels, letters, kind)
+
+    def render(self, depsgraph):
+        scene = depsgraph.scene
+        if depsgraph.view_layer_eval.name != scene.view_layers[0].name:
+            self.report({"WARNING"}, "covtrace renders the first view layer only")
+            return
+        try:
+            with tempfile.TemporaryDirectory(prefix="covtrace-") as folder:
+                self._render(depsgraph, scene, folder)
+        except (RuntimeError, OSError) as problem:
+            self.report({"ERROR"}, str(problem))
+            self.error_set(str(problem))
+
+    def _render(self, depsgraph, scene, folder):
+        program = settings.find_program()
+        self.update_stats("", "exporting the scene")
+        exporter = export_scene.SceneExporter(self, depsgraph, folder)
+        file = exporter.write()
+        for text in exporter.warnings:
+            self.report({"WARNING"}, text)
+        image = os.path.join(folder, "image.exr")
+        chosen = scene.covtrace
+        command = [program, "render", file, "-o", image, "--method", chosen.method, "--progress", "json",
+                   "--layer-names", "blender", "--layers", LAYERS, "--seed", str(chosen.seed)]
+        # Whichever comes first; a scene's own samples are those of the panel.
+        command += ["--spp", repr(chosen.samples)]
+        if chosen.seconds > 0:
+            command += ["--time", f"{chosen.seconds:.3f}"]
+        if chosen.error > 0 and chosen.method != "covariance":
+            command += ["--error", repr(chosen.error)]
+        if chosen.threads > 0:
+            command += ["--threads", str(chosen.threads)]
+        code = self._run(command)
+        if os.path.exists(image):
+            self._read(image, exporter.size, scene.render.film_transparent)
+        elif code == 6:
+            return  # cancelled before there was anything to see
+        if code not in (0, 6):
+            raise RuntimeError(f"covtrace: {self._last_error or f'it ended with exit code {code}'}")
+
+    def _run(self, command):
+        """The program's exit code; shows its progress, and interrupts it where Blender is asked to stop."""
+        self._last_error = ""
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True, errors="replace")
+        reader = threading.Thread(target=self._follow, args=(process.stderr,), daemon=True)
+        reader.start()
+        self._progress = None
+        stopped = False
+        while True:
+            try:
+                process.wait(0.1)
+                break
+            except subprocess.TimeoutExpired:
+                pass
+            if not stopped and self._is_stopped():
+                process.send_signal(signal.SIGINT)
+                stopped = True
+            self._show_progress()
+        reader.join(5)
+        return process.returncode
+
+    def _is_stopped(self):
+        return self.test_break()
+
+    def _follow(self, stream):
+        """On a thread of its own: keeps the last progress and the last message."""
+        for line in stream:
+            try:
+                self._progress = json.loads(line)
+            except ValueError:
+                if line.strip():
+                    self._last_error = line.strip()
+                    print("covtrace:", line.strip())
+
+    def _show_progress(self):
+        p = self._progress
+        if not p:
+            return
+        self.update_progress(p["fraction"])
+        text = f"{p['phase']}, {p['spp']:.1f} samples"
+        if p.get("error"):
+            text += f", error {p['error']:.3g}"
+        self.update_stats("", text)
+
+    def _read(self, image, size, is_transparent):
+        channels = layers.read(image)
+        # Only pictures with holes have alpha, and only where the film is transparent it is wanted.
+        if not is_transparent or "ViewLayer.Combined.A" not in channels:
+            channels["ViewLayer.Combined.A"] = np.ones(size[::-1], dtype=np.float32)
+        result = self.begin_result(0, 0, *size)
+        for render_pass in result.layers[0].passes:
+            planes = [channels.get(f"ViewLayer.{render_pass.name}.{letter}") for letter in render_pass.channel_id]
+            if any(plane is None for plane in planes):
+                continue  # the method has no such layer
+            pixels = np.stack(planes, axis=-1).reshape(-1, len(planes))
+            render_pass.rect.foreach_set(np.ascontiguousarray(pixels, dtype=np.float32))
+        self.end_result(result)

@@ -1,0 +1,102 @@
+"""Lamps and the world. Blender's watts are radiometric: a point lamp of W watts has W / (4 pi) watts per steradian."""
+
+import math
+import os
+
+import numpy as np
+
+from .export_materials import numbers
+from .export_textures import pixels, write_pfm
+
+
+def write_lamp(out, lamp, transform, warn):
+    """One lamp; `transform`: text that places its object (no scale in it matters but an area's)."""
+    colour = [c * lamp.energy for c in lamp.color]
+    if max(colour) <= 0:
+        return
+    out.write("AttributeBegin\n" + transform)
+    if lamp.type == "SUN":
+        if lamp.angle > math.radians(1):
+            warn(f"lamp '{lamp.name}': suns are points here; its angle is left out")
+        # Blender's sun shines along -z of its object.
+        out.write(f'LightSource "distant" "point3 from" [0 0 1] "point3 to" [0 0 0] "rgb L" [{numbers(colour)}]\n')
+    elif lamp.type == "AREA":
+        _write_area(out, lamp, colour)
+    elif lamp.type == "SPOT":
+        if lamp.shadow_soft_size > 0:
+            warn(f"lamp '{lamp.name}': spots are points here; their radius is left out")
+        intensity = [c / (4 * math.pi) for c in colour]
+        outer = lamp.spot_size / 2
+        inner = math.acos(math.cos(outer) + (1 - math.cos(outer)) * lamp.spot_blend)
+        out.write(f'LightSource "spot" "point3 from" [0 0 0] "point3 to" [0 0 -1] "rgb I" [{numbers(intensity)}] '
+                  f'"float coneangle" {math.degrees(outer):.9g} "float conedeltaangle" {math.degrees(outer - inner):.9g}\n')
+    elif lamp.shadow_soft_size > 0:
+        radius = lamp.shadow_soft_size
+        radiance = [c / (4 * math.pi * math.pi * radius**2) for c in colour]
+        # Lamps are not seen by the camera.
+        out.write(f'AreaLightSource "diffuse" "rgb L" [{numbers(radiance)}]\n'
+                  f'Shape "sphere" "float radius" {radius:.9g} "float alpha" 0\n')
+    else:
+        out.write(f'LightSource "point" "rgb I" [{numbers(c / (4 * math.pi) for c in colour)}]\n')
+    out.write("AttributeEnd\n")
+
+
+def _write_area(out, lamp, colour):
+    """Shines along -z of its object, from one side, with the radiance W / (4 area), as Cycles has it (measured)."""
+    width = lamp.size
+    height = lamp.size if lamp.shape in ("SQUARE", "DISK") else lamp.size_y
+    round_shape = lamp.shape in ("DISK", "ELLIPSE")
+    if round_shape:
+        corners = [(0.5 * width * math.cos(a), 0.5 * height * math.sin(a))
+                   for a in (2 * math.pi * k / 64 for k in range(64))]
+    else:
+        corners = [(-0.5 * width, -0.5 * height), (0.5 * width, -0.5 * height),
+                   (0.5 * width, 0.5 * height), (-0.5 * width, 0.5 * height)]
+    area = 0.5 * sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(corners, corners[1:] + corners[:1]))
+    radiance = [c / (4 * area) for c in colour]
+    points = numbers(v for x, y in corners for v in (x, y, 0))
+    # Clockwise seen from +z, so that the front looks along -z.
+    indices = " ".join(f"0 {k + 1} {k}" for k in range(1, len(corners) - 1))
+    out.write(f'AreaLightSource "diffuse" "rgb L" [{numbers(radiance)}]\n'
+              f'Shape "trianglemesh" "float alpha" 0 "point3 P" [{points}] "integer indices" [{indices}]\n')
+
+
+def area_scale(lamp, matrix):
+    """What a scaled object makes of its lamp's radiance: the power stays, the area grows."""
+    return 1 / max(abs(matrix.col[0].xyz.length * matrix.col[1].xyz.length), 1e-12) if lamp.type == "AREA" else 1
+
+
+def write_world(out, world, folder, warn):
+    if world is None:
+        return
+    if not world.use_nodes or not world.node_tree:
+        colour, strength, node = tuple(world.color), 1.0, None
+    else:
+        output = next((n for n in world.node_tree.nodes if n.type == "OUTPUT_WORLD" and n.is_active_output), None)
+        if output is None or not output.inputs["Surface"].is_linked:
+            return
+        background = output.inputs["Surface"].links[0].from_node
+        if background.type != "BACKGROUND":
+            warn(f"world shader '{background.name}' is not supported; the world is black")
+            return
+        strength = background.inputs["Strength"].default_value
+        colour = tuple(background.inputs["Color"].default_value)[:3]
+        socket = background.inputs["Color"]
+        node = socket.links[0].from_node if socket.is_linked else None
+    if node is not None and node.type == "TEX_ENVIRONMENT" and node.image and node.projection == "EQUIRECTANGULAR":
+        if node.inputs["Vector"].is_linked:
+            warn("the world's image is not turned: its coordinates are those of the generated ones")
+        values = pixels(node.image)[..., :3] * strength
+        height, width, _ = values.shape
+        if width != 2 * height:
+            warn("the world's image is not twice as wide as high; it is left out")
+            return
+        # Blender's azimuth runs the other way, from the middle of the image.
+        columns = (width // 2 - 1 - np.arange(width)) % width
+        write_pfm(os.path.join(folder, "world.pfm"), values[:, columns])
+        out.write('LightSource "infinite" "string filename" "world.pfm"\n')
+        return
+    if node is not None:
+        warn(f"world node '{node.name}' is not supported; the background's own colour is used")
+    if max(colour) * strength > 0:
+        out.write(f'LightSource "infinite" "rgb L" [{numbers(c * strength for c in colour)}]\n')

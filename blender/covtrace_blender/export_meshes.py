@@ -1,0 +1,66 @@
+"""Blender's evaluated meshes as triangles, one part per material."""
+
+import numpy as np
+
+
+def positions(mesh):
+    """(n, 3) float32, object space."""
+    values = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    mesh.vertices.foreach_get("co", values)
+    return values.reshape(-1, 3)
+
+
+def _triangles(mesh, name, width=3):
+    values = np.empty(width * len(mesh.loop_triangles), dtype=np.int32)
+    mesh.loop_triangles.foreach_get(name, values)
+    return values.reshape(-1, width) if width > 1 else values
+
+
+def _join(corners):
+    """Distinct rows of per-corner data, and each corner's row among them."""
+    rows = np.ascontiguousarray(corners).view(np.dtype((np.void, corners.dtype.itemsize * corners.shape[1])))
+    _, first, inverse = np.unique(rows.ravel(), return_index=True, return_inverse=True)
+    return corners[first], inverse
+
+
+def parts(mesh):
+    """Yields (material slot, positions, normals or None, uvs or None, triangles).
+
+    Corners that agree in everything are one vertex, so that smooth surfaces are closed. Faces without smooth
+    shading have no normals: the triangles' own are theirs.
+    """
+    mesh.calc_loop_triangles()
+    if not mesh.loop_triangles:
+        return
+    points = positions(mesh)
+    vertices, loops = _triangles(mesh, "vertices"), _triangles(mesh, "loops")
+    slots = _triangles(mesh, "material_index", 1)
+    smooth_polygons = np.empty(len(mesh.polygons), dtype=bool)
+    mesh.polygons.foreach_get("use_smooth", smooth_polygons)
+    smooth = smooth_polygons[_triangles(mesh, "polygon_index", 1)]
+    normals = None
+    if smooth.any():
+        mesh.calc_normals_split()
+        normals = np.empty(3 * len(mesh.loops), dtype=np.float32)
+        mesh.loops.foreach_get("normal", normals)
+        normals = normals.reshape(-1, 3)
+    uvs = None
+    if mesh.uv_layers.active:
+        uvs = np.empty(2 * len(mesh.loops), dtype=np.float32)
+        mesh.uv_layers.active.data.foreach_get("uv", uvs)
+        uvs = uvs.reshape(-1, 2)
+
+    for slot in np.unique(slots):
+        for is_smooth in (False, True):
+            chosen = (slots == slot) & (smooth == is_smooth)
+            if not chosen.any():
+                continue
+            corner_loops = loops[chosen].ravel()
+            columns = [points[vertices[chosen].ravel()]]
+            if is_smooth:
+                columns.append(normals[corner_loops])
+            if uvs is not None:
+                columns.append(uvs[corner_loops])
+            distinct, corners = _join(np.hstack(columns).astype(np.float32))
+            yield (int(slot), distinct[:, :3], distinct[:, 3:6] if is_smooth else None,
+                   distinct[:, -2:] if uvs is not None else None, corners.reshape(-1, 3))

@@ -1,0 +1,221 @@
+"""A scene of Blender as a pbrt-v4 file with its meshes and textures in one folder."""
+
+import math
+import os
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from . import export_lights, export_meshes, ply
+from .export_materials import MaterialExporter, numbers
+
+# Blender's cameras look along -z, pbrt's along +z; both have x to the right and y up.
+TURN = Matrix.Diagonal((1, 1, -1, 1))
+
+
+def matrix_text(matrix):
+    """pbrt lists columns first."""
+    return numbers(matrix[row][column] for column in range(4) for row in range(4))
+
+
+def placement(directive, start, end):
+    """A transform over the shutter; end None: at rest."""
+    if end is None or all(abs(a - b) < 1e-7 for r, s in zip(start, end) for a, b in zip(r, s)):
+        return f"{directive} [{matrix_text(start)}]\n"
+    return (f"ActiveTransform StartTime\n{directive} [{matrix_text(start)}]\n"
+            f"ActiveTransform EndTime\n{directive} [{matrix_text(end)}]\nActiveTransform All\n")
+
+
+class Placed:
+    """One instance of an object at the opening of the shutter."""
+
+    def __init__(self, instance):
+        self.matrix = instance.matrix_world.copy()
+        self.name = instance.object.name_full
+        self.is_shared = instance.is_instance
+        self.type = instance.object.type
+
+
+class SceneExporter:
+    def __init__(self, engine, depsgraph, folder):
+        self.engine, self.depsgraph, self.folder = engine, depsgraph, folder
+        self.scene = depsgraph.scene
+        self.frame = self.scene.frame_current_final
+        self.warnings = []
+        render = self.scene.render
+        scale = render.resolution_percentage / 100
+        self.size = (max(1, int(render.resolution_x * scale)), max(1, int(render.resolution_y * scale)))
+        if render.use_border:
+            self.warn("the render region is not supported; the whole frame is rendered")
+
+    def warn(self, text):
+        if text not in self.warnings:
+            self.warnings.append(text)
+
+    def write(self):
+        """The scene file's path."""
+        moving, self.shutter = self._look_at_close()
+        path = os.path.join(self.folder, "scene.pbrt")
+        try:
+            self._write(path, moving)
+        finally:
+            if self.shutter:
+                self._go_to(self.frame)
+        return path
+
+    def _write(self, path, moving):
+        with open(path, "w", encoding="utf-8") as out:
+            self.out = out
+            self._write_camera(moving)
+            out.write("WorldBegin\n")
+            self.materials = MaterialExporter(out, self.folder, self.warn)
+            export_lights.write_world(out, self.scene.world, self.folder, self.warn)
+            self._write_objects(moving)
+
+    # -- time
+
+    def _look_at_close(self):
+        """Where things are when the shutter closes: (matrices by key, (open, close) in frames); then back to open."""
+        render = self.scene.render
+        if not render.use_motion_blur:
+            return {}, None
+        frame, half = self.frame, 0.5 * render.motion_blur_shutter
+        self._go_to(frame + half)
+        matrices = {key: instance.matrix_world.copy() for key, instance in self._instances()}
+        matrices["camera"] = self._camera().matrix_world.copy()
+        self.closing = {instance.object.name_full: self._shape_sum(instance.object)
+                        for _, instance in self._instances() if instance.object.type == "MESH"}
+        self._go_to(frame - half)
+        return matrices, (-half, half)
+
+    def _go_to(self, time):
+        frame = math.floor(time)
+        self.engine.frame_set(frame, subframe=time - frame)
+
+    def _shape_sum(self, obj):
+        """A fingerprint of the evaluated mesh in object space."""
+        return hash(export_meshes.positions(obj.data).tobytes())
+
+    def _instances(self):
+        for instance in self.depsgraph.object_instances:
+            if instance.show_self:
+                parent = instance.parent.name_full if instance.parent else ""
+                yield (instance.object.name_full, parent, tuple(instance.persistent_id)), instance
+
+    # -- camera
+
+    def _camera(self):
+        if self.scene.camera is None:
+            raise RuntimeError("covtrace: the scene has no camera")
+        return self.scene.camera.evaluated_get(self.depsgraph)
+
+    def _write_camera(self, moving):
+        camera = self._camera()
+        data, out = camera.data, self.out
+        if data.type == "PANO":
+            raise RuntimeError("covtrace: panoramic cameras are not supported")
+        def world_to_camera(matrix):
+            return TURN @ matrix.normalized().inverted()
+        if self.shutter:
+            out.write(f"TransformTimes {self.shutter[0]:.9g} {self.shutter[1]:.9g}\n")
+        end = moving.get("camera")
+        out.write(placement("Transform", world_to_camera(camera.matrix_world), world_to_camera(end) if end else None))
+        corners = data.view_frame(scene=self.scene)
+        is_perspective = data.type == "PERSP"
+        depth = -corners[0].z if is_perspective else 1.0
+        xs, ys = [c.x / depth for c in corners], [c.y / depth for c in corners]
+        parameters = [f'"float screenwindow" [{numbers((min(xs), max(xs), min(ys), max(ys)))}]']
+        if is_perspective:
+            parameters.append('"float fov" 90')
+        if self.shutter:
+            parameters.append(f'"float shutteropen" {self.shutter[0]:.9g} "float shutterclose" {self.shutter[1]:.9g}')
+        if data.dof.use_dof:
+            distance = data.dof.focus_distance
+            if data.dof.focus_object:
+                at = data.dof.focus_object.evaluated_get(self.depsgraph).matrix_world.translation
+                distance = -(camera.matrix_world.normalized().inverted() @ at).z
+            focal_length = data.lens * 1e-3 if is_perspective else 1.0
+            radius = focal_length / (2 * max(data.dof.aperture_fstop, 1e-3))
+            parameters.append(f'"float lensradius" {radius:.9g} "float focaldistance" {max(distance, 1e-4):.9g}')
+        out.write(f'Camera "{"perspective" if is_perspective else "orthographic"}" {" ".join(parameters)}\n')
+        # The exposure's length is no brightness in Blender.
+        iso = 100 / (self.shutter[1] - self.shutter[0]) if self.shutter else 100
+        out.write(f'Film "rgb" "integer xresolution" {self.size[0]} "integer yresolution" {self.size[1]} '
+                  f'"float iso" {iso:.9g}\n')
+        out.write(f'Sampler "zsobol" "integer pixelsamples" {max(1, round(self.scene.covtrace.samples))}\n')
+        out.write(f'Integrator "path" "integer maxdepth" {self.scene.covtrace.max_depth}\n')
+
+    # -- objects
+
+    def _write_objects(self, moving):
+        shared, exported = {}, {}
+        for key, instance in self._instances():
+            obj = instance.object
+            matrix = instance.matrix_world.copy()
+            end = moving.get(key)
+            if obj.type == "LIGHT":
+                self._write_lamp(obj.data, matrix)
+            elif obj.type in ("MESH", "CURVE", "SURFACE", "FONT", "META"):
+                if obj.name_full not in exported:
+                    exported[obj.name_full] = self._export_parts(obj)
+                parts = exported[obj.name_full]
+                if not parts:
+                    continue
+                if abs(matrix.determinant()) < 1e-30:
+                    continue
+                if instance.is_instance and not any(emission for *_, emission in parts):
+                    if obj.name_full not in shared:
+                        shared[obj.name_full] = f"object {len(shared)}"
+                        self.out.write(f'ObjectBegin "{shared[obj.name_full]}"\n')
+                        self._write_parts(parts)
+                        self.out.write("ObjectEnd\n")
+                    self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end) +
+                                   f'ObjectInstance "{shared[obj.name_full]}"\nAttributeEnd\n')
+                else:
+                    self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end))
+                    self._write_parts(parts)
+                    self.out.write("AttributeEnd\n")
+
+    def _write_lamp(self, lamp, matrix):
+        scale = export_lights.area_scale(lamp, matrix)
+        if lamp.type != "AREA":
+            matrix = matrix.normalized()
+        class Scaled:
+            """The lamp with its energy for an area of unit scale."""
+            def __getattr__(self, name):
+                return lamp.energy * scale if name == "energy" else getattr(lamp, name)
+        export_lights.write_lamp(self.out, Scaled(), placement("ConcatTransform", matrix, None), self.warn)
+
+    def _export_parts(self, obj):
+        """[(file, material name, alpha, emission)] of an evaluated object, its files and materials written."""
+        mesh = obj.to_mesh()
+        if mesh is None:
+            return []
+        if self.shutter and obj.type == "MESH":
+            closing = self.closing.get(obj.name_full)
+            if closing is not None and closing != self._shape_sum(obj):
+                self.warn(f"object '{obj.name}' changes its shape while the shutter is open; it keeps that of the opening")
+        parts = []
+        for index, (slot, positions, normals, uvs, triangles) in enumerate(export_meshes.parts(mesh)):
+            if not np.isfinite(positions).all():
+                self.warn(f"object '{obj.name}' has vertices that are not finite and is left out")
+                break
+            file = f"mesh{len(os.listdir(self.folder))}.ply"
+            ply.write(os.path.join(self.folder, file), positions, normals, uvs, triangles)
+            slots = obj.material_slots
+            material = slots[min(slot, len(slots) - 1)].material if slots else None
+            name, emission, alpha = self.materials.material(material)
+            parts.append((file, name, alpha, emission))
+        obj.to_mesh_clear()
+        return parts
+
+    def _write_parts(self, parts):
+        for file, name, alpha, emission in parts:
+            self.out.write("AttributeBegin\n" f'NamedMaterial "{name}"\n')
+            if emission:
+                image = f' "string filename" "{emission.texture}"' if emission.texture else ""
+                scale = f'"float scale" {emission.radiance[0]:.9g}' if emission.texture else \
+                    f'"rgb L" [{numbers(emission.radiance)}]'
+                self.out.write(f'AreaLightSource "diffuse" {scale}{image} "bool twosided" true\n')
+            self.out.write(f'Shape "plymesh" "string filename" "{file}" {alpha}\nAttributeEnd\n')

@@ -1,0 +1,34 @@
+/// Private to this folder: accessors as numbers, whatever their component type, stride, sparse
+/// replacements and normalisation. Everything is checked against the buffers.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gltf/document.h"
+
+namespace covtrace::gltf {
+
+/// `count` elements of `components` numbers each, one after the other.
+struct Numbers {
+    size_t components = 0;
+    std::vector<float> values;
+    size_t count() const { return components == 0 ? 0 : values.size() / components; }
+    const float* element(size_t i) const { return values.data() + i * components; }
+};
+
+/// Reads accessors[index], whose type must have `components` numbers (SCALAR 1, VEC3 3, MAT4 16).
+/// Integers become themselves, or [0, 1] and [-1, 1] where the accessor is normalised. Refuses, at
+/// `place`, what reaches beyond its buffer, and values that are not finite.
+Numbers read_numbers(const Document& document, int index, size_t components,
+                     const std::string& place);
+
+/// The indices of a mesh: accessors[index], unsigned scalars. Each must be below `vertices`.
+std::vector<uint32_t> read_indices(const Document& document, int index, size_t vertices,
+                                   const std::string& place);
+
+/// Elements of accessors[index]; refuses an index that is not there.
+size_t accessor_count(const Document& document, int index, const std::string& place);
+
+}  // namespace covtrace::gltf

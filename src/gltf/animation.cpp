@@ -1,0 +1,123 @@
+#include "gltf/animation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/transform.h"
+
+namespace covtrace::gltf {
+namespace {
+
+std::vector<double> slerp_values(double t, const float* a, const float* b) {
+    const Quaternion q = slerp(t, {a[0], a[1], a[2], a[3]}, {b[0], b[1], b[2], b[3]});
+    return {q.x, q.y, q.z, q.w};
+}
+
+}  // namespace
+
+Animations::Animations(const Document& document, WarningLog& log) {
+    for (size_t a = 0; a < document.model.animations.size(); ++a)
+        for (size_t c = 0; c < document.model.animations[a].channels.size(); ++c)
+            read_channel(document, a, c, log);
+}
+
+void Animations::read_channel(const Document& document, size_t a, size_t c, WarningLog& log) {
+    const tinygltf::Animation& animation = document.model.animations[a];
+    const tinygltf::AnimationChannel& channel = animation.channels[c];
+    const std::string place = element("animations", a) + "." + element("channels", c);
+    if (channel.target_node < 0) return;  // of an extension
+    at(document, document.model.nodes, channel.target_node, "nodes", place + ".target.node");
+    Path path{};
+    if (channel.target_path == "translation") {
+        path = Path::translation;
+    } else if (channel.target_path == "rotation") {
+        path = Path::rotation;
+    } else if (channel.target_path == "scale") {
+        path = Path::scale;
+    } else {
+        log.add(document.place(place),
+                "only translation, rotation and scale of nodes are animated; the rest is left out");
+        return;
+    }
+    Channel read;
+    read.width = path == Path::rotation ? 4 : 3;
+    const tinygltf::AnimationSampler& sampler =
+        at(document, animation.samplers, channel.sampler, element("animations", a) + ".samplers",
+           place + ".sampler");
+    const std::string sampler_place =
+        element("animations", a) + "." + element("samplers", static_cast<size_t>(channel.sampler));
+    if (sampler.interpolation == "STEP")
+        read.interpolation = Interpolation::step;
+    else if (sampler.interpolation == "CUBICSPLINE")
+        read.interpolation = Interpolation::cubic_spline;
+    else if (sampler.interpolation != "LINEAR")
+        document.refuse(sampler_place + ".interpolation", "expected LINEAR, STEP or CUBICSPLINE");
+    read.times = read_numbers(document, sampler.input, 1, sampler_place + ".input");
+    read.values = read_numbers(document, sampler.output, read.width, sampler_place + ".output");
+    const size_t keys = read.times.count();
+    const size_t expected = read.interpolation == Interpolation::cubic_spline ? 3 * keys : keys;
+    if (keys == 0 || read.values.count() != expected)
+        document.refuse(sampler_place, std::to_string(read.values.count()) + " values for " +
+                                           std::to_string(keys) + " times; expected " +
+                                           std::to_string(expected) + ", and at least one time");
+    if (!std::is_sorted(read.times.values.begin(), read.times.values.end()))
+        document.refuse(sampler_place + ".input", "expected increasing times");
+    if (!channels_[channel.target_node].emplace(path, std::move(read)).second)
+        log.add(document.place(place),
+                "another animation moves the same property of the node; the first one counts");
+}
+
+std::vector<double> Animations::Channel::at(double time) const {
+    const std::vector<float>& t = times.values;
+    const bool spline = interpolation == Interpolation::cubic_spline;
+    const auto value = [&](size_t key) { return values.element(spline ? 3 * key + 1 : key); };
+    const auto held = [&](size_t key) {
+        return std::vector<double>(value(key), value(key) + width);
+    };
+    if (!(time > t.front())) return held(0);
+    if (time >= t.back()) return held(t.size() - 1);
+    const auto next = static_cast<size_t>(
+        std::upper_bound(t.begin(), t.end(), static_cast<float>(time)) - t.begin());
+    const size_t after = std::min(next, t.size() - 1), before = after - 1;
+    const double length = double(t[after]) - double(t[before]);
+    if (interpolation == Interpolation::step || !(length > 0)) return held(before);
+    const double u = std::clamp((time - double(t[before])) / length, 0.0, 1.0);
+    if (!spline && width == 4) return slerp_values(u, value(before), value(after));
+
+    std::vector<double> result(width);
+    for (size_t i = 0; i < width; ++i) {
+        const double p0 = value(before)[i], p1 = value(after)[i];
+        if (!spline) {
+            result[i] = (1 - u) * p0 + u * p1;
+            continue;
+        }
+        // Cubic Hermite spline: glTF 2.0, appendix C.5; tangents are per second.
+        const double out = length * double(values.element(3 * before + 2)[i]);
+        const double in = length * double(values.element(3 * after)[i]);
+        const double u2 = u * u, u3 = u2 * u;
+        result[i] = (2 * u3 - 3 * u2 + 1) * p0 + (u3 - 2 * u2 + u) * out + (3 * u2 - 2 * u3) * p1 +
+                    (u3 - u2) * in;
+    }
+    return result;
+}
+
+void Animations::apply(int node, double time, Pose& pose) const {
+    const auto it = channels_.find(node);
+    if (it == channels_.end()) return;
+    for (const auto& [path, channel] : it->second) {
+        const std::vector<double> v = channel.at(time);
+        switch (path) {
+            case Path::translation:
+                std::copy(v.begin(), v.end(), pose.translation.begin());
+                break;
+            case Path::rotation:
+                std::copy(v.begin(), v.end(), pose.rotation.begin());
+                break;
+            case Path::scale:
+                std::copy(v.begin(), v.end(), pose.scale.begin());
+                break;
+        }
+    }
+}
+
+}  // namespace covtrace::gltf

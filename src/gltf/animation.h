@@ -1,0 +1,48 @@
+/// Private to this folder: where nodes are at a time of the animations.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "gltf/accessor.h"
+#include "gltf/document.h"
+
+namespace covtrace::gltf {
+
+/// Translation, rotation (x, y, z, w) and scale of a node.
+struct Pose {
+    std::array<double, 3> translation{0, 0, 0};
+    std::array<double, 4> rotation{0, 0, 0, 1};
+    std::array<double, 3> scale{1, 1, 1};
+};
+
+/// All animations of the file at once, on one time line in seconds. Where two move the same
+/// property of a node, the first one counts, with a warning.
+class Animations {
+  public:
+    /// Reads and checks all channels that move nodes.
+    Animations(const Document& document, WarningLog& log);
+
+    bool empty() const { return channels_.empty(); }
+    bool moves(int node) const { return channels_.contains(node); }
+    /// Replaces what moves in `pose` by its value at `time`, held outside the keys.
+    void apply(int node, double time, Pose& pose) const;
+
+  private:
+    enum class Interpolation { step, linear, cubic_spline };
+    struct Channel {
+        Interpolation interpolation = Interpolation::linear;
+        Numbers times, values;
+        size_t width = 3;  ///< numbers per value
+        std::vector<double> at(double time) const;
+    };
+    enum class Path { translation, rotation, scale };
+
+    void read_channel(const Document& document, size_t animation, size_t channel, WarningLog& log);
+
+    std::map<int, std::map<Path, Channel>> channels_;  ///< by node
+};
+
+}  // namespace covtrace::gltf

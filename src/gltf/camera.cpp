@@ -1,0 +1,101 @@
+#include "gltf/camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace covtrace::gltf {
+namespace {
+
+constexpr float kDegrees = 180 / kPi;
+constexpr int kLongerSide = 1280;  // as everywhere, where a file gives no resolution
+
+/// Film of about 1280 pixels on its longer side.
+void set_film(FilmDescription& film, double aspect) {
+    aspect = std::clamp(aspect, 1e-2, 1e2);
+    const auto shorter = [&](double a) { return std::max(1, int(std::lround(kLongerSide * a))); };
+    film.width = aspect >= 1 ? kLongerSide : shorter(aspect);
+    film.height = aspect >= 1 ? shorter(1 / aspect) : kLongerSide;
+}
+
+/// glTF's cameras look along -z, ours along +z; both have x to the right and y up.
+AnimatedTransform camera_to_world(const AnimatedTransform& node) {
+    const Transform turn = Transform::scale(1, 1, -1);
+    if (!node.is_animated()) return AnimatedTransform(node.start() * turn);
+    return {node.start() * turn, node.start_time(), node.end() * turn, node.end_time()};
+}
+
+void read_camera(const Document& document, const PlacedNode& placed, SceneDescription& scene) {
+    const tinygltf::Node& node = document.model.nodes[static_cast<size_t>(placed.node)];
+    const std::string place = element("nodes", static_cast<size_t>(placed.node)) + ".camera";
+    const tinygltf::Camera& source =
+        at(document, document.model.cameras, node.camera, "cameras", place);
+    const std::string here = element("cameras", static_cast<size_t>(node.camera));
+    CameraDescription& camera = scene.camera;
+    camera.where = document.place(here);
+    camera.camera_to_world = camera_to_world(placed.transform);
+    if (source.type == "perspective") {
+        const double yfov = source.perspective.yfov;
+        if (!(yfov > 0 && yfov < M_PI))
+            document.refuse(here + ".perspective.yfov", "expected an angle between 0 and pi");
+        const double aspect =
+            source.perspective.aspectRatio > 0 ? source.perspective.aspectRatio : 16.0 / 9;
+        set_film(scene.film, aspect);
+        camera.kind = CameraDescription::Kind::perspective;
+        const double half = std::tan(yfov / 2) * std::min(1.0, aspect);
+        camera.fov = static_cast<float>(2 * std::atan(half)) * kDegrees;
+    } else if (source.type == "orthographic") {
+        const double x = std::abs(source.orthographic.xmag);
+        const double y = std::abs(source.orthographic.ymag);
+        if (!(x > 0 && x < 1e30 && y > 0 && y < 1e30))
+            document.refuse(here + ".orthographic", "expected xmag and ymag above 0");
+        set_film(scene.film, x / y);
+        camera.kind = CameraDescription::Kind::orthographic;
+        const auto w = static_cast<float>(x), h = static_cast<float>(y);
+        camera.screen_window = {-w, w, -h, h};
+    } else {
+        document.refuse(here + ".type", "expected perspective or orthographic");
+    }
+}
+
+/// All of the bounding sphere, from the front, 30 degrees to the right and 20 up.
+void frame(const Document& document, const Bounds3& bounds, SceneDescription& scene) {
+    constexpr float kFov = 40;
+    const Vec3 center = bounds.center();
+    const float radius = std::max(bounds.radius(), 1e-6f);
+    const float distance = 1.05f * radius / std::sin(0.5f * kFov / kDegrees);
+    const float azimuth = 30 / kDegrees, height = 20 / kDegrees;
+    const Vec3 towards{std::sin(azimuth) * std::cos(height), std::sin(height),
+                       std::cos(azimuth) * std::cos(height)};
+    const auto world_to_camera = Transform::look_at(center + towards * distance, center, {0, 1, 0});
+    if (!world_to_camera) document.refuse("", "the scene is too large to place a camera");
+    scene.camera.camera_to_world = AnimatedTransform(world_to_camera->inverse());
+    scene.camera.fov = kFov;
+    scene.camera.where = document.place("");
+    set_film(scene.film, 16.0 / 9);
+}
+
+}  // namespace
+
+void set_view(const Document& document, const std::vector<PlacedNode>& nodes, const Bounds3& bounds,
+              SceneDescription& scene, WarningLog& log) {
+    const auto has_camera = [&](const PlacedNode& n) {
+        return document.model.nodes[static_cast<size_t>(n.node)].camera >= 0;
+    };
+    const auto first = std::find_if(nodes.begin(), nodes.end(), has_camera);
+    if (first == nodes.end()) {
+        frame(document, bounds, scene);
+        log.add(document.place(""),
+                "the scene has no camera; one that sees all of it from the front takes its place");
+    } else {
+        read_camera(document, *first, scene);
+        const auto others = std::count_if(first + 1, nodes.end(), has_camera);
+        if (others > 0)
+            log.add(document.place(element("nodes", static_cast<size_t>(first->node))),
+                    "the first of " + std::to_string(others + 1) + " cameras is used");
+    }
+    const Transform& to_world = scene.camera.camera_to_world.start();
+    const float depth = to_world.inverse().point(bounds.center()).z;
+    if (depth > 0 && std::isfinite(depth)) scene.camera.focal_distance = depth;
+}
+
+}  // namespace covtrace::gltf

@@ -1,0 +1,19 @@
+/// Private to this folder: the file's camera, or one that shows the whole scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gltf/document.h"
+#include "gltf/nodes.h"
+#include "scene/scene_description.h"
+
+namespace covtrace::gltf {
+
+/// Sets camera and film: the first camera in the order of the nodes. Where there is none, one from
+/// the front right above (assets face +z), with a warning. The lens is closed; its focus lies at
+/// the depth of the scene's centre, for those who open it. `bounds`: of everything that is placed.
+void set_view(const Document& document, const std::vector<PlacedNode>& nodes, const Bounds3& bounds,
+              SceneDescription& scene, WarningLog& log);
+
+}  // namespace covtrace::gltf

@@ -1,0 +1,66 @@
+/// Private to this folder: a glTF file and the buffers that it names, in memory.
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+#include "scene/warning_log.h"
+
+namespace covtrace::gltf {
+
+/// The parsed file. Indices in it are unchecked: `at` checks them.
+struct Document {
+    std::string name;                          ///< as messages call the file
+    std::filesystem::path folder;              ///< the file's own
+    std::vector<std::filesystem::path> roots;  ///< folders that files may be read from
+    tinygltf::Model model;
+    uint64_t content_hash = 0;
+
+    /// A place in the document, such as "meshes[2].primitives[0]".
+    SourceLocation place(const std::string& path) const;
+    [[noreturn]] void refuse(const std::string& path, const std::string& text) const;
+};
+
+/// Reads the file and its buffers, embedded images too. Errors: as read_gltf.
+Document read_document(const std::filesystem::path& file,
+                       const std::vector<std::filesystem::path>& search_paths, WarningLog& log);
+
+/// The existing file that a URI means, percent signs decoded: in the scene's folder or a search
+/// path. Errors: Error(scene) where it is missing, absolute, has a scheme, or leaves all of them.
+std::filesystem::path find_file(const Document& document, const std::string& uri,
+                                const std::string& place);
+
+/// "nodes[3]"
+std::string element(std::string_view list, size_t index);
+
+/// The element of a list; refuses at `place` an index that is not in it.
+template <typename T>
+const T& at(const Document& document, const std::vector<T>& list, int index,
+            std::string_view list_name, const std::string& place) {
+    if (index < 0 || static_cast<size_t>(index) >= list.size())
+        document.refuse(place, "there is no " + std::string(list_name) + "[" +
+                                   std::to_string(index) + "]; expected less than " +
+                                   std::to_string(list.size()));
+    return list[static_cast<size_t>(index)];
+}
+
+/// The extension of that name, null where there is none or it is no object.
+const tinygltf::Value* extension(const tinygltf::ExtensionMap& extensions, const char* name);
+/// A number of an extension's object. Refuses other types and values outside [least, most].
+double number(const Document& document, const tinygltf::Value& object, const char* key,
+              double otherwise, double least, double most, const std::string& place);
+/// Numbers of a fixed count, at least 0 each.
+template <size_t n>
+std::array<double, n> numbers(const Document& document, const tinygltf::Value& object,
+                              const char* key, std::array<double, n> otherwise, double least,
+                              const std::string& place);
+/// A texture reference inside an extension; index -1 where there is none.
+tinygltf::TextureInfo texture_info(const Document& document, const tinygltf::Value& object,
+                                   const char* key, const std::string& place);
+
+}  // namespace covtrace::gltf

@@ -1,0 +1,115 @@
+#include "gltf/geometry.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "gltf/accessor.h"
+
+namespace covtrace::gltf {
+namespace {
+
+/// Of all meshes together; a buffer may be read by any number of primitives.
+constexpr size_t kMostVertices = size_t{1} << 30;
+
+std::vector<std::array<uint32_t, 3>> triangles(const std::vector<uint32_t>& i, int mode) {
+    std::vector<std::array<uint32_t, 3>> result;
+    if (i.size() < 3) return result;
+    if (mode == TINYGLTF_MODE_TRIANGLES) {
+        result.reserve(i.size() / 3);
+        for (size_t k = 0; k + 2 < i.size(); k += 3) result.push_back({i[k], i[k + 1], i[k + 2]});
+        return result;
+    }
+    result.reserve(i.size() - 2);
+    for (size_t k = 0; k + 2 < i.size(); ++k) {
+        const std::array<uint32_t, 3> t =
+            mode == TINYGLTF_MODE_TRIANGLE_FAN
+                ? std::array{i[k + 1], i[k + 2], i[0]}
+                : std::array{i[k], i[k + 1 + k % 2], i[k + 2 - k % 2]};
+        // Strips are joined by triangles without area.
+        if (t[0] != t[1] && t[1] != t[2] && t[0] != t[2]) result.push_back(t);
+    }
+    return result;
+}
+
+std::vector<Vec3> vectors(const Numbers& n) {
+    std::vector<Vec3> v(n.count());
+    for (size_t i = 0; i < v.size(); ++i)
+        v[i] = {n.element(i)[0], n.element(i)[1], n.element(i)[2]};
+    return v;
+}
+
+}  // namespace
+
+std::shared_ptr<const TriangleMesh> GeometryReader::mesh(int mesh, size_t primitive, int uv_set) {
+    const auto [entry, is_new] = meshes_.try_emplace({mesh, primitive, uv_set});
+    if (!is_new) return entry->second;
+    const std::string place =
+        element("meshes", static_cast<size_t>(mesh)) + "." + element("primitives", primitive);
+    entry->second = read(document_.model.meshes[static_cast<size_t>(mesh)].primitives[primitive],
+                         uv_set, place);
+    return entry->second;
+}
+
+std::shared_ptr<const TriangleMesh> GeometryReader::read(const tinygltf::Primitive& primitive,
+                                                         int uv_set, const std::string& place) {
+    const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+    if (mode < TINYGLTF_MODE_TRIANGLES) {
+        warn(place, "points and lines are not rendered");
+        return nullptr;
+    }
+    if (mode > TINYGLTF_MODE_TRIANGLE_FAN)
+        document_.refuse(place + ".mode",
+                         std::to_string(mode) + " is no kind of primitive; expected 0 to 6");
+    const auto attribute = [&](const std::string& name) {
+        const auto it = primitive.attributes.find(name);
+        return it == primitive.attributes.end() ? -1 : it->second;
+    };
+    if (!primitive.attributes.contains("POSITION")) {
+        warn(place, "a primitive without positions is left out");
+        return nullptr;
+    }
+    const std::string attributes = place + ".attributes.";
+    const size_t count = accessor_count(document_, attribute("POSITION"), attributes + "POSITION");
+    vertices_ += count;
+    if (count > kMostVertices || vertices_ > kMostVertices)
+        throw Error(ErrorKind::limit, document_.place(place),
+                    "the meshes have more than 2^30 vertices");
+    const auto read_attribute = [&](const std::string& name, size_t components) {
+        Numbers n = read_numbers(document_, attribute(name), components, attributes + name);
+        if (n.count() != count)
+            document_.refuse(attributes + name, "has " + std::to_string(n.count()) +
+                                                    " elements; expected " + std::to_string(count) +
+                                                    ", one per position");
+        return n;
+    };
+
+    auto mesh = std::make_shared<TriangleMesh>();
+    mesh->positions = vectors(read_attribute("POSITION", 3));
+    if (attribute("NORMAL") >= 0) mesh->normals = vectors(read_attribute("NORMAL", 3));
+    const std::string uv_name = "TEXCOORD_" + std::to_string(std::max(uv_set, 0));
+    if (attribute(uv_name) >= 0) {
+        const Numbers uv = read_attribute(uv_name, 2);
+        mesh->uvs.resize(count);
+        for (size_t i = 0; i < count; ++i) mesh->uvs[i] = {uv.element(i)[0], 1 - uv.element(i)[1]};
+    } else if (uv_set >= 0) {
+        warn(place, "has textures but no " + uv_name + "; they are looked up at (0, 0)");
+        mesh->uvs.assign(count, Vec2{0, 1});
+    }
+    if (attribute("COLOR_0") >= 0)
+        warn(place, "vertex colours (COLOR_0) are not supported and left out");
+    if (!primitive.targets.empty())
+        warn(place, "morph targets are not supported; the mesh is rendered unmorphed");
+
+    std::vector<uint32_t> indices;
+    if (primitive.indices >= 0) {
+        indices = read_indices(document_, primitive.indices, count, place + ".indices");
+    } else {
+        indices.resize(count);
+        std::iota(indices.begin(), indices.end(), 0);
+    }
+    mesh->triangles = triangles(indices, mode);
+    if (mesh->triangles.empty()) return nullptr;
+    return mesh;
+}
+
+}  // namespace covtrace::gltf

@@ -1,0 +1,29 @@
+/// Private to this folder: KHR_lights_punctual, and what lights a scene without lights.
+#pragma once
+
+#include "gltf/document.h"
+#include "gltf/nodes.h"
+#include "scene/scene_description.h"
+
+namespace covtrace::gltf {
+
+/// Appends the light of a placed node, if it has one: candela as radiant intensity, lux as
+/// irradiance. Lights stand where they are at the start of the shutter.
+void add_light(const Document& document, const PlacedNode& placed, SceneDescription& scene,
+               WarningLog& log);
+
+/// Brings lights in physical units to the scale of emission 1 = white. Viewers, and files made for
+/// them, take candela and lux for the units of the picture; exporters of renderers (Blender's)
+/// write 683 lm/W times what the renderer used. Lights that give the middle of the scene more than
+/// kPhysicalLux together are taken for the latter and divided by 683, with a warning; docs/gltf.md.
+void scale_lights(const Document& document, const Bounds3& bounds, SceneDescription& scene,
+                  WarningLog& log);
+inline constexpr float kPhysicalLux = 100;
+inline constexpr float kLumensPerWatt = 683;
+
+/// A uniform sky and a key light from the upper left behind the camera, so that a white surface
+/// that faces the key has about the radiance 1. `camera_to_world` as in CameraDescription.
+void add_default_lights(const Document& document, const Transform& camera_to_world,
+                        SceneDescription& scene, WarningLog& log);
+
+}  // namespace covtrace::gltf

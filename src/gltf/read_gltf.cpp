@@ -1,0 +1,202 @@
+#include "gltf/read_gltf.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <new>
+#include <stdexcept>
+
+#include "gltf/camera.h"
+#include "gltf/document.h"
+#include "gltf/geometry.h"
+#include "gltf/lights.h"
+#include "gltf/materials.h"
+#include "gltf/nodes.h"
+
+namespace covtrace {
+
+namespace gltf {
+namespace {
+
+bool is_supported(const std::string& extension) {
+    for (const char* name :
+         {"KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
+          "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission",
+          "KHR_materials_unlit", "KHR_materials_volume", "KHR_mesh_quantization",
+          "KHR_texture_transform"})
+        if (extension == name) return true;
+    return false;
+}
+
+void check_extensions(const Document& document) {
+    for (const std::string& name : document.model.extensionsRequired)
+        if (!is_supported(name))
+            document.refuse("extensionsRequired", "the file can't be read without the extension " +
+                                                      name + ", which is not supported");
+}
+
+/// Turns placed nodes into shapes, objects and instances of the scene.
+class SceneAssembler {
+  public:
+    SceneAssembler(const Document& document, SceneDescription& scene, WarningLog& log)
+        : document_(document),
+          scene_(scene),
+          log_(log),
+          geometry_(document, log),
+          materials_(document, scene, log) {}
+
+    void add(const std::vector<PlacedNode>& nodes) {
+        std::map<int, int> uses;
+        for (const PlacedNode& n : nodes)
+            if (node(n).mesh >= 0) ++uses[node(n).mesh];
+        for (const PlacedNode& n : nodes) {
+            if (node(n).mesh >= 0) add_mesh(n, uses[node(n).mesh] > 1);
+            add_light(document_, n, scene_, log_);
+        }
+    }
+
+    const Bounds3& bounds() const { return bounds_; }
+    bool has_lamps() const { return has_lamps_ || !scene_.lights.empty(); }
+
+  private:
+    const tinygltf::Node& node(const PlacedNode& placed) const {
+        return document_.model.nodes[static_cast<size_t>(placed.node)];
+    }
+
+    void add_mesh(const PlacedNode& placed, bool is_shared) {
+        const std::string place = element("nodes", static_cast<size_t>(placed.node));
+        at(document_, document_.model.meshes, node(placed).mesh, "meshes", place + ".mesh");
+        if (node(placed).skin >= 0)
+            log_.add(document_.place(place),
+                     "skins are not supported; the mesh is rendered as it is bound");
+        const int object = is_shared ? object_of(node(placed).mesh) : -1;
+        if (object >= 0)
+            scene_.instances.push_back({object, placed.transform, document_.place(place)});
+        const auto& primitives =
+            document_.model.meshes[static_cast<size_t>(node(placed).mesh)].primitives;
+        for (size_t i = 0; i < primitives.size(); ++i) {
+            auto shape = shape_of(node(placed).mesh, i);
+            if (!shape) continue;
+            grow(*shape, placed.transform);
+            // Emitters are no parts of objects: each is a light of its own.
+            if (object >= 0 && shape->area_light < 0) continue;
+            shape->object_to_world = placed.transform;
+            scene_.shapes.push_back(std::move(*shape));
+        }
+    }
+
+    /// The object of what doesn't emit in a mesh; -1 where there is nothing of that kind.
+    int object_of(int mesh) {
+        const auto [entry, is_new] = objects_.try_emplace(mesh, -1);
+        if (!is_new) return entry->second;
+        ObjectDescription object;
+        object.name = document_.model.meshes[static_cast<size_t>(mesh)].name;
+        const auto& primitives = document_.model.meshes[static_cast<size_t>(mesh)].primitives;
+        for (size_t i = 0; i < primitives.size(); ++i) {
+            auto shape = shape_of(mesh, i);
+            if (shape && shape->area_light < 0) object.shapes.push_back(std::move(*shape));
+        }
+        if (object.shapes.empty()) return -1;
+        scene_.objects.push_back(std::move(object));
+        return entry->second = static_cast<int>(scene_.objects.size() - 1);
+    }
+
+    /// A primitive in the space of its mesh; empty where there is nothing to see.
+    std::optional<ShapeDescription> shape_of(int mesh, size_t index) {
+        const std::string place =
+            element("meshes", static_cast<size_t>(mesh)) + "." + element("primitives", index);
+        const int material =
+            document_.model.meshes[static_cast<size_t>(mesh)].primitives[index].material;
+        const Surface& surface = materials_.surface(material, place);
+        if (!surface.is_visible) return std::nullopt;
+        auto triangles = geometry_.mesh(mesh, index, surface.uv_set);
+        if (!triangles) return std::nullopt;
+        ShapeDescription shape;
+        shape.geometry = std::move(triangles);
+        shape.material = surface.material;
+        shape.alpha = surface.alpha;
+        shape.inside = surface.inside;
+        shape.where = document_.place(place);
+        if (surface.emission) {
+            scene_.area_lights.push_back(*surface.emission);
+            shape.area_light = static_cast<int>(scene_.area_lights.size() - 1);
+            has_lamps_ = has_lamps_ || surface.is_strong_light;
+        }
+        return shape;
+    }
+
+    void grow(const ShapeDescription& shape, const AnimatedTransform& to_world) {
+        const auto& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(shape.geometry);
+        Bounds3 local;
+        for (const Vec3& p : mesh.positions) local.extend(p);
+        for (int corner = 0; corner < 8; ++corner)
+            bounds_.extend(to_world.start().point({corner & 1 ? local.hi.x : local.lo.x,
+                                                   corner & 2 ? local.hi.y : local.lo.y,
+                                                   corner & 4 ? local.hi.z : local.lo.z}));
+    }
+
+    const Document& document_;
+    SceneDescription& scene_;
+    WarningLog& log_;
+    GeometryReader geometry_;
+    MaterialReader materials_;
+    std::map<int, int> objects_;
+    Bounds3 bounds_;
+    bool has_lamps_ = false;
+};
+
+SceneDescription read(const std::filesystem::path& file, const ReadOptions& options) {
+    WarningLog log;
+    const Document document = read_document(file, options.search_paths, log);
+    check_extensions(document);
+    SceneDescription scene;
+    scene.name = file.stem().string();
+    // A format for interchange says nothing of quality: enough for glass, and for a clean image.
+    constexpr int kDepth = 12, kSamples = 64;
+    scene.max_depth = kDepth;
+    scene.samples_per_pixel = kSamples;
+
+    const std::vector<PlacedNode> nodes = place_nodes(document, options.shutter, log);
+    SceneAssembler assembler(document, scene, log);
+    assembler.add(nodes);
+    if (scene.shapes.empty() && scene.instances.empty())
+        document.refuse("", "the scene has no triangles to render");
+    set_view(document, nodes, assembler.bounds(), scene, log);
+    if (options.shutter) {
+        const auto [open, close] = *options.shutter;
+        scene.camera.shutter_open = open;
+        scene.camera.shutter_close = close;
+        // Images are scaled by the time of exposure; here it is to change the blur alone.
+        scene.film.iso = 100 / (close - open);
+    }
+    scale_lights(document, assembler.bounds(), scene, log);
+    if (!assembler.has_lamps())
+        add_default_lights(document, scene.camera.camera_to_world.start(), scene, log);
+    scene.warnings = log.take();
+    scene.content_hash = document.content_hash;
+    return scene;
+}
+
+}  // namespace
+}  // namespace gltf
+
+bool is_gltf(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension == ".gltf" || extension == ".glb";
+}
+
+SceneDescription read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
+    try {
+        return gltf::read(file, options);
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::limit, file.string() + ": not enough memory to read the scene");
+    } catch (const std::length_error&) {
+        throw Error(ErrorKind::limit, file.string() + ": the scene is too large to read");
+    } catch (const std::filesystem::filesystem_error& e) {
+        throw Error(ErrorKind::scene, file.string() + ": " + e.what());
+    }
+}
+
+}  // namespace covtrace

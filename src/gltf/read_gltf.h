@@ -1,0 +1,27 @@
+/// Reads glTF 2.0 scenes (.gltf with its files, or one .glb) into a SceneDescription.
+///
+/// World space is glTF's: metres, y up. Radiance is in the file's photometric unit, cd/m² (nit):
+/// emissive 1 is a radiance of 1, a light of 1 candela gives 1 lux at a metre. What the file asks
+/// for and covtrace doesn't render becomes a warning that says what takes its place.
+/// docs/gltf.md has the whole mapping.
+#pragma once
+
+#include <filesystem>
+
+#include "scene/read_scene.h"
+#include "scene/scene_description.h"
+
+namespace covtrace {
+
+/// True for names that end in .gltf or .glb, in any case.
+bool is_gltf(const std::filesystem::path& file);
+
+/// Nodes that animations move are placed where they are at both ends of `options.shutter`, in
+/// seconds of the animations; at time 0 without it. Meshes are read, image files are not.
+///
+/// Errors: Error(scene) as `file:line:column: …` for what is no JSON, and as `file: place in the
+/// document: what is wrong; what was expected` for the rest; Error(limit) where the scene is too
+/// large. Files are looked for in the scene's folder and the search paths, and nowhere else.
+SceneDescription read_gltf(const std::filesystem::path& file, const ReadOptions& options = {});
+
+}  // namespace covtrace

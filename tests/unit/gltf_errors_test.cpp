@@ -1,0 +1,211 @@
+// What is wrong with a glTF file is told with its place; hostile files never crash.
+#include <fstream>
+
+#include "core/rng.h"
+#include "gltf_fixtures.h"
+
+namespace covtrace::test {
+namespace {
+
+TEST(GltfErrors, TellsWhereTheTextIsNoJson) {
+    EXPECT_TRUE(contains(gltf_error("{\n  \"asset\": {\"version\" \"2.0\"}}"),
+                         "t.gltf:2:27: this is no JSON"));
+    EXPECT_TRUE(contains(gltf_error(""), "t.gltf:1:1: this is no JSON"));
+    EXPECT_TRUE(contains(gltf_error("[]"), "expected a JSON object"));
+    EXPECT_TRUE(contains(gltf_error(std::string(100000, '[')), "128 levels"));
+    EXPECT_TRUE(contains(gltf_error("{}"), "asset.version is missing"));
+    EXPECT_TRUE(contains(gltf_error(R"({"asset":{"version":"1.0"}})"), "expected \"2.0\""));
+    EXPECT_TRUE(contains(gltf_error("glTF\2"), "cut short"));
+}
+
+/// The square with one thing changed.
+template <typename Change>
+std::string changed(Change change) {
+    GltfFile file = square_file();
+    change(file.root);
+    return gltf_error(file);
+}
+
+TEST(GltfErrors, TellsThePlaceInTheDocument) {
+    const auto primitive = [](json& r) -> json& { return r["meshes"][0]["primitives"][0]; };
+    EXPECT_EQ(changed([](json& r) { r["nodes"][0]["mesh"] = 7; }),
+              "t.gltf: nodes[0].mesh: there is no meshes[7]; expected less than 1");
+    EXPECT_EQ(changed([&](json& r) { primitive(r)["attributes"]["POSITION"] = 99; }),
+              "t.gltf: meshes[0].primitives[0].attributes.POSITION: there is no accessors[99]; "
+              "expected less than 3");
+    EXPECT_EQ(changed([&](json& r) { primitive(r)["material"] = 3; }),
+              "t.gltf: meshes[0].primitives[0]: there is no materials[3]; expected less than 0");
+    EXPECT_EQ(changed([](json& r) { r["accessors"][0]["count"] = 5; }),
+              "t.gltf: accessors[0]: 5 elements end beyond the buffer view of 48 bytes");
+    EXPECT_EQ(changed([](json& r) { r["accessors"][0]["byteOffset"] = 4294967295u; }),
+              "t.gltf: accessors[0]: 4 elements end beyond the buffer view of 48 bytes");
+    EXPECT_EQ(changed([](json& r) { r["bufferViews"][0]["byteLength"] = 1e6; }).substr(0, 30),
+              std::string("t.gltf: this is no valid glTF: ").substr(0, 30));
+    EXPECT_EQ(changed([](json& r) { r["bufferViews"][0]["byteLength"] = 1000; }),
+              "t.gltf: bufferViews[0]: it ends beyond its buffer of 92 bytes");
+    EXPECT_EQ(changed([](json& r) { r["accessors"][1]["count"] = 3; }),
+              "t.gltf: meshes[0].primitives[0].attributes.TEXCOORD_0: has 3 elements; expected 4, "
+              "one per position");
+    EXPECT_EQ(changed([](json& r) { r["accessors"][0]["type"] = "VEC2"; }),
+              "t.gltf: accessors[0]: expected elements of 3 numbers, found 2");
+    EXPECT_EQ(changed([](json& r) {
+                  r["nodes"][0]["rotation"] = {1, 2};
+              }),
+              "t.gltf: nodes[0].rotation: expected 4 numbers");
+    EXPECT_EQ(changed([](json& r) { r["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }),
+              "t.gltf: extensionsRequired: the file can't be read without the extension "
+              "KHR_draco_mesh_compression, which is not supported");
+    EXPECT_EQ(changed([](json& r) {
+                  r["scenes"] = {{{"nodes", json::array()}}};
+              }),
+              "t.gltf: the scene has no triangles to render");
+}
+
+TEST(GltfErrors, LimitsCounts) {
+    GltfFile file = square_file();
+    file.root["accessors"][0]["count"] = 18446744073709551615u;
+    const Failure f = failure_of([&] { read(file); });
+    EXPECT_EQ(f.kind, ErrorKind::limit);
+    EXPECT_TRUE(contains(f.message, "more than 2^30 vertices"));
+}
+
+TEST(GltfErrors, RefusesIndicesBeyondTheVertices) {
+    GltfFile file = square_file();
+    file.buffer[file.buffer.size() - 2] = 4;
+    EXPECT_EQ(gltf_error(file),
+              "t.gltf: meshes[0].primitives[0].indices: index 4 is beyond the 4 vertices");
+}
+
+TEST(GltfErrors, RefusesValuesThatAreNotFinite) {
+    GltfFile file = square_file();
+    const float nan = std::nanf("");
+    std::memcpy(file.buffer.data() + 12, &nan, sizeof nan);
+    EXPECT_EQ(gltf_error(file), "t.gltf: accessors[0]: element 1 is not finite");
+}
+
+TEST(GltfErrors, RefusesHierarchiesThatAreNoTrees) {
+    const auto nodes = [](json n, json scene) {
+        return changed([&](json& r) {
+            r["nodes"] = n;
+            r["scenes"] = {{{"nodes", scene}}};
+        });
+    };
+    EXPECT_TRUE(contains(nodes({{{"children", {1}}}, {{"children", {0}}}}, {0}), "is no root"));
+    EXPECT_TRUE(contains(nodes({{{"children", {0}}}}, {0}), "is no root"));
+    EXPECT_TRUE(contains(nodes({{{"children", {1, 1}}}, {{"mesh", 0}}}, {0}), "expected a tree"));
+    EXPECT_TRUE(contains(nodes({{{"mesh", 0}}}, {0, 0}), "is no root"));
+    EXPECT_TRUE(contains(nodes({{{"children", {5}}}}, {0}), "there is no nodes[5]"));
+}
+
+TEST(GltfErrors, ReadsNoFileOutsideTheScene) {
+    const TemporaryFolder folder;
+    folder.write("secret.bin", square_file().buffer);
+    folder.write("inside/part 1.bin", square_file().buffer);
+    const auto with_uri = [&](const std::string& uri) {
+        GltfFile file = square_file();
+        json all = file.root;
+        all["buffers"] = {{{"byteLength", file.buffer.size()}, {"uri", uri}}};
+        return folder.write("inside/t.gltf", all.dump());
+    };
+    EXPECT_EQ(read_gltf(with_uri("part%201.bin")).shapes.size(), 1u);
+    for (const std::string uri : {"../secret.bin", "%2e%2e/secret.bin", "x/../../secret.bin"})
+        EXPECT_TRUE(contains(failure_of([&] { read_gltf(with_uri(uri)); }).message,
+                             "outside the scene's folder"))
+            << uri;
+    std::filesystem::create_symlink(folder.path() / "secret.bin", folder.path() / "inside/link");
+    EXPECT_TRUE(contains(failure_of([&] { read_gltf(with_uri("link")); }).message,
+                         "outside the scene's folder"));
+    for (const std::string uri : {"/etc/hostname", "file:///etc/hostname", "https://a/b"})
+        EXPECT_TRUE(contains(failure_of([&] { read_gltf(with_uri(uri)); }).message,
+                             "expected a relative path"))
+            << uri;
+    EXPECT_TRUE(contains(failure_of([&] { read_gltf(with_uri("none.bin")); }).message,
+                         "\"none.bin\" not found"));
+    // A search path makes its files the scene's.
+    const auto found = read_gltf(with_uri("secret.bin"), {{folder.path()}, {}});
+    EXPECT_EQ(found.shapes.size(), 1u);
+}
+
+/// A file with everything that the reader knows.
+GltfFile rich_file() {
+    GltfFile file;
+    const std::string image = "\x89PNG\r\n\x1a\n";
+    file.root["images"] = {{{"bufferView", file.add_view(image)}, {"mimeType", "image/png"}}};
+    file.root["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    file.root["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}};
+    const json texture = {
+        {"index", 0},
+        {"extensions", {{"KHR_texture_transform", {{"offset", {0.1, 0}}, {"rotation", 0.5}}}}}};
+    file.root["materials"] = {
+        {{"pbrMetallicRoughness", {{"baseColorTexture", texture}, {"metallicFactor", 0.5}}},
+         {"normalTexture", {{"index", 0}, {"scale", 2}}},
+         {"alphaMode", "MASK"},
+         {"emissiveFactor", {1, 1, 1}},
+         {"extensions",
+          {{"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}}},
+           {"KHR_materials_transmission", {{"transmissionFactor", 0.5}}},
+           {"KHR_materials_volume", {{"thicknessFactor", 1}, {"attenuationDistance", 1}}},
+           {"KHR_materials_ior", {{"ior", 1.3}}},
+           {"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}}}}}};
+    file.root["cameras"] = {
+        {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+    file.root["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "spot"}, {"intensity", 5}, {"spot", json::object()}}};
+    const int square = file.add_square({{"material", 0}});
+    const int times = file.add_floats({0, 1}, "SCALAR", 1);
+    const int turns = file.add_floats({0, 0, 0, 1, 0, 0, 1, 0}, "VEC4", 4);
+    file.add_node({{"mesh", square}, {"children", {1, 2}}, {"matrix", json::array()}});
+    file.root["nodes"][0].erase("matrix");
+    file.add_node({{"camera", 0}, {"translation", {0, 0, 5}}});
+    file.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    file.root["animations"] = {
+        {{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "rotation"}}}}}},
+         {"samplers", {{{"input", times}, {"output", turns}}}}}};
+    return file;
+}
+
+TEST(GltfErrors, SurvivesDamagedFiles) {
+    const TemporaryFolder folder;
+    const ReadOptions options{{}, std::array<float, 2>{0.2f, 0.8f}};
+    const std::string text = rich_file().text(), binary = rich_file().binary();
+    EXPECT_NO_THROW(read_gltf(folder.write("ok.gltf", text), options));
+    EXPECT_NO_THROW(read_gltf(folder.write("ok.glb", binary), options));
+    Rng rng(8);
+    const std::vector<std::string> tokens{
+        "-1",   "0",   "1",     "4294967296", "1e308",
+        "null", "[]",  "{}",    "\"x\"",      "true",
+        "255",  "0.5", "[0,0]", "-1e9",       "18446744073709551615"};
+    int read_well = 0;
+    constexpr int kRuns = 600;
+    for (int run = 0; run < kRuns; ++run) {
+        const bool is_text = run % 3 != 0;
+        std::string file = is_text ? text : binary;
+        const auto below = [&](size_t n) { return size_t(rng.next_float() * float(n)) % n; };
+        for (size_t edits = 1 + below(3); edits > 0; --edits) {
+            const size_t at = below(file.size());
+            if (!is_text || below(4) == 0) {
+                file[at] = static_cast<char>(below(256));
+                continue;
+            }
+            // A number becomes another value.
+            const size_t begin = file.find_first_of("0123456789", at);
+            if (begin == std::string::npos) continue;
+            const size_t end = file.find_first_not_of("0123456789.e-", begin);
+            file.replace(begin, end - begin, tokens[below(tokens.size())]);
+        }
+        const auto path = folder.write(is_text ? "d.gltf" : "d.glb", file);
+        try {
+            read_gltf(path, options);
+            ++read_well;
+        } catch (const Error& e) {
+            EXPECT_TRUE(e.kind() == ErrorKind::scene || e.kind() == ErrorKind::limit) << e.what();
+            EXPECT_NE(std::string(e.what()).find("d.gl"), std::string::npos) << e.what();
+        }
+    }
+    // The damage is neither always fatal nor never.
+    EXPECT_GT(read_well, kRuns / 20);
+    EXPECT_LT(read_well, kRuns * 19 / 20);
+}
+
+}  // namespace
+}  // namespace covtrace::test

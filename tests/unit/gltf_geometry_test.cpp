@@ -1,0 +1,146 @@
+// Meshes, accessors and nodes of glTF files.
+#include "gltf_fixtures.h"
+
+namespace covtrace::test {
+namespace {
+
+TEST(GltfGeometry, ReadsTextAndBinary) {
+    const TemporaryFolder folder;
+    const GltfFile file = square_file();
+    const auto text = read_gltf(folder.write("a.gltf", file.text()));
+    const auto binary = read_gltf(folder.write("b.GLB", file.binary()));
+    for (const auto* scene : {&text, &binary}) {
+        ASSERT_EQ(scene->shapes.size(), 1u);
+        const TriangleMesh& mesh = mesh_of(scene->shapes[0]);
+        ASSERT_EQ(mesh.positions.size(), 4u);
+        expect_near(mesh.positions[2], {1, 1, 0}, 0);
+        ASSERT_EQ(mesh.triangles.size(), 2u);
+        EXPECT_EQ(mesh.triangles[1], (std::array<uint32_t, 3>{0, 2, 3}));
+        // v runs upwards: the first corner is the image's lower left one.
+        EXPECT_EQ(mesh.uvs[0].y, 0);
+        EXPECT_EQ(mesh.uvs[3].y, 1);
+    }
+    EXPECT_EQ(text.name, "a");
+}
+
+TEST(GltfGeometry, ReadsStripsFansAndAllTypesOfIndices) {
+    GltfFile file;
+    const int p = file.add_floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0}, "VEC3", 3);
+    const auto primitive = [&](int mode, int indices) {
+        json j = {{"attributes", {{"POSITION", p}}}, {"mode", mode}};
+        if (indices >= 0) j["indices"] = indices;
+        return j;
+    };
+    const int bytes = file.add<uint8_t>({0, 1, 2, 3, 4}, 5121, "SCALAR", 1);
+    const int ints = file.add<uint32_t>({4, 3, 2, 1, 0}, 5125, "SCALAR", 1);
+    file.root["meshes"] = {
+        {{"primitives",
+          {primitive(5, bytes), primitive(6, ints), primitive(5, -1), primitive(1, -1)}}}};
+    file.add_node({{"mesh", 0}});
+    const auto scene = read(file);
+    ASSERT_EQ(scene.shapes.size(), 3u);
+    using Triangles = std::vector<std::array<uint32_t, 3>>;
+    EXPECT_EQ(mesh_of(scene.shapes[0]).triangles, (Triangles{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
+    EXPECT_EQ(mesh_of(scene.shapes[1]).triangles, (Triangles{{3, 2, 4}, {2, 1, 4}, {1, 0, 4}}));
+    EXPECT_EQ(mesh_of(scene.shapes[2]).triangles, mesh_of(scene.shapes[0]).triangles);
+    EXPECT_TRUE(contains(all_warnings(scene), "points and lines are not rendered"));
+}
+
+TEST(GltfGeometry, ReadsNormalisedStridedAndSparseAccessors) {
+    GltfFile file;
+    // Shorts at a stride of 8 bytes, as KHR_mesh_quantization has them.
+    const std::vector<int16_t> shorts{0, 0, 0, 99, 32767, 0, 0, 99, 0, -32767, 0, 99};
+    std::string bytes(shorts.size() * 2, '\0');
+    std::memcpy(bytes.data(), shorts.data(), bytes.size());
+    const int view = file.add_view(bytes, 8);
+    const int index_view = file.add_view(std::string("\2\0", 2));
+    const float moved[3] = {0, 0, 5};
+    const int value_view = file.add_view({reinterpret_cast<const char*>(moved), sizeof moved});
+    file.root["accessors"] = {{{"bufferView", view},
+                               {"componentType", 5122},
+                               {"count", 3},
+                               {"type", "VEC3"},
+                               {"normalized", true}},
+                              {{"componentType", 5126},
+                               {"count", 3},
+                               {"type", "VEC3"},
+                               {"sparse",
+                                {{"count", 1},
+                                 {"indices", {{"bufferView", index_view}, {"componentType", 5123}}},
+                                 {"values", {{"bufferView", value_view}}}}}}};
+    file.root["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", 0}, {"NORMAL", 1}}}}}}}};
+    file.root["extensionsRequired"] = {"KHR_mesh_quantization"};
+    file.add_node({{"mesh", 0}});
+    const auto scene = read(file);
+    const TriangleMesh& mesh = mesh_of(scene.shapes.at(0));
+    expect_near(mesh.positions[1], {1, 0, 0}, 0);
+    expect_near(mesh.positions[2], {0, -1, 0}, 0);
+    expect_near(mesh.normals[0], {0, 0, 0}, 0);
+    expect_near(mesh.normals[2], {0, 0, 5}, 0);
+}
+
+TEST(GltfGeometry, PlacesNodesByTheirParents) {
+    GltfFile file;
+    const int square = file.add_square();
+    const double h = std::sqrt(0.5);
+    file.add_node({{"children", {1}}, {"translation", {1, 2, 3}}, {"rotation", {0, 0, h, h}}});
+    file.add_node({{"mesh", square}, {"scale", {2, 2, 2}}, {"children", {2}}});
+    file.add_node({{"mesh", square}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 1}}});
+    file.root["scenes"] = {{{"nodes", {0}}}};
+    const auto scene = read(file);
+    // The mesh is shared, so it is an object.
+    ASSERT_EQ(scene.instances.size(), 2u);
+    EXPECT_TRUE(scene.shapes.empty());
+    ASSERT_EQ(scene.objects.size(), 1u);
+    expect_near(scene.instances[0].instance_to_world.start().point({1, 0, 0}), {1, 4, 3}, 1e-6f);
+    expect_near(scene.instances[1].instance_to_world.start().point({0, 0, 0}), {1, 2, 5}, 1e-6f);
+}
+
+TEST(GltfGeometry, MovesNodesOverTheShutter) {
+    GltfFile file;
+    file.add_node({{"mesh", file.add_square()}, {"children", {1}}});
+    file.add_node({{"mesh", file.add_square()}});
+    const int times = file.add_floats({1, 3}, "SCALAR", 1);
+    const int places = file.add_floats({0, 0, 0, 8, 0, 0}, "VEC3", 3);
+    // Cubic: in-tangent, value, out-tangent per key.
+    const int cubic =
+        file.add_floats({0, 0, 0, 1, 1, 1, 0, 0, 0, 0, 0, 0, 3, 3, 3, 0, 0, 0}, "VEC3", 3);
+    file.root["animations"] = {
+        {{"channels",
+          {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}},
+           {{"sampler", 1}, {"target", {{"node", 1}, {"path", "scale"}}}}}},
+         {"samplers",
+          {{{"input", times}, {"output", places}},
+           {{"input", times}, {"output", cubic}, {"interpolation", "CUBICSPLINE"}}}}}};
+    const auto moving = read(file, {{}, std::array<float, 2>{1.5f, 2.5f}});
+    ASSERT_EQ(moving.shapes.size(), 2u);
+    const AnimatedTransform& first = moving.shapes[0].object_to_world;
+    EXPECT_EQ(first.start_time(), 1.5f);
+    expect_near(first.start().point({0, 0, 0}), {2, 0, 0}, 1e-5f);
+    expect_near(first.end().point({0, 0, 0}), {6, 0, 0}, 1e-5f);
+    EXPECT_EQ(moving.camera.shutter_open, 1.5f);
+    // u = 1/4: 1 + 2 (3 u^2 - 2 u^3), upon the parent's place.
+    expect_near(moving.shapes[1].object_to_world.start().point({1, 0, 0}), {3.3125f, 0, 0}, 1e-5f);
+    // The exposure changes the blur, not the brightness.
+    EXPECT_NEAR((moving.camera.shutter_close - moving.camera.shutter_open) * moving.film.iso, 100,
+                1e-3);
+
+    const auto still = read(file);
+    EXPECT_FALSE(still.shapes[0].object_to_world.is_animated());
+    EXPECT_TRUE(contains(all_warnings(still), "--shutter"));
+
+    file.root["animations"][0]["samplers"][0]["interpolation"] = "STEP";
+    const auto step = read(file, {{}, std::array<float, 2>{2.9f, 3}});
+    expect_near(step.shapes[0].object_to_world.start().point({0, 0, 0}), {0, 0, 0}, 0);
+    expect_near(step.shapes[0].object_to_world.end().point({0, 0, 0}), {8, 0, 0}, 0);
+}
+
+TEST(GltfGeometry, HidesWhatHasNoSize) {
+    GltfFile file = square_file();
+    file.add_node({{"mesh", 0}, {"scale", {0, 0, 0}}});
+    const auto scene = read(file);
+    EXPECT_TRUE(contains(all_warnings(scene), "nodes[1]: a scale of zero hides"));
+}
+
+}  // namespace
+}  // namespace covtrace::test
