@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "planner/adaptive.h"
+#include "planner/error_goal.h"
 #include "reconstruction/hybrid.h"
 #include "render/hybrid.h"
 #include "render/layers.h"
@@ -14,6 +16,10 @@ namespace {
 
 /// Samples per pixel of the pilot, both halves together.
 constexpr double kPilot = 4;
+
+/// Of its samples, those that leave a covariance. More cost as much as ten samples each and change
+/// nothing (docs/decisions/0040).
+constexpr double kPaths = 1;
 
 /// Where the round after an average of `taken` ends: the rounds double the total, whatever the
 /// budget.
@@ -41,8 +47,9 @@ class HybridRender {
         }
         double taken = trace_pilot();
         if (job_.options.seconds) job_.reserve(reconstruction_time());
-        while (!job_.monitor.cancelled() && !good_enough()) {
-            const double target = job_.plan_round(taken, round_end(taken));
+        while (!job_.monitor.cancelled()) {
+            const double enough = enough_samples(taken);
+            const double target = job_.plan_round(taken, std::min(round_end(taken), enough));
             if (!(target > taken)) break;
             image_.reset();  // of fewer samples
             trace_round(taken, target);
@@ -86,7 +93,7 @@ class HybridRender {
     double trace_pilot() {
         const double pilot = job_.target_spp ? std::min(kPilot, *job_.target_spp) : kPilot;
         const double covariance =
-            std::min(pilot, job_.options.cov_spp ? double(*job_.options.cov_spp) : 2.0);
+            std::min(pilot, job_.options.cov_spp ? double(*job_.options.cov_spp) : kPaths);
         const SceneOccluders occluders(job_);
         const std::vector<float> even(size(), 1.0f);
         const std::vector<uint32_t> none(size(), 0);
@@ -209,13 +216,14 @@ class HybridRender {
                      !job_.scene.lights.has_environment());
     }
 
-    /// Whether the image is as good as was asked for, by its own estimate.
-    bool good_enough() {
-        if (!job_.options.error) return false;
+    /// The average count at which the image will be as good as was asked for; `taken` where it is,
+    /// by its own estimate.
+    double enough_samples(double taken) {
+        if (!job_.options.error) return std::numeric_limits<double>::infinity();
         reconstruct_image();
         double sum = 0;
         for (float e : image_->relative_error.values) sum += double(e);
-        return std::sqrt(sum / double(size())) < *job_.options.error;
+        return goal_.samples(taken, std::sqrt(sum / double(size())), *job_.options.error);
     }
 
     /// Seconds that the reconstruction of this image will take, by that of a part of it. It decides
@@ -249,6 +257,7 @@ class HybridRender {
     Prediction raw_prediction_, prediction_;
     std::optional<HybridImage> image_;  // of the film as it is
     std::vector<float> density_;        // what the last plan asked for, samples per pixel
+    ErrorGoal goal_;
 };
 
 }  // namespace
