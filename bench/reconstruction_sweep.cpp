@@ -1,17 +1,23 @@
 // Compares reconstructions of the same samples, without rendering again for each:
 //
-//     reconstruction_sweep SPP WIDTHxHEIGHT SCENE.pbrt REFERENCE.exr [SCENE REFERENCE ...]
+//     reconstruction_sweep SPP WIDTHxHEIGHT SCENE.pbrt REFERENCE.exr REFERENCE2.exr [SCENE
+//     REFERENCE REFERENCE2 ...]
 //
 // Traces every scene with `--method hybrid` at SPP (seed 1) and prints for every set of candidates
-// and selector the trimmed relMSE per scene and the geometric mean of raw error over error. The
-// reference's own noise is in all of these numbers alike. docs/reconstruction.md has the table.
+// and selector the trimmed relMSE per scene, the geometric mean of raw error over error, and how
+// good the image's own estimate of its error is: mean true over mean estimated squared error, and
+// in how many of 20 bins of tiles (16 x 16 pixels, 8 x 8 where that makes fewer than 200), sorted
+// by the estimate, it lies between 0.7 and 1.4. The references are two independent images, whose
+// own noise is taken out. docs/reconstruction.md has the table.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 #include "image/compare.h"
 #include "reconstruction/hybrid.h"
+#include "reconstruction/selector.h"
 #include "render/hybrid.h"
 #include "scene/read_scene.h"
 
@@ -22,21 +28,77 @@ namespace {
 struct Case {
     Halves halves;
     std::vector<Covariance2> spectrum;
-    Image reference;
+    std::array<Image, 2> reference;
+    double noise = 0;  // of one reference
     double raw = 0;
+
+    double error(const ColorPlanes& color) const;
+    /// Of every pixel, over I^2 + 0.01, without the references' noise.
+    Plane true_error(const ColorPlanes& color) const;
 };
 
-double error(const ColorPlanes& color, const Image& reference) {
+double Case::error(const ColorPlanes& color) const {
     Image image;
-    image.data = reference.data;
-    image.display = reference.display;
+    image.data = reference[0].data;
+    image.display = reference[0].display;
     for (size_t c = 0; c < 3; ++c)
         image.add_channel(std::string(1, "RGB"[c])).values = color[c].values;
-    return compare(image, reference).relmse_trimmed;
+    return 0.5 * (compare(image, reference[0]).relmse_trimmed +
+                  compare(image, reference[1]).relmse_trimmed) -
+           noise;
+}
+
+Plane Case::true_error(const ColorPlanes& color) const {
+    Plane e(color[0].width, color[0].height);
+    for (size_t i = 0; i < e.size(); ++i) {
+        const Rgb a = reference[0].rgb(i), b = reference[1].rgb(i), mean = 0.5f * (a + b);
+        for (int c = 0; c < 3; ++c)
+            e[i] += (color[size_t(c)][i] - a[c]) * (color[size_t(c)][i] - b[c]) /
+                    (sqr(mean[c]) + kDarkSquared) / 3;
+    }
+    return e;
+}
+
+struct Calibration {
+    double ratio;  // mean true over mean estimated squared error
+    int bins;      // of 20, where it is right
+};
+Calibration calibration(const Plane& truth, const Plane& estimate) {
+    const auto tiles_of = [&](int side) {
+        return ((truth.width + side - 1) / side) * ((truth.height + side - 1) / side);
+    };
+    const int side = tiles_of(16) < 200 ? 8 : 16;
+    struct Tile {
+        double estimated = 0, real = 0;
+    };
+    std::vector<Tile> tiles(size_t(tiles_of(side)));
+    Tile all;
+    for (int y = 0; y < truth.height; ++y)
+        for (int x = 0; x < truth.width; ++x) {
+            Tile& t = tiles[size_t(y / side * ((truth.width + side - 1) / side) + x / side)];
+            for (Tile* sum : {&t, &all}) {
+                sum->estimated += double(estimate(x, y));
+                sum->real += double(truth(x, y));
+            }
+        }
+    std::sort(tiles.begin(), tiles.end(),
+              [](const Tile& a, const Tile& b) { return a.estimated < b.estimated; });
+    Calibration result{all.real / all.estimated, 0};
+    constexpr size_t kBins = 20;
+    for (size_t bin = 0; bin < kBins; ++bin) {
+        Tile sum;
+        for (size_t i = bin * tiles.size() / kBins; i < (bin + 1) * tiles.size() / kBins; ++i) {
+            sum.estimated += tiles[i].estimated;
+            sum.real += tiles[i].real;
+        }
+        const double ratio = sum.real / sum.estimated;
+        if (ratio >= 0.7 && ratio <= 1.4) ++result.bins;
+    }
+    return result;
 }
 
 Case load(double spp, const std::array<int, 2>& size, const char* scene_file,
-          const char* reference) {
+          const std::array<const char*, 2>& reference) {
     SceneDescription description = read_pbrt(scene_file);
     SceneOverrides overrides;
     overrides.resolution = size;
@@ -48,12 +110,15 @@ Case load(double spp, const std::array<int, 2>& size, const char* scene_file,
     Monitor monitor;
     RenderJob job(scene, options, monitor);
     const HybridSamples samples = trace_hybrid(job);
-    Case c{halves_of(samples.film), samples.prediction.spectrum, read_image(reference)};
+    Case c{halves_of(samples.film),
+           samples.prediction.spectrum,
+           {read_image(reference[0]), read_image(reference[1])}};
+    c.noise = compare(c.reference[0], c.reference[1]).relmse_trimmed / 2;
     ColorPlanes raw = c.halves[0].color;
     for (size_t k = 0; k < 3; ++k)
         for (size_t i = 0; i < raw[k].size(); ++i)
             raw[k][i] = 0.5f * (raw[k][i] + c.halves[1].color[k][i]);
-    c.raw = error(raw, c.reference);
+    c.raw = c.error(raw);
     return c;
 }
 
@@ -86,25 +151,28 @@ std::vector<std::pair<std::string, HybridSettings>> variants() {
 
 int main(int argc, char** argv) {
     std::array<int, 2> size{};
-    if (argc < 5 || argc % 2 == 0 || std::sscanf(argv[2], "%dx%d", &size[0], &size[1]) != 2) {
+    if (argc < 6 || argc % 3 != 0 || std::sscanf(argv[2], "%dx%d", &size[0], &size[1]) != 2) {
         fmt::print(stderr,
-                   "usage: reconstruction_sweep SPP WxH SCENE REFERENCE [SCENE REFERENCE ...]\n");
+                   "usage: reconstruction_sweep SPP WxH SCENE REFERENCE REFERENCE2 [...]\n");
         return 2;
     }
     try {
         std::vector<Case> cases;
-        for (int i = 3; i < argc; i += 2)
-            cases.push_back(load(std::atof(argv[1]), size, argv[i], argv[i + 1]));
-        fmt::print("{:<30}  gain   relMSE x 1e5 per scene\n{:<38}", "", "raw");
-        for (const Case& c : cases) fmt::print(" {:8.1f}", 1e5 * c.raw);
+        for (int i = 3; i < argc; i += 3)
+            cases.push_back(load(std::atof(argv[1]), size, argv[i], {argv[i + 1], argv[i + 2]}));
+        fmt::print("{:<30}  gain   per scene: relMSE x 1e5 (true / estimated, bins)\n{:<38}", "",
+                   "raw");
+        for (const Case& c : cases) fmt::print(" {:8.1f}          ", 1e5 * c.raw);
         for (const auto& [name, settings] : variants()) {
             double log_sum = 0;
             std::string each;
             for (const Case& c : cases) {
-                const double e =
-                    error(reconstruct(c.halves, c.spectrum, settings).color, c.reference);
+                const HybridImage image = reconstruct(c.halves, c.spectrum, settings);
+                const double e = c.error(image.color);
                 log_sum += std::log(c.raw / e);
-                each += fmt::format(" {:8.1f}", 1e5 * e);
+                const auto [ratio, bins] =
+                    calibration(c.true_error(image.color), image.relative_error);
+                each += fmt::format(" {:8.1f} ({:4.2f}, {:2})", 1e5 * e, ratio, bins);
             }
             fmt::print("\n{:<30} {:6.2f} {}", name, std::exp(log_sum / double(cases.size())), each);
         }

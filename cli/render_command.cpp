@@ -21,6 +21,9 @@
 #include "image/image.h"
 #include "image/output_file.h"
 #include "preview/tev_client.h"
+#include "render/film_file.h"
+#include "render/scene_file.h"
+#include "render/session.h"
 
 namespace covtrace::cli {
 

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 
+#include "reconstruction/lanes.h"
+
 namespace covtrace {
 
 PaddedPlane::PaddedPlane(const Plane& plane, int width_of_border)
     : border(width_of_border),
-      stride(plane.width + 2 * border + PatchDistance::kBlock),
+      stride(plane.width + 2 * border + PatchDistance::kRow),
       values(size_t(stride) * size_t(plane.height + 2 * border + PatchDistance::kBlock)) {
     // Beyond the border one more block, so that the last block of a row may be a whole one.
     for (int y = -border; y < plane.height + border + PatchDistance::kBlock; ++y) {
@@ -36,47 +38,47 @@ PatchDistance::PatchDistance(std::span<const Plane> values, std::span<const Plan
     for (const Plane& p : variances) variances_.emplace_back(p, border);
 }
 
-void PatchDistance::block(int x0, int y0, int dx, int dy, float* out) const {
-    constexpr int kSide = kBlock + 2 * kLargestPatch;
-    constexpr int kRow = (kSide + 7) / 8 * 8;
+template <int Radius>
+void PatchDistance::block_of(int x0, int y0, int dx, int dy, float* out) const {
+    static_assert(Radius <= kLargestPatch && kRow % kLanes == 0 && kBlock % kLanes == 0);
+    constexpr int kSide = kBlock + 2 * Radius;
     // Differences beyond this say "not alike" however much larger they are; without the limit one
     // of them would drown the rounding of the sums.
     constexpr float kMost = 1e4f;
-    const int r = patch_radius_, side = kBlock + 2 * r;
     std::array<float, size_t(kSide) * kRow> d;
-    for (int y = 0; y < side; ++y) {
-        std::array<float, kRow> above{}, below{};
-        for (size_t c = 0; c < values_.size(); ++c) {
-            const float* u = values_[c].at(x0 - r, y0 - r + y);
-            const float* u_q = values_[c].at(x0 - r + dx, y0 - r + y + dy);
-            const float* v = variances_[c].at(x0 - r, y0 - r + y);
-            const float* v_q = variances_[c].at(x0 - r + dx, y0 - r + y + dy);
-            for (int x = 0; x < side; ++x) {
-                const float difference = u[x] - u_q[x];
-                above[size_t(x)] +=
-                    difference * difference - (v[x] + (v[x] < v_q[x] ? v[x] : v_q[x]));
-                below[size_t(x)] += v[x] + v_q[x];
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kRow; x += int(kLanes)) {
+            const int px = x0 - Radius + x, py = y0 - Radius + y;
+            Lanes above{}, below{};
+            for (size_t c = 0; c < values_.size(); ++c) {
+                const Lanes v = load(variances_[c].at(px, py)),
+                            v_q = load(variances_[c].at(px + dx, py + dy));
+                const Lanes difference =
+                    load(values_[c].at(px, py)) - load(values_[c].at(px + dx, py + dy));
+                above += difference * difference - (v + smaller(v, v_q));
+                below += v + v_q;
             }
+            store(smaller(above / (1e-10f + below), kMost - Lanes{}),
+                  &d[size_t(y) * kRow + size_t(x)]);
         }
-        float* row = &d[size_t(y) * kRow];
-        for (int x = 0; x < side; ++x) {
-            const float ratio = above[size_t(x)] / (1e-10f + below[size_t(x)]);
-            row[x] = ratio < kMost ? ratio : kMost;
-        }
-    }
-    const float scale = 1 / float((2 * r + 1) * (2 * r + 1));
+    const float scale = 1 / float((2 * Radius + 1) * (2 * Radius + 1));
     for (int y = 0; y < kBlock; ++y) {
-        std::array<float, kRow> column{};
-        for (int k = 0; k <= 2 * r; ++k) {
-            const float* row = &d[size_t(y + k) * kRow];
-            for (int x = 0; x < kRow; ++x) column[size_t(x)] += row[x];
+        std::array<float, kRow> column;
+        for (int x = 0; x < kRow; x += int(kLanes)) {
+            Lanes sum{};
+            for (int k = 0; k <= 2 * Radius; ++k) sum += load(&d[size_t(y + k) * kRow + size_t(x)]);
+            store(sum, &column[size_t(x)]);
         }
-        float* target = out + size_t(y) * kBlock;
-        for (int x = 0; x < kBlock; ++x) target[x] = column[size_t(x)];
-        for (int k = 1; k <= 2 * r; ++k)
-            for (int x = 0; x < kBlock; ++x) target[x] += column[size_t(x + k)];
-        for (int x = 0; x < kBlock; ++x) target[x] *= scale;
+        for (int x = 0; x < kBlock; x += int(kLanes)) {
+            Lanes sum{};
+            for (int k = 0; k <= 2 * Radius; ++k) sum += load(&column[size_t(x + k)]);
+            store(sum * scale, out + size_t(y) * kBlock + size_t(x));
+        }
     }
+}
+
+void PatchDistance::block(int x0, int y0, int dx, int dy, float* out) const {
+    patch_radius_ == 1 ? block_of<1>(x0, y0, dx, dy, out) : block_of<3>(x0, y0, dx, dy, out);
 }
 
 }  // namespace covtrace

@@ -32,8 +32,10 @@ class PatchDistance {
     /// The side of the blocks of pixels that are worked on at once.
     static constexpr int kBlock = 32;
     static constexpr int kLargestPatch = 3;
+    /// Pixels of a row that are worked on for a block, patches included.
+    static constexpr int kRow = (kBlock + 2 * kLargestPatch + 7) / 8 * 8;
 
-    /// Planes of one size. `reach`: largest offset along an axis; `patch_radius` <= kLargestPatch.
+    /// Planes of one size. `reach`: largest offset along an axis; `patch_radius`: 1 or 3.
     PatchDistance(std::span<const Plane> values, std::span<const Plane> variances, int reach,
                   int patch_radius);
 
@@ -42,15 +44,20 @@ class PatchDistance {
     void block(int x0, int y0, int dx, int dy, float* out) const;
 
   private:
+    template <int Radius>
+    void block_of(int x0, int y0, int dx, int dy, float* out) const;
+
     std::vector<PaddedPlane> values_, variances_;
     int patch_radius_;
 };
 
-/// 1 at d <= 0, falls as exp(-d), 0 from d = 4 on: (1 - d/4)^4.
-inline float patch_weight(float d) {
-    const float clipped = d > 0 ? d : 0.0f;
-    const float t = clipped < 4 ? 1 - 0.25f * clipped : 0.0f;
-    return t * t * t * t;
+/// 1 at d <= 0, falls as exp(-d), 0 from d = 4 on: (1 - d/4)^4. Numbers or Lanes.
+template <typename T>
+T patch_weight(const T& d) {
+    const T clipped = d > 0.0f ? d : T{};
+    const T t = clipped < 4.0f ? 1.0f - 0.25f * clipped : T{};
+    const T square = t * t;
+    return square * square;
 }
 
 }  // namespace covtrace

@@ -126,6 +126,8 @@ RenderState parse(const json& j, size_t most_bytes) {
     s.complete = j.at("complete");
     s.seconds = j.at("seconds");
     s.seconds_spp = j.at("seconds_spp");
+    const json& goal = j.at("error_goal");
+    s.goal = {goal.at(0), goal.at(1), goal.at(2)};
     s.rejected = j.at("rejected");
     for (const json& r : j.at("first_rejected"))
         s.first_rejected.push_back({r.at(0), r.at(1), r.at(2)});
@@ -167,6 +169,7 @@ std::string film_header(const RenderState& s) {
                  {"complete", s.complete},
                  {"seconds", s.seconds},
                  {"seconds_spp", s.seconds_spp},
+                 {"error_goal", {s.goal.taken, s.goal.error, s.goal.power}},
                  {"rejected", s.rejected},
                  {"first_rejected", rejected},
                  {"shards", s.shards},

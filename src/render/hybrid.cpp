@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "planner/adaptive.h"
+#include "planner/error_goal.h"
 #include "reconstruction/hybrid.h"
 #include "render/develop.h"
 #include "render/hybrid.h"
@@ -77,8 +78,7 @@ class HybridRender {
         const bool first_here = !prediction_;
         predict();
         if (first_here && job_.options.seconds) job_.reserve(reconstruction_time());
-        if (good_enough()) return false;
-        const double target = job_.plan_round(round_end(s_.taken));
+        const double target = job_.plan_round(std::min(round_end(s_.taken), enough_samples()));
         return target > s_.taken && plan_samples(target);
     }
 
@@ -177,13 +177,14 @@ class HybridRender {
         image_ = reconstruct(halves_of(s_.films), prediction_->spectrum);
     }
 
-    /// Whether the image is as good as was asked for, by its own estimate.
-    bool good_enough() {
-        if (!job_.options.error) return false;
+    /// The average count at which the image will be as good as was asked for; what is taken where
+    /// it is, by its own estimate.
+    double enough_samples() {
+        if (!job_.options.error) return kInfinity;
         reconstruct_image();
         double sum = 0;
         for (float e : image_->relative_error.values) sum += double(e);
-        return std::sqrt(sum / double(size())) < *job_.options.error;
+        return s_.goal.samples(s_.taken, std::sqrt(sum / double(size())), *job_.options.error);
     }
 
     /// Seconds that the reconstruction of this image will take, by that of a part of it. It decides

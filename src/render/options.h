@@ -39,7 +39,7 @@ struct RenderOptions {
     std::optional<double> seconds;  ///< wall clock, from `start_time` to the finished file
     std::optional<double>
         error;  ///< stop at this estimated sqrt(relMSE) of the image; not covariance
-    std::optional<int> cov_spp;  ///< covariance paths per pixel; default spp/4 in [2, 4]
+    std::optional<int> cov_spp;  ///< covariance paths per pixel; default spp/4 in [2, 4], hybrid: 1
     DensityRule density = DensityRule::tempered;
     Occlusion occlusion = Occlusion::query;
     int voxels = 200;  ///< width of the grid
@@ -51,7 +51,7 @@ struct RenderOptions {
     /// covariance: each round traces the pixels that lack most of what the prediction asks for, and
     /// `max_spp` limits what a pixel gets in one round, not in all.
     bool progressive = false;
-    bool even_counts = false;  ///< hybrid: every pixel the same count, for comparisons
+    bool even_counts = false;     ///< hybrid: every pixel the same count, for comparisons
     bool emitters_apart = false;  ///< uniform: keeps the light of emitters in view apart
     uint64_t seed = 0;
 };

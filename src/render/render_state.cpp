@@ -55,7 +55,8 @@ Metadata scene_metadata(const RenderScene& scene, const RenderOptions& options) 
 
 /// Covariance paths per pixel. A budget of few samples takes few of them.
 double covariance_paths(const RenderOptions& options, std::optional<double> spp) {
-    constexpr double kHybrid = 2, kFewest = 2, kMost = 4;
+    // More paths cost `hybrid` as much as ten samples each and change nothing (decision 0040).
+    constexpr double kHybrid = 1, kFewest = 2, kMost = 4;
     if (options.method == Method::uniform) return 0;
     double paths = kHybrid;
     if (options.cov_spp)

@@ -10,6 +10,7 @@
 
 #include "integrator/render_scene.h"
 #include "planner/covariance_buffer.h"
+#include "planner/error_goal.h"
 #include "reconstruction/filter_field.h"
 #include "render/film.h"
 #include "render/options.h"
@@ -47,6 +48,7 @@ struct RenderState {
     std::vector<std::vector<uint32_t>> plan;
     std::optional<double> spp;            ///< the budget, where it was a count
     bool complete = false;                ///< the budget is spent
+    ErrorGoal goal;                       ///< what the errors after earlier rounds told
     double seconds = 0, seconds_spp = 0;  ///< what tracing cost: seconds for samples per pixel
 
     std::vector<Film> films;                 ///< one; `hybrid`: two halves

@@ -1,7 +1,9 @@
 #include "shading/image_spectrum.h"
 
+#include <deque>
 #include <numeric>
 
+#include "core/once.h"
 #include "core/parallel.h"
 #include "shading/scalar_field.h"
 
@@ -199,77 +201,112 @@ AxisTaps axis_taps(float coordinate, float cells_per_unit, int n, bool repeats) 
 
 }  // namespace
 
-ImageSpectrum::ImageSpectrum(std::span<const float> luminance, int width, int height, Wrap wrap)
-    : repeat_s_(wrap != Wrap::clamp), repeat_t_(wrap == Wrap::repeat) {
-    if (luminance.empty()) return;
-    const double mean =
-        std::accumulate(luminance.begin(), luminance.end(), 0.0) / double(luminance.size());
-    // About the mean, because variances are differences of squares.
-    ScalarField field(width, height, repeat_s_, repeat_t_);
-    for (size_t i = 0; i < luminance.size(); ++i) field.values[i] = float(luminance[i] - mean);
-    const int factor = (std::max(width, height) + kMaxAnalysedSize - 1) / kMaxAnalysedSize;
-    if (factor > 1) field = box_reduced(field, factor);
+/// The image at one resolution and, from the first look-up on, its analysis.
+class ImageSpectrum::Scale {
+  public:
+    Scale(const ScalarField& image, float mean, Vec2 texels_per_unit)
+        : width_((image.width + 1) / 2),
+          height_((image.height + 1) / 2),
+          repeat_s_(image.repeat_x),
+          repeat_t_(image.repeat_y),
+          texels_per_unit_(texels_per_unit),
+          mean_(mean),
+          image_(image) {}
 
-    float texels_per_s = float(width) / float(factor), texels_per_t = float(height) / float(factor);
-    for (;;) {
-        const std::vector<Level> levels = make_pyramid(field);
-        Accumulator sum{float(mean)};
+    /// Bilinear.
+    Covariance at(float s, float t) const {
+        analysed_([this] { analyse(); });
+        const AxisTaps x = axis_taps(s, 0.5f * texels_per_unit_.x, width_, repeat_s_);
+        const AxisTaps y = axis_taps(t, 0.5f * texels_per_unit_.y, height_, repeat_t_);
+        Covariance sum;
+        const auto add = [&](int column, int row, float weight) {
+            const auto& c = cells_[size_t(row) * size_t(width_) + size_t(column)];
+            sum.ss += weight * c.ss;
+            sum.st += weight * c.st;
+            sum.tt += weight * c.tt;
+        };
+        add(x.first, y.first, (1 - x.weight) * (1 - y.weight));
+        add(x.second, y.first, x.weight * (1 - y.weight));
+        add(x.first, y.second, (1 - x.weight) * y.weight);
+        add(x.second, y.second, x.weight * y.weight);
+        return sum;
+    }
+
+    size_t memory() const { return image_.memory() + cells_.size() * sizeof(Covariance); }
+
+  private:
+    void analyse() const {
+        const std::vector<Level> levels = make_pyramid(image_);
+        Accumulator sum{mean_};
         for (size_t i = levels.size(); i-- > 0;) sum.add(levels[i], 2);
         sum.add(levels[0], 1);
         // The narrowest window is as wide as a cell of two by two texels, so that less would tell
         // no more.
         const ScalarField ss = box_reduced(sum.ss, 2), st = box_reduced(sum.st, 2),
                           tt = box_reduced(sum.tt, 2);
-        Scale scale{ss.width, ss.height, texels_per_s / 2, texels_per_t / 2, {}};
-        scale.cells.resize(ss.values.size());
-        for (size_t i = 0; i < scale.cells.size(); ++i) {
+        const auto [per_s, per_t] = texels_per_unit_;
+        cells_.resize(ss.values.size());
+        for (size_t i = 0; i < cells_.size(); ++i) {
             const Covariance c = bounded_anisotropy({ss.values[i], st.values[i], tt.values[i]});
-            scale.cells[i] = {c.ss * sqr(texels_per_s), c.st * texels_per_s * texels_per_t,
-                              c.tt * sqr(texels_per_t)};
+            cells_[i] = {c.ss * sqr(per_s), c.st * per_s * per_t, c.tt * sqr(per_t)};
         }
-        scales_.push_back(std::move(scale));
+        image_ = {};
+    }
+
+    int width_, height_;  // cells, each of two by two texels of this resolution
+    bool repeat_s_, repeat_t_;
+    Vec2 texels_per_unit_;
+    float mean_;
+    Once analysed_;
+    mutable ScalarField image_;  // about the mean; empty once it is analysed
+    mutable std::vector<Covariance> cells_;
+};
+
+struct ImageSpectrum::Pyramid {
+    std::deque<Scale> scales;  ///< each of half the resolution of the one before
+    Vec2 texels_per_unit;      ///< of the first
+};
+
+ImageSpectrum::ImageSpectrum(std::span<const float> luminance, int width, int height, Wrap wrap) {
+    if (luminance.empty()) return;
+    const double mean =
+        std::accumulate(luminance.begin(), luminance.end(), 0.0) / double(luminance.size());
+    // About the mean, because variances are differences of squares.
+    ScalarField field(width, height, wrap != Wrap::clamp, wrap == Wrap::repeat);
+    for (size_t i = 0; i < luminance.size(); ++i) field.values[i] = float(luminance[i] - mean);
+    const int factor = (std::max(width, height) + kMaxAnalysedSize - 1) / kMaxAnalysedSize;
+    if (factor > 1) field = box_reduced(field, factor);
+
+    const auto pyramid = std::make_shared<Pyramid>();
+    Vec2 per_unit{float(width) / float(factor), float(height) / float(factor)};
+    pyramid->texels_per_unit = per_unit;
+    for (;; per_unit = 0.5f * per_unit) {
+        pyramid->scales.emplace_back(field, float(mean), per_unit);
         if (std::min(field.width, field.height) < 4) break;
         field = halved(field);
-        texels_per_s /= 2;
-        texels_per_t /= 2;
     }
-}
-
-SpatialCovariance2 ImageSpectrum::at_scale(const Scale& scale, float s, float t) const {
-    const AxisTaps x = axis_taps(s, scale.cells_per_s, scale.width, repeat_s_);
-    const AxisTaps y = axis_taps(t, scale.cells_per_t, scale.height, repeat_t_);
-    SpatialCovariance2 sum;
-    const auto add = [&](int column, int row, float weight) {
-        const auto& c = scale.cells[size_t(row) * size_t(scale.width) + size_t(column)];
-        sum.ss += weight * c.ss;
-        sum.st += weight * c.st;
-        sum.tt += weight * c.tt;
-    };
-    add(x.first, y.first, (1 - x.weight) * (1 - y.weight));
-    add(x.second, y.first, x.weight * (1 - y.weight));
-    add(x.first, y.second, (1 - x.weight) * y.weight);
-    add(x.second, y.second, x.weight * y.weight);
-    return sum;
+    pyramid_ = pyramid;
 }
 
 SpatialCovariance2 ImageSpectrum::at(float s, float t, Vec2 footprint) const {
-    if (scales_.empty()) return {};
+    if (!pyramid_) return {};
+    const auto& [scales, per_unit] = *pyramid_;
     // Halving l times smooths by a deviation of half of 2^l texels: as a pixel of 2^l texels does.
-    const float texels =
-        2 * std::min(footprint.x * scales_[0].cells_per_s, footprint.y * scales_[0].cells_per_t);
-    const float level = texels > 1 ? std::min(std::log2(texels), float(scales_.size() - 1)) : 0.0f;
+    const float texels = std::min(footprint.x * per_unit.x, footprint.y * per_unit.y);
+    const float level = texels > 1 ? std::min(std::log2(texels), float(scales.size() - 1)) : 0.0f;
     const auto finer = static_cast<size_t>(level);
     const float coarser_share = level - float(finer);
-    const SpatialCovariance2 a = at_scale(scales_[finer], s, t);
+    const SpatialCovariance2 a = scales[finer].at(s, t);
     if (!(coarser_share > 0)) return a;
-    const SpatialCovariance2 b = at_scale(scales_[finer + 1], s, t);
+    const SpatialCovariance2 b = scales[finer + 1].at(s, t);
     const auto blend = [coarser_share](float p, float q) { return p + coarser_share * (q - p); };
     return {blend(a.ss, b.ss), blend(a.st, b.st), blend(a.tt, b.tt)};
 }
 
 size_t ImageSpectrum::memory() const {
     size_t bytes = 0;
-    for (const Scale& s : scales_) bytes += s.cells.size() * sizeof(SpatialCovariance2);
+    if (pyramid_)
+        for (const Scale& s : pyramid_->scales) bytes += s.memory();
     return bytes;
 }
 

@@ -1,8 +1,8 @@
 /// The local bandwidth of an image, as a texture or an environment map has it around a point.
 #pragma once
 
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "core/vec.h"
 
@@ -25,6 +25,9 @@ struct SpatialCovariance2 {
 /// largest trace counts, made to have at least a tenth of its largest variance in every direction,
 /// because structures bend. At the distance d from a straight edge this is about
 /// 1 / (4 pi^2 (d/2)^2) across the edge; for noise it is the covariance of its amplitude spectrum.
+///
+/// A resolution is analysed when it is first asked for: a render asks for the few that are about as
+/// fine as its pixels, and for none of an image that it never sees. Any number of threads may ask.
 class ImageSpectrum {
   public:
     /// repeat_s: repeat in s, clamp in t, for lat-long maps.
@@ -45,19 +48,12 @@ class ImageSpectrum {
     /// pixel filter before anything else happens to the image, so the analysis is of the image
     /// smoothed to it (by a Gaussian of half the footprint). 0: of the image as it is.
     SpatialCovariance2 at(float s, float t, Vec2 footprint = {}) const;
-    size_t memory() const;
+    size_t memory() const;  ///< bytes; not while others look up
 
   private:
-    /// The analysis of the image at one resolution.
-    struct Scale {
-        int width = 0, height = 0;  ///< cells, each of two by two texels of this resolution
-        float cells_per_s = 0, cells_per_t = 0;
-        std::vector<SpatialCovariance2> cells;
-    };
-    SpatialCovariance2 at_scale(const Scale& scale, float s, float t) const;
-
-    bool repeat_s_ = false, repeat_t_ = false;
-    std::vector<Scale> scales_;  ///< each of half the resolution of the one before
+    class Scale;
+    struct Pyramid;
+    std::shared_ptr<const Pyramid> pyramid_;  ///< none: constant
 };
 
 }  // namespace covtrace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "reconstruction/lanes.h"
 #include "reconstruction_fixtures.h"
 
 namespace covtrace {
@@ -74,6 +75,15 @@ TEST(Regression, DoesNotMixWhatTheOtherHalfTellsApart) {
     const auto fitted = regress(halves[0], halves[1], features, std::span(&window, 1));
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x) EXPECT_NEAR(fitted[0][0](x, y), step(x, y), 0.03f);
+}
+
+TEST(Regression, ExponentialIsExact) {
+    for (int i = 0; i < 1000; ++i) {
+        const float x = -0.09f * float(i);
+        const Lanes y = exp_of_negative(x - Lanes{});
+        const float expected = std::exp(std::max(x, -80.0f));
+        for (size_t k = 0; k < kLanes; ++k) EXPECT_NEAR(y[k] / expected, 1, 5e-6f) << x;
+    }
 }
 
 }  // namespace

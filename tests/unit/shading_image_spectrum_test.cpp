@@ -220,6 +220,22 @@ TEST(ImageSpectrum, SeesTheSeamOfARepeatedImageOnly) {
               100 * per_texel(q.spectrum(Wrap::repeat_s), q, 64, 1).tt);
 }
 
+TEST(ImageSpectrum, SaysTheSameInWhateverOrderItIsAsked) {
+    const Picture p = noise(128, 2, 1, {0.6f, 0.8f}, 0.4f, 4);
+    const ImageSpectrum finest_first = p.spectrum(Wrap::repeat);
+    const ImageSpectrum coarse_first = p.spectrum(Wrap::repeat);
+    const auto ask = [](const ImageSpectrum& s, float texels) {
+        return s.at(0.3f, 0.4f, {texels / 128, texels / 128});
+    };
+    for (float texels : {1.0f, 2.5f, 20.0f}) ask(finest_first, texels);
+    for (float texels : {20.0f, 2.5f, 1.0f}) {
+        const SpatialCovariance2 a = ask(coarse_first, texels), b = ask(finest_first, texels);
+        EXPECT_EQ(a.ss, b.ss);
+        EXPECT_EQ(a.st, b.st);
+        EXPECT_EQ(a.tt, b.tt);
+    }
+}
+
 TEST(ImageSpectrum, DoesNotDependOnTheNumberOfThreads) {
     const Picture p = noise(128, 2, 1, {0.6f, 0.8f}, 0.4f, 3);
     const auto run = [&](int threads) {

@@ -1,0 +1,159 @@
+#include "reconstruction/regression_window.h"
+
+#include <algorithm>
+
+namespace covtrace {
+
+namespace {
+
+void cut_out(const PaddedPlane& plane, int x, int y, FitWindow::Cells& out) {
+    constexpr int kReach = FitWindow::kReach, kSide = FitWindow::kSide;
+    for (int dy = -kReach; dy <= kReach; ++dy) {
+        const float* row = plane.at(x - kReach, y + dy);
+        std::copy(row, row + kSide, &out[size_t(dy + kReach) * kSide]);
+    }
+}
+
+}  // namespace
+
+RegressionInputs::RegressionInputs(const HalfBuffer& half, const FeaturePlanes& features) {
+    constexpr int kReach = FitWindow::kReach;
+    const int w = half.count.width, h = half.count.height;
+    for (size_t f = 0; f < kFeatures; ++f) feature[f] = PaddedPlane(features[f], kReach);
+    for (size_t c = 0; c < 3; ++c) color[c] = PaddedPlane(half.color[c], kReach);
+    Plane has_samples(w, h);
+    for (size_t i = 0; i < has_samples.size(); ++i)
+        has_samples[i] = half.count[i] > 0 ? 1.0f : 0.0f;
+    sampled = PaddedPlane(has_samples, kReach, 0);
+    inside = PaddedPlane(Plane(w, h, 1), kReach, 0);
+}
+
+FitWindow::FitWindow() {
+    size_t o = 0;
+    for (int dy = -kReach; dy <= kReach; ++dy)
+        for (int dx = -kReach; dx <= kReach; ++dx, ++o) {
+            one_[o] = 1;
+            x_[o] = float(dx) / kReach;
+            y_[o] = float(dy) / kReach;
+        }
+    basis_ = {&one_, &x_, &y_};
+    for (size_t f = 0; f < kFeatures; ++f) basis_[kPositions + f] = &feature_[f];
+}
+
+void FitWindow::move_to(const RegressionInputs& in, int x, int y) {
+    size_ = kPositions;
+    for (const PaddedPlane& plane : in.feature) {
+        Cells& feature = feature_[size_ - kPositions];
+        cut_out(plane, x, y, feature);
+        if (centre(feature)) ++size_;
+    }
+    for (size_t c = 0; c < 3; ++c) cut_out(in.color[c], x, y, color_[c]);
+    cut_out(in.inside, x, y, inside_);
+    cut_out(in.sampled, x, y, sampled_);
+}
+
+void FitWindow::set_weights(const RegressionWindow& window, const float* distance, int x, int y,
+                            Cells& weight) const {
+    const float scale = 1 / (window.k * window.k);
+    for (size_t o = 0; o < kCells; o += kLanes)
+        store(load(&inside_[o]) * patch_weight(scale * load(distance + o)), &weight[o]);
+    if (!window.shape) return;
+    const FilterField& field = *window.shape;
+    const auto& s = field.covariance[size_t(y) * size_t(field.width) + size_t(x)];
+    const float norm =
+        -0.5f * kReach * kReach / ((s.xx * s.yy - s.xy * s.xy) * window.widen * window.widen);
+    const float qxx = s.yy * norm, qxy = -2 * s.xy * norm, qyy = s.xx * norm;
+    for (size_t o = 0; o < kCells; o += kLanes) {
+        const Lanes dx = load(&x_[o]), dy = load(&y_[o]);
+        const Lanes power = qxx * (dx * dx) + qxy * (dx * dy) + qyy * (dy * dy);
+        store(load(&weight[o]) * exp_of_negative(power), &weight[o]);
+    }
+}
+
+bool FitWindow::fit(const Cells& weight, std::array<Cells, 3>& fitted) {
+    solve_normal_equations(weight);
+    if (!(total_ > 0)) return false;
+    for (size_t o = 0; o < kCells; o += kLanes) {
+        Lanes sum[3];
+        for (size_t c = 0; c < 3; ++c) sum[c] = coefficient_[c][0] - Lanes{};
+        for (size_t i = 1; i < size_; ++i) {
+            const Lanes x = load(&(*basis_[i])[o]);
+            for (size_t c = 0; c < 3; ++c) sum[c] += coefficient_[c][i] * x;
+        }
+        for (size_t c = 0; c < 3; ++c) store(sum[c], &fitted[c][o]);
+    }
+    return true;
+}
+
+/// Subtracts the centre's value. False where the feature is as good as constant: what varies by
+/// less is given next to nothing by the ridge.
+bool FitWindow::centre(Cells& feature) {
+    constexpr float kConstant = 3e-4f;
+    const float value = feature[kOffsets / 2];
+    std::fill(feature.begin() + kOffsets, feature.end(), value);
+    Lanes most{};
+    for (size_t o = 0; o < kCells; o += kLanes) {
+        const Lanes difference = load(&feature[o]) - value;
+        const Lanes size = difference < 0.0f ? -difference : difference;
+        most = most < size ? size : most;
+        store(difference, &feature[o]);
+    }
+    for (size_t k = 0; k < kLanes; ++k)
+        if (most[k] > kConstant) return true;
+    return false;
+}
+
+void FitWindow::solve_normal_equations(const Cells& weight) {
+    const size_t n = size_;
+    for (size_t i = 0; i < n; ++i) {
+        const Cells& x = *basis_[i];
+        Cells& z = weighted_[i];
+        for (size_t o = 0; o < kCells; ++o) z[o] = weight[o] * sampled_[o] * x[o];
+    }
+    // Columns beyond the basis: the colours.
+    std::array<const float*, kBasis + 3> column{};
+    for (size_t i = 0; i < n; ++i) column[i] = basis_[i]->data();
+    for (size_t c = 0; c < 3; ++c) column[n + c] = color_[c].data();
+    double a[kBasis][kBasis + 3] = {};
+    for (size_t i = 0; i < n; i += 2) {
+        const size_t next = std::min(i + 1, n - 1);
+        const float* const rows[2] = {weighted_[i].data(), weighted_[next].data()};
+        for (size_t j = i; j < n + 3; j += 4) {
+            const auto at = [&](size_t k) { return column[std::min(j + k, n + 2)]; };
+            const float* const columns[4] = {at(0), at(1), at(2), at(3)};
+            float sums[2][4];
+            products(rows, columns, kCells, sums);
+            for (size_t k = 0; k < 4 && j + k < n + 3; ++k) {
+                a[i][j + k] = double(sums[0][k]);
+                a[next][j + k] = double(sums[1][k]);
+            }
+        }
+    }
+    total_ = float(a[0][0]);
+    if (!(total_ > 0)) return;
+    // The ridge, relative to each function's own spread, and a floor below which a feature
+    // counts as constant: what differs by less is rounding and left-over noise.
+    constexpr double kRidge = 1e-3, kFloor = 1e-5;
+    for (size_t i = 1; i < n; ++i) a[i][i] += kRidge * a[i][i] + kFloor * a[0][0];
+    eliminate(a);
+}
+
+/// Gauss elimination of the symmetric positive definite system; only its upper half is read.
+void FitWindow::eliminate(double (&a)[kBasis][kBasis + 3]) {
+    const size_t n = size_;
+    for (size_t i = 0; i < n; ++i) {
+        const double inverse = 1 / a[i][i];
+        for (size_t r = i + 1; r < n; ++r) {
+            const double factor = a[i][r] * inverse;
+            for (size_t j = r; j < n + 3; ++j) a[r][j] -= factor * a[i][j];
+        }
+    }
+    for (size_t c = 0; c < 3; ++c)
+        for (size_t i = n; i-- > 0;) {
+            double sum = a[i][n + c];
+            for (size_t j = i + 1; j < n; ++j) sum -= a[i][j] * double(coefficient_[c][j]);
+            coefficient_[c][i] = float(sum / a[i][i]);
+        }
+}
+
+}  // namespace covtrace

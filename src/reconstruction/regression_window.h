@@ -1,0 +1,64 @@
+/// The window of one regression: what is around a centre, its weights, and the fit.
+#pragma once
+
+#include <array>
+
+#include "reconstruction/filter_field.h"
+#include "reconstruction/lanes.h"
+#include "reconstruction/patch_distance.h"
+#include "reconstruction/regression.h"
+
+namespace covtrace {
+
+/// What windows are cut from, with borders as wide as they reach.
+struct RegressionInputs {
+    RegressionInputs(const HalfBuffer& half, const FeaturePlanes& features);
+    std::array<PaddedPlane, kFeatures> feature;
+    std::array<PaddedPlane, 3> color;
+    PaddedPlane inside;   ///< 1 in the image, 0 outside
+    PaddedPlane sampled;  ///< 1 where a pixel has samples, 0 elsewhere and outside
+};
+
+class FitWindow {
+  public:
+    static constexpr int kReach = kRegressionReach, kSide = 2 * kReach + 1;
+    static constexpr size_t kOffsets = size_t(kSide) * kSide;
+    static constexpr size_t kCells = (kOffsets + kLanes - 1) / kLanes * kLanes;
+    /// One number per pixel of the window, row by row; the padding is 0.
+    using Cells = std::array<float, kCells>;
+
+    FitWindow();
+    FitWindow(const FitWindow&) = delete;
+    FitWindow& operator=(const FitWindow&) = delete;
+
+    /// Moves it to the centre (x, y).
+    void move_to(const RegressionInputs& in, int x, int y);
+
+    /// The weights of all pixels. `distance`: of their patches from the centre's, kCells of them.
+    void set_weights(const RegressionWindow& window, const float* distance, int x, int y,
+                     Cells& weight) const;
+
+    /// Fits the colours with the weights and writes the fit's value at every pixel. False where
+    /// there is nothing to fit.
+    bool fit(const Cells& weight, std::array<Cells, 3>& fitted);
+
+  private:
+    static constexpr size_t kPositions = 3;                   // 1, x, y
+    static constexpr size_t kBasis = kPositions + kFeatures;  // and the features
+
+    static bool centre(Cells& feature);
+    void solve_normal_equations(const Cells& weight);
+    void eliminate(double (&a)[kBasis][kBasis + 3]);
+
+    Cells one_{}, x_{}, y_{};  // positions relative to the centre, in units of the reach
+    std::array<Cells, kFeatures> feature_{};  // those that vary come first
+    std::array<Cells, 3> color_{};
+    Cells inside_{}, sampled_{};
+    std::array<const Cells*, kBasis> basis_{};
+    size_t size_ = kPositions;  // of the basis here
+    std::array<Cells, kBasis> weighted_{};
+    float total_ = 0;
+    float coefficient_[3][kBasis] = {};
+};
+
+}  // namespace covtrace
