@@ -47,6 +47,7 @@ struct ImageTexture {
     float gamma = 1;
     Wrap wrap = Wrap::repeat;
     Filter filter = Filter::bilinear;
+    float max_anisotropy = 8;  ///< ewa: how much longer than wide a footprint may be, >= 1
     float scale = 1;
     bool invert = false;
     TextureMapping mapping;
