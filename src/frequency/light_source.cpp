@@ -50,7 +50,13 @@ LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sha
         case SourceSpectrum::Kind::area:
             return area_field(source, travel, seen_sharply, smallest, texture);
         case SourceSpectrum::Kind::point: {
-            const LightField field = cov::point_source(cov::frame_along<double>(travel), smallest);
+            const bool has_image = source.a11 + source.a22 > 0;
+            const cov::Frame<double> frame =
+                has_image ? cov::Frame<double>{source.tangent.x, source.tangent.y, travel}
+                          : cov::frame_along<double>(travel);
+            const LightField field = cov::point_source(frame, smallest);
+            if (has_image)
+                return cov::add_angular_window(field, {source.a11, source.a12, source.a22});
             if (!(source.cone_variance > 0)) return field;
             return cov::add_angular_window(
                 field, cov::spot_window(std::sqrt(double(source.cone_variance))));

@@ -100,6 +100,7 @@ bool Geometry::Impl::nearest_opaque(Ray ray, unsigned mask, SurfaceHit& hit) con
 }
 
 bool Geometry::Impl::nearest(const Ray& ray, unsigned mask, SurfaceHit& hit) const {
+    if (!can_follow(ray)) return false;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit query;
@@ -133,6 +134,7 @@ bool Geometry::Impl::nearest(const Ray& ray, unsigned mask, SurfaceHit& hit) con
 }
 
 bool Geometry::occluded(const Ray& ray) const {
+    if (!impl_->can_follow(ray)) return false;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay query;

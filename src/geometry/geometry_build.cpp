@@ -13,6 +13,15 @@ bool has_interface_material(const SceneDescription& scene, const ShapeDescriptio
                                       scene.materials[static_cast<size_t>(shape.material)].value);
 }
 
+/// Whether a mix of materials may turn out to be no surface at all.
+bool may_mix_in_interface(const SceneDescription& scene, MaterialId material) {
+    if (material < 0) return false;
+    const MaterialDescription& m = scene.materials[static_cast<size_t>(material)];
+    if (!m.mix) return std::holds_alternative<InterfaceMaterial>(m.value);
+    return may_mix_in_interface(scene, m.mix->materials[0]) ||
+           may_mix_in_interface(scene, m.mix->materials[1]);
+}
+
 /// Whether alpha hides all of the shape: a light that can't be seen, for no other shape is kept.
 bool is_hidden(const SceneDescription& scene, const ShapeDescription& shape) {
     if (shape.alpha < 0) return false;
@@ -61,9 +70,13 @@ struct Geometry::Impl::Builder {
 
     void add(ShapeScene& target, uint32_t shape) const {
         const bool has_alpha = g.placed[shape].description.alpha >= 0;
-        const unsigned mask = g.is_interface[shape] ? kInterfaceMask
-                              : has_alpha           ? kAlphaMask
-                                                    : kSolidMask;
+        // What may be an interface in places is asked for its material there by `visibility`.
+        const bool may_be_interface =
+            g.is_interface[shape] ||
+            may_mix_in_interface(scene, g.placed[shape].description.material);
+        const unsigned mask = may_be_interface ? kInterfaceMask
+                              : has_alpha      ? kAlphaMask
+                                               : kSolidMask;
         g.any_alpha = g.any_alpha || mask == kAlphaMask;
         GeometryHandle geometry = new_shape_geometry(g.device, g.local[shape], mask);
         if (geometry) attach(target, geometry.get(), shape);
@@ -82,9 +95,28 @@ struct Geometry::Impl::Builder {
         return static_cast<uint32_t>(g.scenes.size() - 1);
     }
 
+    /// Lets rays start only where Embree can carry them into this instance.
+    void limit_origins(RTCGeometry instance, bool moves, const SourceLocation& where) const {
+        const unsigned steps = moves ? 32 : 0;
+        for (unsigned i = 0; i <= steps; ++i) {
+            const float parameter = moves ? static_cast<float>(i) / static_cast<float>(steps) : 0;
+            const Affine inverse = instance_transform(instance, parameter).inverse();
+            const Vec3d scale = inverse.absolute({1, 1, 1}), offset = abs(inverse.translation);
+            const double scales = std::max({scale.x, scale.y, scale.z, 1.0});
+            const double offsets = std::max({offset.x, offset.y, offset.z});
+            if (!(scale.x + scale.y + scale.z <= kStrongestShrinking) ||
+                !(offsets < kLargestEmbreeCoordinate / 2))
+                throw Error(ErrorKind::scene, where,
+                            "the transform shrinks the shape to nothing or moves it out of reach; "
+                            "expected a scale above 1e-12");
+            const double most = (kLargestEmbreeCoordinate - offsets) / scales;
+            g.farthest_origin = std::min(g.farthest_origin, static_cast<float>(most));
+        }
+    }
+
     /// Places scene number `index` in the world. Instances come first in the top scene, so that
     /// Embree's instance number is the index into `instances`.
-    void instantiate(uint32_t index, const Motion& motion) const {
+    void instantiate(uint32_t index, const Motion& motion, const SourceLocation& where) const {
         RTCScene part = g.scenes[index].scene.get();
         EmbreeInstance instance;
         instance.scene = index;
@@ -95,6 +127,7 @@ struct Geometry::Impl::Builder {
                            : new_still_instance(g.device, part, motion.at(g.clock.open()));
         instance.handle = handle.get();
         instance.still = instance_transform(handle.get(), 0);
+        limit_origins(handle.get(), instance.moves, where);
         attach(g.top, handle.get(), 0);
         g.instances.push_back(instance);
     }
@@ -154,12 +187,12 @@ struct Geometry::Impl::Builder {
         for (size_t i = 0; i < scene.instances.size(); ++i)
             for (const auto& [part, motion] :
                  objects[static_cast<size_t>(scene.instances[i].object)].parts)
-                instantiate(part, {&g.instance_motions[i], motion});
+                instantiate(part, {&g.instance_motions[i], motion}, scene.instances[i].where);
         const auto count = static_cast<uint32_t>(scene.shapes.size());
         for (uint32_t i = 0; i < count; ++i) {
             const AnimatedTransform& motion = g.placed[i].description.object_to_world;
             if (is_left_out(scene, g.placed[i].description) || !moves(motion)) continue;
-            instantiate(single_shape_scene(i), {nullptr, &motion});
+            instantiate(single_shape_scene(i), {nullptr, &motion}, g.placed[i].description.where);
         }
         for (uint32_t i = 0; i < count; ++i)
             if (!is_left_out(scene, g.placed[i].description) &&

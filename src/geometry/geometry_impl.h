@@ -1,12 +1,22 @@
 /// What Geometry holds. Only for .cpp files of this folder.
 #pragma once
 
+#include <cmath>
+
 #include "geometry/embree_device.h"
 #include "geometry/geometry.h"
 #include "geometry/motion.h"
 #include "geometry/surface.h"
 
 namespace covtrace {
+
+/// Half of the largest coordinate that Embree's rays may have (FLT_LARGE in its kernels).
+inline constexpr float kLargestEmbreeCoordinate = 0.9e18f;
+/// Directions are of unit length up to rounding.
+inline constexpr float kLongestDirection = 2;
+/// Instances may not shrink what they hold by more than this: their rays would leave Embree's
+/// range.
+inline constexpr double kStrongestShrinking = 1e12;
 
 /// An Embree scene and the shape behind each of its geometries.
 struct ShapeScene {
@@ -37,7 +47,18 @@ struct Geometry::Impl {
     std::vector<EmbreeInstance> instances;
     ShapeScene top;
     Bounds3 bounds;
+    /// Largest coordinate of a ray's origin that Embree can follow into every instance.
+    float farthest_origin = kLargestEmbreeCoordinate;
 
+    /// False for coordinates that are not numbers or so large that Embree's assertions end the
+    /// program; such rays meet nothing.
+    bool can_follow(const Ray& ray) const {
+        const auto within = [](Vec3 v, float most) {
+            return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;
+        };
+        return within(ray.origin, farthest_origin) && within(ray.direction, kLongestDirection) &&
+               ray.t_max >= 0;
+    }
     /// Nearest hit of the shapes in `mask`, whatever alpha says there.
     bool nearest(const Ray& ray, unsigned mask, SurfaceHit& hit) const;
     /// Nearest hit of the shapes in `mask` that alpha does not let through.

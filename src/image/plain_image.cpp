@@ -6,8 +6,13 @@
 namespace covtrace {
 
 void check_image_size(int64_t width, int64_t height, int64_t channels) {
-    constexpr int64_t kMostPixels = int64_t(1) << 28;
-    constexpr int64_t kMostValues = int64_t(1) << 30;
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+    constexpr int kMostPixelsLog = 20;
+#else
+    constexpr int kMostPixelsLog = 28;
+#endif
+    constexpr int64_t kMostPixels = int64_t(1) << kMostPixelsLog;
+    constexpr int64_t kMostValues = 4 * kMostPixels;
     if (width <= 0 || height <= 0 || channels <= 0)
         throw DecodeError("it has no pixels or channels");
     const std::string size = std::to_string(width) + "x" + std::to_string(height) + " pixels";

@@ -12,6 +12,13 @@ namespace {
 
 float power_heuristic(float a, float b) {
     if (std::isinf(a)) return 1;
+    if (std::isinf(b)) return 0;
+    // A lamp far away has a density whose square is no float any more.
+    constexpr float kLargest = 1e18f;
+    if (const float largest = std::max(a, b); largest > kLargest) {
+        a /= largest;
+        b /= largest;
+    }
     const float a2 = a * a, b2 = b * b;
     return a2 + b2 > 0 ? a2 / (a2 + b2) : 0;
 }
@@ -67,7 +74,14 @@ class PathTracer {
         const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
         const MaterialId material =
             scene_.materials.at(shape.description.material, hit, scene_.textures);
-        const Bsdf bsdf = scene_.materials.bsdf(material, hit, scene_.textures);
+        // As pbrt, wherever the path has been: the pixel's width at this distance from the eye, and
+        // an eighth of it, so that the filter of the texture adds nothing to that of the pixel.
+        const Vec3 from_eye = hit.position - camera_origin_;
+        const float away = length(from_eye);
+        const Bsdf bsdf =
+            away > 0 ? scene_.materials.bsdf(material, hit, scene_.textures, from_eye / away,
+                                             scene_.camera.half_pixel(away) / 4)
+                     : scene_.materials.bsdf(material, hit, scene_.textures);
         if (!std::holds_alternative<InterfaceBsdf>(bsdf))
             return meet_surface(hit, shape, material, bsdf);
         medium_ = medium_beyond(shape, hit, ray_.direction, medium_);

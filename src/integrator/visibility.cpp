@@ -20,14 +20,19 @@ Rgb visibility(const RenderScene& scene, Ray ray, float distance, MediumId mediu
     ++rays;
     if (scene.geometry.occluded(ray)) return Rgb(0);
     if (!scene.has_interfaces) return transmittance(scene, medium, distance);
-    // Nothing but interfaces is left on the way.
+    // Nothing but interfaces is left on the way, and mixes that are one in places.
     Rgb passes(1);
     SurfaceHit hit;
     for (int i = 0; i < kMostInterfaces; ++i) {
         ++rays;
         if (!(ray.t_max > 0) || !scene.geometry.intersect(ray, hit)) break;
         const PlacedShape& shape = scene.geometry.shapes()[hit.shape];
-        if (!scene.materials.is_interface(shape.description.material)) break;
+        const MaterialId material =
+            scene.materials.at(shape.description.material, hit, scene.textures);
+        if (!scene.materials.is_interface(material)) {
+            if (material != shape.description.material) return Rgb(0);
+            break;
+        }
         passes *= transmittance(scene, medium, hit.t);
         medium = medium_beyond(shape, hit, ray.direction, medium);
         ray.origin = Geometry::offset_origin(hit, ray.direction);

@@ -220,6 +220,7 @@ class BodyReader {
         if (indices == e.properties.end())
             throw Error(ErrorKind::scene, e.where,
                         "the faces of the PLY file have no list \"vertex_indices\"");
+        reserve_faces(e, *indices);
         std::vector<uint32_t> corners;
         for (uint64_t i = 0; i < e.count; ++i) {
             for (const PlyProperty& p : e.properties) {
@@ -232,6 +233,13 @@ class BodyReader {
             }
             add_face(corners);
         }
+    }
+
+    /// For triangles, which most files hold only; never for more than the file has bytes for.
+    void reserve_faces(const PlyElement& e, const PlyProperty& indices) {
+        const size_t bytes =
+            numbers_.is_ascii() ? 8 : size_of(indices.count_type) + 3 * size_of(indices.type);
+        triangles_.reserve(std::min<uint64_t>(e.count, numbers_.left() / bytes));
     }
 
     uint32_t index(double v) {
@@ -263,8 +271,20 @@ class BodyReader {
 
     PlyMesh mesh() {
         PlyMesh m;
+        quads_.shrink_to_fit();
+        triangles_.shrink_to_fit();
         if (!quads_.empty()) {
-            BilinearMesh b{positions_, normals_, uvs_, std::move(quads_)};
+            BilinearMesh b;
+            b.patches = std::move(quads_);
+            if (triangles_.empty()) {
+                b.positions = std::move(positions_);
+                b.normals = std::move(normals_);
+                b.uvs = std::move(uvs_);
+            } else {
+                b.positions = positions_;
+                b.normals = normals_;
+                b.uvs = uvs_;
+            }
             m.quads = std::make_shared<const BilinearMesh>(std::move(b));
         }
         if (!triangles_.empty()) {

@@ -57,7 +57,7 @@ SceneDescription read_pbrt_string(std::string_view text, std::string name, const
     return with_limits(name, [&] {
         WarningLog log;
         SceneFiles files(folder, options.search_paths, log);
-        files.add_to_hash(text);
+        files.add_to_hash(hash_of(text));
         return read(std::string(text), name, files, log);
     });
 }

@@ -177,10 +177,35 @@ void SceneBuilder::shape(Entity entity) {
             s.area_light = -1;
         }
     }
-    for (ShapeGeometry& geometry : shapes_.build(entity)) {
+    BuiltShape built = shapes_.build(entity);
+    pending.mesh_file = built.mesh_file;
+    if (built.mesh_file) pending_.push_back(pending);
+    for (ShapeGeometry& geometry : built.geometry) {
         pending.shape.geometry = std::move(geometry);
         pending_.push_back(pending);
     }
+}
+
+void SceneBuilder::place_meshes() {
+    shapes_.read_mesh_files();
+    std::vector<PendingShape> placed;
+    placed.reserve(pending_.size());
+    for (PendingShape& p : pending_) {
+        if (!p.mesh_file) {
+            placed.push_back(std::move(p));
+            continue;
+        }
+        const std::vector<ShapeGeometry> meshes = shapes_.mesh(*p.mesh_file);
+        if (meshes.empty()) {
+            context_.log.set_order(p.directive);
+            context_.log.add(p.shape.where, "the mesh file has no faces; the shape is ignored");
+        }
+        for (const ShapeGeometry& geometry : meshes) {
+            placed.push_back(p);
+            placed.back().shape.geometry = geometry;
+        }
+    }
+    pending_ = std::move(placed);
 }
 
 void SceneBuilder::import_begin(const SourceLocation& where) {
@@ -260,6 +285,7 @@ void SceneBuilder::finish(const SourceLocation& end) {
             ErrorKind::scene, saved_.back().where,
             std::string(saved_.back().scope == Scope::object ? "ObjectBegin" : "AttributeBegin") +
                 " has no matching end");
+    place_meshes();
     textures_.build_all();
     materials_.build_all();
     scene_.camera.medium = medium_named(view_.camera_medium, scene_.camera.where);

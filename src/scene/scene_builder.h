@@ -80,11 +80,14 @@ class SceneBuilder {
         MaterialReference material;
         std::optional<Parameter> alpha;
         std::string inside, outside;
+        std::optional<size_t> mesh_file;  ///< whose geometry it still waits for
         int directive = 0;
     };
 
     void save(Scope scope, const SourceLocation& where);
     void resolve(PendingShape& pending);
+    /// Puts what mesh files hold in the place of the shapes that wait for it.
+    void place_meshes();
     /// False where nothing of the shape has any effect.
     bool resolve_alpha(PendingShape& pending);
     /// For integrators that see no media.

@@ -54,6 +54,7 @@ struct ImageTexture {
     Filter filter = Filter::bilinear;
     Channel channel = Channel::automatic;  ///< float textures only
     std::optional<float> cutoff;           ///< float textures: 1 from there on, 0 below
+    float max_anisotropy = 8;  ///< ewa: how much longer than wide a footprint may be, >= 1
     float scale = 1;
     bool invert = false;
     TextureMapping mapping;

@@ -58,7 +58,19 @@ std::optional<fs::path> find_without_case(fs::path folder, const fs::path& name)
     return folder;
 }
 
+/// A file that is compressed by more than real meshes and scenes are, and large: a bomb. What
+/// zlib can do at most is 1032.
+constexpr uint64_t kMostCompression = 100;
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+constexpr uint64_t kHarmlessSize = uint64_t(1) << 24;
+#else
+constexpr uint64_t kHarmlessSize = uint64_t(1) << 28;
+#endif
+
 std::string read_compressed(const fs::path& file, const SourceLocation& where) {
+    std::error_code ignored;
+    const uint64_t most =
+        std::max(kHarmlessSize, kMostCompression * uint64_t(fs::file_size(file, ignored)));
     const std::unique_ptr<gzFile_s, int (*)(gzFile)> in(gzopen(file.c_str(), "rb"), gzclose);
     if (!in) throw Error(ErrorKind::scene, where, "can't open " + path_in_quotes(file.string()));
     gzbuffer(in.get(), 1 << 18);
@@ -72,6 +84,11 @@ std::string read_compressed(const fs::path& file, const SourceLocation& where) {
             throw Error(ErrorKind::scene, where,
                         "can't decompress " + path_in_quotes(file.string()) + ": " + problem);
         if (n == 0) return text;
+        if (text.size() + static_cast<size_t>(n) > most)
+            throw Error(ErrorKind::limit, where,
+                        path_in_quotes(file.string()) + " grows to more than " +
+                            std::to_string(kMostCompression) +
+                            " times its size when it is decompressed; expected a mesh or a scene");
         text.append(block.data(), static_cast<size_t>(n));
     }
 }
@@ -90,17 +107,37 @@ std::optional<fs::path> SceneFiles::find_optional(const std::string& name,
     roots.emplace_back();
     for (const fs::path& root : roots) {
         const fs::path p = root / name;
-        if (is_file(p)) return p.lexically_normal();
+        if (!is_file(p)) continue;
+        warn_outside(name, p, where);
+        return p.lexically_normal();
     }
     for (const fs::path& root : roots) {
         const auto p = find_without_case(fs::path(plain).is_absolute() ? "/" : root,
                                          fs::path(plain).relative_path());
         if (!p) continue;
+        warn_outside(plain, *p, where);
         log_.add(where, "file " + path_in_quotes(name) + " does not exist as written; " +
                             path_in_quotes(p->lexically_normal().string()) + " is used");
         return p->lexically_normal();
     }
     return std::nullopt;
+}
+
+void SceneFiles::warn_outside(const std::string& name, const fs::path& file,
+                              const SourceLocation& where) {
+    const fs::path plain = fs::path(name).lexically_normal();
+    if (!plain.is_absolute() && *plain.begin() != "..") return;
+    std::error_code ignored;
+    const fs::path found = fs::weakly_canonical(file, ignored);
+    const auto holds = [&](const fs::path& folder) {
+        const fs::path root = fs::weakly_canonical(folder.empty() ? "." : folder, ignored);
+        return std::mismatch(root.begin(), root.end(), found.begin(), found.end()).first ==
+               root.end();
+    };
+    if (holds(folder_) || std::any_of(search_paths_.begin(), search_paths_.end(), holds)) return;
+    log_.add(where,
+             "files outside of the scene's folder are read; --search-path with their folder says "
+             "that this is meant");
 }
 
 fs::path SceneFiles::find(const std::string& name, const SourceLocation& where) {
@@ -114,32 +151,44 @@ fs::path SceneFiles::find(const std::string& name, const SourceLocation& where) 
 }
 
 std::string SceneFiles::read(const fs::path& file, const SourceLocation& where) {
-    std::string text;
-    if (file.extension() == ".gz") {
-        text = read_compressed(file, where);
-    } else {
-        std::error_code failed;
-        if (!fs::exists(file, failed))
-            throw Error(ErrorKind::scene, where,
-                        "file " + path_in_quotes(file.string()) + " not found");
-        const auto size = fs::file_size(file, failed);
-        const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"),
-                                                                 std::fclose);
-        if (failed || !in)
-            throw Error(ErrorKind::scene, where,
-                        "can't open " + path_in_quotes(file.string()) + ": " +
-                            (failed ? failed.message() : std::string(std::strerror(errno))));
-        text.resize(size);
-        if (std::fread(text.data(), 1, size, in.get()) != size)
-            throw Error(ErrorKind::io, where,
-                        "reading " + path_in_quotes(file.string()) + " failed");
-    }
-    add_to_hash(text);
+    // Files that include two others each, and so on, would keep the reader busy for ever.
+    constexpr uint64_t kMostReadAgain = uint64_t(1) << 30, kCostOfReading = 1 << 12;
+    std::string text = read_whole_file(file, where);
+    if (!read_.insert(file).second) read_again_ += std::max<uint64_t>(text.size(), kCostOfReading);
+    if (read_again_ > kMostReadAgain)
+        throw Error(ErrorKind::limit, where,
+                    "files are included again and again, more than 1 GiB of text in all; expected "
+                    "objects and instances for what occurs so often");
+    add_to_hash(hash_of(text));
     return text;
 }
 
-void SceneFiles::add_to_hash(std::string_view bytes) {
-    uint64_t h = hash_combine(hash_, bytes.size());
+void SceneFiles::add_to_hash(uint64_t hash_of_a_file) {
+    hash_ = hash_combine(hash_, hash_of_a_file);
+}
+
+std::string read_whole_file(const fs::path& file, const SourceLocation& where) {
+    if (file.extension() == ".gz") return read_compressed(file, where);
+    std::error_code failed;
+    if (!fs::exists(file, failed))
+        throw Error(ErrorKind::scene, where,
+                    "file " + path_in_quotes(file.string()) + " not found");
+    const auto size = fs::file_size(file, failed);
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"),
+                                                             std::fclose);
+    if (failed || !in)
+        throw Error(ErrorKind::scene, where,
+                    "can't open " + path_in_quotes(file.string()) + ": " +
+                        (failed ? failed.message() : std::string(std::strerror(errno))));
+    std::string text;
+    text.resize(size);
+    if (std::fread(text.data(), 1, size, in.get()) != size)
+        throw Error(ErrorKind::io, where, "reading " + path_in_quotes(file.string()) + " failed");
+    return text;
+}
+
+uint64_t hash_of(std::string_view bytes) {
+    uint64_t h = bytes.size();
     size_t i = 0;
     for (; i + 8 <= bytes.size(); i += 8) {
         uint64_t word;
@@ -148,7 +197,7 @@ void SceneFiles::add_to_hash(std::string_view bytes) {
     }
     uint64_t rest = 0;
     if (i < bytes.size()) std::memcpy(&rest, bytes.data() + i, bytes.size() - i);
-    hash_ = hash_combine(h, rest);
+    return hash_combine(h, rest);
 }
 
 }  // namespace covtrace

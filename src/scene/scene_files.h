@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,24 +25,39 @@ class SceneFiles {
 
     /// An existing regular file: looked for in the scene's folder, the search paths, the working
     /// folder, then once more with backslashes as slashes and without regard to upper and lower
-    /// case (with a warning). Errors: Error(scene) with the places looked at.
+    /// case (with a warning). Names that lead out of the scene's folder are warned of, unless a
+    /// search path holds the file. Errors: Error(scene) with the places looked at.
     std::filesystem::path find(const std::string& name, const SourceLocation& where);
     /// The same, empty where there is no such file.
     std::optional<std::filesystem::path> find_optional(const std::string& name,
                                                        const SourceLocation& where);
 
     /// The whole file, decompressed where its name ends in ".gz"; counts in the hash.
-    /// Errors: Error(scene) where it can't be opened, Error(io) where reading fails in the middle.
+    /// Errors: those of read_whole_file; Error(limit) where files that are read again and again
+    /// add up to more than any scene needs.
     std::string read(const std::filesystem::path& file, const SourceLocation& where);
 
-    void add_to_hash(std::string_view bytes);
+    void add_to_hash(uint64_t hash_of_a_file);
     uint64_t content_hash() const { return hash_; }
 
   private:
+    /// Warns of names that lead out of the scene's folder and of the search paths.
+    void warn_outside(const std::string& name, const std::filesystem::path& file,
+                      const SourceLocation& where);
+
     std::filesystem::path folder_;
     std::vector<std::filesystem::path> search_paths_;
     WarningLog& log_;
     uint64_t hash_ = 0;
+    std::set<std::filesystem::path> read_;
+    uint64_t read_again_ = 0;  ///< bytes
 };
+
+/// The bytes of a file, decompressed where its name ends in ".gz". Thread-safe. Errors:
+/// Error(scene) where it can't be opened or decompressed, Error(io) where reading fails in the
+/// middle, Error(limit) for compressed files that grow beyond measure.
+std::string read_whole_file(const std::filesystem::path& file, const SourceLocation& where);
+
+uint64_t hash_of(std::string_view bytes);
 
 }  // namespace covtrace

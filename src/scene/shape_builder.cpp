@@ -121,7 +121,7 @@ std::vector<ShapeGeometry> ShapeBuilder::bilinear_mesh(Entity& e) {
     return {std::make_shared<const BilinearMesh>(std::move(mesh))};
 }
 
-std::vector<ShapeGeometry> ShapeBuilder::mesh_file(Entity& e) {
+size_t ShapeBuilder::mesh_file(Entity& e) {
     const std::string name = e.parameters.text("filename");
     const SourceLocation where = e.parameters.where("filename", e.where);
     if (name.empty())
@@ -130,23 +130,20 @@ std::vector<ShapeGeometry> ShapeBuilder::mesh_file(Entity& e) {
         context_.log.add(e.parameters.where("displacement", e.where),
                          "displacement of meshes is not rendered");
     e.parameters.ignore({"displacement", "edgelength"});
-    const std::filesystem::path file = context_.files.find(name, where);
-    auto it = mesh_files_.find(file);
-    if (it == mesh_files_.end()) {
-        const std::string bytes = context_.files.read(file, where);
-        it = mesh_files_.emplace(file, read_ply(bytes, file.string(), context_.log)).first;
-    }
+    return mesh_files_.add(context_.files.find(name, where), where, e.directive);
+}
+
+std::vector<ShapeGeometry> ShapeBuilder::mesh(size_t file) const {
+    const PlyMesh& mesh = mesh_files_[file];
     std::vector<ShapeGeometry> shapes;
-    if (it->second.triangles) shapes.emplace_back(it->second.triangles);
-    if (it->second.quads) shapes.emplace_back(it->second.quads);
-    if (shapes.empty())
-        context_.log.add(where, "mesh file " + in_quotes(name) + " has no faces; ignored");
+    if (mesh.triangles) shapes.emplace_back(mesh.triangles);
+    if (mesh.quads) shapes.emplace_back(mesh.quads);
     return shapes;
 }
 
 std::vector<ShapeGeometry> ShapeBuilder::subdivided_mesh(Entity& e) {
     constexpr int most_levels = 10;
-    constexpr size_t most_triangles = size_t{1} << 28;
+    constexpr size_t most_triangles = size_t{1} << 26;
     TriangleMesh control;
     vertices(control, e, context_.log);
     control.triangles = faces<3>(e, control.positions.size(), context_.log);
@@ -157,7 +154,7 @@ std::vector<ShapeGeometry> ShapeBuilder::subdivided_mesh(Entity& e) {
                "parameter \"levels\" must be from 0 to " + std::to_string(most_levels));
     if ((control.triangles.size() << (2 * levels)) > most_triangles)
         throw Error(ErrorKind::limit, e.where,
-                    "the subdivision makes more than 2^28 triangles; expected fewer levels");
+                    "the subdivision makes more than 2^26 triangles; expected fewer levels");
     if (control.triangles.empty()) return {};
     return {std::make_shared<const TriangleMesh>(
         loop_subdivide(control.positions, control.triangles, levels, e.where))};
@@ -198,10 +195,11 @@ std::vector<ShapeGeometry> ShapeBuilder::curve(Entity& e) {
     return {std::make_shared<const TriangleMesh>(curve_mesh(c))};
 }
 
-std::vector<ShapeGeometry> ShapeBuilder::build(Entity& e) {
-    std::vector<ShapeGeometry> shapes;
+BuiltShape ShapeBuilder::build(Entity& e) {
+    BuiltShape built;
+    std::vector<ShapeGeometry>& shapes = built.geometry;
     if (e.type == "plymesh") {
-        shapes = mesh_file(e);
+        built.mesh_file = mesh_file(e);
     } else if (e.type == "trianglemesh") {
         shapes = triangle_mesh(e);
     } else if (e.type == "sphere") {
@@ -223,7 +221,7 @@ std::vector<ShapeGeometry> ShapeBuilder::build(Entity& e) {
     }
     e.parameters.ignore({"alpha"});
     e.parameters.warn_unused(context_.log, "shape " + in_quotes(e.type));
-    return shapes;
+    return built;
 }
 
 }  // namespace covtrace

@@ -214,8 +214,16 @@ TextureId TextureBuilder::stand_in(Declared& d) {
     return add(d, ConstantTexture{value});
 }
 
-Rgb TextureBuilder::mean(TextureId id) const {
-    const auto& value = context_.scene.textures[static_cast<size_t>(id)].value;
+Rgb TextureBuilder::mean(TextureId id) {
+    // The parts of a texture come before it. Each once: textures of two textures of two textures ...
+    // would take for ever otherwise.
+    while (means_.size() <= static_cast<size_t>(id)) means_.push_back(mean_of_parts(means_.size()));
+    return means_[static_cast<size_t>(id)];
+}
+
+Rgb TextureBuilder::mean_of_parts(size_t texture) const {
+    const auto mean = [this](TextureId part) { return means_[static_cast<size_t>(part)]; };
+    const auto& value = context_.scene.textures[texture].value;
     if (const auto* t = std::get_if<ConstantTexture>(&value)) return t->value;
     if (const auto* t = std::get_if<CheckerboardTexture>(&value))
         return mean_of(mean(t->tex1), mean(t->tex2));

@@ -36,9 +36,10 @@ class TextureBuilder {
     TextureId grey_or_none(ParameterList& p, std::string_view name);
     TextureId grey_of(const Parameter& p);
     /// A value that stands for the whole texture where a single one is needed.
-    Rgb mean(TextureId id) const;
+    Rgb mean(TextureId id);
 
   private:
+    Rgb mean_of_parts(size_t texture) const;
     struct Declared {
         std::string name;
         bool is_spectrum = true;
@@ -61,6 +62,7 @@ class TextureBuilder {
     std::map<std::pair<bool, std::string>, size_t> by_name_;
     std::map<std::tuple<bool, float, float, float>, TextureId> constants_;
     int depth_ = 0;
+    std::vector<Rgb> means_;  ///< of the first textures of the scene
 };
 
 }  // namespace covtrace

@@ -104,7 +104,7 @@ ImageTexture image_texture(ParameterList& p, const SourceLocation& where,
     t.scale = p.number("scale", 1);
     t.invert = p.flag("invert", false);
     set_encoding(t, p, where);
-    p.ignore({"maxanisotropy"});
+    t.max_anisotropy = std::max(1.0f, p.number("maxanisotropy", 8));
     return t;
 }
 

@@ -15,6 +15,8 @@ namespace covtrace {
 namespace {
 
 constexpr float kLargestBelowOne = 1 - 0x1p-24f;
+/// What is brighter is damage (the sun is below 1e10), and sums of it would overflow.
+constexpr float kBrightest = 1e18f;
 
 /// Index of the first entry above u of a cumulated distribution, and u as a number in [0, 1) within
 /// it.
@@ -65,7 +67,7 @@ EnvironmentMap EnvironmentMap::read(const std::filesystem::path& file,
     const bool encoded = raster.is_8bit || raster.is_16bit;
     const auto value = [&](size_t i) {
         const float v = encoded ? srgb_decode(raster.values[i]) : raster.values[i];
-        return v > 0 ? v : 0.0f;
+        return v > 0 ? std::min(v, kBrightest) : 0.0f;
     };
     const auto channels = static_cast<size_t>(raster.channels);
     std::vector<Rgb> texels(static_cast<size_t>(raster.width) * static_cast<size_t>(raster.height));
@@ -120,7 +122,9 @@ struct Position {
     float fraction;
 };
 Position position(float s, int n) {
-    const float x = s * static_cast<float>(n) - 0.5f, whole = std::floor(x);
+    // Of a direction that is not a number, any texel will do: its sample is rejected later.
+    const float inside = s >= 0 ? std::min(s, 1.0f) : 0.0f;
+    const float x = inside * static_cast<float>(n) - 0.5f, whole = std::floor(x);
     return {static_cast<int>(whole), x - whole};
 }
 

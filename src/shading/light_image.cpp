@@ -55,22 +55,27 @@ LightImage LightImage::slide(const std::filesystem::path& file, float fov,
 
 Rgb LightImage::texel(Vec2 place) const {
     const auto index = [](float x, int n) {
-        return static_cast<size_t>(
-            std::clamp(static_cast<int>(x * static_cast<float>(n)), 0, n - 1));
+        // Not a number becomes the first: its sample is rejected later.
+        return x > 0 ? std::min(static_cast<size_t>(x * static_cast<float>(n)), size_t(n) - 1) : 0;
     };
     return (
         *texels_)[index(place.y, height_) * static_cast<size_t>(width_) + index(place.x, width_)];
 }
 
-Rgb LightImage::operator()(Vec3 w) const {
+std::optional<Vec2> LightImage::place(Vec3 w) const {
     const Vec3 local = normalize(world_to_light_.vector(w));
-    if (!is_slide()) return texel(equal_area_sphere_to_square({local.x, local.z, local.y}));
+    if (!is_slide()) return equal_area_sphere_to_square({local.x, local.z, local.y});
     constexpr float kNearest = 1e-3f;  // as in pbrt
-    if (local.z < kNearest) return {};
+    if (local.z < kNearest) return std::nullopt;
     const Vec2 place{0.5f * (1 + local.x / (local.z * half_size_.x)),
                      0.5f * (1 - local.y / (local.z * half_size_.y))};
     const bool inside = place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
-    return inside ? texel(place) : Rgb();
+    return inside ? std::optional(place) : std::nullopt;
+}
+
+Rgb LightImage::operator()(Vec3 w) const {
+    const std::optional<Vec2> at = place(w);
+    return at ? texel(*at) : Rgb();
 }
 
 Rgb LightImage::integral() const {
@@ -92,6 +97,49 @@ Rgb LightImage::integral() const {
             sum[2] += t.b * solid_angle;
         }
     return {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])};
+}
+
+void LightImage::prepare_spectrum() {
+    if (spectrum_) return;
+    // A slide ends before the dark: an eighth of it all around, at least the widest derivative.
+    const auto border = [this](int n) { return is_slide() ? std::max(4, n / 8) : 0; };
+    const int left = border(width_), top = border(height_);
+    const int width = width_ + 2 * left, height = height_ + 2 * top;
+    std::vector<float> values(static_cast<size_t>(width) * static_cast<size_t>(height), 0.0f);
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x)
+            values[static_cast<size_t>(y + top) * static_cast<size_t>(width) +
+                   static_cast<size_t>(x + left)] =
+                luminance((*texels_)[static_cast<size_t>(y) * static_cast<size_t>(width_) +
+                                     static_cast<size_t>(x)]);
+    margin_ = {static_cast<float>(left) / static_cast<float>(width_),
+               static_cast<float>(top) / static_cast<float>(height_)};
+    spectrum_ =
+        std::make_shared<const ImageSpectrum>(values, width, height, ImageSpectrum::Wrap::clamp);
+}
+
+Vec2 LightImage::place_per_radian(Vec3 w, Vec3 axis) const {
+    constexpr float kStep = 1e-3f;
+    const std::optional<Vec2> a = place(normalize(w - axis * kStep)),
+                              b = place(normalize(w + axis * kStep));
+    // Across a border of the octahedral square: its mean scale. At the rim of a slide: none.
+    const float mean = is_slide() ? 0.0f : 1 / std::sqrt(4 * kPi);
+    if (!a || !b || length(*b - *a) > 0.1f) return {mean, mean};
+    return (*b - *a) * (0.5f / kStep);
+}
+
+SpatialCovariance2 LightImage::spectrum(const Frame& frame) const {
+    const std::optional<Vec2> at = place(frame.z);
+    if (!spectrum_ || !at) return {};
+    const float s_scale = 1 / (1 + 2 * margin_.x), t_scale = 1 / (1 + 2 * margin_.y);
+    const SpatialCovariance2 c =
+        spectrum_->at((at->x + margin_.x) * s_scale, (at->y + margin_.y) * t_scale);
+    const Vec2 dx = place_per_radian(frame.z, frame.x), dy = place_per_radian(frame.z, frame.y);
+    const auto form = [&](Vec2 a, Vec2 b) {
+        const Vec2 p{a.x * s_scale, a.y * t_scale}, q{b.x * s_scale, b.y * t_scale};
+        return c.ss * p.x * q.x + c.st * (p.x * q.y + p.y * q.x) + c.tt * p.y * q.y;
+    };
+    return {form(dx, dx), form(dx, dy), form(dy, dy)};
 }
 
 float LightImage::cos_corner() const {

@@ -41,8 +41,8 @@ struct SourceSpectrum {
     /// silhouette depends on the view.
     float border_distance = kInfinity;
     Vec2 border_direction{1, 0};  ///< area: towards it, unit, in (tangent.x, tangent.y)
-    /// environment, directional: angular covariance in (tangent.x, tangent.y), (cycles per
-    /// radian)^2
+    /// environment, directional, and point for the image of a goniometric or projection light:
+    /// angular covariance in (tangent.x, tangent.y), (cycles per radian)^2
     float a11 = 0, a12 = 0, a22 = 0;
     float cone_variance = 0;  ///< point: angular variance of a spot's cone, 0 for none
 };

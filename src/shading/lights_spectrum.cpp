@@ -23,6 +23,12 @@ SourceSpectrum point_spectrum(const PointEmitter& point, Vec3 wi) {
     s.kind = SourceSpectrum::Kind::point;
     s.tangent = Frame::from_z(-wi);
     s.cone_variance = point.cone_variance;
+    if (point.image) {
+        const SpatialCovariance2 a = point.image->spectrum(s.tangent);
+        s.a11 = a.ss;
+        s.a12 = a.st;
+        s.a22 = a.tt;
+    }
     return s;
 }
 
@@ -57,6 +63,8 @@ void Lights::prepare_spectra() {
     for (AreaLight& area : impl_->area_lights)
         if (!area.spectrum)
             area.spectrum.emplace(impl_->geometry->shapes()[area.shape], area.emitter);
+    for (PointEmitter& p : impl_->points)
+        if (p.image) p.image->prepare_spectrum();
     for (Environment& e : impl_->environments) e.prepare_spectrum();
 }
 

@@ -162,7 +162,7 @@ MaterialColours colours(const InterfaceMaterial&) {
 }
 
 /// The middle of the texture, for parameters that may not vary.
-constexpr TexturePoint kMiddle{{0.5f, 0.5f}, {}};
+constexpr TexturePoint kMiddle{{0.5f, 0.5f}, {}, {}};
 
 /// Adapts the colour once and for all where no texture varies.
 void settle(MaterialColour& c, const TextureStore& textures,
@@ -233,11 +233,13 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
     if (any_varies) adaptation_ = AdaptationTable(adaptation);
 }
 
-Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStore& textures) const {
+Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStore& textures, Vec3 w,
+                         float width) const {
     if (id < 0) return DiffuseBsdf{Rgb(kDefaultReflectance)};
     const Material& material = materials_[static_cast<size_t>(id)];
     if (material.is_constant) return material.constant;
-    const Values values{textures, {hit.uv, hit.position}, material.colours, adaptation_};
+    const TexturePoint at{hit.uv, hit.position, footprint_on(hit, w, width)};
+    const Values values{textures, at, material.colours, adaptation_};
     return std::visit([&](const auto& m) { return make(m, values, material.coat); },
                       material.description.value);
 }
@@ -263,6 +265,12 @@ MaterialTextures MaterialStore::textures(MaterialId id) const {
     if (id < 0) return {};
     const MaterialColours& c = materials_[static_cast<size_t>(id)].colours;
     return {c.reflectance.texture, c.transmittance.texture};
+}
+
+bool MaterialStore::may_be_interface(MaterialId id) const {
+    if (id < 0 || !description(id).mix) return is_interface(id);
+    const auto& [first, second] = description(id).mix->materials;
+    return may_be_interface(first) || may_be_interface(second);
 }
 
 bool MaterialStore::is_interface(MaterialId id) const {

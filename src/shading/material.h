@@ -53,9 +53,14 @@ class MaterialStore {
     MaterialId at(MaterialId id, const SurfaceHit& hit, const TextureStore& textures) const;
     /// The BSDF at a hit, for directions in `shading_frame(hit)`. Material -1 is pbrt's default:
     /// diffuse, 0.5.
-    Bsdf bsdf(MaterialId id, const SurfaceHit& hit, const TextureStore& textures) const;
+    /// Images are filtered over what a pixel covers that sees the place along `w` and is `width`
+    /// wide there; 0: not at all.
+    Bsdf bsdf(MaterialId id, const SurfaceHit& hit, const TextureStore& textures, Vec3 w = {},
+              float width = 0) const;
     MaterialTextures textures(MaterialId id) const;
     bool is_interface(MaterialId id) const;
+    /// The same, also for mixes that are an interface in places.
+    bool may_be_interface(MaterialId id) const;
     /// Whether a bump or normal map turns the normals; see normal_map.h.
     bool has_normal_map(MaterialId id) const;
     const MaterialDescription& description(MaterialId id) const {

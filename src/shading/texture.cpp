@@ -34,7 +34,8 @@ class GraphBuilder {
         : textures_(scene.textures),
           most_bytes_(most_bytes),
           warnings_(warnings),
-          built_(textures_.size(), false) {
+          built_(textures_.size(), false),
+          lookups_(textures_.size(), 1) {
         graph_.nodes.resize(textures_.size());
     }
 
@@ -54,8 +55,28 @@ class GraphBuilder {
                             std::to_string(kMaxNesting) + " levels");
         TextureNode node = std::visit(
             [&](const auto& t) { return make_node(t, textures_[i], depth); }, textures_[i].value);
+        // Textures of two textures of two textures each ... would take for ever to look up.
+        constexpr double kMostLookups = 1e4;
+        lookups_[i] = std::visit([this](const auto& n) { return lookups_of(n); }, node);
+        if (lookups_[i] > kMostLookups)
+            throw Error(ErrorKind::limit, textures_[i].where,
+                        "the texture is made of more than 10000 others, counted each time that "
+                        "they occur");
         built_[i] = true;
         return graph_.nodes[i] = std::move(node);
+    }
+
+    double lookups_of(TextureId id) const { return lookups_[size_t(id)]; }
+    double lookups_of(const ConstantNode&) const { return 1; }
+    double lookups_of(const ImageNode&) const { return 1; }
+    double lookups_of(const CheckerboardNode& n) const {
+        return 1 + std::max(lookups_of(n.tex1), lookups_of(n.tex2));
+    }
+    double lookups_of(const ScaleNode& n) const {
+        return 1 + lookups_of(n.tex) + lookups_of(n.scale);
+    }
+    double lookups_of(const MixNode& n) const {
+        return 1 + lookups_of(n.tex1) + lookups_of(n.tex2) + lookups_of(n.amount);
     }
 
     const Rgb* constant(const TextureNode& node) const {
@@ -72,9 +93,10 @@ class GraphBuilder {
         ImageNode node;
         node.image = entry->second;
         node.is_spectrum = d.is_spectrum;
-        node.nearest = t.filter == ImageTexture::Filter::point;
         node.channel = t.channel;
         node.cutoff = t.cutoff;
+        node.filter = t.filter;
+        node.anisotropy = t.max_anisotropy;
         node.scale = t.scale;
         node.invert = t.invert;
         node.mapping = t.mapping;
@@ -118,6 +140,7 @@ class GraphBuilder {
     const size_t most_bytes_;
     Warnings& warnings_;
     std::vector<bool> built_;
+    std::vector<double> lookups_;  ///< of images and constants, for one of the texture
     std::map<ImageKey, int> image_ids_;
     std::vector<ImageRequest> requests_;
     TextureGraph graph_;

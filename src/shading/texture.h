@@ -1,6 +1,7 @@
 /// Textures: values over a surface, and how fast they vary there.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -11,10 +12,22 @@
 
 namespace covtrace {
 
+/// What a pixel covers of a surface around a place: how far (u, v) and the world position move
+/// along the axes of that ellipse. Zero: nothing, the texture is read as it is.
+struct PointFootprint {
+    std::array<Vec2, 2> duv{};
+    std::array<Vec3, 2> dp{};
+    bool is_point() const { return dp[0] == Vec3{} && dp[1] == Vec3{}; }
+};
+/// Of a surface that is seen along the unit direction `w` (to or from the eye) by a pixel that is
+/// `width` wide there.
+PointFootprint footprint_on(const SurfaceHit& hit, Vec3 w, float width);
+
 /// Where a texture is looked up.
 struct TexturePoint {
     Vec2 uv;
     Vec3 position;  ///< world space
+    PointFootprint footprint = {};
 };
 
 /// What the frequency analysis takes textures for.
@@ -28,16 +41,16 @@ enum class TextureBandwidth {
 ///
 /// Values follow pbrt-v4: images are looked up at (s, 1 - t), so that t = 0 is their last row; a
 /// float texture of a colour image is the mean of R, G and B, or alpha where the image has one that
-/// isn't 1 everywhere. Point and bilinear filters read the image as it is. Trilinear and EWA read
-/// it bilinearly as well, and checkerboards aren't filtered: the renderer's many samples per pixel
-/// do what these filters are for, without their bias.
+/// isn't 1 everywhere. Images are read from mip levels by the footprint and the filter that the
+/// file names (TextureImage::color); checkerboards aren't filtered.
 /// Textures take as much memory as their files ask for.
 inline constexpr size_t kNoTextureLimit = std::numeric_limits<size_t>::max();
 
 class TextureStore {
   public:
     /// Loads every image. Missing or broken files throw Error(scene) with the place in the scene
-    /// file; textures nested a thousand deep or more throw Error(limit).
+    /// file; textures nested a thousand deep or more, or of more than 10000
+    /// lookups each, throw Error(limit).
     ///
     /// `most_bytes` limits what the images hold together: where they need more, the largest lose
     /// their finest mip levels, one after the other, with a warning. Which do depends on the files

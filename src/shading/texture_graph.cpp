@@ -19,8 +19,12 @@ struct Evaluator {
     Rgb operator()(const ImageNode& node) const {
         const TextureImage& image = graph.images[size_t(node.image)];
         const Vec2 st = flip_t(map_to_st(node.mapping, at));
-        const auto taps = node.nearest ? image.nearest(st) : image.bilinear(st);
-        return image_value_at(node, image, taps);
+        const ImageFootprint area = image_footprint(node.mapping, at);
+        const Rgb decoded =
+            node.is_spectrum
+                ? image.color(st, node.filter, area, node.anisotropy)
+                : Rgb(image.value(st, node.filter, area, node.anisotropy, node.channel));
+        return image_value(node, decoded);
     }
     Rgb operator()(const CheckerboardNode& node) const {
         return eval(graph, active_texture(node, at), at);

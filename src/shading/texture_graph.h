@@ -18,9 +18,10 @@ struct ImageNode {
     int image = -1;           ///< into TextureGraph::images
     int spectrum = -1;        ///< into TextureGraph::spectra, once prepared
     bool is_spectrum = true;  ///< else the value of a float texture, in all channels
-    bool nearest = false;
     TextureImage::Channel channel = TextureImage::Channel::automatic;
     std::optional<float> cutoff;
+    ImageTexture::Filter filter = ImageTexture::Filter::bilinear;
+    float anisotropy = 8;  ///< at most, of ewa
     float scale = 1;
     bool invert = false;
     TextureMapping mapping;

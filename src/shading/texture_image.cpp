@@ -44,23 +44,28 @@ float mirrored(float v) {
 }
 
 TextureImage::TextureImage(const RasterImage& raster, Encoding encoding, float gamma, Wrap wrap)
-    : width_(raster.width), height_(raster.height), channels_(kept_channels(raster)), wrap_(wrap) {
-    const size_t texels = size_t(width_) * size_t(height_);
+    : channels_(kept_channels(raster)), wrap_(wrap) {
+    Level level;
+    level.width = raster.width;
+    level.height = raster.height;
+    level.texels = {float(level.width), float(level.height)};
+    const size_t texels = size_t(level.width) * size_t(level.height);
     const size_t stride = size_t(raster.channels);
     if (raster.is_8bit) {
         for (size_t i = 0; i < 256; ++i) decode_[i] = to_linear(float(i) / 255, encoding, gamma);
-        bytes_.resize(texels * channels_);
+        level.bytes.resize(texels * channels_);
     } else {
-        floats_.resize(texels * channels_);
+        level.floats.resize(texels * channels_);
     }
     for (size_t i = 0; i < texels; ++i)
         for (size_t c = 0; c < channels_; ++c) {
             const float v = raster.values[i * stride + c];
             if (raster.is_8bit)
-                bytes_[i * channels_ + c] = uint8_t(limit(v * 255 + 0.5f, 0, 255));
+                level.bytes[i * channels_ + c] = uint8_t(limit(v * 255 + 0.5f, 0, 255));
             else
-                floats_[i * channels_ + c] = to_linear(v, encoding, gamma);
+                level.floats[i * channels_ + c] = to_linear(v, encoding, gamma);
         }
+    levels_.push_back(std::move(level));
 }
 
 uint8_t TextureImage::encode(float v) const {
@@ -71,29 +76,51 @@ uint8_t TextureImage::encode(float v) const {
     return uint8_t(v - *(above - 1) < *above - v ? i - 1 : i);
 }
 
-void TextureImage::halve() {
-    const int width = (width_ + 1) / 2, height = (height_ + 1) / 2;
-    const size_t values = size_t(width) * size_t(height) * channels_;
-    std::vector<uint8_t> bytes(bytes_.empty() ? 0 : values);
-    std::vector<float> floats(bytes_.empty() ? values : 0);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
+TextureImage::Level TextureImage::coarser(const Level& fine) const {
+    Level level;
+    level.width = (fine.width + 1) / 2;
+    level.height = (fine.height + 1) / 2;
+    level.texels = {fine.width > 1 ? fine.texels.x / 2 : fine.texels.x,
+                    fine.height > 1 ? fine.texels.y / 2 : fine.texels.y};
+    const size_t values = size_t(level.width) * size_t(level.height) * channels_;
+    if (fine.bytes.empty())
+        level.floats.resize(values);
+    else
+        level.bytes.resize(values);
+    for (int y = 0; y < level.height; ++y)
+        for (int x = 0; x < level.width; ++x)
             for (size_t c = 0; c < channels_; ++c) {
                 float sum = 0;
                 int count = 0;
-                for (int v = 2 * y; v < std::min(2 * y + 2, height_); ++v)
-                    for (int u = 2 * x; u < std::min(2 * x + 2, width_); ++u, ++count)
-                        sum += channel((size_t(v) * size_t(width_) + size_t(u)) * channels_ + c);
-                const size_t i = (size_t(y) * size_t(width) + size_t(x)) * channels_ + c;
-                if (bytes_.empty())
-                    floats[i] = sum / float(count);
+                for (int v = 2 * y; v < std::min(2 * y + 2, fine.height); ++v)
+                    for (int u = 2 * x; u < std::min(2 * x + 2, fine.width); ++u, ++count)
+                        sum += channel(
+                            fine, (size_t(v) * size_t(fine.width) + size_t(u)) * channels_ + c);
+                const size_t i = (size_t(y) * size_t(level.width) + size_t(x)) * channels_ + c;
+                if (fine.bytes.empty())
+                    level.floats[i] = sum / float(count);
                 else
-                    bytes[i] = encode(sum / float(count));
+                    level.bytes[i] = encode(sum / float(count));
             }
-    width_ = width;
-    height_ = height;
-    bytes_ = std::move(bytes);
-    floats_ = std::move(floats);
+    return level;
+}
+
+void TextureImage::build_levels() {
+    while (levels_.back().width > 1 || levels_.back().height > 1)
+        levels_.push_back(coarser(levels_.back()));
+}
+
+void TextureImage::halve() {
+    if (width() == 1 && height() == 1) return;
+    if (levels_.size() == 1) levels_.push_back(coarser(levels_[0]));
+    levels_.erase(levels_.begin());
+}
+
+size_t TextureImage::memory() const {
+    size_t bytes = 0;
+    for (const Level& level : levels_)
+        bytes += level.bytes.size() + level.floats.size() * sizeof(float);
+    return bytes;
 }
 
 Vec2 TextureImage::wrap_st(Vec2 st) const {
@@ -104,50 +131,53 @@ Vec2 TextureImage::wrap_st(Vec2 st) const {
 }
 
 void TextureImage::add_tap(Taps& taps, int x, int y, float weight) const {
+    const int width = levels_[taps.level].width, height = levels_[taps.level].height;
     switch (wrap_) {
         case Wrap::repeat:
-            x += x < 0 ? width_ : (x >= width_ ? -width_ : 0);
-            y += y < 0 ? height_ : (y >= height_ ? -height_ : 0);
+            x += x < 0 ? width : (x >= width ? -width : 0);
+            y += y < 0 ? height : (y >= height ? -height : 0);
             break;
         case Wrap::black:
-            if (x < 0 || y < 0 || x >= width_ || y >= height_) return;
+            if (x < 0 || y < 0 || x >= width || y >= height) return;
             break;
         case Wrap::octahedral_sphere:
             // Crossing a border continues, mirrored, at the opposite half of the same border.
-            if (x < 0 || x >= width_) {
-                x = x < 0 ? -1 - x : 2 * width_ - 1 - x;
-                y = height_ - 1 - y;
+            if (x < 0 || x >= width) {
+                x = x < 0 ? -1 - x : 2 * width - 1 - x;
+                y = height - 1 - y;
             }
-            if (y < 0 || y >= height_) {
-                y = y < 0 ? -1 - y : 2 * height_ - 1 - y;
-                x = width_ - 1 - x;
+            if (y < 0 || y >= height) {
+                y = y < 0 ? -1 - y : 2 * height - 1 - y;
+                x = width - 1 - x;
             }
             [[fallthrough]];
         case Wrap::mirror:
         case Wrap::clamp:
-            x = std::clamp(x, 0, width_ - 1);
-            y = std::clamp(y, 0, height_ - 1);
+            x = std::clamp(x, 0, width - 1);
+            y = std::clamp(y, 0, height - 1);
             break;
     }
     const auto i = size_t(taps.count++);
-    taps.texel[i] = size_t(y) * size_t(width_) + size_t(x);
+    taps.texel[i] = size_t(y) * size_t(width) + size_t(x);
     taps.weight[i] = weight;
 }
 
-TextureImage::Taps TextureImage::nearest(Vec2 st) const {
-    const Vec2 at = wrap_st(st);
+TextureImage::Taps TextureImage::nearest(Vec2 st, size_t level) const {
+    const Vec2 at = wrap_st(st), scale = levels_[level].texels;
     Taps taps;
-    add_tap(taps, int(std::floor(at.x * float(width_))), int(std::floor(at.y * float(height_))), 1);
+    taps.level = level;
+    add_tap(taps, int(std::floor(at.x * scale.x)), int(std::floor(at.y * scale.y)), 1);
     return taps;
 }
 
-TextureImage::Taps TextureImage::bilinear(Vec2 st) const {
-    const Vec2 at = wrap_st(st);
-    const float x = at.x * float(width_) - 0.5f, y = at.y * float(height_) - 0.5f;
+TextureImage::Taps TextureImage::bilinear(Vec2 st, size_t level) const {
+    const Vec2 at = wrap_st(st), scale = levels_[level].texels;
+    const float x = at.x * scale.x - 0.5f, y = at.y * scale.y - 0.5f;
     const float left = std::floor(x), top = std::floor(y);
     const float dx = x - left, dy = y - top;
     const int xi = int(left), yi = int(top);
     Taps taps;
+    taps.level = level;
     add_tap(taps, xi, yi, (1 - dx) * (1 - dy));
     add_tap(taps, xi + 1, yi, dx * (1 - dy));
     add_tap(taps, xi, yi + 1, (1 - dx) * dy);
@@ -155,38 +185,43 @@ TextureImage::Taps TextureImage::bilinear(Vec2 st) const {
     return taps;
 }
 
-Rgb TextureImage::color(size_t texel) const {
+Rgb TextureImage::color_at(const Level& level, size_t texel) const {
     const size_t i = texel * channels_;
-    if (channels_ == 1) return Rgb(channel(i));
-    return {channel(i), channel(i + 1), channel(i + 2)};
+    if (channels_ == 1) return Rgb(channel(level, i));
+    return {channel(level, i), channel(level, i + 1), channel(level, i + 2)};
 }
 
-float TextureImage::value(size_t texel, Channel which) const {
+float TextureImage::value_at(const Level& level, size_t texel, Channel which) const {
     const size_t i = texel * channels_;
     switch (which) {
         case Channel::automatic:
             break;
         case Channel::alpha:
-            return channels_ == 4 ? channel(i + 3) : 1;
+            return channels_ == 4 ? channel(level, i + 3) : 1;
         default:
-            if (channels_ == 1) return channel(i);
-            return channel(i + (which == Channel::red ? 0 : which == Channel::green ? 1 : 2));
+            if (channels_ == 1) return channel(level, i);
+            return channel(level, i + (which == Channel::red     ? 0
+                                       : which == Channel::green ? 1
+                                                                 : 2));
     }
-    if (channels_ == 1) return channel(i);
-    if (channels_ == 4) return channel(i + 3);
-    return (channel(i) + channel(i + 1) + channel(i + 2)) / 3;
+    if (channels_ == 1) return channel(level, i);
+    if (channels_ == 4) return channel(level, i + 3);
+    return (channel(level, i) + channel(level, i + 1) + channel(level, i + 2)) / 3;
 }
 
 Rgb TextureImage::color(const Taps& taps) const {
+    const Level& level = levels_[taps.level];
     Rgb sum;
-    for (size_t i = 0; i < size_t(taps.count); ++i) sum += color(taps.texel[i]) * taps.weight[i];
+    for (size_t i = 0; i < size_t(taps.count); ++i)
+        sum += color_at(level, taps.texel[i]) * taps.weight[i];
     return sum;
 }
 
 float TextureImage::value(const Taps& taps, Channel which) const {
+    const Level& level = levels_[taps.level];
     float sum = 0;
     for (size_t i = 0; i < size_t(taps.count); ++i)
-        sum += value(taps.texel[i], which) * taps.weight[i];
+        sum += value_at(level, taps.texel[i], which) * taps.weight[i];
     return sum;
 }
 

@@ -1,4 +1,4 @@
-/// An image as textures read it: compact in memory, decoded at each lookup.
+/// An image as textures read it: compact in memory, decoded at each lookup, with its mip levels.
 #pragma once
 
 #include <array>
@@ -11,59 +11,105 @@
 
 namespace covtrace {
 
-/// Texels of the first row lie at t = 0 here: callers flip t where they mean a texture's.
+/// The ellipse that a pixel covers around a place in an image: its half axes in (s, t). All zero:
+/// a point.
+struct ImageFootprint {
+    Vec2 a, b;
+};
+
 /// The coordinate in [0, 1] whose texel a mirrored image shows at v: it runs back and forth.
 float mirrored(float v);
 
+/// Texels of the first row lie at t = 0 here: callers flip t where they mean a texture's.
 class TextureImage {
   public:
     using Encoding = ImageTexture::Encoding;
     using Wrap = ImageTexture::Wrap;
+    using Filter = ImageTexture::Filter;
 
-    /// 8-bit rasters stay 8-bit. `encoding` applies to all channels, alpha included, as in pbrt-v4.
+    /// Of one level. 8-bit rasters stay 8-bit. `encoding` applies to all channels, alpha included,
+    /// as in pbrt-v4.
     TextureImage(const RasterImage& raster, Encoding encoding, float gamma, Wrap wrap);
 
     /// The texels that make up a value, with weights that sum to 1 less those of black
     /// surroundings.
     struct Taps {
-        std::array<size_t, 4> texel{};  ///< row * width + column
+        size_t level = 0;
+        std::array<size_t, 4> texel{};  ///< row * width + column, of that level
         std::array<float, 4> weight{};
         int count = 0;
     };
     /// The texel around st.
-    Taps nearest(Vec2 st) const;
+    Taps nearest(Vec2 st, size_t level = 0) const;
     /// The four texels whose centres surround st.
-    Taps bilinear(Vec2 st) const;
+    Taps bilinear(Vec2 st, size_t level = 0) const;
 
     /// Decoded colour.
     Rgb color(const Taps& taps) const;
     using Channel = ImageTexture::Channel;
-    /// Decoded value of a float texture; 1 for the alpha of an image without.
+    /// Decoded value of a float texture. `automatic`: alpha where there is one, else the mean of R,
+    /// G and B. The alpha of an image without is 1.
     float value(const Taps& taps, Channel channel = Channel::automatic) const;
-    Rgb color(size_t texel) const;
-    float value(size_t texel, Channel channel = Channel::automatic) const;
+    /// Of the finest level.
+    Rgb color(size_t texel) const { return color_at(levels_[0], texel); }
+    float value(size_t texel, Channel channel = Channel::automatic) const {
+        return value_at(levels_[0], texel, channel);
+    }
 
-    /// Drops the finest mip level: means over 2 x 2 texels (fewer at the far borders of odd sizes),
-    /// taken of decoded values and encoded again. Images of one texel stay as they are.
+    /// The mean over a footprint as pbrt-v4's MIPMap takes it. point and bilinear look at the one
+    /// level whose texels are next below the longest extent of the footprint, trilinear
+    /// interpolates between two such levels; ewa weights the texels of an ellipse by a Gaussian
+    /// (Heckbert 1989), on two levels chosen by the shorter axis, at most `anisotropy` times as
+    /// long as it is wide. Where a footprint is below a texel all but `point` are `bilinear`.
+    Rgb color(Vec2 st, Filter filter, const ImageFootprint& footprint, float anisotropy) const;
+    float value(Vec2 st, Filter filter, const ImageFootprint& footprint, float anisotropy,
+                Channel channel = Channel::automatic) const;
+
+    /// Makes all coarser levels, down to a single texel.
+    void build_levels();
+    /// Drops the finest mip level. Levels are means over 2 x 2 texels (fewer at the far borders of
+    /// odd sizes), taken of decoded values and encoded again. Images of one texel stay as they are.
     void halve();
 
-    int width() const { return width_; }
-    int height() const { return height_; }
+    /// Of the finest level.
+    int width() const { return levels_[0].width; }
+    int height() const { return levels_[0].height; }
+    size_t level_count() const { return levels_.size(); }
     Wrap wrap() const { return wrap_; }
-    size_t memory() const { return bytes_.size() + floats_.size() * sizeof(float); }
+    /// Bytes of all levels.
+    size_t memory() const;
 
   private:
+    struct Level {
+        int width = 0, height = 0;
+        Vec2 texels;                 ///< per unit of s and t: not whole where sizes were odd
+        std::vector<uint8_t> bytes;  ///< either these,
+        std::vector<float> floats;   ///< or these, already linear
+    };
     /// The byte that decodes to the value nearest to `v`.
     uint8_t encode(float v) const;
-    float channel(size_t i) const { return bytes_.empty() ? floats_[i] : decode_[bytes_[i]]; }
+    float channel(const Level& level, size_t i) const {
+        return level.bytes.empty() ? level.floats[i] : decode_[level.bytes[i]];
+    }
+    Rgb color_at(const Level& level, size_t texel) const;
+    float value_at(const Level& level, size_t texel, Channel channel) const;
+    Level coarser(const Level& fine) const;
     Vec2 wrap_st(Vec2 st) const;
     void add_tap(Taps& taps, int x, int y, float weight) const;
+    /// Number of the level at which an extent in (s, t) is about a texel; 0 below, may be
+    /// fractional.
+    float level_of(float extent) const;
+    template <typename Value>
+    Value decoded(const Taps& taps, Channel channel) const;
+    template <typename Value>
+    Value filtered(Vec2 st, Filter filter, ImageFootprint footprint, float anisotropy,
+                   Channel channel) const;
+    template <typename Value>
+    Value ellipse(Vec2 st, const ImageFootprint& footprint, size_t level, Channel channel) const;
 
-    int width_ = 0, height_ = 0;
     size_t channels_ = 1;
     Wrap wrap_ = Wrap::repeat;
-    std::vector<uint8_t> bytes_;  ///< either these,
-    std::vector<float> floats_;   ///< or these, already linear
+    std::vector<Level> levels_;  ///< the finest first; at least one
     std::array<float, 256> decode_{};
 };
 

@@ -21,7 +21,9 @@ TextureImage load(const ImageRequest& request) {
     // Floating-point files are linear by definition, whatever the scene says, as in pbrt-v4.
     const bool is_encoded = raster.is_8bit || raster.is_16bit;
     const Encoding encoding = is_encoded ? t.encoding.value_or(Encoding::srgb) : Encoding::linear;
-    return {raster, encoding, t.gamma, t.wrap};
+    TextureImage image(raster, encoding, t.gamma, t.wrap);
+    image.build_levels();
+    return image;
 }
 
 /// In parallel; of several errors the first in the order of the requests is thrown.

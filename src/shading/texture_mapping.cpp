@@ -59,4 +59,35 @@ StGradient st_gradient(const TextureMapping& mapping, const TexturePoint& at, Ve
     return {{dot(g.s, pu), dot(g.s, pv)}, {dot(g.t, pu), dot(g.t, pv)}};
 }
 
+PointFootprint footprint_on(const SurfaceHit& hit, Vec3 w, float width) {
+    if (!(width > 0)) return {};
+    constexpr float kMostStretched = 50;  // seen at grazing angles
+    PointFootprint f;
+    const Vec3 across = cross(hit.ng, w);
+    const float sine = length(across);
+    const Vec3 short_axis = sine > 1e-4f ? across / sine : Frame::from_z(hit.ng).x;
+    const float stretch = std::min(kMostStretched, 1 / std::abs(dot(hit.ng, w)));
+    f.dp = {short_axis * width, cross(hit.ng, short_axis) * (width * stretch)};
+    // (u, v) by least squares: dp = dpdu du + dpdv dv.
+    const float uu = dot(hit.dpdu, hit.dpdu), uv = dot(hit.dpdu, hit.dpdv),
+                vv = dot(hit.dpdv, hit.dpdv);
+    const float determinant = uu * vv - uv * uv;
+    if (!(determinant > 0)) return f;
+    for (size_t i = 0; i < 2; ++i) {
+        const float u = dot(hit.dpdu, f.dp[i]), v = dot(hit.dpdv, f.dp[i]);
+        f.duv[i] = {(vv * u - uv * v) / determinant, (uu * v - uv * u) / determinant};
+    }
+    return f;
+}
+
+ImageFootprint image_footprint(const TextureMapping& mapping, const TexturePoint& at) {
+    const PointFootprint& f = at.footprint;
+    if (f.is_point()) return {};
+    if (mapping.kind == TextureMapping::Kind::uv)
+        return {{mapping.scale_u * f.duv[0].x, mapping.scale_v * f.duv[0].y},
+                {mapping.scale_u * f.duv[1].x, mapping.scale_v * f.duv[1].y}};
+    const StGradient g = st_gradient(mapping, at, f.dp[0], f.dp[1]);
+    return {{g.s.x, g.t.x}, {g.s.y, g.t.y}};
+}
+
 }  // namespace covtrace

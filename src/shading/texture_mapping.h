@@ -4,6 +4,7 @@
 #include "core/vec.h"
 #include "scene/scene_description.h"
 #include "shading/texture.h"
+#include "shading/texture_image.h"
 
 namespace covtrace {
 
@@ -19,5 +20,8 @@ struct StGradient {
 /// Exact derivatives of `map_to_st` by (u, v) where p moves by dpdu du + dpdv dv; zero where the
 /// mapping has none (the origin of a spherical mapping, the axis of a cylindrical one).
 StGradient st_gradient(const TextureMapping& mapping, const TexturePoint& at, Vec3 dpdu, Vec3 dpdv);
+
+/// What the footprint of `at` covers in (s, t).
+ImageFootprint image_footprint(const TextureMapping& mapping, const TexturePoint& at);
 
 }  // namespace covtrace

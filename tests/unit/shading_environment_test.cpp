@@ -138,6 +138,22 @@ TEST(EnvironmentMap, NegativeTexelsAreBlack) {
     EXPECT_NEAR(luminance(map.mean()), 0.75, 1e-6);
 }
 
+TEST(EnvironmentMap, TexelsBeyondMeasureDoNoHarm) {
+    const TemporaryImage image({Rgb(3e38f), Rgb(1), Rgb(1), Rgb(3e38f)}, 2, 2);
+    const EnvironmentMap map = EnvironmentMap::read(image.path(), {});
+    Rng rng(4);
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3 w = map.sample(rng.next_2d());
+        ASSERT_NEAR(length(w), 1, 1e-5);
+        ASSERT_TRUE(std::isfinite(map.pdf(w)) && std::isfinite(map.radiance(w).g));
+    }
+    EXPECT_TRUE(std::isfinite(map.mean().g));
+    // Directions that are not numbers are looked up somewhere.
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const Vec3 w : {Vec3{nan, nan, nan}, Vec3{kInfinity, 0, 0}})
+        EXPECT_TRUE(std::isfinite(map.radiance(w).g));
+}
+
 TEST(EnvironmentMap, RefusesOtherShapesWithThePlaceInTheScene) {
     const TemporaryImage image(std::vector<Rgb>(12), 4, 3);
     const SourceLocation where{std::make_shared<const std::string>("sky.pbrt"), 7, 3};

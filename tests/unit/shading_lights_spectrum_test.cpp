@@ -215,5 +215,46 @@ TEST(BorderEdges, FindTheNearestOfMany) {
     EXPECT_FALSE(BorderEdges().nearest({}));
 }
 
+/// The largest variance in any direction of what a projector sends towards `w`.
+double slide_variance(const TemporaryImage& image, Vec3 towards) {
+    LightScene s;
+    ProjectionLight light;
+    light.image = image.path();
+    light.fov = 60;
+    s.add_light(light);
+    s.build();
+    s.lights->prepare_spectra();
+    const auto sample = s.lights->sample(towards, {}, 0, 0.5f, {0.5f, 0.5f});
+    EXPECT_TRUE(sample);
+    const SourceSpectrum a = s.lights->source_spectrum(*sample, 0);
+    EXPECT_EQ(a.kind, SourceSpectrum::Kind::point);
+    const double half = 0.5 * (double(a.a11) + a.a22), difference = 0.5 * (double(a.a11) - a.a22);
+    return half + std::sqrt(difference * difference + double(a.a12) * a.a12);
+}
+
+TEST(SourceSpectrum, AProjectorsSlideHasItsAngularFrequencies) {
+    // Waves of 8 texels of 64: 8 cycles over 2 tan 30, 6.93 per radian in the middle.
+    constexpr int n = 64;
+    const auto waves = [](float cycles) {
+        std::vector<Rgb> texels;
+        for (int i = 0; i < n * n; ++i)
+            texels.push_back(
+                Rgb(0.5f + 0.25f * std::sin(2 * kPi * cycles * (float(i % n) + 0.5f) / n)));
+        return texels;
+    };
+    const TemporaryImage coarse(waves(4), n, n), fine(waves(8), n, n);
+    const double frequency = 8 / (2 * std::tan(kPi / 6));
+    const double measured = slide_variance(fine, {0, 0, 1});
+    EXPECT_GT(measured, 0.8 * frequency * frequency);
+    EXPECT_LT(measured, 3 * frequency * frequency);
+    // Half the frequency, a quarter of the variance.
+    EXPECT_NEAR(measured / slide_variance(coarse, {0, 0, 1}), 4, 1.2);
+    const TemporaryImage plain(std::vector<Rgb>(n * n, Rgb(0.5f)), n, n);
+    EXPECT_LT(slide_variance(plain, {0, 0, 1}), 0.01 * measured);
+    // Near the rim its border against the dark counts.
+    EXPECT_GT(slide_variance(plain, normalize(Vec3{0.95f * std::tan(kPi / 6), 0, 1})),
+              slide_variance(plain, {0, 0, 1}) + 10);
+}
+
 }  // namespace
 }  // namespace covtrace

@@ -169,8 +169,9 @@ TEST(TextureStore, DecodesScalesAndInverts) {
 
 TEST(TextureStore, SharesEqualImages) {
     const TemporaryFolder folder("texture_share");
-    const auto file =
-        folder.write_ppm("a.ppm", 16, 16, std::vector<uint8_t>(size_t(16 * 16 * 3), 100));
+    const auto file = folder.write_ppm(
+        "a.ppm", 16, 16,
+        std::vector<uint8_t>(size_t(3 * (16 * 16 + 8 * 8 + 4 * 4 + 2 * 2 + 1)), 100));
     const auto memory_of = [&](const std::vector<ImageTexture>& textures) {
         TextureScene scene;
         for (const ImageTexture& t : textures) scene.add(t);
@@ -181,7 +182,7 @@ TEST(TextureStore, SharesEqualImages) {
     scaled.filter = ImageTexture::Filter::point;
     roundabout.file = file.parent_path() / "." / file.filename();
     clamped.wrap = ImageTexture::Wrap::clamp;
-    EXPECT_EQ(memory_of({one}), size_t(16 * 16 * 3));
+    EXPECT_EQ(memory_of({one}), size_t(3 * (16 * 16 + 8 * 8 + 4 * 4 + 2 * 2 + 1)));
     EXPECT_EQ(memory_of({one, scaled, roundabout}), memory_of({one}));
     EXPECT_EQ(memory_of({one, clamped}), 2 * memory_of({one}));
 }
@@ -201,6 +202,19 @@ TEST(TextureStore, NamesTheFirstMissingFileForAnyNumberOfThreads) {
             EXPECT_NE(std::string(e.what()).find("scene.pbrt:7:3"), std::string::npos) << e.what();
             EXPECT_NE(std::string(e.what()).find("no_such_a.png"), std::string::npos) << e.what();
         }
+    }
+}
+
+TEST(TextureEval, TexturesThatDoubleWithEveryLevelAreRefused) {
+    const TemporaryFolder folder("doubling");
+    TextureScene scene;
+    TextureId id = scene.add(image_texture(folder.write_ppm("a.ppm", 1, 1, {200, 200, 200})));
+    for (int i = 0; i < 40; ++i) id = scene.add(ScaleTexture{id, id});
+    try {
+        const TextureStore store(scene.description);
+        FAIL() << "accepted";
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::limit);
     }
 }
 

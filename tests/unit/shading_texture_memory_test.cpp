@@ -90,17 +90,23 @@ TEST(TextureMemory, TheLargestImagesShrinkUntilAllFit) {
         scene.add(image_texture(folder.write_ppm(
             name + ".ppm", size, size, std::vector<uint8_t>(size_t(size * size * 3), 120))));
     }
-    const size_t all = 3 * (3 * 64 * 64 + 32 * 32 + 16 * 16 + 6 * 8 * 8);
+    const auto levels = [](size_t size) {
+        size_t texels = 0;
+        for (; size > 0; size /= 2) texels += size * size;
+        return 3 * texels;
+    };
+    const size_t all = 3 * levels(64) + levels(32) + levels(16) + 6 * levels(8);
+    const size_t finest = 3 * 64 * 64;  // bytes that one of the largest loses
     const auto& d = scene.description;
     EXPECT_EQ(bytes_within(d, kNoTextureLimit, 0), all);
     EXPECT_EQ(bytes_within(d, all, 0), all);
     // One of the three largest is enough; then two; then all three.
-    EXPECT_EQ(bytes_within(d, all - 1, 1), all - 3 * 3 * 32 * 32);
-    EXPECT_EQ(bytes_within(d, all - 3 * 3 * 32 * 32 - 1, 2), all - 2 * 3 * 3 * 32 * 32);
-    EXPECT_EQ(bytes_within(d, all - 3 * 3 * 3 * 32 * 32, 3), all - 3 * 3 * 3 * 32 * 32);
+    EXPECT_EQ(bytes_within(d, all - 1, 1), all - finest);
+    EXPECT_EQ(bytes_within(d, all - finest - 1, 2), all - 2 * finest);
+    EXPECT_EQ(bytes_within(d, all - 3 * finest, 3), all - 3 * finest);
     // Below a texel each nothing more can go.
     EXPECT_EQ(bytes_within(d, 1, 11), size_t(11 * 3));
-    EXPECT_EQ(bytes_within(d, 1000, 9), [&] {
+    EXPECT_EQ(bytes_within(d, 1000, 11), [&] {
         const ThreadLimit one(1);
         return TextureStore(d, 1000).memory();
     }());
