@@ -102,8 +102,8 @@ TEST(FoldEdges, BlindConesHideNoOutline) {
         hierarchy.search(
             [&](const BoxHierarchy::Node& node, uint32_t n) {
                 // The nodes hold what they say; missing children are no number.
-                Float4 all{};
-                for (size_t k = 0; k < 4; ++k) all[k] = node.middle[0][k] * 0;
+                Float8 all{};
+                for (size_t k = 0; k < 8; ++k) all[k] = node.middle[0][k] * 0;
                 return cones[n].rule_out(node, p, all);
             },
             [] { return 1.0f; },
@@ -213,6 +213,51 @@ TEST(OccluderQuery, BallsOccludeOthersAndNotThemselves) {
     // From a point of the ball along its surface.
     const OccluderQuery::Segment away{{5, 0, 0.5f}, {1, 0, 0}, 0, {}, {0, 0}};
     EXPECT_EQ(query(away, plain(0.3f), 1e-4f).count, 0u);
+}
+
+TEST(OccluderQuery, BallsAreOutlinedByTheirTangents) {
+    // One as it is, one placed, one that is a polygon; all the same ball.
+    const AnimatedTransform at(Transform::translate({0.3f, -0.2f, 0.5f}) *
+                               Transform::scale(2, 2, 2));
+    SceneDescription placed = scene_of({});
+    placed.objects.push_back({"o", {shape(sphere(0.5f))}});
+    placed.instances.push_back(
+        {0, AnimatedTransform(at.start() * Transform::rotate(30, {1, 2, 3})), {}});
+    const Geometry one{scene_of({shape(sphere(0.5f), at)})}, other{placed},
+        fine{scene_of({mesh(sphere_mesh(0.5f, 100, 200), at)})};
+    const OccluderQuery exact(one), instanced(other), polygon(fine);
+    Random random(5);
+    int some = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3 begin = random.in_box(4), end = random.in_box(4);
+        const float length = distance(begin, end);
+        if (distance(begin, {0.3f, -0.2f, 0.5f}) < 1.05f ||
+            distance(end, {0.3f, -0.2f, 0.5f}) < 1.05f)
+            continue;
+        EdgeMeasure m;
+        m.a1 = random.between(0, 0.2f);
+        m.b = 1;
+        m.h1 = -random.between(0, 1) / length;
+        m.h2 = sqr(m.h1) / 4 + 0.01f;
+        m.widest = 0.6f;
+        const auto expected = outlines(polygon, begin, end, m),
+                   found = outlines(exact, begin, end, m),
+                   same = outlines(instanced, begin, end, m);
+        ASSERT_EQ(found.size(), same.size());
+        const auto narrowest = [](const std::vector<OutlineEvent>& events) {
+            return *std::min_element(
+                events.begin(), events.end(),
+                [](const auto& a, const auto& b) { return a.width < b.width; });
+        };
+        if (expected.empty() || found.empty()) continue;
+        ++some;
+        const OutlineEvent e = narrowest(expected), f = narrowest(found);
+        ASSERT_NEAR(f.width, e.width, 0.03f * e.width + 2e-3f);
+        ASSERT_NEAR(narrowest(same).width, f.width, 1e-3f * f.width + 1e-4f);
+        if (m.a1 > 0.02f) continue;
+        ASSERT_NEAR(f.distance, e.distance, 0.01f);
+    }
+    EXPECT_GT(some, 100);
 }
 
 TEST(OccluderQuery, InstancesAndMotion) {
