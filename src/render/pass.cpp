@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -13,6 +14,20 @@ namespace {
 
 constexpr int kTileSize = 16;
 constexpr size_t kMostRejectedKept = 8;
+
+/// Adds the seconds that a scope took.
+class Stopwatch {
+  public:
+    explicit Stopwatch(double& total) : total_(total), start_(Clock::now()) {}
+    ~Stopwatch() { total_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    double& total_;
+    const Clock::time_point start_;
+};
 
 /// Runs body(film pixel index, x, y, statistics) for all pixels, tile by tile, and sums the
 /// statistics in tile order.
@@ -29,6 +44,7 @@ PassStatistics for_each_pixel(const PixelBounds& b, const Monitor& monitor,
         const int x0 = b.x0 + int(tile % tiles_x) * kTileSize,
                   y0 = b.y0 + int(tile / tiles_x) * kTileSize;
         PassStatistics& statistics = per_tile[static_cast<size_t>(tile)];
+        const Stopwatch watch(statistics.seconds);
         for (int y = y0; y < std::min(y0 + kTileSize, b.y1); ++y)
             for (int x = x0; x < std::min(x0 + kTileSize, b.x1); ++x) {
                 const size_t i = size_t(y - b.y0) * size_t(b.width()) + size_t(x - b.x0);
@@ -70,6 +86,8 @@ void PassStatistics::add(const PassStatistics& other) {
     vertices += other.vertices;
     black_paths += other.black_paths;
     rejected += other.rejected;
+    seconds += other.seconds;
+    replay_seconds += other.replay_seconds;
     for (const RejectedSample& r : other.first_rejected)
         if (first_rejected.size() < kMostRejectedKept) first_rejected.push_back(r);
 }
@@ -140,6 +158,7 @@ PassStatistics covariance_pass(const PassContext& context, const Occluders& occl
     const auto traced = [&](size_t i, int x, int y, PassStatistics& statistics) {
         static thread_local PathRecord record;
         sample_pixel(context, film, i, x, y, &record, statistics);
+        const Stopwatch watch(statistics.replay_seconds);
         Traced t{replay(record, LightPart::scattered), {}};
         if (shows_emitter(record)) t.in_view = replay(record, LightPart::in_view);
         return t;
