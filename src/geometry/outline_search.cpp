@@ -136,7 +136,7 @@ void OutlineSearch::meet_ball(Vec3 center, float radius, uint32_t body) {
         best = value;
         best_cosine = cosine;
     };
-    for (const float cosine : {1.0f, 0.7f, 0.0f, -0.7f}) attempt(cosine);
+    for (const float cosine : {1.0f, 0.7f, 0.0f, -0.7f, -1.0f}) attempt(cosine);
     // Just within the range.
     attempt((lo_ * 1.00001f - z_middle) / z_slope);
     attempt((hi_ * 0.99999f - z_middle) / z_slope);
