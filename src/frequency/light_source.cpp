@@ -26,6 +26,8 @@ LightField ball_field(const SourceSpectrum& s, Vec3 travel, double cap) {
 
 LightField area_field(const SourceSpectrum& s, Vec3 travel, bool seen_sharply, double smallest,
                       const cov::Sym2<double>& texture) {
+    const cov::Surface<double> surface{
+        s.tangent.z, s.tangent.x, s.tangent.y, {s.k11, s.k12, s.k22}};
     const double cap = cov::edge_variance(smallest);
     if (is_ball(s) && !seen_sharply) return ball_field(s, travel, cap);
     LightField field =
@@ -37,14 +39,10 @@ LightField area_field(const SourceSpectrum& s, Vec3 travel, bool seen_sharply, d
         field = cov::add_texture(field, {q * dx * dx, q * dx * dy, q * dy * dy});
     }
     const cov::Motion<double> motion{s.velocity, s.angular_velocity};
-    return cov::motion_exit(cov::surface_exit(field, surface_of(s)), motion);
+    return cov::motion_exit(cov::surface_exit(field, surface), motion);
 }
 
 }  // namespace
-
-cov::Surface<double> surface_of(const SourceSpectrum& s) {
-    return {s.tangent.z, s.tangent.x, s.tangent.y, {s.k11, s.k12, s.k22}};
-}
 
 LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sharply,
                         double smallest, const cov::Sym2<double>& texture) {

@@ -18,9 +18,6 @@ using LightField = covariance::LightField<double>;
 LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sharply,
                         double smallest, const covariance::Sym2<double>& texture = {});
 
-/// The surface of an area light at the point; flat for others.
-covariance::Surface<double> surface_of(const SourceSpectrum& source);
-
 /// What a diffuse receiver `distance` away (scene units) has to know of the light as an emitter.
 covariance::Emitter<double> emitter_of(const SourceSpectrum& source, double distance);
 

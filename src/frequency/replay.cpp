@@ -169,15 +169,6 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
         if (!contour) return std::nullopt;
         return OwnOutline{*contour, motion};
     };
-    const auto own_outline_of_emitter = [&](const PathVertex& v, const SourceSpectrum& s) {
-        const cov::Motion<double> motion{s.velocity, s.angular_velocity};
-        // Meshes whose normals are not those of their triangles stand for curved shapes.
-        if (!occluders_.query || v.hit.ns == v.hit.ng)
-            return own_outline(surface_of(s), motion, v.wo);
-        const DifferentialGeometry d = scene_.geometry.differential(v.hit);
-        return own_outline({d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}}, motion,
-                           v.wo);
-    };
     const auto half_pixel = [&](int i) {
         return 0.5f * (camera.orthographic ? 1.0f : distances[i]) / camera.pixels_per_x;
     };
@@ -229,7 +220,11 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
             if (emitted > leaving.weight) leaving.emitter = emitter_of(s, way);
             const auto texture = emission_texture(scene_, v, s.tangent, half_pixel(i));
             leaving.add(source_field(s, v.wo, v.seen_sharply, smallest_, texture), emitted);
-            if (!own) own = own_outline_of_emitter(v, s);
+            if (!own && occluders_.query) {
+                const DifferentialGeometry d = scene_.geometry.differential(v.hit);
+                own = own_outline({d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}},
+                                  {d.velocity, d.angular_velocity}, v.wo);
+            }
         }
         light = leaving;
         const OccluderQuery::Segment segment{v.hit.position, next, v.hit.time, owner(i),
