@@ -17,7 +17,9 @@
 /// from the variances of the images and of the pixel. Two results are printed: "change > 2 %" takes
 /// the change as it is, so its scales are a little too small; "significant" asks for a change
 /// beyond 2 % by two standard deviations, so its scales are a little too large. What no noise would
-/// give lies in between.
+/// give lies in between. "noise removed" is that: at every scale the share of the pixels that
+/// change by more than 2 %, of the distribution of changes that best explains all measured ones and
+/// their noise (laboratory/deconvolution.h). It speaks of all pixels together, not of any one.
 ///
 /// Prints a row of a Markdown table for each. MAP shows the converged image, the deviation of the
 /// filter of the larger part of the light (fourth root of det S_h, pixels) and the usable scale
@@ -34,6 +36,7 @@
 
 #include "core/parallel.h"
 #include "false_colour.h"
+#include "laboratory/deconvolution.h"
 #include "predicted_image.h"
 #include "reconstruction/filter_field.h"
 
@@ -128,27 +131,40 @@ Change change_by(const std::vector<float>& values, const std::vector<float>& var
 struct UsableScales {
     std::vector<float> plain, significant;  ///< 0: not even the smallest
     std::vector<float> noise;               ///< of the change at scale 1, over luminance + 0.01
+    /// Share of the pixels whose usable scale is below each of the steps, without noise.
+    std::vector<double> below;
 };
+
+float scale_of(int step) {
+    return std::exp2(float(step) / kStepsPerOctave);
+}
 
 /// `in_view`: the filters of emitters in view. Their light has hardly any noise: all of the
 /// variance is put down to scattered light.
 UsableScales usable_scales(const FilterField& field, const FilterField& in_view,
                            const Converged& image, const std::vector<MeasuredPixel>& pixels) {
-    UsableScales r{std::vector<float>(pixels.size()), std::vector<float>(pixels.size()),
-                   std::vector<float>(pixels.size())};
+    UsableScales r{std::vector<float>(pixels.size()),
+                   std::vector<float>(pixels.size()),
+                   std::vector<float>(pixels.size()),
+                   {}};
+    constexpr size_t kSteps = kLastStep - kFirstStep + 1;
+    std::vector<std::vector<float>> changes(kSteps, std::vector<float>(pixels.size())),
+        deviations = changes;
     parallel_for(int64_t(pixels.size()), [&](int64_t k) {
         const MeasuredPixel& p = pixels[size_t(k)];
         const size_t i = size_t(p.y) * size_t(field.width) + size_t(p.x);
         const float scale = p.scattered + p.in_view + kFloor;
         bool plain = true, significant = true;
         for (int step = kFirstStep; step <= kLastStep; ++step) {
-            const float s = std::exp2(float(step) / kStepsPerOctave);
+            const float s = scale_of(step);
             Change c = change_by(image.scattered, image.variance, field.width, field.height, p,
                                  p.scattered, s * s * field.covariance[i]);
             c.value += change_by(image.in_view, image.variance, field.width, field.height, p,
                                  p.in_view, s * s * in_view.covariance[i])
                            .value;
             if (step == 0) r.noise[size_t(k)] = c.noise / scale;
+            changes[size_t(step - kFirstStep)][size_t(k)] = c.value / (kTolerance * scale);
+            deviations[size_t(step - kFirstStep)][size_t(k)] = c.noise / (kTolerance * scale);
             plain = plain && std::abs(c.value) <= kTolerance * scale;
             significant =
                 significant && std::abs(c.value) <= kTolerance * scale + kSignificant * c.noise;
@@ -156,23 +172,53 @@ UsableScales usable_scales(const FilterField& field, const FilterField& in_view,
             if (significant) r.significant[size_t(k)] = s;
         }
     });
+    // A pixel's usable scale ends where its change first is too large.
+    for (size_t step = 0; step < kSteps; ++step)
+        r.below.push_back(std::max(r.below.empty() ? 0.0 : r.below.back(),
+                                   share_beyond(changes[step], deviations[step])));
     return r;
 }
 
-void print_row(std::string_view name, std::vector<float> scales, float narrowest_share,
-               float noise) {
-    std::sort(scales.begin(), scales.end());
-    const auto quantile = [&](double p) { return scales[size_t(p * double(scales.size() - 1))]; };
-    const auto share = [&](auto&& predicate) {
-        return 100.0 * double(std::count_if(scales.begin(), scales.end(), predicate)) /
-               double(scales.size());
-    };
+/// quantile(p); shares below 0.35, above 6 and at the narrowest filter; noise.
+template <typename Quantile>
+void print_row(std::string_view name, const Quantile& quantile, double low, double high,
+               double narrowest, double noise) {
     fmt::print(
         "| {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.1f} % | {:.1f} % | {:.1f} % | "
         "{:.2f} % |\n",
         name, quantile(0.05), quantile(0.25), quantile(0.5), quantile(0.75), quantile(0.95),
-        share([](float s) { return s < 0.35f; }), share([](float s) { return s > 6; }),
-        100 * narrowest_share, 100 * noise);
+        100 * low, 100 * high, 100 * narrowest, 100 * noise);
+}
+
+void print_row(std::string_view name, std::vector<float> scales, float narrowest, float noise) {
+    std::sort(scales.begin(), scales.end());
+    const auto share = [&](auto&& predicate) {
+        return double(std::count_if(scales.begin(), scales.end(), predicate)) /
+               double(scales.size());
+    };
+    print_row(
+        name, [&](double p) { return scales[size_t(p * double(scales.size() - 1))]; },
+        share([](float s) { return s < 0.35f; }), share([](float s) { return s > 6; }), narrowest,
+        noise);
+}
+
+/// `below`: the share of the pixels that are below each step.
+void print_row(std::string_view name, const std::vector<double>& below, float narrowest,
+               float noise) {
+    // The largest scale at which no more than the share p is below.
+    const auto quantile = [&](double p) {
+        float s = 0;
+        for (size_t i = 0; i < below.size() && below[i] <= p; ++i)
+            s = scale_of(kFirstStep + int(i));
+        return s;
+    };
+    // Not usable at the largest step below 0.35; usable at the smallest step above 6.
+    const auto at = [&](float s) {
+        size_t i = 0;
+        while (i + 1 < below.size() && scale_of(kFirstStep + int(i)) < s) ++i;
+        return i;
+    };
+    print_row(name, quantile, below[at(0.35f)], 1 - below[at(6)], narrowest, noise);
 }
 
 /// The filter of the part that holds more of a pixel's light.
@@ -249,6 +295,7 @@ void report(std::span<const char* const> files, bool by_neighbours, const char* 
     const float noise = scales.noise[pixels.size() / 2];
     print_row("change > 2 %", std::move(scales.plain), share, noise);
     print_row("significant", std::move(scales.significant), share, noise);
+    print_row("noise removed", scales.below, share, noise);
 }
 
 }  // namespace

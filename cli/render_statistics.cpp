@@ -44,6 +44,8 @@ nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& res
             {"path_lengths", std::vector(s.lengths.begin(), s.lengths.begin() + long(longest))},
             {"black_paths", s.black_paths},
             {"rejected", s.rejected},
+            {"thread_seconds", s.seconds},
+            {"replay_thread_seconds", s.replay_seconds},
             {"first_rejected", rejected}};
     };
     return {{"seconds_total", monitor.elapsed()},

@@ -68,6 +68,14 @@ LightField past_voxels(const VoxelGrid& grid, LightField field,
     return field;
 }
 
+/// Whether an own outline is narrow enough at the end of the segment.
+bool matters(const OwnOutline& own, const EdgeMeasure& measure, const cov::Vec3<double>& travel,
+             double length) {
+    const auto z = static_cast<float>(length - cov::dot(own.contour.offset, travel));
+    const auto r = static_cast<float>(own.contour.distance);
+    return measure.width_squared(z, r * r) < measure.widest * measure.widest;
+}
+
 LightField past_outlines(const OccluderQuery& query, LightField field,
                          const OccluderQuery::Segment& segment, double length,
                          const EdgeMeasure& measure, double smallest, double& at) {
@@ -136,10 +144,12 @@ EdgeMeasure measure_at_camera(const SensorGeometry& camera) {
 
 LightField travel_past(const Occluders& occluders, LightField field,
                        const OccluderQuery::Segment& segment, const EdgeMeasure& measure,
-                       double smallest) {
+                       const OwnOutline* own, double smallest) {
     const double length = distance(segment.begin, segment.end);
     double at = 0;
     if (occluders.query) {
+        if (own && matters(*own, measure, field.frame.z, length))
+            field = cov::end_at_contour(field, own->contour, smallest, own->motion);
         field = past_outlines(*occluders.query, field, segment, length, measure, smallest, at);
     } else if (occluders.grid) {
         const EdgeMeasure::Range range = measure.reach(static_cast<float>(length));

@@ -43,10 +43,17 @@ EdgeMeasure measure_at_surface(const covariance::SymmetricMatrix5<double>& sigma
                                const Visibility& end);
 EdgeMeasure measure_at_camera(const SensorGeometry& camera);
 
-/// Carries light along a segment, past the occluders that matter. `smallest`: the extent that
-/// stands for a point, scene units.
+/// The outline of the surface itself that light has just left. Voxels hold it, outlines that are
+/// asked for do not: it lies at or behind the point where the segment starts.
+struct OwnOutline {
+    covariance::Contour<double> contour;
+    covariance::Motion<double> motion;  ///< of the point where the segment starts
+};
+
+/// Carries light along a segment, past the occluders that matter. `own`: null where there is none;
+/// `smallest`: the extent that stands for a point, scene units.
 LightField travel_past(const Occluders& occluders, LightField field,
                        const OccluderQuery::Segment& segment, const EdgeMeasure& measure,
-                       double smallest);
+                       const OwnOutline* own, double smallest);
 
 }  // namespace covtrace

@@ -40,6 +40,10 @@ cov::Emitter<double> emitter_at(const PathVertex& v, double distance) {
 /// textures count as visible.
 constexpr double kSmallestShare = 0.1;
 
+/// Light below this part of a path's luminance is not followed: whatever a filter does to it
+/// changes a pixel by less than counts as a change (docs/prediction.md).
+constexpr double kInvisible = 0.02;
+
 cov::SymmetricMatrix5<double> to_sensor(const LightField& field, const SensorGeometry& g) {
     const LightField at_rest = cov::motion_enter(field, {g.velocity, g.angular_velocity});
     if (g.orthographic)
@@ -62,22 +66,33 @@ PathReplay::PathReplay(const RenderScene& scene, const Occluders& occluders, Brd
 }
 
 LightField PathReplay::to_surface(const LightField& field, const OccluderQuery::Segment& segment,
-                                  const Visibility& end, double share) const {
+                                  const Visibility& end, double share,
+                                  const OwnOutline* own) const {
     const double length = distance(segment.begin, segment.end);
     if (!occluders_ || share < kSmallestShare || !(end.extent > 0))
         return cov::travel(field, length);
     return travel_past(occluders_, field, segment, measure_at_surface(field.sigma, length, end),
-                       smallest_);
+                       own, smallest_);
 }
 
 LightField PathReplay::to_camera(const LightField& field, const OccluderQuery::Segment& segment,
-                                 const SensorGeometry& camera, double share) const {
+                                 const SensorGeometry& camera, double share,
+                                 const OwnOutline* own) const {
     if (!occluders_ || share < kSmallestShare)
         return cov::travel(field, distance(segment.begin, segment.end));
-    return travel_past(occluders_, field, segment, measure_at_camera(camera), smallest_);
+    return travel_past(occluders_, field, segment, measure_at_camera(camera), own, smallest_);
 }
 
 PathCovariance PathReplay::operator()(const PathRecord& record, LightPart part) const {
+    double kept = 0;
+    const PathCovariance bright = follow(record, part, kInvisible, kept);
+    // Only where most of a path's light is made of small shares do these matter.
+    if (!(bright.weight > 0) || kept > 0.9 * bright.weight) return bright;
+    return follow(record, part, 0, kept);
+}
+
+PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, double least,
+                                  double& kept) const {
     const auto taken = [part](float luminance, bool in_view) {
         const bool takes = part == LightPart::all || (part == LightPart::in_view) == in_view;
         return takes ? luminance : 0.0f;
@@ -99,6 +114,9 @@ PathCovariance PathReplay::operator()(const PathRecord& record, LightPart part) 
             double(taken(v.emitted, v.in_view)) + taken(v.direct, false) + taken(v.glow, false);
     }
     if (!(total > 0)) return {};
+    const auto counts = [least, total](double luminance) {
+        return luminance > 0 && luminance >= least * total;
+    };
 
     // What an even medium emits on the way is the same for all neighbouring rays.
     const auto glow = [](Vec3 travel) { return LightField{{}, cov::frame_along<double>(travel)}; };
@@ -125,7 +143,7 @@ PathCovariance PathReplay::operator()(const PathRecord& record, LightPart part) 
     };
 
     Arriving light;
-    if (escaped > 0) {
+    if (counts(escaped)) {
         const SourceSpectrum s = scene_.lights.environment_spectrum(record.escape_direction);
         light.add(source_field(s, -record.escape_direction, record.escape_seen_sharply, smallest_),
                   escaped);
@@ -143,6 +161,14 @@ PathCovariance PathReplay::operator()(const PathRecord& record, LightPart part) 
     }
     light.add(glow(-record.escape_direction), taken(record.escape_glow, false));
 
+    const auto own_outline = [this](const cov::Surface<double>& surface,
+                                    const cov::Motion<double>& motion,
+                                    Vec3 outgoing) -> std::optional<OwnOutline> {
+        if (!occluders_.query) return std::nullopt;
+        const auto contour = cov::contour<double>(surface, outgoing);
+        if (!contour) return std::nullopt;
+        return OwnOutline{*contour, motion};
+    };
     const auto half_pixel = [&](int i) {
         return 0.5f * (camera.orthographic ? 1.0f : distances[i]) / camera.pixels_per_x;
     };
@@ -151,23 +177,27 @@ PathCovariance PathReplay::operator()(const PathRecord& record, LightPart part) 
         const PathVertex& v = record.vertices[size_t(i)];
         const float emitted = taken(v.emitted, v.in_view), direct = taken(v.direct, false);
         Arriving leaving;
-        if (light.weight > 0 || direct > 0) {
+        std::optional<OwnOutline> own;
+        const bool has_direct = counts(direct);
+        if (!counts(light.weight)) light = {};
+        if (light.weight > 0 || has_direct) {
             std::optional<ScatterPoint> point;
             if (v.medium < 0) {
                 point = scatter_point(scene_, v, half_pixel(i));
+                own = own_outline(point->surface, point->motion, v.wo);
             }
             const auto scattered = [&](const LightField& arriving,
-                                       const cov::Emitter<double>& emitter,
-                                       const LobeShares& lobes) {
-                if (point) return scatter(arriving, emitter, *point, lobes, rule_);
+                                       const cov::Emitter<double>& emitter, const LobeShares& lobes,
+                                       double weight) {
+                if (point)
+                    return scatter(arriving, emitter, *point, lobes, rule_, least * total / weight);
                 const double g = scene_.media[size_t(v.medium)].g;
-                return cov::rotate_to(cov::scatter_in_volume<double>(arriving, v.wo, g),
-                                      cov::frame_along<double>(v.wo));
+                return cov::scatter_in_volume<double>(arriving, v.wo, g);
             };
             if (light.weight > 0)
-                leaving.add(scattered(light.field, light.emitter, v.next_event.lobes),
+                leaving.add(scattered(light.field, light.emitter, v.next_event.lobes, light.weight),
                             light.weight);
-            if (direct > 0) {
+            if (has_direct) {
                 const SourceSpectrum s = scene_.lights.source_spectrum(v.light, v.hit.time);
                 const Vec3 from = std::isfinite(v.light.distance)
                                       ? v.hit.position + v.light.wi * v.light.distance
@@ -176,33 +206,41 @@ PathCovariance PathReplay::operator()(const PathRecord& record, LightPart part) 
                 const LightField arriving =
                     to_surface(source, {from, v.hit.position, v.hit.time, {}, owner(i)},
                                visible[size_t(i)], direct / total);
-                leaving.add(
-                    scattered(arriving, emitter_of(s, v.light.distance), v.direct_event.lobes),
-                    direct);
+                leaving.add(scattered(arriving, emitter_of(s, v.light.distance),
+                                      v.direct_event.lobes, direct),
+                            direct);
             }
         }
         const Vec3 next =
             i > 0 ? record.vertices[size_t(i - 1)].hit.position : record.camera_ray.origin;
         const double way = distance(v.hit.position, next);
         leaving.emitter = emitter_at(v, way);
-        if (emitted > 0) {
+        if (counts(emitted)) {
             const SourceSpectrum s = scene_.lights.source_spectrum(v.hit);
             if (emitted > leaving.weight) leaving.emitter = emitter_of(s, way);
             const auto texture = emission_texture(scene_, v, s.tangent, half_pixel(i));
             leaving.add(source_field(s, v.wo, v.seen_sharply, smallest_, texture), emitted);
+            if (!own && occluders_.query) {
+                const DifferentialGeometry d = scene_.geometry.differential(v.hit);
+                own = own_outline({d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}},
+                                  {d.velocity, d.angular_velocity}, v.wo);
+            }
         }
         light = leaving;
         const OccluderQuery::Segment segment{v.hit.position, next, v.hit.time, owner(i),
                                              owner(i - 1)};
+        const OwnOutline* ends = own ? &*own : nullptr;
         if (light.weight > 0)
-            light.field = i > 0 ? to_surface(light.field, segment, visible[size_t(i - 1)],
-                                             light.weight / total)
-                                : to_camera(light.field, segment, camera, light.weight / total);
+            light.field = i > 0
+                              ? to_surface(light.field, segment, visible[size_t(i - 1)],
+                                           light.weight / total, ends)
+                              : to_camera(light.field, segment, camera, light.weight / total, ends);
         light.add(glow(v.wo), taken(v.glow, false));
     }
 
-    if (!(light.weight > 0)) return {};
-    const PathCovariance result{to_sensor(light.field, camera), light.weight};
+    kept = light.weight;
+    const PathCovariance result{
+        light.weight > 0 ? to_sensor(light.field, camera) : cov::SymmetricMatrix5<double>{}, total};
     if (!cov::is_finite(result.sigma) || !std::isfinite(result.weight)) return {};
     return result;
 }

@@ -31,12 +31,18 @@ class PathReplay {
     PathCovariance operator()(const PathRecord& record, LightPart part = LightPart::all) const;
 
   private:
+    /// Without light that carries less than `least` of the path's luminance. `kept`: the luminance
+    /// of the light that was followed.
+    PathCovariance follow(const PathRecord& record, LightPart part, double least,
+                          double& kept) const;
     /// Travel, past the occluders on the way where `share`, this light's part of the path's
     /// luminance, is large enough to be seen and the end's features can be.
     LightField to_surface(const LightField& field, const OccluderQuery::Segment& segment,
-                          const Visibility& end, double share) const;
+                          const Visibility& end, double share,
+                          const OwnOutline* own = nullptr) const;
     LightField to_camera(const LightField& field, const OccluderQuery::Segment& segment,
-                         const SensorGeometry& camera, double share) const;
+                         const SensorGeometry& camera, double share,
+                         const OwnOutline* own = nullptr) const;
 
     const RenderScene& scene_;
     Occluders occluders_;

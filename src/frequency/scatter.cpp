@@ -22,6 +22,10 @@ cov::Sym2<double> texture_spectrum(const RenderScene& scene, TextureId id, const
 /// A lobe as wide as this feels the horizon: the cosine limits it as it limits a diffuse surface.
 constexpr float kWideLobe = 0.4f;
 
+/// Above this cosine what a denser coat lets through is even: second derivatives of Fresnel's
+/// factor give a window of at most a seventh of the cosine's.
+constexpr double kEvenTransmission = 0.7;
+
 /// The axes of a ray in the coordinates of the BSDF.
 struct Axes {
     cov::Vec3<double> x, y, z;
@@ -46,8 +50,9 @@ LightField through_diffuse(const LightField& entered, const cov::Emitter<double>
     if (rule == BrdfCovariance::global || !(lobe.border_eta > 0)) return left(entered);
     // Below a coat the diffuse lobe is a product: what the coat lets in from each direction, and
     // what it lets out.
-    const auto transmission = [&](const cov::Frame<double>& f) {
+    const auto transmission = [&](const cov::Frame<double>& f) -> cov::Sym2<double> {
         const Axes axes(p.shading, f);
+        if (lobe.border_eta > 1 && std::abs(axes.z.z) > kEvenTransmission) return {};
         const auto direction = cov::jet_direction<double>(axes.x, axes.y, axes.z);
         return cov::local_lobe<double>(1 - border_reflectance(lobe, abs(direction.z)),
                                        cov::cosine_window<double>(f, p.facing.n));
@@ -82,11 +87,11 @@ LightField through_glossy(const LightField& entered, const ScatterPoint& p, cons
     // slopes is in the lobe already, and the window is left with masking, at half the price of
     // cov::local_lobe for any BRDF.
     const Axes in(p.shading, entered.frame), out(p.shading, pair.outgoing);
-    const auto leaving = lobe_function(lobe, cov::jet_direction<double>(out.x, out.y, out.z),
-                                       cov::jet_constant<double>(-in.z));
-    const auto arriving = masked_cosine(lobe, cov::jet_constant<double>(out.z),
-                                        cov::jet_direction<double>(-in.x, -in.y, -in.z)) *
-                          cov::jet_solid_angle<double>();
+    const auto leaving =
+        lobe_function(lobe, cov::jet_direction<double>(out.x, out.y, out.z), -in.z);
+    const auto arriving =
+        masked_cosine(lobe, out.z, cov::jet_direction<double>(-in.x, -in.y, -in.z)) *
+        cov::jet_solid_angle<double>();
     const cov::Sym2<double> window =
         cov::limited_by(cov::positive_part(cov::log_curvature(arriving)),
                         cov::cosine_window<double>(entered.frame, p.facing.n));
@@ -174,22 +179,29 @@ cov::Sym2<double> emission_texture(const RenderScene& scene, const PathVertex& v
 }
 
 LightField scatter(const LightField& arriving, const cov::Emitter<double>& emitter,
-                   const ScatterPoint& point, const LobeShares& lobes, BrdfCovariance rule) {
+                   const ScatterPoint& point, const LobeShares& lobes, BrdfCovariance rule,
+                   double least) {
     const LightField entered = cov::surface_enter<double>(cov::motion_enter(arriving, point.motion),
                                                           point.surface, point.normals);
-    LightField sum{{}, cov::frame_along<double>(point.outgoing)};
+    double all = 0, most = 0;
+    for (int i = 0; i < lobes.count; ++i) {
+        const double weight = luminance(lobes.lobes[size_t(i)].value);
+        all += weight;
+        most = std::max(most, weight);
+    }
+    LightField sum;
     double total = 0;
     for (int i = 0; i < lobes.count; ++i) {
         const LobeShare& lobe = lobes.lobes[size_t(i)];
         const double weight = luminance(lobe.value);
-        if (!(weight > 0)) continue;
+        if (!(weight > 0) || (weight < least * all && weight < most)) continue;
         const LightField left = cov::surface_exit<double>(
             through_lobe(entered, emitter, point, lobe, rule), point.surface, point.normals);
+        const LightField outside = cov::motion_exit(left, point.motion);
+        sum = total > 0 ? cov::merge(sum, total, outside, weight) : outside;
         total += weight;
-        const double share = weight / total;
-        const auto aligned = cov::rotate_to(cov::motion_exit(left, point.motion), sum.frame);
-        sum.sigma = (1 - share) * sum.sigma + share * aligned.sigma;
     }
+    if (!(total > 0)) sum.frame = cov::frame_along<double>(point.outgoing);
     return sum;
 }
 

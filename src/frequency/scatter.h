@@ -35,9 +35,10 @@ covariance::Sym2<double> emission_texture(const RenderScene& scene, const PathVe
 
 /// Sends `arriving` (its frame's z is the direction of travel towards the surface) through the
 /// lobes of the event and merges them by luminance. `emitter`: where the light was last sent out.
-/// The result is in the frame covariance::frame_along(point.outgoing), so that several of them can
-/// be merged.
+/// The result travels along point.outgoing, in whatever frame.
+/// Lobes with less than `least` of the event's light are left out, but for the brightest.
 LightField scatter(const LightField& arriving, const covariance::Emitter<double>& emitter,
-                   const ScatterPoint& point, const LobeShares& lobes, BrdfCovariance rule);
+                   const ScatterPoint& point, const LobeShares& lobes, BrdfCovariance rule,
+                   double least = 0);
 
 }  // namespace covtrace

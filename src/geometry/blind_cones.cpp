@@ -57,15 +57,12 @@ std::vector<BlindCones> blind_cones(const BoxHierarchy& hierarchy,
     std::vector<BlindCones> all(nodes.size());
     std::vector<Cone> of_node(nodes.size());
     for (size_t i = nodes.size(); i-- > 0;) {
-        for (size_t k = 0; k < 4; ++k) {
-            const uint32_t first = nodes[i].first[k];
-            Cone cone;
-            if (nodes[i].count[k] == Node::kNone) continue;
-            if (nodes[i].count[k] == Node::kInner)
-                cone = of_node[first];
-            else
-                for (uint32_t e = first; e < first + nodes[i].count[k]; ++e)
-                    cone.add(cone_of(edges[e]));
+        for (size_t k = 0; k < BoxHierarchy::kWidth; ++k) {
+            const uint32_t child = nodes[i].child[k];
+            if (child == BoxHierarchy::kNone) continue;
+            const Cone cone = child < BoxHierarchy::kItem
+                                  ? of_node[child]
+                                  : cone_of(edges[child - BoxHierarchy::kItem]);
             of_node[i].add(cone);
             // A little more, for what add and the quantised wedges round.
             const float angle = std::min(cone.angle + 1e-3f, 0.5f * kPi);

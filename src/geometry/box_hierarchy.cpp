@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "core/parallel.h"
 
@@ -18,7 +19,8 @@ struct Range {
 
 }  // namespace
 
-/// Halves ranges of boxes at the median of their middles along the longest axis, twice per node.
+/// Halves ranges of boxes at the median of their middles along the longest axis, three times per
+/// node.
 struct BoxHierarchy::Builder {
     BoxHierarchy& h;
     std::span<const Bounds3> boxes;
@@ -54,18 +56,22 @@ struct BoxHierarchy::Builder {
         return middle;
     }
 
-    /// Up to four parts of a range, in order.
-    size_t quarter(Range r, std::array<Range, kWidth>& parts) const {
-        const uint32_t m = halve(r);
-        size_t count = 0;
-        for (const Range half : {Range{r.begin, m}, Range{m, r.end}}) {
-            if (half.size() <= kMostInLeaf) {
-                parts[count++] = half;
-                continue;
+    /// Up to eight parts of a range, in order; returns how many.
+    size_t split(Range r, std::array<Range, kWidth>& parts) const {
+        size_t count = 1;
+        parts[0] = r;
+        for (int round = 0; round < 3; ++round) {
+            const std::array<Range, kWidth> wholes = parts;
+            const size_t before = std::exchange(count, 0);
+            for (size_t i = 0; i < before; ++i) {
+                if (wholes[i].size() < 2) {
+                    parts[count++] = wholes[i];
+                    continue;
+                }
+                const uint32_t middle = halve(wholes[i]);
+                parts[count++] = {wholes[i].begin, middle};
+                parts[count++] = {middle, wholes[i].end};
             }
-            const uint32_t middle = halve(half);
-            parts[count++] = {half.begin, middle};
-            parts[count++] = {middle, half.end};
         }
         return count;
     }
@@ -76,11 +82,11 @@ struct BoxHierarchy::Builder {
         const auto index = static_cast<uint32_t>(nodes.size());
         nodes.emplace_back();
         std::array<Range, kWidth> parts;
-        const size_t count = r.size() > kMostInLeaf ? quarter(r, parts) : 1;
-        if (r.size() <= kMostInLeaf) parts[0] = r;
+        const size_t count = split(r, parts);
         for (size_t k = 0; k < kWidth; ++k) {
             if (k >= count) {
-                for (Float4& axis : nodes[index].middle)
+                nodes[index].child[k] = kNone;
+                for (Float8& axis : nodes[index].middle)
                     axis[k] = std::numeric_limits<float>::quiet_NaN();
                 continue;
             }
@@ -93,18 +99,16 @@ struct BoxHierarchy::Builder {
                     0.5f * (b.hi[axis] - b.lo[axis]) +
                     2e-7f * std::max(std::abs(b.lo[axis]), std::abs(b.hi[axis]));
             }
-            if (parts[k].size() <= kMostInLeaf) {
-                nodes[index].first[k] = parts[k].begin;
-                nodes[index].count[k] = static_cast<uint8_t>(parts[k].size());
+            if (parts[k].size() == 1) {
+                nodes[index].child[k] = kItem + parts[k].begin;
                 continue;
             }
-            nodes[index].count[k] = Node::kInner;
             if (apart && parts[k].size() < kSerial) {
                 tasks.push_back({parts[k], index, k, {}});
                 continue;
             }
             const uint32_t below = build(parts[k], nodes, apart);  // `nodes` may move meanwhile
-            nodes[index].first[k] = below;
+            nodes[index].child[k] = below;
         }
         return index;
     }
@@ -123,8 +127,8 @@ struct BoxHierarchy::Builder {
             const auto first = static_cast<uint32_t>(h.nodes_.size());
             for (Node& n : t.nodes)
                 for (size_t k = 0; k < kWidth; ++k)
-                    if (n.count[k] == Node::kInner) n.first[k] += first;
-            h.nodes_[t.node].first[t.child] = first;
+                    if (n.child[k] < kItem) n.child[k] += first;
+            h.nodes_[t.node].child[t.child] = first;
             h.nodes_.insert(h.nodes_.end(), t.nodes.begin(), t.nodes.end());
             t.nodes = {};
         }

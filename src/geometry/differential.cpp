@@ -25,20 +25,27 @@ DifferentialGeometry Geometry::differential(const SurfaceHit& hit) const {
         map = impl_->world_from_local(*instance, hit.time);
         near = map.inverse().point(near);
     }
-    const SurfaceDerivatives d =
+    SurfaceDerivatives d =
         surface_derivatives(impl_->local[hit.shape], hit.primitive, hit.barycentric, near);
+    if (instance) {
+        d.dpda = map.vector(d.dpda);
+        d.dpdb = map.vector(d.dpdb);
+        d.n = map.normal(d.n);
+        d.dnda = map.normal(d.dnda);
+        d.dndb = map.normal(d.dndb);
+    }
 
     // Displacements in the tangent plane, dq = P (da, db), and the change of the unit normal that
     // goes with them, dn = N (da, db): the shape operator is N P^-1.
-    const Vec3d pa = map.vector(d.dpda), pb = map.vector(d.dpdb);
-    const double p11 = dot(pa, t1), p21 = dot(pa, t2), p12 = dot(pb, t1), p22 = dot(pb, t2);
+    const double p11 = dot(d.dpda, t1), p21 = dot(d.dpda, t2), p12 = dot(d.dpdb, t1),
+                 p22 = dot(d.dpdb, t2);
     const double determinant = p11 * p22 - p12 * p21;
-    const double i11 = p22 / determinant, i12 = -p12 / determinant;
-    const double i21 = -p21 / determinant, i22 = p11 / determinant;
+    const double inverse = 1 / determinant;
+    const double i11 = p22 * inverse, i12 = -p12 * inverse;
+    const double i21 = -p21 * inverse, i22 = p11 * inverse;
 
-    const Vec3d n = map.normal(d.n);
-    const double scale = (dot(n, ns) < 0 ? -1 : 1) / length(n);
-    const Vec3d na = map.normal(d.dnda) * scale, nb = map.normal(d.dndb) * scale;
+    const double scale = (dot(d.n, ns) < 0 ? -1 : 1) / length(d.n);
+    const Vec3d na = d.dnda * scale, nb = d.dndb * scale;
     const double n11 = dot(na, t1), n21 = dot(na, t2), n12 = dot(nb, t1), n22 = dot(nb, t2);
     out.k11 = finite(n11 * i11 + n12 * i21);
     out.k22 = finite(n21 * i12 + n22 * i22);

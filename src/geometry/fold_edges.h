@@ -25,21 +25,21 @@ struct FoldEdge {
 };
 
 /// Double cones of lines of sight that see no outline: those within 90 degrees less `angle` of the
-/// axis see the edges from the front (or the back) on both sides. Four side by side, as the nodes
-/// of a BoxHierarchy.
+/// axis see the edges from the front (or the back) on both sides. Side by side, as the nodes of a
+/// BoxHierarchy.
 struct BlindCones {
-    std::array<Float4, 3> axis{};
-    Float4 cosine{}, sine2{1, 1, 1, 1};  ///< of `angle`; the sine squared
-    Float4 radius{};                     ///< of the boxes
+    std::array<Float8, 3> axis{};
+    Float8 cosine{}, sine2 = Float8{} + 1;  ///< of `angle`; the sine squared
+    Float8 radius{};                        ///< of the boxes
 
     /// Infinity where no edge in a box of `node` is an outline from `p`, elsewhere `lower`.
-    Float4 rule_out(const BoxHierarchy::Node& node, Vec3 p, Float4 lower) const {
-        const Float4 x = node.middle[0] - p.x, y = node.middle[1] - p.y, z = node.middle[2] - p.z;
-        const Float4 dot = x * axis[0] + y * axis[1] + z * axis[2], along2 = dot * dot;
-        const Float4 across2 = max4(x * x + y * y + z * z - along2, Float4{});
-        const Float4 inside = abs4(dot) * cosine - radius;
+    Float8 rule_out(const BoxHierarchy::Node& node, Vec3 p, const Float8& lower) const {
+        const Float8 x = node.middle[0] - p.x, y = node.middle[1] - p.y, z = node.middle[2] - p.z;
+        const Float8 dot = x * axis[0] + y * axis[1] + z * axis[2], along2 = dot * dot;
+        const Float8 across2 = max8(x * x + y * y + z * z - along2, Float8{});
+        const Float8 inside = abs8(dot) * cosine - radius;
         // Both sides of `inside > across sine` squared.
-        return (inside > 0) & (inside * inside > across2 * sine2) ? Float4{} + kInfinity : lower;
+        return (inside > 0) & (inside * inside > across2 * sine2) ? Float8{} + kInfinity : lower;
     }
 };
 

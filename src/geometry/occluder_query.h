@@ -31,8 +31,10 @@ struct OutlineEvents {
 class OccluderQuery {
   public:
     /// All surfaces but interfaces, instances and moving shapes where they are at a query's time;
-    /// curved shapes as fine polygons. Once `cancelled` says yes, no more shapes are added. Throws
-    /// Error(limit) where memory runs out.
+    /// spheres exactly, other curved
+    /// shapes as fine polygons, flat ones with the holes that their alpha textures cut, in
+    /// pieces of a 64th of a triangle's edge or, where these would be too many, larger ones. Once
+    /// `cancelled` says yes, no more shapes are added. Throws Error(limit) where memory runs out.
     explicit OccluderQuery(const Geometry& geometry, std::function<bool()> cancelled = {});
     ~OccluderQuery();
     OccluderQuery(const OccluderQuery&) = delete;

@@ -21,6 +21,23 @@ OutlineSearch::OutlineSearch(Vec3 begin, Vec3 end, const EdgeMeasure& measure, f
     axis_ = (begin - end) / length;
     frame_ = Frame::from_z(axis_);
     limit_ = widest2_;
+    if (is_over()) return;
+
+    for (size_t i = 0; i < 3; ++i) {
+        const int axis = static_cast<int>(i);
+        wide_end_[i] = Float8{} + end_[axis];
+        wide_axis_[i] = Float8{} + axis_[axis];
+        wide_size_[i] = Float8{} + std::abs(axis_[axis]);
+    }
+    wide_lo_ = Float8{} + lo_;
+    wide_hi_ = Float8{} + hi_;
+    wide_a0_ = Float8{} + measure.a0;
+    wide_a1_ = Float8{} + measure.a1;
+    wide_b_ = Float8{} + measure.b;
+    wide_h0_ = Float8{} + measure.h0;
+    wide_h1_ = Float8{} + measure.h1;
+    wide_h2_ = Float8{} + measure.h2;
+    least_h_ = Float8{} + 1e-6f * measure.h0;
 }
 
 void OutlineSearch::enter(const Affine& m) {
@@ -30,45 +47,6 @@ void OutlineSearch::enter(const Affine& m) {
     }
     shift_ = m.translation.to_float();
     local_end_ = m.inverse().point(Vec3d(end_)).to_float();
-}
-
-Float4 OutlineSearch::bound_world(const BoxHierarchy::Node& node) const {
-    return bound({node.middle[0] - end_.x, node.middle[1] - end_.y, node.middle[2] - end_.z},
-                 node.half);
-}
-
-Float4 OutlineSearch::bound_local(const BoxHierarchy::Node& node) const {
-    std::array<Float4, 3> middle, half;
-    for (size_t i = 0; i < 3; ++i) {
-        const Vec3 r = rows_[i], a = absolute_[i];
-        const int axis = static_cast<int>(i);
-        middle[i] = r.x * node.middle[0] + r.y * node.middle[1] + r.z * node.middle[2] +
-                    (shift_[axis] - end_[axis]);
-        half[i] = a.x * node.half[0] + a.y * node.half[1] + a.z * node.half[2];
-    }
-    return bound(middle, half);
-}
-
-Float4 OutlineSearch::bound(const std::array<Float4, 3>& middle,
-                            const std::array<Float4, 3>& half) const {
-    const Vec3 w = axis_;
-    const EdgeMeasure& m = measure_;
-    const Float4 x = middle[0], y = middle[1], z = middle[2];
-    const Float4 along = x * w.x + y * w.y + z * w.z;
-    const Float4 reach =
-        half[0] * std::abs(w.x) + half[1] * std::abs(w.y) + half[2] * std::abs(w.z);
-    // Across the axis: the box lies beyond a plane at right angles to the way to its middle.
-    const Float4 px = x - along * w.x, py = y - along * w.y, pz = z - along * w.z;
-    const Float4 p2 = px * px + py * py + pz * pz;
-    const Float4 inward = half[0] * abs4(px) + half[1] * abs4(py) + half[2] * abs4(pz);
-    const Float4 beyond = max4(p2 - inward, Float4{});
-    const Float4 r2 = beyond * beyond / (p2 + 1e-30f);
-    const Float4 z0 = max4(along - reach, Float4{} + lo_), z1 = min4(along + reach, Float4{} + hi_);
-    const Float4 a = m.a0 + m.a1 * z0, b = m.a0 + m.a1 * z1;
-    const Float4 blur = a * b > 0 ? min4(a * a, b * b) : Float4{};
-    const Float4 h = max4(max4(m.h0 + z0 * (m.h1 + z0 * m.h2), m.h0 + z1 * (m.h1 + z1 * m.h2)),
-                          Float4{} + 1e-6f * m.h0);
-    return z0 <= z1 ? (blur + m.b * r2) / h : Float4{} + kInfinity;
 }
 
 void OutlineSearch::meet(const FoldEdge& edge, Vec3 a, Vec3 b, Vec3 seen_from, uint32_t body) {
@@ -131,6 +109,63 @@ void OutlineSearch::meet(const FoldEdge& edge, Vec3 a, Vec3 b, Vec3 seen_from, u
         return;  // seen end on, at a point: no direction
     }
     keep(c);
+}
+
+void OutlineSearch::meet_ball(Vec3 center, float radius, uint32_t body) {
+    const Vec3 d = center - end_;
+    const float d2 = length_squared(d), tangent2 = d2 - radius * radius;
+    if (!(tangent2 > 1e-4f * d2)) return;  // seen from inside, or from a point of it
+    const Vec3 middle = d * (tangent2 / d2);
+    const float rho = radius * std::sqrt(tangent2 / d2);
+    // The circle's radius towards the axis, u, and v across both.
+    const Vec3 towards = axis_ * d2 - d * dot(d, axis_);
+    const float l = length(towards);
+    const Vec3 u = l > 1e-6f * d2 ? towards / l : Frame::from_z(d / std::sqrt(d2)).x;
+    const Vec3 v = cross(d / std::sqrt(d2), u);
+    const float z_middle = dot(middle, axis_), z_slope = rho * dot(u, axis_);
+
+    // Both halves are alike. Nearest to the axis is the angle 0; where the width falls along the
+    // axis, or the range ends, it may be another.
+    float best = kInfinity, best_cosine = 1;
+    const auto attempt = [&](float cosine) {
+        const float z = z_middle + cosine * z_slope;
+        if (!(std::abs(cosine) <= 1) || z < lo_ || z > hi_) return;
+        const Vec3 p = middle + u * (rho * cosine) + v * (rho * safe_sqrt(1 - cosine * cosine));
+        const float value = measure_.width_squared(z, length_squared(p - axis_ * z));
+        if (!(value < best)) return;
+        best = value;
+        best_cosine = cosine;
+    };
+    for (const float cosine : {1.0f, 0.7f, 0.0f, -0.7f, -1.0f}) attempt(cosine);
+    // Just within the range.
+    attempt((lo_ * 1.00001f - z_middle) / z_slope);
+    attempt((hi_ * 0.99999f - z_middle) / z_slope);
+    if (!(best < 2 * limit_)) return;
+    for (float step = 0.25f; step > 0.01f; step *= 0.5f) {
+        const float from = best_cosine;
+        attempt(std::min(from + step, 1.0f));
+        attempt(std::max(from - step, -1.0f));
+    }
+    if (!(best < limit_)) return;
+
+    const float sine = safe_sqrt(1 - best_cosine * best_cosine);
+    for (const float side : {1.0f, -1.0f}) {
+        const Vec3 from_end = middle + u * (rho * best_cosine) + v * (side * rho * sine);
+        Candidate c;
+        c.width2 = best;
+        c.body = body;
+        c.event.z = dot(from_end, axis_);
+        c.point = end_ + from_end;
+        const Vec3 offset = from_end - axis_ * c.event.z;
+        const Vec3 across = cross(v * best_cosine - u * (side * sine), axis_);
+        const float a = length(across);
+        if (!(a > 0)) return;
+        const float beside = dot(offset, across) / a;
+        c.event.direction = across * (beside < 0 ? -1 / a : 1 / a);
+        c.event.distance = std::abs(beside);
+        keep(c);
+        if (sine == 0) return;
+    }
 }
 
 void OutlineSearch::keep(const Candidate& c) {

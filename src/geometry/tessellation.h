@@ -20,8 +20,10 @@ class Tessellation {
 
     /// The same, as a surface with holes: cut into pieces of about `piece` everywhere, of which
     /// those that `opacity` makes opaque are kept, a part of those that are partly so. `opacity`
-    /// gets the surface's (u, v) and a local position.
-    Tessellation(const LocalShape& shape, double piece, double scale, const Opacity& opacity);
+    /// gets the surface's (u, v) and a local position. A primitive has at most `most` pieces along
+    /// an edge.
+    Tessellation(const LocalShape& shape, double piece, double scale, const Opacity& opacity,
+                 int most = 64);
 
     size_t size() const { return triangles().size(); }
     std::array<Vec3, 3> operator[](size_t i) const {

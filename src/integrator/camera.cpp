@@ -39,6 +39,9 @@ Camera::Camera(const CameraDescription& description, int width, int height)
     origin_ = {window[0] * scale, window[3] * scale};
     per_pixel_ = {(window[1] - window[0]) * scale / static_cast<float>(width),
                   (window[2] - window[3]) * scale / static_cast<float>(height)};
+    if (description.kind != CameraDescription::Kind::spherical &&
+        !description.camera_to_world.is_animated())
+        sensor_ = sensor_at({});
 }
 
 const Transform& Camera::to_world(float time, Transform& storage) const {
@@ -123,6 +126,10 @@ float Camera::half_pixel(float distance) const {
 }
 
 SensorGeometry Camera::sensor(const Ray& ray) const {
+    return sensor_ ? *sensor_ : sensor_at(ray);
+}
+
+SensorGeometry Camera::sensor_at(const Ray& ray) const {
     Transform storage;
     const Transform& camera_to_world = to_world(ray.time, storage);
     if (description_.kind == CameraDescription::Kind::spherical) {

@@ -1,6 +1,8 @@
 /// Camera rays, and the camera's geometry as the frequency analysis needs it.
 #pragma once
 
+#include <optional>
+
 #include "core/transform.h"
 #include "geometry/hit.h"
 #include "scene/scene_description.h"
@@ -38,6 +40,7 @@ class Camera {
 
   private:
     const Transform& to_world(float time, Transform& storage) const;
+    SensorGeometry sensor_at(const Ray& ray) const;
     /// Of a spherical camera, in camera space.
     Vec3 spherical_direction(Vec2 film) const;
     SensorGeometry spherical_sensor(const Ray& ray, const Transform& camera_to_world) const;
@@ -48,6 +51,7 @@ class Camera {
     Vec2 per_pixel_;  // and its change per pixel; y is negative
     float lens_radius_ = 0, focal_distance_ = 1;
     float shutter_open_ = 0, shutter_close_ = 1;
+    std::optional<SensorGeometry> sensor_;  // where it is the same for all rays
 };
 
 }  // namespace covtrace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -10,6 +11,20 @@
 namespace covtrace {
 
 namespace {
+
+/// Adds the seconds that a scope took.
+class Stopwatch {
+  public:
+    explicit Stopwatch(double& total) : total_(total), start_(Clock::now()) {}
+    ~Stopwatch() { total_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    double& total_;
+    const Clock::time_point start_;
+};
 
 /// When a pass has to stop before its end.
 class Stop {
@@ -46,6 +61,7 @@ PassStatistics take_samples(const PassContext& context, const Film& film,
     parallel_for(tiles.count(), [&](int64_t tile) {
         if (!tiles.belongs_to(tile, context.shard)) return;
         PassStatistics& statistics = per_tile[static_cast<size_t>(tile)];
+        const Stopwatch watch(statistics.seconds);
         const PixelBounds b = tiles.bounds(tile);
         for (int y = b.y0; y < b.y1; ++y)
             for (int x = b.x0; x < b.x1; ++x) {
@@ -92,6 +108,8 @@ void PassStatistics::add(const PassStatistics& other) {
     vertices += other.vertices;
     black_paths += other.black_paths;
     rejected += other.rejected;
+    seconds += other.seconds;
+    replay_seconds += other.replay_seconds;
     for (const RejectedSample& r : other.first_rejected)
         if (first_rejected.size() < kMostRejectedKept) first_rejected.push_back(r);
 }
@@ -171,6 +189,7 @@ PassStatistics covariance_pass(const PassContext& context, const Occluders& occl
                             const uint32_t paths = film.pixels[i].count +
                                                    (target.earlier.empty() ? 0 : target.earlier[i]);
                             sample_pixel(context, film, i, x, y, &record, statistics);
+                            const Stopwatch watch(statistics.replay_seconds);
                             add_path(target.buffers.scattered, i, paths,
                                      replay(record, LightPart::scattered), target.weight_limit);
                             const PathCovariance in_view = shows_emitter(record)

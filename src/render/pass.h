@@ -37,6 +37,9 @@ struct PassStatistics {
     uint64_t black_paths = 0;  ///< without any light
     uint64_t rejected = 0;
     std::vector<RejectedSample> first_rejected;  ///< at most a few, in image order
+    /// Of all threads together: on samples and all that is made of them, and of these on the
+    /// replay of recorded paths.
+    double seconds = 0, replay_seconds = 0;
     void add(const PassStatistics& other);
 };
 

@@ -19,6 +19,18 @@ Vec3 from_angles(float theta, float phi) {
     return {s * std::cos(phi), s * std::sin(phi), std::cos(theta)};
 }
 
+/// The angle of (x, y), radians in [-pi, pi], to 2e-5: far below a cell of the measured spectrum,
+/// at a tenth of the price of atan2. Coefficients after Hastings 1955, sheet 11.
+float rough_angle(float y, float x) {
+    const float ax = std::abs(x), ay = std::abs(y);
+    const float t = std::min(ax, ay) / std::max(std::max(ax, ay), 1e-30f), t2 = t * t;
+    float a = t * (0.9998660f +
+                   t2 * (-0.3302995f + t2 * (0.1801410f + t2 * (-0.0851330f + t2 * 0.0208351f))));
+    if (ay > ax) a = kPi / 2 - a;
+    if (x < 0) a = kPi - a;
+    return y < 0 ? -a : a;
+}
+
 bool preserves_lengths(const Transform& t) {
     const Vec3 x = t.vector({1, 0, 0}), y = t.vector({0, 1, 0}), z = t.vector({0, 0, 1});
     const auto is = [](float value, float expected) { return std::abs(value - expected) < 1e-5f; };
@@ -104,12 +116,14 @@ AngularCovariance Environment::spectrum(Vec3 w) const {
     }
     const Vec3 local = to_light(w);
     const float horizontal = std::sqrt(local.x * local.x + local.y * local.y);
-    const float theta = std::atan2(horizontal, local.z);
-    float phi = std::atan2(local.y, local.x);
+    const float theta = rough_angle(horizontal, local.z);
+    float phi = rough_angle(local.y, local.x);
     if (phi < 0) phi += 2 * kPi;
-    const Vec3 along_phi{-std::sin(phi), std::cos(phi), 0};
-    const Vec3 along_theta{std::cos(theta) * std::cos(phi), std::cos(theta) * std::sin(phi),
-                           -std::sin(theta)};
+    const float inverse = 1 / horizontal;
+    const float cos_phi = horizontal > 0 ? local.x * inverse : 1,
+                sin_phi = horizontal > 0 ? local.y * inverse : 0;
+    const Vec3 along_phi{-sin_phi, cos_phi, 0};
+    const Vec3 along_theta{local.z * cos_phi, local.z * sin_phi, -horizontal};
     a.tangent = Frame::from_z_x(-w, light_to_world_.vector(along_phi));
     const bool mirrored = dot(light_to_world_.vector(along_theta), a.tangent.y) < 0;
 

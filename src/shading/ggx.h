@@ -30,6 +30,13 @@ struct Ggx {
         const auto e = x * x + y * y + m.z * m.z;
         return kInvPi / (alpha_x * alpha_y * e * e);
     }
+    /// The same at the normal h / |h|, from h of any length.
+    template <typename V, typename S>
+    S d_along(const V& h, const S& length_squared) const {
+        const S x = h.x / alpha_x, y = h.y / alpha_y;
+        const S ratio = length_squared / (x * x + y * y + h.z * h.z);
+        return kInvPi / (alpha_x * alpha_y) * (ratio * ratio);
+    }
     /// s(w) of the head of this file: length of w after stretching the surface to roughness one.
     template <typename V>
     auto stretched_length(const V& w) const {
@@ -40,8 +47,8 @@ struct Ggx {
     /// Share of the microfacets facing w that are visible from w.
     float g1(Vec3 w) const { return 2 * w.z / (w.z + stretched_length(w)); }
     /// Share visible from both, over wo.z.
-    template <typename V>
-    auto g2_over_cos_o(const V& wo, const V& wi) const {
+    template <typename O, typename I>
+    auto g2_over_cos_o(const O& wo, const I& wi) const {
         return 2 * wi.z / (stretched_length(wo) * wi.z + stretched_length(wi) * wo.z);
     }
     /// g2(wo, wi) / g1(wo): what single scattering keeps of a sampled normal.

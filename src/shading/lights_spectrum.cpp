@@ -37,6 +37,14 @@ SourceSpectrum point_spectrum(const PointEmitter& point, Vec3 wi) {
 SourceSpectrum Lights::Impl::environment_spectrum(Vec3 w) const {
     SourceSpectrum s;
     s.kind = SourceSpectrum::Kind::environment;
+    if (environments.size() == 1) {
+        const AngularCovariance a = environments[0].spectrum(w);
+        s.tangent = a.tangent;
+        s.a11 = a.a11;
+        s.a12 = a.a12;
+        s.a22 = a.a22;
+        return s;
+    }
     s.tangent = Frame::from_z(-w);
     float total = 0;
     for (const Environment& e : environments) {

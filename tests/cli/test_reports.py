@@ -198,6 +198,9 @@ class Statistics(CliTest):
     def test_covariance_paths_count(self):
         stats = self.statistics("--spp", "8", "--cov-spp", "3")
         self.assertEqual(stats["covariance"]["samples"], 3 * 24 * 16)
+        self.assertGreater(stats["covariance"]["replay_thread_seconds"], 0)
+        self.assertLess(stats["covariance"]["replay_thread_seconds"], stats["covariance"]["thread_seconds"])
+        self.assertEqual(stats["radiance"]["replay_thread_seconds"], 0)
         self.assertAlmostEqual(stats["spp"], 8, delta=0.05)
         total = stats["covariance"]["samples"] + stats["radiance"]["samples"]
         self.assertAlmostEqual(total / (24 * 16), stats["spp"], delta=1e-6)

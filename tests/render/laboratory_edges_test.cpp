@@ -110,6 +110,58 @@ const Case kBorders[]{
                border(0, 0))},
 };
 
+/// A shining ball that the middle ray touches `inside` within its rim.
+std::string ball(double inside, const char* shape = "Shape \"sphere\" \"float radius\" 1") {
+    return fmt::format("AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ]\nTranslate {} 0 0\n{}",
+                       1 - inside, shape);
+}
+/// A ball as a mesh with normals.
+std::string mesh_ball(int rings) {
+    std::string points, normals, triangles;
+    for (int i = 0; i <= rings; ++i)
+        for (int j = 0; j <= 2 * rings; ++j) {
+            const double theta = kPiD * i / rings, phi = kPiD * j / rings;
+            const auto p = fmt::format("{} {} {} ", std::sin(theta) * std::cos(phi),
+                                       std::cos(theta), std::sin(theta) * std::sin(phi));
+            points += p;
+            normals += p;
+        }
+    for (int i = 0; i < rings; ++i)
+        for (int j = 0; j < 2 * rings; ++j) {
+            const int a = i * (2 * rings + 1) + j, b = a + 2 * rings + 1;
+            triangles += fmt::format("{} {} {} {} {} {} ", a, a + 1, b, a + 1, b + 1, b);
+        }
+    return fmt::format(
+        "Shape \"trianglemesh\" \"point3 P\" [ {} ] \"normal N\" [ {} ] \"integer indices\" [ {} ]",
+        points, normals, triangles);
+}
+const std::string kMeshBall = mesh_ball(32);
+
+/// Without occluders: light ends at the ball's own outline.
+const Case kRims[]{
+    {"rim of a ball out of focus", {1, 0}, 14, scene("1", kAhead, kLens, ball(0))},
+    {"rim of a ball out of focus, half a radius beside it",
+     {1, 0},
+     14,
+     scene("1", kAhead, kLens, ball(0.09))},
+    {"rim of a smooth mesh out of focus",
+     {1, 0},
+     14,
+     scene("1", kAhead, kLens, ball(0.05, kMeshBall.c_str()))},
+    {"rim of a ball in motion",
+     {1, 0},
+     14,
+     scene("1", kAhead, R"("perspective" "float fov" 20)",
+           "ActiveTransform EndTime\nTranslate 0.6 0 0\nActiveTransform All\nTranslate -0.3 0 0\n" +
+               ball(0))},
+    {"rim of a ball out of focus and in motion",
+     {1, 0},
+     16,
+     scene("1", kAhead, kLens,
+           "ActiveTransform EndTime\nTranslate 0.4 0 0\nActiveTransform All\nTranslate -0.2 0 0\n" +
+               ball(0))},
+};
+
 /// Deviation across the edge of the Gaussian whose spectrum is predicted, over the measured one.
 double bandwidth_ratio(const Table& table, const Case& c) {
     const auto s = covariance::preintegrate(table.predicted_over_lens_and_shutter().sigma);
@@ -141,6 +193,10 @@ TEST(Laboratory, PenumbraeAreWithin30Percent) {
 
 TEST(Laboratory, BordersOutOfFocusAndInMotionAreWithin30Percent) {
     expect_within(kBorders, false, "blurred borders");
+}
+
+TEST(Laboratory, RimsOfCurvedShapesAreWithin30Percent) {
+    expect_within(kRims, true, "own outlines");
 }
 
 }  // namespace

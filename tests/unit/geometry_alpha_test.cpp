@@ -1,6 +1,8 @@
-// Alpha: what rays pass, and what the voxel grid sees of a surface with holes.
+// Alpha: what rays pass, and what the voxel grid and the query of occluders see of a surface with
+// holes.
 #include <gtest/gtest.h>
 
+#include "geometry/occluder_query.h"
 #include "geometry/voxel_grid.h"
 #include "geometry_fixtures.h"
 
@@ -144,6 +146,33 @@ TEST(GeometryAlpha, TheVoxelGridHasTheHoles) {
     EXPECT_GT(voxels_along(all, 0.5f), 0);
     EXPECT_GT(voxels_along(half, -0.5f), 0);
     EXPECT_EQ(voxels_along(half, 0.5f), 0);
+}
+
+TEST(GeometryAlpha, HolesHaveOutlinesAndSquaresBehindThemNone) {
+    SceneDescription scene = scene_of({mesh(square(0))});
+    scene.shapes[0].alpha = 0;
+    scene.textures = {texture(0.5f)};
+    Geometry g(scene);
+    // Opaque for x below 0 only; a veil of a tenth elsewhere counts as nothing.
+    g.set_alpha([](TextureId, Vec2 uv, Vec3) { return uv.x < 0.5f ? 1.0f : 0.1f; });
+    const OccluderQuery query(g);
+    EdgeMeasure nearest;
+    nearest.b = 1;
+    nearest.widest = 0.3f;
+    const auto beside = [&](float x) {
+        return query({{x, 0.1f, 2}, {x, 0.1f, -2}, 0, {}, {}}, nearest, 1e-4f);
+    };
+    // One piece of 64 is 1/32 wide and half of the pieces are cut along their diagonal.
+    for (const float gap : {0.05f, 0.2f}) {
+        const OutlineEvents found = beside(gap);
+        ASSERT_GT(found.count, 0u);
+        float least = kInfinity;
+        for (size_t i = 0; i < found.count; ++i) least = std::min(least, found.events[i].distance);
+        EXPECT_NEAR(least, gap, 1.0f / 32 + 1e-4f);
+    }
+    EXPECT_EQ(beside(0.98f).count, 0u) << "the square's own border is not there";
+    EXPECT_EQ(beside(-0.5f).count, 0u) << "nor are the borders of pieces";
+    EXPECT_GT(beside(-0.98f).count, 0u);
 }
 
 }  // namespace

@@ -102,8 +102,8 @@ TEST(FoldEdges, BlindConesHideNoOutline) {
         hierarchy.search(
             [&](const BoxHierarchy::Node& node, uint32_t n) {
                 // The nodes hold what they say; missing children are no number.
-                Float4 all{};
-                for (size_t k = 0; k < 4; ++k) all[k] = node.middle[0][k] * 0;
+                Float8 all{};
+                for (size_t k = 0; k < 8; ++k) all[k] = node.middle[0][k] * 0;
                 return cones[n].rule_out(node, p, all);
             },
             [] { return 1.0f; },
@@ -213,6 +213,55 @@ TEST(OccluderQuery, BallsOccludeOthersAndNotThemselves) {
     // From a point of the ball along its surface.
     const OccluderQuery::Segment away{{5, 0, 0.5f}, {1, 0, 0}, 0, {}, {0, 0}};
     EXPECT_EQ(query(away, plain(0.3f), 1e-4f).count, 0u);
+}
+
+TEST(OccluderQuery, BallsAreOutlinedByTheirTangents) {
+    // One as it is, one placed; the same ball of radius 1.
+    const Vec3 center{0.3f, -0.2f, 0.5f};
+    const AnimatedTransform at(Transform::translate(center) * Transform::scale(2, 2, 2));
+    SceneDescription placed = scene_of({});
+    placed.objects.push_back({"o", {shape(sphere(0.5f))}});
+    placed.instances.push_back(
+        {0, AnimatedTransform(at.start() * Transform::rotate(30, {1, 2, 3})), {}});
+    const Geometry one{scene_of({shape(sphere(0.5f), at)})}, other{placed};
+    const OccluderQuery exact(one), instanced(other);
+    Random random(5);
+    int some = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3 begin = random.in_box(4), end = random.in_box(4);
+        const float length = distance(begin, end), d = distance(end, center);
+        if (distance(begin, center) < 1.05f || d < 1.05f) continue;
+        EdgeMeasure m;
+        m.a1 = random.between(0, 0.2f);
+        m.b = 1;
+        m.h1 = -random.between(0, 1) / length;
+        m.h2 = sqr(m.h1) / 4 + 0.01f;
+        m.widest = 0.6f;
+        // By brute force, around the circle where tangents from the end touch the ball.
+        const Vec3 axis = (begin - end) / length;
+        const Frame frame = Frame::from_z((center - end) / d);
+        float narrowest = kInfinity;
+        for (int j = 0; j < 2000; ++j) {
+            const float a = 2 * kPi * static_cast<float>(j) / 2000, rho = std::sqrt(d * d - 1) / d;
+            const Vec3 p =
+                frame.z * (d - 1 / d) + (frame.x * std::cos(a) + frame.y * std::sin(a)) * rho;
+            const float z = dot(p, axis);
+            if (z < 1e-4f || z > length - 1e-4f) continue;
+            narrowest = std::min(narrowest, m.width_squared(z, length_squared(p - axis * z)));
+        }
+        const auto found = outlines(exact, begin, end, m),
+                   same = outlines(instanced, begin, end, m);
+        ASSERT_EQ(found.size(), same.size());
+        if (std::sqrt(narrowest) > 0.99f * m.widest) continue;
+        ASSERT_FALSE(found.empty());
+        ++some;
+        float best = kInfinity, best_same = kInfinity;
+        for (const OutlineEvent& e : found) best = std::min(best, e.width);
+        for (const OutlineEvent& e : same) best_same = std::min(best_same, e.width);
+        ASSERT_NEAR(best, std::sqrt(narrowest), 0.02f * best + 2e-3f);
+        ASSERT_NEAR(best_same, best, 1e-3f * best + 1e-4f);
+    }
+    EXPECT_GT(some, 50);
 }
 
 TEST(OccluderQuery, InstancesAndMotion) {

@@ -25,13 +25,44 @@ template <std::floating_point T>
     return {add_angular_window(field.sigma, window), field.frame};
 }
 
+/// Integrates over all directions, the angular slice Sigma' = Sigma - R^T R_uv^+ R with R = rows u,
+/// v: `convolve_angular` with a kernel that is constant. Rows u and v become exactly zero.
+///
+/// Post     positive semi-definite; variances that are only rounding noise are set to zero.
+/// Errors   none; NaN in gives NaN out. Exact for Gaussians.
+template <std::floating_point T>
+[[nodiscard]] constexpr SymmetricMatrix5<T> slice_angular(const SymmetricMatrix5<T>& s) noexcept {
+    // Elimination with the larger pivot p first, as in `convolve_angular`.
+    const Sym2<T> b = s.angular();
+    const bool u_first = b.xx >= b.yy;
+    const std::size_t p = u_first ? axis::u : axis::v, q = u_first ? axis::v : axis::u;
+    const T bp = u_first ? b.xx : b.yy, bq = u_first ? b.yy : b.xx;
+    if (bp <= 0) return s;  // no angular content: the rows are zero already
+    const T inv1 = 1 / bp, l = b.xy * inv1, d2 = bq - l * b.xy;
+    const T inv2 = d2 <= noise_level<T> * bq ? T(0) : 1 / d2;
+    const T x1 = s(0, p), y1 = s(1, p), t1 = s(p, 4);
+    const T x2 = s(0, q) - l * x1, y2 = s(1, q) - l * y1, t2 = s(q, 4) - l * t1;
+    SymmetricMatrix5<T> r;
+    r(0, 0) = s(0, 0) - x1 * x1 * inv1 - x2 * x2 * inv2;
+    r(0, 1) = s(0, 1) - x1 * y1 * inv1 - x2 * y2 * inv2;
+    r(0, 4) = s(0, 4) - x1 * t1 * inv1 - x2 * t2 * inv2;
+    r(1, 1) = s(1, 1) - y1 * y1 * inv1 - y2 * y2 * inv2;
+    r(1, 4) = s(1, 4) - y1 * t1 * inv1 - y2 * t2 * inv2;
+    r(4, 4) = s(4, 4) - t1 * t1 * inv1 - t2 * t2 * inv2;
+    constexpr T noise = 16 * std::numeric_limits<T>::epsilon();
+    if (r(0, 0) <= noise * s(0, 0)) r(0, 0) = r(0, 1) = r(0, 4) = 0;
+    if (r(1, 1) <= noise * s(1, 1)) r(0, 1) = r(1, 1) = r(1, 4) = 0;
+    if (r(4, 4) <= noise * s(4, 4)) r(0, 4) = r(1, 4) = r(4, 4) = 0;
+    return r;
+}
+
 /// Convolves the light with an angular kernel whose spectrum has the covariance C.
 ///
 ///     Sigma' = Sigma - R^T (C + R_uv)^-1 R,   R = rows u, v of Sigma,  R_uv its angular block
 ///
 /// which is (Sigma^-1 + E C^-1 E^T)^-1 where the inverses exist, and holds for singular Sigma too.
-/// C = 0 (a kernel that is constant over all directions) is the angular slice: u and v become
-/// exactly zero. A very large C (a very sharp lobe) changes nothing.
+/// C = 0 (a kernel that is constant over all directions) is `slice_angular`. A very large C (a very
+/// sharp lobe) changes nothing.
 ///
 /// Units    C in 1/rad^2, in the axes of u and v.
 /// Post     positive semi-definite; variances that are only rounding noise are set to zero.
@@ -39,6 +70,7 @@ template <std::floating_point T>
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> convolve_angular(
     SymmetricMatrix5<T> s, const Sym2<NonDeduced<T>>& kernel) noexcept {
+    if (kernel == Sym2<T>{}) return slice_angular(s);
     const SymmetricMatrix5<T> old = s;
     const Sym2<T> b = kernel + s.angular();
 

@@ -74,7 +74,8 @@ template <std::floating_point T>
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> tailed_lobe(const Sym2<T>& c,
                                             const Sym2<NonDeduced<T>>& light) noexcept {
-    return inverse(inverse(c) + inverse(c + light));
+    // The parallel sum A - A (A + B)^-1 A of A = C and B = C + light.
+    return c - congruence(inverse(2 * c + light), Mat2<T>(c));
 }
 
 /// Smallest cosine of incidence used in `cosine_window`.

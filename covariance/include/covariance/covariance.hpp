@@ -8,6 +8,7 @@
 #include "covariance/angular.hpp"
 #include "covariance/average.hpp"
 #include "covariance/brdf.hpp"
+#include "covariance/contour.hpp"
 #include "covariance/diffuse.hpp"
 #include "covariance/filter.hpp"
 #include "covariance/frame.hpp"

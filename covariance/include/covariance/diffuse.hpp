@@ -75,7 +75,7 @@ template <std::floating_point T>
     const T along_a = e.x * a1 + e.y * a2, along_b = e.x * b1 + e.y * b2;
     const T third = second * along_a - peak * along_b;
     const T across = std::max(peak, -e.low);
-    const T low = std::hypot(across, third / (2 * std::sqrt(high)));
+    const T low = std::sqrt(across * across + third * third / (4 * high));
     return {high * e.x * e.x + low * e.y * e.y, (high - low) * e.x * e.y,
             high * e.y * e.y + low * e.x * e.x};
 }
@@ -101,6 +101,7 @@ template <std::floating_point T>
     const Sym2<T> falloff =
         (1 / four_pi_sq<T>)*falloff_bandwidth(incoming, receiver, emitter.normal);
     const Sym2<T> near = congruence(falloff, inverse_projection(incoming, receiver));
+    if (receiver.curvature == Sym2<T>{}) return seen + (near - distant);
     const Eigen2<T> k = eigen(receiver.curvature);
     const T turn = 1 + std::max(std::abs(k.high), std::abs(k.low)) * emitter.distance;
     return seen + (1 / (turn * turn)) * (near - distant);
@@ -113,8 +114,7 @@ template <std::floating_point T>
                                             const Vec3<NonDeduced<T>>& outgoing,
                                             const Emitter<NonDeduced<T>>& emitter) noexcept {
     const Sym2<T> window = diffuse_window(field.frame, surface, emitter, field.sigma.angular());
-    return {convolve_angular(add_angular_window(field.sigma, window), Sym2<T>{}),
-            frame_along<T>(outgoing)};
+    return {slice_angular(add_angular_window(field.sigma, window)), frame_along<T>(outgoing)};
 }
 
 }  // namespace covariance

@@ -44,6 +44,23 @@ struct Jet {
         const T i = 1 / b.value;
         return a * compose(b, i, -i * i, 2 * i * i * i);
     }
+    // With constants, which have no derivatives to carry along.
+    friend constexpr Jet operator+(Jet a, T c) noexcept {
+        a.value += c;
+        return a;
+    }
+    friend constexpr Jet operator+(T c, const Jet& a) noexcept { return a + c; }
+    friend constexpr Jet operator-(const Jet& a, T c) noexcept { return a + -c; }
+    friend constexpr Jet operator-(T c, const Jet& a) noexcept { return -a + c; }
+    friend constexpr Jet operator*(T c, const Jet& a) noexcept {
+        return {c * a.value, c * a.u, c * a.v, c * a.uu, c * a.uv, c * a.vv};
+    }
+    friend constexpr Jet operator*(const Jet& a, T c) noexcept { return c * a; }
+    friend constexpr Jet operator/(const Jet& a, T c) noexcept { return (1 / c) * a; }
+    friend constexpr Jet operator/(T c, const Jet& b) noexcept {
+        const T i = 1 / b.value, g = c * i;
+        return compose(b, g, -g * i, 2 * g * i * i);
+    }
     friend constexpr bool operator<(const Jet& a, const Jet& b) noexcept {
         return a.value < b.value;
     }
@@ -80,6 +97,54 @@ struct Jet {
     friend constexpr Jet abs(const Jet& a) noexcept { return a.value < 0 ? -a : a; }
 };
 
+/// A function of one variable to second order: its value, first and second derivative.
+template <std::floating_point T = double>
+struct Taylor {
+    T value = 0, first = 0, second = 0;
+
+    constexpr Taylor() noexcept = default;
+    /// A constant.
+    constexpr Taylor(T constant) noexcept
+        : value(constant) {}  // NOLINT(google-explicit-constructor)
+    constexpr Taylor(T value_, T first_, T second_) noexcept
+        : value(value_), first(first_), second(second_) {}
+
+    friend constexpr Taylor operator+(const Taylor& a, const Taylor& b) noexcept {
+        return {a.value + b.value, a.first + b.first, a.second + b.second};
+    }
+    friend constexpr Taylor operator-(const Taylor& a) noexcept {
+        return {-a.value, -a.first, -a.second};
+    }
+    friend constexpr Taylor operator-(const Taylor& a, const Taylor& b) noexcept { return a + -b; }
+    friend constexpr Taylor operator*(const Taylor& a, const Taylor& b) noexcept {
+        return {a.value * b.value, a.first * b.value + a.value * b.first,
+                a.second * b.value + 2 * a.first * b.first + a.value * b.second};
+    }
+    friend constexpr Taylor operator/(const Taylor& a, const Taylor& b) noexcept {
+        // a = q b, differentiated twice.
+        const T i = 1 / b.value, q = a.value * i, q1 = (a.first - q * b.first) * i;
+        return {q, q1, (a.second - 2 * q1 * b.first - q * b.second) * i};
+    }
+    friend constexpr bool operator<(const Taylor& a, const Taylor& b) noexcept {
+        return a.value < b.value;
+    }
+    friend constexpr bool operator>(const Taylor& a, const Taylor& b) noexcept { return b < a; }
+    /// The square root. Derivatives are infinite at 0.
+    friend Taylor sqrt(const Taylor& a) noexcept {
+        // a = r^2, differentiated twice.
+        const T r = std::sqrt(a.value), i = 1 / (2 * r), r1 = a.first * i;
+        return {r, r1, (a.second - 2 * r1 * r1) * i};
+    }
+};
+
+/// f(x) for a function that is written once for every scalar type: by the chain rule from its
+/// derivatives at x.value, at a third of the price of f in jets.
+template <std::floating_point T, typename F>
+[[nodiscard]] Jet<T> function_of(const F& f, const Jet<T>& x) noexcept {
+    const Taylor<T> g = f(Taylor<T>{x.value, 1, 0});
+    return compose(x, g.value, g.first, g.second);
+}
+
 /// A vector of jets: a direction that depends on two slopes.
 template <std::floating_point T = double>
 struct JetVec3 {
@@ -88,11 +153,17 @@ struct JetVec3 {
     friend constexpr JetVec3 operator+(const JetVec3& a, const JetVec3& b) noexcept {
         return {a.x + b.x, a.y + b.y, a.z + b.z};
     }
+    friend constexpr JetVec3 operator+(const JetVec3& a, const Vec3<T>& b) noexcept {
+        return {a.x + b.x, a.y + b.y, a.z + b.z};
+    }
     friend constexpr JetVec3 operator-(const JetVec3& a) noexcept { return {-a.x, -a.y, -a.z}; }
     friend constexpr JetVec3 operator*(const Jet<T>& s, const JetVec3& a) noexcept {
         return {s * a.x, s * a.y, s * a.z};
     }
     friend constexpr Jet<T> dot(const JetVec3& a, const JetVec3& b) noexcept {
+        return a.x * b.x + a.y * b.y + a.z * b.z;
+    }
+    friend constexpr Jet<T> dot(const Vec3<T>& a, const JetVec3& b) noexcept {
         return a.x * b.x + a.y * b.y + a.z * b.z;
     }
 };

@@ -96,6 +96,44 @@ template <std::floating_point T>
     return a;
 }
 
+namespace detail {
+
+/// In focus the lens frequencies cancel; what rounding leaves of them must not be negative.
+template <std::floating_point T>
+[[nodiscard]] constexpr SymmetricMatrix5<T> without_negative_axes(SymmetricMatrix5<T> s) noexcept {
+    for (std::size_t i = 0; i < 5; ++i)
+        if (s(i, i) < 0)
+            for (std::size_t j = 0; j < 5; ++j) s(i, j) = 0;
+    return s;
+}
+
+/// The axes of the camera's pixels, from positions or from slopes that are already along e1, e2:
+/// diag(fx, fy) times block, cross (with the frequencies of the lens) and drift (with time).
+template <std::floating_point T>
+constexpr void set_pixels(SymmetricMatrix5<T>& r, const Sym2<T>& block, const Mat2<T>& cross, T at,
+                          T bt, T fx, T fy) noexcept {
+    r.set_spatial({fx * fx * block.xx, fx * fy * block.xy, fy * fy * block.yy});
+    r.set_cross({fx * cross.m00, fx * cross.m01, fy * cross.m10, fy * cross.m11});
+    r(0, 4) = fx * at;
+    r(1, 4) = fy * bt;
+}
+
+/// The axes of the lens, W_l = R (W_x + k W_u), of light along e1, e2, and of time in shutters.
+template <std::floating_point T>
+constexpr void set_lens(SymmetricMatrix5<T>& r, const SymmetricMatrix5<T>& s, T radius, T k,
+                        T shutter) noexcept {
+    r(4, 4) = shutter * shutter * s(4, 4);
+    if (radius == 0) return;
+    const Sym2<T> xx = s.spatial(), uu = s.angular();
+    const Mat2<T> xu = s.cross();
+    r.set_angular((radius * radius) *
+                  (xx + k * Sym2<T>{2 * xu.m00, xu.m01 + xu.m10, 2 * xu.m11} + (k * k) * uu));
+    r(2, 4) = radius * shutter * (s(0, 4) + k * s(2, 4));
+    r(3, 4) = radius * shutter * (s(1, 4) + k * s(3, 4));
+}
+
+}  // namespace detail
+
 /// From the arriving ray to sensor coordinates (pixel, pixel, lens radius, lens radius, shutter).
 ///
 /// On axis W_pixel = -W_u/fpx, W_lens = R (W_x + W_u/z_f), W_tau = T W_t: a texture in focus has no
@@ -103,16 +141,45 @@ template <std::floating_point T>
 /// Shapes   camera: ThinLens, OrthographicLens or CameraDerivatives.
 /// Units    of the result: cycles per pixel, per lens radius and per shutter interval, squared.
 /// Pre      the camera looks against the light: Z.e3 < 0. Errors: none.
-template <std::floating_point T, typename Camera>
+template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> sensor(const SymmetricMatrix5<T>& s,
                                                    const Frame<NonDeduced<T>>& arriving,
-                                                   const Camera& camera) noexcept {
-    SymmetricMatrix5<T> result = transform(s, sensor_matrix<T>(arriving, camera));
-    // In focus the lens frequencies cancel; what rounding leaves of them must not be negative.
-    for (std::size_t i = 0; i < 5; ++i)
-        if (result(i, i) < 0)
-            for (std::size_t j = 0; j < 5; ++j) result(i, j) = 0;
-    return result;
+                                                   const ThinLens<NonDeduced<T>>& camera) noexcept {
+    const auto a = change_transverse(s, projection(arriving, camera.e1, camera.e2));
+    const T c = -dot(arriving.z, camera.e3), radius = camera.lens_radius;
+    const T k = c / camera.focus_distance, shutter = camera.shutter;
+    SymmetricMatrix5<T> r;
+    // Pixels turn the ray: slopes with the lens' R (positions + k slopes).
+    const Mat2<T> lens = radius * (transpose(a.cross()) + k * Mat2<T>(a.angular()));
+    detail::set_pixels<T>(r, a.angular(), lens, shutter * a(2, 4), shutter * a(3, 4),
+                          -c / camera.pixels_x, -c / camera.pixels_y);
+    detail::set_lens<T>(r, a, radius, k, shutter);
+    return detail::without_negative_axes(r);
+}
+
+/// The same for an orthographic camera.
+template <std::floating_point T>
+[[nodiscard]] constexpr SymmetricMatrix5<T> sensor(
+    const SymmetricMatrix5<T>& s, const Frame<NonDeduced<T>>& arriving,
+    const OrthographicLens<NonDeduced<T>>& camera) noexcept {
+    const auto a = change_transverse(s, projection(arriving, camera.e1, camera.e2));
+    const T radius = camera.lens_radius, shutter = camera.shutter;
+    const T k = -dot(arriving.z, camera.e3) / camera.focus_distance;
+    SymmetricMatrix5<T> r;
+    // Pixels move the ray: positions with the lens' R (positions + k slopes).
+    const Mat2<T> lens = radius * (Mat2<T>(a.spatial()) + k * a.cross());
+    detail::set_pixels<T>(r, a.spatial(), lens, shutter * a(0, 4), shutter * a(1, 4),
+                          1 / camera.pixels_x, 1 / camera.pixels_y);
+    detail::set_lens<T>(r, a, radius, k, shutter);
+    return detail::without_negative_axes(r);
+}
+
+/// The same for any other camera.
+template <std::floating_point T>
+[[nodiscard]] constexpr SymmetricMatrix5<T> sensor(
+    const SymmetricMatrix5<T>& s, const Frame<NonDeduced<T>>& arriving,
+    const CameraDerivatives<NonDeduced<T>>& camera) noexcept {
+    return detail::without_negative_axes(transform(s, sensor_matrix<T>(arriving, camera)));
 }
 
 /// The same on a light field; the result has left its frame for the sensor's axes.

