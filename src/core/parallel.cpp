@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 namespace covtrace {
 
@@ -21,12 +22,17 @@ int ThreadLimit::threads() const {
 }
 
 void parallel_for(int64_t count, const std::function<void(int64_t)>& body) {
+    // Without a context of its own a loop would run with the floating-point mode in which the
+    // process first used oneTBB; Embree does that with denormal numbers flushed to zero.
+    tbb::task_group_context as_the_caller(
+        tbb::task_group_context::bound,
+        tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);
     tbb::parallel_for(
         tbb::blocked_range<int64_t>(0, count, 1),
         [&body](const tbb::blocked_range<int64_t>& range) {
             for (int64_t i = range.begin(); i != range.end(); ++i) body(i);
         },
-        tbb::simple_partitioner{});
+        tbb::simple_partitioner{}, as_the_caller);
 }
 
 }  // namespace covtrace
