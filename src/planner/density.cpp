@@ -36,12 +36,27 @@ std::vector<uint32_t> allocate(std::span<const float> density, int64_t total,
         for (size_t i = 0; i < n; ++i) s += wanted(i, scale);
         return s;
     };
-    // The sum grows with the scale: bisection, then exact fixed-point rounding with carry.
-    double lo = 0, hi = 1;
-    while (sum(hi) < double(total) && hi < 1e12) hi *= 2;
-    for (int i = 0; i < 100; ++i) {
-        const double mid = 0.5 * (lo + hi);
-        (sum(mid) < double(total) ? lo : hi) = mid;
+    // The sum grows with the scale, linearly but for the limits: by turns the secant, which is
+    // exact where no limit is met, and bisection, until the fixed-point rounding with carry below
+    // gives exactly `total`.
+    const auto goal = double(total);
+    double lo = 0, hi = 1, sum_lo = sum(lo), sum_hi = sum(hi);
+    while (sum_hi < goal && hi < 1e12) {
+        lo = hi;
+        sum_lo = sum_hi;
+        hi *= 2;
+        sum_hi = sum(hi);
+    }
+    for (int i = 0; i < 200 && sum_hi - goal > 0.25 && sum_hi > sum_lo; ++i) {
+        const double share = i % 2 == 0 ? std::max(0.0, (goal - sum_lo) / (sum_hi - sum_lo)) : 0.5;
+        const double mid = lo + share * (hi - lo), at_mid = sum(mid);
+        if (std::abs(at_mid - goal) <= 0.25 || at_mid >= goal) {
+            hi = mid;
+            sum_hi = at_mid;
+        } else {
+            lo = mid;
+            sum_lo = at_mid;
+        }
     }
     constexpr int kFractionBits = 20;
     constexpr int64_t kOne = int64_t{1} << kFractionBits;
