@@ -28,10 +28,6 @@ constexpr uint32_t laine_karras(uint32_t v, uint32_t seed) {
     return v;
 }
 
-constexpr uint32_t owen_scramble(uint32_t v, uint32_t seed) {
-    return reverse_bits(laine_karras(reverse_bits(v), seed));
-}
-
 /// Generator matrices of Sobol dimensions 2 to 5 (Joe and Kuo 2008, new-joe-kuo-6.21201): primitive
 /// polynomial degree s, coefficients a, initial direction numbers m. Dimension 1 is bit reversal.
 struct Polynomial {
@@ -58,7 +54,7 @@ constexpr std::array<std::array<uint32_t, 32>, 4> kDirections{
     direction_numbers(kPolynomials[0]), direction_numbers(kPolynomials[1]),
     direction_numbers(kPolynomials[2]), direction_numbers(kPolynomials[3])};
 
-/// The products of each matrix with every byte of the index: 4 look-ups a number.
+/// The products of each matrix with every byte of the index, bits reversed: 4 look-ups a number.
 constexpr auto kByteTables = [] {
     std::array<std::array<std::array<uint32_t, 256>, 4>, 4> t{};
     for (size_t d = 0; d < 4; ++d)
@@ -67,47 +63,87 @@ constexpr auto kByteTables = [] {
                 uint32_t x = 0;
                 for (uint32_t bit = 0; bit < 8; ++bit)
                     if ((value >> bit) & 1u) x ^= kDirections[d][byte * 8 + bit];
-                t[d][byte][value] = x;
+                t[d][byte][value] = reverse_bits(x);
             }
     return t;
 }();
 
-uint32_t sobol(uint32_t index, size_t dimension) {
-    if (dimension == 0) return reverse_bits(index);
+/// Sobol numbers with their bits reversed, which is how they are scrambled; the first dimension is
+/// the index itself.
+uint32_t reversed_sobol(uint32_t index, size_t dimension) {
+    if (dimension == 0) return index;
     const auto& t = kByteTables[dimension - 1];
     return t[0][index & 255] ^ t[1][(index >> 8) & 255] ^ t[2][(index >> 16) & 255] ^
            t[3][index >> 24];
+}
+
+/// The same for the second dimension without tables, for loops that become vector instructions: its
+/// matrix is Pascal's triangle modulo 2, a product of five shifts.
+constexpr uint32_t reversed_sobol_1(uint32_t index) {
+    index ^= index >> 16;
+    index ^= (index >> 8) & 0x00ff00ffu;
+    index ^= (index >> 4) & 0x0f0f0f0fu;
+    index ^= (index >> 2) & 0x33333333u;
+    return index ^ ((index >> 1) & 0x55555555u);
+}
+
+/// A Sobol number, given reversed, scrambled.
+constexpr float scrambled(uint32_t reversed, uint32_t seed) {
+    return to_unit_float(reverse_bits(laine_karras(reversed, seed)));
 }
 
 }  // namespace
 
 Sampler::Sampler(uint64_t seed, int pixel_x, int pixel_y, uint32_t sample_index)
     : key_(hash_combine(seed, static_cast<uint32_t>(pixel_x), static_cast<uint32_t>(pixel_y))),
-      index_(sample_index) {}
+      reversed_index_(reverse_bits(sample_index)) {}
+
+uint32_t Sampler::shuffled_index(uint64_t key) const {
+    return reverse_bits(laine_karras(reversed_index_, static_cast<uint32_t>(key)));
+}
 
 Sampler::CameraSample Sampler::camera() {
-    const uint32_t index =
-        owen_scramble(index_, static_cast<uint32_t>(hash_combine(key_, 0x63616d)));
-    std::array<float, 5> x{};
+    constexpr size_t kLanes = 8;  // five are used
+    const uint32_t index = shuffled_index(hash_combine(key_, 0x63616d));
+    std::array<uint32_t, kLanes> number{}, scramble{};
     for (size_t d = 0; d < 5; ++d) {
-        const auto scramble = static_cast<uint32_t>(hash_combine(key_, 0x100 + d));
-        x[d] = to_unit_float(owen_scramble(sobol(index, d), scramble));
+        scramble[d] = static_cast<uint32_t>(hash_combine(key_, 0x100 + d));
+        number[d] = reversed_sobol(index, d);
     }
+    std::array<float, kLanes> x;
+    for (size_t d = 0; d < kLanes; ++d) x[d] = scrambled(number[d], scramble[d]);
     return {{x[0], x[1]}, {x[2], x[3]}, x[4]};
 }
 
 Vec2 Sampler::next_2d() {
-    const uint64_t key = hash_combine(key_, 0x1000 + pair_++);
-    const uint32_t index = owen_scramble(index_, static_cast<uint32_t>(key));
+    const uint64_t key = hash_combine(key_, kFirstPair + pair_++);
+    const uint32_t index = shuffled_index(key);
     const uint64_t scrambles = mix_bits(key);
-    return {to_unit_float(owen_scramble(sobol(index, 0), static_cast<uint32_t>(scrambles))),
-            to_unit_float(owen_scramble(sobol(index, 1), static_cast<uint32_t>(scrambles >> 32)))};
+    return {scrambled(index, static_cast<uint32_t>(scrambles)),
+            scrambled(reversed_sobol_1(index), static_cast<uint32_t>(scrambles >> 32))};
+}
+
+std::array<Vec2, 4> Sampler::next_four_2d() {
+    std::array<uint32_t, 4> shuffle;
+    std::array<uint32_t, 8> number, scramble;  // all first coordinates, then all second ones
+    for (size_t i = 0; i < 4; ++i) {
+        const uint64_t key = hash_combine(key_, kFirstPair + pair_++);
+        const uint64_t scrambles = mix_bits(key);
+        shuffle[i] = static_cast<uint32_t>(key);
+        scramble[i] = static_cast<uint32_t>(scrambles);
+        scramble[i + 4] = static_cast<uint32_t>(scrambles >> 32);
+    }
+    for (size_t i = 0; i < 4; ++i) {
+        number[i] = shuffled_index(shuffle[i]);
+        number[i + 4] = reversed_sobol_1(number[i]);
+    }
+    std::array<float, 8> x;
+    for (size_t i = 0; i < 8; ++i) x[i] = scrambled(number[i], scramble[i]);
+    return {{{x[0], x[4]}, {x[1], x[5]}, {x[2], x[6]}, {x[3], x[7]}}};
 }
 
 float Sampler::next_1d() {
-    const uint64_t key = hash_combine(key_, 0x1000 + pair_++);
-    const uint32_t index = owen_scramble(index_, static_cast<uint32_t>(key));
-    return to_unit_float(owen_scramble(sobol(index, 0), static_cast<uint32_t>(mix_bits(key))));
+    return next_2d().x;
 }
 
 }  // namespace covtrace

@@ -2,6 +2,7 @@
 /// dimension).
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "core/vec.h"
@@ -27,12 +28,17 @@ class Sampler {
 
     float next_1d();  ///< the first number of a fresh pair
     Vec2 next_2d();   ///< a fresh pair
+    /// Four fresh pairs, the same as from next_2d, at less than the price of two.
+    std::array<Vec2, 4> next_four_2d();
     /// Skips to a fixed dimension, so that later events see the same numbers whatever came before.
     void set_dimension(uint32_t pair) { pair_ = pair; }
 
   private:
+    static constexpr uint64_t kFirstPair = 0x1000;  ///< below, keys of the camera's dimensions
+    uint32_t shuffled_index(uint64_t key) const;
+
     uint64_t key_;
-    uint32_t index_;
+    uint32_t reversed_index_;
     uint32_t pair_ = 0;
 };
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/fast_math.h"
 #include "core/vec.h"
 
 namespace covtrace {
@@ -11,15 +12,10 @@ namespace covtrace {
 inline Vec2 square_to_disc(Vec2 u) {
     const float a = 2 * u.x - 1, b = 2 * u.y - 1;
     if (a == 0 && b == 0) return {};
-    float r, phi;
-    if (std::abs(a) > std::abs(b)) {
-        r = a;
-        phi = (kPi / 4) * (b / a);
-    } else {
-        r = b;
-        phi = kPi / 2 - (kPi / 4) * (a / b);
-    }
-    return {r * std::cos(phi), r * std::sin(phi)};
+    const bool wide = std::abs(a) > std::abs(b);
+    const float r = wide ? a : b;
+    const SinCos s = sin_cos_octant((kPi / 4) * (wide ? b / a : a / b));
+    return wide ? Vec2{r * s.cos, r * s.sin} : Vec2{r * s.sin, r * s.cos};
 }
 
 /// Upper hemisphere about z with density cos(theta)/pi per solid angle.
@@ -33,8 +29,9 @@ constexpr float cosine_hemisphere_pdf(float cos_theta) {
 
 /// Whole sphere, density 1/(4 pi) per solid angle.
 inline Vec3 square_to_sphere(Vec2 u) {
-    const float z = 1 - 2 * u.x, r = safe_sqrt(1 - z * z), phi = 2 * kPi * u.y;
-    return {r * std::cos(phi), r * std::sin(phi), z};
+    const float z = 1 - 2 * u.x, r = safe_sqrt(1 - z * z);
+    const SinCos phi = sin_cos(2 * kPi * u.y);
+    return {r * phi.cos, r * phi.sin, z};
 }
 inline constexpr float kUniformSpherePdf = kInvPi / 4;
 
@@ -42,8 +39,9 @@ inline constexpr float kUniformSpherePdf = kInvPi / 4;
 /// 1 - cos as the argument keeps tiny cones exact.
 inline Vec3 square_to_cone(Vec2 u, float one_minus_cos_max) {
     const float h = u.x * one_minus_cos_max;  // 1 - cos(theta)
-    const float sin_theta = safe_sqrt(h * (2 - h)), phi = 2 * kPi * u.y;
-    return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), 1 - h};
+    const float sin_theta = safe_sqrt(h * (2 - h));
+    const SinCos phi = sin_cos(2 * kPi * u.y);
+    return {sin_theta * phi.cos, sin_theta * phi.sin, 1 - h};
 }
 constexpr float cone_pdf(float one_minus_cos_max) {
     return 1 / (2 * kPi * one_minus_cos_max);

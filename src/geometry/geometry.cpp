@@ -24,6 +24,15 @@ float ray_hash(const Ray& ray) {
     return to_unit_float(static_cast<uint32_t>(h >> 32));
 }
 
+/// The float above or below a finite one: std::nextafter without the call.
+float next_float(float v, bool above) {
+    if (v == 0)
+        return above ? std::numeric_limits<float>::denorm_min()
+                     : -std::numeric_limits<float>::denorm_min();
+    const auto bits = std::bit_cast<uint32_t>(v);
+    return std::bit_cast<float>((v > 0) == above ? bits + 1 : bits - 1);
+}
+
 void set_ray(RTCRay& out, const Ray& ray, const ShutterClock& clock, unsigned mask) {
     out.org_x = ray.origin.x, out.org_y = ray.origin.y, out.org_z = ray.origin.z;
     out.dir_x = ray.direction.x, out.dir_y = ray.direction.y, out.dir_z = ray.direction.z;
@@ -81,6 +90,7 @@ bool Geometry::intersect(const Ray& ray, SurfaceHit& hit) const {
 }
 
 bool Geometry::Impl::nearest_opaque(Ray ray, unsigned mask, SurfaceHit& hit) const {
+    if (!any_alpha) return nearest(ray, mask, hit);
     float passed = 0;
     for (int layer = 0; layer < kMostLayers; ++layer) {
         if (!nearest(ray, mask, hit)) return false;
@@ -150,7 +160,7 @@ Vec3 Geometry::offset_origin(const SurfaceHit& hit, Vec3 direction) {
     Vec3 origin;
     for (int i = 0; i < 3; ++i) {
         const float moved = hit.position[i] + n[i] * hit.position_error;
-        origin[i] = n[i] == 0 ? moved : std::nextafter(moved, n[i] > 0 ? kInfinity : -kInfinity);
+        origin[i] = n[i] == 0 ? moved : next_float(moved, n[i] > 0);
     }
     return origin;
 }

@@ -25,15 +25,6 @@ ShutterClock::ShutterClock(float open, float close, const std::vector<float>& ke
                     "more than 128 different times at which motions start or stop");
 }
 
-float ShutterClock::parameter(float time) const {
-    if (!(time > open())) return 0;
-    if (time >= close()) return 1;
-    size_t i = 0;
-    while (time >= breaks_[i + 1]) ++i;
-    const float f = (time - breaks_[i]) / (breaks_[i + 1] - breaks_[i]);
-    return (static_cast<float>(i) + f) / static_cast<float>(segments());
-}
-
 float ShutterClock::key_time(unsigned i, unsigned count) const {
     const unsigned per_segment = count / segments(), segment = i / per_segment;
     if (segment == segments()) return close();

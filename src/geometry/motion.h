@@ -31,6 +31,15 @@ class ShutterClock {
     std::vector<float> breaks_;
 };
 
+inline float ShutterClock::parameter(float time) const {
+    if (!(time > open())) return 0;
+    if (time >= close()) return 1;
+    size_t i = 0;
+    while (time >= breaks_[i + 1]) ++i;
+    const float f = (time - breaks_[i]) / (breaks_[i + 1] - breaks_[i]);
+    return (static_cast<float>(i) + f) / static_cast<float>(segments());
+}
+
 /// `outer` after `inner`; null stands for the identity. Does not own the transforms.
 struct Motion {
     const AnimatedTransform* outer = nullptr;

@@ -21,6 +21,7 @@ Vec2 wrap_equal_area(Vec2 uv) {
 
 Camera::Camera(const CameraDescription& description, int width, int height)
     : description_(description),
+      still_(placement(description.camera_to_world.start())),
       width_(width),
       height_(height),
       lens_radius_(description.lens_radius),
@@ -67,11 +68,15 @@ Ray Camera::generate_ray(Vec2 film, Vec2 lens, float shutter) const {
     }
     Ray ray;
     ray.time = shutter_open_ + shutter * (shutter_close_ - shutter_open_);
-    Transform storage;
-    const Transform& camera_to_world = to_world(ray.time, storage);
-    ray.origin = camera_to_world.point(origin);
-    ray.direction = normalize(camera_to_world.vector(direction));
+    const bool moves = description_.camera_to_world.is_animated();
+    const Placement at = moves ? placement(description_.camera_to_world.at(ray.time)) : still_;
+    ray.origin = at.point(origin);
+    ray.direction = normalize(at.vector(direction));
     return ray;
+}
+
+Camera::Placement Camera::placement(const Transform& t) {
+    return {t.point({}), t.vector({1, 0, 0}), t.vector({0, 1, 0}), t.vector({0, 0, 1})};
 }
 
 Vec3 Camera::spherical_direction(Vec2 film) const {

@@ -45,7 +45,16 @@ class Camera {
     Vec3 spherical_direction(Vec2 film) const;
     SensorGeometry spherical_sensor(const Ray& ray, const Transform& camera_to_world) const;
 
+    /// The camera's place where it stands still, in float.
+    struct Placement {
+        Vec3 origin, x, y, z;
+        Vec3 point(Vec3 p) const { return origin + vector(p); }
+        Vec3 vector(Vec3 v) const { return x * v.x + y * v.y + z * v.z; }
+    };
+    static Placement placement(const Transform& camera_to_world);
+
     CameraDescription description_;
+    Placement still_;
     int width_, height_;
     Vec2 origin_;     // camera-space slope (or position) of film position (0, 0)
     Vec2 per_pixel_;  // and its change per pixel; y is negative

@@ -106,7 +106,7 @@ Vec3 GuideMixture::sample(float u_choice, Vec2 u) const {
         u_choice -= lobes_[size_t(i)].weight;
     }
     const Lobe& lobe = lobes_[size_t(i)];
-    return sample_fisher(lobe.direction, lobe.kappa, u);
+    return sample_fisher(lobe.direction(), lobe.kappa, u);
 }
 
 float GuideMixture::pdf(Vec3 w) const {
@@ -114,7 +114,7 @@ float GuideMixture::pdf(Vec3 w) const {
     for (int i = 0; i < count_; ++i) {
         const Lobe& lobe = lobes_[size_t(i)];
         // 1 - cos as half the squared distance: exact for narrow lobes.
-        const float h = 0.5f * length_squared(w - lobe.direction);
+        const float h = 0.5f * length_squared(w - lobe.direction());
         if (lobe.kappa * h < 60) p += lobe.weight * fisher_pdf(lobe.kappa, 1 - h);
     }
     return p;
@@ -331,7 +331,8 @@ GuideMixture CausticGuide::at(Vec3 position, Vec3 n) const {
         all += image.irradiance;
         if (!(cosine > 0)) continue;
         const float weight = image.irradiance * cosine;
-        mixture.lobes_[size_t(mixture.count_++)] = {direction, image.kappa, weight};
+        mixture.lobes_[size_t(mixture.count_++)] = {direction.x, direction.y, direction.z,
+                                                    image.kappa, weight};
         sum += weight;
     }
     if (!(sum > 0)) return {};

@@ -24,6 +24,8 @@ class GuideMixture {
   public:
     static constexpr int kMostLobes = 8;
 
+    GuideMixture() {}  // not `= default`, which would let `{}` clear lobes that nobody reads
+
     /// Share of the samples that should follow it; 0 where there is nothing to be found.
     float share() const { return share_; }
     /// `u_choice` chooses the lobe.
@@ -34,10 +36,11 @@ class GuideMixture {
   private:
     friend class CausticGuide;
     struct Lobe {
-        Vec3 direction;
-        float kappa = 0, weight = 0;
+        float x, y, z;  ///< direction
+        float kappa, weight;
+        Vec3 direction() const { return {x, y, z}; }
     };
-    std::array<Lobe, kMostLobes> lobes_;
+    std::array<Lobe, kMostLobes> lobes_;  ///< only `count_` of them are set
     int count_ = 0;
     float share_ = 0;
 };

@@ -1,6 +1,5 @@
 #include "integrator/pixel_filter.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace covtrace {
@@ -61,15 +60,18 @@ PixelFilter::PixelFilter(const FilterDescription& description) {
         }
         for (float& c : a.cdf) c = static_cast<float>(c / absolute);
         a.cdf.back() = 1;
+        for (size_t k = 0, cell = 0; k < Axis::kCells; ++k) {
+            while (a.cdf[cell + 1] <= static_cast<float>(k) / Axis::kCells) ++cell;
+            a.first[k] = static_cast<uint16_t>(cell);
+        }
         a.weight = static_cast<float>(absolute / sum);
         (axis == 0 ? variance_.x : variance_.y) = static_cast<float>(second / sum);
     }
 }
 
 std::array<float, 2> PixelFilter::Axis::sample(float u) const {
-    const auto upper = std::upper_bound(cdf.begin(), cdf.end(), u);
-    const auto cell =
-        static_cast<size_t>(std::clamp<std::ptrdiff_t>(upper - cdf.begin() - 1, 0, kCells - 1));
+    size_t cell = first[static_cast<size_t>(u * kCells)];
+    while (cdf[cell + 1] <= u) ++cell;
     const float span = cdf[cell + 1] - cdf[cell];
     const float within = span > 0 ? (u - cdf[cell]) / span : 0.5f;
     const float offset = -radius + (static_cast<float>(cell) + within) * (2 * radius / kCells);

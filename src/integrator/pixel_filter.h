@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "core/vec.h"
 #include "scene/scene_description.h"
@@ -30,6 +31,8 @@ class PixelFilter {
         float weight = 1;  // integral of |f| over integral of f
         std::array<float, kCells + 1> cdf{};
         std::array<bool, kCells> negative{};
+        /// For each u = k / kCells the first cell that may hold it.
+        std::array<uint16_t, kCells> first{};
         std::array<float, 2> sample(float u) const;  // offset, weight
     };
     Axis x_, y_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/fast_math.h"
 #include "core/parallel.h"
 #include "scene/sigmoid_spectrum.h"
 
@@ -25,7 +26,7 @@ float node(int64_t i) {
 }
 /// Inverse of node().
 float node_position(float value) {
-    return std::acos(1 - 2 * value) * kInvPi * kCells;
+    return arctangent(std::sqrt(value), std::sqrt(1 - value)) * (2 * kInvPi * kCells);
 }
 
 /// What is not a number becomes 0.

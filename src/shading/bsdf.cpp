@@ -27,6 +27,12 @@ LobeShares lobe_shares(const ThinDielectricBsdf&, Vec3, Vec3) {
     return {};
 }
 
+/// Of models that share nothing between both.
+template <typename Model>
+BsdfValue eval_and_pdf(const Model& b, Vec3 wo, Vec3 wi) {
+    return {eval(b, wo, wi), pdf(b, wo, wi)};
+}
+
 bool is_specular(const DiffuseBsdf&) {
     return false;
 }
@@ -75,6 +81,10 @@ std::optional<BsdfSample> sample(const ThinDielectricBsdf& b, Vec3 wo, float u_l
     if (u_lobe < r)
         return BsdfSample{{-wo.x, -wo.y, wo.z}, Rgb(1), r, LobeKind::specular_reflection};
     return BsdfSample{-wo, b.transmittance, 1 - r, LobeKind::specular_transmission};
+}
+
+BsdfValue eval_and_pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
+    return std::visit([&](const auto& b) { return eval_and_pdf(b, wo, wi); }, bsdf);
 }
 
 Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {

@@ -77,8 +77,9 @@ struct CoatedDiffuseBsdf {
     float eta = 1.5f;
     float alpha_x = 0, alpha_y = 0;
     const CoatTable* table = nullptr;
-    float table_row = 0;    ///< of the mean roughness
-    bool is_total = false;  ///< what the coat doesn't reflect enters; see make_coated_total
+    float table_row = 0;          ///< of the mean roughness
+    float mean_transmission = 0;  ///< of the coat, at the mean roughness
+    bool is_total = false;        ///< what the coat doesn't reflect enters; see make_coated_total
 };
 struct DiffuseTransmissionBsdf {
     Rgb reflectance, transmittance;
@@ -109,6 +110,12 @@ Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
 /// density has no closed form, a function near it: good for weights between strategies, and no
 /// factor of any estimate. Their `weight` is a random walk's, whose expectation is what it says.
 float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
+/// Both at once: what light sampling needs, for less than the two apart.
+struct BsdfValue {
+    Rgb f;
+    float pdf = 0;
+};
+BsdfValue eval_and_pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
 /// Empty where sampling failed: the path ends with no contribution. `u_lobe` chooses the lobe.
 std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float u_lobe, Vec2 u);
 /// True for models whose lobes are all specular: eval is zero for every pair.

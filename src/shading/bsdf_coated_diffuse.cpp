@@ -24,74 +24,81 @@ float table_row(const CoatedDiffuseBsdf& b, Vec3 w) {
         std::sqrt(x2 * sqr(w.x) + y2 * sqr(w.y) + 0.5f * (x2 + y2) * sqr(w.z)));
 }
 
-float coat_albedo(const CoatedDiffuseBsdf& b, Vec3 wo) {
-    return is_smooth(b) ? fresnel_dielectric(wo.z, b.eta).reflectance
-                        : b.table->reflection(table_row(b, wo), wo.z);
-}
-
-/// T of coat_table.h, or 1 - E, for w.z > 0 as in the rest of these helpers.
-float transmission(const CoatedDiffuseBsdf& b, Vec3 w) {
-    if (b.is_total) return 1 - coat_albedo(b, w);
-    if (!is_smooth(b)) return b.table->transmission(table_row(b, w), w.z);
+/// What the coat does to light along w, for w.z > 0 as in the rest of these helpers: T of
+/// coat_table.h, or all that is not reflected, and the share that it reflects.
+CoatTable::Shares shares(const CoatedDiffuseBsdf& b, Vec3 w) {
+    if (!is_smooth(b)) {
+        CoatTable::Shares s = b.table->shares(table_row(b, w), w.z);
+        if (b.is_total) s.transmission = 1 - s.reflection;
+        return s;
+    }
     const DielectricFresnel f = fresnel_dielectric(w.z, b.eta);
-    if (f.cos_t == 0) return 0;
-    return (1 - f.reflectance) * std::exp(-b.table->thickness() / f.cos_t);
+    if (b.is_total) return {1 - f.reflectance, f.reflectance};
+    const float kept = f.cos_t == 0 ? 0.0f : std::exp(-b.table->thickness() / f.cos_t);
+    return {(1 - f.reflectance) * kept, f.reflectance};
 }
 
-float mean_transmission(const CoatedDiffuseBsdf& b) {
-    return b.is_total ? 1 - b.table->mean_reflection(b.table_row)
-                      : b.table->mean_transmission(b.table_row);
+/// What a pair's value and density need of the side of wo.
+struct Outgoing {
+    Vec3 wo;
+    float transmission;
+    /// Probability of sampling the coat: its share of the reflected energy. Below 0 where nothing
+    /// is reflected.
+    float choose_coat;
+    float stretched = 0;  ///< Ggx::stretched_length of wo, where the coat is rough
+
+    Outgoing(const CoatedDiffuseBsdf& b, Vec3 direction) : wo(to_upper_side(direction)) {
+        const auto [t, coat] = shares(b, wo);
+        transmission = t;
+        const float base = max_component(b.base) * (kPi * t * b.mean_transmission);
+        choose_coat = coat + base > 0 ? coat / (coat + base) : -1;
+        if (!is_smooth(b)) stretched = Ggx{b.alpha_x, b.alpha_y}.stretched_length(wo);
+    }
+};
+
+Rgb eval_base(const CoatedDiffuseBsdf& b, const Outgoing& out, Vec3 wi) {
+    return b.base * (out.transmission * shares(b, wi).transmission * wi.z);
 }
 
-Rgb eval_base(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi) {
-    return b.base * (transmission(b, wo) * transmission(b, wi) * wi.z);
-}
-
-float eval_coat(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi) {
-    if (is_smooth(b)) return 0;
+/// The coat's part of value and density for a pair above the surface.
+BsdfValue eval_coat(const CoatedDiffuseBsdf& b, const Outgoing& out, Vec3 wi) {
+    if (is_smooth(b)) return {};
     const Ggx ggx{b.alpha_x, b.alpha_y};
-    const Vec3 m = normalize(wo + wi);
-    return 0.25f * fresnel_dielectric(dot(wo, m), b.eta).reflectance * ggx.d(m) *
-           ggx.g2_over_cos_o(wo, wi);
+    const Vec3 m = normalize(out.wo + wi);
+    const float d = ggx.d(m);
+    const float masked =
+        2 * wi.z / (out.stretched * wi.z + ggx.stretched_length(wi) * out.wo.z);  // over wo.z
+    return {Rgb(0.25f * fresnel_dielectric(dot(out.wo, m), b.eta).reflectance * d * masked),
+            out.choose_coat * d / (2 * (out.wo.z + out.stretched))};
 }
 
-Rgb base_albedo(const CoatedDiffuseBsdf& b, Vec3 wo) {
-    return b.base * (kPi * transmission(b, wo) * mean_transmission(b));
-}
-
-/// Probability of sampling the coat: its share of the reflected energy. Below 0 where nothing is
-/// reflected.
-float coat_probability(const CoatedDiffuseBsdf& b, Vec3 wo) {
-    const float coat = coat_albedo(b, wo), base = max_component(base_albedo(b, wo));
-    return coat + base > 0 ? coat / (coat + base) : -1;
-}
-
-float mixture_pdf(const CoatedDiffuseBsdf& b, float choose_coat, Vec3 wo, Vec3 wi) {
-    const float base = (1 - choose_coat) * cosine_hemisphere_pdf(wi.z);
-    if (is_smooth(b)) return base;
-    return base + choose_coat * Ggx{b.alpha_x, b.alpha_y}.reflection_pdf(wo, normalize(wo + wi));
+BsdfValue value_and_density(const CoatedDiffuseBsdf& b, const Outgoing& out, Vec3 wi) {
+    const BsdfValue coat = eval_coat(b, out, wi);
+    return {coat.f + eval_base(b, out, wi),
+            coat.pdf + (1 - out.choose_coat) * cosine_hemisphere_pdf(wi.z)};
 }
 
 }  // namespace
 
-Rgb eval(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi) {
+BsdfValue eval_and_pdf(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi) {
     if (!same_side(wo, wi)) return {};
-    wo = to_upper_side(wo);
-    wi = to_upper_side(wi);
-    return Rgb(eval_coat(b, wo, wi)) + eval_base(b, wo, wi);
+    const Outgoing out(b, wo);
+    return out.choose_coat < 0 ? BsdfValue{} : value_and_density(b, out, to_upper_side(wi));
+}
+
+Rgb eval(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi) {
+    return eval_and_pdf(b, wo, wi).f;
 }
 
 float pdf(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi) {
-    if (!same_side(wo, wi)) return 0;
-    wo = to_upper_side(wo);
-    const float choose_coat = coat_probability(b, wo);
-    return choose_coat < 0 ? 0 : mixture_pdf(b, choose_coat, wo, to_upper_side(wi));
+    return eval_and_pdf(b, wo, wi).pdf;
 }
 
 std::optional<BsdfSample> sample(const CoatedDiffuseBsdf& b, Vec3 wo, float u_lobe, Vec2 u) {
     const bool below = wo.z < 0;
-    wo = to_upper_side(wo);
-    const float choose_coat = coat_probability(b, wo);
+    const Outgoing out(b, wo);
+    wo = out.wo;
+    const float choose_coat = out.choose_coat;
     if (choose_coat < 0) return {};
 
     const bool from_coat = u_lobe < choose_coat;
@@ -109,28 +116,27 @@ std::optional<BsdfSample> sample(const CoatedDiffuseBsdf& b, Vec3 wo, float u_lo
         wi = normalize(m * (2 * dot(wo, m)) - wo);
     }
     if (!(wi.z > 0)) return {};
-    const float density = mixture_pdf(b, choose_coat, wo, wi);
+    const auto [value, density] = value_and_density(b, out, wi);
     if (!(density > 0)) return {};
-    const Rgb value = Rgb(eval_coat(b, wo, wi)) + eval_base(b, wo, wi);
     return BsdfSample{below ? mirror_z(wi) : wi, value / density, density,
                       from_coat ? LobeKind::glossy_reflection : LobeKind::diffuse_reflection};
 }
 
 LobeShares lobe_shares(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi) {
     if (!same_side(wo, wi)) return {};
-    wo = to_upper_side(wo);
+    const Outgoing out(b, wo);
     wi = to_upper_side(wi);
-    LobeShares shares{
-        {LobeShare{LobeKind::diffuse_reflection, eval_base(b, wo, wi), 0, 0, 1, b.eta}}, 1};
+    LobeShares found{
+        {LobeShare{LobeKind::diffuse_reflection, eval_base(b, out, wi), 0, 0, 1, b.eta}}, 1};
     if (!is_smooth(b))
-        shares.lobes[shares.count++] = {
-            LobeKind::glossy_reflection, Rgb(eval_coat(b, wo, wi)), b.alpha_x, b.alpha_y, 1, b.eta};
-    return shares;
+        found.lobes[found.count++] = {
+            LobeKind::glossy_reflection, eval_coat(b, out, wi).f, b.alpha_x, b.alpha_y, 1, b.eta};
+    return found;
 }
 
 Rgb albedo(const CoatedDiffuseBsdf& b, Vec3 wo) {
-    wo = to_upper_side(wo);
-    return Rgb(coat_albedo(b, wo)) + base_albedo(b, wo);
+    const auto [transmission, coat] = shares(b, to_upper_side(wo));
+    return Rgb(coat) + b.base * (kPi * transmission * b.mean_transmission);
 }
 
 }  // namespace covtrace

@@ -15,21 +15,23 @@ Vec3 to_upper_side(Vec3 w) {
 
 }  // namespace
 
-Rgb eval(const ConductorBsdf& b, Vec3 wo, Vec3 wi) {
+BsdfValue eval_and_pdf(const ConductorBsdf& b, Vec3 wo, Vec3 wi) {
     if (is_smooth(b) || !same_side(wo, wi)) return {};
     wo = to_upper_side(wo);
     wi = to_upper_side(wi);
     const Ggx ggx{b.alpha_x, b.alpha_y};
     const Vec3 m = normalize(wo + wi);
-    return fresnel_conductor(dot(wo, m), b.eta, b.k) *
-           (0.25f * ggx.d(m) * ggx.g2_over_cos_o(wo, wi));
+    return {
+        fresnel_conductor(dot(wo, m), b.eta, b.k) * (0.25f * ggx.d(m) * ggx.g2_over_cos_o(wo, wi)),
+        ggx.reflection_pdf(wo, m)};
+}
+
+Rgb eval(const ConductorBsdf& b, Vec3 wo, Vec3 wi) {
+    return eval_and_pdf(b, wo, wi).f;
 }
 
 float pdf(const ConductorBsdf& b, Vec3 wo, Vec3 wi) {
-    if (is_smooth(b) || !same_side(wo, wi)) return 0;
-    wo = to_upper_side(wo);
-    wi = to_upper_side(wi);
-    return Ggx{b.alpha_x, b.alpha_y}.reflection_pdf(wo, normalize(wo + wi));
+    return eval_and_pdf(b, wo, wi).pdf;
 }
 
 std::optional<BsdfSample> sample(const ConductorBsdf& b, Vec3 wo, float, Vec2 u) {

@@ -14,6 +14,7 @@ LobeShares lobe_shares(const DiffuseBsdf& b, Vec3 wo, Vec3 wi);
 
 Rgb eval(const ConductorBsdf& b, Vec3 wo, Vec3 wi);
 float pdf(const ConductorBsdf& b, Vec3 wo, Vec3 wi);
+BsdfValue eval_and_pdf(const ConductorBsdf& b, Vec3 wo, Vec3 wi);
 std::optional<BsdfSample> sample(const ConductorBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
 LobeShares lobe_shares(const ConductorBsdf& b, Vec3 wo, Vec3 wi);
 Rgb albedo(const ConductorBsdf& b, Vec3 wo);
@@ -28,6 +29,7 @@ bool is_specular(const DielectricBsdf& b);
 
 Rgb eval(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi);
 float pdf(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi);
+BsdfValue eval_and_pdf(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi);
 std::optional<BsdfSample> sample(const CoatedDiffuseBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
 LobeShares lobe_shares(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi);
 Rgb albedo(const CoatedDiffuseBsdf& b, Vec3 wo);

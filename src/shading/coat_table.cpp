@@ -12,7 +12,7 @@ float attenuation(float thickness, float cos_theta) {
 
 /// Energy that an interface reflects and transmits of light from one direction, each weakened by
 /// the gap where it runs inside.
-struct Shares {
+struct InterfaceShares {
     float reflected = 0, transmitted = 0;
 };
 
@@ -23,7 +23,7 @@ struct Interface {
     float gap_reflected, gap_transmitted;
 };
 
-Shares smooth_shares(const Interface& side, float cos_o) {
+InterfaceShares smooth_shares(const Interface& side, float cos_o) {
     const DielectricFresnel f = fresnel_dielectric(cos_o, side.eta);
     return {f.reflectance * attenuation(side.gap_reflected, cos_o),
             (1 - f.reflectance) * attenuation(side.gap_transmitted, f.cos_t)};
@@ -49,11 +49,11 @@ struct Quadrature {
 /// mirror.
 constexpr int kAzimuths = 12, kPolar = 16;
 
-Shares rough_shares(const Interface& side, float alpha, float cos_o) {
+InterfaceShares rough_shares(const Interface& side, float alpha, float cos_o) {
     const Ggx ggx{alpha, alpha};
     const Vec3 wo{safe_sqrt(1 - cos_o * cos_o), 0, cos_o};
     static const Quadrature<kPolar> polar;
-    Shares sum;
+    InterfaceShares sum;
     for (int j = 0; j < kPolar; ++j) {
         const float weight = polar.weight[j] / kAzimuths;
         for (int i = 0; i < kAzimuths; ++i) {
@@ -77,7 +77,7 @@ Shares rough_shares(const Interface& side, float alpha, float cos_o) {
     return sum;
 }
 
-Shares shares(const Interface& side, float alpha, float cos_o) {
+InterfaceShares interface_shares(const Interface& side, float alpha, float cos_o) {
     if (cos_o <= 0) return {1, 0};
     return alpha > 0 && side.eta != 1 ? rough_shares(side, alpha, cos_o)
                                       : smooth_shares(side, cos_o);
@@ -105,32 +105,31 @@ CoatTable::CoatTable(float eta, float thickness) : eta_(eta), thickness_(thickne
     const float outside_kink = eta < 1 ? 1 - sqr(eta) : 0.5f;
     for (int row = 0; row < kRows; ++row) {
         const float alpha = sqr(static_cast<float>(row) / (kRows - 1));
-        auto& t = transmission_[row];
-        auto& r = reflection_[row];
+        auto& nodes = shares_[row];
         for (int i = 0; i < kNodes; ++i) {
             const float x = static_cast<float>(i) / (kNodes - 1);
-            const Shares s = shares(outside, alpha, x * x);
-            t[i + 1] = s.transmitted;
-            r[i + 1] = s.reflected;
+            const InterfaceShares s = interface_shares(outside, alpha, x * x);
+            nodes[i + 1] = {s.transmitted, s.reflected};
         }
         // Both are even in sqrt(cos), and go on linearly past the normal.
-        for (auto* values : {&t, &r}) {
-            (*values)[0] = (*values)[2];
-            (*values)[kNodes + 1] = 2 * (*values)[kNodes] - (*values)[kNodes - 1];
-        }
+        nodes[0] = nodes[2];
+        const Shares &last = nodes[kNodes], &before = nodes[kNodes - 1];
+        nodes[kNodes + 1] = {2 * last.transmission - before.transmission,
+                             2 * last.reflection - before.reflection};
         internal_reflectance_[row] = cosine_weighted_mean(inside_kink, [&](float cos_theta) {
-            return attenuation(thickness, cos_theta) * shares(inside, alpha, cos_theta).reflected;
+            return attenuation(thickness, cos_theta) *
+                   interface_shares(inside, alpha, cos_theta).reflected;
         });
     }
     // Between rows the lookup reads the next one too: all must be there.
     for (int row = 0; row < kRows; ++row) {
         mean_transmission_[row] = cosine_weighted_mean(outside_kink, [&](float cos_theta) {
-            return row == 0 ? shares(outside, 0, cos_theta).transmitted
-                            : lookup(transmission_, static_cast<float>(row), cos_theta);
+            return row == 0 ? interface_shares(outside, 0, cos_theta).transmitted
+                            : shares(static_cast<float>(row), cos_theta).transmission;
         });
         mean_reflection_[row] = cosine_weighted_mean(outside_kink, [&](float cos_theta) {
-            return row == 0 ? shares(outside, 0, cos_theta).reflected
-                            : lookup(reflection_, static_cast<float>(row), cos_theta);
+            return row == 0 ? interface_shares(outside, 0, cos_theta).reflected
+                            : shares(static_cast<float>(row), cos_theta).reflection;
         });
     }
 }
@@ -151,6 +150,7 @@ CoatedDiffuseBsdf coat_alone(const CoatTable& table, float alpha_x, float alpha_
     b.alpha_y = alpha_y;
     b.table = &table;
     b.table_row = CoatTable::row_of(std::sqrt(0.5f * (sqr(alpha_x) + sqr(alpha_y))));
+    b.mean_transmission = table.mean_transmission(b.table_row);
     return b;
 }
 
@@ -172,7 +172,8 @@ CoatedDiffuseBsdf make_coated_total(const CoatTable& table, Rgb reflectance, flo
     CoatedDiffuseBsdf b = coat_alone(table, alpha_x, alpha_y);
     b.reflectance = reflectance;
     b.is_total = true;
-    b.base = reflectance * (kInvPi / (1 - table.mean_reflection(b.table_row)));
+    b.mean_transmission = 1 - table.mean_reflection(b.table_row);
+    b.base = reflectance * (kInvPi / b.mean_transmission);
     return b;
 }
 

@@ -46,14 +46,13 @@ class CoatTable {
     /// Coordinate of a roughness alpha among the rows; alphas above 1 are looked up at 1.
     static float row_of(float alpha) { return std::sqrt(clamp01(alpha)) * (kRows - 1); }
 
-    /// Share of the light from a direction with cosine `cos_theta` > 0 that reaches the base: T.
-    float transmission(float row, float cos_theta) const {
-        return lookup(transmission_, row, cos_theta);
-    }
-    /// Share that the interface reflects from outside.
-    float reflection(float row, float cos_theta) const {
-        return lookup(reflection_, row, cos_theta);
-    }
+    /// What becomes of light from outside.
+    struct Shares {
+        float transmission;  ///< reaches the base: T
+        float reflection;    ///< is reflected by the interface
+    };
+    /// From a direction with cosine `cos_theta` > 0.
+    Shares shares(float row, float cos_theta) const;
     /// Share of the base's flux that the coat sends back to it: R_int.
     float internal_reflectance(float row) const { return lookup(internal_reflectance_, row); }
     /// Cosine-weighted mean of `reflection` over the hemisphere.
@@ -64,12 +63,11 @@ class CoatTable {
   private:
     using PerRow = std::array<float, kRows>;
     /// Nodes with one more at either end, for the cubic interpolation.
-    using PerAngle = std::array<std::array<float, kNodes + 2>, kRows>;
+    using PerAngle = std::array<std::array<Shares, kNodes + 2>, kRows>;
     static float lookup(const PerRow& values, float row);
-    static float lookup(const PerAngle& values, float row, float cos_theta);
 
     float eta_, thickness_;
-    PerAngle transmission_, reflection_;
+    PerAngle shares_;
     PerRow internal_reflectance_, mean_transmission_, mean_reflection_;
 };
 
@@ -107,7 +105,7 @@ inline float CoatTable::lookup(const PerRow& values, float row) {
 }
 
 /// Linear between the rows, Catmull-Rom between the nodes.
-inline float CoatTable::lookup(const PerAngle& values, float row, float cos_theta) {
+inline CoatTable::Shares CoatTable::shares(float row, float cos_theta) const {
     const float x = std::sqrt(clamp01(cos_theta)) * (kNodes - 1);
     const int i = std::min(static_cast<int>(x), kNodes - 2);
     const float t = x - static_cast<float>(i), s = 1 - t;
@@ -115,11 +113,16 @@ inline float CoatTable::lookup(const PerAngle& values, float row, float cos_thet
     const float w1 = s - 2 * w0 + w3, w2 = t - 2 * w3 + w0;
     const int j = std::min(static_cast<int>(row), kRows - 2);
     const float r = row - static_cast<float>(j);
-    const float* a = values[j].data() + i;
-    const float* b = values[j + 1].data() + i;
-    const float at_a = a[0] * w0 + a[1] * w1 + a[2] * w2 + a[3] * w3;
-    const float at_b = b[0] * w0 + b[1] * w1 + b[2] * w2 + b[3] * w3;
-    return at_a * (1 - r) + at_b * r;
+    const Shares* a = shares_[j].data() + i;
+    const Shares* b = shares_[j + 1].data() + i;
+    const auto at = [&](float Shares::*which) {
+        const float at_a =
+            a[0].*which * w0 + a[1].*which * w1 + a[2].*which * w2 + a[3].*which * w3;
+        const float at_b =
+            b[0].*which * w0 + b[1].*which * w1 + b[2].*which * w2 + b[3].*which * w3;
+        return at_a * (1 - r) + at_b * r;
+    };
+    return {at(&Shares::transmission), at(&Shares::reflection)};
 }
 
 }  // namespace covtrace

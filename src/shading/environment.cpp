@@ -43,12 +43,11 @@ bool preserves_lengths(const Transform& t) {
 Environment::Environment(const InfiniteLight& light, const Transform& light_to_world,
                          const SourceLocation& where)
     : light_to_world_(light_to_world),
-      world_to_light_(light_to_world.inverse()),
+      to_world_(linear(light_to_world)),
+      to_light_(linear(light_to_world.inverse())),
       is_rigid_(preserves_lengths(light_to_world)),
       scale_(light.radiance) {
-    determinant_ =
-        std::abs(dot(cross(world_to_light_.vector({1, 0, 0}), world_to_light_.vector({0, 1, 0})),
-                     world_to_light_.vector({0, 0, 1})));
+    determinant_ = std::abs(dot(cross(to_light_.x, to_light_.y), to_light_.z));
     if (light.image) map_ = EnvironmentMap::read(*light.image, where);
     if (light.illuminance) {
         const Rgb measured = scale_ * (map_ ? map_->irradiance_from_above() : Rgb(kPi));
@@ -56,22 +55,24 @@ Environment::Environment(const InfiniteLight& light, const Transform& light_to_w
     }
 }
 
-Rgb Environment::radiance(Vec3 w) const {
-    return map_ ? scale_ * map_->radiance(to_light(w)) : scale_;
+Environment::Linear Environment::linear(const Transform& t) {
+    return {t.vector({1, 0, 0}), t.vector({0, 1, 0}), t.vector({0, 0, 1})};
 }
 
 Vec3 Environment::sample(Vec3 n, Vec2 u) const {
-    if (map_) return normalize(light_to_world_.vector(map_->sample(u)));
+    if (map_) return normalize(to_world_(map_->sample(u)));
     if (n == Vec3{}) return square_to_sphere(u);
     return normalize(Frame::from_z(n).to_world(square_to_cosine_hemisphere(u)));
 }
 
-float Environment::pdf(Vec3 n, Vec3 w) const {
-    if (!map_) return n == Vec3{} ? kUniformSpherePdf : cosine_hemisphere_pdf(dot(n, w));
-    if (is_rigid_) return map_->pdf(to_light(w));
-    const Vec3 stretched = world_to_light_.vector(w);
+EnvironmentMap::Sight Environment::look(Vec3 n, Vec3 w) const {
+    if (!map_) return {scale_, n == Vec3{} ? kUniformSpherePdf : cosine_hemisphere_pdf(dot(n, w))};
+    const Vec3 stretched = to_light_(w);
     const float l = length(stretched);
-    return map_->pdf(stretched / l) * determinant_ / (l * l * l);
+    EnvironmentMap::Sight sight = map_->look(stretched / l);
+    sight.radiance *= scale_;
+    if (!is_rigid_) sight.pdf *= determinant_ / (l * l * l);
+    return sight;
 }
 
 Rgb Environment::mean_radiance() const {

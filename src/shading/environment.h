@@ -26,11 +26,13 @@ class Environment {
     Environment(const InfiniteLight& light, const Transform& light_to_world,
                 const SourceLocation& where);
 
-    Rgb radiance(Vec3 w) const;
+    Rgb radiance(Vec3 w) const { return map_ ? scale_ * map_->radiance(to_light(w)) : scale_; }
     /// A direction for a surface with the unit normal n, which uniform light is sampled about by
     /// the cosine; n zero: from all sides.
     Vec3 sample(Vec3 n, Vec2 u) const;
-    float pdf(Vec3 n, Vec3 w) const;
+    float pdf(Vec3 n, Vec3 w) const { return look(n, w).pdf; }
+    /// Both at once.
+    EnvironmentMap::Sight look(Vec3 n, Vec3 w) const;
     /// Over all directions, of a rigid transform.
     Rgb mean_radiance() const;
     /// Rough irradiance of any surface, mean of the channels: 0 where the light is black.
@@ -41,9 +43,16 @@ class Environment {
     AngularCovariance spectrum(Vec3 w) const;
 
   private:
-    Vec3 to_light(Vec3 w) const { return normalize(world_to_light_.vector(w)); }
+    /// The linear part of a transform, in float: what directions need of it.
+    struct Linear {
+        Vec3 x, y, z;  ///< columns
+        Vec3 operator()(Vec3 v) const { return x * v.x + y * v.y + z * v.z; }
+    };
+    static Linear linear(const Transform& t);
+    Vec3 to_light(Vec3 w) const { return normalize(to_light_(w)); }
 
-    Transform light_to_world_, world_to_light_;
+    Transform light_to_world_;
+    Linear to_world_, to_light_;
     bool is_rigid_ = true;
     float determinant_ = 1;  // of the map from world to light, absolute value
     Rgb scale_{1};

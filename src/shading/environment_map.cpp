@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
+#include "core/fast_math.h"
 #include "core/parallel.h"
 #include "image/color_encoding.h"
 #include "image/raster.h"
 #include "shading/equal_area.h"
-#include "shading/light_weight.h"
 
 namespace covtrace {
 
@@ -17,16 +18,6 @@ namespace {
 constexpr float kLargestBelowOne = 1 - 0x1p-24f;
 /// What is brighter is damage (the sun is below 1e10), and sums of it would overflow.
 constexpr float kBrightest = 1e18f;
-
-/// Index of the first entry above u of a cumulated distribution, and u as a number in [0, 1) within
-/// it.
-size_t sample_cdf(const float* cdf, size_t count, float& u) {
-    const size_t i =
-        std::min(static_cast<size_t>(std::upper_bound(cdf, cdf + count, u) - cdf), count - 1);
-    const float lo = i > 0 ? cdf[i - 1] : 0.0f, width = cdf[i] - lo;
-    u = width > 0 ? std::clamp((u - lo) / width, 0.0f, kLargestBelowOne) : u;
-    return i;
-}
 
 /// One of two, the first with probability a / (a + b); u is stretched to be used again.
 bool choose_second(float a, float b, float& u) {
@@ -75,43 +66,48 @@ EnvironmentMap EnvironmentMap::read(const std::filesystem::path& file,
         texels[i] = channels < 3 ? Rgb(value(i * channels))
                                  : Rgb(value(i * channels), value(i * channels + 1),
                                        value(i * channels + 2));
-    return EnvironmentMap(std::move(texels), raster.width, raster.height);
+    return EnvironmentMap(texels, raster.width, raster.height);
 }
 
-EnvironmentMap::EnvironmentMap(std::vector<Rgb> texels, int width, int height)
-    : texels_(std::move(texels)),
-      width_(width),
+EnvironmentMap::EnvironmentMap(const std::vector<Rgb>& texels, int width, int height)
+    : width_(width),
       height_(height),
       layout_(width == height ? Layout::equal_area : Layout::lat_long) {
-    row_sine_.resize(static_cast<size_t>(height_), 1.0f);
+    row_sine_.resize(static_cast<size_t>(height_ + 2), 1.0f);
     if (layout_ == Layout::lat_long)
-        for (size_t y = 0; y < row_sine_.size(); ++y)
-            row_sine_[y] = static_cast<float>(std::sin((double(y) + 0.5) * double(kPi) / height_));
+        for (int y = -1; y <= height_; ++y) {
+            const double row = std::clamp(y, 0, height_ - 1) + 0.5;
+            row_sine_[static_cast<size_t>(y + 1)] =
+                static_cast<float>(std::sin(row * double(kPi) / height_));
+        }
+    set_texels(texels);
     build_distribution();
 }
 
-const Rgb& EnvironmentMap::texel(int x, int y) const {
-    if (layout_ == Layout::lat_long) {
-        x = wrap_repeat(x, width_);
-        y = std::clamp(y, 0, height_ - 1);
-    } else {
-        // Beyond an edge of the octahedral square its other half continues.
-        const int n = width_;
-        if (x < 0 || x >= n) {
-            x = x < 0 ? -1 - x : 2 * n - 1 - x;
-            y = n - 1 - y;
+void EnvironmentMap::set_texels(const std::vector<Rgb>& texels) {
+    texels_.resize(static_cast<size_t>(width_ + 2) * static_cast<size_t>(height_ + 2));
+    auto next = texels_.begin();
+    for (int row = -1; row <= height_; ++row)
+        for (int column = -1; column <= width_; ++column) {
+            int x = column, y = row;
+            if (layout_ == Layout::lat_long) {
+                x = wrap_repeat(x, width_);
+                y = std::clamp(y, 0, height_ - 1);
+            } else {
+                // Beyond an edge of the octahedral square its other half continues.
+                const int n = width_;
+                if (x < 0 || x >= n) {
+                    x = x < 0 ? -1 - x : 2 * n - 1 - x;
+                    y = n - 1 - y;
+                }
+                if (y < 0 || y >= n) {
+                    y = y < 0 ? -1 - y : 2 * n - 1 - y;
+                    x = n - 1 - x;
+                }
+            }
+            *next++ = texels[static_cast<size_t>(y) * static_cast<size_t>(width_) +
+                             static_cast<size_t>(x)];
         }
-        if (y < 0 || y >= n) {
-            y = y < 0 ? -1 - y : 2 * n - 1 - y;
-            x = n - 1 - x;
-        }
-    }
-    return texels_[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)];
-}
-
-float EnvironmentMap::weight(int x, int y) const {
-    const auto row = static_cast<size_t>(std::clamp(y, 0, height_ - 1));
-    return choice_weight(texel(x, y)) * row_sine_[row];
 }
 
 namespace {
@@ -130,44 +126,51 @@ Position position(float s, int n) {
 
 }  // namespace
 
-Rgb EnvironmentMap::radiance(Vec3 w) const {
+EnvironmentMap::Sight EnvironmentMap::look(Vec3 w) const {
     const Vec2 uv = to_square(w);
     const Position x = position(uv.x, width_), y = position(uv.y, height_);
-    return lerp(y.fraction, lerp(x.fraction, texel(x.index, y.index), texel(x.index + 1, y.index)),
-                lerp(x.fraction, texel(x.index, y.index + 1), texel(x.index + 1, y.index + 1)));
-}
-
-float EnvironmentMap::interpolated_weight(Vec2 uv) const {
-    const Position x = position(uv.x, width_), y = position(uv.y, height_);
-    const auto row = [&](int j) {
-        return weight(x.index, j) * (1 - x.fraction) + weight(x.index + 1, j) * x.fraction;
-    };
-    return row(y.index) * (1 - y.fraction) + row(y.index + 1) * y.fraction;
+    const Rgb* texels = &texel(x.index, y.index);
+    const size_t stride = static_cast<size_t>(width_ + 2);
+    const Rgb upper = lerp(x.fraction, texels[0], texels[1]);
+    const Rgb lower = lerp(x.fraction, texels[stride], texels[stride + 1]);
+    Sight sight{lerp(y.fraction, upper, lower)};
+    if (!(mean_weight_ > 0)) return sight;
+    const float* sine = &row_sine_[static_cast<size_t>(y.index + 1)];
+    const float weight = choice_weight(upper) * sine[0] * (1 - y.fraction) +
+                         choice_weight(lower) * sine[1] * y.fraction;
+    const float per_square = weight / mean_weight_;
+    if (layout_ == Layout::equal_area) {
+        sight.pdf = per_square / (4 * kPi);
+    } else {
+        const float polar_sine = std::sqrt(w.x * w.x + w.y * w.y);
+        sight.pdf = polar_sine > 0 ? per_square / (2 * kPi * kPi * polar_sine) : 0.0f;
+    }
+    return sight;
 }
 
 Vec2 EnvironmentMap::to_square(Vec3 w) const {
     if (layout_ == Layout::equal_area) return equal_area_sphere_to_square(w);
-    const float phi = std::atan2(w.y, w.x);
-    const float theta = std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
+    const float phi = arctangent(w.y, w.x);
+    const float theta = arctangent(std::sqrt(w.x * w.x + w.y * w.y), w.z);
     return {(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi), theta / kPi};
 }
 
 Vec3 EnvironmentMap::to_direction(Vec2 uv) const {
     if (layout_ == Layout::equal_area) return equal_area_square_to_sphere(uv);
-    const float phi = 2 * kPi * uv.x, theta = kPi * uv.y, s = std::sin(theta);
-    return {s * std::cos(phi), s * std::sin(phi), std::cos(theta)};
+    const SinCos phi = sin_cos(2 * kPi * uv.x), theta = sin_cos(kPi * uv.y);
+    return {theta.sin * phi.cos, theta.sin * phi.sin, theta.cos};
 }
 
 float EnvironmentMap::solid_angle(int y) const {
     if (layout_ == Layout::equal_area) return 4 * kPi / (float(width_) * float(height_));
     const float d_theta = kPi / float(height_);
-    return 2 * kPi / float(width_) * 2 * std::sin(d_theta / 2) * row_sine_[static_cast<size_t>(y)];
+    return 2 * kPi / float(width_) * 2 * std::sin(d_theta / 2) *
+           row_sine_[static_cast<size_t>(y + 1)];
 }
 
 void EnvironmentMap::build_distribution() {
     const auto w = static_cast<size_t>(width_), h = static_cast<size_t>(height_);
-    column_cdf_.resize(w * h);
-    row_cdf_.resize(h);
+    columns_.resize(h);
     std::vector<double> row_sum(h);
     std::vector<std::array<double, 3>> row_mean(h);
     parallel_for(height_, [&](int64_t row) {
@@ -185,9 +188,7 @@ void EnvironmentMap::build_distribution() {
             cumulated[static_cast<size_t>(x)] = sum;
             for (int c = 0; c < 3; ++c) mean[static_cast<size_t>(c)] += texel(x, y)[c];
         }
-        for (size_t x = 0; x < w; ++x)
-            column_cdf_[r * w + x] =
-                static_cast<float>(sum > 0 ? cumulated[x] / sum : double(x + 1) / double(w));
+        columns_[r] = TableCdf(cumulated);
         row_sum[r] = sum;
         for (double& channel : mean) channel *= solid_angle(y);
         row_mean[r] = mean;
@@ -201,17 +202,13 @@ void EnvironmentMap::build_distribution() {
     mean_weight_ = static_cast<float>(total / (double(w) * double(h)));
     for (int c = 0; c < 3; ++c)
         mean_[c] = static_cast<float>(mean[static_cast<size_t>(c)] / (4 * double(kPi)));
-    double cumulated = 0;
-    for (size_t y = 0; y < h; ++y) {
-        cumulated += row_sum[y];
-        row_cdf_[y] = static_cast<float>(total > 0 ? cumulated / total : double(y + 1) / double(h));
-    }
+    std::partial_sum(row_sum.begin(), row_sum.end(), row_sum.begin());
+    rows_ = TableCdf(row_sum);
 }
 
 Vec3 EnvironmentMap::sample(Vec2 u) const {
-    const size_t y = sample_cdf(row_cdf_.data(), row_cdf_.size(), u.y);
-    const auto w = static_cast<size_t>(width_);
-    const size_t x = sample_cdf(column_cdf_.data() + y * w, w, u.x);
+    const size_t y = rows_.sample(u.y);
+    const size_t x = columns_[y].sample(u.x);
     // Interpolation is bilinear in each quarter of the texel: values at its corners, edges and
     // centre.
     std::array<std::array<float, 3>, 3> g;
@@ -238,14 +235,6 @@ Vec3 EnvironmentMap::sample(Vec2 u) const {
                                   g[j][i + 1] * (1 - t) + g[j + 1][i + 1] * t, u.x);
     return to_direction({(float(x) + (float(i) + s) / 2) / float(width_),
                          (float(y) + (float(j) + t) / 2) / float(height_)});
-}
-
-float EnvironmentMap::pdf(Vec3 w) const {
-    if (!(mean_weight_ > 0)) return 0;
-    const float per_square = interpolated_weight(to_square(w)) / mean_weight_;
-    if (layout_ == Layout::equal_area) return per_square / (4 * kPi);
-    const float sine = std::sqrt(w.x * w.x + w.y * w.y);
-    return sine > 0 ? per_square / (2 * kPi * kPi * sine) : 0.0f;
 }
 
 Rgb EnvironmentMap::irradiance_from_above() const {

@@ -14,6 +14,8 @@
 
 #include "core/error.h"
 #include "core/vec.h"
+#include "shading/light_weight.h"
+#include "shading/table_cdf.h"
 
 namespace covtrace {
 
@@ -26,18 +28,24 @@ class EnvironmentMap {
     /// square nor 2:1.
     static EnvironmentMap read(const std::filesystem::path& file, const SourceLocation& where);
     /// Texels row by row from the top, finite and not negative; height == width or width / 2.
-    EnvironmentMap(std::vector<Rgb> texels, int width, int height);
+    EnvironmentMap(const std::vector<Rgb>& texels, int width, int height);
 
     Layout layout() const { return layout_; }
     int width() const { return width_; }
     int height() const { return height_; }
 
     /// Radiance from the unit direction w in light space.
-    Rgb radiance(Vec3 w) const;
+    Rgb radiance(Vec3 w) const { return look(w).radiance; }
     /// A unit direction with density `pdf`, for u in [0, 1)^2. Not for black maps.
     Vec3 sample(Vec2 u) const;
     /// Per solid angle.
-    float pdf(Vec3 w) const;
+    float pdf(Vec3 w) const { return look(w).pdf; }
+    /// Both from the same texels.
+    struct Sight {
+        Rgb radiance;
+        float pdf = 0;
+    };
+    Sight look(Vec3 w) const;
 
     /// Mean radiance over the sphere.
     Rgb mean() const { return mean_; }
@@ -47,20 +55,28 @@ class EnvironmentMap {
   private:
     Vec2 to_square(Vec3 w) const;
     Vec3 to_direction(Vec2 uv) const;
-    const Rgb& texel(int x, int y) const;
+    /// With x in [-1, width] and y in [-1, height].
+    const Rgb& texel(int x, int y) const {
+        return texels_[static_cast<size_t>(y + 1) * static_cast<size_t>(width_ + 2) +
+                       static_cast<size_t>(x + 1)];
+    }
     /// What the sampling density is proportional to, at a texel's centre.
-    float weight(int x, int y) const;
-    float interpolated_weight(Vec2 uv) const;
+    float weight(int x, int y) const {
+        return choice_weight(texel(x, y)) * row_sine_[static_cast<size_t>(y + 1)];
+    }
     float solid_angle(int y) const;  // of one texel of the row
+    void set_texels(const std::vector<Rgb>& texels);
     void build_distribution();
 
+    /// Row by row with one more texel on every side: what lies beyond the edge.
     std::vector<Rgb> texels_;
     int width_ = 0, height_ = 0;
     Layout layout_ = Layout::equal_area;
-    std::vector<float> row_sine_;  // of the polar angle at the rows' centres; 1 on equal-area maps
-    std::vector<float> column_cdf_;  // width_ per row: cumulated shares of the row, the last is 1
-    std::vector<float> row_cdf_;     // height_: cumulated shares of the rows
-    float mean_weight_ = 0;          // over the square
+    /// Of the polar angle at the rows' centres, with a row more at both ends; 1 on equal-area maps.
+    std::vector<float> row_sine_;
+    std::vector<TableCdf> columns_;  // of each row
+    TableCdf rows_;
+    float mean_weight_ = 0;  // over the square
     Rgb mean_;
 };
 

@@ -2,7 +2,13 @@
 
 #include <cmath>
 
+#include "core/fast_math.h"
+
 namespace covtrace {
+
+namespace {
+constexpr float kHalfRoot = 0.70710678118654752f;  // sine and cosine of pi / 4
+}
 
 Vec3 equal_area_square_to_sphere(Vec2 uv) {
     const float a = 2 * uv.x - 1, b = 2 * uv.y - 1;
@@ -11,10 +17,12 @@ Vec3 equal_area_square_to_sphere(Vec2 uv) {
     // radius of a concentric diamond of either, 1 at the horizon.
     const float inside = 1 - (x + y);
     const float r = 1 - std::abs(inside);
-    const float phi = r > 0 ? ((y - x) / r + 1) * (kPi / 4) : 0.0f;
+    // The azimuth less pi / 4.
+    const SinCos turn = sin_cos_octant(r > 0 ? (y - x) / r * (kPi / 4) : -kPi / 4);
     const float z = std::copysign(1 - r * r, inside);
-    const float s = r * std::sqrt(2 - r * r);
-    return {std::copysign(s * std::cos(phi), a), std::copysign(s * std::sin(phi), b), z};
+    const float s = r * std::sqrt(2 - r * r) * kHalfRoot;
+    return {std::copysign(s * (turn.cos - turn.sin), a),
+            std::copysign(s * (turn.cos + turn.sin), b), z};
 }
 
 Vec2 equal_area_sphere_to_square(Vec3 w) {
@@ -22,7 +30,7 @@ Vec2 equal_area_sphere_to_square(Vec3 w) {
     // r = sqrt(1 - |z|), by the horizontal part near the poles, where 1 - |z| would cancel.
     const float horizontal = x * x + y * y;
     const float r = std::sqrt(horizontal / (1 + std::abs(w.z)));
-    const float share = x + y > 0 ? std::atan2(y, x) * (2 / kPi) : 0.0f;
+    const float share = x + y > 0 ? arctangent(y, x) * (2 / kPi) : 0.0f;
     float v = share * r, u = r - v;
     if (w.z < 0) {
         const float t = u;

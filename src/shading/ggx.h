@@ -16,6 +16,7 @@
 
 #include <cmath>
 
+#include "core/fast_math.h"
 #include "core/vec.h"
 
 namespace covtrace {
@@ -69,11 +70,11 @@ struct Ggx {
         const Vec3 w = Vec3{alpha_x * wo.x, alpha_y * wo.y, wo.z} / stretched_length(wo);
         // The cap's point is c with c.z = (1 - u.y)(1 + w.z) - w.z; the normal is c + w. Its z and
         // 1 - c.z are written without the cancelling terms.
-        const float phi = 2 * kPi * u.x;
+        const SinCos phi = sin_cos(2 * kPi * u.x);
         const float h_z = (1 - u.y) * (1 + w.z);
         const float sin_c = safe_sqrt((1 + w.z) * u.y * (1 - w.z + h_z));
-        return normalize({alpha_x * (sin_c * std::cos(phi) + w.x),
-                          alpha_y * (sin_c * std::sin(phi) + w.y), h_z});
+        return normalize(
+            {alpha_x * (sin_c * phi.cos + w.x), alpha_y * (sin_c * phi.sin + w.y), h_z});
     }
 };
 

@@ -23,10 +23,10 @@ Vec2 barycentric(const WorldTriangle& t, Vec3 p, Vec3 w) {
     const Vec3 s1 = cross(w, e2);
     const float divisor = dot(s1, e1);
     if (divisor == 0) return {1.0f / 3, 1.0f / 3};
-    const float b1 = clamp01(dot(s, s1) / divisor);
-    const float b2 = clamp01(dot(w, cross(s, e1)) / divisor);
-    const float sum = std::max(1.0f, b1 + b2);
-    return {b1 / sum, b2 / sum};
+    const float scale = 1 / divisor;
+    const Vec2 b{clamp01(dot(s, s1) * scale), clamp01(dot(w, cross(s, e1)) * scale)};
+    const float sum = b.x + b.y;
+    return sum > 1 ? b * (1 / sum) : b;
 }
 
 }  // namespace
@@ -53,6 +53,7 @@ EmissiveMesh::EmissiveMesh(const PlacedShape& shape)
                         dot(n, placed.normal(mesh.normals[i1])),
                         dot(n, placed.normal(mesh.normals[i2]))};
         }
+        e.normal = normalize(cross(e.p1 - e.p0, e.p2 - e.p0));
         elements_.push_back(e);
     };
     if (const auto* triangles =
@@ -82,7 +83,10 @@ int EmissiveMesh::light_of(const SurfaceHit& hit) const {
 
 EmissiveMesh::Element EmissiveMesh::moved(Element e, const Transform& t) {
     const float mirrored = t.swaps_handedness() ? -1.0f : 1.0f;
-    return {t.point(e.p0), t.point(e.p1), t.point(e.p2), t.vector(e.twist), e.facing * mirrored};
+    Element m{t.point(e.p0),     t.point(e.p1),      t.point(e.p2), {},
+              t.vector(e.twist), e.facing * mirrored};
+    m.normal = normalize(cross(m.p1 - m.p0, m.p2 - m.p0));
+    return m;
 }
 
 EmissiveMesh::Element EmissiveMesh::at(int light, float time) const {
@@ -119,7 +123,8 @@ std::optional<EmitterPoint> EmissiveMesh::sample(int light, Vec3 p, float time, 
     s.pdf = by_solid_angle(solid_angle) ? 1 / solid_angle : area_pdf(e, p, s.position, b);
     if (!(s.pdf > 0)) return std::nullopt;
     const float facing = e.facing.x * (1 - b.x - b.y) + e.facing.y * b.x + e.facing.z * b.y;
-    s.normal = normalize(cross(e.d1(b), e.d2(b))) * (facing < 0 ? -1.0f : 1.0f);
+    const Vec3 normal = e.is_flat() ? e.normal : normalize(cross(e.d1(b), e.d2(b)));
+    s.normal = facing < 0 ? -normal : normal;
     return s;
 }
 

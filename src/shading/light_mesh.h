@@ -40,6 +40,7 @@ class EmissiveMesh {
     /// Where nothing moves in world space, else in object space.
     struct Element {
         Vec3 p0, p1, p2;
+        Vec3 normal;  // unit, along d1 x d2 of flat elements
         Vec3 twist;   // zero for flat elements
         Vec3 facing;  // whose interpolated sign tells whether d1 x d2 points to the outside
         bool is_flat() const { return twist == Vec3{}; }

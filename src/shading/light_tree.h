@@ -1,8 +1,10 @@
 /// Chooses one of many finite lights by what each may contribute at a point: a bounding volume
 /// hierarchy over lights (Conty Estevez and Kulla 2018, "Importance sampling of many lights with
-/// adaptive tree splitting"), walked down at random by the importance of the two children.
+/// adaptive tree splitting"), walked down at random by the importance of the children. Every node
+/// has up to four, side by side in memory, so that they are judged by the same vector instructions.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -43,29 +45,28 @@ class LightTree {
     float irradiance(Vec3 p, Vec3 n) const;
 
   private:
+    static constexpr size_t kWidth = 4;
+    using Lanes = std::array<float, kWidth>;
+    /// Up to four children, each a light or a node; those that are not there have no intensity.
     struct Node {
-        Vec3 center;
-        float radius_squared = 0;  ///< of the sphere around the box
-        Vec3 axis;
-        float intensity = 0;
-        float cos_o = 1, sin_o = 0, cos_e = 0;
-        bool two_sided = false;
-        bool is_leaf = true;
-        uint32_t link = 0;  ///< a leaf's light, or the second child; the first child comes next
-        float importance(Vec3 p, Vec3 n) const;
+        Lanes center_x{}, center_y{}, center_z{};
+        Lanes radius_squared{};  ///< of the sphere around the box
+        Lanes axis_x{}, axis_y{}, axis_z{};
+        Lanes cos_o{}, sin_o{}, cos_e{};
+        Lanes intensity{};
+        std::array<uint32_t, kWidth> two_sided{};  ///< 0 or 1
+        std::array<uint32_t, kWidth> link{};       ///< kLeaf and a light, or a node
+
+        /// Estimated irradiance by each child.
+        Lanes importance(Vec3 p, Vec3 n) const;
     };
-    struct Item {
-        LightBounds bounds;
-        uint32_t light = 0;
-    };
+    static constexpr uint32_t kLeaf = 1u << 31;
     static constexpr uint64_t kNotInTree = ~uint64_t{0};
+    class Builder;
 
-    LightBounds build(std::vector<Item>& items, size_t begin, size_t end, uint64_t trail,
-                      int depth);
-    static Node make_node(const LightBounds& bounds, bool is_leaf, uint32_t link);
-
-    std::vector<Node> nodes_;
-    std::vector<uint64_t> trails_;  ///< per light: bit i says which child to take at depth i
+    std::vector<Node> nodes_;  ///< the first is the root
+    /// Per light: two bits for each level say which child to take, the lowest at the root.
+    std::vector<uint64_t> trails_;
 };
 
 }  // namespace covtrace

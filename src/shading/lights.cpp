@@ -132,14 +132,16 @@ Rgb Lights::Impl::environment(Vec3 w) const {
     return sum;
 }
 
-float Lights::Impl::environment_pdf(const InfiniteShare& share, Vec3 n, Vec3 w) const {
-    if (!(share.probability > 0)) return 0;
-    float pdf = 0;
+Lights::Sky Lights::Impl::sky(const InfiniteShare& share, Vec3 n, Vec3 w) const {
+    Sky sky;
     for (size_t i = 0; i < environments.size(); ++i) {
+        const EnvironmentMap::Sight sight = environments[i].look(n, w);
         const float estimate = infinite_estimate(distants.size() + i, n);
-        if (estimate > 0) pdf += estimate * environments[i].pdf(n, w);
+        sky.radiance += sight.radiance;
+        if (estimate > 0) sky.pdf += estimate * sight.pdf;
     }
-    return share.probability * pdf / share.estimate;
+    sky.pdf *= share.probability > 0 ? share.probability / share.estimate : 0;
+    return sky;
 }
 
 std::optional<LightSample> Lights::Impl::sample_area(int light, float probability, Vec3 p,
@@ -151,7 +153,7 @@ std::optional<LightSample> Lights::Impl::sample_area(int light, float probabilit
     if (!point || (!area.two_sided && !(dot(point->normal, point->wi) < 0))) return std::nullopt;
     LightSample s;
     s.wi = point->wi;
-    s.distance = distance(p, point->position);
+    s.distance = dot(point->position - p, point->wi);
     s.radiance = area.radiance;
     if (area.varies()) {
         const Vec2 uv =
@@ -214,8 +216,9 @@ std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& sh
         return s;
     }
     s.wi = environments[chosen - distants.size()].sample(n, u);
-    s.radiance = environment(s.wi);
-    s.pdf = environment_pdf(share, n, s.wi);
+    const Sky there = sky(share, n, s.wi);
+    s.radiance = there.radiance;
+    s.pdf = there.pdf;
     if (!(s.pdf > 0) || is_black(s.radiance)) return std::nullopt;
     return s;
 }
@@ -283,8 +286,8 @@ bool Lights::has_environment() const {
 Rgb Lights::environment(Vec3 w) const {
     return impl_->environment(w);
 }
-float Lights::environment_pdf(Vec3 p, Vec3 n, Vec3 w) const {
-    return impl_->environment_pdf(impl_->infinite_share(p, n), n, w);
+Lights::Sky Lights::sky(Vec3 p, Vec3 n, Vec3 w) const {
+    return impl_->sky(impl_->infinite_share(p, n), n, w);
 }
 Rgb Lights::total_power() const {
     Rgb sum;

@@ -77,8 +77,14 @@ class Lights {
     bool has_environment() const;
     /// Radiance of all infinite lights from the direction `w` (unit, away from the scene).
     Rgb environment(Vec3 w) const;
-    /// Density with which `sample(p, n)` finds the direction w in an infinite light.
-    float environment_pdf(Vec3 p, Vec3 n, Vec3 w) const;
+    /// What comes from a direction of the infinite lights, and the density with which `sample(p,
+    /// n)` finds it there.
+    struct Sky {
+        Rgb radiance;
+        float pdf = 0;
+    };
+    Sky sky(Vec3 p, Vec3 n, Vec3 w) const;
+    float environment_pdf(Vec3 p, Vec3 n, Vec3 w) const { return sky(p, n, w).pdf; }
 
     /// Computes what the source spectra need; to be called once before asking for any. Not
     /// thread-safe.

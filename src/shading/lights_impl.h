@@ -50,7 +50,7 @@ struct Lights::Impl {
     InfiniteShare infinite_share(Vec3 p, Vec3 n) const;
     /// Estimated irradiance by infinite light i (distant ones first), for choosing among them.
     float infinite_estimate(size_t i, Vec3 n) const;
-    float environment_pdf(const InfiniteShare& share, Vec3 n, Vec3 w) const;
+    Sky sky(const InfiniteShare& share, Vec3 n, Vec3 w) const;
     Rgb environment(Vec3 w) const;
     SourceSpectrum environment_spectrum(Vec3 w) const;
 

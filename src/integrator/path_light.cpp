@@ -1,0 +1,87 @@
+#include <cmath>
+
+#include "integrator/path_tracer.h"
+
+namespace covtrace {
+
+void PathTracer::escape() {
+    if (record_ && record_->count == static_cast<int>(result_.vertices)) {
+        record_->escape_direction = ray_.direction;
+        record_->escape_glow = glow_;
+    }
+    if (!scene_.lights.has_environment()) return;
+    Lights::Sky sky;
+    float weight = 1;
+    if (specular_) {
+        sky.radiance = scene_.lights.environment(ray_.direction);
+    } else {
+        sky = scene_.lights.sky(previous_position_, previous_normal_, ray_.direction);
+        weight = power_heuristic(pdf_, sky.pdf);
+    }
+    const Rgb contribution = beta_ * sky.radiance * weight;
+    result_.radiance += contribution;
+    if (in_view()) result_.in_view += contribution;
+    if (record_ && record_->count == static_cast<int>(result_.vertices)) {
+        record_->escaped = luminance(contribution);
+        record_->escape_seen_sharply = sharp_so_far_;
+        record_->escape_in_view = in_view();
+    }
+}
+
+void PathTracer::add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex) {
+    const Rgb light = scene_.lights.emitted(hit, wo);
+    if (is_black(light)) return;
+    float weight = 1;
+    if (!specular_) {
+        const float p =
+            scene_.lights.pdf(previous_position_, previous_normal_, ray_.direction, hit);
+        weight = power_heuristic(pdf_, p);
+    }
+    const Rgb contribution = beta_ * light * weight;
+    result_.radiance += contribution;
+    if (in_view()) result_.in_view += contribution;
+    if (vertex) vertex->emitted = luminance(contribution);
+}
+
+void PathTracer::add_direct(const Surface& surface, float u_select, Vec2 u, PathVertex* vertex) {
+    const SurfaceHit& hit = surface.hit;
+    const auto light = scene_.lights.sample(hit.position, light_normal_, hit.time, u_select, u);
+    if (!light || is_black(light->radiance) || !(light->pdf > 0)) return;
+    const Vec3 wi_local = surface.frame.to_local(light->wi);
+    const BsdfValue value = eval_direction(surface, wi_local, light->wi);
+    if (is_black(value.f)) return;
+    Ray shadow;
+    shadow.origin = Geometry::offset_origin(hit, light->wi);
+    shadow.time = hit.time;
+    const MediumId medium = medium_beyond(surface.shape, hit, light->wi, medium_);
+    if (add_light(*light, value, shadow, medium, vertex) && vertex)
+        vertex->direct_event.lobes = lobe_shares(surface.bsdf, surface.wo, wi_local);
+}
+
+bool PathTracer::add_light(const LightSample& light, const BsdfValue& value, Ray shadow,
+                           MediumId medium, PathVertex* vertex) {
+    if (is_black(light.radiance) || !(light.pdf > 0)) return false;
+    shadow.direction = light.wi;
+    if (std::isfinite(light.distance)) {
+        // Aim at the light from the moved origin and stop just short of it.
+        const Vec3 to_light = light.position - shadow.origin;
+        const float d = length(to_light);
+        if (!(d > 0)) return false;
+        shadow.direction = to_light / d;
+        shadow.t_max = d * (1 - 1e-4f);
+    }
+    uint32_t rays = 0;
+    const Rgb visible = visibility(scene_, shadow, light.distance, medium, rays);
+    result_.rays.shadow += rays;
+    if (is_black(visible)) return false;
+    const float weight = light.is_delta ? 1.0f : power_heuristic(light.pdf, value.pdf);
+    const Rgb contribution = beta_ * value.f * light.radiance * visible * (weight / light.pdf);
+    result_.radiance += contribution;
+    if (!vertex) return true;
+    vertex->direct = luminance(contribution);
+    vertex->light = light;
+    vertex->direct_event = {light.wi, {}};
+    return true;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,60 @@
+#include <cmath>
+
+#include "integrator/path_tracer.h"
+#include "shading/phase_function.h"
+
+namespace covtrace {
+
+MediumEvent PathTracer::cross_medium(float length) {
+    const Medium& medium = scene_.media[static_cast<size_t>(medium_)];
+    if (depth_ < max_depth_ && !is_black(medium.emission)) {
+        const Rgb contribution = beta_ * emitted_along(medium, length);
+        result_.radiance += contribution;
+        if (record_) glow_ += luminance(contribution);
+    }
+    MediumEvent event{false, length, transmittance(medium, length)};
+    if (depth_ < max_depth_ && medium.scatters()) {
+        sampler_.set_dimension(kMediumPairs + static_cast<uint32_t>(passed_interfaces_) +
+                               static_cast<uint32_t>(depth_) * (kMostInterfaces + 1));
+        event = sample_event(medium, length, beta_, sampler_.next_2d());
+    }
+    beta_ *= event.weight;
+    return event;
+}
+
+bool PathTracer::scatter_in_medium(float distance) {
+    if (is_black(beta_)) return false;
+    const Medium& medium = scene_.media[static_cast<size_t>(medium_)];
+    const Vec3 wo = -ray_.direction;
+    SurfaceHit place;
+    place.position = ray_.origin + ray_.direction * distance;
+    place.time = ray_.time;
+    PathVertex* vertex = begin_vertex(place, medium_, wo);
+    if (depth_ == 0) describe_first_vertex(place.position, medium.albedo(), {});
+    ++depth_;
+    sampler_.set_dimension(static_cast<uint32_t>(depth_) * kPairsPerBounce);
+    const auto [u_choice, u_light, u_phase, u_roulette] = sampler_.next_four_2d();
+    light_normal_ = {};
+    Ray shadow;
+    shadow.origin = place.position;
+    shadow.time = place.time;
+    if (const auto light =
+            scene_.lights.sample(place.position, {}, place.time, u_choice.x, u_light)) {
+        const float p = henyey_greenstein(medium.g, -dot(wo, light->wi));
+        add_light(*light, {Rgb(p), p}, shadow, medium_, vertex);
+    }
+    const Vec3 wi = sample_phase(medium.g, wo, u_phase);
+    pdf_ = henyey_greenstein(medium.g, -dot(wo, wi));
+    specular_ = sharp_so_far_ = false;
+    if (vertex) {
+        vertex->scatters = true;
+        vertex->next_event = {wi, {}};
+    }
+    previous_position_ = place.position;
+    previous_normal_ = {};
+    ray_.origin = place.position;
+    ray_.direction = wi;
+    return survives(u_roulette.x);
+}
+
+}  // namespace covtrace

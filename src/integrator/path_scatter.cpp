@@ -1,0 +1,80 @@
+#include <cmath>
+
+#include "integrator/path_tracer.h"
+
+namespace covtrace {
+
+float PathTracer::mixed_pdf(float own, Vec3 wi) const {
+    const float share = guide_.share();
+    return share > 0 ? (1 - share) * own + share * guide_.pdf(wi) : own;
+}
+
+BsdfValue PathTracer::eval_direction(const Surface& surface, Vec3 wi_local, Vec3 wi) const {
+    const BsdfValue own = eval_and_pdf(surface.bsdf, surface.wo, wi_local);
+    return {own.f, mixed_pdf(own.pdf, wi)};
+}
+
+std::optional<BsdfSample> PathTracer::sample_direction(const Surface& surface, float u_lobe,
+                                                       Vec2 u) {
+    const float share = guide_.share();
+    if (!(share > 0)) return sample(surface.bsdf, surface.wo, u_lobe, u);
+    std::optional<BsdfSample> s;
+    BsdfValue own;
+    Vec3 wi;
+    if (u_lobe < share) {
+        wi = guide_.sample(u_lobe / share, u);
+        s = BsdfSample{};
+        s->wi = surface.frame.to_local(wi);
+        s->lobe = s->wi.z * surface.wo.z > 0 ? LobeKind::diffuse_reflection
+                                             : LobeKind::diffuse_transmission;
+        own = eval_and_pdf(surface.bsdf, surface.wo, s->wi);
+    } else {
+        s = sample(surface.bsdf, surface.wo, (u_lobe - share) / (1 - share), u);
+        if (!s) return s;
+        if (is_specular(s->lobe)) {
+            s->weight *= 1 / (1 - share);
+            s->pdf *= 1 - share;
+            return s;
+        }
+        wi = surface.frame.to_world(s->wi);
+        own = {s->weight * s->pdf, s->pdf};
+    }
+    s->pdf = mixed_pdf(own.pdf, wi);
+    s->weight = s->pdf > 0 ? own.f * (1 / s->pdf) : Rgb(0);
+    // A throughput that is small because the guide expects much light from there must not end
+    // the path: the roulette judges it as if the BSDF had chosen alone.
+    if (own.pdf > 0) roulette_scale_ *= s->pdf / own.pdf;
+    return s;
+}
+
+bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, PathVertex* vertex) {
+    const auto s = sample_direction(surface, u_lobe, u);
+    if (!s || is_black(s->weight)) return false;
+    const Vec3 wi = normalize(surface.frame.to_world(s->wi));
+    beta_ *= s->weight;
+    pdf_ = s->pdf;
+    specular_ = is_specular(s->lobe);
+    sharp_so_far_ = sharp_so_far_ && specular_;
+    sharp_probability_ *= s->pdf;
+    if (is_transmission(s->lobe)) roulette_scale_ *= s->eta * s->eta;
+    if (vertex) {
+        vertex->scatters = true;
+        vertex->next_event.wi = wi;
+        if (specular_) {
+            vertex->next_event.lobes.count = 1;
+            vertex->next_event.lobes.lobes[0] = {s->lobe, s->weight, 0, 0, s->eta};
+        } else {
+            vertex->next_event.lobes = lobe_shares(surface.bsdf, surface.wo, s->wi);
+        }
+    }
+    const SurfaceHit& hit = surface.hit;
+    previous_position_ = hit.position;
+    previous_normal_ = light_normal_;
+    medium_ = medium_beyond(surface.shape, hit, wi, medium_);
+    ray_.origin = Geometry::offset_origin(hit, wi);
+    ray_.direction = wi;
+    ray_.t_max = kInfinity;
+    return true;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,116 @@
+/// The inside of trace_path, for the files path*.cpp of this folder.
+#pragma once
+
+#include <optional>
+
+#include "integrator/path.h"
+#include "integrator/visibility.h"
+
+namespace covtrace {
+
+inline float power_heuristic(float a, float b) {
+    if (std::isinf(a)) return 1;
+    if (std::isinf(b)) return 0;
+    // A lamp far away has a density whose square is no float any more.
+    constexpr float kLargest = 1e18f;
+    if (const float largest = std::max(a, b); largest > kLargest) {
+        a /= largest;
+        b /= largest;
+    }
+    const float a2 = a * a, b2 = b * b;
+    return a2 + b2 > 0 ? a2 / (a2 + b2) : 0;
+}
+
+/// One path in the making. The estimate is  sum over vertices of  beta * (emission + direct light),
+/// beta = product of  f |cos| / pdf  and of the weights of media so far; each kind of light is
+/// found by two strategies whose weights add to one.
+class PathTracer {
+  public:
+    PathTracer(const RenderScene& scene, Ray ray, Sampler& sampler, int max_depth,
+               PathRecord* record)
+        : scene_(scene), ray_(ray), sampler_(sampler), max_depth_(max_depth), record_(record) {
+        camera_origin_ = ray.origin;
+        medium_ = scene.description.camera.medium;
+    }
+
+    const PathResult& run();
+
+  private:
+    static constexpr uint32_t kPairsPerBounce = 4;
+    /// Media draw from dimensions of their own, so that surfaces see the same numbers with or
+    /// without them: one pair for each piece between interfaces.
+    static constexpr uint32_t kMediumPairs = 1u << 20;
+
+    /// A place on a surface and what scatters there.
+    struct Surface {
+        const SurfaceHit& hit;
+        const PlacedShape& shape;
+        const Bsdf& bsdf;
+        Frame frame;
+        Vec3 wo;  ///< in the frame
+    };
+
+    // ---- path.cpp
+    /// Follows the ray to where it meets something; false where the path ends.
+    bool step();
+    bool meet_surface(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material,
+                      const Bsdf& bsdf);
+    /// The frame of the BSDF, with the material's bump or normal map.
+    Frame frame_at(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material) const;
+    PathVertex* begin_vertex(const SurfaceHit& hit, MediumId medium, Vec3 wo);
+    void describe_first_vertex(Vec3 position, Rgb albedo, Vec3 normal);
+    /// Russian roulette by the throughput without the factors that refraction and the guide put on
+    /// it.
+    bool survives(float u);
+    bool in_view() const { return sharp_so_far_ && sharp_probability_ > 0.5f; }
+
+    // ---- path_light.cpp: light that is found
+    void escape();
+    void add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex);
+    void add_direct(const Surface& surface, float u_select, Vec2 u, PathVertex* vertex);
+    /// Adds the light sampled at a vertex that scatters the part `value.f` of it into the path and
+    /// would have found its direction with density `value.pdf`. False where nothing of it arrives.
+    bool add_light(const LightSample& light, const BsdfValue& value, Ray shadow, MediumId medium,
+                   PathVertex* vertex);
+
+    // ---- path_scatter.cpp: where the path goes on
+    /// Density of sample_direction to return a direction by other than specular lobes, given that
+    /// of the BSDF.
+    float mixed_pdf(float own, Vec3 wi) const;
+    /// Value of a pair, with that density.
+    BsdfValue eval_direction(const Surface& surface, Vec3 wi_local, Vec3 wi) const;
+    /// A direction by the BSDF or, for a share of the samples, by the guide. The weight counts
+    /// both, whichever chose.
+    std::optional<BsdfSample> sample_direction(const Surface& surface, float u_lobe, Vec2 u);
+    bool scatter(const Surface& surface, float u_lobe, Vec2 u, PathVertex* vertex);
+
+    // ---- path_medium.cpp
+    /// Adds what the medium emits on the way and decides whether the ray gets through.
+    MediumEvent cross_medium(float length);
+    bool scatter_in_medium(float distance);
+
+    const RenderScene& scene_;
+    Ray ray_;
+    Sampler& sampler_;
+    const int max_depth_;
+    PathRecord* const record_;
+
+    PathResult result_;
+    Rgb beta_{1};
+    float pdf_ = 0;  // of the last sampled direction
+    bool specular_ =
+        true;  // the last lobe (the camera counts as one): no light sampling could find it
+    bool sharp_so_far_ = true;
+    float sharp_probability_ = 1;  // of the specular lobes that were chosen, while sharp so far
+    float roulette_scale_ = 1;
+    MediumId medium_ = -1;
+    int passed_interfaces_ = 0;
+    int depth_ = 0;       ///< scattering events so far
+    float glow_ = 0;      ///< luminance from media since the last vertex, for the record
+    Vec3 camera_origin_;  ///< where the path starts
+    GuideMixture guide_;  // at the current vertex
+    Vec3 light_normal_;   // what the lights are told at the current vertex
+    Vec3 previous_position_, previous_normal_;  // and at the last one, for the weights
+};
+
+}  // namespace covtrace
