@@ -14,7 +14,6 @@
 #include "planes.h"
 #include "render/scene_file.h"
 #include "render/session.h"
-#include "render/version.h"
 #include "scene/summary.h"
 
 namespace covtrace::python {
@@ -177,13 +176,6 @@ Rendered render_description(SceneDescription description, const RenderOptions& o
     apply(overrides, description);
     RenderScene scene(std::move(description), isa, texture_bytes);
     RenderResult result = render(scene, options, monitor);
-    auto& m = result.image.metadata;
-    m["covtrace:version"] = std::string(kVersion);
-    m["covtrace:commit"] = std::string(kCommit);
-    m["covtrace:seed"] = std::to_string(options.seed);
-    m["covtrace:isa"] = scene.geometry.isa();
-    m["spp"] = static_cast<float>(result.statistics.samples_per_pixel);
-    m["complete"] = result.complete ? 1 : 0;
     return {std::make_shared<Planes>(std::move(result.image)), std::move(result.statistics),
             result.complete, scene.geometry.isa(), scene.materials.warnings()};
 }

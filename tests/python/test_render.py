@@ -58,8 +58,7 @@ class Rendering(unittest.TestCase):
             path = scenes.builder().write(folder)
             out = os.path.join(folder, "program.exr")
             subprocess.run([os.environ["COVTRACE"], "render", path, "-o", out, "--spp", "4",
-                            "--seed", "7", "--progress", "none",
-                            "--layers", "all,inview"], check=True, capture_output=True)
+                            "--seed", "7", "--progress", "none"], check=True, capture_output=True)
             image = covtrace.render(path, spp=4, seed=7, threads=1)
             self.assertTrue(covtrace.compare(image, out).identical)
 

@@ -1,3 +1,4 @@
+#include "scene/sigmoid_spectrum.h"
 #include "scene/spectrum.h"
 
 #include <gtest/gtest.h>
@@ -168,9 +169,10 @@ TEST(Spectrum, AbsorptionByChannelsIsNotThatOfASpectrum) {
          {Case{{0.1f, 0.5f, 2}, {1.234, 1.130, 0}}, Case{{2, 0.5f, 0.1f}, {0, 1.022, 1.159}},
           Case{{0.5f, 0.2f, 0.05f}, {1.415, 1.002, 1.021}}}) {
         const Absorbed a = absorbed(k.coefficient);
-        for (size_t c = 0; c < 3; ++c)
-            if (k.ratio[c] > 0)
-                EXPECT_NEAR(a.channels[c] / a.spectral[c], k.ratio[c], 0.02) << "channel " << c;
+        for (size_t c = 0; c < 3; ++c) {
+            if (!(k.ratio[c] > 0)) continue;
+            EXPECT_NEAR(a.channels[c] / a.spectral[c], k.ratio[c], 0.02) << "channel " << c;
+        }
     }
     // A grey medium has no such trouble.
     const Absorbed grey = absorbed(Rgb(0.5f));
