@@ -32,7 +32,7 @@ void run(const RenderScene& scene, const std::string& kind, int every, uint32_t 
         grid.emplace(scene.geometry, VoxelGridOptions{.width = std::atoi(kind.c_str())});
     const PathReplay replay(scene, {grid ? &*grid : nullptr, query ? &*query : nullptr},
                             BrdfCovariance::local);
-    const PassContext context{scene, 1, scene.description.max_depth};
+    const PassContext context{.scene = scene, .seed = 1, .max_depth = scene.description.max_depth};
     const PixelBounds region = render_region(scene.description.film);
     PathRecord record;
     PathResult path;

@@ -19,7 +19,7 @@ void* open_module() {
     std::error_code ignored;
     const fs::path folder = fs::read_symlink("/proc/self/exe", ignored).parent_path();
     for (const fs::path& file :
-         {folder / "covtrace_mpi.so", folder / "../lib/covtrace/covtrace_mpi.so"})
+         {folder / "covtrace_mpi.so", folder / "../lib/covtrace/modules/covtrace_mpi.so"})
         // MPI looks for its own parts among the symbols of all.
         if (fs::exists(file, ignored))
             if (void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL)) return module;

@@ -15,8 +15,10 @@ class CovarianceRender {
   public:
     explicit CovarianceRender(RenderJob& job) : job_(job), s_(job.state) {
         if (s_.stage == Stage::rounds) return;
-        const PhaseTimer timer(job.monitor, job.phase("spectra"));
-        job.scene.prepare_spectra(job.options.texture_bandwidth);
+        {
+            const PhaseTimer timer(job.monitor, job.phase("spectra"));
+            job.scene.prepare_spectra(job.options.texture_bandwidth);
+        }
         occluders_.emplace(job);
     }
 

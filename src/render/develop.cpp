@@ -28,6 +28,16 @@ std::vector<float> known_sizes(const FilterField& field, const CovarianceBuffer&
     return sizes;
 }
 
+/// Where no path met the light, its directions are those of light from afar. A long filter that has
+/// them would reach beyond all that its size was limited by.
+void make_round_where_unknown(FilterField& field, const CovarianceBuffer& buffer) {
+    for (size_t i = 0; i < field.covariance.size(); ++i) {
+        if (buffer.weight[i] > 0) continue;
+        const float size = covariance::filter_size(field.covariance[i]);
+        field.covariance[i] = covariance::Sym2<float>::diagonal(size * size, size * size);
+    }
+}
+
 /// What the last plan wanted; before the first one what all pixels have.
 std::vector<float> density_layer(const RenderState& state) {
     if (!state.density.empty()) return state.density;
@@ -50,6 +60,8 @@ Image gathered_image(const RenderState& state) {
         limit_by_neighbours(field, settings, beside_scattered);
         limit_by_neighbours(in_view_field, settings_in_view,
                             known_sizes(field, buffers.scattered, 0));
+        make_round_where_unknown(field, buffers.scattered);
+        make_round_where_unknown(in_view_field, buffers.in_view);
     }
     const bool emitters_found =
         std::any_of(buffers.in_view.weight.begin(), buffers.in_view.weight.end(),

@@ -21,8 +21,10 @@ class HybridRender {
     explicit HybridRender(RenderJob& job) : job_(job), s_(job.state) {
         for (uint32_t k = 0; k < 2; ++k) contexts_.push_back(half_context(job.context, k));
         if (s_.stage == Stage::rounds) return;
-        const PhaseTimer timer(job_.monitor, job_.phase("spectra"));
-        job_.scene.prepare_spectra(job_.options.texture_bandwidth);
+        {
+            const PhaseTimer timer(job_.monitor, job_.phase("spectra"));
+            job_.scene.prepare_spectra(job_.options.texture_bandwidth);
+        }
         occluders_.emplace(job_);
     }
 

@@ -51,7 +51,7 @@ struct PassContext {
     int max_depth = 5;
     float imaging_scale = 1, max_component = kInfinity;
     std::array<std::array<float, 3>, 3> white_balance{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    Shard shard;  ///< the tiles to trace
+    Shard shard = {};  ///< the tiles to trace
     uint32_t half = 0, halves = 1;
 
     /// How people name a sample: the halves take turns, so that one number finds it again.

@@ -52,7 +52,10 @@ Timed Workshop::render(LoadedScene& scene, const RenderOptions& options,
     Timed timed;
     timed.command = render_command(scene, options);
     const double start = cpu_seconds();
-    timed.result = covtrace::render(*scene.scene, options, monitor);
+    // The floors of the filters are found on light with the emitters in view apart.
+    RenderOptions apart = options;
+    apart.emitters_apart = true;
+    timed.result = covtrace::render(*scene.scene, apart, monitor);
     timed.cpu = cpu_seconds() - start;
     timed.wall = monitor.elapsed();
     if (interrupted_) throw Error(ErrorKind::interrupted, "interrupted");

@@ -12,7 +12,7 @@ from support import DONE, HEADER, LIMIT, USAGE, WORLD
 # Close to its light the sphere is brighter than the largest float; elsewhere the film limits it.
 TOO_BRIGHT = HEADER.replace('Film "rgb"', 'Film "rgb" "float maxcomponentvalue" 10') + """\
 WorldBegin
-LightSource "point" "point3 from" [0 0.5 1] "rgb I" [1 1 1] "float scale" 3e38
+LightSource "point" "point3 from" [0 0.5 1] "rgb I" [1 1 1] "float scale" 2e37
 Material "diffuse" "rgb reflectance" [.9 .9 .9]
 Shape "sphere" "float radius" 1
 """

@@ -114,7 +114,8 @@ inline std::vector<Pixels> render_seeds(const RenderScene& scene, uint64_t first
                                         uint32_t spp) {
     std::vector<Pixels> images(count);
     parallel_for(int64_t(count), [&](int64_t i) {
-        PassContext context{scene, first + uint64_t(i), scene.description.max_depth};
+        PassContext context{
+            .scene = scene, .seed = first + uint64_t(i), .max_depth = scene.description.max_depth};
         Film film({0, 0, kSize, kSize});
         const std::vector<uint32_t> counts(kPixels, spp);
         const Monitor monitor;

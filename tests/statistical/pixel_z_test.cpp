@@ -12,7 +12,7 @@ namespace covtrace {
 namespace {
 
 TEST(PixelZTest, AlarmsAsOftenAsItsAlpha) {
-    constexpr uint32_t kSpp = 128;
+    constexpr uint32_t kSpp = 256;
     constexpr int kSeeds = 60;
     constexpr std::array<double, 2> kAlphas{0.05, 0.2};
     std::array<int, 2> all{};
