@@ -20,9 +20,9 @@ def eta_of_specular(specular):
 class Value:
     """What a socket gives: a constant, or an image with a treatment."""
 
-    def __init__(self, constant=None, image=None, mapping=None, channel=None, scale=1.0, offset=0.0):
+    def __init__(self, constant=None, image=None, mapping=None, channel=None, scale=1.0, offset=0.0, filter="bilinear"):
         self.constant, self.image, self.mapping, self.channel = constant, image, mapping, channel
-        self.scale, self.offset = scale, offset
+        self.scale, self.offset, self.filter = scale, offset, filter
 
     def apply(self, pixels):
         """(h, w, 4) to (h, w, 3), or to (h, w) where one number is wanted."""
@@ -93,7 +93,8 @@ class MaterialExporter:
             return self._constant(output.default_value, grey)
         if node.type == "TEX_IMAGE" and node.image:
             channel = "A" if output.name == "Alpha" else "grey" if grey else None
-            return Value(image=node.image, mapping=self._mapping(node), channel=channel)
+            return Value(image=node.image, mapping=self._mapping(node), channel=channel,
+                         filter="point" if node.interpolation == "Closest" else "bilinear")
         if node.type in ("SEPARATE_COLOR", "SEPRGB") and grey:
             source = self._node_value(*self._linked(node.inputs[0]), False) if node.inputs[0].is_linked else None
             if source and source.image and output.name[:1] in "RGB":
@@ -143,7 +144,7 @@ class MaterialExporter:
         su, sv, du, dv = value.mapping
         self.out.write(f'Texture "{name}" "{kind}" "imagemap" "string filename" "{file}" '
                        f'"string encoding" "linear" "float uscale" {su:.9g} "float vscale" {sv:.9g} '
-                       f'"float udelta" {du:.9g} "float vdelta" {dv:.9g}\n')
+                       f'"float udelta" {du:.9g} "float vdelta" {dv:.9g} "string filter" "{value.filter}"\n')
         return name
 
     def _colour(self, parameter, value):
@@ -267,7 +268,7 @@ class MaterialExporter:
             return self._input_shader(node.inputs[2])
         if second and second.type == "BSDF_TRANSPARENT":
             inverse = (Value(image=amount.image, mapping=amount.mapping, channel=amount.channel, scale=-amount.scale,
-                             offset=1 - amount.offset) if amount.image else Value(1 - amount.constant))
+                             offset=1 - amount.offset, filter=amount.filter) if amount.image else Value(1 - amount.constant))
             self.alpha = self._number("alpha", inverse)
             return self._input_shader(node.inputs[1])
         if "EMISSION" in (n.type for n in (first, second) if n):
