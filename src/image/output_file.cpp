@@ -96,7 +96,13 @@ void OutputFile::keep_older(const std::filesystem::path& earlier) {
     second += kPartSuffix + std::to_string(::getpid());
     ::unlink(second.c_str());
     if (::link(final_.c_str(), second.c_str()) == 0) {
-        if (::rename(second.c_str(), earlier.c_str()) == 0) return;
+        const bool renamed = ::rename(second.c_str(), earlier.c_str()) == 0;
+        // Where both are names of one file, as after a process that was killed here, renaming
+        // leaves the second name.
+        if (renamed) {
+            ::unlink(second.c_str());
+            return;
+        }
         const int error_number = errno;
         ::unlink(second.c_str());
         fail(error_number);
