@@ -72,12 +72,12 @@ void film_add(benchmark::State& state) {
     repeat(
         state,
         [](Rng& rng) {
-            FilmPixel::Sample s;
+            FilmSample s;
             s.radiance = Rgb(rng.next_float());
             s.hit = true;
             return s;
         },
-        [&](const FilmPixel::Sample& s) {
+        [&](const FilmSample& s) {
             pixel.add(s);
             return pixel.mean.r;
         });

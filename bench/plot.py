@@ -43,15 +43,17 @@ def panel(title, curves, x_label, y_label):
     return "\n".join(out)
 
 
-def write(path, panels, x_label, y_label):
-    """panels: title -> curves; written beside and renamed, three in a row."""
+def write(path, panels, x_label, y_label, note=""):
+    """panels: title -> curves; written beside and renamed, three in a row, `note` below them."""
     columns = min(3, len(panels))
     rows = -(-len(panels) // columns)
+    height = rows * HEIGHT + (20 if note else 0)
     body = [f'<g transform="translate({k % columns * WIDTH} {k // columns * HEIGHT})">\n{panel(t, c, x_label, y_label)}\n</g>'
             for k, (t, c) in enumerate(panels.items())]
     path = pathlib.Path(path)
     beside = path.with_name(path.name + ".part")
-    beside.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {columns * WIDTH} {rows * HEIGHT}" '
+    beside.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {columns * WIDTH} {height}" '
                       f'width="{columns * WIDTH}" font-family="sans-serif" font-size="11">\n'
-                      f'<rect width="100%" height="100%" fill="white"/>\n' + "\n".join(body) + "\n</svg>\n")
+                      f'<rect width="100%" height="100%" fill="white"/>\n' + "\n".join(body) +
+                      f'\n<text x="4" y="{height - 6}">{escape(note)}</text>\n</svg>\n')
     beside.rename(path)

@@ -224,6 +224,26 @@ RC_GTEST_PROP(Definiteness, EveryChangeOfCoordinatesKeepsIt, ()) {
         field, ThinLens<double>{.e3 = -field.frame.z, .focus_distance = 2, .lens_radius = 0.1})));
 }
 
+// `sensor` is written out for each camera; its matrix is compared with exact rays in rays_test.
+RC_GTEST_PROP(Sensor, IsTheTransformByTheCamerasMatrix, ()) {
+    const Matrix s = draw_psd();
+    const Frame eye = draw_frame(draw_direction());
+    // Up to 53 degrees off the axis, in a frame that is turned and of either handedness.
+    const double off = draw(0, 0.8), phi = draw(0, 6.28);
+    const Vec3 to_eye =
+        std::sqrt(1 - off * off) * eye.z + off * (std::cos(phi) * eye.x + std::sin(phi) * eye.y);
+    const Frame f = draw_frame(-to_eye);
+    const double focus = draw(0.5, 4), radius = draw_int(0, 1) * draw(0.01, 1), px = draw(10, 100),
+                 py = draw(10, 100), shutter = draw(0, 2);
+    const auto agrees = [&](const auto& camera) {
+        const Matrix expected = transform(s, sensor_matrix(f, camera));
+        return distance(sensor(s, f, camera), expected, largest(s)) < kExact;
+    };
+    RC_ASSERT(agrees(ThinLens<double>{eye.x, eye.y, eye.z, focus, radius, px, py, shutter}));
+    RC_ASSERT(
+        agrees(OrthographicLens<double>{eye.x, eye.y, eye.z, focus, radius, px, py, shutter}));
+}
+
 // ---- aligned closed forms
 
 RC_GTEST_PROP(Aligned, GeneralOperatorsReduceToTheClosedForms, ()) {

@@ -21,6 +21,8 @@ template <typename... More>
 constexpr uint64_t hash_combine(uint64_t a, uint64_t b, More... more) {
     return hash_combine(hash_combine(a, b), static_cast<uint64_t>(more)...);
 }
+/// The largest that `to_unit_float` gives.
+inline constexpr float kLargestBelowOne = 1 - 0x1p-24f;
 /// In [0, 1), 24 bits.
 constexpr float to_unit_float(uint32_t bits) {
     return static_cast<float>(bits >> 8) * 0x1p-24f;

@@ -193,6 +193,10 @@ WorldTriangle Geometry::world_triangle(uint32_t shape, uint32_t triangle, float 
 const std::string& Geometry::isa() const {
     return impl_->device.isa();
 }
+bool Geometry::has_interfaces() const {
+    return impl_->any_interface;
+}
+
 Bounds3 Geometry::bounds() const {
     return impl_->bounds;
 }

@@ -62,6 +62,8 @@ class Geometry {
     /// The instruction set that rays are traced with: as asked for, or what Embree chose ("sse2" to
     /// "avx512").
     const std::string& isa() const;
+    /// Whether any shape is, or by its mix may be, no surface but a border between media.
+    bool has_interfaces() const;
     /// Over the whole shutter. Empty scene: a unit box about the origin.
     Bounds3 bounds() const;
     /// Bytes held by the shapes; neither Embree's nor meshes of the description are counted.

@@ -13,13 +13,19 @@ bool has_interface_material(const SceneDescription& scene, const ShapeDescriptio
                                       scene.materials[static_cast<size_t>(shape.material)].value);
 }
 
-/// Whether a mix of materials may turn out to be no surface at all.
-bool may_mix_in_interface(const SceneDescription& scene, MaterialId material) {
-    if (material < 0) return false;
-    const MaterialDescription& m = scene.materials[static_cast<size_t>(material)];
-    if (!m.mix) return std::holds_alternative<InterfaceMaterial>(m.value);
-    return may_mix_in_interface(scene, m.mix->materials[0]) ||
-           may_mix_in_interface(scene, m.mix->materials[1]);
+/// For each material, whether it may turn out to be no surface at all, by being mixed with one.
+/// A mix comes after what it mixes, so each is looked at once however deep they nest.
+std::vector<bool> may_be_interface(const SceneDescription& scene) {
+    std::vector<bool> may;
+    may.reserve(scene.materials.size());
+    for (const MaterialDescription& m : scene.materials) {
+        bool is = !m.mix && std::holds_alternative<InterfaceMaterial>(m.value);
+        if (m.mix)
+            for (MaterialId part : m.mix->materials)
+                is = is || (part >= 0 && may.at(static_cast<size_t>(part)));
+        may.push_back(is);
+    }
+    return may;
 }
 
 /// Whether alpha hides all of the shape: a light that can't be seen, for no other shape is kept.
@@ -54,6 +60,7 @@ std::vector<float> key_times(const SceneDescription& scene) {
 struct Geometry::Impl::Builder {
     Impl& g;
     const SceneDescription& scene;
+    const std::vector<bool> may_be_interface;  ///< by material
 
     void place(const ShapeDescription& shape, bool is_instanced) {
         const bool flip =
@@ -71,13 +78,11 @@ struct Geometry::Impl::Builder {
     void add(ShapeScene& target, uint32_t shape) const {
         const bool has_alpha = g.placed[shape].description.alpha >= 0;
         // What may be an interface in places is asked for its material there by `visibility`.
-        const bool may_be_interface =
-            g.is_interface[shape] ||
-            may_mix_in_interface(scene, g.placed[shape].description.material);
-        const unsigned mask = may_be_interface ? kInterfaceMask
-                              : has_alpha      ? kAlphaMask
-                                               : kSolidMask;
-        g.any_alpha = g.any_alpha || mask == kAlphaMask;
+        const MaterialId material = g.placed[shape].description.material;
+        const bool may_pass = material >= 0 && may_be_interface[static_cast<size_t>(material)];
+        const unsigned mask = may_pass ? kInterfaceMask : has_alpha ? kAlphaMask : kSolidMask;
+        g.any_interface = g.any_interface || may_pass;
+        g.any_alpha = g.any_alpha || has_alpha;
         GeometryHandle geometry = new_shape_geometry(g.device, g.local[shape], mask);
         if (geometry) attach(target, geometry.get(), shape);
     }
@@ -205,7 +210,7 @@ struct Geometry::Impl::Builder {
 Geometry::Impl::Impl(const SceneDescription& scene, const std::string& isa)
     : device(isa), clock(scene.camera.shutter_open, scene.camera.shutter_close, key_times(scene)) {
     try {
-        Builder{*this, scene}.run();
+        Builder{*this, scene, may_be_interface(scene)}.run();
     } catch (const std::bad_alloc&) {
         throw Error(ErrorKind::limit, "out of memory while building the scene's geometry");
     }

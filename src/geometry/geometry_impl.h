@@ -41,6 +41,7 @@ struct Geometry::Impl {
     std::vector<LocalShape> local;  ///< of the shape of the same index in `placed`
     std::vector<bool> is_interface;
     bool any_alpha = false;
+    bool any_interface = false;
     AlphaLookup alpha;
     std::vector<AnimatedTransform> instance_motions;
     std::vector<ShapeScene> scenes;  ///< of objects and of moving shapes

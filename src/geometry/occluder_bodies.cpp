@@ -44,6 +44,12 @@ bool is_flat(const LocalShape& shape) {
     return std::holds_alternative<TriangleShape>(shape) || (patches && patches->parallelograms);
 }
 
+/// Of a flat shape.
+size_t triangle_count(const LocalShape& shape) {
+    if (const auto* mesh = std::get_if<TriangleShape>(&shape)) return mesh->mesh->triangles.size();
+    return 2 * std::get<PatchShape>(shape).mesh->patches.size();
+}
+
 Bounds3 transformed(const Bounds3& b, const Affine& map) {
     const Vec3d c = map.point(Vec3d(b.center())), h = map.absolute(Vec3d(b.diagonal() * 0.5f));
     Bounds3 r;
@@ -78,7 +84,7 @@ OccluderBodies::OccluderBodies(const Geometry::Impl& g, std::function<bool()> ca
     double perforated = 0;
     for (size_t i = 0; i < g.local.size(); ++i)
         if (has_holes(static_cast<uint32_t>(i)) && is_flat(g.local[i]))
-            perforated += static_cast<double>(Tessellation(g.local[i], 1, 1).size());
+            perforated += static_cast<double>(triangle_count(g.local[i]));
     per_edge_ = static_cast<int>(std::min<double>(
         std::sqrt(kPerforatedTriangles / std::max(1.0, perforated)), kMostPerEdge));
     std::vector<std::vector<OccluderBody>> of_scene(g.scenes.size());

@@ -31,10 +31,11 @@ struct OutlineEvents {
 class OccluderQuery {
   public:
     /// All surfaces but interfaces, instances and moving shapes where they are at a query's time;
-    /// spheres exactly, other curved
-    /// shapes as fine polygons, flat ones with the holes that their alpha textures cut, in
-    /// pieces of a 64th of a triangle's edge or, where these would be too many, larger ones. Once
-    /// `cancelled` says yes, no more shapes are added. Throws Error(limit) where memory runs out.
+    /// spheres exactly, other curved shapes as fine polygons, flat ones with the holes that their
+    /// alpha textures cut, in pieces of a 64th of a triangle's edge or, where these would be too
+    /// many, larger ones, down to a quarter; with more triangles yet (125,000 that have holes)
+    /// these count as whole. Once `cancelled` says yes, no more shapes are added. Throws
+    /// Error(limit) where memory runs out.
     explicit OccluderQuery(const Geometry& geometry, std::function<bool()> cancelled = {});
     ~OccluderQuery();
     OccluderQuery(const OccluderQuery&) = delete;

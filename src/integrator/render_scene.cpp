@@ -20,8 +20,7 @@ RenderScene::RenderScene(SceneDescription scene_description, const std::string& 
     description.warnings.insert(description.warnings.end(), reduced.begin(), reduced.end());
     for (const MediumDescription& m : description.media)
         media.push_back({m.sigma_a, m.sigma_s, m.emission, m.g});
-    for (const PlacedShape& shape : geometry.shapes())
-        has_interfaces |= materials.may_be_interface(shape.description.material);
+    has_interfaces = geometry.has_interfaces();
     unbounded_distance = 2 * geometry.bounds().radius();
     guide = CausticGuide(*this);
 }

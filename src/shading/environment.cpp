@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/fast_math.h"
 #include "core/parallel.h"
 #include "core/warp.h"
 #include "shading/light_delta.h"
@@ -17,18 +18,6 @@ constexpr int kMostTapsPerAxis = 4;
 Vec3 from_angles(float theta, float phi) {
     const float s = std::sin(theta);
     return {s * std::cos(phi), s * std::sin(phi), std::cos(theta)};
-}
-
-/// The angle of (x, y), radians in [-pi, pi], to 2e-5: far below a cell of the measured spectrum,
-/// at a tenth of the price of atan2. Coefficients after Hastings 1955, sheet 11.
-float rough_angle(float y, float x) {
-    const float ax = std::abs(x), ay = std::abs(y);
-    const float t = std::min(ax, ay) / std::max(std::max(ax, ay), 1e-30f), t2 = t * t;
-    float a = t * (0.9998660f +
-                   t2 * (-0.3302995f + t2 * (0.1801410f + t2 * (-0.0851330f + t2 * 0.0208351f))));
-    if (ay > ax) a = kPi / 2 - a;
-    if (x < 0) a = kPi - a;
-    return y < 0 ? -a : a;
 }
 
 bool preserves_lengths(const Transform& t) {
@@ -117,8 +106,8 @@ AngularCovariance Environment::spectrum(Vec3 w) const {
     }
     const Vec3 local = to_light(w);
     const float horizontal = std::sqrt(local.x * local.x + local.y * local.y);
-    const float theta = rough_angle(horizontal, local.z);
-    float phi = rough_angle(local.y, local.x);
+    const float theta = arctangent(horizontal, local.z);
+    float phi = arctangent(local.y, local.x);
     if (phi < 0) phi += 2 * kPi;
     const float inverse = 1 / horizontal;
     const float cos_phi = horizontal > 0 ? local.x * inverse : 1,

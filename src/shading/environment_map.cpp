@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/fast_math.h"
+#include "core/hash.h"
 #include "core/parallel.h"
 #include "image/color_encoding.h"
 #include "image/raster.h"
@@ -15,7 +16,6 @@ namespace covtrace {
 
 namespace {
 
-constexpr float kLargestBelowOne = 1 - 0x1p-24f;
 /// What is brighter is damage (the sun is below 1e10), and sums of it would overflow.
 constexpr float kBrightest = 1e18f;
 

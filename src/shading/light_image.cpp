@@ -124,7 +124,8 @@ Vec2 LightImage::place_per_radian(Vec3 w, Vec3 axis) const {
                               b = place(normalize(w + axis * kStep));
     // Across a border of the octahedral square: its mean scale. At the rim of a slide: none.
     const float mean = is_slide() ? 0.0f : 1 / std::sqrt(4 * kPi);
-    if (!a || !b || length(*b - *a) > 0.1f) return {mean, mean};
+    const bool crosses_border = !is_slide() && a && b && length(*b - *a) > 0.1f;
+    if (!a || !b || crosses_border) return {mean, mean};
     return (*b - *a) * (0.5f / kStep);
 }
 

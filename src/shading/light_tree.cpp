@@ -2,13 +2,12 @@
 
 #include <cmath>
 
+#include "core/hash.h"
 #include "shading/light_weight.h"
 
 namespace covtrace {
 
 namespace {
-
-constexpr float kLargestBelowOne = 1 - 0x1p-24f;
 
 /// cos(max(0, a - b)) for angles in [0, pi].
 inline float cos_of_excess(float sin_a, float cos_a, float sin_b, float cos_b) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/hash.h"
 #include "shading/light_weight.h"
 #include "shading/lights_impl.h"
 
@@ -9,7 +10,6 @@ namespace covtrace {
 
 namespace {
 
-constexpr float kLargestBelowOne = 1 - 0x1p-24f;
 /// Neither finite nor infinite lights are trusted to be negligible by an estimate that knows no
 /// shadows.
 constexpr float kSmallestShare = 0.1f;

@@ -267,12 +267,6 @@ MaterialTextures MaterialStore::textures(MaterialId id) const {
     return {c.reflectance.texture, c.transmittance.texture};
 }
 
-bool MaterialStore::may_be_interface(MaterialId id) const {
-    if (id < 0 || !description(id).mix) return is_interface(id);
-    const auto& [first, second] = description(id).mix->materials;
-    return may_be_interface(first) || may_be_interface(second);
-}
-
 bool MaterialStore::is_interface(MaterialId id) const {
     return id >= 0 && std::holds_alternative<InterfaceMaterial>(
                           materials_[static_cast<size_t>(id)].description.value);

@@ -59,8 +59,6 @@ class MaterialStore {
               float width = 0) const;
     MaterialTextures textures(MaterialId id) const;
     bool is_interface(MaterialId id) const;
-    /// The same, also for mixes that are an interface in places.
-    bool may_be_interface(MaterialId id) const;
     /// Whether a bump or normal map turns the normals; see normal_map.h.
     bool has_normal_map(MaterialId id) const;
     const MaterialDescription& description(MaterialId id) const {

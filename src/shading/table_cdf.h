@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/hash.h"
+
 namespace covtrace {
 
 class TableCdf {
@@ -27,7 +29,6 @@ class TableCdf {
     }
 
   private:
-    static constexpr float kLargestBelowOne = 1 - 0x1p-24f;
     static constexpr size_t kEntriesPerSlice = 2;
 
     std::vector<float> upper_;     ///< cumulated shares, the last is 1

@@ -87,6 +87,9 @@ Value TextureImage::filtered(Vec2 st, Filter filter, ImageFootprint footprint, f
         }
         if (shorter > 0 && level_of(longer) > 0) {
             const float level = level_of(shorter), fine = std::floor(level);
+            // No level is coarser, however many repeats of the image the ellipse covers.
+            if (level >= float(levels_.size() - 1))
+                return decoded<Value>(bilinear(st, levels_.size() - 1), channel);
             const Value first = ellipse<Value>(st, footprint, size_t(fine), channel);
             if (level == fine) return first;
             return between(level - fine, first,

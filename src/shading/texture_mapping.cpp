@@ -83,9 +83,11 @@ PointFootprint footprint_on(const SurfaceHit& hit, Vec3 w, float width) {
 ImageFootprint image_footprint(const TextureMapping& mapping, const TexturePoint& at) {
     const PointFootprint& f = at.footprint;
     if (f.is_point()) return {};
-    if (mapping.kind == TextureMapping::Kind::uv)
-        return {{mapping.scale_u * f.duv[0].x, mapping.scale_v * f.duv[0].y},
-                {mapping.scale_u * f.duv[1].x, mapping.scale_v * f.duv[1].y}};
+    const auto along = [&mapping](Vec2 duv) {
+        return Vec2{mapping.scale_u * duv.x + mapping.u_per_v * duv.y,
+                    mapping.v_per_u * duv.x + mapping.scale_v * duv.y};
+    };
+    if (mapping.kind == TextureMapping::Kind::uv) return {along(f.duv[0]), along(f.duv[1])};
     const StGradient g = st_gradient(mapping, at, f.dp[0], f.dp[1]);
     return {{g.s.x, g.t.x}, {g.s.y, g.t.y}};
 }

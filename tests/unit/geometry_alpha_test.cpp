@@ -54,6 +54,31 @@ TEST(GeometryAlpha, HolesLetRaysThroughToWhatLiesBehind) {
     EXPECT_TRUE(g.occluded({{0.5f, 0.2f, -1}, {0, 0, 1}, 0, 4.1f}));
 }
 
+TEST(GeometryAlpha, CountsOnWhatMayBeAnInterfaceToo) {
+    SceneDescription scene = pile(1);
+    scene.materials.resize(3);
+    scene.materials[1].value = InterfaceMaterial{};
+    scene.materials[2].mix = MaterialMix{{0, 1}, 0};
+    scene.shapes[0].material = 2;
+    Geometry g(scene);
+    g.set_alpha([](TextureId, Vec2, Vec3) { return 0.0f; });
+    SurfaceHit hit;
+    ASSERT_TRUE(g.intersect({{0.5f, 0.2f, -1}, {0, 0, 1}}, hit));
+    EXPECT_EQ(hit.shape, 1u);
+    EXPECT_TRUE(g.has_interfaces());
+}
+
+// What asks whether a mix may be no surface must not walk all of its 2^100 ends.
+TEST(GeometryAlpha, MixesThatMixTheSameTwiceEach) {
+    SceneDescription scene = pile(0);
+    scene.materials.resize(101);
+    scene.materials[0].value = InterfaceMaterial{};
+    for (MaterialId i = 1; i <= 100; ++i)
+        scene.materials[size_t(i)].mix = MaterialMix{{i - 1, i - 1}, 0};
+    scene.shapes[0].material = 100;
+    EXPECT_TRUE(Geometry(scene).has_interfaces());
+}
+
 TEST(GeometryAlpha, WithoutALookupEverythingIsOpaque) {
     const Geometry g(pile(1));
     SurfaceHit hit;

@@ -10,8 +10,6 @@
 namespace covtrace {
 namespace {
 
-constexpr float kLargestBelowOne = 1 - 0x1p-24f;
-
 std::vector<double> cumulated(std::vector<double> weights) {
     std::partial_sum(weights.begin(), weights.end(), weights.begin());
     return weights;

@@ -169,9 +169,8 @@ TEST(TextureStore, DecodesScalesAndInverts) {
 
 TEST(TextureStore, SharesEqualImages) {
     const TemporaryFolder folder("texture_share");
-    const auto file = folder.write_ppm(
-        "a.ppm", 16, 16,
-        std::vector<uint8_t>(size_t(3 * (16 * 16 + 8 * 8 + 4 * 4 + 2 * 2 + 1)), 100));
+    const auto file =
+        folder.write_ppm("a.ppm", 16, 16, std::vector<uint8_t>(size_t(3 * 16 * 16), 100));
     const auto memory_of = [&](const std::vector<ImageTexture>& textures) {
         TextureScene scene;
         for (const ImageTexture& t : textures) scene.add(t);

@@ -4,6 +4,7 @@
 #include "core/rng.h"
 #include "shading/texture.h"
 #include "shading/texture_image.h"
+#include "shading/texture_mapping.h"
 
 namespace covtrace {
 namespace {
@@ -129,12 +130,37 @@ TEST(TextureFilter, StrangeFootprintsGiveFiniteValues) {
     const TextureImage image = noise(16, 16);
     const float inf = kInfinity, nan = std::numeric_limits<float>::quiet_NaN();
     for (const Filter f : kFilters)
-        for (const float x : {0.0f, 1e-30f, 1.0f, 1e30f, inf, nan})
-            for (const float y : {0.0f, 1.0f, 1e30f, nan})
+        for (const float x : {0.0f, 1e-30f, 1.0f, 1e4f, 1e12f, 1e30f, inf, nan})
+            for (const float y : {0.0f, 1.0f, 1e4f, 1e12f, 1e30f, nan})
                 for (const float s : {0.3f, 1e30f, nan}) {
                     const float v = image.value({s, 0.5f}, f, {{x, y}, {y, -x}}, 8);
                     ASSERT_TRUE(v >= 0.19f && v <= 0.81f) << x << " " << y << " " << s << ": " << v;
                 }
+}
+
+TEST(TextureFilter, AnEllipseOverManyRepeatsIsTheCoarsestLevel) {
+    const TextureImage image = noise(16, 16);
+    // A lookup of all its texels would not end.
+    for (const float longer : {100.0f, 1e4f, 1e12f}) {
+        const float v =
+            image.value({0.3f, 0.5f}, Filter::ewa, {{longer, 0}, {0, 0.5f * longer}}, 8);
+        EXPECT_EQ(v, image.value({0.3f, 0.5f}, Filter::trilinear, {{1e9f, 0}, {0, 1e9f}}, 8));
+    }
+}
+
+TEST(TextureFilter, FootprintsTurnWithTheMapping) {
+    TexturePoint at;
+    at.footprint.dp = {Vec3{1, 0, 0}, Vec3{0, 1, 0}};
+    at.footprint.duv = {Vec2{0.5f, 0}, Vec2{0, 0.25f}};
+    TextureMapping mapping;
+    mapping.scale_u = mapping.scale_v = 0;
+    mapping.u_per_v = 3;
+    mapping.v_per_u = -2;
+    const ImageFootprint turned = image_footprint(mapping, at);
+    EXPECT_FLOAT_EQ(turned.a.x, 0);
+    EXPECT_FLOAT_EQ(turned.a.y, -1);
+    EXPECT_FLOAT_EQ(turned.b.x, 0.75f);
+    EXPECT_FLOAT_EQ(turned.b.y, 0);
 }
 
 TEST(TextureFilter, FootprintOnATiltedPlane) {
