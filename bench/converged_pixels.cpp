@@ -19,7 +19,7 @@
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "image/image.h"
-#include "render/pass.h"
+#include "render/job.h"
 #include "render/session.h"
 #include "scene/read_scene.h"
 
@@ -75,10 +75,7 @@ void run(const Arguments& a) {
     overrides.resolution = {like.display.width(), like.display.height()};
     apply(overrides, description);
     const RenderScene scene(std::move(description));
-    const auto& d = scene.description;
-    const PassContext context{scene, 0, d.max_depth,
-                              (d.camera.shutter_close - d.camera.shutter_open) * d.film.iso / 100,
-                              d.film.max_component_value};
+    const PassContext context = pass_context(scene, RenderOptions());
 
     Image out;
     out.data = like.data;

@@ -8,6 +8,7 @@
 // from a narrower one. docs/decisions/0004 has the table.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -29,7 +30,10 @@ double error(const Case& c, const FilterSettings& settings, float in_view) {
     const PredictedImage& r = c.rendered;
     FilterField field = filter_field(r.prediction.spectrum, r.prediction.width, r.prediction.height,
                                      FilterRule::verified, settings);
-    limit_by_neighbours(field, settings);
+    std::vector<float> beside;
+    for (const auto& s : r.in_view_filters.covariance)
+        beside.push_back(std::max(settings.limits.s_min, covariance::filter_size(s)));
+    limit_by_neighbours(field, settings, beside);
     FilterField emitters = r.in_view_filters;
     for (auto& s : emitters.covariance)
         s = covariance::clamp_eigenvalues(

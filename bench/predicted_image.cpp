@@ -33,16 +33,18 @@ PredictedImage read_predicted_image(const std::filesystem::path& file) {
     channel("inview.R");
     const auto& samples = channel("samples.Y");
     const float narrowest = sqr(filter_settings_in_view(16).limits.s_min);
-    p.in_view_filters = {p.image.width(), p.image.height(), {}};
+    p.filters = p.in_view_filters = {p.image.width(), p.image.height(), {}};
     for (size_t i = 0; i < samples.size(); ++i) {
         p.in_view.push_back(p.image.rgb(i, "inview."));
         p.scattered.push_back(p.image.rgb(i, "raw.") - p.in_view.back());
         p.count.push_back(uint32_t(samples[i]));
+        const auto filter = [&](const std::string& layer) {
+            return covariance::Sym2<float>{channel(layer + ".xx")[i], channel(layer + ".xy")[i],
+                                           channel(layer + ".yy")[i]};
+        };
+        p.filters.covariance.push_back(filter("filter"));
         p.in_view_filters.covariance.push_back(
-            emitters ? covariance::Sym2<float>{channel("inviewfilter.xx")[i],
-                                               channel("inviewfilter.xy")[i],
-                                               channel("inviewfilter.yy")[i]}
-                     : covariance::Sym2<float>{narrowest, 0, narrowest});
+            emitters ? filter("inviewfilter") : covariance::Sym2<float>{narrowest, 0, narrowest});
     }
     return p;
 }

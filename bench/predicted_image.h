@@ -16,8 +16,9 @@ struct PredictedImage {
     Image image;
     Prediction prediction;  ///< of scattered light, smoothed, as the renderer's filters use it
     std::vector<Rgb> scattered,
-        in_view;                  ///< means of each pixel's own samples, which they add up to
-    FilterField in_view_filters;  ///< as the renderer applied them; the narrowest without emitters
+        in_view;  ///< means of each pixel's own samples, which they add up to
+    /// As the renderer applied them; those of emitters in view the narrowest where there are none.
+    FilterField filters, in_view_filters;
     std::vector<uint32_t> count;
 };
 

@@ -277,8 +277,9 @@ void report(std::span<const char* const> files, bool by_neighbours, const char* 
     const Converged image = read_converged(files.subspan(2), predicted.image);
     const FilterSettings settings = filter_settings(16);
     const Prediction& p = predicted.prediction;
-    FilterField field = filter_field(p.spectrum, p.width, p.height, FilterRule::verified, settings);
-    if (by_neighbours) limit_by_neighbours(field, settings);
+    const FilterField field =
+        by_neighbours ? predicted.filters
+                      : filter_field(p.spectrum, p.width, p.height, FilterRule::verified, settings);
     const FilterField& in_view = predicted.in_view_filters;
     std::vector<bool> narrowest;
     for (const MeasuredPixel& m : pixels) {
