@@ -19,7 +19,6 @@ def add_arguments(parser, scenes):
                         help="generated scenes, scenes of ../shared, or .pbrt files (default: %(default)s)")
     parser.add_argument("--reference-spp", type=int, default=4096, help="of both halves together (default: %(default)s)")
     parser.add_argument("--resolution", default="320x180")
-    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/quality")
 
 

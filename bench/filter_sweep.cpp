@@ -30,9 +30,11 @@ double error(const Case& c, const FilterSettings& settings, float in_view) {
     const PredictedImage& r = c.rendered;
     FilterField field = filter_field(r.prediction.spectrum, r.prediction.width, r.prediction.height,
                                      FilterRule::verified, settings);
-    std::vector<float> beside;
-    for (const auto& s : r.in_view_filters.covariance)
-        beside.push_back(std::max(settings.limits.s_min, covariance::filter_size(s)));
+    std::vector<float> beside(r.count.size(), kInfinity);
+    for (size_t i = 0; i < beside.size(); ++i)
+        if (r.shows_emitter[i])
+            beside[i] = std::max(settings.limits.s_min,
+                                 covariance::filter_size(r.in_view_filters.covariance[i]));
     limit_by_neighbours(field, settings, beside);
     FilterField emitters = r.in_view_filters;
     for (auto& s : emitters.covariance)
@@ -75,9 +77,9 @@ int main(int argc, char** argv) {
                        std::exp(log_sum / double(cases.size())), each);
         };
         fmt::print("    c  s_min  slope  in view  geometric mean   relMSE x 1e5 per image\n");
-        for (float c : {1.5f, 2.0f, 2.5f, 3.0f, 4.0f})
-            for (float s_min : {0.25f, 0.32f, 0.4f, 0.5f, 0.6f})
-                for (float slope : {0.03f, 0.05f, 0.1f, 0.2f}) print({c, {s_min, 15}, slope}, 1);
+        for (float c : {1.5f, 2.0f, 2.5f, 3.0f})
+            for (float s_min : {0.32f, 0.4f, 0.5f, 0.6f})
+                for (float slope : {0.05f, 0.1f, 0.2f, 0.4f, 0.8f}) print({c, {s_min, 15}, slope}, 1);
         for (float in_view : {2.0f, 1.4f, 1.0f, 0.71f, 0.5f, 0.35f, 0.25f, 0.0f})
             print(FilterSettings{}, in_view);
     } catch (const std::exception& e) {

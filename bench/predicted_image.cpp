@@ -31,13 +31,15 @@ PredictedImage read_predicted_image(const std::filesystem::path& file) {
 
     channel("raw.R");
     channel("inview.R");
-    const auto& samples = channel("samples.Y");
+    const auto &samples = channel("samples.Y"), &weight = channel("covweight.Y");
     const float narrowest = sqr(filter_settings_in_view(16).limits.s_min);
     p.filters = p.in_view_filters = {p.image.width(), p.image.height(), {}};
     for (size_t i = 0; i < samples.size(); ++i) {
         p.in_view.push_back(p.image.rgb(i, "inview."));
         p.scattered.push_back(p.image.rgb(i, "raw.") - p.in_view.back());
         p.count.push_back(uint32_t(samples[i]));
+        // Their weights add up to that of all light.
+        p.shows_emitter.push_back(emitters && weight[i] > (1 + 1e-6f) * buffer.weight[i]);
         const auto filter = [&](const std::string& layer) {
             return covariance::Sym2<float>{channel(layer + ".xx")[i], channel(layer + ".xy")[i],
                                            channel(layer + ".yy")[i]};

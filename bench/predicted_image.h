@@ -19,6 +19,7 @@ struct PredictedImage {
         in_view;  ///< means of each pixel's own samples, which they add up to
     /// As the renderer applied them; those of emitters in view the narrowest where there are none.
     FilterField filters, in_view_filters;
+    std::vector<bool> shows_emitter;  ///< some covariance path of the pixel met one in view
     std::vector<uint32_t> count;
 };
 
