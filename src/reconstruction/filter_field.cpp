@@ -12,7 +12,7 @@ FilterSettings filter_settings(double samples_per_pixel) {
     FilterSettings s;
     s.c = float(covariance::filter_sharpness(n));
     s.limits.s_min = 0.5f * 2 / s.c;
-    s.slope = std::clamp(0.1f * float(std::sqrt(16 / n)), 0.05f, 0.1f);
+    s.slope = covariance::edge_beta<float> / s.c;
     return s;
 }
 

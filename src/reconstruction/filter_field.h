@@ -19,7 +19,9 @@ struct FilterSettings {
     float slope = 0.1f;  ///< how fast a filter may widen away from a narrower one, pixels per pixel
 };
 /// The settings for an average of `samples_per_pixel` samples: c and 1/s_min grow as n^(1/6), so
-/// that the bias falls as the noise does.
+/// that the bias falls as the noise does. The slope is beta / c, beta = 0.5: an edge at a distance
+/// of r pixels makes a filter of the deviation beta r / c, and a narrow neighbour stands for an
+/// edge that the pixel's own paths may not know (docs/decisions/0047).
 FilterSettings filter_settings(double samples_per_pixel);
 
 /// The same for light from emitters in view (CovarianceBuffers): with no floor to speak of, since

@@ -97,8 +97,8 @@ TEST(Gather, VarianceFallsByTheEffectiveNumberOfPixels) {
 
 TEST(FilterField, SettingsFollowTheCount) {
     EXPECT_FLOAT_EQ(filter_settings(16).c, 2);
-    EXPECT_FLOAT_EQ(filter_settings(16).slope, 0.1f);
-    EXPECT_FLOAT_EQ(filter_settings(64).slope, 0.05f);
+    EXPECT_FLOAT_EQ(filter_settings(16).slope, 0.25f);
+    EXPECT_FLOAT_EQ(filter_settings(1024).slope, 0.125f);
     EXPECT_GT(filter_settings(256).c, 3);
     EXPECT_LT(filter_settings(256).limits.s_min, 0.35f);
 }
@@ -111,7 +111,7 @@ TEST(FilterField, NeighboursLimitTheWidth) {
     limit_by_neighbours(f, settings);
     for (int x = 0; x < 21; ++x) {
         const float size = covariance::filter_size(f.covariance[size_t(x)]);
-        EXPECT_NEAR(size, std::min(std::sqrt(std::sqrt(2500.0f)), 0.5f + 0.1f * float(x)), 2e-2f)
+        EXPECT_NEAR(size, std::min(std::sqrt(std::sqrt(2500.0f)), 0.5f + 0.25f * float(x)), 2e-2f)
             << x;
     }
     // The shape stays: the long axis is still twice the short one where no clamp acts.
@@ -126,7 +126,7 @@ TEST(FilterField, FiltersOfOtherLightLimitToo) {
     limit_by_neighbours(f, settings, others);
     for (int x = 0; x < 21; ++x)
         EXPECT_NEAR(covariance::filter_size(f.covariance[size_t(x)]),
-                    0.5f + 0.1f * float(std::abs(x - 4)), 1e-3f)
+                    0.5f + 0.25f * float(std::abs(x - 4)), 1e-3f)
             << x;
 }
 

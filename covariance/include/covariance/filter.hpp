@@ -76,7 +76,7 @@ template <std::floating_point T>
 /// S_h scaled to another size, its eigenvalues clamped again: S_h (s'/s)^2.
 ///
 /// For limiting each filter by its sharper neighbours, s'(p) = min over q of s(q) + kappa |p - q|,
-/// with kappa = 0.1 at 8 to 16 samples per pixel and 0.05 from 64 on.
+/// with kappa = edge_beta / c: what an edge at that distance asks for.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> resize_filter(const Sym2<T>& filter_cov, NonDeduced<T> new_size,
                                     const FilterLimits<NonDeduced<T>>& limits = {}) noexcept {
