@@ -79,7 +79,8 @@ int main(int argc, char** argv) {
         fmt::print("    c  s_min  slope  in view  geometric mean   relMSE x 1e5 per image\n");
         for (float c : {1.5f, 2.0f, 2.5f, 3.0f})
             for (float s_min : {0.32f, 0.4f, 0.5f, 0.6f})
-                for (float slope : {0.05f, 0.1f, 0.2f, 0.4f, 0.8f}) print({c, {s_min, 15}, slope}, 1);
+                for (float slope : {0.05f, 0.1f, 0.2f, 0.4f, 0.8f})
+                    print({c, {s_min, 15}, slope}, 1);
         for (float in_view : {2.0f, 1.4f, 1.0f, 0.71f, 0.5f, 0.35f, 0.25f, 0.0f})
             print(FilterSettings{}, in_view);
     } catch (const std::exception& e) {
