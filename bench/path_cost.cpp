@@ -36,18 +36,23 @@ void run(const RenderScene& scene, const std::string& kind, int every, uint32_t 
     const PixelBounds region = render_region(scene.description.film);
     PathRecord record;
     PathResult path;
-    double sum = 0;
     const ThreadLimit one(1);
+    const auto trace = [&] {
+        double sum = 0;
+        for (int y = region.y0 + every / 2; y < region.y1; y += every)
+            for (int x = region.x0 + every / 2; x < region.x1; x += every)
+                for (uint32_t i = 0; i < paths; ++i)
+                    if (kind == "uniform") {
+                        sum += take_sample(context, x, y, i, nullptr, path).radiance.g;
+                    } else {
+                        take_sample(context, x, y, i, &record, path);
+                        sum += replay(record).weight;
+                    }
+        return sum;
+    };
+    trace();  // spectra of textures are made when they are first asked for
     CALLGRIND_START_INSTRUMENTATION;
-    for (int y = region.y0 + every / 2; y < region.y1; y += every)
-        for (int x = region.x0 + every / 2; x < region.x1; x += every)
-            for (uint32_t i = 0; i < paths; ++i)
-                if (kind == "uniform") {
-                    sum += take_sample(context, x, y, i, nullptr, path).radiance.g;
-                } else {
-                    take_sample(context, x, y, i, &record, path);
-                    sum += replay(record).weight;
-                }
+    const double sum = trace();
     CALLGRIND_STOP_INSTRUMENTATION;
     CALLGRIND_DUMP_STATS_AT(kind.c_str());
     std::printf("%s %g\n", kind.c_str(), sum);

@@ -19,7 +19,8 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
                  "average samples per pixel (default: the scene's)");
     c->add_option("--time", a.seconds, "wall-clock budget: 2.5, 45s, 3m, 1h30m")->option_text("T");
     add_positive(c, "--error", a.options.error, 1e6, "stop at this estimated sqrt(relMSE)");
-    c->add_option("--cov-spp", a.options.cov_spp, "covariance paths per pixel (default: 1 to 4)")
+    c->add_option("--cov-spp", a.options.cov_spp,
+                  "covariance paths per pixel (default: 2, hybrid: 1)")
         ->check(CLI::Range(1, 1 << 20))
         ->option_text("N");
     add_choice<DensityRule>(c, "--density", a.options.density,

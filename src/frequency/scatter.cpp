@@ -1,5 +1,6 @@
 #include "frequency/scatter.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "shading/lobe_function.h"
@@ -101,6 +102,16 @@ LightField through_glossy(const LightField& entered, const ScatterPoint& p, cons
     return reflects ? scatter_tailed(windowed, local) : cov::scatter(windowed, local);
 }
 
+bool has_lobe(const PathVertex& vertex, LobeKind kind) {
+    const auto has = [kind](const LobeShares& shares) {
+        const auto* end = shares.lobes.begin() + shares.count;
+        return std::any_of(shares.lobes.begin(), end,
+                           [kind](const LobeShare& l) { return l.kind == kind; });
+    };
+    return (vertex.direct > 0 && has(vertex.direct_event.lobes)) ||
+           (vertex.scatters && has(vertex.next_event.lobes));
+}
+
 LightField through_lobe(const LightField& entered, const cov::Emitter<double>& emitter,
                         const ScatterPoint& p, const LobeShare& lobe, BrdfCovariance rule) {
     switch (lobe.kind) {
@@ -139,22 +150,23 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
     p.motion = {d.velocity, d.angular_velocity};
     p.shading = vertex.shading;
     p.outgoing = vertex.wo;
+    const bool reflects = has_lobe(vertex, LobeKind::diffuse_reflection),
+               transmits = has_lobe(vertex, LobeKind::diffuse_transmission);
+    if (!reflects && !transmits) return p;
     const auto& m = d.uv_from_tangent;
     const cov::Mat2<double> uv_from_tangent{m[0][0], m[0][1], m[1][0], m[1][1]};
     const float uv_per_length =
         std::sqrt(0.5f * (sqr(m[0][0]) + sqr(m[0][1]) + sqr(m[1][0]) + sqr(m[1][1])));
     const float footprint_uv = footprint * uv_per_length;
     const MaterialTextures textures = scene.materials.textures(vertex.material);
-    p.reflectance =
-        texture_spectrum(scene, textures.reflectance, vertex.hit, uv_from_tangent, footprint_uv);
-    p.transmittance =
-        texture_spectrum(scene, textures.transmittance, vertex.hit, uv_from_tangent, footprint_uv);
     // What alpha lets stand of the surface varies like its reflectance.
     const TextureId alpha = scene.geometry.shapes()[vertex.hit.shape].description.alpha;
-    const cov::Sym2<double> edges =
-        texture_spectrum(scene, alpha, vertex.hit, uv_from_tangent, footprint_uv);
-    p.reflectance = p.reflectance + edges;
-    p.transmittance = p.transmittance + edges;
+    const auto spectrum = [&](TextureId id) {
+        return texture_spectrum(scene, id, vertex.hit, uv_from_tangent, footprint_uv);
+    };
+    const cov::Sym2<double> edges = spectrum(alpha);
+    if (reflects) p.reflectance = spectrum(textures.reflectance) + edges;
+    if (transmits) p.transmittance = spectrum(textures.transmittance) + edges;
     return p;
 }
 

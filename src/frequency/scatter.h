@@ -18,7 +18,7 @@ struct ScatterPoint {
     covariance::Surface<double> facing;
     covariance::Motion<double> motion;
     /// Spectra of the textures that scale the diffuse lobes, along surface.t1, t2, 1 / scene
-    /// unit^2.
+    /// unit^2; zero where the recorded events have no such lobe.
     covariance::Sym2<double> reflectance, transmittance;
     Frame shading;  ///< frame of the BSDF
     Vec3 outgoing;  ///< unit, the direction in which light leaves towards the camera

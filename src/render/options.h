@@ -39,7 +39,7 @@ struct RenderOptions {
     std::optional<double> seconds;  ///< wall clock, from `start_time` to the finished file
     std::optional<double>
         error;  ///< stop at this estimated sqrt(relMSE) of the image; not covariance
-    std::optional<int> cov_spp;  ///< covariance paths per pixel; default spp/4 in [2, 4], hybrid: 1
+    std::optional<int> cov_spp;  ///< covariance paths per pixel; default 2, hybrid: 1
     DensityRule density = DensityRule::tempered;
     Occlusion occlusion = Occlusion::query;
     int voxels = 200;  ///< width of the grid

@@ -53,16 +53,14 @@ Metadata scene_metadata(const RenderScene& scene, const RenderOptions& options) 
     return m;
 }
 
-/// Covariance paths per pixel. A budget of few samples takes few of them.
+/// Covariance paths per pixel.
 double covariance_paths(const RenderOptions& options, std::optional<double> spp) {
-    // More paths cost `hybrid` as much as ten samples each and change nothing (decision 0040).
-    constexpr double kHybrid = 1, kFewest = 2, kMost = 4;
+    // More change nothing for `hybrid` (decision 0040) and narrow the filters of `covariance`
+    // without need (0045).
+    constexpr double kHybrid = 1, kCovariance = 2;
     if (options.method == Method::uniform) return 0;
-    double paths = kHybrid;
-    if (options.cov_spp)
-        paths = *options.cov_spp;
-    else if (options.method == Method::covariance)
-        paths = spp ? std::clamp(std::floor(*spp / 4), kFewest, kMost) : kMost;
+    double paths = options.method == Method::covariance ? kCovariance : kHybrid;
+    if (options.cov_spp) paths = *options.cov_spp;
     return spp ? std::min(paths, *spp) : paths;
 }
 

@@ -133,6 +133,16 @@ Section voxels(Workshop& workshop) {
                         "25 wide against 400 wide: smaller",
                         fmt::format("{:.2f} px against {:.2f} px", coarse, fine), coarse / fine,
                         coarse < fine, s.tables[0].commands.front()});
+    s.notes.push_back(
+        "That a coarse grid makes filters small is not reproduced, and cannot be with the rule "
+        "that "
+        "is used here. Taking every occupied voxel on the way for an occluder, which is how the "
+        "thesis describes it, a coarser grid occludes more. Here an edge has no second moment, so "
+        "that its distance from the ray counts (SPEC section 2.3): a voxel tells of an edge at its "
+        "centroid, at least half a voxel away; of three voxels on the way one counts; and the one "
+        "and a half beside either end, where the surfaces themselves are, are left out. Each of "
+        "the three grows with the voxel, so that a coarse grid knows of fewer and farther edges: "
+        "its filters are wide, and its error is that of shadows that were blurred.");
     return s;
 }
 

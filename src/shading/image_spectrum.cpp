@@ -1,125 +1,25 @@
 #include "shading/image_spectrum.h"
 
+#include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <deque>
+#include <memory>
+#include <mutex>
 #include <numeric>
+#include <vector>
 
 #include "core/once.h"
-#include "core/parallel.h"
 #include "shading/scalar_field.h"
+#include "shading/window_estimates.h"
 
 namespace covtrace {
 namespace {
 
-/// Standard deviation over mean from which on a structure counts in full.
-constexpr float kFullContrast = 0.1f;
-/// Means below this share of the image's mean count as this.
-constexpr float kDarkest = 0.01f;
 /// Least ratio of the smaller to the larger eigenvalue: structures bend, so that none is as long as
 /// its straight part makes it look.
 constexpr float kMinEigenvalueRatio = 0.1f;
-/// The variance about the trend is a difference; below this share of its minuend it is rounding.
-constexpr float kMinDetrended = 0.03f;
-
 using Covariance = SpatialCovariance2;  // in cycles^2 per analysed texel^2 within this file
-
-/// The image and its square at one level of the pyramid, cells of `spacing` texels.
-struct Level {
-    ScalarField value, square;
-    float spacing = 1;
-};
-
-/// What Gaussian windows of one size see, for each cell of their level.
-struct WindowStatistics {
-    ScalarField mean;
-    ScalarField variance;       ///< of the values about their linear trend
-    ScalarField gxx, gxy, gyy;  ///< covariance of the gradient, per texel^2
-};
-
-/// Calls body(row) for all rows in parallel; rows must be independent.
-template <typename Body>
-void for_each_row(int height, const Body& body) {
-    parallel_for(height, [&](int64_t y) { body(int(y)); });
-}
-
-/// Means of gradient products over the four corners of each cell. A corner's gradient is centred
-/// alike in x and y, so that a straight edge has one direction; but it doesn't see a checkerboard
-/// of single cells, which only the finest level can hold: there half of it is plain differences.
-void gradient_products(const Level& level, WindowStatistics& out) {
-    const ScalarField& f = level.value;
-    const float per_texel2 = 1 / (level.spacing * level.spacing);
-    const float plain = level.spacing > 1 ? 0.0f : 0.5f;
-    out.gxx = out.gxy = out.gyy = f.like_this();
-    for_each_row(f.height, [&](int y) {
-        const float* rows[3] = {f.row(f.row_index(y - 1)), f.row(y), f.row(f.row_index(y + 1))};
-        for (int x = 0; x < f.width; ++x) {
-            const int columns[3] = {f.column_index(x - 1), x, f.column_index(x + 1)};
-            float xx = 0, xy = 0, yy = 0;
-            for (int j = 0; j < 2; ++j)
-                for (int i = 0; i < 2; ++i) {
-                    const float a = rows[j][columns[i]], b = rows[j][columns[i + 1]];
-                    const float c = rows[j + 1][columns[i]], d = rows[j + 1][columns[i + 1]];
-                    const float gx = 0.5f * (b - a + d - c), gy = 0.5f * (c - a + d - b);
-                    xx += 0.25f * gx * gx;
-                    xy += 0.25f * gx * gy;
-                    yy += 0.25f * gy * gy;
-                }
-            if (plain > 0) {
-                const float value = rows[1][x];
-                const auto square = [&](float v) { return 0.5f * sqr(v - value); };
-                xx += plain * (square(rows[1][columns[0]]) + square(rows[1][columns[2]]) - xx);
-                yy += plain * (square(rows[0][x]) + square(rows[2][x]) - yy);
-            }
-            out.gxx.row(y)[x] = xx * per_texel2;
-            out.gxy.row(y)[x] = xy * per_texel2;
-            out.gyy.row(y)[x] = yy * per_texel2;
-        }
-    });
-}
-
-WindowStatistics window_statistics(const Level& level, float std_in_cells) {
-    const GaussianWindow window(std_in_cells);
-    WindowStatistics w;
-    gradient_products(level, w);
-    w.gxx = smooth(w.gxx, window);
-    w.gxy = smooth(w.gxy, window);
-    w.gyy = smooth(w.gyy, window);
-    w.mean = smooth(level.value, window);
-    w.variance = smooth(level.square, window);
-    // The window's variance per axis in texels: its own and that of the filters before it.
-    const float spacing2 = level.spacing * level.spacing;
-    const float spread = window.variance * spacing2 + 0.25f * (spacing2 - 1);
-    const ScalarField& mean = w.mean;
-    for_each_row(mean.height, [&](int y) {
-        const float *above = mean.row(mean.row_index(y - 1)),
-                    *below = mean.row(mean.row_index(y + 1)), *row = mean.row(y);
-        for (int x = 0; x < mean.width; ++x) {
-            // The gradient of the windowed mean is the mean gradient, and the slope of the
-            // regression line in a Gaussian window (Stein's lemma).
-            const float gx = 0.5f *
-                             (row[mean.column_index(x + 1)] - row[mean.column_index(x - 1)]) /
-                             level.spacing;
-            const float gy = 0.5f * (below[x] - above[x]) / level.spacing;
-            float& variance = w.variance.row(y)[x];
-            variance = std::max(0.0f, variance - row[x] * row[x]);
-            variance = std::max(kMinDetrended * variance, variance - spread * (gx * gx + gy * gy));
-            w.gxx.row(y)[x] = std::max(0.0f, w.gxx.row(y)[x] - gx * gx);
-            w.gyy.row(y)[x] = std::max(0.0f, w.gyy.row(y)[x] - gy * gy);
-            w.gxy.row(y)[x] -= gx * gy;
-        }
-    });
-    return w;
-}
-
-/// One window's estimate from the gradient's covariance c.
-Covariance estimate(Covariance c, float variance, float mean, float window) {
-    if (!(variance > 0)) return {};
-    const float trace = c.ss + c.tt;
-    const float visible = std::min(1.0f, variance / sqr(kFullContrast * mean));
-    const float resolved = std::min(1.0f, window * window * trace / variance);
-    const float f = visible * resolved / (2 * kPi * kPi * variance);
-    const float limit = std::sqrt(c.ss * c.tt);
-    return {f * c.ss, f * std::clamp(c.st, -limit, limit), f * c.tt};
-}
 
 /// Raises the smaller eigenvalue where it is too small.
 Covariance bounded_anisotropy(Covariance c) {
@@ -131,59 +31,6 @@ Covariance bounded_anisotropy(Covariance c) {
     const float f = missing / (larger - smaller);
     return {c.ss + f * (larger - c.ss), c.st - f * c.st, c.tt + f * (larger - c.tt)};
 }
-
-std::vector<Level> make_pyramid(ScalarField value) {
-    ScalarField square = value;
-    for (float& v : square.values) v *= v;
-    std::vector<Level> levels;
-    levels.push_back({std::move(value), std::move(square), 1});
-    while (std::max(levels.back().value.width, levels.back().value.height) > 2) {
-        const Level& finer = levels.back();
-        levels.push_back({halved(finer.value), halved(finer.square), 2 * finer.spacing});
-    }
-    return levels;
-}
-
-/// The largest estimate by trace of all windows so far, from the widest to the finest.
-class Accumulator {
-  public:
-    explicit Accumulator(float image_mean) : image_mean_(image_mean) {}
-
-    /// Estimates of the windows with a standard deviation of `std_in_cells` at this level.
-    void add(const Level& level, float std_in_cells) {
-        WindowStatistics w = window_statistics(level, std_in_cells);
-        const int width = w.mean.width, height = w.mean.height;
-        if (wider_variance_.values.empty()) {
-            wider_variance_ = w.variance;
-            ss = st = tt = w.mean.like_this();
-        } else if (wider_variance_.width != width || wider_variance_.height != height) {
-            for (ScalarField* f : {&wider_variance_, &ss, &st, &tt})
-                *f = doubled(*f, width, height);
-        }
-        const float window = std_in_cells * level.spacing;
-        for_each_row(height, [&](int y) {
-            for (int x = 0; x < width; ++x) {
-                const float mean =
-                    std::max(w.mean.row(y)[x] + image_mean_, kDarkest * std::abs(image_mean_));
-                // A window alone underestimates the variance of waves longer than itself.
-                const float variance = std::max(w.variance.row(y)[x], wider_variance_.row(y)[x]);
-                const Covariance c{w.gxx.row(y)[x], w.gxy.row(y)[x], w.gyy.row(y)[x]};
-                const Covariance e = estimate(c, variance, mean, window);
-                if (e.ss + e.tt <= ss.row(y)[x] + tt.row(y)[x]) continue;
-                ss.row(y)[x] = e.ss;
-                st.row(y)[x] = e.st;
-                tt.row(y)[x] = e.tt;
-            }
-        });
-        wider_variance_ = std::move(w.variance);
-    }
-
-    ScalarField ss, st, tt;
-
-  private:
-    float image_mean_;
-    ScalarField wider_variance_;
-};
 
 /// Index range of a bilinear lookup on an axis of n cells; any float gives valid indices.
 struct AxisTaps {
@@ -201,26 +48,31 @@ AxisTaps axis_taps(float coordinate, float cells_per_unit, int n, bool repeats) 
 
 }  // namespace
 
-/// The image at one resolution and, from the first look-up on, its analysis.
+/// The image at one resolution and, where it was looked up, its analysis.
 class ImageSpectrum::Scale {
   public:
-    Scale(const ScalarField& image, float mean, Vec2 texels_per_unit)
-        : width_((image.width + 1) / 2),
-          height_((image.height + 1) / 2),
-          repeat_s_(image.repeat_x),
-          repeat_t_(image.repeat_y),
+    /// `values`: this resolution about the mean and all coarser ones, which outlive this.
+    Scale(std::span<const ScalarField> values, float mean, Vec2 texels_per_unit)
+        : values_(values),
+          width_((values[0].width + 1) / 2),
+          height_((values[0].height + 1) / 2),
           texels_per_unit_(texels_per_unit),
-          mean_(mean),
-          image_(image) {}
+          mean_(mean) {}
 
     /// Bilinear.
     Covariance at(float s, float t) const {
-        analysed_([this] { analyse(); });
-        const AxisTaps x = axis_taps(s, 0.5f * texels_per_unit_.x, width_, repeat_s_);
-        const AxisTaps y = axis_taps(t, 0.5f * texels_per_unit_.y, height_, repeat_t_);
+        prepared_([this] { prepare(); });
+        const ScalarField& image = values_[0];
+        const AxisTaps x = axis_taps(s, 0.5f * texels_per_unit_.x, width_, image.repeat_x);
+        const AxisTaps y = axis_taps(t, 0.5f * texels_per_unit_.y, height_, image.repeat_y);
+        const int tiles_x[2] = {x.first / kTile, x.second / kTile},
+                  tiles_y[2] = {y.first / kTile, y.second / kTile};
+        for (int j = 0; j <= int(tiles_y[1] != tiles_y[0]); ++j)
+            for (int i = 0; i <= int(tiles_x[1] != tiles_x[0]); ++i)
+                need_tile(tiles_x[i], tiles_y[j]);
         Covariance sum;
         const auto add = [&](int column, int row, float weight) {
-            const auto& c = cells_[size_t(row) * size_t(width_) + size_t(column)];
+            const Covariance& c = cells_[size_t(row) * size_t(width_) + size_t(column)];
             sum.ss += weight * c.ss;
             sum.st += weight * c.st;
             sum.tt += weight * c.tt;
@@ -232,39 +84,93 @@ class ImageSpectrum::Scale {
         return sum;
     }
 
-    size_t memory() const { return image_.memory() + cells_.size() * sizeof(Covariance); }
-
-  private:
-    void analyse() const {
-        const std::vector<Level> levels = make_pyramid(image_);
-        Accumulator sum{mean_};
-        for (size_t i = levels.size(); i-- > 0;) sum.add(levels[i], 2);
-        sum.add(levels[0], 1);
-        // The narrowest window is as wide as a cell of two by two texels, so that less would tell
-        // no more.
-        const ScalarField ss = box_reduced(sum.ss, 2), st = box_reduced(sum.st, 2),
-                          tt = box_reduced(sum.tt, 2);
-        const auto [per_s, per_t] = texels_per_unit_;
-        cells_.resize(ss.values.size());
-        for (size_t i = 0; i < cells_.size(); ++i) {
-            const Covariance c = bounded_anisotropy({ss.values[i], st.values[i], tt.values[i]});
-            cells_[i] = {c.ss * sqr(per_s), c.st * per_s * per_t, c.tt * sqr(per_t)};
-        }
-        image_ = {};
+    size_t memory() const {
+        size_t bytes = texels_made_ / 4 * sizeof(Covariance);
+        for (const WindowEstimates& level : levels_) bytes += level.memory();
+        return bytes;
     }
 
-    int width_, height_;  // cells, each of two by two texels of this resolution
-    bool repeat_s_, repeat_t_;
+  private:
+    /// Cells, each of two by two texels, that are made at once.
+    static constexpr int kTile = WindowEstimates::kTile / 2;
+    struct Tile {
+        std::once_flag once;
+        std::atomic<bool> is_made{false};  // the same, cheaper to ask
+    };
+
+    void prepare() const {
+        std::vector<ScalarField> squares{values_[0]};
+        for (float& v : squares[0].values) v *= v;
+        for (size_t i = 1; i < values_.size(); ++i) squares.push_back(halved(squares.back()));
+        squares[0] = {};
+        levels_.clear();  // of an attempt that threw
+        const WindowEstimates* coarser = nullptr;
+        for (size_t i = values_.size(); i-- > 0;) {
+            std::vector<float> windows{2};
+            // The narrowest window is as wide as a cell of two by two texels, so that less would
+            // tell no more.
+            if (i == 0) windows.push_back(1);
+            coarser = &levels_.emplace_front(values_[i], std::move(squares[i]),
+                                             float(uint64_t{1} << i), mean_, windows, coarser);
+        }
+        tiles_x_ = (width_ + kTile - 1) / kTile;
+        tiles_ = std::make_unique<Tile[]>(size_t(tiles_x_) * size_t((height_ + kTile - 1) / kTile));
+        cells_ = std::make_unique_for_overwrite<Covariance[]>(size_t(width_) * size_t(height_));
+    }
+
+    void need_tile(int tile_x, int tile_y) const {
+        Tile& tile = tiles_[size_t(tile_y) * size_t(tiles_x_) + size_t(tile_x)];
+        if (tile.is_made.load(std::memory_order_acquire)) return;
+        std::call_once(tile.once, [&] {
+            make_tile(tile_x, tile_y);
+            tile.is_made.store(true, std::memory_order_release);
+        });
+    }
+
+    void make_tile(int tile_x, int tile_y) const {
+        const int texels = 2 * kTile;
+        const ScalarField& image = values_[0];
+        const CellRect rect{tile_x * texels, tile_y * texels,
+                            std::min(image.width, (tile_x + 1) * texels),
+                            std::min(image.height, (tile_y + 1) * texels)};
+        const std::vector<WindowEstimate> found = levels_.front().of(rect);
+        texels_made_ += found.size();
+        const auto [per_s, per_t] = texels_per_unit_;
+        for (int y = rect.y0; y < rect.y1; y += 2)
+            for (int x = rect.x0; x < rect.x1; x += 2) {
+                double ss = 0, st = 0, tt = 0;
+                int count = 0;
+                for (int j = y; j < std::min(y + 2, rect.y1); ++j)
+                    for (int i = x; i < std::min(x + 2, rect.x1); ++i, ++count) {
+                        const WindowEstimate& e =
+                            found[size_t(j - rect.y0) * size_t(rect.width()) + size_t(i - rect.x0)];
+                        ss += double(e.largest.ss);
+                        st += double(e.largest.st);
+                        tt += double(e.largest.tt);
+                    }
+                const Covariance c =
+                    bounded_anisotropy({float(ss / count), float(st / count), float(tt / count)});
+                cells_[size_t(y / 2) * size_t(width_) + size_t(x / 2)] = {
+                    c.ss * sqr(per_s), c.st * per_s * per_t, c.tt * sqr(per_t)};
+            }
+    }
+
+    std::span<const ScalarField> values_;
+    int width_, height_;  // cells
     Vec2 texels_per_unit_;
     float mean_;
-    Once analysed_;
-    mutable ScalarField image_;  // about the mean; empty once it is analysed
-    mutable std::vector<Covariance> cells_;
+    Once prepared_;
+    mutable std::deque<WindowEstimates> levels_;  // from the finest on
+    mutable int tiles_x_ = 0;
+    mutable std::unique_ptr<Tile[]> tiles_;
+    mutable std::atomic<size_t> texels_made_{0};
+    mutable std::unique_ptr<Covariance[]> cells_;  // touched only where tiles are made
 };
 
 struct ImageSpectrum::Pyramid {
-    std::deque<Scale> scales;  ///< each of half the resolution of the one before
-    Vec2 texels_per_unit;      ///< of the first
+    std::vector<ScalarField> values;  ///< about the mean, each of half the resolution of the last
+    std::deque<Scale> scales;         ///< of the first of them on
+    Vec2 texels_per_unit;             ///< of the first
 };
 
 ImageSpectrum::ImageSpectrum(std::span<const float> luminance, int width, int height, Wrap wrap) {
@@ -280,17 +186,21 @@ ImageSpectrum::ImageSpectrum(std::span<const float> luminance, int width, int he
     const auto pyramid = std::make_shared<Pyramid>();
     Vec2 per_unit{float(width) / float(factor), float(height) / float(factor)};
     pyramid->texels_per_unit = per_unit;
-    for (;; per_unit = 0.5f * per_unit) {
-        pyramid->scales.emplace_back(field, float(mean), per_unit);
-        if (std::min(field.width, field.height) < 4) break;
-        field = halved(field);
+    std::vector<ScalarField>& values = pyramid->values;
+    values.push_back(std::move(field));
+    while (std::max(values.back().width, values.back().height) > 2)
+        values.push_back(halved(values.back()));
+    for (size_t i = 0; i < values.size(); ++i, per_unit = 0.5f * per_unit) {
+        pyramid->scales.emplace_back(std::span(values).subspan(i), float(mean), per_unit);
+        if (std::min(values[i].width, values[i].height) < 4) break;
     }
     pyramid_ = pyramid;
 }
 
 SpatialCovariance2 ImageSpectrum::at(float s, float t, Vec2 footprint) const {
     if (!pyramid_) return {};
-    const auto& [scales, per_unit] = *pyramid_;
+    const std::deque<Scale>& scales = pyramid_->scales;
+    const Vec2 per_unit = pyramid_->texels_per_unit;
     // Halving l times smooths by a deviation of half of 2^l texels: as a pixel of 2^l texels does.
     const float texels = std::min(footprint.x * per_unit.x, footprint.y * per_unit.y);
     const float level = texels > 1 ? std::min(std::log2(texels), float(scales.size() - 1)) : 0.0f;
@@ -305,8 +215,9 @@ SpatialCovariance2 ImageSpectrum::at(float s, float t, Vec2 footprint) const {
 
 size_t ImageSpectrum::memory() const {
     size_t bytes = 0;
-    if (pyramid_)
-        for (const Scale& s : pyramid_->scales) bytes += s.memory();
+    if (!pyramid_) return bytes;
+    for (const ScalarField& f : pyramid_->values) bytes += f.memory();
+    for (const Scale& s : pyramid_->scales) bytes += s.memory();
     return bytes;
 }
 

@@ -5,13 +5,9 @@
 #include <span>
 
 #include "core/vec.h"
+#include "shading/spatial_covariance.h"
 
 namespace covtrace {
-
-/// Symmetric 2x2, in (cycles per unit of s or t)^2.
-struct SpatialCovariance2 {
-    float ss = 0, st = 0, tt = 0;
-};
 
 /// Around each point the image is seen through Gaussian windows of all sizes w = 1, 2, 4 ...
 /// texels. Each gives an estimate
@@ -26,8 +22,8 @@ struct SpatialCovariance2 {
 /// because structures bend. At the distance d from a straight edge this is about
 /// 1 / (4 pi^2 (d/2)^2) across the edge; for noise it is the covariance of its amplitude spectrum.
 ///
-/// A resolution is analysed when it is first asked for: a render asks for the few that are about as
-/// fine as its pixels, and for none of an image that it never sees. Any number of threads may ask.
+/// An image is analysed where and at the resolutions that it is asked for, in tiles: a render asks
+/// for what it sees, about as fine as its pixels. Any number of threads may ask.
 class ImageSpectrum {
   public:
     /// repeat_s: repeat in s, clamp in t, for lat-long maps.

@@ -24,16 +24,29 @@ void add_scaled(float* sum, const float* values, float weight, int count) {
     for (int i = 0; i < count; ++i) sum[i] += weight * values[i];
 }
 
-/// Where a doubled field reads: two neighbouring cells and the second one's weight.
-struct Between {
-    int first = 0, second = 0;
-    float weight = 0;
-};
-Between between(int i, int size, int half_size, bool repeats) {
-    if (size == half_size) return {i, i, 0};
-    const int cell = i % 2 == 0 ? i / 2 - 1 : i / 2;
-    return {ScalarField::wrapped(cell, half_size, repeats),
-            ScalarField::wrapped(cell + 1, half_size, repeats), i % 2 == 0 ? 0.75f : 0.25f};
+/// sums[x] = sum over i of weights[i] values[x + i stride].
+void weighted_sums(const float* values, int stride, const std::vector<float>& weights, float* sums,
+                   int count) {
+    constexpr int kBlock = 32;  // sums that stay in registers
+    int x = 0;
+    for (; x + kBlock <= count; x += kBlock) {
+        std::array<float, kBlock> block{};
+        const float* from = values + x;
+        for (const float w : weights) {
+            for (size_t k = 0; k < kBlock; ++k) block[k] += w * from[k];
+            from += stride;
+        }
+        std::copy(block.begin(), block.end(), sums + x);
+    }
+    for (; x < count; ++x) {
+        float sum = 0;
+        const float* from = values + x;
+        for (const float w : weights) {
+            sum += w * *from;
+            from += stride;
+        }
+        sums[x] = sum;
+    }
 }
 
 }  // namespace
@@ -51,21 +64,15 @@ GaussianWindow::GaussianWindow(float standard_deviation)
     variance = float(second_moment / sum);
 }
 
-ScalarField smooth(const ScalarField& f, const GaussianWindow& window) {
+ScalarField smooth_inside(const ScalarField& f, const GaussianWindow& window) {
     const int r = window.radius;
-    ScalarField along_rows = f.like_this(), result = f.like_this();
-    for_each_row(f.height, [&](int y) {
-        std::vector<float> padded(size_t(f.width + 2 * r));
-        const float* source = f.row(y);
-        for (int x = -r; x < f.width + r; ++x) padded[size_t(x + r)] = source[f.column_index(x)];
-        for (int i = 0; i <= 2 * r; ++i)
-            add_scaled(along_rows.row(y), padded.data() + i, window.weights[size_t(i)], f.width);
-    });
-    for_each_row(f.height, [&](int y) {
-        for (int i = -r; i <= r; ++i)
-            add_scaled(result.row(y), along_rows.row(f.row_index(y + i)),
-                       window.weights[size_t(i + r)], f.width);
-    });
+    ScalarField along_rows(f.width - 2 * r, f.height, false, false);
+    for (int y = 0; y < f.height; ++y)
+        weighted_sums(f.row(y), 1, window.weights, along_rows.row(y), along_rows.width);
+    ScalarField result(along_rows.width, f.height - 2 * r, false, false);
+    for (int y = 0; y < result.height; ++y)
+        weighted_sums(along_rows.row(y), along_rows.width, window.weights, result.row(y),
+                      result.width);
     return result;
 }
 
@@ -85,22 +92,11 @@ ScalarField halved(const ScalarField& f) {
     return result;
 }
 
-ScalarField doubled(const ScalarField& f, int width, int height) {
-    ScalarField result(width, height, f.repeat_x, f.repeat_y);
-    std::vector<Between> columns;
-    for (int x = 0; x < width; ++x) columns.push_back(between(x, width, f.width, f.repeat_x));
-    for_each_row(height, [&](int y) {
-        const Between rows = between(y, height, f.height, f.repeat_y);
-        const float *a = f.row(rows.first), *b = f.row(rows.second);
-        float* target = result.row(y);
-        for (int x = 0; x < width; ++x) {
-            const Between& c = columns[size_t(x)];
-            const float upper = a[c.first] + c.weight * (a[c.second] - a[c.first]);
-            const float lower = b[c.first] + c.weight * (b[c.second] - b[c.first]);
-            target[x] = upper + rows.weight * (lower - upper);
-        }
-    });
-    return result;
+Between between(int i, int size, int half_size, bool repeats) {
+    if (size == half_size) return {i, i, 0};
+    const int cell = i % 2 == 0 ? i / 2 - 1 : i / 2;
+    return {ScalarField::wrapped(cell, half_size, repeats),
+            ScalarField::wrapped(cell + 1, half_size, repeats), i % 2 == 0 ? 0.75f : 0.25f};
 }
 
 ScalarField box_reduced(const ScalarField& f, int factor) {

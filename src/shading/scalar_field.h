@@ -42,13 +42,20 @@ struct GaussianWindow {
     float variance = 0;          ///< of the window as it is, in cells^2
 };
 
-/// The weighted mean around each cell.
-ScalarField smooth(const ScalarField& f, const GaussianWindow& window);
+/// The weighted mean around each cell that has the window's radius of cells on all sides: a field
+/// with twice the radius less in both directions.
+ScalarField smooth_inside(const ScalarField& f, const GaussianWindow& window);
 /// Every second cell in both directions after the binomial filter (1 3 3 1) / 8, whose variance is
 /// 3/4 of a cell^2. Odd sizes are rounded up.
 ScalarField halved(const ScalarField& f);
-/// Bilinear interpolation of a halved field to the size it had.
-ScalarField doubled(const ScalarField& f, int width, int height);
+/// Where the bilinear interpolation of a halved field to the size it had reads on one axis: two
+/// neighbouring cells and the second one's weight.
+struct Between {
+    int first = 0, second = 0;
+    float weight = 0;
+};
+/// For the cell i of `size`, of which the halved field has `half_size`.
+Between between(int i, int size, int half_size, bool repeats);
 /// Means over boxes of factor^2 cells; at the right and lower border over those that exist.
 ScalarField box_reduced(const ScalarField& f, int factor);
 

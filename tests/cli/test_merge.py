@@ -35,7 +35,7 @@ class Merge(FilmTest):
         self.fail("the rounds do not end")
 
     def test_rounds_of_shards(self):
-        for method, rounds in (("uniform", 1), ("covariance", 4), ("hybrid", 4)):
+        for method, rounds in (("uniform", 1), ("covariance", 5), ("hybrid", 4)):
             for scene in ("moving", "sky"):
                 with self.subTest(method=method, scene=scene):
                     for film in self.folder.glob("*.film*"):

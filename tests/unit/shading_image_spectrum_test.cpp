@@ -207,7 +207,8 @@ TEST(ImageSpectrum, KeepsItsUnitsWhereLargeImagesAreReduced) {
         EXPECT_GE(std::sqrt(s.at(at, 0.5f).ss), cycles);
         EXPECT_LE(std::sqrt(s.at(at, 0.5f).ss), cycles * 1.45f);
     }
-    EXPECT_LE(s.memory(), size_t(1024) * 2 * sizeof(SpatialCovariance2));
+    // Of 2048 by 2 texels at most: their means, and what is known of them.
+    EXPECT_LE(s.memory(), size_t(ImageSpectrum::kMaxAnalysedSize) * 2 * 16);
 }
 
 TEST(ImageSpectrum, SeesTheSeamOfARepeatedImageOnly) {

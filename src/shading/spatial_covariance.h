@@ -1,0 +1,11 @@
+/// How fast an image varies around a point.
+#pragma once
+
+namespace covtrace {
+
+/// Symmetric 2x2, in (cycles per unit of s or t)^2.
+struct SpatialCovariance2 {
+    float ss = 0, st = 0, tt = 0;
+};
+
+}  // namespace covtrace
