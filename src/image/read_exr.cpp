@@ -16,6 +16,7 @@
 #include <new>
 #include <set>
 
+#include "image/exr_header.h"
 #include "image/exr_names.h"
 #include "image/read_file.h"
 
@@ -128,6 +129,7 @@ constexpr int64_t kMostPixelBytesPerByte = int64_t(1) << 20;
 constexpr int kLargestCoordinate = 1 << 29;
 
 Image read_parts(const std::filesystem::path& file) {
+    check_exr_attribute_sizes(file);
     Imf::MultiPartInputFile exr(file.c_str(), 0);
     Image image;
     for (const Imath::Box2i& box : {exr.header(0).dataWindow(), exr.header(0).displayWindow()})

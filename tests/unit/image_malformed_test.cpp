@@ -35,6 +35,31 @@ TEST(Malformed, ValidFilesAreRead) {
     }
 }
 
+TEST(Malformed, AnExrAttributeThatClaimsMoreThanTheFileHas) {
+    TemporaryDirectory directory;
+    const fs::path file = directory / "a.exr";
+    Image image = random_image({0, 0, 3, 2}, {0, 0, 3, 2}, {"R", "G", "B"}, 2);
+    image.metadata["note"] = std::string("hello");
+    write_exr(image, file);
+    std::string bytes = read_bytes(file);
+    const std::string head = std::string("note\0string\0", 12);
+    const size_t at = bytes.find(head) + head.size();
+    ASSERT_LT(at, bytes.size());
+    for (const uint32_t size : {0x00001000u, 0x7fffffffu, 0x80000000u, 0xffffffffu}) {
+        std::memcpy(bytes.data() + at, &size, sizeof size);
+        write_bytes(file, bytes);
+        EXPECT_EQ(problem_of(file), "");
+        try {
+            read_image(file);
+            ADD_FAILURE() << "expected an error for " << size;
+        } catch (const Error& e) {
+            EXPECT_NE(std::string(e.what()).find("'note' claims to be longer than the file"),
+                      std::string::npos)
+                << e.what();
+        }
+    }
+}
+
 TEST(Malformed, EveryTruncationIsAnError) {
     TemporaryDirectory directory;
     PrintCounter printed(directory / "printed");
