@@ -187,7 +187,6 @@ RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& op
         {"--shutter", text(d.camera.shutter_open) + "," + text(d.camera.shutter_close)},
         {"--focus", text(d.camera.focal_distance)},
         {"lens radius (--fstop)", text(d.camera.lens_radius)},
-        {"texture memory (--texture-memory)", text(double(scene.memory().at("textures")))},
     };
     id["--max-spp"] = text(options.max_spp);
     if (options.method == Method::uniform) {

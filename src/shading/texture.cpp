@@ -41,7 +41,9 @@ class GraphBuilder {
 
     TextureGraph build() {
         for (size_t i = 0; i < textures_.size(); ++i) build(TextureId(i), 1);
-        graph_.images = load_images(requests_, most_bytes_, warnings_);
+        LoadedImages loaded = load_images(requests_, most_bytes_, warnings_);
+        graph_.images = std::move(loaded.images);
+        graph_.page_memory = loaded.page_memory;
         return std::move(graph_);
     }
 
@@ -274,7 +276,7 @@ const Warnings& TextureStore::warnings() const {
 }
 
 size_t TextureStore::memory() const {
-    size_t bytes = 0;
+    size_t bytes = impl_->graph.page_memory;
     for (const TextureImage& image : impl_->graph.images) bytes += image.memory();
     for (const ImageSpectrum& spectrum : impl_->graph.spectra) bytes += spectrum.memory();
     return bytes;

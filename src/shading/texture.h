@@ -52,9 +52,10 @@ class TextureStore {
     /// file; textures nested a thousand deep or more, or of more than 10000
     /// lookups each, throw Error(limit).
     ///
-    /// `most_bytes` limits what the images hold together: where they need more, the largest lose
-    /// their finest mip levels, one after the other, with a warning. Which do depends on the files
-    /// alone.
+    /// `most_bytes` limits what the images hold in memory together: where they need more, the
+    /// largest levels are read from a temporary file, page by page, with a warning. Values don't
+    /// depend on it. Throws Error(io) where that file can't be written, and later on where it can't
+    /// be read.
     explicit TextureStore(const SceneDescription& scene, size_t most_bytes = kNoTextureLimit);
     ~TextureStore();
     TextureStore(const TextureStore&) = delete;
@@ -77,9 +78,9 @@ class TextureStore {
     /// expressed in (u, v) with dpdu, dpdv. Requires `prepare_spectra`.
     SpatialCovariance2 uv_covariance(TextureId id, const TexturePoint& at, Vec3 dpdu, Vec3 dpdv,
                                      float footprint_uv) const;
-    /// Bytes held by images and their spectra.
+    /// Bytes held in memory by images, their pages and spectra.
     size_t memory() const;
-    /// Images that were reduced.
+    /// That images are read from a temporary file.
     const Warnings& warnings() const;
 
   private:

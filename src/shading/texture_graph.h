@@ -45,6 +45,7 @@ using TextureNode = std::variant<ConstantNode, ImageNode, CheckerboardNode, Scal
 struct TextureGraph {
     std::vector<TextureNode> nodes;  ///< one per TextureId
     std::vector<TextureImage> images;
+    size_t page_memory = 0;  ///< bytes for pages of images that are not in memory whole
     std::vector<ImageSpectrum> spectra;
 };
 

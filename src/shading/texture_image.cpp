@@ -44,7 +44,7 @@ float mirrored(float v) {
 }
 
 TextureImage::TextureImage(const RasterImage& raster, Encoding encoding, float gamma, Wrap wrap)
-    : channels_(kept_channels(raster)), wrap_(wrap) {
+    : channels_(kept_channels(raster)), is_8bit_(raster.is_8bit), wrap_(wrap) {
     Level level;
     level.width = raster.width;
     level.height = raster.height;
@@ -83,10 +83,10 @@ TextureImage::Level TextureImage::coarser(const Level& fine) const {
     level.texels = {fine.width > 1 ? fine.texels.x / 2 : fine.texels.x,
                     fine.height > 1 ? fine.texels.y / 2 : fine.texels.y};
     const size_t values = size_t(level.width) * size_t(level.height) * channels_;
-    if (fine.bytes.empty())
-        level.floats.resize(values);
-    else
+    if (is_8bit_)
         level.bytes.resize(values);
+    else
+        level.floats.resize(values);
     for (int y = 0; y < level.height; ++y)
         for (int x = 0; x < level.width; ++x)
             for (size_t c = 0; c < channels_; ++c) {
@@ -97,10 +97,10 @@ TextureImage::Level TextureImage::coarser(const Level& fine) const {
                         sum += channel(
                             fine, (size_t(v) * size_t(fine.width) + size_t(u)) * channels_ + c);
                 const size_t i = (size_t(y) * size_t(level.width) + size_t(x)) * channels_ + c;
-                if (fine.bytes.empty())
-                    level.floats[i] = sum / float(count);
-                else
+                if (is_8bit_)
                     level.bytes[i] = encode(sum / float(count));
+                else
+                    level.floats[i] = sum / float(count);
             }
     return level;
 }
@@ -108,12 +108,6 @@ TextureImage::Level TextureImage::coarser(const Level& fine) const {
 void TextureImage::build_levels() {
     while (levels_.back().width > 1 || levels_.back().height > 1)
         levels_.push_back(coarser(levels_.back()));
-}
-
-void TextureImage::halve() {
-    if (width() == 1 && height() == 1) return;
-    if (levels_.size() == 1) levels_.push_back(coarser(levels_[0]));
-    levels_.erase(levels_.begin());
 }
 
 size_t TextureImage::memory() const {
@@ -186,27 +180,27 @@ TextureImage::Taps TextureImage::bilinear(Vec2 st, size_t level) const {
 }
 
 Rgb TextureImage::color_at(const Level& level, size_t texel) const {
-    const size_t i = texel * channels_;
-    if (channels_ == 1) return Rgb(channel(level, i));
-    return {channel(level, i), channel(level, i + 1), channel(level, i + 2)};
+    TexelBuffer buffer;
+    const Texel t = texel_at(level, texel, buffer);
+    if (channels_ == 1) return Rgb(channel(t, 0));
+    return {channel(t, 0), channel(t, 1), channel(t, 2)};
 }
 
 float TextureImage::value_at(const Level& level, size_t texel, Channel which) const {
-    const size_t i = texel * channels_;
+    TexelBuffer buffer;
+    const Texel t = texel_at(level, texel, buffer);
     switch (which) {
         case Channel::automatic:
             break;
         case Channel::alpha:
-            return channels_ == 4 ? channel(level, i + 3) : 1;
+            return channels_ == 4 ? channel(t, 3) : 1;
         default:
-            if (channels_ == 1) return channel(level, i);
-            return channel(level, i + (which == Channel::red     ? 0
-                                       : which == Channel::green ? 1
-                                                                 : 2));
+            if (channels_ == 1) return channel(t, 0);
+            return channel(t, which == Channel::red ? 0 : which == Channel::green ? 1 : 2);
     }
-    if (channels_ == 1) return channel(level, i);
-    if (channels_ == 4) return channel(level, i + 3);
-    return (channel(level, i) + channel(level, i + 1) + channel(level, i + 2)) / 3;
+    if (channels_ == 1) return channel(t, 0);
+    if (channels_ == 4) return channel(t, 3);
+    return (channel(t, 0) + channel(t, 1) + channel(t, 2)) / 3;
 }
 
 Rgb TextureImage::color(const Taps& taps) const {

@@ -1,13 +1,16 @@
-/// An image as textures read it: compact in memory, decoded at each lookup, with its mip levels.
+/// An image as textures read it: compact, decoded at each lookup, with its mip levels, the finest
+/// of them on disk where memory is short.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/vec.h"
 #include "image/raster.h"
 #include "scene/scene_description.h"
+#include "shading/texel_pages.h"
 
 namespace covtrace {
 
@@ -65,18 +68,21 @@ class TextureImage {
     float value(Vec2 st, Filter filter, const ImageFootprint& footprint, float anisotropy,
                 Channel channel = Channel::automatic) const;
 
-    /// Makes all coarser levels, down to a single texel.
+    /// Makes all coarser levels, down to a single texel: means over 2 x 2 texels (fewer at the far
+    /// borders of odd sizes), taken of decoded values and encoded again.
     void build_levels();
-    /// Drops the finest mip level. Levels are means over 2 x 2 texels (fewer at the far borders of
-    /// odd sizes), taken of decoded values and encoded again. Images of one texel stay as they are.
-    void halve();
+    /// Bytes of the finest level that is in memory; 0 where none is.
+    size_t finest_in_memory() const;
+    /// Moves that level to the disk. All lookups give the same bits as before.
+    void move_finest_to(const std::shared_ptr<TexelPages>& pages);
 
     /// Of the finest level.
     int width() const { return levels_[0].width; }
     int height() const { return levels_[0].height; }
     size_t level_count() const { return levels_.size(); }
     Wrap wrap() const { return wrap_; }
-    /// Bytes of all levels.
+    bool is_paged() const { return levels_[0].pages != nullptr; }
+    /// Bytes of all levels that are in memory.
     size_t memory() const;
 
   private:
@@ -84,12 +90,38 @@ class TextureImage {
         int width = 0, height = 0;
         Vec2 texels;                 ///< per unit of s and t: not whole where sizes were odd
         std::vector<uint8_t> bytes;  ///< either these,
-        std::vector<float> floats;   ///< or these, already linear
+        std::vector<float> floats;   ///< or these, already linear,
+        std::shared_ptr<const TexelPages> pages;  ///< or one of both here, in square tiles
+        size_t first_page = 0;                    ///< tiles row by row, one to a page
     };
+    /// One texel's channels: of one of both kinds.
+    struct Texel {
+        const uint8_t* bytes = nullptr;
+        const float* floats = nullptr;
+    };
+    /// Room for a texel that is read from a page.
+    struct TexelBuffer {
+        std::array<uint8_t, 4> bytes;
+        std::array<float, 4> floats;
+    };
+    Texel texel_at(const Level& level, size_t texel, TexelBuffer& buffer) const {
+        if (level.pages) [[unlikely]]
+            return paged_texel(level, texel, buffer);
+        if (is_8bit_) return {level.bytes.data() + texel * channels_, nullptr};
+        return {nullptr, level.floats.data() + texel * channels_};
+    }
+    Texel paged_texel(const Level& level, size_t texel, TexelBuffer& buffer) const;
+    float channel(const Texel& texel, size_t c) const {
+        return texel.floats ? texel.floats[c] : decode_[texel.bytes[c]];
+    }
+    size_t texel_bytes() const { return channels_ * (is_8bit_ ? 1 : sizeof(float)); }
+    /// Binary logarithm of the side of the largest square tile that fits into a page.
+    int tile_bits() const;
     /// The byte that decodes to the value nearest to `v`.
     uint8_t encode(float v) const;
+    /// Of a level in memory.
     float channel(const Level& level, size_t i) const {
-        return level.bytes.empty() ? level.floats[i] : decode_[level.bytes[i]];
+        return is_8bit_ ? decode_[level.bytes[i]] : level.floats[i];
     }
     Rgb color_at(const Level& level, size_t texel) const;
     float value_at(const Level& level, size_t texel, Channel channel) const;
@@ -108,6 +140,7 @@ class TextureImage {
     Value ellipse(Vec2 st, const ImageFootprint& footprint, size_t level, Channel channel) const;
 
     size_t channels_ = 1;
+    bool is_8bit_ = false;
     Wrap wrap_ = Wrap::repeat;
     std::vector<Level> levels_;  ///< the finest first; at least one
     std::array<float, 256> decode_{};

@@ -1,8 +1,8 @@
 #include "shading/texture_loader.h"
 
 #include <algorithm>
-#include <array>
 #include <exception>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -45,46 +45,65 @@ std::vector<TextureImage> load_some(std::span<const ImageRequest> requests) {
     return images;
 }
 
-/// Halves the largest of the images, the first of equals, until all fit. Done after every few files
-/// it ends as if done after the last: what a part of the images makes too large stays too large.
-void fit(std::vector<TextureImage>& images, size_t most_bytes) {
-    size_t bytes = 0;
-    for (const TextureImage& image : images) bytes += image.memory();
-    while (bytes > most_bytes) {
-        const auto largest = std::max_element(
-            images.begin(), images.end(),
-            [](const TextureImage& a, const TextureImage& b) { return a.memory() < b.memory(); });
-        const size_t before = largest->memory();
-        largest->halve();
-        if (largest->memory() == before) return;  // single texels
-        bytes -= before - largest->memory();
+/// Moves the largest levels of all images to pages, the first of equals, until the rest fits. Done
+/// after every few files it ends as if done after the last: what is too large beside some images is
+/// too large beside all.
+class Budget {
+  public:
+    explicit Budget(size_t most_bytes) : most_bytes_(most_bytes) {}
+
+    void fit(std::vector<TextureImage>& images) {
+        size_t bytes = 0;
+        for (const TextureImage& image : images) bytes += image.memory();
+        if (!pages_) {
+            if (bytes <= most_bytes_) return;
+            // One half for pages, the other for levels that are in memory as a whole.
+            pages_ = std::make_shared<TexelPages>(most_bytes_ / 2);
+        }
+        const size_t most_whole = most_bytes_ - std::min(most_bytes_, pages_->memory());
+        while (bytes > most_whole) {
+            const auto largest = std::max_element(
+                images.begin(), images.end(), [](const TextureImage& a, const TextureImage& b) {
+                    return a.finest_in_memory() < b.finest_in_memory();
+                });
+            bytes -= largest->finest_in_memory();
+            largest->move_finest_to(pages_);
+        }
     }
-}
+
+    size_t page_memory() const { return pages_ ? pages_->memory() : 0; }
+
+  private:
+    size_t most_bytes_;
+    std::shared_ptr<TexelPages> pages_;
+};
 
 }  // namespace
 
-std::vector<TextureImage> load_images(std::span<const ImageRequest> requests, size_t most_bytes,
-                                      Warnings& warnings) {
+LoadedImages load_images(std::span<const ImageRequest> requests, size_t most_bytes,
+                         Warnings& warnings) {
     constexpr size_t kBatch = 8;  // so that little but the result is ever in memory
-    std::vector<TextureImage> images;
-    std::vector<std::array<int, 2>> sizes;
+    LoadedImages loaded;
+    Budget budget(most_bytes);
+    size_t bytes = 0;
     for (size_t first = 0; first < requests.size(); first += kBatch) {
         const size_t count = std::min(kBatch, requests.size() - first);
         for (TextureImage& image : load_some(requests.subspan(first, count))) {
-            sizes.push_back({image.width(), image.height()});
-            images.push_back(std::move(image));
+            bytes += image.memory();
+            loaded.images.push_back(std::move(image));
         }
-        fit(images, most_bytes);
+        budget.fit(loaded.images);
     }
-    for (size_t i = 0; i < images.size(); ++i)
-        if (images[i].width() != sizes[i][0])
-            warnings.push_back(
-                {*requests[i].where, "to keep textures within their memory, an image of " +
-                                         std::to_string(sizes[i][0]) + "x" +
-                                         std::to_string(sizes[i][1]) + " is used at " +
-                                         std::to_string(images[i].width()) + "x" +
-                                         std::to_string(images[i].height())});
-    return images;
+    loaded.page_memory = budget.page_memory();
+    const auto paged = std::count_if(loaded.images.begin(), loaded.images.end(),
+                                     [](const TextureImage& i) { return i.is_paged(); });
+    if (paged > 0)
+        warnings.push_back({{},
+                            "textures take " + std::to_string(bytes) + " bytes and may take " +
+                                std::to_string(most_bytes) + ": " + std::to_string(paged) + " of " +
+                                std::to_string(loaded.images.size()) +
+                                " images are read from a temporary file while they are rendered"});
+    return loaded;
 }
 
 }  // namespace covtrace

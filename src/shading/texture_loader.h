@@ -14,10 +14,17 @@ struct ImageRequest {
     const SourceLocation* where;  ///< in the scene file, for errors and warnings
 };
 
-/// The images in the order of the requests, read in parallel. Where they would hold more than
-/// `most_bytes` together, the largest lose their finest mip levels, with a warning. Throws
-/// Error(scene) for missing and broken files, of several the first.
-std::vector<TextureImage> load_images(std::span<const ImageRequest> requests, size_t most_bytes,
-                                      Warnings& warnings);
+struct LoadedImages {
+    std::vector<TextureImage> images;  ///< in the order of the requests
+    size_t page_memory = 0;            ///< bytes for pages of those that are not in memory whole
+};
+
+/// Reads in parallel. Where the images with all their levels would hold more than `most_bytes`
+/// together, the largest levels are moved to pages on disk (TexelPages), with a warning; what pages
+/// and the other levels hold is within the bound, down to a page (16 KiB). Throws Error(scene) for
+/// missing and broken files, of several the first, and Error(io) where the temporary file can't
+/// be written.
+LoadedImages load_images(std::span<const ImageRequest> requests, size_t most_bytes,
+                         Warnings& warnings);
 
 }  // namespace covtrace
