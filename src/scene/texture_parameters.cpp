@@ -104,7 +104,9 @@ ImageTexture image_texture(ParameterList& p, const SourceLocation& where,
     t.scale = p.number("scale", 1);
     t.invert = p.flag("invert", false);
     set_encoding(t, p, where);
-    t.max_anisotropy = std::max(1.0f, p.number("maxanisotropy", 8));
+    // A lookup takes about as many texels as this.
+    constexpr float kMostAnisotropy = 256;
+    t.max_anisotropy = std::min(std::max(1.0f, p.number("maxanisotropy", 8)), kMostAnisotropy);
     return t;
 }
 
