@@ -26,7 +26,7 @@ class TextureMemory(FilmTest):
     def test_the_image_is_the_same(self):
         for method in METHODS:
             self.run_render("textured", method, "--spp", "4", output="whole.exr")
-            for bound, threads in (("100K", 1), ("100K", 3), ("16K", 2), ("1", 2)):
+            for bound, threads in (("102400", 1), ("102400", 3), ("16384", 2), ("1", 2)):
                 with self.subTest(method=method, bound=bound, threads=threads):
                     result = self.run_render("textured", method, "--spp", "4", "--texture-memory", bound, "--threads", threads)
                     self.assertIn(f"textures take {ALL} bytes", result.stderr)
@@ -34,7 +34,7 @@ class TextureMemory(FilmTest):
 
     def test_what_is_in_memory(self):
         self.run_render("textured", "uniform", "--spp", "1", "--stats", "whole.json")
-        result = self.run_render("textured", "uniform", "--spp", "1", "--texture-memory", "100K", "--stats", "paged.json")
+        result = self.run_render("textured", "uniform", "--spp", "1", "--texture-memory", "102400", "--stats", "paged.json")
         self.assertEqual(result.stderr.count("warning"), 1, result)
         whole, paged = (json.loads((self.folder / f"{name}.json").read_text())["memory"]["textures"] for name in ("whole", "paged"))
         self.assertEqual(whole, ALL)
@@ -45,7 +45,7 @@ class TextureMemory(FilmTest):
         film = ["--checkpoint", "t.film", "--resume"]
         self.run_render("textured", "hybrid", "--spp", "4", *film)
         self.run_render("textured", "hybrid", "--spp", "8", *film, output="resumed.exr")
-        self.run_render("textured", "hybrid", "--spp", "4", "--checkpoint", "p.film", "--texture-memory", "50K")
+        self.run_render("textured", "hybrid", "--spp", "4", "--checkpoint", "p.film", "--texture-memory", "50000")
         self.run_render("textured", "hybrid", "--spp", "8", "--checkpoint", "p.film", "--resume")
         self.assert_identical("resumed.exr", "out.exr")
 
@@ -53,7 +53,7 @@ class TextureMemory(FilmTest):
         for folder in (str(self.folder / "missing"), "/dev/null"):
             with self.subTest(folder=folder):
                 pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-                result = self.run_program("render", "textured.pbrt", "-o", "out.exr", "--texture-memory", "50K", "--progress", "none",
+                result = self.run_program("render", "textured.pbrt", "-o", "out.exr", "--texture-memory", "50000", "--progress", "none",
                                           env={**os.environ, "TMPDIR": folder}, **pipes)
                 self.assert_fails(result, IO, "temporary file of textures", folder)
                 self.assert_no_file()
@@ -61,7 +61,7 @@ class TextureMemory(FilmTest):
     def test_nothing_is_left(self):
         pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
         (self.folder / "scratch").mkdir()
-        result = self.run_program("render", "textured.pbrt", "-o", "out.exr", "--spp", "1", "--texture-memory", "50K", "--progress", "none",
+        result = self.run_program("render", "textured.pbrt", "-o", "out.exr", "--spp", "1", "--texture-memory", "50000", "--progress", "none",
                                   env={**os.environ, "TMPDIR": str(self.folder / "scratch")}, **pipes)
         self.assertEqual(result.code, DONE, result)
         self.assertEqual(list((self.folder / "scratch").iterdir()), [])
