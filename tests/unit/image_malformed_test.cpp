@@ -60,6 +60,23 @@ TEST(Malformed, AnExrAttributeThatClaimsMoreThanTheFileHas) {
     }
 }
 
+TEST(Malformed, AnExrChannelListOfAnotherSizeThanItsAttribute) {
+    TemporaryDirectory directory;
+    const fs::path file = directory / "a.exr";
+    write_exr(random_image({0, 0, 3, 2}, {0, 0, 3, 2}, {"R", "G", "B"}, 2), file);
+    const std::string whole = read_bytes(file);
+    const std::string head = std::string("channels\0chlist\0", 16);
+    const size_t at = whole.find(head) + head.size();
+    ASSERT_LT(at, whole.size());
+    for (const int more : {-18, -1, 1, 20}) {
+        std::string bytes = whole;
+        bytes[at] = char(bytes[at] + more);
+        write_bytes(file, bytes);
+        EXPECT_EQ(problem_of(file), "");
+        EXPECT_THROW(read_image(file), Error) << more;
+    }
+}
+
 TEST(Malformed, EveryTruncationIsAnError) {
     TemporaryDirectory directory;
     PrintCounter printed(directory / "printed");
