@@ -47,10 +47,10 @@ bool PathTracer::step() {
     // eighth of it, so that the filter of the texture adds nothing to that of the pixel.
     const Vec3 from_eye = hit.position - camera_origin_;
     const float away = length(from_eye);
-    const Bsdf bsdf = away > 0
-                          ? scene_.materials.bsdf(material, hit, scene_.textures, from_eye / away,
-                                                  scene_.camera.half_pixel(away) / 4)
-                          : scene_.materials.bsdf(material, hit, scene_.textures);
+    const Bsdf bsdf = away > 0 ? scene_.materials.bsdf(material, hit, scene_.textures,
+                                                       from_eye / away,
+                                                       scene_.camera.half_pixel(away) / 4)
+                               : scene_.materials.bsdf(material, hit, scene_.textures);
     if (!std::holds_alternative<InterfaceBsdf>(bsdf))
         return meet_surface(hit, shape, material, bsdf);
     medium_ = medium_beyond(shape, hit, ray_.direction, medium_);
@@ -119,14 +119,7 @@ void PathTracer::describe_first_vertex(Vec3 position, Rgb albedo, Vec3 normal) {
 
 bool PathTracer::survives(float u) {
     const float carried = max_component(beta_) * roulette_scale_;
-    if (!(carried < 1)) {
-        if (std::isfinite(carried)) return true;
-        // Surfaces that make light of light would otherwise be walked on to the last bounce. The
-        // sample can't become finite any more, and is counted as such.
-        result_.radiance += beta_;
-        return false;
-    }
-    if (depth_ <= 1) return true;
+    if (!(carried < 1) || depth_ <= 1) return true;
     const float end = std::max(0.0f, 1 - carried);
     if (u < end) return false;
     beta_ *= 1 / (1 - end);
