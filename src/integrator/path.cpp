@@ -118,9 +118,14 @@ void PathTracer::describe_first_vertex(Vec3 position, Rgb albedo, Vec3 normal) {
 }
 
 bool PathTracer::survives(float u) {
+    // Between surfaces that absorb nothing a path would go on for as many bounces as it may: a scene
+    // may allow a million. Beyond a thousand it goes on for a hundred more in the mean.
+    constexpr int kLongWalk = 1000;
+    constexpr float kLeastEnd = 0.01f;
     const float carried = max_component(beta_) * roulette_scale_;
-    if (!(carried < 1) || depth_ <= 1) return true;
-    const float end = std::max(0.0f, 1 - carried);
+    const float least = depth_ > kLongWalk ? kLeastEnd : 0.0f;
+    if (depth_ <= 1 || (!(carried < 1) && least == 0)) return true;
+    const float end = std::max(least, 1 - carried);
     if (u < end) return false;
     beta_ *= 1 / (1 - end);
     return true;

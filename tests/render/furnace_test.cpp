@@ -1,6 +1,7 @@
 // The furnaces of scenes/tests: every pixel's value is known and stands at the head of its file.
 #include <gtest/gtest.h>
 
+#include "integrator/path.h"
 #include "tests/render/fixtures.h"
 
 namespace covtrace {
@@ -68,6 +69,27 @@ TEST(FurnaceFile, LensAndMotionKeepTheWeights) {
         expect_block(image, 0, y, 8, 1);
         expect_block(image, 56, y, 8, 1);
     }
+}
+
+// Where nothing is absorbed roulette has no reason to end a path before the bounce the scene allows.
+TEST(Furnace, AMillionBouncesBetweenWhiteWallsAreNotTaken) {
+    const RenderScene scene(read_pbrt_string(
+        "Integrator \"path\" \"integer maxdepth\" 1000000\n"
+        "WorldBegin\nLightSource \"point\" \"rgb I\" [ 1 1 1 ]\n"
+        "Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n"
+        "ReverseOrientation\nShape \"sphere\" \"float radius\" 2\n",
+        "test", "."));
+    double bounces = 0;
+    constexpr int kPaths = 64;
+    for (int i = 0; i < kPaths; ++i) {
+        Sampler sampler(1, uint64_t(i), 0, 0);
+        const PathResult path =
+            trace_path(scene, {{0, 0, 1}, {0, 0, 1}}, sampler, 1'000'000, nullptr);
+        EXPECT_TRUE(std::isfinite(path.radiance.g));
+        bounces += path.rays.bounce;
+    }
+    // 1000 and a geometric number of mean 100: the mean of 64 is within 6 standard errors of it.
+    EXPECT_NEAR(bounces / kPaths, 1100, 6 * 100 / std::sqrt(double(kPaths)));
 }
 
 }  // namespace
