@@ -23,7 +23,7 @@ float samples_per_pixel(const Halves& halves) {
 }  // namespace
 
 Plane estimate_error(const Halves& halves, std::span<const Candidate> candidates,
-                     const Selection& selection, const ColorPlanes& g) {
+                     const Selection& selection, const ColorPlanes& image, const ColorPlanes& g) {
     const int w = g[0].width, h = g[0].height;
     const float noise = kNoise + kNoiseOfFew / std::sqrt(std::max(1.0f, samples_per_pixel(halves)));
     Plane error(w, h), known(w, h);
@@ -36,10 +36,10 @@ Plane estimate_error(const Halves& halves, std::span<const Candidate> candidates
                 for (size_t c = 0; c < candidates.size(); ++c)
                     spread += selection.share[c][i] *
                               sqr(candidates[c][0][k][i] + candidates[c][1][k][i] - ma - mb);
-                error[i] +=
-                    g[k][i] / 12 *
-                    (noise * sqr(ma - mb) +
-                     kRaw * sqr(halves[0].color[k][i] - halves[1].color[k][i]) + kSpread * spread);
+                error[i] += g[k][i] / 12 *
+                            (noise * sqr(ma - mb) +
+                             kRaw * sqr(halves[0].color[k][i] - halves[1].color[k][i]) +
+                             kSpread * spread + sqr(2 * image[k][i] - ma - mb));
             }
         }
     });

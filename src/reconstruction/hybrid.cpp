@@ -64,13 +64,15 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     const ColorPlanes guess = mean_of(mixture(common_brightness(candidates)));
     Selection s = mixture(guess);
 
-    HybridImage image{
-        mean_of(s), estimate_error(halves, candidates, s, error_weights(halves, guess)), {}, {}};
-    image.share = std::move(s.share);
+    HybridImage image;
+    image.color = mean_of(s);
     // A fit may leave the range of its colours: light is never negative.
     for (Plane& channel : image.color)
         for (float& v : channel.values) v = std::max(0.0f, v);
     return_energy(all, image.color);
+    image.relative_error =
+        estimate_error(halves, candidates, s, image.color, error_weights(halves, guess));
+    image.share = std::move(s.share);
     image.variance = image.relative_error;
     const Plane bright = luminance(image.color);
     for (size_t i = 0; i < bright.size(); ++i) image.variance[i] *= sqr(bright[i]) + kDarkSquared;
