@@ -132,16 +132,16 @@ std::vector<std::pair<std::string, HybridSettings>> variants() {
     add("best single candidate", [](auto& s) { s.mix = false; });
     for (float sigma : {1.5f, 5.0f})
         add(fmt::format("judged over sigma {}", sigma), [&](auto& s) { s.sigma = sigma; });
-    add("without the Gaussians", [](auto& s) { s.gaussians.clear(); });
-    add("without shaped windows", [](auto& s) { s.fits.back().shaped = false; });
-    add("Gaussians alone", [](auto& s) { s.fits.clear(); });
+    add("without the Gaussians", [](auto& s) { s.candidates.gaussians.clear(); });
+    add("without shaped windows", [](auto& s) { s.candidates.fits.back().shaped = false; });
+    add("Gaussians alone", [](auto& s) { s.candidates.fits.clear(); });
     add("plain windows, mixed", [](auto& s) {
-        s.gaussians.clear();
-        s.fits = {{0.5f, false}, {1, false}};
+        s.candidates.gaussians.clear();
+        s.candidates.fits = {{0.5f, false}, {1, false}};
     });
     add("plain windows, best single", [](auto& s) {
-        s.gaussians.clear();
-        s.fits = {{0.5f, false}, {1, false}};
+        s.candidates.gaussians.clear();
+        s.candidates.fits = {{0.5f, false}, {1, false}};
         s.mix = false;
     });
     return list;

@@ -4,23 +4,14 @@
 #include <span>
 #include <vector>
 
-#include "reconstruction/filter_field.h"
+#include "reconstruction/candidates.h"
 #include "reconstruction/half_buffer.h"
 
 namespace covtrace {
 
-/// The candidates beside the raw pixels. docs/reconstruction.md has the table of what each gives.
 struct HybridSettings {
-    /// Scales of the predicted Gaussians; 1: the width factor c = 2.
-    std::vector<float> gaussians{0.5f, 1.0f};
-    /// First-order regressions: tolerance of the colours' patches, and whether the window also
-    /// falls off as the predicted Gaussian, 2.5 times as wide.
-    struct Fit {
-        float k;
-        bool shaped;
-    };
-    std::vector<Fit> fits{{0.5f, false}, {1.0f, false}, {2.0f, true}};
-    float sigma = 3;  ///< of the neighbourhood over which candidates are judged, pixels
+    CandidateSettings candidates;
+    float sigma = 4;  ///< of the neighbourhood over which candidates are judged, pixels
     bool mix = true;  ///< false: the best single candidate, for comparisons
 };
 

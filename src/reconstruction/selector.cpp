@@ -47,57 +47,36 @@ void minimise(const float (&g)[kMost][kMost], size_t n, int steps, float (&w)[kM
     }
 }
 
-Plane normaliser(const Halves& halves, const Plane& brightness) {
-    Plane g(brightness.width, brightness.height);
-    for (size_t i = 0; i < g.size(); ++i)
-        if (halves[0].count[i] > 0 && halves[1].count[i] > 0)
-            g[i] = 1 / (brightness[i] * brightness[i] + kDarkSquared);
-    return g;
-}
-
 /// G_cd of every pixel.
 Plane products_of_errors(const Halves& halves, const Candidate& c, const Candidate& d,
-                         const Plane& g, float sigma) {
-    Plane sum(g.width, g.height);
+                         const ColorPlanes& g, float sigma) {
+    Plane sum(g[0].width, g[0].height);
     for (size_t k = 0; k < 3; ++k) {
         const Plane &a = halves[0].color[k], &b = halves[1].color[k];
         const Plane &ac = c[0][k], &bc = c[1][k], &ad = d[0][k], &bd = d[1][k];
         for (size_t i = 0; i < sum.size(); ++i)
-            sum[i] += 0.5f * ((ac[i] - b[i]) * (ad[i] - b[i]) + (bc[i] - a[i]) * (bd[i] - a[i]));
+            sum[i] += 0.5f * g[k][i] *
+                      ((ac[i] - b[i]) * (ad[i] - b[i]) + (bc[i] - a[i]) * (bd[i] - a[i]));
     }
-    for (size_t i = 0; i < sum.size(); ++i) sum[i] *= g[i];
     return gaussian_blur(sum, sigma);
-}
-
-/// The error of the mean of both halves; see the header.
-Plane error_of_mean(const Halves& halves, const std::array<ColorPlanes, 2>& mixture,
-                    const Plane& g) {
-    Plane all(g.width, g.height), noise(g.width, g.height);
-    for (size_t k = 0; k < 3; ++k) {
-        const Plane &a = halves[0].color[k], &b = halves[1].color[k];
-        const Plane &ma = mixture[0][k], &mb = mixture[1][k];
-        for (size_t i = 0; i < all.size(); ++i) {
-            const float scale = g[i] / 3, own = sqr(ma[i] - mb[i]) / 4;
-            all[i] +=
-                scale * (0.5f * (sqr(ma[i] - b[i]) + sqr(mb[i] - a[i]) - sqr(a[i] - b[i])) - own);
-            noise[i] += scale * own;
-        }
-    }
-    // Wider than the choice: this is a difference of large numbers.
-    constexpr float kSigma = 6;
-    all = gaussian_blur(all, kSigma);
-    noise = gaussian_blur(noise, kSigma / 2);
-    for (size_t i = 0; i < all.size(); ++i) all[i] = std::max(all[i], noise[i]);
-    return all;
 }
 
 }  // namespace
 
-Selection select(const Halves& halves, std::span<const Candidate> candidates,
-                 const Plane& brightness, float sigma, bool mix) {
-    const int w = brightness.width, h = brightness.height;
+ColorPlanes error_weights(const Halves& halves, const ColorPlanes& brightness) {
+    ColorPlanes g;
+    g.fill(Plane(brightness[0].width, brightness[0].height));
+    for (size_t k = 0; k < 3; ++k)
+        for (size_t i = 0; i < g[k].size(); ++i)
+            if (halves[0].count[i] > 0 && halves[1].count[i] > 0)
+                g[k][i] = 1 / (sqr(std::max(0.0f, brightness[k][i])) + kDarkSquared);
+    return g;
+}
+
+Selection select(const Halves& halves, std::span<const Candidate> candidates, const ColorPlanes& g,
+                 float sigma, bool mix) {
+    const int w = g[0].width, h = g[0].height;
     const size_t n = candidates.size();
-    const Plane g = normaliser(halves, brightness);
     std::vector<Plane> gram(n * (n + 1) / 2);
     parallel_for(int64_t(n * n), [&](int64_t pair) {
         const size_t c = size_t(pair) % n, d = size_t(pair) / n;
@@ -122,10 +101,9 @@ Selection select(const Halves& halves, std::span<const Candidate> candidates,
         s.half[k].fill(Plane(w, h));
         for (size_t c = 0; c < n; ++c)
             for (size_t channel = 0; channel < 3; ++channel)
-                for (size_t i = 0; i < g.size(); ++i)
+                for (size_t i = 0; i < s.share[c].size(); ++i)
                     s.half[k][channel][i] += s.share[c][i] * candidates[c][k][channel][i];
     }
-    s.error = error_of_mean(halves, s.half, g);
     return s;
 }
 

@@ -82,7 +82,7 @@ TEST(Furnace, AMillionBouncesBetweenWhiteWallsAreNotTaken) {
     double bounces = 0;
     constexpr int kPaths = 64;
     for (int i = 0; i < kPaths; ++i) {
-        Sampler sampler(1, uint64_t(i), 0, 0);
+        Sampler sampler(1, i, 0, 0);
         const PathResult path =
             trace_path(scene, {{0, 0, 1}, {0, 0, 1}}, sampler, 1'000'000, nullptr);
         EXPECT_TRUE(std::isfinite(path.radiance.g));

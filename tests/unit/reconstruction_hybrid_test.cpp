@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "reconstruction/error_estimate.h"
 #include "reconstruction/outliers.h"
 #include "reconstruction/selector.h"
 #include "reconstruction_fixtures.h"
@@ -30,13 +31,17 @@ ColorPlanes constant(float value) {
     return p;
 }
 
+ColorPlanes weights_at_one(const Halves& halves) {
+    return error_weights(halves, constant(1));
+}
+
 TEST(Selector, TakesTheTruthAndLeavesTheBias) {
     const auto one = [](int, int) { return 1.0f; };
     const Halves halves = noisy_halves(kSize, kSize, one, 0.5f, 1);
     const std::vector<Candidate> candidates{{halves[0].color, halves[1].color},
                                             {constant(1), constant(1)},
                                             {constant(1.4f), constant(1.4f)}};
-    const Selection s = select(halves, candidates, Plane(kSize, kSize, 1), 3);
+    const Selection s = select(halves, candidates, weights_at_one(halves), 3);
     double truth = 0;
     for (float v : s.share[1].values) truth += double(v);
     EXPECT_GT(truth / (kSize * kSize), 0.8);
@@ -48,32 +53,57 @@ TEST(Selector, MixesOppositeBiases) {
     const Halves halves = noisy_halves(kSize, kSize, one, 0.1f, 2);
     const std::vector<Candidate> candidates{{constant(0.8f), constant(0.8f)},
                                             {constant(1.3f), constant(1.3f)}};
-    const Selection s = select(halves, candidates, Plane(kSize, kSize, 1), 3);
+    const Selection s = select(halves, candidates, weights_at_one(halves), 3);
     // The best single candidate has 0.04; the mixture 0.6 : 0.4 has none.
     EXPECT_LT(mean_squared_error(s.half[0], one), 0.004);
 }
 
-TEST(Selector, ErrorEstimateIsTheError) {
-    // Raw halves of noise 0.5: the error of their mean is 0.125, over 1 + 0.01. Estimated as the
-    // mean over 4096 pixels of products of normal numbers: its deviation is about 0.003.
-    const auto one = [](int, int) { return 1.0f; };
-    const Halves halves = noisy_halves(kSize, kSize, one, 0.5f, 3);
-    for (float bias : {0.0f, 0.3f}) {
-        Candidate c{halves[0].color, halves[1].color};
-        for (ColorPlanes& half : c)
-            for (Plane& p : half)
-                for (float& v : p.values) v += bias;
-        const Selection s = select(halves, std::span(&c, 1), Plane(kSize, kSize, 1), 3);
+TEST(ErrorWeights, CountEachChannelByItsOwnBrightness) {
+    Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.1f, 1);
+    halves[1].count[5] = 0;
+    const ColorPlanes g = error_weights(
+        halves, {Plane(kSize, kSize, 2), Plane(kSize, kSize), Plane(kSize, kSize, -1)});
+    EXPECT_FLOAT_EQ(g[0][0], 1 / 4.01f);
+    EXPECT_FLOAT_EQ(g[1][0], 100);
+    EXPECT_FLOAT_EQ(g[2][0], 100);  // light is never negative
+    EXPECT_FLOAT_EQ(g[0][5], 0);    // nobody judges there
+}
+
+/// Mean estimated over mean true squared error of a smooth image.
+double told_over_true(float sigma, float samples, uint64_t seed) {
+    Halves halves = noisy_halves(kSize, kSize, smooth_truth, sigma, seed);
+    for (HalfBuffer& half : halves) half.count = Plane(kSize, kSize, samples / 2);
+    const HybridImage image = reconstruct(halves, kSpectrum);
+    double told = 0;
+    for (float v : image.variance.values) told += double(v) / (kSize * kSize);
+    return told / mean_squared_error(image.color, smooth_truth);
+}
+
+TEST(ErrorEstimate, IsOfTheErrorsSizeWhateverTheNoise) {
+    // Flat noise without features is none of the scenes that the estimate was fitted to.
+    for (float sigma : {0.5f, 0.05f}) {
+        const double ratio = told_over_true(sigma, 64, 21);
+        EXPECT_GT(ratio, 0.4) << "sigma " << sigma;
+        EXPECT_LT(ratio, 2.5) << "sigma " << sigma;
+    }
+}
+
+TEST(ErrorEstimate, FallsWithTheNoise) {
+    double before = 1e9;
+    for (float sigma : {0.5f, 0.125f, 0.031f}) {
+        const HybridImage image =
+            reconstruct(noisy_halves(kSize, kSize, checks, sigma, 22), kSpectrum);
         double mean = 0;
-        for (float e : s.error.values) mean += double(e) / (kSize * kSize);
-        EXPECT_NEAR(mean, (0.125 + double(bias) * double(bias)) / 1.01, 0.015);
+        for (float v : image.relative_error.values) mean += double(v);
+        EXPECT_LT(mean, before / 4) << "sigma " << sigma;
+        before = mean;
     }
 }
 
 TEST(Selector, WithoutJudgesTakesTheLast) {
     Halves halves{HalfBuffer(kSize, kSize), HalfBuffer(kSize, kSize)};
     const std::vector<Candidate> candidates{{constant(0), constant(0)}, {constant(3), constant(3)}};
-    const Selection s = select(halves, candidates, Plane(kSize, kSize, 1), 3);
+    const Selection s = select(halves, candidates, weights_at_one(halves), 3);
     for (float v : s.half[0][0].values) EXPECT_FLOAT_EQ(v, 3);
 }
 

@@ -1,0 +1,68 @@
+#include "reconstruction/candidates.h"
+
+#include <algorithm>
+
+#include "reconstruction/feature_filter.h"
+#include "reconstruction/gather.h"
+#include "reconstruction/regression.h"
+
+namespace covtrace {
+
+namespace {
+
+/// The windows of regressions reach this many times as far as the predicted filters.
+constexpr float kWindowWidening = 2.5f;
+
+ColorPlanes gaussian(const HalfBuffer& half, const FilterField& field) {
+    const size_t n = half.count.size();
+    std::vector<Rgb> mean(n);
+    const std::vector<float> variance(n, 0.0f);
+    std::vector<uint32_t> count(n);
+    for (size_t i = 0; i < n; ++i) {
+        mean[i] = {half.color[0][i], half.color[1][i], half.color[2][i]};
+        count[i] = half.count[i] > 0 ? 1 : 0;
+    }
+    const GatheredImage image = gather(mean, variance, count, field);
+    ColorPlanes out;
+    for (size_t c = 0; c < 3; ++c) {
+        out[c] = Plane(half.count.width, half.count.height);
+        for (size_t i = 0; i < n; ++i) out[c][i] = image.color[i][int(c)];
+    }
+    return out;
+}
+
+/// The predicted Gaussians, `scale` times as wide as with c = 2.
+FilterField predicted_filters(std::span<const covariance::Sym2<float>> spectrum, int w, int h,
+                              float scale) {
+    FilterSettings settings;
+    settings.c = 2 / scale;
+    settings.limits = {0.35f, std::max(1.0f, 0.03f * float(w))};
+    FilterField field = filter_field(spectrum, w, h, FilterRule::verified, settings);
+    limit_by_neighbours(field, settings);
+    return field;
+}
+
+}  // namespace
+
+std::vector<Candidate> make_candidates(const Halves& halves,
+                                       std::span<const covariance::Sym2<float>> spectrum,
+                                       const CandidateSettings& settings) {
+    const int w = halves[0].count.width, h = halves[0].count.height;
+    std::vector<Candidate> candidates{{halves[0].color, halves[1].color}};
+    for (float scale : settings.gaussians) {
+        const FilterField field = predicted_filters(spectrum, w, h, scale);
+        candidates.push_back({gaussian(halves[0], field), gaussian(halves[1], field)});
+    }
+    const FilterField shape = predicted_filters(spectrum, w, h, 1);
+    std::vector<RegressionWindow> windows;
+    for (const auto& fit : settings.fits)
+        windows.push_back({fit.k, fit.shaped ? &shape : nullptr, kWindowWidening});
+    const FeaturePlanes features = filter_features(halves);
+    auto a = regress(halves[0], halves[1], features, windows);
+    auto b = regress(halves[1], halves[0], features, windows);
+    for (size_t k = 0; k < windows.size(); ++k)
+        candidates.push_back({std::move(a[k]), std::move(b[k])});
+    return candidates;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,36 @@
+/// The ways to reconstruct that the hybrid method chooses among.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "reconstruction/filter_field.h"
+#include "reconstruction/half_buffer.h"
+
+namespace covtrace {
+
+/// One way to reconstruct: each half by itself, from the samples of that half.
+using Candidate = std::array<ColorPlanes, 2>;
+
+/// The candidates beside the raw pixels. docs/reconstruction.md has the table of what each gives.
+struct CandidateSettings {
+    /// Scales of the predicted Gaussians; 1: the width factor c = 2.
+    std::vector<float> gaussians{0.5f, 1.0f};
+    /// First-order regressions: tolerance of the colours' patches, and whether the window also
+    /// falls off as the predicted Gaussian, 2.5 times as wide.
+    struct Fit {
+        float k;
+        bool shaped;
+    };
+    std::vector<Fit> fits{{0.5f, false}, {1.0f, false}, {2.0f, true}};
+};
+
+/// The raw pixels, the Gaussians, the fits, in this order. `spectrum`: the predicted ones after the
+/// integral over lens and shutter, (cycles/pixel)^2, one per pixel. The variances of the halves are
+/// smoothed: ones that know of their own pixel's mean would let bright pixels accept dark ones and
+/// not the other way round.
+std::vector<Candidate> make_candidates(const Halves& halves,
+                                       std::span<const covariance::Sym2<float>> spectrum,
+                                       const CandidateSettings& settings);
+
+}  // namespace covtrace
