@@ -1,6 +1,5 @@
 #include "render/film_file.h"
 
-#include <signal.h>
 #include <unistd.h>
 #include <xxhash.h>
 #include <zstd.h>
@@ -194,7 +193,7 @@ class FilmReader {
 }  // namespace
 
 fs::path earlier_film(const fs::path& file) {
-    fs::path earlier = file;
+    fs::path earlier = OutputFile::resolved(file);
     earlier += ".prev";
     return earlier;
 }
@@ -259,16 +258,26 @@ FoundFilm find_film(const fs::path& file) {
     }
 }
 
+fs::path set_aside(const fs::path& file) {
+    fs::path damaged = file;
+    damaged += ".damaged";
+    std::error_code error;
+    fs::rename(file, damaged, error);
+    if (error)
+        throw Error(ErrorKind::io, "cannot set the damaged film '" + file.string() +
+                                       "' aside: " + error.message());
+    return damaged;
+}
+
 void remove_leftovers(const fs::path& file) {
-    const std::string newer = file.filename().string() + OutputFile::kPartSuffix;
-    const std::string older = earlier_film(file).filename().string() + OutputFile::kPartSuffix;
-    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    const fs::path target = OutputFile::resolved(file);
+    const std::string newer = target.filename().string();
+    const std::string older = earlier_film(file).filename().string();
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
     std::error_code ignored;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
         const std::string name = entry.path().filename().string();
-        if (!name.starts_with(newer) && !name.starts_with(older)) continue;
-        const long process = std::strtol(name.c_str() + name.rfind('-') + 1, nullptr, 10);
-        if (process > 0 && ::kill(pid_t(process), 0) != 0 && errno == ESRCH)
+        if (OutputFile::is_leftover(name, newer) || OutputFile::is_leftover(name, older))
             fs::remove(entry.path(), ignored);
     }
 }

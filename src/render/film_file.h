@@ -7,11 +7,13 @@
 
 namespace covtrace {
 
-/// The name that an older film of the same name keeps beside a newer one.
+/// The name that an older film of the same name keeps beside a newer one; beside the file that a
+/// symbolic link leads to.
 std::filesystem::path earlier_film(const std::filesystem::path& file);
 
 /// Writes beside and renames (OutputFile): at any moment `file` is the older or the newer film, and
-/// whole. The older one lives on as earlier_film(file). Blocks are compressed in parallel; the
+/// whole; where the file system has no hard links it may be missing for a moment, and
+/// earlier_film(file) is there. The older one lives on as earlier_film(file). Blocks are compressed in parallel; the
 /// bytes do not depend on the number of threads. Throws Error(io).
 void write_film(const RenderState& state, const std::filesystem::path& file);
 
@@ -31,7 +33,11 @@ struct FoundFilm {
 };
 FoundFilm find_film(const std::filesystem::path& file);
 
-/// Removes what processes that were killed while they wrote `file` have left beside it.
+/// Moves a damaged film out of the way, so that the next one that is written does not take the
+/// place of the good earlier one. Returns its new name. Throws Error(io).
+std::filesystem::path set_aside(const std::filesystem::path& file);
+
+/// Removes what processes of this machine that were killed while they wrote `file` have left beside it.
 void remove_leftovers(const std::filesystem::path& file);
 
 }  // namespace covtrace

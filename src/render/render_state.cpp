@@ -102,7 +102,7 @@ RenderState::RenderState(const RenderScene& scene, const RenderOptions& options)
       spp(target_spp(scene.description, options)) {
     covariance_spp = covariance_paths(options, spp);
     FilmParts kept = film_parts(method);
-    kept.in_view |= options.emitters_apart;
+    if (method == Method::uniform) kept.in_view = options.emitters_apart;
     for (int k = 0; k < (method == Method::hybrid ? 2 : 1); ++k) films.emplace_back(region, kept);
     if (method != Method::uniform) parts.emplace(region.width(), region.height());
 }

@@ -88,7 +88,9 @@ class NotFinite(FilmTest):
                 shown = self.run_program("render", "plain.pbrt", "--method", "uniform", "--debug-pixel", f"{x},{y},{sample}")
                 values.append(float(re.search(r"radiance [^,]+,([^,]+),", shown.stdout)[1]))
             self.assertAlmostEqual(sum(values) / 2, raw[y * 70 + x], delta=1e-5 * (1 + abs(sum(values))))
-        self.assert_fails(self.run_program("render", "plain.pbrt", "--debug-pixel", "70,1,0"), USAGE, "70,1")
+        for pixel in ("70,1,0", "-9223372036854775808,0,0", "1,1,4294967296"):
+            result = self.run_program("render", "plain.pbrt", "--method", "uniform", "--debug-pixel=" + pixel)
+            self.assert_fails(result, USAGE, "--debug-pixel")
 
 
 if __name__ == "__main__":
