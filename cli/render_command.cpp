@@ -92,9 +92,10 @@ void parse_texts(RenderArguments& a) {
     a.options.emitters_apart = names(a.layers, "inview") || names(a.tev_layers, "inview");
     check(a.film);
     if (a.film.shard && !(a.output.empty() && a.png.empty() && a.tev.empty()))
-        throw Error(ErrorKind::usage,
-                    "--shard: a shard has no image; expected neither --output, --png nor --tev, but "
-                    "'covtrace merge' of all shards");
+        throw Error(
+            ErrorKind::usage,
+            "--shard: a shard has no image; expected neither --output, --png nor --tev, but "
+            "'covtrace merge' of all shards");
 }
 
 /// Writes the image and what goes with it.

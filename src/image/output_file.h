@@ -20,8 +20,8 @@ class OutputFile {
     /// What the names of temporary files have after the target's: ".part-<host>-<process id>", so
     /// that machines that share a folder know theirs.
     static std::string part_suffix();
-    /// Whether a name that begins with `target`'s, links resolved, is that of a temporary file whose
-    /// process, of this host, is no more.
+    /// Whether a name that begins with `target`'s, links resolved, is that of a temporary file
+    /// whose process, of this host, is no more.
     static bool is_leftover(const std::string& name, const std::string& target);
     /// Creates the temporary file. Constructing and dropping one therefore tells early whether the
     /// target can be written.

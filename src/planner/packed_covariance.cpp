@@ -37,7 +37,7 @@ using Factor = std::array<double, 15>;
 
 Factor cholesky(const covariance::SymmetricMatrix5<double>& s) {
     // Less than this share of a variance is what the rounding of S left: nothing follows from it.
-    constexpr double kRounding = 1e-6;
+    constexpr double kRounding = 1e-12;
     Factor l{};
     for (size_t j = 0; j < 5; ++j) {
         const double variance = s(kOrder[j], kOrder[j]);
@@ -70,8 +70,7 @@ PackedCovariance::PackedCovariance(const covariance::SymmetricMatrix5<double>& s
         exponent[i] = int8_t(std::clamp(std::ilogb(largest) + 2, -120, 120));
         const double scale = std::ldexp(1.0, -exponent[i]);
         for (size_t j = 0; j <= i; ++j)
-            factor[entry(i, j)] =
-                encode(float(std::clamp(l[entry(i, j)] * scale, -0.5, 0.5)));
+            factor[entry(i, j)] = encode(float(std::clamp(l[entry(i, j)] * scale, -0.5, 0.5)));
     }
 }
 
@@ -79,8 +78,7 @@ covariance::SymmetricMatrix5<double> PackedCovariance::covariance() const {
     Factor l{};
     for (size_t i = 0; i < 5; ++i)
         for (size_t j = 0; j <= i; ++j)
-            l[entry(i, j)] =
-                std::ldexp(double(decode(factor[entry(i, j)])), int(exponent[i]));
+            l[entry(i, j)] = std::ldexp(double(decode(factor[entry(i, j)])), int(exponent[i]));
     covariance::SymmetricMatrix5<double> s;
     for (size_t i = 0; i < 5; ++i)
         for (size_t j = 0; j <= i; ++j) {

@@ -24,7 +24,7 @@ struct PackedCovariance {
     float weight = 0;
 
     PackedCovariance() = default;
-    /// `s`: positive semidefinite, but for what rounding takes from it.
+    /// `s`: positive semidefinite, but for what the rounding of doubles takes from it.
     PackedCovariance(const covariance::SymmetricMatrix5<double>& s, float weight_of_it);
     covariance::SymmetricMatrix5<double> covariance() const;
 };

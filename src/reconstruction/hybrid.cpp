@@ -100,6 +100,7 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     for (HalfBuffer& half : halves)
         for (Plane& v : half.color_variance) v = box_blur(v, 1);
     const std::vector<Candidate> candidates = make_candidates(halves, spectrum, settings);
+    for (HalfBuffer& half : halves) half.feature = half.feature_variance = {};  // large, not needed
     const Plane brightness = common_brightness(candidates);
     Selection s = select(halves, candidates, brightness, settings.sigma, settings.mix);
 

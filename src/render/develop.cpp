@@ -46,26 +46,29 @@ std::vector<float> density_layer(const RenderState& state) {
 
 Image gathered_image(const RenderState& state) {
     const Film& film = state.films[0];
-    const CovarianceBuffers& buffers = *state.parts;
+    const auto unpacked = [&state](const std::vector<PackedCovariance>& part) {
+        return unpack(part, state.region.width(), state.region.height());
+    };
+    const CovarianceBuffer scattered_light = unpacked(state.parts->scattered),
+                           light_in_view = unpacked(state.parts->in_view);
     const double taken = film.mean_count();
     const FilterSettings settings = filter_settings(taken),
                          settings_in_view = filter_settings_in_view(taken);
-    FilterField field = predicted_filters(state.filter, buffers.scattered, settings);
-    FilterField in_view_field = predicted_filters(state.filter, buffers.in_view, settings_in_view);
+    FilterField field = predicted_filters(state.filter, scattered_light, settings);
+    FilterField in_view_field = predicted_filters(state.filter, light_in_view, settings_in_view);
     if (state.filter == FilterRule::verified) {
         // The border between a surface and the sky behind it is known to the light that passes
         // beside it: the surface where the sky has no detail, the sky where the surface has none.
         const auto beside_scattered =
-            known_sizes(in_view_field, buffers.in_view, settings.limits.s_min);
+            known_sizes(in_view_field, light_in_view, settings.limits.s_min);
         limit_by_neighbours(field, settings, beside_scattered);
         limit_by_neighbours(in_view_field, settings_in_view,
-                            known_sizes(field, buffers.scattered, 0));
-        make_round_where_unknown(field, buffers.scattered);
-        make_round_where_unknown(in_view_field, buffers.in_view);
+                            known_sizes(field, scattered_light, 0));
+        make_round_where_unknown(field, scattered_light);
+        make_round_where_unknown(in_view_field, light_in_view);
     }
-    const bool emitters_found =
-        std::any_of(buffers.in_view.weight.begin(), buffers.in_view.weight.end(),
-                    [](float w) { return w > 0; });
+    const bool emitters_found = std::any_of(
+        light_in_view.weight.begin(), light_in_view.weight.end(), [](float w) { return w > 0; });
     std::vector<Rgb> scattered(film.pixels.size()), in_view = film.in_view;
     std::vector<float> variance(film.pixels.size());
     std::vector<uint32_t> count(film.pixels.size());
@@ -80,11 +83,11 @@ Image gathered_image(const RenderState& state) {
     // Where no covariance path met an emitter nothing is known of them: they stay as they are.
     if (emitters_found) in_view = gather(in_view, variance, count, in_view_field).color;
     for (size_t i = 0; i < scattered.size(); ++i) gathered.color[i] += in_view[i];
-    const CovarianceBuffer all = merge(buffers);
+    const CovarianceBuffer all = merge(*state.parts);
     const Prediction raw = preintegrate(all);
     return make_layers(film, state.display, state.has_holes,
                        CovarianceLayers{all, raw, density_layer(state), field, gathered,
-                                        emitters_found ? &buffers.scattered : nullptr,
+                                        emitters_found ? &scattered_light : nullptr,
                                         emitters_found ? &in_view_field : nullptr});
 }
 
@@ -93,10 +96,9 @@ Image mixed_image(const RenderState& state, const HybridImage& mixed) {
     for (size_t i = 0; i < state.pixels(); ++i)
         delivered.color[i] = {mixed.color[0][i], mixed.color[1][i], mixed.color[2][i]};
     const CovarianceBuffer all = state.covariance();
-    const Prediction raw = preintegrate(all), smoothed = preintegrate(smooth(all));
+    const Prediction raw = preintegrate(all);
     const FilterField field =
-        filter_field(smoothed.spectrum, state.region.width(), state.region.height(),
-                     FilterRule::verified, filter_settings(state.mean_count()));
+        predicted_filters(FilterRule::verified, all, filter_settings(state.mean_count()));
     return make_layers(whole_film(state), state.display, state.has_holes,
                        CovarianceLayers{all, raw, density_layer(state), field, delivered});
 }

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array<char, 8> kMagic{'\x89', 'C', 'V', 'F', '\r', '\n', '\x1a', '\n'};
 constexpr std::array<char, 8> kEnd{'c', 'v', 'f', ' ', 'e', 'n', 'd', '\n'};
-constexpr uint32_t kFormat = 1;
+constexpr uint32_t kFormat = 2;
 constexpr uint32_t kMostHeader = 1 << 20;  // bytes
 constexpr size_t kBlockRecords = 1 << 16;  // pixels in a block
 constexpr size_t kBlocksAtOnce = 32;       // in memory, compressed or being so
@@ -91,12 +91,8 @@ std::string compressed(const Block& block) {
 
 class FilmReader {
   public:
-    explicit FilmReader(const fs::path& file) : file_(file), in_(file, std::ios::binary) {
-        if (!in_) fail(std::generic_category().message(errno));
-        std::error_code error;
-        left_ = fs::file_size(file, error);
-        if (error) fail(error.message());
-    }
+    FilmReader(std::istream& in, uint64_t size, const std::string& name)
+        : name_(name), in_(in), left_(size) {}
 
     RenderState read() {
         std::array<char, 8> magic{};
@@ -122,7 +118,7 @@ class FilmReader {
 
   private:
     [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ErrorKind::scene, file_.string() + ": " + what);
+        throw Error(ErrorKind::scene, name_ + ": " + what);
     }
 
     void get(void* bytes, size_t count) {
@@ -140,7 +136,7 @@ class FilmReader {
         try {
             return parse_film_header(header, size_t(std::min(memory, plausible)));
         } catch (const Error& e) {
-            throw Error(e.kind(), file_.string() + ": " + e.what());
+            throw Error(e.kind(), name_ + ": " + e.what());
         }
     }
 
@@ -185,9 +181,9 @@ class FilmReader {
         return true;
     }
 
-    const fs::path file_;
-    std::ifstream in_;
-    uint64_t left_ = 0;
+    const std::string& name_;
+    std::istream& in_;
+    uint64_t left_;
 };
 
 }  // namespace
@@ -234,12 +230,24 @@ bool is_film(const fs::path& file) {
     return in.read(magic.data(), magic.size()) && magic == kMagic;
 }
 
-RenderState read_film(const fs::path& file) {
+RenderState read_film(std::istream& in, uint64_t size, const std::string& name) {
     try {
-        return FilmReader(file).read();
+        return FilmReader(in, size, name).read();
     } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::limit, file.string() + ": not enough memory for the film");
+        throw Error(ErrorKind::limit, name + ": not enough memory for the film");
     }
+}
+
+RenderState read_film(const fs::path& file) {
+    const auto fail = [&file](const std::string& why) {
+        throw Error(ErrorKind::scene, file.string() + ": " + why);
+    };
+    std::ifstream in(file, std::ios::binary);
+    if (!in) fail(std::generic_category().message(errno));
+    std::error_code error;
+    const uint64_t size = fs::file_size(file, error);
+    if (error) fail(error.message());
+    return read_film(in, size, file.string());
 }
 
 FoundFilm find_film(const fs::path& file) {

@@ -86,7 +86,7 @@ void add_arrays(RenderState& s, const json& arrays) {
         if (has("film0.plan")) s.plan.emplace_back(s.pixels());
     }
     if (s.method == Method::hybrid && s.stage == Stage::rounds)
-        s.all.emplace(s.region.width(), s.region.height());
+        s.all.resize(s.pixels());
     else if (s.method != Method::uniform)
         s.parts.emplace(s.region.width(), s.region.height());
     if (has("density")) s.density.resize(s.pixels());

@@ -40,7 +40,7 @@ namespace {
 double start_of(const RenderState& s) {
     std::ostringstream out;
     out << std::setprecision(17) << int(s.stage) << ' ' << s.taken << ' ' << s.target << ' '
-         << s.in_round() << ' ' << s.mean_count() << ' ' << s.shards;
+        << s.in_round() << ' ' << s.mean_count() << ' ' << s.shards;
     for (const auto& [name, value] : s.identity) out << '\n' << name << ": " << value;
     const std::string text = out.str();
     return double(XXH3_64bits(text.data(), text.size()) >> 11);  // as many bits as a double holds

@@ -22,12 +22,12 @@ auto round_of(const RenderState& s) {
 /// Whether two films have the same records for the same pixels.
 bool same_arrays(RenderState& a, RenderState& b) {
     const std::vector<FilmArray> of_a = film_arrays(a), of_b = film_arrays(b);
-    return a.region == b.region &&
-           std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(),
-                      [](const FilmArray& x, const FilmArray& y) {
-                          return x.name == y.name && x.record_size == y.record_size &&
-                                 x.count == y.count;
-                      });
+    return a.region == b.region && std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(),
+                                              [](const FilmArray& x, const FilmArray& y) {
+                                                  return x.name == y.name &&
+                                                         x.record_size == y.record_size &&
+                                                         x.count == y.count;
+                                              });
 }
 
 /// Copies the records of the pixels that `from` has.
