@@ -16,10 +16,10 @@ std::optional<double> target_spp(const SceneDescription& scene, const RenderOpti
 
 std::map<std::string, size_t> render_memory(const FilmDescription& film,
                                             const RenderOptions& options) {
-    // Layers and the buffers of the reconstruction, as bench/film_cost measures them.
-    const size_t image = options.method == Method::uniform      ? 66
-                         : options.method == Method::covariance ? 182
-                                                                : 680;
+    // Layers and the buffers of the reconstruction: `bench/film_cost memory`.
+    const size_t image = options.method == Method::uniform      ? 68
+                         : options.method == Method::covariance ? 395
+                                                                : 410;
     const size_t kept = film_bytes_per_pixel(options.method, options.emitters_apart);
     const PixelBounds region = render_region(film);
     const size_t pixels = size_t(region.width()) * size_t(region.height());

@@ -72,8 +72,7 @@ TEST(PackedCovariance, PackingAgainChangesNothing) {
     for (int k = 0; k < 2000; ++k) {
         const PackedCovariance once(random_covariance(random, 5), 1);
         const PackedCovariance twice(once.covariance(), 1);
-        EXPECT_EQ(twice.factor, once.factor);
-        EXPECT_EQ(twice.exponent, once.exponent);
+        EXPECT_EQ(twice.covariance().values, once.covariance().values);
     }
 }
 
