@@ -64,13 +64,27 @@ class Matrix(FilmTest):
                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
 
     def kill(self, run, choice):
-        """One of the processes that render; the others of mpirun end with it."""
+        """One of the processes that render; the others of mpirun end with it. Whether there was one."""
         targets = ranks_of(run) if run.args[0] == MPIRUN else [run.pid]
         if targets and run.poll() is None:
             try:
                 os.kill(choice.choice(targets), signal.SIGKILL)
+                return True
             except ProcessLookupError:
                 pass
+        return False
+
+    def end(self, run):
+        """What it says until its end. mpirun itself may wait for ever for a process that died while it started them: it is
+        killed once none of its processes lives; one that lives is a failure."""
+        for _ in range(12):
+            try:
+                return run.communicate(timeout=10)[1]
+            except subprocess.TimeoutExpired:
+                if run.args[0] == MPIRUN and not ranks_of(run):
+                    run.kill()
+        run.kill()
+        self.fail(f"{run.communicate()[1]} it does not end, though one of its processes was killed")
 
     def render(self, command, choice, seconds):
         """Until it ends by itself; with `seconds` killed at least once after at most about so long. Returns the kills."""
@@ -81,9 +95,8 @@ class Matrix(FilmTest):
                 limit = choice.uniform(0, seconds * (1 + kills / 5)) if seconds else 300
                 _, errors = run.communicate(timeout=limit)
             except subprocess.TimeoutExpired:
-                self.kill(run, choice)
-                _, errors = run.communicate(timeout=120)
-                kills += 1
+                kills += self.kill(run, choice)
+                errors = self.end(run)
             if run.returncode == DONE:
                 return kills
             self.assertTrue(seconds and kills, errors)
