@@ -18,9 +18,13 @@ constexpr double kMostShare = 0.01;               // of the time, unless --every
 FilmFiles::FilmFiles(const FilmArguments& arguments, std::function<void()> clear_line)
     : arguments_(arguments), clear_line_(std::move(clear_line)) {}
 
-std::shared_ptr<const RenderState> FilmFiles::found(const std::filesystem::path& file) const {
+std::shared_ptr<const RenderState> FilmFiles::found(const std::filesystem::path& file,
+                                                    bool writes) const {
     FoundFilm film = find_film(file);
     if (!film.state) return nullptr;
+    std::error_code ignored;
+    if (!film.damage.empty() && writes && std::filesystem::exists(file, ignored))
+        film.damage += "; it is now '" + set_aside(file).string() + "'";
     if (!film.damage.empty()) {
         clear_line_();
         say("warning: {}; going on from '{}'\n", film.damage, earlier_film(file).string());
@@ -32,10 +36,12 @@ FilmKeeping FilmFiles::keeping(bool writes) {
     FilmKeeping k;
     const auto& a = arguments_;
     if (a.shard) k.shard = *a.shard;
-    for (const std::string& file : {a.film, a.checkpoint})
-        if (writes && !file.empty()) remove_leftovers(file);
-    if (a.resume && !a.checkpoint.empty()) k.from = found(a.checkpoint);
-    if (a.resume && a.shard) k.part = found(a.film);
+    // The checkpoint that shards begin with is written by who joins them.
+    const bool writes_checkpoint = writes && !a.shard;
+    if (writes && !a.film.empty()) remove_leftovers(a.film);
+    if (writes_checkpoint && !a.checkpoint.empty()) remove_leftovers(a.checkpoint);
+    if (a.resume && !a.checkpoint.empty()) k.from = found(a.checkpoint, writes_checkpoint);
+    if (a.resume && a.shard) k.part = found(a.film, writes);
     if (k.from) k.name = a.checkpoint;
     if (a.film.empty() && a.checkpoint.empty()) return k;
     if (writes)

@@ -30,7 +30,8 @@ class FilmFiles {
   private:
     void keep(const RenderState& state, KeepReason reason);
     void write(const RenderState& state, const std::filesystem::path& file);
-    std::shared_ptr<const RenderState> found(const std::filesystem::path& file) const;
+    /// `writes`: this process writes the file, and sets it aside where it is damaged.
+    std::shared_ptr<const RenderState> found(const std::filesystem::path& file, bool writes) const;
 
     const FilmArguments& arguments_;
     std::function<void()> clear_line_;

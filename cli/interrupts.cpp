@@ -1,26 +1,24 @@
 #include "cli/interrupts.h"
 
 #include <csignal>
+#include <utility>
 
 namespace covtrace::cli {
 
 namespace {
 
-Monitor* interrupted_monitor = nullptr;
+std::function<bool()> interrupt_once;
 
 extern "C" void on_interrupt(int signal) {
-    if (interrupted_monitor && !interrupted_monitor->cancelled()) {
-        interrupted_monitor->cancel();
-        return;
-    }
+    if (interrupt_once && interrupt_once()) return;
     std::signal(signal, SIG_DFL);
     std::raise(signal);
 }
 
 }  // namespace
 
-InterruptGuard::InterruptGuard(Monitor& monitor) {
-    interrupted_monitor = &monitor;
+InterruptGuard::InterruptGuard(std::function<bool()> interrupt) {
+    interrupt_once = std::move(interrupt);
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
 }
@@ -28,7 +26,7 @@ InterruptGuard::InterruptGuard(Monitor& monitor) {
 InterruptGuard::~InterruptGuard() {
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
-    interrupted_monitor = nullptr;
+    interrupt_once = nullptr;
 }
 
 }  // namespace covtrace::cli

@@ -7,34 +7,14 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
-#include <new>
-#include <system_error>
 
 #include "cli/commands.h"
+#include "cli/failure.h"
 #include "cli/message.h"
 #include "core/error.h"
 #include "render/version.h"
 
 namespace {
-
-int exit_code(covtrace::ErrorKind kind) {
-    using enum covtrace::ErrorKind;
-    switch (kind) {
-        case usage:
-            return 2;
-        case scene:
-            return 3;
-        case limit:
-            return 4;
-        case io:
-            return 5;
-        case interrupted:
-            return 6;
-        case internal:
-            return 7;
-    }
-    return 7;
-}
 
 /// Where a standard stream is closed, the next file to be opened would take its number and its
 /// messages.
@@ -84,7 +64,7 @@ int run(int argc, char** argv) {
         if (e.get_exit_code() == 0) return app.exit(e);
         covtrace::cli::say("covtrace: {}\nRun 'covtrace --help' or 'covtrace COMMAND --help'.\n",
                            explain(app, e));
-        return exit_code(covtrace::ErrorKind::usage);
+        return covtrace::cli::kUsageExitCode;
     }
     const int code = invocation.action();
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
@@ -102,20 +82,9 @@ int main(int argc, char** argv) {
     // cleaned up after.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
-    using covtrace::cli::say;
     try {
         return run(argc, argv);
-    } catch (const covtrace::Error& e) {
-        say("covtrace: {}\n", e.what());
-        return exit_code(e.kind());
-    } catch (const std::bad_alloc&) {
-        say("covtrace: not enough memory\n");
-        return exit_code(covtrace::ErrorKind::limit);
-    } catch (const std::system_error& e) {
-        say("covtrace: {}\n", e.what());
-        return exit_code(covtrace::ErrorKind::io);
-    } catch (const std::exception& e) {
-        say("covtrace: internal error: {}\n", e.what());
-        return exit_code(covtrace::ErrorKind::internal);
+    } catch (...) {
+        return covtrace::cli::report_failure(std::current_exception());
     }
 }

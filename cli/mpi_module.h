@@ -9,7 +9,7 @@ namespace covtrace::cli {
 
 /// Joins the processes that mpirun started beside this one; null where it did not. MPI is in a
 /// module of its own, so that nothing else needs it. Throws Error(usage) where the module is
-/// missing.
+/// missing or does not load, which tells why.
 std::unique_ptr<Ranks> join_ranks();
 
 }  // namespace covtrace::cli

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <ctime>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "cli/commands.h"
+#include "cli/failure.h"
 #include "cli/film_files.h"
 #include "cli/interrupts.h"
 #include "cli/memory_limit.h"
@@ -88,10 +91,11 @@ void parse_texts(RenderArguments& a) {
     if (a.quiet && a.progress == ProgressStyle::automatic) a.progress = ProgressStyle::none;
     a.options.emitters_apart = names(a.layers, "inview") || names(a.tev_layers, "inview");
     check(a.film);
-    if (a.film.shard && !(a.output.empty() && a.png.empty()))
-        throw Error(ErrorKind::usage,
-                    "--shard: a shard has no image; expected neither --output nor --png, but "
-                    "'covtrace merge' of all shards");
+    if (a.film.shard && !(a.output.empty() && a.png.empty() && a.tev.empty()))
+        throw Error(
+            ErrorKind::usage,
+            "--shard: a shard has no image; expected neither --output, --png nor --tev, but "
+            "'covtrace merge' of all shards");
 }
 
 /// Writes the image and what goes with it.
@@ -114,10 +118,9 @@ void be_silent(RenderArguments& a) {
     a.tev.clear();
 }
 
-int render_scene(RenderArguments a, const Invocation& invocation) {
-    const ThreadLimit threads(a.threads);
-    parse_texts(a);
-    const std::unique_ptr<Ranks> ranks = join_ranks();
+/// `ranks`: the processes that share the work; may be null.
+int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLimit& threads,
+                 const Ranks* ranks) {
     const bool is_first = !ranks || ranks->index() == 0;
     if (!is_first) be_silent(a);
     if (ranks && a.film.shard)
@@ -127,7 +130,11 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
     ProgressLine progress(a.progress);
     Monitor monitor(progress.reporter(), progress.interval(), invocation.start);
     progress.begin();
-    const InterruptGuard guard(monitor);
+    const InterruptGuard guard([&monitor] {
+        const bool first = !monitor.cancelled();
+        monitor.cancel();
+        return first;
+    });
 
     SceneDescription description = read_scene_file(
         a.scene, {{a.search_paths.begin(), a.search_paths.end()}, a.overrides.shutter});
@@ -143,7 +150,7 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
             if (!file.empty()) remove_leftovers(file);
     FilmFiles films(a.film, [&progress] { progress.clear(); });
     FilmKeeping keeping = films.keeping(is_first);
-    keeping.ranks = ranks.get();
+    keeping.ranks = ranks;
     require_memory(a.max_memory, render_memory(description.film, a.options));
 
     RenderScene scene(std::move(description), a.isa, a.texture_bytes);
@@ -155,7 +162,8 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
     }
     require_memory(a.max_memory, render_memory(scene.description.film, a.options), &scene);
     if (a.debug_pixel) {
-        fmt::print("{}", describe_sample(scene, a.options, *a.debug_pixel));
+        const std::string text = describe_sample(scene, a.options, *a.debug_pixel);
+        if (is_first) fmt::print("{}", text);
         return 0;
     }
     const PixelBounds region = render_region(scene.description.film);
@@ -191,6 +199,21 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
     return result.complete || (is_shard && !monitor.cancelled()) ? 0 : 6;
 }
 
+int run_render(RenderArguments a, const Invocation& invocation) {
+    const ThreadLimit threads(a.threads);
+    parse_texts(a);
+    const std::unique_ptr<Ranks> ranks = join_ranks();
+    if (!ranks) return render_scene(std::move(a), invocation, threads, nullptr);
+    try {
+        return render_scene(std::move(a), invocation, threads, ranks.get());
+    } catch (...) {
+        // The others may wait for this one, which would wait for them in MPI's own end.
+        const int code = report_failure(std::current_exception());
+        ranks->abort(code);
+        return code;
+    }
+}
+
 }  // namespace
 
 void add_render(CLI::App& app, Invocation& invocation) {
@@ -198,7 +221,7 @@ void add_render(CLI::App& app, Invocation& invocation) {
     CLI::App* c = app.add_subcommand("render", "Render a scene into an EXR with layers");
     add_render_options(c, *a);
     c->callback([a, &invocation] {
-        invocation.action = [a, &invocation] { return render_scene(*a, invocation); };
+        invocation.action = [a, &invocation] { return run_render(*a, invocation); };
     });
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <memory>
 
 #include "render/job.h"
@@ -41,14 +42,16 @@ std::string describe_sample(const RenderScene& scene, const RenderOptions& optio
     const PassContext whole = pass_context(scene, options);
     const PassContext context =
         options.method == Method::hybrid ? half_context(whole, uint32_t(p.sample % 2)) : whole;
+    const uint64_t index = p.sample / context.halves;
+    if (index > std::numeric_limits<uint32_t>::max())
+        throw Error(ErrorKind::usage,
+                    fmt::format("--debug-pixel: sample {} is more than a pixel has", p.sample));
     const auto record = std::make_unique<PathRecord>();
     PathResult path;
-    const FilmSample s =
-        take_sample(context, p.x, p.y, uint32_t(p.sample / context.halves), record.get(), path);
-    std::string out =
-        fmt::format("pixel {},{} sample {} (seed {}, index {})\nradiance {}{}\n", p.x, p.y,
-                    p.sample, context.seed, p.sample / context.halves, text(s.radiance),
-                    is_finite(s.radiance) ? "" : ": not finite, counts as black");
+    const FilmSample s = take_sample(context, p.x, p.y, uint32_t(index), record.get(), path);
+    std::string out = fmt::format("pixel {},{} sample {} (seed {}, index {})\nradiance {}{}\n", p.x,
+                                  p.y, p.sample, context.seed, index, text(s.radiance),
+                                  is_finite(s.radiance) ? "" : ": not finite, counts as black");
     out += fmt::format("albedo {}\nnormal {}\ndepth {:.9g}\nrays {}\n", text(s.albedo),
                        text(s.normal), s.depth, s.rays);
     out += fmt::format("camera ray from {} to {} time {:.9g}\n", text(record->camera_ray.origin),

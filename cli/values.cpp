@@ -4,7 +4,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <string_view>
 
 #include "core/error.h"
@@ -150,8 +149,8 @@ DebugPixel parse_sample(const std::string& option, const std::string& text) {
     constexpr auto kExpected = "a pixel and its sample x,y,sample such as 320,180,0";
     const auto v = parse_list<int64_t, 3>(option, text, ',', kExpected);
     constexpr int64_t kMost = int64_t{1} << 24;
-    if (std::abs(v[0]) > kMost || std::abs(v[1]) > kMost || v[2] < 0)
-        refuse(option, text, kExpected);
+    const auto is_far = [](int64_t c) { return c < -kMost || c > kMost; };
+    if (is_far(v[0]) || is_far(v[1]) || v[2] < 0) refuse(option, text, kExpected);
     return {int(v[0]), int(v[1]), uint64_t(v[2])};
 }
 

@@ -1,6 +1,6 @@
 /// Sine, cosine and arc tangent in a few multiplications, without calls and branches, so that they
 /// vectorise and inline. The polynomials are minimax fits of our own (Remez exchange, relative
-/// error 4e-9, 1e-10 and 1.5e-8); what is left is the rounding of float, checked in
+/// error 4e-9, 1e-10 and 1.9e-8); what is left is the rounding of float, checked in
 /// tests/unit/core_fast_math_test.cpp.
 #pragma once
 

@@ -1,10 +1,13 @@
 #include "image/output_file.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <system_error>
 #include <utility>
 
@@ -14,20 +17,44 @@ namespace covtrace {
 
 namespace {
 
+constexpr const char* kPartSuffix = ".part-";
 constexpr size_t kBufferSize = size_t(1) << 18;
 
 std::filesystem::path directory_of(const std::filesystem::path& file) {
     return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
+std::string host_name() {
+    char name[256] = {};
+    if (::gethostname(name, sizeof name - 1) != 0 || !*name) return "localhost";
+    std::string host = name;
+    std::replace(host.begin(), host.end(), '/', '_');
+    return host;
+}
+
 }  // namespace
 
-OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)), final_(target_) {
+std::filesystem::path OutputFile::resolved(const std::filesystem::path& target) {
+    std::error_code error;
+    if (!std::filesystem::is_symlink(target, error)) return target;
+    const auto leads_to = std::filesystem::weakly_canonical(target, error);
+    return error ? target : leads_to;
+}
+
+std::string OutputFile::part_suffix() {
+    return kPartSuffix + host_name() + "-" + std::to_string(::getpid());
+}
+
+bool OutputFile::is_leftover(const std::string& name, const std::string& target) {
+    const std::string start = target + kPartSuffix + host_name() + "-";
+    if (!name.starts_with(start)) return false;
+    const long process = std::strtol(name.c_str() + start.size(), nullptr, 10);
+    return process > 0 && ::kill(pid_t(process), 0) != 0 && errno == ESRCH;
+}
+
+OutputFile::OutputFile(std::filesystem::path target)
+    : target_(std::move(target)), final_(resolved(target_)) {
     std::error_code ignored;
-    if (std::filesystem::is_symlink(final_, ignored)) {
-        const auto resolved = std::filesystem::weakly_canonical(final_, ignored);
-        if (!ignored) final_ = resolved;
-    }
     struct stat status {};
     const bool exists = ::stat(final_.c_str(), &status) == 0;
     if (exists && S_ISDIR(status.st_mode)) fail(EISDIR);
@@ -35,7 +62,7 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
     int flags = O_WRONLY | O_CLOEXEC;
     if (!exists || S_ISREG(status.st_mode)) {
         temporary_ = final_;
-        temporary_ += kPartSuffix + std::to_string(::getpid());
+        temporary_ += part_suffix();
         opened = temporary_;
         flags |= O_CREAT | O_TRUNC;
     }
@@ -93,7 +120,7 @@ void OutputFile::keep_older(const std::filesystem::path& earlier) {
     // Where the file system knows no second names the older file itself is moved: whoever looks for
     // it must look for `earlier` too.
     std::filesystem::path second = earlier;
-    second += kPartSuffix + std::to_string(::getpid());
+    second += part_suffix();
     ::unlink(second.c_str());
     if (::link(final_.c_str(), second.c_str()) == 0) {
         const bool renamed = ::rename(second.c_str(), earlier.c_str()) == 0;

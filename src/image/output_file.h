@@ -15,9 +15,16 @@ namespace covtrace {
 /// All functions throw Error(io) that names the target and the reason of the system.
 class OutputFile {
   public:
-    static constexpr const char* kPartSuffix = ".part-";
-    /// Creates the temporary file, target + ".part-<process id>". Constructing and dropping one
-    /// therefore tells early whether the target can be written.
+    /// The file that a target stands for: where it is a symbolic link, what that leads to.
+    static std::filesystem::path resolved(const std::filesystem::path& target);
+    /// What the names of temporary files have after the target's: ".part-<host>-<process id>", so
+    /// that machines that share a folder know theirs.
+    static std::string part_suffix();
+    /// Whether a name that begins with `target`'s, links resolved, is that of a temporary file
+    /// whose process, of this host, is no more.
+    static bool is_leftover(const std::string& name, const std::string& target);
+    /// Creates the temporary file. Constructing and dropping one therefore tells early whether the
+    /// target can be written.
     explicit OutputFile(std::filesystem::path target);
     ~OutputFile();
     OutputFile(const OutputFile&) = delete;
@@ -26,8 +33,10 @@ class OutputFile {
     void write(const void* bytes, size_t count);
     uint64_t position() const { return position_; }
     void seek(uint64_t position);
-    /// `earlier`: the name under which an older file of the target's name lives on. There is no
-    /// moment without a file of the target's name.
+    /// `earlier`: the name under which an older file of the target's name lives on, on the file
+    /// system of resolved(target). There is no moment without a file of the target's name, but
+    /// where the file system has no hard links: there the older one is moved before the newer one
+    /// takes its place.
     void commit(const std::filesystem::path& earlier = {});
     const std::filesystem::path& target() const { return target_; }
 

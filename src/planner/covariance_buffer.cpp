@@ -7,17 +7,49 @@
 
 namespace covtrace {
 
-CovarianceBuffer merge(const CovarianceBuffers& buffers) {
-    const CovarianceBuffer &a = buffers.scattered, &b = buffers.in_view;
-    CovarianceBuffer result(a.width, a.height);
-    parallel_for(a.height, [&](int64_t row) {
-        for (size_t i = size_t(row) * size_t(a.width), end = i + size_t(a.width); i < end; ++i) {
-            covariance::Accumulator<double> mean;
-            mean.add(covariance::cast<double>(a.covariance[i]), a.weight[i]);
-            mean.add(covariance::cast<double>(b.covariance[i]), b.weight[i]);
-            result.covariance[i] = covariance::cast<float>(mean.mean());
-            result.weight[i] = float(mean.weight());
+CovarianceBuffer unpack(std::span<const PackedCovariance> packed, int width, int height) {
+    CovarianceBuffer result(width, height);
+    parallel_for(height, [&](int64_t row) {
+        for (size_t i = size_t(row) * size_t(width), end = i + size_t(width); i < end; ++i) {
+            result.covariance[i] = covariance::cast<float>(packed[i].covariance());
+            result.weight[i] = packed[i].weight;
         }
+    });
+    return result;
+}
+
+namespace {
+
+/// Calls visit(pixel, mean of both parts) for all pixels.
+template <typename Visit>
+void merge_pixels(const CovarianceBuffers& buffers, const Visit& visit) {
+    parallel_for(buffers.height, [&](int64_t row) {
+        const size_t width = size_t(buffers.width);
+        for (size_t i = size_t(row) * width, end = i + width; i < end; ++i) {
+            const PackedCovariance &a = buffers.scattered[i], &b = buffers.in_view[i];
+            covariance::Accumulator<double> mean;
+            mean.add(a.covariance(), a.weight);
+            mean.add(b.covariance(), b.weight);
+            visit(i, mean);
+        }
+    });
+}
+
+}  // namespace
+
+CovarianceBuffer merge(const CovarianceBuffers& buffers) {
+    CovarianceBuffer result(buffers.width, buffers.height);
+    merge_pixels(buffers, [&](size_t i, const auto& mean) {
+        result.covariance[i] = covariance::cast<float>(mean.mean());
+        result.weight[i] = float(mean.weight());
+    });
+    return result;
+}
+
+std::vector<PackedCovariance> packed_merge(const CovarianceBuffers& buffers) {
+    std::vector<PackedCovariance> result(buffers.scattered.size());
+    merge_pixels(buffers, [&](size_t i, const auto& mean) {
+        result[i] = {mean.mean(), float(mean.weight())};
     });
     return result;
 }

@@ -1,9 +1,11 @@
 /// One 5x5 covariance and its weight per pixel, and the prediction that follows from them.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "covariance/covariance.hpp"
+#include "planner/packed_covariance.h"
 
 namespace covtrace {
 
@@ -21,23 +23,26 @@ struct CovarianceBuffer {
     int width, height;
     std::vector<Covariance5> covariance;
     std::vector<float> weight;
-
-    size_t memory() const {  ///< bytes
-        return covariance.size() * sizeof(Covariance5) + weight.size() * sizeof(float);
-    }
 };
 
 /// The light of a pixel in two parts. An emitter in view outshines what is beside it a hundred
 /// times: in one mean it would decide the spectra around it, and the tails of filters would carry
 /// it over its border. `scattered` is all the light that surfaces sent on.
 struct CovarianceBuffers {
-    CovarianceBuffers(int w, int h) : scattered(w, h), in_view(w, h) {}
-    CovarianceBuffer scattered, in_view;
+    CovarianceBuffers(int w, int h)
+        : width(w), height(h), scattered(size_t(w) * size_t(h)), in_view(scattered.size()) {}
+    int width, height;
+    std::vector<PackedCovariance> scattered, in_view;
 
-    size_t memory() const { return scattered.memory() + in_view.memory(); }  ///< bytes
+    size_t memory() const {  ///< bytes
+        return (scattered.size() + in_view.size()) * sizeof(PackedCovariance);
+    }
 };
+CovarianceBuffer unpack(std::span<const PackedCovariance> packed, int width, int height);
 /// The covariances of all light: the mean of both parts, weighted by their radiance.
 CovarianceBuffer merge(const CovarianceBuffers& buffers);
+/// The same to keep; no rounding to floats comes before the packing.
+std::vector<PackedCovariance> packed_merge(const CovarianceBuffers& buffers);
 
 /// What a pixel needs, seen from its covariance after the integral over lens and shutter.
 struct Prediction {

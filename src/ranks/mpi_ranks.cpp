@@ -43,6 +43,8 @@ class MpiRanks : public Ranks {
         return value;
     }
 
+    void abort(int code) const override { MPI_Abort(MPI_COMM_WORLD, code); }
+
     void share_pixels(RenderState& state) const override {
         const std::vector<std::vector<size_t>> pixels = pixels_by_owner(state.region);
         std::vector<int> counts, offsets;

@@ -55,6 +55,7 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
         for (Plane& v : half.color_variance) v = box_blur(v, 1);
     const std::vector<Candidate> candidates =
         make_candidates(halves, spectrum, settings.candidates);
+    for (HalfBuffer& half : halves) half.feature = half.feature_variance = {};  // large, not needed
     const auto mixture = [&](const ColorPlanes& brightness) {
         return select(halves, candidates, error_weights(halves, brightness), settings.sigma,
                       settings.mix);

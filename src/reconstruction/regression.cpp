@@ -98,17 +98,23 @@ std::vector<ColorPlanes> regress(const HalfBuffer& half, const HalfBuffer& guide
     const PatchDistance distance(guide.color, guide.color_variance, kReach, kPatchRadius);
 
     const int blocks_x = (w + kBlock - 1) / kBlock, blocks_y = (h + kBlock - 1) / kBlock;
-    std::vector<std::vector<Contribution>> contributions(size_t(blocks_x) * size_t(blocks_y),
-                                                         std::vector<Contribution>(windows.size()));
-    parallel_for(int64_t(contributions.size()), [&](int64_t b) {
-        Block(in, half, distance, windows)
-            .run(int(b % blocks_x) * kBlock, int(b / blocks_x) * kBlock, contributions[size_t(b)]);
-    });
+    // Rows of blocks; those above and below a pixel's own reach it too, and no others.
+    static_assert(kReach < kBlock);
+    std::vector<std::vector<Contribution>> contributions(size_t(blocks_x) * size_t(blocks_y));
+    const auto fit_rows = [&](int begin, int end) {
+        const int64_t first = int64_t(begin) * blocks_x;
+        parallel_for(int64_t(end) * blocks_x - first, [&](int64_t i) {
+            const int64_t b = first + i;
+            auto& part = contributions[size_t(b)];
+            part.resize(windows.size());
+            Block(in, half, distance, windows)
+                .run(int(b % blocks_x) * kBlock, int(b / blocks_x) * kBlock, part);
+        });
+    };
 
     std::vector<ColorPlanes> result(windows.size());
     for (ColorPlanes& planes : result) planes.fill(Plane(w, h));
-    parallel_for(h, [&](int64_t row) {
-        const int y = int(row);
+    const auto add_up = [&](int y) {
         for (size_t k = 0; k < windows.size(); ++k)
             for (int x = 0; x < w; ++x) {
                 // The blocks that reach this pixel, in a fixed order.
@@ -126,7 +132,19 @@ std::vector<ColorPlanes> regress(const HalfBuffer& half, const HalfBuffer& guide
                 for (size_t c = 0; c < 3; ++c)
                     result[k][c](x, y) = sum[3] > 0 ? sum[c] / sum[3] : half.color[c](x, y);
             }
-    });
+    };
+    // What blocks contribute is several times the image: a few rows of them are kept at a time.
+    constexpr int kRowsAtOnce = 4;
+    for (int row = 0, fitted = 0; row < blocks_y; row += kRowsAtOnce) {
+        const int end = std::min(row + kRowsAtOnce, blocks_y), needed = std::min(end + 1, blocks_y);
+        fit_rows(fitted, needed);
+        fitted = needed;
+        const int first_y = row * kBlock, end_y = std::min(end * kBlock, h);
+        parallel_for(end_y - first_y, [&](int64_t y) { add_up(first_y + int(y)); });
+        for (int done = std::max(0, row - 1); done < end - 1; ++done)
+            for (int bx = 0; bx < blocks_x; ++bx)
+                contributions[size_t(done) * size_t(blocks_x) + size_t(bx)] = {};
+    }
     return result;
 }
 

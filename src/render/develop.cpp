@@ -18,21 +18,22 @@ FilterField predicted_filters(FilterRule rule, const CovarianceBuffer& buffer,
     return filter_field(p.spectrum, p.width, p.height, rule, settings);
 }
 
-/// The sizes of filters where the buffer knows light, at least `smallest`; infinite elsewhere.
-std::vector<float> known_sizes(const FilterField& field, const CovarianceBuffer& buffer,
-                               float smallest) {
+/// The sizes of filters where covariances know light, at least `smallest`; infinite elsewhere.
+std::vector<float> known_sizes(const FilterField& field,
+                               const std::vector<PackedCovariance>& covariances, float smallest) {
     std::vector<float> sizes(field.covariance.size(), kInfinity);
     for (size_t i = 0; i < sizes.size(); ++i)
-        if (buffer.weight[i] > 0)
+        if (covariances[i].weight > 0)
             sizes[i] = std::max(smallest, covariance::filter_size(field.covariance[i]));
     return sizes;
 }
 
 /// Where no path met the light, its directions are those of light from afar. A long filter that has
 /// them would reach beyond all that its size was limited by.
-void make_round_where_unknown(FilterField& field, const CovarianceBuffer& buffer) {
+void make_round_where_unknown(FilterField& field,
+                              const std::vector<PackedCovariance>& covariances) {
     for (size_t i = 0; i < field.covariance.size(); ++i) {
-        if (buffer.weight[i] > 0) continue;
+        if (covariances[i].weight > 0) continue;
         const float size = covariance::filter_size(field.covariance[i]);
         field.covariance[i] = covariance::Sym2<float>::diagonal(size * size, size * size);
     }
@@ -44,47 +45,60 @@ std::vector<float> density_layer(const RenderState& state) {
     return std::vector<float>(state.pixels(), float(state.mean_count()));
 }
 
-Image gathered_image(const RenderState& state) {
-    const Film& film = state.films[0];
-    const CovarianceBuffers& buffers = *state.parts;
-    const double taken = film.mean_count();
-    const FilterSettings settings = filter_settings(taken),
-                         settings_in_view = filter_settings_in_view(taken);
-    FilterField field = predicted_filters(state.filter, buffers.scattered, settings);
-    FilterField in_view_field = predicted_filters(state.filter, buffers.in_view, settings_in_view);
-    if (state.filter == FilterRule::verified) {
-        // The border between a surface and the sky behind it is known to the light that passes
-        // beside it: the surface where the sky has no detail, the sky where the surface has none.
-        const auto beside_scattered =
-            known_sizes(in_view_field, buffers.in_view, settings.limits.s_min);
-        limit_by_neighbours(field, settings, beside_scattered);
-        limit_by_neighbours(in_view_field, settings_in_view,
-                            known_sizes(field, buffers.scattered, 0));
-        make_round_where_unknown(field, buffers.scattered);
-        make_round_where_unknown(in_view_field, buffers.in_view);
-    }
-    const bool emitters_found =
-        std::any_of(buffers.in_view.weight.begin(), buffers.in_view.weight.end(),
-                    [](float w) { return w > 0; });
-    std::vector<Rgb> scattered(film.pixels.size()), in_view = film.in_view;
+/// Both parts of the light through their filters. `in_view_filters`: null where nothing is known of
+/// emitters, which stay as they are.
+GatheredImage gathered(const Film& film, const FilterField& filters,
+                       const FilterField* in_view_filters) {
+    std::vector<Rgb> scattered(film.pixels.size());
     std::vector<float> variance(film.pixels.size());
     std::vector<uint32_t> count(film.pixels.size());
     for (size_t i = 0; i < scattered.size(); ++i) {
         const FilmPixel& pixel = film.pixels[i];
-        scattered[i] = pixel.mean - in_view[i];
+        scattered[i] = pixel.mean - film.in_view[i];
         const Rgb v = pixel.variance_of_mean();
         variance[i] = sqr(luminance({std::sqrt(v.r), std::sqrt(v.g), std::sqrt(v.b)}));
         count[i] = pixel.count;
     }
-    GatheredImage gathered = gather(scattered, variance, count, field);
-    // Where no covariance path met an emitter nothing is known of them: they stay as they are.
-    if (emitters_found) in_view = gather(in_view, variance, count, in_view_field).color;
-    for (size_t i = 0; i < scattered.size(); ++i) gathered.color[i] += in_view[i];
-    const CovarianceBuffer all = merge(buffers);
+    GatheredImage image = gather(scattered, variance, count, filters);
+    const std::vector<Rgb> in_view =
+        in_view_filters ? gather(film.in_view, variance, count, *in_view_filters).color
+                        : film.in_view;
+    for (size_t i = 0; i < in_view.size(); ++i) image.color[i] += in_view[i];
+    return image;
+}
+
+Image gathered_image(const RenderState& state) {
+    const Film& film = state.films[0];
+    const CovarianceBuffers& parts = *state.parts;
+    const double taken = film.mean_count();
+    const FilterSettings settings = filter_settings(taken),
+                         settings_in_view = filter_settings_in_view(taken);
+    const auto filters_of = [&](const std::vector<PackedCovariance>& part,
+                                const FilterSettings& its_settings) {
+        return predicted_filters(
+            state.filter, unpack(part, state.region.width(), state.region.height()), its_settings);
+    };
+    FilterField field = filters_of(parts.scattered, settings);
+    FilterField in_view_field = filters_of(parts.in_view, settings_in_view);
+    if (state.filter == FilterRule::verified) {
+        // The border between a surface and the sky behind it is known to the light that passes
+        // beside it: the surface where the sky has no detail, the sky where the surface has none.
+        const auto beside_scattered =
+            known_sizes(in_view_field, parts.in_view, settings.limits.s_min);
+        limit_by_neighbours(field, settings, beside_scattered);
+        limit_by_neighbours(in_view_field, settings_in_view,
+                            known_sizes(field, parts.scattered, 0));
+        make_round_where_unknown(field, parts.scattered);
+        make_round_where_unknown(in_view_field, parts.in_view);
+    }
+    const bool emitters_found = std::any_of(parts.in_view.begin(), parts.in_view.end(),
+                                            [](const PackedCovariance& c) { return c.weight > 0; });
+    const GatheredImage image = gathered(film, field, emitters_found ? &in_view_field : nullptr);
+    const CovarianceBuffer all = merge(parts);
     const Prediction raw = preintegrate(all);
     return make_layers(film, state.display, state.has_holes,
-                       CovarianceLayers{all, raw, density_layer(state), field, gathered,
-                                        emitters_found ? &buffers.scattered : nullptr,
+                       CovarianceLayers{all, raw, density_layer(state), field, image,
+                                        emitters_found ? &parts.scattered : nullptr,
                                         emitters_found ? &in_view_field : nullptr});
 }
 
@@ -93,10 +107,9 @@ Image mixed_image(const RenderState& state, const HybridImage& mixed) {
     for (size_t i = 0; i < state.pixels(); ++i)
         delivered.color[i] = {mixed.color[0][i], mixed.color[1][i], mixed.color[2][i]};
     const CovarianceBuffer all = state.covariance();
-    const Prediction raw = preintegrate(all), smoothed = preintegrate(smooth(all));
+    const Prediction raw = preintegrate(all);
     const FilterField field =
-        filter_field(smoothed.spectrum, state.region.width(), state.region.height(),
-                     FilterRule::verified, filter_settings(state.mean_count()));
+        predicted_filters(FilterRule::verified, all, filter_settings(state.mean_count()));
     return make_layers(whole_film(state), state.display, state.has_holes,
                        CovarianceLayers{all, raw, density_layer(state), field, delivered});
 }

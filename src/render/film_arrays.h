@@ -10,7 +10,7 @@
 
 namespace covtrace {
 
-/// One record per pixel, row by row; all their fields are 4 bytes.
+/// One record per pixel, row by row.
 struct FilmArray {
     std::string name;
     void* records = nullptr;
@@ -25,10 +25,6 @@ inline std::vector<FilmArray> film_arrays(RenderState& state) {
         if (!values.empty())
             arrays.push_back({name, values.data(), sizeof values[0], values.size()});
     };
-    const auto add_buffer = [&](const std::string& name, CovarianceBuffer& buffer) {
-        add(name + ".covariance", buffer.covariance);
-        add(name + ".weight", buffer.weight);
-    };
     for (size_t k = 0; k < state.films.size(); ++k) {
         const std::string film = "film" + std::to_string(k);
         add(film + ".pixels", state.films[k].pixels);
@@ -38,10 +34,10 @@ inline std::vector<FilmArray> film_arrays(RenderState& state) {
         if (state.in_round()) add(film + ".plan", state.plan[k]);
     }
     if (state.parts) {
-        add_buffer("scattered", state.parts->scattered);
-        add_buffer("in_view", state.parts->in_view);
+        add("scattered", state.parts->scattered);
+        add("in_view", state.parts->in_view);
     }
-    if (state.all) add_buffer("all", *state.all);
+    add("all", state.all);
     add("density", state.density);
     return arrays;
 }

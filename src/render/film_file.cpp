@@ -1,6 +1,5 @@
 #include "render/film_file.h"
 
-#include <signal.h>
 #include <unistd.h>
 #include <xxhash.h>
 #include <zstd.h>
@@ -26,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array<char, 8> kMagic{'\x89', 'C', 'V', 'F', '\r', '\n', '\x1a', '\n'};
 constexpr std::array<char, 8> kEnd{'c', 'v', 'f', ' ', 'e', 'n', 'd', '\n'};
-constexpr uint32_t kFormat = 1;
+constexpr uint32_t kFormat = 2;
 constexpr uint32_t kMostHeader = 1 << 20;  // bytes
 constexpr size_t kBlockRecords = 1 << 16;  // pixels in a block
 constexpr size_t kBlocksAtOnce = 32;       // in memory, compressed or being so
@@ -92,12 +91,8 @@ std::string compressed(const Block& block) {
 
 class FilmReader {
   public:
-    explicit FilmReader(const fs::path& file) : file_(file), in_(file, std::ios::binary) {
-        if (!in_) fail(std::generic_category().message(errno));
-        std::error_code error;
-        left_ = fs::file_size(file, error);
-        if (error) fail(error.message());
-    }
+    FilmReader(std::istream& in, uint64_t size, const std::string& name)
+        : name_(name), in_(in), left_(size) {}
 
     RenderState read() {
         std::array<char, 8> magic{};
@@ -123,7 +118,7 @@ class FilmReader {
 
   private:
     [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ErrorKind::scene, file_.string() + ": " + what);
+        throw Error(ErrorKind::scene, name_ + ": " + what);
     }
 
     void get(void* bytes, size_t count) {
@@ -141,7 +136,7 @@ class FilmReader {
         try {
             return parse_film_header(header, size_t(std::min(memory, plausible)));
         } catch (const Error& e) {
-            throw Error(e.kind(), file_.string() + ": " + e.what());
+            throw Error(e.kind(), name_ + ": " + e.what());
         }
     }
 
@@ -186,15 +181,15 @@ class FilmReader {
         return true;
     }
 
-    const fs::path file_;
-    std::ifstream in_;
-    uint64_t left_ = 0;
+    const std::string& name_;
+    std::istream& in_;
+    uint64_t left_;
 };
 
 }  // namespace
 
 fs::path earlier_film(const fs::path& file) {
-    fs::path earlier = file;
+    fs::path earlier = OutputFile::resolved(file);
     earlier += ".prev";
     return earlier;
 }
@@ -235,12 +230,24 @@ bool is_film(const fs::path& file) {
     return in.read(magic.data(), magic.size()) && magic == kMagic;
 }
 
-RenderState read_film(const fs::path& file) {
+RenderState read_film(std::istream& in, uint64_t size, const std::string& name) {
     try {
-        return FilmReader(file).read();
+        return FilmReader(in, size, name).read();
     } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::limit, file.string() + ": not enough memory for the film");
+        throw Error(ErrorKind::limit, name + ": not enough memory for the film");
     }
+}
+
+RenderState read_film(const fs::path& file) {
+    const auto fail = [&file](const std::string& why) {
+        throw Error(ErrorKind::scene, file.string() + ": " + why);
+    };
+    std::ifstream in(file, std::ios::binary);
+    if (!in) fail(std::generic_category().message(errno));
+    std::error_code error;
+    const uint64_t size = fs::file_size(file, error);
+    if (error) fail(error.message());
+    return read_film(in, size, file.string());
 }
 
 FoundFilm find_film(const fs::path& file) {
@@ -259,16 +266,26 @@ FoundFilm find_film(const fs::path& file) {
     }
 }
 
+fs::path set_aside(const fs::path& file) {
+    fs::path damaged = file;
+    damaged += ".damaged";
+    std::error_code error;
+    fs::rename(file, damaged, error);
+    if (error)
+        throw Error(ErrorKind::io, "cannot set the damaged film '" + file.string() +
+                                       "' aside: " + error.message());
+    return damaged;
+}
+
 void remove_leftovers(const fs::path& file) {
-    const std::string newer = file.filename().string() + OutputFile::kPartSuffix;
-    const std::string older = earlier_film(file).filename().string() + OutputFile::kPartSuffix;
-    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    const fs::path target = OutputFile::resolved(file);
+    const std::string newer = target.filename().string();
+    const std::string older = earlier_film(file).filename().string();
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
     std::error_code ignored;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
         const std::string name = entry.path().filename().string();
-        if (!name.starts_with(newer) && !name.starts_with(older)) continue;
-        const long process = std::strtol(name.c_str() + name.rfind('-') + 1, nullptr, 10);
-        if (process > 0 && ::kill(pid_t(process), 0) != 0 && errno == ESRCH)
+        if (OutputFile::is_leftover(name, newer) || OutputFile::is_leftover(name, older))
             fs::remove(entry.path(), ignored);
     }
 }

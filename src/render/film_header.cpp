@@ -80,13 +80,13 @@ void add_arrays(RenderState& s, const json& arrays) {
                            [&](const json& a) { return a.at("name") == name; });
     };
     FilmParts kept = film_parts(s.method);
-    kept.in_view |= has("film0.in_view");
+    if (s.method == Method::uniform) kept.in_view = has("film0.in_view");
     for (size_t k = 0; k < (s.method == Method::hybrid ? 2 : 1); ++k) {
         s.films.emplace_back(s.region, kept);
         if (has("film0.plan")) s.plan.emplace_back(s.pixels());
     }
-    if (has("all.weight"))
-        s.all.emplace(s.region.width(), s.region.height());
+    if (s.method == Method::hybrid && s.stage == Stage::rounds)
+        s.all.resize(s.pixels());
     else if (s.method != Method::uniform)
         s.parts.emplace(s.region.width(), s.region.height());
     if (has("density")) s.density.resize(s.pixels());
@@ -106,6 +106,17 @@ size_t bytes_per_pixel(RenderState s, const json& arrays) {
     }
     if (!agree) refuse("its arrays are not those of its method and stage");
     return sum;
+}
+
+/// Which shards a film is of: each once, in their order; none where it has all pixels.
+void check_shards(const RenderState& s) {
+    if (s.shards < 1) refuse("the number of shards");
+    if (s.present.empty() != (s.shards == 1)) refuse("the shards");
+    int last = -1;
+    for (int k : s.present) {
+        if (k <= last || k >= s.shards) refuse("the shards");
+        last = k;
+    }
 }
 
 RenderState parse(const json& j, size_t most_bytes) {
@@ -133,9 +144,8 @@ RenderState parse(const json& j, size_t most_bytes) {
         s.first_rejected.push_back({r.at(0), r.at(1), r.at(2)});
     s.shards = j.at("shards");
     s.present = j.at("present").get<std::vector<int>>();
-    if (s.shards < 1) refuse("the number of shards");
-    for (int k : s.present)
-        if (k < 0 || k >= s.shards) refuse("the shards");
+    if (s.method == Method::uniform && s.stage != Stage::rounds) refuse("a stage of 'uniform'");
+    check_shards(s);
 
     const json& arrays = j.at("arrays");
     if (bytes_per_pixel(s, arrays) > most_bytes / s.pixels())

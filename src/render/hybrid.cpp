@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "planner/adaptive.h"
 #include "planner/error_goal.h"
@@ -35,7 +36,7 @@ class HybridRender {
     /// The image, made from the samples.
     void deliver() {
         if (!job_.delivers()) return;
-        reconstruct_image();
+        reconstruct_image(true);
         const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
         job_.result.image = develop(s_, &*image_);
     }
@@ -170,13 +171,21 @@ class HybridRender {
         return true;
     }
 
-    void reconstruct_image() {
+    /// `last`: no sample follows, and the film was kept.
+    void reconstruct_image(bool last = false) {
         if (image_) return;
         predict();
         const double count = s_.mean_count();
         job_.monitor.update("reconstruction", job_.fraction(count), count);
         const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
-        image_ = reconstruct(halves_of(s_.films), prediction_->spectrum);
+        Halves halves = halves_of(s_.films);
+        if (last)  // the layers of the image have no need of what only weights and plans are made
+                   // of
+            for (Film& film : s_.films) {
+                film.feature_squares = std::vector<FeatureSquares>();
+                film.rays = std::vector<uint32_t>();
+            }
+        image_ = reconstruct(std::move(halves), prediction_->spectrum);
     }
 
     /// The average count at which the image will be as good as was asked for; what is taken where

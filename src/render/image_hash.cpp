@@ -20,11 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Every file once, in the order of the names.
+/// Every file once, in the order of the names. An image that lies within a scene's file has none:
+/// the hash of that file covers it.
 std::vector<fs::path> image_files(const SceneDescription& scene) {
     std::set<fs::path> files;
     for (const TextureDescription& texture : scene.textures)
-        if (const auto* image = std::get_if<ImageTexture>(&texture.value))
+        if (const auto* image = std::get_if<ImageTexture>(&texture.value); image && !image->content)
             files.insert(image->file);
     for (const LightDescription& light : scene.lights) {
         if (const auto* l = std::get_if<GoniometricLight>(&light.value); l && l->image)

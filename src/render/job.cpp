@@ -1,7 +1,11 @@
 #include "render/job.h"
 
+#include <xxhash.h>
+
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 #include <utility>
 
 #include "render/hybrid_film.h"
@@ -32,11 +36,32 @@ PassContext half_context(const PassContext& whole, uint32_t k) {
 
 namespace {
 
+/// What must be the same in all processes of a render before they share pixels.
+double start_of(const RenderState& s) {
+    std::ostringstream out;
+    out << std::setprecision(17) << int(s.stage) << ' ' << s.taken << ' ' << s.target << ' '
+        << s.in_round() << ' ' << s.mean_count() << ' ' << s.shards;
+    for (const auto& [name, value] : s.identity) out << '\n' << name << ": " << value;
+    const std::string text = out.str();
+    return double(XXH3_64bits(text.data(), text.size()) >> 11);  // as many bits as a double holds
+}
+
+void require_same_start(const Ranks& ranks, const RenderState& s) {
+    const double own = start_of(s);
+    if (ranks.any(ranks.of_first(own) != own))
+        throw Error(ErrorKind::usage,
+                    "the processes of mpirun don't begin with the same: expected on all machines "
+                    "the same program, scene and kind of processor (--isa), and a --checkpoint in "
+                    "a folder that all of them see");
+}
+
 RenderState initial_state(const RenderScene& scene, const RenderOptions& options,
                           const FilmKeeping& keeping) {
     RenderState fresh(scene, options);
     // Only who keeps a film, or goes on from one, has to know.
-    if (keeping.from || keeping.keep) fresh.identity["images"] = image_hash(scene.description);
+    const bool kept = keeping.from || keeping.keep;
+    if (keeping.ranks ? keeping.ranks->any(kept) : kept)
+        fresh.identity["images"] = image_hash(scene.description);
     if (!keeping.from) return fresh;
     if (const auto other = difference(keeping.from->identity, fresh.identity))
         throw Error(ErrorKind::usage, "cannot go on from '" + keeping.name +
@@ -65,6 +90,7 @@ RenderJob::RenderJob(RenderScene& render_scene, const RenderOptions& render_opti
       context(pass_context(scene, options)),
       target_spp(covtrace::target_spp(scene.description, options)) {
     context.shard = tiles();
+    if (keeping.ranks) require_same_start(*keeping.ranks, state);
 }
 
 Shard RenderJob::tiles() const {

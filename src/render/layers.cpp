@@ -81,10 +81,11 @@ Image make_layers(const Film& film, PixelBounds display, bool has_holes,
     if (!covariance->scattered) return image;
     add_layer(image, "inviewfilter.", kSymmetric,
               [&](size_t i) { return array(covariance->in_view_filter->covariance[i]); });
+    const auto& scattered = *covariance->scattered;
     add_layer(image, "scatteredcov.", kFive,
-              [&](size_t i) { return covariance->scattered->covariance[i].values; });
+              [&](size_t i) { return covariance::cast<float>(scattered[i].covariance()).values; });
     add_layer(image, "scatteredcovweight.", std::array{"Y"},
-              [&](size_t i) { return std::array{covariance->scattered->weight[i]}; });
+              [&](size_t i) { return std::array{scattered[i].weight}; });
     return image;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "image/image.h"
 #include "planner/covariance_buffer.h"
@@ -19,7 +20,7 @@ struct CovarianceLayers {
     const GatheredImage& gathered;   ///< the delivered image
     /// Where emitters are in view, else null: covariances of scattered light alone, and the filters
     /// as applied to the emitters.
-    const CovarianceBuffer* scattered = nullptr;
+    const std::vector<PackedCovariance>* scattered = nullptr;
     const FilterField* in_view_filter = nullptr;
 };
 

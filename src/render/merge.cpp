@@ -19,6 +19,17 @@ auto round_of(const RenderState& s) {
                       s.complete, s.in_round());
 }
 
+/// Whether two films have the same records for the same pixels.
+bool same_arrays(RenderState& a, RenderState& b) {
+    const std::vector<FilmArray> of_a = film_arrays(a), of_b = film_arrays(b);
+    return a.region == b.region && std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(),
+                                              [](const FilmArray& x, const FilmArray& y) {
+                                                  return x.name == y.name &&
+                                                         x.record_size == y.record_size &&
+                                                         x.count == y.count;
+                                              });
+}
+
 /// Copies the records of the pixels that `from` has.
 void copy_pixels(RenderState& to, RenderState& from) {
     const std::vector<FilmArray> target = film_arrays(to), source = film_arrays(from);
@@ -68,6 +79,8 @@ void FilmMerge::add(const std::string& name, RenderState film) {
     if (round_of(film) != round_of(sum))
         refuse(name, "is of another round or budget than '" + first_name_ +
                          "'; expected shards that began with the same film and --spp");
+    if (!same_arrays(film, sum))
+        refuse(name, "has other pixels or other arrays than '" + first_name_ + "'");
     copy_pixels(sum, film);
     sum.rejected += film.rejected;
     sum.first_rejected.insert(sum.first_rejected.end(), film.first_rejected.begin(),

@@ -167,13 +167,12 @@ bool shows_emitter(const PathRecord& record) {
 }
 
 /// Takes one more path into the mean of `paths` of them.
-void add_path(CovarianceBuffer& buffer, size_t i, uint32_t paths, const PathCovariance& path,
+void add_path(PackedCovariance& mean, uint32_t paths, const PathCovariance& path,
               double weight_limit) {
     covariance::Accumulator<double> sum;
-    sum.add(covariance::cast<double>(buffer.covariance[i]), double(buffer.weight[i]) * paths);
+    sum.add(mean.covariance(), double(mean.weight) * paths);
     sum.add(path.sigma, std::min(path.weight, weight_limit));
-    buffer.covariance[i] = covariance::cast<float>(sum.mean());
-    buffer.weight[i] = float(sum.weight() / (paths + 1.0));
+    mean = {sum.mean(), float(sum.weight() / (paths + 1.0))};
 }
 
 }  // namespace
@@ -190,12 +189,12 @@ PassStatistics covariance_pass(const PassContext& context, const Occluders& occl
                                                    (target.earlier.empty() ? 0 : target.earlier[i]);
                             sample_pixel(context, film, i, x, y, &record, statistics);
                             const Stopwatch watch(statistics.replay_seconds);
-                            add_path(target.buffers.scattered, i, paths,
+                            add_path(target.buffers.scattered[i], paths,
                                      replay(record, LightPart::scattered), target.weight_limit);
                             const PathCovariance in_view = shows_emitter(record)
                                                                ? replay(record, LightPart::in_view)
                                                                : PathCovariance{};
-                            add_path(target.buffers.in_view, i, paths, in_view, kInfinity);
+                            add_path(target.buffers.in_view[i], paths, in_view, kInfinity);
                         });
 }
 
@@ -203,11 +202,12 @@ double limit_weights(const Film& film, CovarianceBuffers& buffers) {
     constexpr double kMost = 10;  // times the mean
     double sum = 0, paths = 0;
     for (size_t i = 0; i < film.pixels.size(); ++i) {
-        sum += buffers.scattered.weight[i];
+        sum += buffers.scattered[i].weight;
         paths += film.pixels[i].count;
     }
     const double limit = paths > 0 ? kMost * sum / paths : 0.0;
-    for (float& w : buffers.scattered.weight) w = float(std::min(double(w), limit));
+    for (PackedCovariance& mean : buffers.scattered)
+        mean.weight = float(std::min(double(mean.weight), limit));
     return limit;
 }
 

@@ -19,6 +19,8 @@ class Ranks {
     virtual double of_first(double value) const = 0;
     virtual bool any(bool value) const = 0;
     virtual uint64_t sum(uint64_t value) const = 0;
+    /// Ends all processes at once with this exit code: one that failed can't let the others wait.
+    virtual void abort(int code) const = 0;
     /// Gives every process the pixels of the tiles of all: process k has those of shard k.
     virtual void share_pixels(RenderState& state) const = 0;
 };

@@ -86,6 +86,22 @@ void clear_at(std::vector<T>& values, size_t i) {
 
 }  // namespace
 
+size_t film_bytes_per_pixel(Method method, bool emitters_apart) {
+    constexpr size_t kPlan = sizeof(uint32_t), kDensity = sizeof(float),
+                     kCovariance = sizeof(PackedCovariance);
+    switch (method) {
+        case Method::uniform:
+            return sizeof(FilmPixel) + (emitters_apart ? sizeof(Rgb) : 0) + kPlan;
+        case Method::covariance:
+            return sizeof(FilmPixel) + sizeof(Rgb) + kPlan + kDensity + 2 * kCovariance;
+        case Method::hybrid:
+            break;
+    }
+    const size_t half = sizeof(FilmPixel) + sizeof(FeatureSquares) + sizeof(uint32_t) + kPlan;
+    // Up to the end of the pilot both parts of the light; then their sum, and densities.
+    return 2 * half + std::max(2 * kCovariance, kCovariance + kDensity);
+}
+
 FilmParts film_parts(Method method) {
     return {.in_view = method == Method::covariance, .features = method == Method::hybrid};
 }
@@ -102,7 +118,7 @@ RenderState::RenderState(const RenderScene& scene, const RenderOptions& options)
       spp(target_spp(scene.description, options)) {
     covariance_spp = covariance_paths(options, spp);
     FilmParts kept = film_parts(method);
-    kept.in_view |= options.emitters_apart;
+    if (method == Method::uniform) kept.in_view = options.emitters_apart;
     for (int k = 0; k < (method == Method::hybrid ? 2 : 1); ++k) films.emplace_back(region, kept);
     if (method != Method::uniform) parts.emplace(region.width(), region.height());
 }
@@ -132,15 +148,11 @@ std::map<std::string, size_t> RenderState::memory() const {
     for (const auto& counts : plan) bytes["plan"] += counts.size() * sizeof(uint32_t);
     bytes["plan"] += density.size() * sizeof(float);
     if (parts) bytes["prediction"] += parts->memory();
-    if (all) bytes["prediction"] += all->memory();
+    if (!all.empty()) bytes["prediction"] += all.size() * sizeof(PackedCovariance);
     return bytes;
 }
 
 void RenderState::keep_only(const Shard& shard) {
-    const auto clear = [&](CovarianceBuffer& buffer, size_t i) {
-        clear_at(buffer.covariance, i);
-        clear_at(buffer.weight, i);
-    };
     for_each_pixel(region, shard, false, [&](size_t i) {
         for (Film& film : films) {
             clear_at(film.pixels, i);
@@ -150,10 +162,10 @@ void RenderState::keep_only(const Shard& shard) {
         }
         for (auto& counts : plan) clear_at(counts, i);
         if (parts) {
-            clear(parts->scattered, i);
-            clear(parts->in_view, i);
+            clear_at(parts->scattered, i);
+            clear_at(parts->in_view, i);
         }
-        if (all) clear(*all, i);
+        clear_at(all, i);
         clear_at(density, i);
     });
 }
@@ -164,7 +176,7 @@ void finish_round(RenderState& state) {
         state.stage = Stage::pilot;
     } else if (state.stage == Stage::pilot) {
         if (state.method == Method::hybrid) {
-            state.all = merge(*state.parts);
+            state.all = packed_merge(*state.parts);
             state.parts.reset();
         }
         state.stage = Stage::rounds;

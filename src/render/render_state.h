@@ -53,7 +53,7 @@ struct RenderState {
 
     std::vector<Film> films;                 ///< one; `hybrid`: two halves
     std::optional<CovarianceBuffers> parts;  ///< `hybrid`: up to the end of the pilot
-    std::optional<CovarianceBuffer> all;     ///< `hybrid`: both parts, from then on
+    std::vector<PackedCovariance> all;       ///< `hybrid`: both parts, from then on
     std::vector<float> density;              ///< what the last plan wanted, samples per pixel
 
     uint64_t rejected = 0;                       ///< samples that were not finite
@@ -76,12 +76,18 @@ struct RenderState {
     /// Whether every pixel of the shard's tiles has what the plan wants.
     bool reached(const Shard& shard) const;
     double mean_count() const;
-    CovarianceBuffer covariance() const { return all ? *all : merge(*parts); }
+    /// Of both parts of the light.
+    CovarianceBuffer covariance() const {
+        return parts ? merge(*parts) : unpack(all, region.width(), region.height());
+    }
     /// Bytes by what they are for: "film"; "plan"; "prediction" where there is one.
     std::map<std::string, size_t> memory() const;
     /// Leaves zeros in all pixels but those of the shard's tiles.
     void keep_only(const Shard& shard);
 };
+
+/// Bytes that a render keeps for each pixel, plan and prediction included, where they are most.
+size_t film_bytes_per_pixel(Method method, bool emitters_apart);
 
 /// What the films of one method keep.
 FilmParts film_parts(Method method);

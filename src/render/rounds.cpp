@@ -41,7 +41,9 @@ class Checkpoints {
 
   private:
     void schedule(double cost) {
-        const double wait = std::max(job_.keeping.interval, cost / job_.keeping.most_share);
+        double wait = std::max(job_.keeping.interval, cost / job_.keeping.most_share);
+        // The first one writes for all, and alone knows the cost; all are to pause together.
+        if (const Ranks* ranks = job_.keeping.ranks) wait = ranks->of_first(wait);
         job_.monitor.pause_at(std::min(deadline_, job_.monitor.elapsed() + wait));
     }
     RenderJob& job_;

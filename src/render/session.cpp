@@ -16,12 +16,11 @@ std::optional<double> target_spp(const SceneDescription& scene, const RenderOpti
 
 std::map<std::string, size_t> render_memory(const FilmDescription& film,
                                             const RenderOptions& options) {
-    struct BytesPerPixel {
-        size_t film, image;
-    };
-    const auto [kept, image] = options.method == Method::uniform      ? BytesPerPixel{64, 66}
-                               : options.method == Method::covariance ? BytesPerPixel{208, 182}
-                                                                      : BytesPerPixel{320, 680};
+    // Layers and the buffers of the reconstruction: `bench/film_cost memory`.
+    const size_t image = options.method == Method::uniform      ? 68
+                         : options.method == Method::covariance ? 395
+                                                                : 410;
+    const size_t kept = film_bytes_per_pixel(options.method, options.emitters_apart);
     const PixelBounds region = render_region(film);
     const size_t pixels = size_t(region.width()) * size_t(region.height());
     return {{"film", kept * pixels}, {"image", image * pixels}};

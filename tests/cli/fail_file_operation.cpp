@@ -1,7 +1,7 @@
 // Preloaded into the program by test_file_failures.py: lets one operation on a file that is being
 // written fail, or every write be short.
-//   COVTRACE_FAIL_AT=n         the n-th operation fails with EIO (a write with ENOSPC), counted
-//   from 0 COVTRACE_FAIL_COUNT=FILE   the number of operations goes there when the process ends
+//   COVTRACE_FAIL_AT=n         the n-th operation fails with EIO (a write with ENOSPC), from 0
+//   COVTRACE_FAIL_LIST=FILE    the names of all operations go there, a line each
 //   COVTRACE_SHORT_WRITES=1    each write takes at most 1000 bytes
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -25,7 +25,12 @@ Function next(const char* name) {
     return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
 }
 
-bool fails() {
+bool fails(const char* operation) {
+    if (const char* file = std::getenv("COVTRACE_FAIL_LIST"))
+        if (std::FILE* out = std::fopen(file, "a")) {
+            std::fprintf(out, "%s\n", operation);
+            std::fclose(out);
+        }
     const char* at = std::getenv("COVTRACE_FAIL_AT");
     return operations++ == (at ? std::atol(at) : -1);
 }
@@ -39,16 +44,6 @@ bool is_written(int descriptor) {
     return descriptor >= 0 && descriptor < 1024 && written[descriptor];
 }
 
-struct Report {
-    ~Report() {
-        if (const char* file = std::getenv("COVTRACE_FAIL_COUNT"))
-            if (std::FILE* out = std::fopen(file, "w")) {
-                std::fprintf(out, "%ld", operations.load());
-                std::fclose(out);
-            }
-    }
-} report;
-
 }  // namespace
 
 extern "C" {
@@ -59,7 +54,7 @@ int open(const char* path, int flags, ...) {
     const mode_t mode = va_arg(arguments, mode_t);
     va_end(arguments);
     const bool writes = (flags & O_ACCMODE) != O_RDONLY && (flags & O_CREAT);
-    if (writes && fails()) return failure(EIO);
+    if (writes && fails("open")) return failure(EIO);
     const int descriptor = next<int (*)(const char*, int, ...)>("open")(path, flags, mode);
     if (descriptor >= 0 && descriptor < 1024) {
         written[descriptor] = writes;
@@ -70,7 +65,7 @@ int open(const char* path, int flags, ...) {
 
 ssize_t write(int descriptor, const void* bytes, size_t count) {
     if (is_written(descriptor)) {
-        if (fails()) return failure(ENOSPC);
+        if (fails("write")) return failure(ENOSPC);
         filled[descriptor] = true;
         if (std::getenv("COVTRACE_SHORT_WRITES")) count = std::min<size_t>(count, 1000);
     }
@@ -78,20 +73,30 @@ ssize_t write(int descriptor, const void* bytes, size_t count) {
 }
 
 int fsync(int descriptor) {
-    if (is_written(descriptor) && fails()) return failure(EIO);
+    if (is_written(descriptor) && fails("fsync")) return failure(EIO);
     return next<int (*)(int)>("fsync")(descriptor);
 }
 
 int close(int descriptor) {
-    const bool failing = is_written(descriptor) && filled[descriptor] && fails();
+    const bool failing = is_written(descriptor) && filled[descriptor] && fails("close");
     if (descriptor >= 0 && descriptor < 1024) written[descriptor] = false;
     const int result = next<int (*)(int)>("close")(descriptor);
     return failing ? failure(EIO) : result;
 }
 
 int rename(const char* from, const char* to) {
-    if (fails()) return failure(EIO);
+    if (fails("rename")) return failure(EIO);
     return next<int (*)(const char*, const char*)>("rename")(from, to);
+}
+
+int link(const char* from, const char* to) {
+    if (fails("link")) return failure(EIO);
+    return next<int (*)(const char*, const char*)>("link")(from, to);
+}
+
+int unlink(const char* path) {
+    if (fails("unlink")) return failure(EIO);
+    return next<int (*)(const char*)>("unlink")(path);
 }
 
 }  // extern "C"

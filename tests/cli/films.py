@@ -3,6 +3,7 @@
 import json
 import random
 import signal
+import struct
 import subprocess
 
 from support import DONE, HEADER, PROGRAM, WORLD, CliTest
@@ -23,6 +24,42 @@ AttributeBegin
 AttributeEnd
 """
 SCENES = {"plain": SIZED + WORLD, "moving": LENS + WORLD + MOVING, "sky": LENS + WORLD + SKY + MOVING}
+
+
+def textured_glb(png):
+    """A square with a texture, a camera and a lamp, everything in one binary glTF file."""
+    positions = struct.pack("<12f", -1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0)
+    uvs, indices = struct.pack("<8f", 0, 1, 1, 1, 1, 0, 0, 0), struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+    views, binary = [], b""
+    for part in (positions, uvs, indices, png):
+        views.append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(part)})
+        binary += part + bytes(-len(part) % 4)
+    square = {"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 2, "material": 0}
+    root = {
+        "asset": {"version": "2.0"},
+        "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 1000}]}},
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}],
+        "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 3]},
+                  {"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [0, 1, 3]}],
+        "scenes": [{"nodes": [0, 1, 2]}],
+        "scene": 0,
+        "meshes": [{"primitives": [square]}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0}}],
+        "textures": [{"source": 0}],
+        "images": [{"bufferView": 3, "mimeType": "image/png"}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+            {"bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC2"},
+            {"bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR"},
+        ],
+        "bufferViews": views,
+        "buffers": [{"byteLength": len(binary)}],
+    }
+    text = json.dumps(root).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
+    return b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks
 
 
 class FilmTest(CliTest):

@@ -9,7 +9,7 @@ import time
 import unittest
 
 from films import METHODS, FilmTest
-from support import DONE, PROGRAM
+from support import DONE, PROGRAM, USAGE
 
 MODULE = pathlib.Path(PROGRAM).resolve().parent / "covtrace_mpi.so"
 MPIRUN = shutil.which("mpirun")
@@ -37,6 +37,35 @@ class Ranks(FilmTest):
                 with self.subTest(method=method, ranks=ranks):
                     self.run_ranks(ranks, "sky", method, "--spp", "16")
                     self.assert_identical("whole.exr", "out.exr")
+
+    def test_an_error_of_one_rank_ends_all(self):
+        for arguments, code in ((["-o", "none/x.exr"], USAGE), (["--tev", "not an address:x"], USAGE), (["--stats", "none/s.json"], USAGE)):
+            with self.subTest(arguments=arguments):
+                done = subprocess.run(self.command(2, "plain", "uniform", "--spp", "1", *arguments), cwd=self.folder, env=ENVIRONMENT,
+                                      capture_output=True, timeout=60, text=True)
+                self.assertEqual(done.returncode, code, done)
+                self.assertIn("covtrace: ", done.stderr)
+
+    def test_ranks_that_do_not_begin_with_the_same(self):
+        """A checkpoint in a folder of the first one's alone."""
+        self.run_render("plain", "uniform", "--spp", "1", "--checkpoint", "c.film")
+        other = self.folder / "other"
+        other.mkdir()
+        shutil.copy(self.folder / "plain.pbrt", other)
+        part = [PROGRAM, "render", "plain.pbrt", "--method", "uniform", "--spp", "4", "--checkpoint", "c.film", "--resume",
+                "-o", "out.exr", "--threads", "1", "--quiet"]
+        done = subprocess.run([MPIRUN, "--oversubscribe", "-n", "1", "--wdir", self.folder, *part, ":", "-n", "1", "--wdir", other, *part],
+                              env=ENVIRONMENT, capture_output=True, timeout=60, text=True)
+        self.assertEqual(done.returncode, USAGE, done)
+        self.assertIn("don't begin with the same", done.stderr)
+
+    def test_a_module_that_does_not_load_tells_why(self):
+        shutil.copy(PROGRAM, self.folder / "covtrace")
+        self.write("covtrace_mpi.so", b"no library")
+        done = subprocess.run([self.folder / "covtrace", "render", "plain.pbrt", "-o", "out.exr"], cwd=self.folder,
+                              env={**ENVIRONMENT, "OMPI_COMM_WORLD_SIZE": "2"}, capture_output=True, timeout=60, text=True)
+        self.assertEqual(done.returncode, USAGE, done)
+        self.assertIn("cannot be used: ", done.stderr)
 
     def test_a_killed_rank_and_the_same_command_again(self):
         spp = ["--spp", "96", "--checkpoint", "c.film", "--every", "0.1", "--resume"]

@@ -2,15 +2,19 @@
 
 import math
 import os
+import pathlib
 import re
+import shutil
 import signal
+import socket
 import subprocess
+import tempfile
 import time
 import unittest
 
 import exr
-from films import METHODS, SCENES, FilmTest, render_killed
-from support import DONE, INTERRUPTED, PROGRAM, SCENE, USAGE
+from films import METHODS, SCENES, FilmTest, render_killed, textured_glb
+from support import DONE, INTERRUPTED, IO, PROGRAM, SCENE, USAGE, limits
 
 KILLS = int(os.environ.get("COVTRACE_KILLS", "3"))  # at least, of each scene and method; the nightly test wants more
 
@@ -191,6 +195,67 @@ class Refused(FilmTest):
         result = self.run_program("render", "textured.pbrt", "-o", "out.exr", "--method", "uniform", *film, "--quiet")
         self.assert_fails(result, USAGE, "images: ")
 
+    def test_images_within_the_scene_file(self):
+        """A glTF file that embeds its texture: covered by the hash of the file."""
+        self.run_render("plain", "uniform", "--spp", "1", "--png", "map.png")
+        spp = ["--spp", "1", "--checkpoint", "t.film", "--resume", "--method", "uniform", "--resolution", "20x10", "--quiet"]
+        for seed in ("0", "3"):
+            self.run_render("plain", "uniform", "--spp", "1", "--seed", seed, "--png", "map.png")
+            self.write("textured.glb", textured_glb((self.folder / "map.png").read_bytes()))
+            result = self.run_program("render", "textured.glb", "-o", "out.exr", *spp)
+            if seed == "0":
+                self.assertEqual(result.code, DONE, result)
+            else:
+                self.assert_fails(result, USAGE, "scene: ")
+
+    def test_a_checkpoint_behind_a_link_to_another_file_system(self):
+        elsewhere = pathlib.Path(tempfile.mkdtemp(dir="/var/tmp"))
+        self.addCleanup(shutil.rmtree, elsewhere, ignore_errors=True)
+        if elsewhere.stat().st_dev == self.folder.stat().st_dev:
+            self.skipTest("there is only one file system")
+        (self.folder / "c.film").symlink_to(elsewhere / "real.film")
+        (elsewhere / "real.film").touch()
+        for spp in ("1", "2", "3"):
+            self.run_render("plain", "uniform", "--spp", spp, "--checkpoint", "c.film", *(["--resume"] if spp != "1" else []))
+        self.assertTrue((self.folder / "c.film").is_symlink())
+        self.assertIn("3 samples per pixel", self.assert_sound("c.film"))
+        self.assertIn("2 samples per pixel", self.assert_sound(elsewhere / "real.film.prev"))
+        self.write(elsewhere / "real.film", b"damaged")
+        self.run_render("plain", "uniform", "--spp", "4", "--checkpoint", "c.film", "--resume")
+
+    def test_a_damaged_film_never_takes_the_place_of_the_good_one(self):
+        for spp in ("1", "2"):
+            self.run_render("plain", "uniform", "--spp", spp, "--checkpoint", "c.film", *(["--resume"] if spp != "1" else []))
+        self.write("c.film", b"damaged")
+        good = (self.folder / "c.film.prev").read_bytes()
+        # The disk is full from here on: what was good stays.
+        result = self.run_program("render", "plain.pbrt", "-o", "/dev/null", "--method", "uniform", "--spp", "3", "--checkpoint", "c.film",
+                                  "--resume", "--progress", "none", before=limits(FSIZE=1000))
+        self.assert_fails_in_writing(result)
+        self.assertEqual((self.folder / "c.film.prev").read_bytes(), good)
+        self.assertEqual((self.folder / "c.film.damaged").read_bytes(), b"damaged")
+        self.run_render("plain", "uniform", "--spp", "3", "--checkpoint", "c.film", "--resume")
+        self.assertEqual((self.folder / "c.film.damaged").read_bytes(), b"damaged")
+        self.assertEqual(len(list(self.folder.glob("c.film*"))), 3)
+
+    def assert_fails_in_writing(self, result):
+        self.assertEqual(result.code, IO, result)
+        self.assertIn("c.film.damaged", result.stderr)
+
+    def test_temporary_files_of_other_machines_stay(self):
+        self.run_render("plain", "uniform", "--spp", "1", "--checkpoint", "c.film")
+        dead = subprocess.Popen(["true"])
+        dead.wait()
+        own, other = (self.folder / f"c.film.part-{host}-{dead.pid}" for host in (socket.gethostname(), "elsewhere"))
+        own.touch()
+        other.touch()
+        shard = ["--shard", "1/2", "--film", "part.film", "--checkpoint", "c.film", "--resume"]
+        self.run_render("plain", "uniform", "--spp", "2", *shard, output=None)
+        self.assertTrue(own.exists(), "a shard cleaned up after others")
+        self.run_render("plain", "uniform", "--spp", "2", "--checkpoint", "c.film", "--resume")
+        self.assertFalse(own.exists())
+        self.assertTrue(other.exists())
+
     def test_without_a_checkpoint_it_starts_afresh(self):
         self.run_render("plain", "hybrid", "--spp", "2", "--checkpoint", "c.film", "--resume")
         self.run_render("plain", "hybrid", "--spp", "2", output="whole.exr")
@@ -198,7 +263,7 @@ class Refused(FilmTest):
 
     def test_options_that_need_others(self):
         for arguments in (["--resume"], ["--every", "5"], ["--shard", "1/2"], ["--shard", "1/2", "--film", "a", "--png", "b"],
-                          ["--shard", "1/2", "--film", "a", "--time", "5"]):
+                          ["--shard", "1/2", "--film", "a", "--time", "5"], ["--shard", "1/2", "--film", "a", "--tev", "localhost"]):
             with self.subTest(arguments=arguments):
                 result = self.run_program("render", "plain.pbrt", *arguments)
                 self.assert_fails(result, USAGE, arguments[0])

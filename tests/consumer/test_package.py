@@ -59,8 +59,7 @@ class Package(unittest.TestCase):
         prefix = self.folder / "prefix"
         self.run_command(CMAKE, "--install", BUILD, "--component", "program", "--prefix", prefix)
         installed = {str(p) for p in self.files(prefix)}
-        # The module for mpirun is built where MPI is found.
-        others = installed - PROGRAM_FILES - {"lib/covtrace/modules/covtrace_mpi.so"}
+        others = installed - PROGRAM_FILES
         self.assertLessEqual(PROGRAM_FILES, installed)
         self.assertTrue(all(p.startswith("share/covtrace/scenes/") and p.endswith(".py") for p in others), others)
         self.assertIn("covtrace", self.run_command(prefix / "bin" / "covtrace", "--version"))
@@ -68,11 +67,16 @@ class Package(unittest.TestCase):
     def test_debian_package_installs_and_removes(self):
         """Into a Debian system without any file of its own, so that nothing on this machine is touched."""
         self.run_command("cpack", "--config", BUILD / "CPackConfig.cmake", "-B", self.folder)
-        (package,) = self.folder.glob("*.deb")
+        (package,) = self.folder.glob("covtrace_*.deb")
+        for other in set(self.folder.glob("*.deb")) - {package}:
+            self.assertRegex(other.name, r"^covtrace-mpi_\d+\.\d+\.\d+_\w+\.deb$")
+            self.assertIn("libopenmpi", self.run_command("dpkg-deb", "--field", other, "Depends"))
+            self.assertIn("covtrace_mpi.so", self.run_command("dpkg-deb", "--contents", other))
         self.assertRegex(package.name, r"^covtrace_\d+\.\d+\.\d+_\w+\.deb$")
         fields = self.run_command("dpkg-deb", "--field", package)
         for library in ("libembree3", "libtbb", "libopenexr", "libc6"):
             self.assertIn(library, fields)
+        self.assertNotIn("libopenmpi", fields)
 
         root = self.folder / "root"
         for folder in ("info", "updates", "triggers"):

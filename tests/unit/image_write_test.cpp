@@ -117,7 +117,7 @@ TEST(OutputFile, AppearsOnCommitOnly) {
         OutputFile output(file);
         output.write("new", 3);
         EXPECT_EQ(file_count(directory), 2u);
-        EXPECT_TRUE(fs::exists(file.string() + ".part-" + std::to_string(::getpid())));
+        EXPECT_TRUE(fs::exists(file.string() + OutputFile::part_suffix()));
     }
     EXPECT_EQ(read_bytes(file), "old");
     EXPECT_EQ(file_count(directory), 1u);

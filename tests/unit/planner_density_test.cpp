@@ -119,16 +119,17 @@ TEST(CovarianceBuffer, SmoothingFillsDarkPixelsFromTheNearestLitOnes) {
 
 TEST(CovarianceBuffer, MergingWeighsThePartsByRadiance) {
     CovarianceBuffers b(2, 1);
-    b.scattered.covariance[0](0, 0) = 1;
-    b.scattered.weight[0] = 1;
-    b.in_view.covariance[0](0, 0) = 5;
-    b.in_view.weight[0] = 3;
-    b.scattered.covariance[1](0, 0) = 7;
-    b.scattered.weight[1] = 2;
+    const auto diagonal = [](double x) {
+        return covariance::SymmetricMatrix5<double>::diagonal(x, 0, 0, 0, 0);
+    };
+    // Squares of what 16 bits hold exactly.
+    b.scattered[0] = {diagonal(1), 1};
+    b.in_view[0] = {diagonal(6.25), 3};
+    b.scattered[1] = {diagonal(9), 2};
     const CovarianceBuffer all = merge(b);
-    EXPECT_FLOAT_EQ(all.covariance[0](0, 0), 4);
+    EXPECT_FLOAT_EQ(all.covariance[0](0, 0), 4.9375f);
     EXPECT_FLOAT_EQ(all.weight[0], 4);
-    EXPECT_FLOAT_EQ(all.covariance[1](0, 0), 7);
+    EXPECT_FLOAT_EQ(all.covariance[1](0, 0), 9);
     EXPECT_FLOAT_EQ(all.weight[1], 2);
 }
 

@@ -4,10 +4,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <random>
 
 #include "core/error.h"
-#include "render/film_arrays.h"
+#include "film_fixtures.h"
 #include "render/film_file.h"
 #include "render/film_header.h"
 
@@ -15,6 +14,7 @@ namespace covtrace {
 namespace {
 
 namespace fs = std::filesystem;
+using test::random_state;
 
 class FilmFile : public testing::Test {
   protected:
@@ -46,45 +46,6 @@ class FilmFile : public testing::Test {
     fs::path folder_, file_;
 };
 
-/// A state with random bits in all of its arrays.
-RenderState random_state(Method method, Stage stage, bool in_round, PixelBounds region) {
-    RenderState s;
-    s.identity = {{"version", "1"}, {"--seed", "18446744073709551615"}, {"scene", "äöü\n\"x\""}};
-    s.method = method;
-    s.region = region;
-    s.display = {0, 0, 4000, 3000};
-    s.has_holes = true;
-    s.metadata = {
-        {"spp", 1.0f}, {"n", 3}, {"text", std::string("t")}, {"m", std::vector{0.1f, 2.f}}};
-    s.stage = stage;
-    s.covariance_spp = 0.1;
-    if (stage != Stage::first_paths) s.weight_limit = 1.0 / 3;
-    s.taken = 1e-300;
-    s.target = 7.1;
-    s.spp = 0.3;
-    s.seconds = 12.125;
-    s.rejected = 1ull << 60;
-    s.first_rejected = {{1, 2, 1ull << 40}};
-    s.shards = 5;
-    s.present = {1, 3};
-    const bool hybrid = method == Method::hybrid;
-    for (int k = 0; k < (hybrid ? 2 : 1); ++k) {
-        s.films.emplace_back(region, film_parts(method));
-        if (in_round) s.plan.emplace_back(s.pixels());
-    }
-    if (hybrid && stage == Stage::rounds)
-        s.all.emplace(region.width(), region.height());
-    else if (method != Method::uniform)
-        s.parts.emplace(region.width(), region.height());
-    if (stage == Stage::rounds && method != Method::uniform) s.density.resize(s.pixels());
-    std::mt19937 bits(17);
-    for (const FilmArray& a : film_arrays(s)) {
-        auto* words = static_cast<uint32_t*>(a.records);
-        for (size_t i = 0; i < a.count * a.record_size / 4; ++i) words[i] = uint32_t(bits());
-    }
-    return s;
-}
-
 void expect_same(RenderState& a, RenderState& b) {
     EXPECT_EQ(film_header(a), film_header(b));
     const auto of_a = film_arrays(a), of_b = film_arrays(b);
@@ -99,6 +60,7 @@ TEST_F(FilmFile, KeepsEveryBit) {
     for (Method method : {Method::uniform, Method::covariance, Method::hybrid})
         for (Stage stage : {Stage::first_paths, Stage::pilot, Stage::rounds})
             for (bool in_round : {true, false}) {
+                if (method == Method::uniform && stage != Stage::rounds) continue;
                 // Once with two blocks an array.
                 const bool large = method == Method::uniform && in_round && stage == Stage::rounds;
                 RenderState s = random_state(method, stage, in_round,
@@ -156,54 +118,6 @@ TEST_F(FilmFile, AnyOtherLengthIsFound) {
     EXPECT_EQ(error(), ErrorKind::scene);
     fs::remove(file_);
     EXPECT_EQ(error(), ErrorKind::scene);
-}
-
-TEST_F(FilmFile, LyingHeadersAllocateNothing) {
-    RenderState s = random_state(Method::hybrid, Stage::pilot, true, {0, 0, 3, 2});
-    s.region = {0, 0, 1 << 24, 1 << 24};
-    const std::string huge = film_header(s);
-    try {
-        parse_film_header(huge, size_t{1} << 34);
-        FAIL();
-    } catch (const Error& e) {
-        EXPECT_EQ(e.kind(), ErrorKind::limit);
-    }
-}
-
-/// Headers with random changes, their checksums right: refused or read, with no other error.
-TEST_F(FilmFile, ChangedHeadersAreRefused) {
-    const std::string good =
-        film_header(random_state(Method::hybrid, Stage::rounds, true, {0, 0, 3, 2}));
-    const std::string pieces[] = {"-1",
-                                  "1e999",
-                                  "null",
-                                  "[]",
-                                  "{}",
-                                  "\"\"",
-                                  "true",
-                                  "0.5",
-                                  "9e18",
-                                  "[[[[",
-                                  "\xff",
-                                  "",
-                                  "18446744073709551616",
-                                  "\"rounds\""};
-    std::mt19937 random(3);
-    const auto below = [&](size_t n) {
-        return std::uniform_int_distribution<size_t>(0, n - 1)(random);
-    };
-    int refused = 0;
-    for (int i = 0; i < 20000; ++i) {
-        std::string text = good;
-        const size_t at = below(text.size());
-        text.replace(at, below(12), pieces[below(std::size(pieces))]);
-        try {
-            parse_film_header(text, 1 << 20);
-        } catch (const Error&) {
-            ++refused;
-        }
-    }
-    EXPECT_GT(refused, 10000);
 }
 
 TEST(Tiles, EveryTileHasOneOwner) {

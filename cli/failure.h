@@ -1,0 +1,14 @@
+/// What the program says of an exception that ends it, and its exit code.
+#pragma once
+
+#include <exception>
+
+namespace covtrace::cli {
+
+/// Says on standard error what went wrong. Returns the exit code of the contract.
+int report_failure(const std::exception_ptr& failure);
+
+/// The exit code of a command line that cannot be understood.
+inline constexpr int kUsageExitCode = 2;
+
+}  // namespace covtrace::cli

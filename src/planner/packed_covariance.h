@@ -1,0 +1,33 @@
+/// A 5x5 covariance with its weight in 40 bytes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "covariance/covariance.hpp"
+
+namespace covtrace {
+
+/// The factor L of S = L L^T (Cholesky), lens and shutter before the position, in 16 bits an entry:
+/// a sign, and an exponent and ten bits of mantissa relative to the largest entry of its row, whose
+/// power of two is `exponent`.
+///
+/// Factors, because the integral over lens and shutter takes differences of entries of S that are
+/// nearly equal where its axes are strongly correlated. With S = [A B; B^T C] that difference is
+/// C - B^T A^-1 B = M M^T, M the last rows of L right of A's columns, which are kept themselves: it
+/// has the relative precision of the entries however small it is beside C, and never loses its
+/// sign. Entries of S come back to 2^-10 of sqrt(S_ii S_jj), docs/decisions/0052.
+struct PackedCovariance {
+    std::array<uint16_t, 15> factor{};  ///< row by row
+    std::array<int8_t, 5> exponent{};
+    uint8_t unused = 0;
+    float weight = 0;
+
+    PackedCovariance() = default;
+    /// `s`: positive semidefinite, but for what the rounding of doubles takes from it.
+    PackedCovariance(const covariance::SymmetricMatrix5<double>& s, float weight_of_it);
+    covariance::SymmetricMatrix5<double> covariance() const;
+};
+static_assert(sizeof(PackedCovariance) == 40);
+
+}  // namespace covtrace
