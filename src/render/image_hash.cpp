@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 std::vector<fs::path> image_files(const SceneDescription& scene) {
     std::set<fs::path> files;
     for (const TextureDescription& texture : scene.textures)
-        if (const auto* image = std::get_if<ImageTexture>(&texture.value))
+        // What is embedded in the scene's files is part of their own hash.
+        if (const auto* image = std::get_if<ImageTexture>(&texture.value); image && !image->content)
             files.insert(image->file);
     for (const LightDescription& light : scene.lights) {
         if (const auto* l = std::get_if<GoniometricLight>(&light.value); l && l->image)
