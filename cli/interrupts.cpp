@@ -6,21 +6,19 @@ namespace covtrace::cli {
 
 namespace {
 
-Monitor* interrupted_monitor = nullptr;
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // a signal handler sets it
 
 extern "C" void on_interrupt(int signal) {
-    if (interrupted_monitor && !interrupted_monitor->cancelled()) {
-        interrupted_monitor->cancel();
-        return;
-    }
+    if (!interrupted.exchange(true)) return;
     std::signal(signal, SIG_DFL);
     std::raise(signal);
 }
 
 }  // namespace
 
-InterruptGuard::InterruptGuard(Monitor& monitor) {
-    interrupted_monitor = &monitor;
+InterruptGuard::InterruptGuard() {
+    interrupted = false;
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
 }
@@ -28,7 +26,10 @@ InterruptGuard::InterruptGuard(Monitor& monitor) {
 InterruptGuard::~InterruptGuard() {
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
-    interrupted_monitor = nullptr;
+}
+
+const std::atomic<bool>& InterruptGuard::flag() {
+    return interrupted;
 }
 
 }  // namespace covtrace::cli

@@ -1,16 +1,17 @@
-/// Ctrl-C and SIGTERM while a render runs.
+/// Ctrl-C and SIGTERM while renders run.
 #pragma once
 
-#include "render/progress.h"
+#include <atomic>
 
 namespace covtrace::cli {
 
-/// While it lives either signal cancels the monitor; a second one ends the process at once. One at
-/// a time.
+/// While it lives either signal sets the flag; a second one ends the process at once. One at a
+/// time.
 class InterruptGuard {
   public:
-    explicit InterruptGuard(Monitor& monitor);
+    InterruptGuard();
     ~InterruptGuard();
+    static const std::atomic<bool>& flag();
     InterruptGuard(const InterruptGuard&) = delete;
     InterruptGuard& operator=(const InterruptGuard&) = delete;
 };

@@ -127,7 +127,8 @@ int render_scene(RenderArguments a, const Invocation& invocation) {
     ProgressLine progress(a.progress);
     Monitor monitor(progress.reporter(), progress.interval(), invocation.start);
     progress.begin();
-    const InterruptGuard guard(monitor);
+    const InterruptGuard guard;
+    monitor.interrupted = &guard.flag();
 
     SceneDescription description = read_scene_file(
         a.scene, {{a.search_paths.begin(), a.search_paths.end()}, a.overrides.shutter});

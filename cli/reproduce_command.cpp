@@ -1,8 +1,8 @@
-#include <csignal>
 #include <filesystem>
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/interrupts.h"
 #include "cli/message.h"
 #include "core/parallel.h"
 #include "reproduce/reproduce.h"
@@ -20,18 +20,6 @@ struct ReproduceArguments {
     bool quick = false, tiny = false, quiet = false;
 };
 
-/// The workshop that Ctrl-C interrupts; a second Ctrl-C ends the process at once.
-reproduce::Workshop* interrupted_workshop = nullptr;
-
-extern "C" void on_reproduce_interrupt(int signal) {
-    if (interrupted_workshop && !interrupted_workshop->interrupted()) {
-        interrupted_workshop->interrupt();
-        return;
-    }
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
-}
-
 int reproduce_results(const ReproduceArguments& a, const Invocation& invocation) {
     if (a.quick && a.tiny)
         throw Error(ErrorKind::usage, "--quick and --tiny: expected one of them");
@@ -43,17 +31,13 @@ int reproduce_results(const ReproduceArguments& a, const Invocation& invocation)
     const auto size = a.tiny    ? reproduce::Size::tiny
                       : a.quick ? reproduce::Size::quick
                                 : reproduce::Size::full;
-    reproduce::Workshop workshop(size, a.output, a.scenes, [&a](const std::string& line) {
-        if (!a.quiet) say("{}\n", line);
-    });
-    interrupted_workshop = &workshop;
-    std::signal(SIGINT, on_reproduce_interrupt);
-    std::signal(SIGTERM, on_reproduce_interrupt);
+    const InterruptGuard guard;
+    reproduce::Workshop workshop(size, a.output, a.scenes, guard.flag(),
+                                 [&a](const std::string& line) {
+                                     if (!a.quiet) say("{}\n", line);
+                                 });
     const reproduce::Outcome outcome =
         reproduce::reproduce(workshop, a.names, invocation.command_line);
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
-    interrupted_workshop = nullptr;
     if (!a.quiet)
         say("{}: {} of {} claims hold\n", (workshop.output / "index.html").string(), outcome.held,
             outcome.claims);
