@@ -7,18 +7,19 @@ namespace covtrace::cli {
 
 namespace {
 
-std::function<bool()> interrupt_once;
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // a signal handler sets it
 
 extern "C" void on_interrupt(int signal) {
-    if (interrupt_once && interrupt_once()) return;
+    if (!interrupted.exchange(true)) return;
     std::signal(signal, SIG_DFL);
     std::raise(signal);
 }
 
 }  // namespace
 
-InterruptGuard::InterruptGuard(std::function<bool()> interrupt) {
-    interrupt_once = std::move(interrupt);
+InterruptGuard::InterruptGuard() {
+    interrupted = false;
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
 }
@@ -26,7 +27,10 @@ InterruptGuard::InterruptGuard(std::function<bool()> interrupt) {
 InterruptGuard::~InterruptGuard() {
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
-    interrupt_once = nullptr;
+}
+
+const std::atomic<bool>& InterruptGuard::flag() {
+    return interrupted;
 }
 
 }  // namespace covtrace::cli

@@ -1,16 +1,17 @@
-/// Ctrl-C and SIGTERM while something runs that can end early.
+/// Ctrl-C and SIGTERM while renders run.
 #pragma once
 
-#include <functional>
+#include <atomic>
 
 namespace covtrace::cli {
 
-/// While it lives either signal calls `interrupt`, which must be safe in a signal handler and tells
-/// whether it was the first call; after that a signal ends the process at once. One at a time.
+/// While it lives either signal sets the flag; a second one ends the process at once. One at a
+/// time.
 class InterruptGuard {
   public:
-    explicit InterruptGuard(std::function<bool()> interrupt);
+    InterruptGuard();
     ~InterruptGuard();
+    static const std::atomic<bool>& flag();
     InterruptGuard(const InterruptGuard&) = delete;
     InterruptGuard& operator=(const InterruptGuard&) = delete;
 };

@@ -130,11 +130,8 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     ProgressLine progress(a.progress);
     Monitor monitor(progress.reporter(), progress.interval(), invocation.start);
     progress.begin();
-    const InterruptGuard guard([&monitor] {
-        const bool first = !monitor.cancelled();
-        monitor.cancel();
-        return first;
-    });
+    const InterruptGuard guard;
+    monitor.interrupted = &guard.flag();
 
     SceneDescription description = read_scene_file(
         a.scene, {{a.search_paths.begin(), a.search_paths.end()}, a.overrides.shutter});

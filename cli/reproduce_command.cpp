@@ -31,14 +31,11 @@ int reproduce_results(const ReproduceArguments& a, const Invocation& invocation)
     const auto size = a.tiny    ? reproduce::Size::tiny
                       : a.quick ? reproduce::Size::quick
                                 : reproduce::Size::full;
-    reproduce::Workshop workshop(size, a.output, a.scenes, [&a](const std::string& line) {
-        if (!a.quiet) say("{}\n", line);
-    });
-    const InterruptGuard guard([&workshop] {
-        const bool first = !workshop.interrupted();
-        workshop.interrupt();
-        return first;
-    });
+    const InterruptGuard guard;
+    reproduce::Workshop workshop(size, a.output, a.scenes, guard.flag(),
+                                 [&a](const std::string& line) {
+                                     if (!a.quiet) say("{}\n", line);
+                                 });
     const reproduce::Outcome outcome =
         reproduce::reproduce(workshop, a.names, invocation.command_line);
     if (!a.quiet)

@@ -74,20 +74,16 @@ using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>
 SharedPlanes from_channels(const std::vector<std::pair<std::string, FloatArray>>& channels) {
     if (channels.empty()) throw py::value_error("an image needs at least one channel");
     const FloatArray& first = channels.front().second;
-    std::vector<std::string> names;
+    Image image;
+    image.data = image.display = {0, 0, int(first.shape(1)), int(first.shape(0))};
     for (const auto& [name, values] : channels) {
         if (values.ndim() != 2 || values.shape(0) != first.shape(0) ||
             values.shape(1) != first.shape(1) || values.size() == 0)
             throw py::value_error("channel '" + name +
                                   "' must be a (height, width) array of the image's size");
-        names.push_back(name);
+        image.channels.push_back({name, {values.data(), values.data() + values.size()}});
     }
-    auto planes = std::make_shared<Planes>(
-        PixelBounds{0, 0, int(first.shape(1)), int(first.shape(0))}, std::move(names));
-    float* next = planes->values.data();
-    for (const auto& [name, values] : channels)
-        next = std::copy(values.data(), values.data() + values.size(), next);
-    return planes;
+    return std::make_shared<Planes>(std::move(image));
 }
 
 py::dict comparison(const SharedPlanes& image, const SharedPlanes& reference) {

@@ -23,8 +23,10 @@ Planes::Planes(Image&& image) : data(image.data), display(image.display) {
     for (const std::string_view layer : layers)
         for (Channel& c : image.channels)
             if (layer_of(c.name) == layer) order.push_back(&c);
-    // Files keep R, G, B in alphabetical order.
+    // Files keep R, G, B in alphabetical order. A root's "Z" is a layer of its own, behind its
+    // other channels.
     const auto rank = [](const std::string& name) {
+        if (name == "Z") return 5;
         const char last = name.back();
         return last == 'R' ? 0 : last == 'G' ? 1 : last == 'B' ? 2 : last == 'A' ? 3 : 4;
     };
@@ -46,11 +48,6 @@ Planes::Planes(Image&& image) : data(image.data), display(image.display) {
         names.push_back(c->name);
     }
     metadata = std::move(image.metadata);
-}
-
-Planes::Planes(PixelBounds bounds, std::vector<std::string> channel_names)
-    : data(bounds), display(bounds), names(std::move(channel_names)) {
-    values.resize(names.size() * plane_size());
 }
 
 Image Planes::image() const {

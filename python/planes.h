@@ -18,7 +18,6 @@ struct Planes {
 
     /// Takes an image apart, freeing each channel as it goes.
     explicit Planes(Image&& image);
-    Planes(PixelBounds bounds, std::vector<std::string> channel_names);
     /// A copy in the renderer's own form.
     Image image() const;
 

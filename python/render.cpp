@@ -11,6 +11,8 @@
 
 #include "bindings.h"
 #include "core/parallel.h"
+#include "gltf/read_gltf.h"
+#include "options.h"
 #include "planes.h"
 #include "render/scene_file.h"
 #include "render/session.h"
@@ -24,85 +26,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using SharedScene = std::shared_ptr<SceneDescription>;
-
-template <typename T>
-T choice(const char* option, const std::string& value,
-         std::initializer_list<std::pair<const char*, T>> choices) {
-    std::string expected;
-    for (const auto& [name, result] : choices) {
-        if (value == name) return result;
-        expected += std::string(expected.empty() ? "" : ", ") + "'" + name + "'";
-    }
-    throw Error(ErrorKind::usage,
-                std::string(option) + " is '" + value + "'; expected one of " + expected);
-}
-
-void require(bool holds, const std::string& message) {
-    if (!holds) throw Error(ErrorKind::usage, message);
-}
-
-template <typename T>
-std::optional<T> positive(const py::dict& options, const char* name) {
-    if (!options.contains(name) || options[name].is_none()) return std::nullopt;
-    T value{};
-    try {
-        value = options[name].cast<T>();
-    } catch (const py::cast_error&) {
-        throw Error(ErrorKind::usage, std::string(name) + " is " +
-                                          std::string(py::str(options[name])) +
-                                          "; expected a number");
-    }
-    require(value > 0, std::string(name) + " must be greater than 0");
-    return value;
-}
-
-RenderOptions render_options(const py::dict& o) {
-    RenderOptions r;
-    const auto text = [&](const char* name) { return o[name].cast<std::string>(); };
-    r.method = choice<Method>("method", text("method"),
-                              {{"uniform", Method::uniform},
-                               {"covariance", Method::covariance},
-                               {"hybrid", Method::hybrid}});
-    r.density =
-        choice<DensityRule>("density", text("density"),
-                            {{"tempered", DensityRule::tempered}, {"thesis", DensityRule::thesis}});
-    r.occlusion = choice<Occlusion>(
-        "occlusion", text("occlusion"),
-        {{"grid", Occlusion::grid}, {"query", Occlusion::query}, {"none", Occlusion::none}});
-    r.brdf_covariance = choice<BrdfCovariance>(
-        "brdf_covariance", text("brdf_covariance"),
-        {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}});
-    r.filter =
-        choice<FilterRule>("filter", text("filter"),
-                           {{"verified", FilterRule::verified}, {"thesis", FilterRule::thesis}});
-    r.spp = positive<double>(o, "spp");
-    r.seconds = positive<double>(o, "time");
-    r.error = positive<double>(o, "error");
-    r.cov_spp = positive<int>(o, "cov_spp");
-    r.max_spp = positive<int>(o, "max_spp");
-    r.voxels = o["voxels"].cast<int>();
-    require(r.voxels >= 1 && r.voxels <= 2048, "voxels must be from 1 to 2048");
-    if (!o["max_depth"].is_none()) {
-        r.max_depth = o["max_depth"].cast<int>();
-        require(*r.max_depth >= 0, "max_depth must not be negative");
-    }
-    r.even_counts = o["even_counts"].cast<bool>();
-    r.seed = o["seed"].cast<uint64_t>();
-    return r;
-}
-
-SceneOverrides scene_overrides(const py::dict& o) {
-    SceneOverrides s;
-    if (!o["resolution"].is_none()) s.resolution = o["resolution"].cast<std::array<int, 2>>();
-    if (!o["crop"].is_none()) {
-        const auto c = o["crop"].cast<std::array<int, 4>>();
-        s.crop = PixelBounds{c[0], c[1], c[2], c[3]};
-    }
-    if (!o["shutter"].is_none()) s.shutter = o["shutter"].cast<std::array<float, 2>>();
-    s.focal_distance = positive<float>(o, "focus");
-    s.f_number = positive<float>(o, "fstop");
-    return s;
-}
 
 /// What the thread that renders tells the one that waits for it.
 struct Exchange {
@@ -120,10 +43,10 @@ py::object progress_object(const Progress& p, const std::string& phase) {
 
 /// Waits for the render with the interpreter's lock released, but for the moments in which signals
 /// are looked at and the caller is told. Everything that is called runs in the caller's thread.
-/// Returns whether Python asked to stop by an exception, which is then set.
-bool wait(Exchange& exchange, Monitor& monitor, const py::object& progress,
-          const py::object& cancel) {
-    bool stopped = false;
+/// Returns once the render has ended: what the caller's functions threw, which cancels it, or null.
+std::exception_ptr wait(Exchange& exchange, Monitor& monitor, const py::object& progress,
+                        const py::object& cancel) {
+    std::exception_ptr thrown;
     for (;;) {
         std::optional<Progress> latest;
         std::string phase;
@@ -134,16 +57,17 @@ bool wait(Exchange& exchange, Monitor& monitor, const py::object& progress,
                                       [&] { return exchange.finished; });
             latest = std::exchange(exchange.progress, std::nullopt);
             phase = exchange.phase;
-            if (exchange.finished && (stopped || !latest)) return stopped;
+            if (exchange.finished && (thrown || !latest)) return thrown;
         }
-        if (stopped) continue;
+        if (thrown) continue;
         try {
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
             if (latest && !progress.is_none()) progress(progress_object(*latest, phase));
-            if (!cancel.is_none() && cancel.attr("is_set")().cast<bool>()) monitor.cancel();
-        } catch (py::error_already_set& e) {
-            e.restore();
-            stopped = true;
+            // Whatever it returns is true or false as in an `if`.
+            if (!cancel.is_none() && py::bool_(cancel.attr("is_set")())) monitor.cancel();
+        } catch (...) {
+            // The thread that renders must be joined first.
+            thrown = std::current_exception();
             monitor.cancel();
         }
     }
@@ -207,13 +131,19 @@ py::dict statistics_dict(const Rendered& r, double elapsed) {
 py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
     const RenderOptions options = render_options(o);
     const SceneOverrides overrides = scene_overrides(o);
-    const int threads = o["threads"].cast<int>();
-    require(threads >= 0, "threads must not be negative");
-    const auto isa = o["isa"].is_none() ? std::string() : o["isa"].cast<std::string>();
+    const int threads = value_of<int>(o, "threads", "a whole number");
+    require(threads >= 0 && threads <= 4096, "threads must be from 0 to 4096");
+    const auto isa =
+        is_given(o, "isa")
+            ? choice<std::string>(
+                  "isa", value_of<std::string>(o, "isa", "a text"),
+                  {{"sse2", "sse2"}, {"avx", "avx"}, {"avx2", "avx2"}, {"avx512", "avx512"}})
+            : std::string();
     const size_t texture_bytes =
-        o["texture_memory"].is_none() ? kNoTextureLimit : o["texture_memory"].cast<size_t>();
-    const auto progress = o["progress"].cast<py::object>();
-    const auto cancel = o["cancel"].cast<py::object>();
+        is_given(o, "texture_memory")
+            ? value_of<size_t>(o, "texture_memory", "a number of bytes, or a text such as '500M'")
+            : kNoTextureLimit;
+    const py::object progress = o["progress"], cancel = o["cancel"];
 
     Exchange exchange;
     Monitor monitor(
@@ -236,35 +166,38 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
         exchange.finished = true;
         exchange.changed.notify_all();
     });
-    const bool stopped = wait(exchange, monitor, progress, cancel);
+    const std::exception_ptr thrown = wait(exchange, monitor, progress, cancel);
     worker.join();
-    if (stopped) throw py::error_already_set();
+    if (thrown) std::rethrow_exception(thrown);
     if (failure) std::rethrow_exception(failure);
     return py::make_tuple(rendered->planes, rendered->complete,
                           statistics_dict(*rendered, monitor.elapsed()),
                           texts_of(rendered->warnings));
 }
 
-ReadOptions read_options(const std::vector<fs::path>& search_paths) {
-    return {search_paths};
+std::shared_ptr<SceneDescription> read_file(const fs::path& file,
+                                            const std::vector<fs::path>& search_paths,
+                                            const std::optional<std::array<float, 2>>& shutter) {
+    if (shutter) checked_shutter(*shutter);
+    const py::gil_scoped_release release;
+    auto scene = std::make_shared<SceneDescription>(read_scene_file(file, {search_paths, shutter}));
+    SceneOverrides overrides;
+    overrides.shutter = shutter;
+    apply(overrides, *scene);
+    return scene;
 }
 
 }  // namespace
 
 void bind_render(py::module_& module) {
     py::class_<SceneDescription, SharedScene>(module, "SceneDescription")
-        .def_static("read",
-                    [](const fs::path& file, const std::vector<fs::path>& search_paths) {
-                        const py::gil_scoped_release release;
-                        return std::make_shared<SceneDescription>(
-                            read_scene_file(file, read_options(search_paths)));
-                    })
+        .def_static("read", &read_file)
         .def_static("read_string",
                     [](const std::string& text, const std::string& name, const fs::path& folder,
                        const std::vector<fs::path>& search_paths) {
                         const py::gil_scoped_release release;
                         return std::make_shared<SceneDescription>(
-                            read_pbrt_string(text, name, folder, read_options(search_paths)));
+                            read_pbrt_string(text, name, folder, {search_paths}));
                     })
         .def_property_readonly("name", [](const SceneDescription& s) { return s.name; })
         .def_property_readonly(
@@ -277,6 +210,7 @@ void bind_render(py::module_& module) {
         .def_property_readonly("warnings",
                                [](const SceneDescription& s) { return texts_of(s.warnings); })
         .def("summary", &summarize);
+    module.def("is_gltf", &is_gltf);
     module.def("render", &render_scene);
 }
 

@@ -11,7 +11,7 @@ from .export_textures import pixels, write_pfm
 
 def write_lamp(out, lamp, transform, warn):
     """One lamp; `transform`: text that places its object (no scale in it matters but an area's)."""
-    colour = [c * lamp.energy for c in lamp.color]
+    colour = [c * lamp.energy * shaded for c, shaded in zip(lamp.color, _shader_colour(lamp, warn))]
     if max(colour) <= 0:
         return
     out.write("AttributeBegin\n" + transform)
@@ -39,6 +39,25 @@ def write_lamp(out, lamp, transform, warn):
     else:
         out.write(f'LightSource "point" "rgb I" [{numbers(c / (4 * math.pi) for c in colour)}]\n')
     out.write("AttributeEnd\n")
+
+
+def _shader_colour(lamp, warn):
+    """What the lamp's nodes multiply its power by."""
+    if not lamp.use_nodes or not lamp.node_tree:
+        return (1, 1, 1)
+    output = lamp.node_tree.get_output_node("CYCLES")
+    shader = output.inputs["Surface"].links[0].from_node if output and output.inputs["Surface"].is_linked else None
+    if shader is None:
+        return (0, 0, 0)
+    if shader.type != "EMISSION":
+        warn(f"lamp '{lamp.name}': its shader '{shader.name}' is not supported; its own colour and power are used")
+        return (1, 1, 1)
+    for socket in shader.inputs:
+        if socket.is_linked:
+            warn(f"lamp '{lamp.name}': what is linked to '{socket.name}' of its shader is not supported; "
+                 "the socket's own value is used")
+    strength = shader.inputs["Strength"].default_value
+    return tuple(c * strength for c in tuple(shader.inputs["Color"].default_value)[:3])
 
 
 def _write_area(out, lamp, colour):
@@ -80,6 +99,8 @@ def write_world(out, world, folder, warn):
             warn(f"world shader '{background.name}' is not supported; the world is black")
             return
         strength = background.inputs["Strength"].default_value
+        if background.inputs["Strength"].is_linked:
+            warn("what is linked to the world's Strength is not supported; the socket's own value is used")
         colour = tuple(background.inputs["Color"].default_value)[:3]
         socket = background.inputs["Color"]
         node = socket.links[0].from_node if socket.is_linked else None

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from .export_textures import TextureFiles, to_srgb
+from .export_sockets import PLAIN_MAPPING, SocketReader, Value
+from .export_textures import TextureFiles
 
 
 def numbers(values):
@@ -17,33 +18,12 @@ def eta_of_specular(specular):
     return (1 + root) / (1 - root)
 
 
-class Value:
-    """What a socket gives: a constant, or an image with a treatment."""
-
-    def __init__(self, constant=None, image=None, mapping=None, channel=None, scale=1.0, offset=0.0, filter="bilinear"):
-        self.constant, self.image, self.mapping, self.channel = constant, image, mapping, channel
-        self.scale, self.offset, self.filter = scale, offset, filter
-
-    def apply(self, pixels):
-        """(h, w, 4) to (h, w, 3), or to (h, w) where one number is wanted."""
-        if self.channel == "grey":
-            values = pixels[..., :3] @ np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
-        elif self.channel is not None:
-            values = pixels[..., "RGBA".index(self.channel)]
-        else:
-            values = pixels[..., :3]
-        return values * self.scale + self.offset
-
-    def key(self):
-        return (self.channel, self.scale, self.offset)
-
-
 class Emission:
     def __init__(self, radiance, texture=None):
         self.radiance, self.texture = radiance, texture
 
 
-class MaterialExporter:
+class MaterialExporter(SocketReader):
     """Writes textures and materials into `out`, each once; `material(m)` returns what shapes need."""
 
     def __init__(self, out, folder, warn):
@@ -53,85 +33,11 @@ class MaterialExporter:
         self.count = 0
 
     def material(self, material):
-        """(pbrt name or None for nothing, Emission or None, alpha parameter text)."""
+        """(pbrt name, Emission or None, alpha parameter text, names of the UV maps that it reads; "" is the mesh's)."""
         key = material.name_full if material else None
         if key not in self.known:
             self.known[key] = self._export(material)
         return self.known[key]
-
-    # -- sockets
-
-    def _linked(self, socket):
-        """The node and socket that feed it, reroutes passed."""
-        while socket.is_linked:
-            link = socket.links[0]
-            if link.from_node.type != "REROUTE":
-                return link.from_node, link.from_socket
-            socket = link.from_node.inputs[0]
-        return None, None
-
-    def _value(self, socket, grey=False):
-        """Value of a socket; what is not understood becomes the socket's own constant, with a warning."""
-        node, output = self._linked(socket)
-        if node is None:
-            return self._constant(socket.default_value, grey)
-        value = self._node_value(node, output, grey)
-        if value is None:
-            self.warn(f"material '{self.name}': node '{node.name}' at '{socket.name}' is not supported; "
-                      "the socket's own value is used")
-            return self._constant(socket.default_value, grey)
-        return value
-
-    def _constant(self, v, grey):
-        if hasattr(v, "__len__"):
-            v = tuple(v)[:3]
-            return Value(0.2126 * v[0] + 0.7152 * v[1] + 0.0722 * v[2] if grey else v)
-        return Value(float(v) if grey else (float(v),) * 3)
-
-    def _node_value(self, node, output, grey):
-        if node.type == "RGB" or node.type == "VALUE":
-            return self._constant(output.default_value, grey)
-        if node.type == "TEX_IMAGE" and node.image:
-            channel = "A" if output.name == "Alpha" else "grey" if grey else None
-            return Value(image=node.image, mapping=self._mapping(node), channel=channel,
-                         filter="point" if node.interpolation == "Closest" else "bilinear")
-        if node.type in ("SEPARATE_COLOR", "SEPRGB") and grey:
-            source = self._node_value(*self._linked(node.inputs[0]), False) if node.inputs[0].is_linked else None
-            if source and source.image and output.name[:1] in "RGB":
-                source.channel = output.name[:1]
-                return source
-        if node.type == "MATH" and grey and node.operation == "SUBTRACT" and not node.inputs[0].is_linked:
-            source = self._value(node.inputs[1], True)
-            a = node.inputs[0].default_value
-            if source.image:
-                source.scale, source.offset = -source.scale, a - source.offset
-                return source
-            return Value(a - source.constant)
-        if node.type == "INVERT" and not node.inputs["Fac"].is_linked and node.inputs["Fac"].default_value == 1:
-            source = self._value(node.inputs["Color"], grey)
-            if source.image:
-                source.scale, source.offset = -source.scale, 1 - source.offset
-                return source
-            return Value(1 - source.constant if grey else tuple(1 - c for c in source.constant))
-        return None
-
-    def _mapping(self, node):
-        """pbrt's scale and offset of (u, v), from a Mapping node."""
-        source, output = self._linked(node.inputs["Vector"])
-        if source is None or source.type in ("UVMAP",) or source.type == "TEX_COORD" and output.name == "UV":
-            return (1, 1, 0, 0)
-        if source.type == "MAPPING" and source.vector_type in ("POINT", "TEXTURE"):
-            inner, inner_output = self._linked(source.inputs["Vector"])
-            plain = inner is None or inner.type == "UVMAP" or inner.type == "TEX_COORD" and inner_output.name == "UV"
-            rotation = source.inputs["Rotation"].default_value
-            location, scale = source.inputs["Location"].default_value, source.inputs["Scale"].default_value
-            if plain and abs(rotation[2]) < 1e-6:
-                if source.vector_type == "POINT":
-                    return (scale[0], scale[1], location[0], location[1])
-                return (1 / scale[0], 1 / scale[1], -location[0] / scale[0], -location[1] / scale[1])
-        self.warn(f"material '{self.name}': only UV coordinates, scaled and moved, place images; "
-                  f"those of '{node.name}' are used as they are")
-        return (1, 1, 0, 0)
 
     # -- text
 
@@ -144,7 +50,8 @@ class MaterialExporter:
         su, sv, du, dv = value.mapping
         self.out.write(f'Texture "{name}" "{kind}" "imagemap" "string filename" "{file}" '
                        f'"string encoding" "linear" "float uscale" {su:.9g} "float vscale" {sv:.9g} '
-                       f'"float udelta" {du:.9g} "float vdelta" {dv:.9g} "string filter" "{value.filter}"\n')
+                       f'"float udelta" {du:.9g} "float vdelta" {dv:.9g} "string filter" "{value.filter}" '
+                       f'"string wrap" "{value.wrap}"\n')
         return name
 
     def _colour(self, parameter, value):
@@ -180,13 +87,16 @@ class MaterialExporter:
         self.name = material.name if material else "none"
         if material is None or not material.use_nodes or not material.node_tree:
             colour = tuple(material.diffuse_color)[:3] if material else (0.8, 0.8, 0.8)
-            return self._make("diffuse", [self._colour("reflectance", Value(colour))]), None, ""
-        self.emission, self.alpha, self.normal = None, "", ""
+            return self._make("diffuse", [self._colour("reflectance", Value(colour))]), None, "", ()
+        self.emission, self.alpha, self.uv_maps = None, "", []
         output = material.node_tree.get_output_node("CYCLES")
+        for name in ("Volume", "Displacement"):
+            if output and output.inputs[name].is_linked:
+                self.warn(f"material '{self.name}': {name} is not supported and left out")
         node, _ = self._linked(output.inputs["Surface"]) if output else (None, None)
         if node is None:
-            return self._make("diffuse", ['"rgb reflectance" [0 0 0]']), None, ""
-        return self._shader(node), self.emission, self.alpha
+            return self._make("diffuse", ['"rgb reflectance" [0 0 0]']), None, "", ()
+        return self._shader(node), self.emission, self.alpha, tuple(self.uv_maps)
 
     def _shader(self, node):
         known = {"BSDF_PRINCIPLED": self._principled, "BSDF_DIFFUSE": self._diffuse, "BSDF_GLOSSY": self._glossy,
@@ -211,15 +121,17 @@ class MaterialExporter:
             return []
         if source.type == "NORMAL_MAP" and source.space == "TANGENT":
             value = self._value(source.inputs["Color"])
-            strength = source.inputs["Strength"].default_value
+            strength = self._plain(source.inputs["Strength"])
+            if source.uv_map and source.uv_map not in self.uv_maps:
+                self.uv_maps.append(source.uv_map)
             if value.image:
                 def scaled(colour):
                     # Cycles blends from the flat normal.
                     flat = np.array([0.5, 0.5, 1.0], dtype=np.float32)
                     return flat + (colour - flat) * strength
                 file = self.files.write(value.image, ("normal", strength), lambda p: scaled(value.apply(p)))
-                if value.mapping != (1, 1, 0, 0):
-                    self.warn(f"material '{self.name}': a scaled normal map is used unscaled")
+                if not value.is_plainly_placed():
+                    self.warn(f"material '{self.name}': a normal map is used as it lies, unscaled and interpolated")
                 return [f'"string normalmap" "{file}"']
         self.warn(f"material '{self.name}': only tangent space normal maps change normals")
         return []
@@ -241,7 +153,7 @@ class MaterialExporter:
 
     def _glass(self, node):
         return self._clear(self._value(node.inputs["Color"]), self._value(node.inputs["Roughness"], True),
-                           node.inputs["IOR"].default_value, self._normal_map(node))
+                           self._plain(node.inputs["IOR"]), self._normal_map(node))
 
     def _translucent(self, node):
         return self._make("diffusetransmission", ['"rgb reflectance" [0 0 0]',
@@ -249,15 +161,15 @@ class MaterialExporter:
 
     def _emit(self, colour, strength):
         if colour.image:
-            name = self.files.write(colour.image, ("emission", colour.key()),
-                                    lambda pixels: to_srgb(colour.apply(pixels)))
+            if not colour.is_plainly_placed():
+                self.warn(f"material '{self.name}': an image that shines is used as it lies, unscaled and interpolated")
+            name = self.files.write_emission(colour.image, colour.key(), colour.apply)
             self.emission = Emission((strength,) * 3, name)
         elif max(colour.constant) * strength > 0:
             self.emission = Emission(tuple(c * strength for c in colour.constant))
 
     def _emission(self, node):
-        strength = self._value(node.inputs["Strength"], True)
-        self._emit(self._value(node.inputs["Color"]), 1.0 if strength.image else float(strength.constant))
+        self._emit(self._value(node.inputs["Color"]), self._plain(node.inputs["Strength"]))
         return self._make("diffuse", ['"rgb reflectance" [0 0 0]'])
 
     def _mix_shader(self, node):
@@ -267,9 +179,7 @@ class MaterialExporter:
             self.alpha = self._number("alpha", amount)
             return self._input_shader(node.inputs[2])
         if second and second.type == "BSDF_TRANSPARENT":
-            inverse = (Value(image=amount.image, mapping=amount.mapping, channel=amount.channel, scale=-amount.scale,
-                             offset=1 - amount.offset, filter=amount.filter) if amount.image else Value(1 - amount.constant))
-            self.alpha = self._number("alpha", inverse)
+            self.alpha = self._number("alpha", amount.inverse())
             return self._input_shader(node.inputs[1])
         if "EMISSION" in (n.type for n in (first, second) if n):
             self.warn(f"material '{self.name}': emission inside a mixture is not weakened by it")
@@ -296,7 +206,7 @@ class MaterialExporter:
         for name in ("Subsurface", "Sheen", "Clearcoat", "Anisotropic", "Specular Tint"):
             if get[name].is_linked or get[name].default_value > 0:
                 self.warn(f"material '{self.name}': Principled's {name} is not supported and left out")
-        self._emit(self._value(get["Emission"]), float(get["Emission Strength"].default_value))
+        self._emit(self._value(get["Emission"]), self._plain(get["Emission Strength"]))
         alpha = self._value(get["Alpha"], True)
         if alpha.image or alpha.constant < 1:
             self.alpha = self._number("alpha", alpha)
@@ -307,14 +217,14 @@ class MaterialExporter:
         parts = []
         if not is_constant(metallic, 1):
             if is_constant(transmission, 1):
-                parts.append(self._clear(base, roughness, get["IOR"].default_value, normal))
+                parts.append(self._clear(base, roughness, self._plain(get["IOR"]), normal))
             else:
-                eta = eta_of_specular(self._value(get["Specular"], True).constant or 0.0)
+                eta = eta_of_specular(self._plain(get["Specular"]))
                 coated = self._make("coateddiffuse", [
                     self._colour("reflectance", base), *self._roughness(roughness),
                     f'"float eta" {max(eta, 1.0001):.9g}', '"bool reflectsthroughcoat" true', *normal])
                 if not is_constant(transmission, 0):
-                    coated = self._mix(coated, self._clear(base, roughness, get["IOR"].default_value, normal),
+                    coated = self._mix(coated, self._clear(base, roughness, self._plain(get["IOR"]), normal),
                                        transmission)
                 parts.append(coated)
         if not is_constant(metallic, 0):

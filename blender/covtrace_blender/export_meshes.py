@@ -23,10 +23,28 @@ def _join(corners):
     return corners[first], inverse
 
 
-def parts(mesh):
-    """Yields (material slot, positions, normals or None, uvs or None, triangles).
+def uv_map(mesh, names):
+    """(the UV map that a material reads of a mesh, whether it is all that it wants).
 
-    Corners that agree in everything are one vertex, so that smooth surfaces are closed. Faces without smooth
+    names: as the material's nodes have them; "" is the one that is active for rendering. A mesh has one here: the first.
+    """
+    active = next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
+    wanted = [name or active for name in names] or [active]
+    chosen = wanted[0] if wanted[0] in mesh.uv_layers else active
+    return chosen, all(name == chosen for name in wanted)
+
+
+def edges(mesh):
+    """(n, 2) vertices."""
+    values = np.empty(2 * len(mesh.edges), dtype=np.int32)
+    mesh.edges.foreach_get("vertices", values)
+    return values.reshape(-1, 2)
+
+
+def parts(mesh, uv_of_slot, piece_of_vertex=None):
+    """Yields (material slot, piece, positions, normals or None, uvs or None, triangles).
+
+    uv_of_slot(slot): the name of its UV map, or None. piece_of_vertex: pieces that stay apart; None: all is piece 0. Corners that agree in everything are one vertex, so that smooth surfaces are closed. Faces without smooth
     shading have no normals: the triangles' own are theirs.
     """
     mesh.calc_loop_triangles()
@@ -44,15 +62,15 @@ def parts(mesh):
         normals = np.empty(3 * len(mesh.loops), dtype=np.float32)
         mesh.loops.foreach_get("normal", normals)
         normals = normals.reshape(-1, 3)
-    uvs = None
-    if mesh.uv_layers.active:
-        uvs = np.empty(2 * len(mesh.loops), dtype=np.float32)
-        mesh.uv_layers.active.data.foreach_get("uv", uvs)
-        uvs = uvs.reshape(-1, 2)
-
-    for slot in np.unique(slots):
+    piece = np.zeros(len(slots), dtype=int) if piece_of_vertex is None else piece_of_vertex[vertices[:, 0]]
+    for slot, number in np.unique(np.column_stack((slots, piece)), axis=0):
+        name, uvs = uv_of_slot(int(slot)), None
+        if name is not None:
+            uvs = np.empty(2 * len(mesh.loops), dtype=np.float32)
+            mesh.uv_layers[name].data.foreach_get("uv", uvs)
+            uvs = uvs.reshape(-1, 2)
         for is_smooth in (False, True):
-            chosen = (slots == slot) & (smooth == is_smooth)
+            chosen = (slots == slot) & (piece == number) & (smooth == is_smooth)
             if not chosen.any():
                 continue
             corner_loops = loops[chosen].ravel()
@@ -62,5 +80,5 @@ def parts(mesh):
             if uvs is not None:
                 columns.append(uvs[corner_loops])
             distinct, corners = _join(np.hstack(columns).astype(np.float32))
-            yield (int(slot), distinct[:, :3], distinct[:, 3:6] if is_smooth else None,
+            yield (int(slot), int(number), distinct[:, :3], distinct[:, 3:6] if is_smooth else None,
                    distinct[:, -2:] if uvs is not None else None, corners.reshape(-1, 3))

@@ -3,11 +3,10 @@
 import math
 import os
 
-import bpy
 import numpy as np
 from mathutils import Matrix
 
-from . import export_lights, export_meshes, ply
+from . import export_lights, export_meshes, export_motion, ply
 from .export_materials import MaterialExporter, numbers
 
 # Blender's cameras look along -z, pbrt's along +z; both have x to the right and y up.
@@ -19,22 +18,20 @@ def matrix_text(matrix):
     return numbers(matrix[row][column] for column in range(4) for row in range(4))
 
 
+# Of the way that vertices go: less is not seen in a streak.
+MOST_LEFT_SILENTLY = 0.05
+
+
+def is_same(a, b):
+    return all(abs(x - y) < 1e-7 for r, s in zip(a, b) for x, y in zip(r, s))
+
+
 def placement(directive, start, end):
     """A transform over the shutter; end None: at rest."""
-    if end is None or all(abs(a - b) < 1e-7 for r, s in zip(start, end) for a, b in zip(r, s)):
+    if end is None or is_same(start, end):
         return f"{directive} [{matrix_text(start)}]\n"
     return (f"ActiveTransform StartTime\n{directive} [{matrix_text(start)}]\n"
             f"ActiveTransform EndTime\n{directive} [{matrix_text(end)}]\nActiveTransform All\n")
-
-
-class Placed:
-    """One instance of an object at the opening of the shutter."""
-
-    def __init__(self, instance):
-        self.matrix = instance.matrix_world.copy()
-        self.name = instance.object.name_full
-        self.is_shared = instance.is_instance
-        self.type = instance.object.type
 
 
 class SceneExporter:
@@ -84,7 +81,7 @@ class SceneExporter:
         self._go_to(frame + half)
         matrices = {key: instance.matrix_world.copy() for key, instance in self._instances()}
         matrices["camera"] = self._camera().matrix_world.copy()
-        self.closing = {instance.object.name_full: self._shape_sum(instance.object)
+        self.closing = {instance.object.name_full: export_meshes.positions(instance.object.data)
                         for _, instance in self._instances() if instance.object.type == "MESH"}
         self._go_to(frame - half)
         return matrices, (-half, half)
@@ -92,10 +89,6 @@ class SceneExporter:
     def _go_to(self, time):
         frame = math.floor(time)
         self.engine.frame_set(frame, subframe=time - frame)
-
-    def _shape_sum(self, obj):
-        """A fingerprint of the evaluated mesh in object space."""
-        return hash(export_meshes.positions(obj.data).tobytes())
 
     def _instances(self):
         for instance in self.depsgraph.object_instances:
@@ -155,6 +148,8 @@ class SceneExporter:
             matrix = instance.matrix_world.copy()
             end = moving.get(key)
             if obj.type == "LIGHT":
+                if end is not None and not is_same(matrix, end):
+                    self.warn(f"lamp '{obj.name}' moves while the shutter is open; it stays where it is at the opening")
                 self._write_lamp(obj.data, matrix)
             elif obj.type in ("MESH", "CURVE", "SURFACE", "FONT", "META"):
                 if obj.name_full not in exported:
@@ -164,7 +159,7 @@ class SceneExporter:
                     continue
                 if abs(matrix.determinant()) < 1e-30:
                     continue
-                if instance.is_instance and not any(emission for *_, emission in parts):
+                if instance.is_instance and not any(emission for *_, emission, _ in parts):
                     if obj.name_full not in shared:
                         shared[obj.name_full] = f"object {len(shared)}"
                         self.out.write(f'ObjectBegin "{shared[obj.name_full]}"\n')
@@ -188,31 +183,54 @@ class SceneExporter:
         export_lights.write_lamp(self.out, Scaled(), placement("ConcatTransform", matrix, None), self.warn)
 
     def _export_parts(self, obj):
-        """[(file, material name, alpha, emission)] of an evaluated object, its files and materials written."""
+        """[(file, material name, alpha, emission, motion in object space or None)] of an evaluated object, its files and
+        materials written."""
         mesh = obj.to_mesh()
         if mesh is None:
             return []
-        if self.shutter and obj.type == "MESH":
-            closing = self.closing.get(obj.name_full)
-            if closing is not None and closing != self._shape_sum(obj):
-                self.warn(f"object '{obj.name}' changes its shape while the shutter is open; it keeps that of the opening")
-        parts = []
-        for index, (slot, positions, normals, uvs, triangles) in enumerate(export_meshes.parts(mesh)):
+        piece, motions = self._motions(obj, mesh)
+        parts, slots = [], obj.material_slots
+
+        def material_of(slot):
+            return self.materials.material(slots[min(slot, len(slots) - 1)].material if slots else None)
+
+        def uv_of_slot(slot):
+            chosen, is_all = export_meshes.uv_map(mesh, material_of(slot)[3])
+            if not is_all:
+                self.warn(f"object '{obj.name}': its textures want UV maps that it has not, or several; '{chosen}' is used for all")
+            return chosen
+
+        for slot, number, positions, normals, uvs, triangles in export_meshes.parts(mesh, uv_of_slot, piece):
             if not np.isfinite(positions).all():
                 self.warn(f"object '{obj.name}' has vertices that are not finite and is left out")
                 break
             file = f"mesh{len(os.listdir(self.folder))}.ply"
             ply.write(os.path.join(self.folder, file), positions, normals, uvs, triangles)
-            slots = obj.material_slots
-            material = slots[min(slot, len(slots) - 1)].material if slots else None
-            name, emission, alpha = self.materials.material(material)
-            parts.append((file, name, alpha, emission))
+            name, emission, alpha, _ = material_of(slot)
+            parts.append((file, name, alpha, emission, motions[number] if motions else None))
         obj.to_mesh_clear()
         return parts
 
+    def _motions(self, obj, mesh):
+        """(piece of each vertex, motion of each piece) of what changes its shape; (None, None) of what does not."""
+        closing = self.closing.get(obj.name_full) if self.shutter and obj.type == "MESH" else None
+        opening = None if closing is None else export_meshes.positions(mesh)
+        if closing is None or np.array_equal(closing, opening):
+            return None, None
+        if len(closing) != len(opening) or not np.isfinite(closing).all() or not np.isfinite(opening).all():
+            self.warn(f"object '{obj.name}' has other vertices when the shutter closes; it keeps those of the opening")
+            return None, None
+        piece, motions, left = export_motion.motions(opening, closing, export_meshes.edges(mesh))
+        if left > MOST_LEFT_SILENTLY:
+            self.warn(f"object '{obj.name}' bends while the shutter is open; its connected pieces move rigidly, "
+                      f"up to {100 * left:.0f} % of the way are left out")
+        return piece, motions
+
     def _write_parts(self, parts):
-        for file, name, alpha, emission in parts:
+        for file, name, alpha, emission, motion in parts:
             self.out.write("AttributeBegin\n" f'NamedMaterial "{name}"\n')
+            if motion is not None:
+                self.out.write(placement("ConcatTransform", np.eye(4), motion))
             if emission:
                 image = f' "string filename" "{emission.texture}"' if emission.texture else ""
                 scale = f'"float scale" {emission.radiance[0]:.9g}' if emission.texture else \

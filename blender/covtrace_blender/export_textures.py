@@ -85,3 +85,18 @@ class TextureFiles:
             write_png(os.path.join(self.folder, name), treat(self.source(image)))
             self.files[full_key] = name
         return self.files[full_key]
+
+    def write_emission(self, image, key, treat):
+        """The same for what lamps show: brighter than 1 where the image is."""
+        full_key = (image.name_full, ("emission", key))
+        if full_key not in self.files:
+            values = np.maximum(treat(self.source(image)), 0)
+            name = f"texture{len(self.files)}"
+            if values.max() > 1:
+                name += ".pfm"
+                write_pfm(os.path.join(self.folder, name), values)
+            else:
+                name += ".png"
+                write_png(os.path.join(self.folder, name), to_srgb(values))
+            self.files[full_key] = name
+        return self.files[full_key]

@@ -10,8 +10,18 @@ numpy arrays). Layers are numpy views of the renderer's own memory. `covtrace.co
 operators of the covariance library on arrays.
 """
 
+try:
+    import numpy as _numpy  # that all modules need
+    from ._covtrace import __version__
+except ModuleNotFoundError as missing:
+    import pathlib as _pathlib
+    import sys as _sys
+
+    _built = ", ".join(p.name for p in _pathlib.Path(__file__).parent.glob("_covtrace.*.so"))
+    raise ImportError(f"covtrace: {missing}; this is {_sys.executable}, the package was built for "
+                      f"another Python ({_built}), on Debian /usr/bin/python3") from missing
+
 from . import covariance
-from ._covtrace import __version__
 from .builder import SceneBuilder
 from .errors import (Error, FileError, InternalError, Interrupted, LimitError, SceneError,
                      SceneWarning, UsageError)

@@ -21,7 +21,7 @@ _UNITS = {"": 1, "k": 1 << 10, "m": 1 << 20, "g": 1 << 30, "t": 1 << 40}
 
 def _bytes(size: int | str | None) -> int | None:
     """A number of bytes, or a text such as "500M" or "2G"."""
-    if size is None or isinstance(size, int):
+    if not isinstance(size, str):
         return size
     found = re.fullmatch(r"(\d+(?:\.\d+)?)([kmgt]?)", size.strip().lower())
     if not found:
@@ -42,7 +42,9 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            density: Literal["tempered", "thesis"] = "tempered",
            occlusion: Literal["grid", "query", "none"] = "query", voxels: int = 200,
            brdf_covariance: Literal["local", "global"] = "local",
-           filter: Literal["verified", "thesis"] = "verified", even_counts: bool = False,
+           texture_bandwidth: Literal["own", "highest"] = "own",
+           filter: Literal["verified", "thesis"] = "verified", progressive: bool = False,
+           even_counts: bool = False,
            resolution: tuple[int, int] | None = None,
            crop: tuple[int, int, int, int] | None = None,
            shutter: tuple[float, float] | None = None, focus: float | None = None,
@@ -54,11 +56,13 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            cancel: Cancel | None = None) -> Image:
     """Renders a scene into an `Image`.
 
-    scene: path of a pbrt-v4 file, `Scene`, or `SceneBuilder`.
+    scene: path of a pbrt-v4 or glTF 2.0 file, `Scene`, or `SceneBuilder`.
     method: "uniform" (the plain path tracer), "covariance" (the thesis' method) or "hybrid".
     spp, time, error: budgets: average samples per pixel (default: the scene's), seconds, estimated
         sqrt(relMSE); of several the first one stops.
     resolution (w, h), crop (x0, y0, x1, y1), shutter (t0, t1), focus, fstop: in place of the scene's.
+        The nodes of a glTF file are placed when it is read: give `shutter` with the file's path, or
+        to `Scene`.
     threads: 0 for all cores; holds for the process while the render runs.
     progress: called with a `Progress` about ten times a second, in the calling thread.
     cancel: anything with `is_set()`, for example a threading.Event; the image that is there when it
@@ -71,7 +75,8 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     options = {"method": method, "spp": spp, "time": time, "error": error, "cov_spp": cov_spp,
                "max_spp": max_spp, "max_depth": max_depth, "density": density,
                "occlusion": occlusion, "voxels": voxels, "brdf_covariance": brdf_covariance,
-               "filter": filter, "even_counts": even_counts, "resolution": resolution,
+               "texture_bandwidth": texture_bandwidth, "filter": filter,
+               "progressive": progressive, "even_counts": even_counts, "resolution": resolution,
                "crop": crop, "shutter": shutter, "focus": focus, "fstop": fstop, "seed": seed,
                "threads": threads, "isa": isa, "texture_memory": _bytes(texture_memory),
                "progress": progress, "cancel": cancel}
@@ -80,7 +85,10 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
         with tempfile.TemporaryDirectory(prefix="covtrace-") as folder:
             return _render(Scene(scene.write(folder), search_paths), options)
     if not isinstance(scene, Scene):
-        scene = Scene(os.fspath(scene), search_paths)
+        scene = Scene(os.fspath(scene), search_paths, shutter)
+    elif scene._is_placed and shutter is not None and tuple(shutter) != scene._shutter:
+        raise UsageError(f"shutter is {shutter!r}, but the nodes of a glTF scene are placed when it "
+                         f"is read; expected Scene(file, shutter={shutter!r})")
     return _render(scene, options)
 
 

@@ -11,21 +11,28 @@ from .errors import SceneWarning
 
 
 class Scene:
-    """A scene in the pbrt-v4 format, read and checked, not yet built.
+    """A scene in the pbrt-v4 or glTF 2.0 format, read and checked, not yet built.
 
-    `Scene(file)` reads a file and the meshes that it names; `Scene.from_string` a text. What the
-    scene asks for and covtrace replaces or ignores is in `warnings`, and is warned of.
+    `Scene(file)` reads a file and the meshes that it names; `Scene.from_string` a text (pbrt-v4).
+    What the scene asks for and covtrace replaces or ignores is in `warnings`, and is warned of.
     """
 
     def __init__(self, file: str | os.PathLike[str],
-                 search_paths: Iterable[str | os.PathLike[str]] = ()) -> None:
-        self._take(_covtrace.SceneDescription.read(os.fspath(file), _paths(search_paths)))
+                 search_paths: Iterable[str | os.PathLike[str]] = (),
+                 shutter: tuple[float, float] | None = None) -> None:
+        """shutter: when it opens and closes, in place of the file's; seconds of glTF's animations,
+        whose nodes rest at 0 without it."""
+        file = os.fspath(file)
+        self._is_placed = _covtrace.is_gltf(file)
+        self._shutter = None if shutter is None else tuple(shutter)
+        self._take(_covtrace.SceneDescription.read(file, _paths(search_paths), self._shutter))
 
     @classmethod
     def from_string(cls, text: str, folder: str | os.PathLike[str] = ".", name: str = "scene",
                     search_paths: Iterable[str | os.PathLike[str]] = ()) -> Scene:
         """`folder` is what relative file names in the text refer to, `name` what messages call it."""
         scene = cls.__new__(cls)
+        scene._is_placed, scene._shutter = False, None
         scene._take(_covtrace.SceneDescription.read_string(text, name, os.fspath(folder),
                                                            _paths(search_paths)))
         return scene

@@ -5,7 +5,7 @@ from math import pi
 from .camera import Camera
 from .files import write_ply
 from .loft import smooth_path
-from .mesh import arc, lathe, rounded_prism
+from .mesh import arc, lathe
 from .pbrt_text import SceneText
 from .stage import add_floor, add_options, add_quad, add_quad_light, glossy, matt, metal
 

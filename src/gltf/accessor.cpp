@@ -7,9 +7,6 @@
 namespace covtrace::gltf {
 namespace {
 
-/// Elements of an accessor without bytes of its own, which is all zeros: nothing else bounds it.
-constexpr size_t kMostWithoutBytes = size_t{1} << 24;
-
 struct Bytes {
     const unsigned char* data = nullptr;
     size_t stride = 0;
@@ -137,7 +134,18 @@ void apply_sparse(const Document& document, const tinygltf::Accessor& a, size_t 
     }
 }
 
-/// Calls visit(element, its bytes) for all elements; those without bytes aren't visited.
+/// Refuses accessors once all that were read are too many for the file.
+void spend(const Document& document, const tinygltf::Accessor& a, size_t components,
+           const std::string& place) {
+    if (!document.numbers.spend(a.count, components))
+        throw Error(ErrorKind::limit, document.place(place),
+                    "its " + std::to_string(a.count) +
+                        " elements and all that were read before are too many for a file of " +
+                        std::to_string(document.bytes) + " bytes");
+}
+
+/// Calls visit(element, its bytes) for all elements; those without bytes, which are zero, aren't
+/// visited.
 template <typename Visit>
 void visit_elements(const Document& document, const tinygltf::Accessor& a, size_t element_size,
                     const std::string& place, Visit visit) {
@@ -145,9 +153,6 @@ void visit_elements(const Document& document, const tinygltf::Accessor& a, size_
         const Bytes bytes =
             locate(document, a.bufferView, a.byteOffset, a.count, element_size, place);
         for (size_t i = 0; i < a.count; ++i) visit(i, bytes.data + i * bytes.stride);
-    } else if (a.count > kMostWithoutBytes) {
-        throw Error(ErrorKind::limit, document.place(place),
-                    std::to_string(a.count) + " elements without data are too many");
     }
     apply_sparse(document, a, element_size, place, visit);
 }
@@ -163,6 +168,7 @@ Numbers read_numbers(const Document& document, int index, size_t components,
     const tinygltf::Accessor& a = at(document, document.model.accessors, index, "accessors", place);
     const std::string here = element("accessors", static_cast<size_t>(index));
     check_layout(document, a, components, here);
+    spend(document, a, components, here);
     const size_t size = component_size(document, a.componentType, here);
     Numbers numbers;
     numbers.components = components;
@@ -187,6 +193,7 @@ std::vector<uint32_t> read_indices(const Document& document, int index, size_t v
     check_layout(document, a, 1, here);
     if (!is_unsigned(a.componentType))
         document.refuse(here, "indices must be unsigned bytes, shorts or ints");
+    spend(document, a, 1, here);
     std::vector<uint32_t> indices;
     const auto store = [&](size_t i, const unsigned char* bytes) {
         if (indices.empty()) indices.resize(a.count);

@@ -20,7 +20,8 @@ struct Numbers {
 
 /// Reads accessors[index], whose type must have `components` numbers (SCALAR 1, VEC3 3, MAT4 16).
 /// Integers become themselves, or [0, 1] and [-1, 1] where the accessor is normalised. Refuses, at
-/// `place`, what reaches beyond its buffer, and values that are not finite.
+/// `place`, what reaches beyond its buffer, and values that are not finite. Throws Error(limit)
+/// where the document's budget is spent, as read_indices does.
 Numbers read_numbers(const Document& document, int index, size_t components,
                      const std::string& place);
 

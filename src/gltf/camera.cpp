@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gltf/units.h"
+
 namespace covtrace::gltf {
 namespace {
 
-constexpr float kDegrees = 180 / kPi;
 constexpr int kLongerSide = 1280;  // as everywhere, where a file gives no resolution
 
 /// Film of about 1280 pixels on its longer side.

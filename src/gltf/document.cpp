@@ -178,6 +178,10 @@ Document read_document(const fs::path& file, const std::vector<fs::path>& search
         check_json(bytes, document.name);
     parse(document, bytes, files);
     document.content_hash = files.content_hash();
+    document.bytes = bytes.size();
+    for (const tinygltf::Buffer& buffer : document.model.buffers)
+        document.bytes += buffer.data.size();
+    document.numbers = budget_of_numbers(document.bytes);
     return document;
 }
 

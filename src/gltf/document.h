@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "gltf/budget.h"
 #include "scene/warning_log.h"
 
 namespace covtrace::gltf {
@@ -20,6 +21,8 @@ struct Document {
     std::vector<std::filesystem::path> roots;  ///< folders that files may be read from
     tinygltf::Model model;
     uint64_t content_hash = 0;
+    uint64_t bytes = 0;      ///< of the file and its buffers
+    mutable Budget numbers;  ///< that accessors may still be read as
 
     /// A place in the document, such as "meshes[2].primitives[0]".
     SourceLocation place(const std::string& path) const;

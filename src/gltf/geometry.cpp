@@ -8,7 +8,7 @@
 namespace covtrace::gltf {
 namespace {
 
-/// Of all meshes together; a buffer may be read by any number of primitives.
+/// Of one primitive: they are counted in 32 bits, with room to spare.
 constexpr size_t kMostVertices = size_t{1} << 30;
 
 std::vector<std::array<uint32_t, 3>> triangles(const std::vector<uint32_t>& i, int mode) {
@@ -29,6 +29,32 @@ std::vector<std::array<uint32_t, 3>> triangles(const std::vector<uint32_t>& i, i
         if (t[0] != t[1] && t[1] != t[2] && t[0] != t[2]) result.push_back(t);
     }
     return result;
+}
+
+/// Leaves the vertices out that no triangle uses, where these are the more: files hold primitives
+/// that pick their triangles from the vertices of a whole model.
+void keep_used_vertices(TriangleMesh& mesh) {
+    constexpr uint32_t kUnused = ~uint32_t{0};
+    std::vector<uint32_t> place(mesh.positions.size(), kUnused);
+    std::vector<uint32_t> used;
+    for (const auto& triangle : mesh.triangles)
+        for (const uint32_t i : triangle) {
+            if (place[i] != kUnused) continue;
+            place[i] = static_cast<uint32_t>(used.size());
+            used.push_back(i);
+        }
+    if (used.size() > mesh.positions.size() / 2) return;
+    const auto pick = [&](auto& values) {
+        if (values.empty()) return;
+        std::decay_t<decltype(values)> kept(used.size());
+        for (size_t k = 0; k < used.size(); ++k) kept[k] = values[used[k]];
+        values = std::move(kept);
+    };
+    pick(mesh.positions);
+    pick(mesh.normals);
+    pick(mesh.uvs);
+    for (auto& triangle : mesh.triangles)
+        for (uint32_t& i : triangle) i = place[i];
 }
 
 std::vector<Vec3> vectors(const Numbers& n) {
@@ -70,10 +96,8 @@ std::shared_ptr<const TriangleMesh> GeometryReader::read(const tinygltf::Primiti
     }
     const std::string attributes = place + ".attributes.";
     const size_t count = accessor_count(document_, attribute("POSITION"), attributes + "POSITION");
-    vertices_ += count;
-    if (count > kMostVertices || vertices_ > kMostVertices)
-        throw Error(ErrorKind::limit, document_.place(place),
-                    "the meshes have more than 2^30 vertices");
+    if (count > kMostVertices)
+        throw Error(ErrorKind::limit, document_.place(place), "it has more than 2^30 vertices");
     const auto read_attribute = [&](const std::string& name, size_t components) {
         Numbers n = read_numbers(document_, attribute(name), components, attributes + name);
         if (n.count() != count)
@@ -109,6 +133,13 @@ std::shared_ptr<const TriangleMesh> GeometryReader::read(const tinygltf::Primiti
     }
     mesh->triangles = triangles(indices, mode);
     if (mesh->triangles.empty()) return nullptr;
+    keep_used_vertices(*mesh);
+    constexpr size_t kVertex = 2 * sizeof(Vec3) + sizeof(Vec2), kTriangle = 3 * sizeof(uint32_t);
+    if (!bytes_.spend(mesh->positions.size(), kVertex) ||
+        !bytes_.spend(mesh->triangles.size(), kTriangle))
+        throw Error(ErrorKind::limit, document_.place(place),
+                    "it and the meshes before are too large for a file of " +
+                        std::to_string(document_.bytes) + " bytes");
     return mesh;
 }
 

@@ -14,11 +14,13 @@ namespace covtrace::gltf {
 /// them.
 class GeometryReader {
   public:
-    GeometryReader(const Document& document, WarningLog& log) : document_(document), log_(log) {}
+    GeometryReader(const Document& document, WarningLog& log)
+        : document_(document), log_(log), bytes_(budget_of_meshes(document.bytes)) {}
 
     /// The triangles of meshes[mesh].primitives[primitive] with TEXCOORD_`uv_set` (-1: the first
     /// one, if it is there), v upwards as everywhere else here (glTF's runs down). Null for points,
-    /// lines and primitives without triangles, with a warning where something is left out.
+    /// lines and primitives without triangles, with a warning where something is left out. Throws
+    /// Error(limit) where all meshes are too large for the file.
     std::shared_ptr<const TriangleMesh> mesh(int mesh, size_t primitive, int uv_set);
 
   private:
@@ -31,7 +33,7 @@ class GeometryReader {
     const Document& document_;
     WarningLog& log_;
     std::map<std::tuple<int, size_t, int>, std::shared_ptr<const TriangleMesh>> meshes_;
-    size_t vertices_ = 0;  ///< of all meshes
+    Budget bytes_;  ///< that meshes may still take
 };
 
 }  // namespace covtrace::gltf

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "gltf/units.h"
+
 namespace covtrace::gltf {
 namespace {
-
-constexpr float kDegrees = 180 / kPi;
 
 Rgb light_colour(const Document& document, const tinygltf::Light& light, const std::string& place) {
     if (!(light.intensity >= 0 && light.intensity < 1e30))

@@ -15,11 +15,11 @@ void add_light(const Document& document, const PlacedNode& placed, SceneDescript
 /// Brings lights in physical units to the scale of emission 1 = white. Viewers, and files made for
 /// them, take candela and lux for the units of the picture; exporters of renderers (Blender's)
 /// write 683 lm/W times what the renderer used. Lights that give the middle of the scene more than
-/// kPhysicalLux together are taken for the latter and divided by 683, with a warning; docs/gltf.md.
+/// kPhysicalLux together are taken for the latter and divided by kLumensPerWatt, with a warning;
+/// docs/gltf.md.
 void scale_lights(const Document& document, const Bounds3& bounds, SceneDescription& scene,
                   WarningLog& log);
 inline constexpr float kPhysicalLux = 100;
-inline constexpr float kLumensPerWatt = 683;
 
 /// A uniform sky and a key light from the upper left behind the camera, so that a white surface
 /// that faces the key has about the radiance 1. `camera_to_world` as in CameraDescription.

@@ -8,6 +8,7 @@
 
 #include "gltf/camera.h"
 #include "gltf/document.h"
+#include "gltf/extensions.h"
 #include "gltf/geometry.h"
 #include "gltf/lights.h"
 #include "gltf/materials.h"
@@ -17,16 +18,6 @@ namespace covtrace {
 
 namespace gltf {
 namespace {
-
-bool is_supported(const std::string& extension) {
-    for (const char* name :
-         {"KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
-          "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission",
-          "KHR_materials_unlit", "KHR_materials_volume", "KHR_mesh_quantization",
-          "KHR_texture_transform"})
-        if (extension == name) return true;
-    return false;
-}
 
 void check_extensions(const Document& document) {
     for (const std::string& name : document.model.extensionsRequired)
@@ -72,16 +63,18 @@ class SceneAssembler {
         const int object = is_shared ? object_of(node(placed).mesh) : -1;
         if (object >= 0)
             scene_.instances.push_back({object, placed.transform, document_.place(place)});
-        const auto& primitives =
-            document_.model.meshes[static_cast<size_t>(node(placed).mesh)].primitives;
-        for (size_t i = 0; i < primitives.size(); ++i) {
-            auto shape = shape_of(node(placed).mesh, i);
-            if (!shape) continue;
-            grow(*shape, placed.transform);
+        for (const Part& part : parts_of(node(placed).mesh)) {
+            grow(part.bounds, placed.transform);
             // Emitters are no parts of objects: each is a light of its own.
-            if (object >= 0 && shape->area_light < 0) continue;
-            shape->object_to_world = placed.transform;
-            scene_.shapes.push_back(std::move(*shape));
+            if (object >= 0 && !part.emission) continue;
+            ShapeDescription shape = part.shape;
+            shape.object_to_world = placed.transform;
+            if (part.emission) {
+                scene_.area_lights.push_back(*part.emission);
+                shape.area_light = static_cast<int>(scene_.area_lights.size() - 1);
+                has_lamps_ = has_lamps_ || part.is_strong_light;
+            }
+            scene_.shapes.push_back(std::move(shape));
         }
     }
 
@@ -91,18 +84,32 @@ class SceneAssembler {
         if (!is_new) return entry->second;
         ObjectDescription object;
         object.name = document_.model.meshes[static_cast<size_t>(mesh)].name;
-        const auto& primitives = document_.model.meshes[static_cast<size_t>(mesh)].primitives;
-        for (size_t i = 0; i < primitives.size(); ++i) {
-            auto shape = shape_of(mesh, i);
-            if (shape && shape->area_light < 0) object.shapes.push_back(std::move(*shape));
-        }
+        for (const Part& part : parts_of(mesh))
+            if (!part.emission) object.shapes.push_back(part.shape);
         if (object.shapes.empty()) return -1;
         scene_.objects.push_back(std::move(object));
         return entry->second = static_cast<int>(scene_.objects.size() - 1);
     }
 
-    /// A primitive in the space of its mesh; empty where there is nothing to see.
-    std::optional<ShapeDescription> shape_of(int mesh, size_t index) {
+    /// A primitive in the space of its mesh, what it emits, and where it is.
+    struct Part {
+        ShapeDescription shape;
+        std::optional<AreaLightDescription> emission;
+        bool is_strong_light = false;
+        Bounds3 bounds;
+    };
+
+    /// Those with something to see, read once however many nodes place them.
+    const std::vector<Part>& parts_of(int mesh) {
+        const auto [entry, is_new] = parts_.try_emplace(mesh);
+        if (!is_new) return entry->second;
+        const size_t count = document_.model.meshes[static_cast<size_t>(mesh)].primitives.size();
+        for (size_t i = 0; i < count; ++i)
+            if (auto part = part_of(mesh, i)) entry->second.push_back(std::move(*part));
+        return entry->second;
+    }
+
+    std::optional<Part> part_of(int mesh, size_t index) {
         const std::string place =
             element("meshes", static_cast<size_t>(mesh)) + "." + element("primitives", index);
         const int material =
@@ -111,24 +118,19 @@ class SceneAssembler {
         if (!surface.is_visible) return std::nullopt;
         auto triangles = geometry_.mesh(mesh, index, surface.uv_set);
         if (!triangles) return std::nullopt;
-        ShapeDescription shape;
-        shape.geometry = std::move(triangles);
-        shape.material = surface.material;
-        shape.alpha = surface.alpha;
-        shape.inside = surface.inside;
-        shape.where = document_.place(place);
-        if (surface.emission) {
-            scene_.area_lights.push_back(*surface.emission);
-            shape.area_light = static_cast<int>(scene_.area_lights.size() - 1);
-            has_lamps_ = has_lamps_ || surface.is_strong_light;
-        }
-        return shape;
+        Part part;
+        for (const Vec3& p : triangles->positions) part.bounds.extend(p);
+        part.shape.geometry = std::move(triangles);
+        part.shape.material = surface.material;
+        part.shape.alpha = surface.alpha;
+        part.shape.inside = surface.inside;
+        part.shape.where = document_.place(place);
+        part.emission = surface.emission;
+        part.is_strong_light = surface.is_strong_light;
+        return part;
     }
 
-    void grow(const ShapeDescription& shape, const AnimatedTransform& to_world) {
-        const auto& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(shape.geometry);
-        Bounds3 local;
-        for (const Vec3& p : mesh.positions) local.extend(p);
+    void grow(const Bounds3& local, const AnimatedTransform& to_world) {
         for (int corner = 0; corner < 8; ++corner)
             bounds_.extend(to_world.start().point({corner & 1 ? local.hi.x : local.lo.x,
                                                    corner & 2 ? local.hi.y : local.lo.y,
@@ -140,6 +142,7 @@ class SceneAssembler {
     WarningLog& log_;
     GeometryReader geometry_;
     MaterialReader materials_;
+    std::map<int, std::vector<Part>> parts_;
     std::map<int, int> objects_;
     Bounds3 bounds_;
     bool has_lamps_ = false;

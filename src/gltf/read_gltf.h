@@ -1,9 +1,10 @@
 /// Reads glTF 2.0 scenes (.gltf with its files, or one .glb) into a SceneDescription.
 ///
 /// World space is glTF's: metres, y up. Radiance is in the file's photometric unit, cd/m² (nit):
-/// emissive 1 is a radiance of 1, a light of 1 candela gives 1 lux at a metre. What the file asks
-/// for and covtrace doesn't render becomes a warning that says what takes its place.
-/// docs/gltf.md has the whole mapping.
+/// emissive 1 is a radiance of 1, a light of 1 candela gives 1 lux at a metre, unless the lights
+/// are so strong that they must be physical: then both are divided by 683 lm/W (gltf/lights.h).
+/// What the file asks for and covtrace doesn't render becomes a warning that says what takes its
+/// place. docs/gltf.md has the whole mapping.
 #pragma once
 
 #include <filesystem>

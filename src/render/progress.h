@@ -33,7 +33,10 @@ class Monitor {
 
     /// Asks the render to stop soon with a usable image.
     void cancel() { cancelled_ = true; }
-    bool cancelled() const { return cancelled_; }
+    bool cancelled() const { return cancelled_ || (interrupted && *interrupted); }
+    /// To be set before the render: cancels it, too, once it is true. What sets it, such as a
+    /// signal handler, need not know which render runs.
+    const std::atomic<bool>* interrupted = nullptr;
     double elapsed() const;
     /// Asks passes to return early from `elapsed` seconds on, so that the film can be kept.
     void pause_at(double elapsed) { pause_at_ = elapsed; }

@@ -27,16 +27,13 @@ struct Ink {
     uint8_t r = 0, g = 0, b = 0;
     constexpr bool operator==(const Ink&) const = default;
 };
-inline constexpr Ink kBlack{0, 0, 0}, kWhite{255, 255, 255}, kGrey{110, 110, 110},
-    kRed{214, 52, 40}, kOrange{255, 168, 0}, kCyan{0, 214, 230}, kPaleGrey{208, 208, 208};
+inline constexpr Ink kBlack{0, 0, 0}, kRed{214, 52, 40}, kOrange{255, 168, 0}, kCyan{0, 214, 230};
 
 enum class Anchor { start, middle, end };
 
 class Drawing {
   public:
     Drawing(int width, int height) : width_(width), height_(height) {}
-    int width() const { return width_; }
-    int height() const { return height_; }
 
     /// The picture's pixels become squares of `scale` units.
     void image(Picture picture, float x, float y, float scale);

@@ -1,8 +1,6 @@
 /// The experiments of the thesis' section 5.1.
 #pragma once
 
-#include <span>
-
 #include "reproduce/section.h"
 #include "reproduce/workshop.h"
 
@@ -26,12 +24,5 @@ Section voxels(Workshop& workshop);
 Section progressive(Workshop& workshop);
 /// Figure 5.1: from the covariance to the image; equation 5.7.
 Section pipeline(Workshop& workshop);
-
-struct Experiment {
-    std::string name;
-    std::string source;  ///< figure or table of the thesis
-    Section (*run)(Workshop&);
-};
-std::span<const Experiment> experiments();
 
 }  // namespace covtrace::reproduce

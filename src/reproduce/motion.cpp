@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "reproduce/experiment.h"
 #include "reproduce/panels.h"
@@ -26,7 +27,7 @@ const std::array<Case, 5> kCases{{{"motion-still", "still", {{0, 0}}},
 /// Angle between two axes, degrees in [0, 90].
 double between_axes(double ax, double ay, double bx, double by) {
     const double cosine = std::abs(ax * bx + ay * by) / (std::hypot(ax, ay) * std::hypot(bx, by));
-    return std::acos(std::min(1.0, cosine)) * 180 / 3.14159265358979;
+    return std::acos(std::min(1.0, cosine)) * 180 / std::numbers::pi;
 }
 
 Timed render_board(Workshop& workshop, const Case& c, TextureBandwidth bandwidth) {
@@ -85,7 +86,7 @@ Section motion(Workshop& workshop) {
         figure.commands.push_back(own.command);
         figure.commands.push_back(highest.command);
 
-        std::vector<double> ratio, angle, along, stretch;
+        std::vector<double> ratio, angle, along, stretch, at_rest;
         for (size_t p = 0; p < filters.size(); ++p) {
             const auto& f = filters[p];
             const double dx = vx / v, dy = vy / v;
@@ -95,19 +96,15 @@ Section motion(Workshop& workshop) {
             const double closed = form(still[p]) + v * v / (12 * kSharpness * kSharpness);
             ratio.push_back(std::sqrt(form(f) / closed));
             along.push_back(std::sqrt(form(f)));
+            at_rest.push_back(form(still[p]));
             stretch.push_back(std::max(0.0, form(f) - form(still[p])));
             const auto e = covariance::eigen(f);
             angle.push_back(between_axes(double(e.x), double(e.y), dx, dy));
         }
-        const double form = v / (std::sqrt(12.0) * kSharpness);
+        const double moved = v / (std::sqrt(12.0) * kSharpness);
         table.rows.push_back(
             {c.label, fmt::format("{:.1f} px", v), fmt::format("{:.3f} px", median(along)),
-             fmt::format("{:.3f} px", std::sqrt(form * form + median([&] {
-                                                    std::vector<double> at_rest;
-                                                    for (const auto& f : still)
-                                                        at_rest.push_back(double(f.yy));
-                                                    return at_rest;
-                                                }()))),
+             fmt::format("{:.3f} px", std::sqrt(moved * moved + median(at_rest))),
              fmt::format("{:.3f}", median(ratio)), fmt::format("{:.3f}", quantile(ratio, 0.05)),
              fmt::format("{:.3f}", quantile(ratio, 0.95)), fmt::format("{:.2f}°", median(angle)),
              fmt::format("{:.2f}°", quantile(angle, 0.95))});

@@ -41,7 +41,6 @@ class Sheet {
     Vec2 corner(int column, int row) const;
     float width() const { return scale_ * float(panel_[0]); }
     float height() const { return scale_ * float(panel_[1]); }
-    float scale() const { return scale_; }
 
     void picture(int column, int row, const std::string& title, Picture picture);
     /// A map of values with its legend.

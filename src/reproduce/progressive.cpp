@@ -6,6 +6,7 @@
 #include "reproduce/experiment.h"
 #include "reproduce/panels.h"
 #include "reproduce/search.h"
+#include "reproduce/statistics.h"
 
 namespace covtrace::reproduce {
 
@@ -58,12 +59,6 @@ Run run(Workshop& workshop, LoadedScene& scene, const Reference& reference, Rend
         if (seed == workshop.settings.seeds.front()) r.first = std::move(timed);
     }
     return r;
-}
-
-double mean(const std::vector<double>& v) {
-    double sum = 0;
-    for (const double x : v) sum += x;
-    return sum / double(v.size());
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "image/compare.h"
+#include "render/image_hash.h"
 #include "render/version.h"
 
 namespace covtrace::reproduce {
@@ -11,10 +12,12 @@ namespace {
 
 constexpr std::array<uint64_t, 2> kSeeds{1000, 1001};  // that no experiment uses
 
-/// All that the pixels of a half depend on.
+/// All that the pixels of a half depend on; empty where the code is not known.
 std::string origin(const LoadedScene& scene, const RenderOptions& options) {
-    return fmt::format("{} {:016x} {} spp seed {}", std::string(kCommit),
-                       scene.scene->description.content_hash, *options.spp, options.seed);
+    if (!kCommitIsExact) return {};
+    const SceneDescription& d = scene.scene->description;
+    return fmt::format("{} {:016x} images {} {} spp seed {}", std::string(kCommit), d.content_hash,
+                       image_hash(d), *options.spp, options.seed);
 }
 
 }  // namespace
@@ -28,21 +31,23 @@ Reference::Reference(Workshop& workshop, LoadedScene& scene) {
         options.method = Method::uniform;
         options.spp = workshop.settings.reference_spp;
         options.seed = kSeeds[k];
+        // The floors of the filters are found on light with the emitters in view apart.
+        options.emitters_apart = true;
+        const std::string made_by = origin(scene, options);
         commands_[k] = render_command(scene, options);
         const fs::path file =
             folder / fmt::format("{}-{}x{}-{}.exr", scene.name, scene.resolution[0],
                                  scene.resolution[1], kSeeds[k]);
-        if (fs::is_regular_file(file, error)) {
+        if (!made_by.empty() && fs::is_regular_file(file, error)) {
             halves_[k] = read_image(file);
             const auto found = halves_[k].metadata.find("covtrace:origin");
-            if (found != halves_[k].metadata.end() &&
-                found->second == MetadataValue(origin(scene, options)))
+            if (found != halves_[k].metadata.end() && found->second == MetadataValue(made_by))
                 continue;
         }
         workshop.tell(fmt::format("{}: reference, half {} of 2, {:g} samples per pixel", scene.name,
                                   k + 1, workshop.settings.reference_spp));
         halves_[k] = workshop.render(scene, options).result.image;
-        halves_[k].metadata["covtrace:origin"] = origin(scene, options);
+        halves_[k].metadata["covtrace:origin"] = made_by;
         write_exr(halves_[k], file, 2);
     }
     mean_.data = halves_[0].data;

@@ -13,7 +13,8 @@ namespace covtrace::reproduce {
 class Reference {
   public:
     /// Reads the halves from the output's folder `references` where an earlier run left them for
-    /// the same scene, size and counts; else renders and keeps them.
+    /// the same scene, images, size and counts by the same commit of this program, without changes;
+    /// else renders and keeps them.
     Reference(Workshop& workshop, LoadedScene& scene);
 
     /// Trimmed relMSE against the truth; may be a little below 0 for an image as good as the

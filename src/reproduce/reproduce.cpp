@@ -13,6 +13,12 @@ namespace covtrace::reproduce {
 
 namespace {
 
+struct Experiment {
+    std::string name;
+    std::string source;  ///< figure or table of the thesis
+    Section (*run)(Workshop&);
+};
+
 const std::array<Experiment, 9> kExperiments{{{"pipeline", "figure 5.1, equation 5.7", pipeline},
                                               {"lens", "figure 5.6", lens},
                                               {"motion", "figure 5.7", motion},
@@ -65,10 +71,6 @@ PageFacts facts_of(const Workshop& workshop, const std::string& command, double 
 }
 
 }  // namespace
-
-std::span<const Experiment> experiments() {
-    return kExperiments;
-}
 
 Outcome reproduce(Workshop& workshop, const std::vector<std::string>& names,
                   const std::string& command) {

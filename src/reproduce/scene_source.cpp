@@ -55,8 +55,8 @@ void make_folder(const fs::path& folder) {
                     "cannot make the folder '" + folder.string() + "': " + error.message());
 }
 
-}  // namespace
-
+/// scenes/generate.py: beside the installed program (../share/covtrace/scenes), else in the source
+/// that it was built from; empty where neither is there.
 fs::path find_generator() {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -66,6 +66,8 @@ fs::path find_generator() {
         if (fs::is_regular_file(file, error)) return file;
     return {};
 }
+
+}  // namespace
 
 SceneSource::SceneSource(fs::path given, fs::path made_in)
     : given_(std::move(given)), made_in_(std::move(made_in)) {}

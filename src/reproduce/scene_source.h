@@ -27,8 +27,4 @@ class SceneSource {
     std::set<std::string> made_;
 };
 
-/// scenes/generate.py: beside the installed program (../share/covtrace/scenes), else in the source
-/// that it was built from; empty where neither is there.
-fs::path find_generator();
-
 }  // namespace covtrace::reproduce

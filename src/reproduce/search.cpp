@@ -7,15 +7,11 @@
 #include <limits>
 #include <numeric>
 
+#include "reproduce/statistics.h"
+
 namespace covtrace::reproduce {
 
 namespace {
-
-double mean(const std::vector<double>& values) {
-    return values.empty()
-               ? 0
-               : std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
-}
 
 RenderOptions uniform_options(double spp, uint64_t seed) {
     RenderOptions options;

@@ -6,6 +6,12 @@
 
 namespace covtrace::reproduce {
 
+inline double mean(const std::vector<double>& values) {
+    double sum = 0;
+    for (const double v : values) sum += v;
+    return values.empty() ? 0 : sum / double(values.size());
+}
+
 /// The value below which a share of the values lies; 0 where there is none.
 inline double quantile(std::vector<double> values, double share) {
     if (values.empty()) return 0;

@@ -35,6 +35,7 @@ void add_equal_error_claims(Section& section, const SceneStudy& study,
         c.required = at_least(required->second, workshop);
         c.command = search_command(study, workshop);
         bool above_floor = true;
+        const bool is_measured = m.ours.mean_error() > 0;
         std::string floor;
         if (m.bias_floor) {
             above_floor = m.ours.mean_error() > *m.bias_floor;
@@ -49,10 +50,13 @@ void add_equal_error_claims(Section& section, const SceneStudy& study,
                                   100 * std::abs(m.equal_error.mismatch));
         } else {
             c.value = 0;
-            c.found = fmt::format("more than {:g} samples are not enough for the path tracer{}",
-                                  workshop.settings.most_spp, floor);
+            c.found =
+                is_measured
+                    ? fmt::format("more than {:g} samples are not enough for the path tracer{}",
+                                  workshop.settings.most_spp, floor)
+                    : "not to be told: its error is below the noise of the reference";
         }
-        if (workshop.size == Size::full)
+        if (workshop.size == Size::full && is_measured)
             c.holds = (!m.equal_error.found || c.value >= required->second) && above_floor;
         section.claims.push_back(std::move(c));
     }

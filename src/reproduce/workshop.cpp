@@ -16,13 +16,29 @@ double cpu_seconds() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-Workshop::Workshop(Size chosen, fs::path folder, const fs::path& given_scenes, Say say)
+namespace {
+
+/// As a shell takes it for one word.
+std::string quoted(const std::string& word) {
+    constexpr auto kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789/._-+=:,@%";
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+    std::string result = "'";
+    for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return result + "'";
+}
+
+}  // namespace
+
+Workshop::Workshop(Size chosen, fs::path folder, const fs::path& given_scenes,
+                   const std::atomic<bool>& interrupted, Say say)
     : size(chosen),
       settings(settings_of(chosen)),
       output(std::move(folder)),
       scenes(given_scenes, output / "scenes"),
       say_(std::move(say)),
-      start_(cpu_seconds()) {}
+      start_(cpu_seconds()),
+      interrupted_(interrupted) {}
 
 LoadedScene Workshop::load(const std::string& name, const fs::path& file,
                            std::array<int, 2> resolution) {
@@ -43,38 +59,23 @@ Timed Workshop::render(LoadedScene& scene, const RenderOptions& options,
                        std::function<void(Monitor&, Image)> watcher) {
     Monitor monitor;
     if (watcher) monitor.watcher = [&](Image image) { watcher(monitor, std::move(image)); };
-    const struct Running {
-        std::atomic<Monitor*>& monitor;
-        ~Running() { monitor = nullptr; }
-    } running{running_};
-    running_ = &monitor;
-    if (interrupted_) monitor.cancel();
+    monitor.interrupted = &interrupted_;
     Timed timed;
     timed.command = render_command(scene, options);
     const double start = cpu_seconds();
-    // The floors of the filters are found on light with the emitters in view apart.
-    RenderOptions apart = options;
-    apart.emitters_apart = true;
-    timed.result = covtrace::render(*scene.scene, apart, monitor);
+    timed.result = covtrace::render(*scene.scene, options, monitor);
     timed.cpu = cpu_seconds() - start;
     timed.wall = monitor.elapsed();
     if (interrupted_) throw Error(ErrorKind::interrupted, "interrupted");
     return timed;
 }
 
-void Workshop::interrupt() {
-    interrupted_ = true;
-    if (Monitor* monitor = running_) monitor->cancel();
-}
-
 std::string render_command(const LoadedScene& scene, const RenderOptions& o) {
     const RenderOptions d;
     std::string s = fmt::format("covtrace render {} --resolution {}x{} --method {}",
-                                scene.file.string(), scene.resolution[0], scene.resolution[1],
-                                o.method == Method::uniform      ? "uniform"
-                                : o.method == Method::covariance ? "covariance"
-                                                                 : "hybrid");
-    if (o.spp) s += fmt::format(" --spp {:.6g}", *o.spp);
+                                quoted(scene.file.string()), scene.resolution[0],
+                                scene.resolution[1], name_of(o.method));
+    if (o.spp) s += fmt::format(" --spp {}", *o.spp);  // as few digits as give the same number
     if (o.cov_spp) s += fmt::format(" --cov-spp {}", *o.cov_spp);
     if (o.max_spp) s += fmt::format(" --max-spp {}", *o.max_spp);
     if (o.density != d.density) s += " --density thesis";

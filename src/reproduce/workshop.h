@@ -37,8 +37,10 @@ class Workshop {
   public:
     using Say = std::function<void(const std::string&)>;
 
-    /// `output`: an existing folder.
-    Workshop(Size size, fs::path output, const fs::path& scenes, Say say);
+    /// `output`: an existing folder. `interrupted`: ends the render that is running and all that
+    /// follow once it is true, whoever sets it.
+    Workshop(Size size, fs::path output, const fs::path& scenes,
+             const std::atomic<bool>& interrupted, Say say);
 
     const Size size;
     const Settings& settings;
@@ -49,13 +51,10 @@ class Workshop {
     void tell(const std::string& line) const { say_(line); }
 
     LoadedScene load(const std::string& name, const fs::path& file, std::array<int, 2> resolution);
-    /// Throws Error(interrupted) once interrupt() was called. `watcher`: as Monitor's.
+    /// Throws Error(interrupted) once the workshop is interrupted. `watcher`: as Monitor's.
     Timed render(LoadedScene& scene, const RenderOptions& options,
                  std::function<void(Monitor&, Image)> watcher = {});
 
-    /// From any thread or signal handler: ends the render that is running and all that follow.
-    void interrupt();
-    bool interrupted() const { return interrupted_; }
     /// Seconds of rendering so far, scene loading included.
     double cpu() const { return cpu_seconds() - start_; }
 
@@ -70,8 +69,7 @@ class Workshop {
   private:
     const Say say_;
     const double start_;
-    std::atomic<bool> interrupted_{false};
-    std::atomic<Monitor*> running_{nullptr};
+    const std::atomic<bool>& interrupted_;
     std::map<std::string, std::shared_ptr<void>> shared_;
 };
 

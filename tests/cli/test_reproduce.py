@@ -2,6 +2,7 @@
 
 import json
 import re
+import shlex
 import shutil
 from pathlib import Path
 
@@ -53,6 +54,9 @@ class Reproduce(CliTest):
         self.assertNotIn("url(", page)
         for claim in self.results(folder)["experiments"]["motion"]["claims"].values():
             self.assertRegex(claim["command"], r"^covtrace (render|reproduce) ")
+        # Commands can be given to a shell as they are.
+        for command in self.results(folder)["experiments"]["motion"]["figures"][0]["commands"]:
+            self.assertTrue((Path(self.folder) / shlex.split(command)[2]).is_file(), command)
         for name in ("motion.png", "motion.svg"):
             self.assertTrue((Path(self.folder) / folder / "figures" / name).is_file())
 

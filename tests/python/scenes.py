@@ -1,5 +1,8 @@
 """Small scenes for the tests of the package."""
 
+import base64
+import json
+
 import numpy
 
 import covtrace
@@ -38,3 +41,33 @@ Integrator "volpath" "integer maxdepth" 2
 WorldBegin
 LightSource "infinite" "rgb L" [ 0.25 0.25 0.25 ]
 """
+
+
+def gltf():
+    """The text of a glTF file: a shining square one metre wide moves by two metres to the right in the
+    first second, before a camera that sees four metres around it."""
+    corners = numpy.array([[-0.5, -0.5, 0], [0.5, -0.5, 0], [0.5, 0.5, 0], [-0.5, 0.5, 0]], dtype="<f4")
+    indices = numpy.array([0, 1, 2, 0, 2, 3], dtype="<u4")
+    times, places = numpy.array([0, 1], dtype="<f4"), numpy.array([[-1, 0, 0], [1, 0, 0]], dtype="<f4")
+    arrays = (corners, indices, times, places)
+    data = b"".join(a.tobytes() for a in arrays)
+    starts = numpy.cumsum([0] + [a.nbytes for a in arrays])
+    views = [{"buffer": 0, "byteOffset": int(start), "byteLength": a.nbytes} for start, a in zip(starts, arrays)]
+
+    def accessor(view, array):
+        return {"bufferView": view, "componentType": 5125 if array is indices else 5126, "count": len(array),
+                "type": "VEC3" if array.ndim == 2 else "SCALAR"}
+
+    return json.dumps({
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": len(data),
+                     "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
+        "bufferViews": views, "accessors": [accessor(i, a) for i, a in enumerate(arrays)],
+        "materials": [{"emissiveFactor": [1, 1, 1], "doubleSided": True,
+                       "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 2}}}],
+        "extensionsUsed": ["KHR_materials_emissive_strength"],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+        "cameras": [{"type": "orthographic", "orthographic": {"xmag": 2, "ymag": 1, "znear": 0.1, "zfar": 10}}],
+        "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 3]}],
+        "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+                        "samplers": [{"input": 2, "output": 3}]}]})

@@ -61,6 +61,12 @@ class Rendering(unittest.TestCase):
                             "--seed", "7", "--progress", "none"], check=True, capture_output=True)
             image = covtrace.render(path, spp=4, seed=7, threads=1)
             self.assertTrue(covtrace.compare(image, out).identical)
+            subprocess.run([os.environ["COVTRACE"], "render", path, "-o", out, "--spp", "4", "--method",
+                            "covariance", "--progressive", "--texture-bandwidth", "highest", "--quiet"],
+                           check=True)
+            image = covtrace.render(path, spp=4, method="covariance", progressive=True,
+                                    texture_bandwidth="highest")
+            self.assertTrue(covtrace.compare(image, out).identical)
 
     def test_progress_and_exceptions_in_it(self):
         seen = []
@@ -91,6 +97,30 @@ class Rendering(unittest.TestCase):
         self.assertFalse(image.complete)
         self.assertGreater(image["samples"].max(), 0)
         self.assertTrue(numpy.isfinite(image.rgb).all())
+
+    def test_cancel_that_fails_or_returns_anything(self):
+        class Cancel:
+            def __init__(self, answer):
+                self.answer = answer
+
+            def is_set(self):
+                return self.answer()
+
+        # As in an `if`: a text is true unless it is empty.
+        image = covtrace.render(scenes.builder(), method="uniform", spp=1 << 20,
+                                cancel=Cancel(lambda: "yes"))
+        self.assertFalse(image.complete)
+
+        class Unclear:
+            def __bool__(self):
+                raise ArithmeticError("neither")
+
+        for answer in (lambda: 1 / 0, Unclear):
+            with self.assertRaises(ArithmeticError):
+                covtrace.render(scenes.builder(), method="uniform", spp=1 << 20,
+                                cancel=Cancel(answer))
+        with self.assertRaises(AttributeError):
+            covtrace.render(scenes.builder(), method="uniform", spp=1 << 20, cancel=object())
 
     def test_interrupt(self):
         signal.signal(signal.SIGALRM, signal.default_int_handler)
@@ -123,6 +153,64 @@ class Rendering(unittest.TestCase):
         self.assertTrue(covtrace.compare(one, three).identical)
 
 
+class Gltf(unittest.TestCase):
+    """A square of the radiance 2, a quarter as wide as the picture and half as high."""
+
+    @classmethod
+    def setUpClass(cls):
+        warnings.simplefilter("ignore", covtrace.SceneWarning)
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.file = pathlib.Path(cls.folder.name) / "square.gltf"
+        cls.file.write_text(scenes.gltf())
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    @staticmethod
+    def render(scene, **options):
+        return covtrace.render(scene, method="uniform", spp=64, resolution=(64, 32), **options)
+
+    def test_at_rest(self):
+        image = self.render(self.file)
+        self.assertAlmostEqual(float(image.rgb.mean()), 2 / 4 / 2, delta=0.01)
+        self.assertAlmostEqual(float(image.rgb[16, 16, 1]), 2, delta=1e-3)  # at (-1, 0)
+        self.assertEqual(image.rgb[16, 32, 1], 0)
+
+    def test_shutter_moves_what_is_animated(self):
+        for shutter in ((0.5, 0.50001), (0.0, 1.0), (0.0, 0.02)):
+            rgb = self.render(self.file, shutter=shutter).rgb
+            # The same light however long it shines.
+            self.assertAlmostEqual(float(rgb.mean()), 2 / 4 / 2, delta=0.01, msg=str(shutter))
+            centre = {0.5: 2, 0.0: 1 if shutter[1] == 1 else 0}[shutter[0]]
+            self.assertAlmostEqual(float(rgb[12:20, 31:33, 1].mean()), centre, delta=0.1,
+                                   msg=str(shutter))
+
+    def test_shutter_of_a_scene(self):
+        scene = covtrace.Scene(self.file, shutter=(0.5, 0.6))
+        once = self.render(self.file, shutter=(0.5, 0.6))
+        for image in (self.render(scene), self.render(scene, shutter=(0.5, 0.6))):
+            self.assertTrue(covtrace.compare(image, once).identical)
+        for wrong in (scene, covtrace.Scene(self.file)):
+            with self.assertRaisesRegex(covtrace.UsageError, "expected Scene"):
+                self.render(wrong, shutter=(0, 1))
+        with self.assertRaises(covtrace.UsageError):
+            covtrace.Scene(self.file, shutter=(1, 0))
+
+    def test_same_image_as_the_program(self):
+        out = os.path.join(self.folder.name, "program.exr")
+        subprocess.run([os.environ["COVTRACE"], "render", self.file, "-o", out, "--spp", "4", "--shutter",
+                        "0,0.5", "--resolution", "64x32", "--progress", "none", "--quiet"], check=True)
+        image = covtrace.render(self.file, spp=4, shutter=(0, 0.5), resolution=(64, 32))
+        self.assertTrue(covtrace.compare(image, out).identical)
+
+    def test_place_of_errors(self):
+        broken = pathlib.Path(self.folder.name) / "broken.gltf"
+        broken.write_text(scenes.gltf().replace('"POSITION": 0', '"POSITION": 17'))
+        with self.assertRaisesRegex(covtrace.SceneError, r"meshes\[0\]\.primitives\[0\]"):
+            covtrace.render(broken)
+
+
 class Errors(unittest.TestCase):
     def test_place_in_the_scene(self):
         with self.assertRaises(covtrace.SceneError) as caught:
@@ -141,7 +229,12 @@ class Errors(unittest.TestCase):
         scene = covtrace.Scene.from_string(scenes.FURNACE)
         for wrong in ({"method": "best"}, {"spp": -1}, {"spp": "many"}, {"threads": -2},
                       {"crop": (0, 0, 100, 100)}, {"error": 0.1, "method": "covariance"},
-                      {"texture_memory": "much"}, {"voxels": 0}):
+                      {"texture_memory": "much"}, {"texture_memory": -1}, {"texture_memory": 1.5},
+                      {"voxels": 0}, {"voxels": "wide"}, {"seed": -1}, {"threads": "all"},
+                      {"isa": "mmx"}, {"method": 3}, {"progressive": "now"},
+                      {"texture_bandwidth": "low"}, {"resolution": (-5, 4)}, {"resolution": (0, 4)},
+                      {"resolution": 5}, {"crop": (1, 2)}, {"shutter": (1, 0)},
+                      {"shutter": (0, float("nan"))}, {"shutter": "open"}):
             with self.subTest(wrong), self.assertRaises(covtrace.UsageError):
                 covtrace.render(scene, **wrong)
         with self.assertRaises(TypeError):
@@ -186,6 +279,20 @@ class Images(unittest.TestCase):
         self.assertNotIn("M", again)
         with self.assertRaises(KeyError):
             again["M"]
+
+    def test_root_channels_around_depth(self):
+        # Files sort their channels by name: B, G, R, Z, id.
+        shape = (2, 3)
+        given = {name: numpy.full(shape, i, dtype=numpy.float32)
+                 for i, name in enumerate(("B", "G", "R", "Z", "id"))}
+        image = covtrace.Image.from_arrays(layers=given)
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "a.exr"
+            image.write(file)
+            for one in (image, covtrace.Image.read(file)):
+                numpy.testing.assert_array_equal(one.rgb[0, 0], [2, 1, 0])
+                self.assertEqual(one["Z"][0, 0], 3)
+                self.assertEqual(one["id"][0, 0], 4)
 
     def test_compare(self):
         reference = numpy.full((8, 8, 3), 0.5)
@@ -258,6 +365,12 @@ class Package(unittest.TestCase):
                 self.assertIsNot(signature.return_annotation, inspect.Signature.empty, name)
         for name in covtrace.__all__:
             self.assertTrue(getattr(covtrace, name).__doc__, name)
+
+    def test_another_python_is_told(self):
+        without = "import sys; sys.modules['numpy'] = None; import covtrace"
+        done = subprocess.run([sys.executable, "-c", without], capture_output=True, text=True)
+        self.assertIn("the package was built for another Python (_covtrace.", done.stderr)
+        self.assertIn(sys.executable, done.stderr)
 
     def test_version(self):
         program = subprocess.run([os.environ["COVTRACE"], "--version"], capture_output=True,

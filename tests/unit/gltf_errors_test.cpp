@@ -69,6 +69,45 @@ TEST(GltfErrors, LimitsCounts) {
     EXPECT_TRUE(contains(f.message, "more than 2^30 vertices"));
 }
 
+/// Expects Error(limit) with this text.
+void expect_limit(const GltfFile& file, const std::string& text, const ReadOptions& options = {}) {
+    const Failure f = failure_of([&] { read(file, options); });
+    EXPECT_EQ(f.kind, ErrorKind::limit) << f.message;
+    EXPECT_TRUE(contains(f.message, text)) << f.message;
+}
+
+TEST(GltfErrors, LimitsWhatPrimitivesMakeOfOneBuffer) {
+    // 2000 primitives of the same 100 000 triangles without area would take 2.4 GB.
+    GltfFile file;
+    const int points = file.add_floats({0, 0, 0, 1, 0, 0, 1, 1, 0}, "VEC3", 3);
+    const int indices = file.add(std::vector<uint8_t>(300'000), 5121, "SCALAR", 1);
+    const json primitive = {{"attributes", {{"POSITION", points}}}, {"indices", indices}};
+    file.root["meshes"] = {{{"primitives", std::vector<json>(2000, primitive)}}};
+    file.add_node({{"mesh", 0}});
+    expect_limit(file, "too large for a file of");
+    // As strips, of which nothing would be kept, it costs time alone.
+    GltfFile strips = file;
+    for (json& p : strips.root["meshes"][0]["primitives"]) p["mode"] = 5;
+    expect_limit(strips, "too many for a file of");
+}
+
+TEST(GltfErrors, LimitsAnimationsWithoutBytes) {
+    GltfFile file = square_file();
+    const auto zeros = [&](const char* type) {
+        file.root["accessors"].push_back(
+            {{"componentType", 5126}, {"count", 1 << 23}, {"type", type}});
+        return file.root["accessors"].size() - 1;
+    };
+    const json sampler = {{"input", zeros("SCALAR")}, {"output", zeros("VEC3")}};
+    json channels = json::array();
+    for (int i = 0; i < 20; ++i) {
+        file.add_node({{"mesh", 0}});
+        channels.push_back({{"sampler", 0}, {"target", {{"node", i}, {"path", "translation"}}}});
+    }
+    file.root["animations"] = {{{"channels", channels}, {"samplers", {sampler}}}};
+    expect_limit(file, "too many for a file of", {{}, std::array<float, 2>{0, 1}});
+}
+
 TEST(GltfErrors, RefusesIndicesBeyondTheVertices) {
     GltfFile file = square_file();
     file.buffer[file.buffer.size() - 2] = 4;

@@ -79,6 +79,63 @@ TEST(GltfGeometry, ReadsNormalisedStridedAndSparseAccessors) {
     expect_near(mesh.normals[2], {0, 0, 5}, 0);
 }
 
+TEST(GltfGeometry, KeepsTheVerticesThatTrianglesUse) {
+    // A hundred squares that pick their corners from the vertices of all of them.
+    GltfFile file;
+    std::vector<float> points, uvs;
+    constexpr uint32_t kSquares = 100;
+    for (uint32_t i = 0; i < kSquares; ++i)
+        for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+            points.insert(points.end(), {float(i) + float(x), float(y), 0});
+            uvs.insert(uvs.end(), {float(i), float(y)});
+        }
+    const int position = file.add_floats(points, "VEC3", 3), uv = file.add_floats(uvs, "VEC2", 2);
+    json primitives = json::array();
+    for (uint32_t i = 0; i < kSquares; ++i) {
+        const uint32_t v = 4 * i;
+        const int indices =
+            file.add<uint32_t>({v + 3, v, v + 1, v + 3, v + 1, v + 2}, 5125, "SCALAR", 1);
+        primitives.push_back(
+            {{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}}}, {"indices", indices}});
+    }
+    file.root["meshes"] = {{{"primitives", primitives}}};
+    file.add_node({{"mesh", 0}});
+    const SceneDescription scene = read(file);
+    ASSERT_EQ(scene.shapes.size(), kSquares);
+    for (uint32_t i = 0; i < kSquares; ++i) {
+        const TriangleMesh& mesh = mesh_of(scene.shapes[i]);
+        ASSERT_EQ(mesh.positions.size(), 4u);
+        ASSERT_EQ(mesh.uvs.size(), 4u);
+        const auto& t = mesh.triangles.at(0);
+        EXPECT_EQ(mesh.positions[t[0]], Vec3(float(i), 1, 0));
+        EXPECT_EQ(mesh.positions[t[1]], Vec3(float(i), 0, 0));
+        EXPECT_EQ(mesh.positions[t[2]], Vec3(float(i) + 1, 0, 0));
+        EXPECT_EQ(mesh.uvs[t[2]].x, float(i));
+    }
+}
+
+TEST(GltfGeometry, ReadsAMeshOnceForAllItsNodes) {
+    // Visits of 20 000 vertices by 20 000 nodes would take seconds; lights are as many as shapes.
+    GltfFile file;
+    std::vector<float> points;
+    for (int i = 0; i < 20'000; ++i) points.insert(points.end(), {float(i % 7), float(i % 5), 0});
+    const int position = file.add_floats(points, "VEC3", 3);
+    file.root["materials"] = {{{"emissiveFactor", {1, 1, 1}}}};
+    const json dark = {{"attributes", {{"POSITION", position}}}};
+    json shining = dark;
+    shining["material"] = 0;
+    file.root["meshes"] = {{{"primitives", {dark, shining}}}};
+    constexpr size_t kNodes = 20'000;
+    for (size_t i = 0; i < kNodes; ++i)
+        file.add_node({{"mesh", 0}, {"translation", {float(i), 0, 0}}});
+    const SceneDescription scene = read(file);
+    EXPECT_EQ(scene.instances.size(), kNodes);
+    EXPECT_EQ(scene.objects.size(), 1u);
+    EXPECT_EQ(scene.shapes.size(), kNodes);
+    EXPECT_EQ(scene.area_lights.size(), kNodes);
+    EXPECT_EQ(scene.shapes[7].area_light, 7);
+}
+
 TEST(GltfGeometry, PlacesNodesByTheirParents) {
     GltfFile file;
     const int square = file.add_square();

@@ -1,0 +1,70 @@
+#include "options.h"
+
+#include <cmath>
+
+namespace covtrace::python {
+
+RenderOptions render_options(const py::dict& o) {
+    RenderOptions r;
+    const auto text = [&](const char* name) { return value_of<std::string>(o, name, "a text"); };
+    r.method = choice<Method>("method", text("method"),
+                              {{"uniform", Method::uniform},
+                               {"covariance", Method::covariance},
+                               {"hybrid", Method::hybrid}});
+    r.density =
+        choice<DensityRule>("density", text("density"),
+                            {{"tempered", DensityRule::tempered}, {"thesis", DensityRule::thesis}});
+    r.occlusion = choice<Occlusion>(
+        "occlusion", text("occlusion"),
+        {{"grid", Occlusion::grid}, {"query", Occlusion::query}, {"none", Occlusion::none}});
+    r.brdf_covariance = choice<BrdfCovariance>(
+        "brdf_covariance", text("brdf_covariance"),
+        {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}});
+    r.texture_bandwidth = choice<TextureBandwidth>(
+        "texture_bandwidth", text("texture_bandwidth"),
+        {{"own", TextureBandwidth::own}, {"highest", TextureBandwidth::highest}});
+    r.filter =
+        choice<FilterRule>("filter", text("filter"),
+                           {{"verified", FilterRule::verified}, {"thesis", FilterRule::thesis}});
+    r.spp = positive<double>(o, "spp");
+    r.seconds = positive<double>(o, "time");
+    r.error = positive<double>(o, "error");
+    r.cov_spp = positive<int>(o, "cov_spp");
+    r.max_spp = positive<int>(o, "max_spp");
+    r.voxels = value_of<int>(o, "voxels", "a whole number");
+    require(r.voxels >= 1 && r.voxels <= 2048, "voxels must be from 1 to 2048");
+    if (is_given(o, "max_depth")) {
+        r.max_depth = value_of<int>(o, "max_depth", "a whole number");
+        require(*r.max_depth >= 0, "max_depth must not be negative");
+    }
+    r.progressive = value_of<bool>(o, "progressive", "True or False");
+    r.even_counts = value_of<bool>(o, "even_counts", "True or False");
+    r.seed = value_of<uint64_t>(o, "seed", "a whole number from 0 to 2^64 - 1");
+    return r;
+}
+
+std::array<float, 2> checked_shutter(const std::array<float, 2>& shutter) {
+    require(std::isfinite(shutter[0]) && std::isfinite(shutter[1]) && shutter[0] < shutter[1],
+            "shutter must be a begin and a later end, such as (0, 0.5)");
+    return shutter;
+}
+
+SceneOverrides scene_overrides(const py::dict& o) {
+    SceneOverrides s;
+    if (is_given(o, "resolution")) {
+        s.resolution = value_of<std::array<int, 2>>(o, "resolution", "(width, height)");
+        require((*s.resolution)[0] > 0 && (*s.resolution)[1] > 0,
+                "resolution must be (width, height), both at least 1");
+    }
+    if (is_given(o, "crop")) {
+        const auto c = value_of<std::array<int, 4>>(o, "crop", "(x0, y0, x1, y1) in pixels");
+        s.crop = PixelBounds{c[0], c[1], c[2], c[3]};
+    }
+    if (is_given(o, "shutter"))
+        s.shutter = checked_shutter(value_of<std::array<float, 2>>(o, "shutter", "(begin, end)"));
+    s.focal_distance = positive<float>(o, "focus");
+    s.f_number = positive<float>(o, "fstop");
+    return s;
+}
+
+}  // namespace covtrace::python

@@ -1,0 +1,68 @@
+/// The keywords of covtrace.render as options of the renderer. Errors: Error(usage).
+#pragma once
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+#include "render/options.h"
+
+namespace covtrace::python {
+
+namespace py = pybind11;
+
+/// The value that a text stands for. Errors: Error(usage) that lists all.
+template <typename T>
+T choice(const char* option, const std::string& value,
+         std::initializer_list<std::pair<const char*, T>> choices) {
+    std::string expected;
+    for (const auto& [name, result] : choices) {
+        if (value == name) return result;
+        expected += std::string(expected.empty() ? "" : ", ") + "'" + name + "'";
+    }
+    throw Error(ErrorKind::usage,
+                std::string(option) + " is '" + value + "'; expected one of " + expected);
+}
+
+inline void require(bool holds, const std::string& message) {
+    if (!holds) throw Error(ErrorKind::usage, message);
+}
+
+/// options[name] as T. Errors: Error(usage) that says what was expected.
+template <typename T>
+T value_of(const py::dict& options, const char* name, const char* expected) {
+    const py::object value = options[name];
+    try {
+        return value.cast<T>();
+    } catch (const py::cast_error&) {
+        throw Error(ErrorKind::usage, std::string(name) + " is " +
+                                          py::repr(value).cast<std::string>() + "; expected " +
+                                          expected);
+    }
+}
+
+inline bool is_given(const py::dict& options, const char* name) {
+    return !options[name].is_none();
+}
+
+template <typename T>
+std::optional<T> positive(const py::dict& options, const char* name) {
+    if (!is_given(options, name)) return std::nullopt;
+    const T value = value_of<T>(options, name, "a number");
+    require(value > 0, std::string(name) + " must be greater than 0");
+    return value;
+}
+
+RenderOptions render_options(const py::dict& o);
+SceneOverrides scene_overrides(const py::dict& o);
+
+/// Refuses what is no begin and a later end.
+std::array<float, 2> checked_shutter(const std::array<float, 2>& shutter);
+
+}  // namespace covtrace::python

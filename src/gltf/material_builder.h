@@ -1,0 +1,98 @@
+/// Private to this folder: one material on its way into the scene.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "gltf/document.h"
+#include "gltf/materials.h"
+#include "gltf/textures.h"
+#include "scene/scene_description.h"
+
+namespace covtrace::gltf {
+
+class MaterialBuilder {
+  public:
+    MaterialBuilder(const Document& document, SceneDescription& scene, WarningLog& log,
+                    TextureReader& textures, const tinygltf::Material& material, std::string place)
+        : document_(document),
+          scene_(scene),
+          log_(log),
+          textures_(textures),
+          material_(material),
+          pbr_(material.pbrMetallicRoughness),
+          place_(std::move(place)) {}
+
+    /// Appends what the material consists of; docs/gltf.md has all substitutions.
+    Surface build();
+
+  private:
+    void warn(const std::string& text) { log_.add(document_.place(place_), text); }
+    std::string pbr(const char* key) const { return place_ + ".pbrMetallicRoughness." + key; }
+    std::string in(const char* extension) const { return place_ + ".extensions." + extension; }
+
+    MaterialId add(decltype(MaterialDescription::value) model);
+    MaterialId mix(MaterialId a, MaterialId b, TextureId amount);
+
+    /// One mesh has one set of coordinates: that of the base colour, else of the first texture.
+    void choose_uv_set();
+    /// The reference, or none where it needs coordinates that the mesh won't have.
+    tinygltf::TextureInfo use(const tinygltf::TextureInfo& info);
+
+    /// (factor times channel)^2: glTF's roughness squared is the width alpha of GGX.
+    TextureId squared(const tinygltf::TextureInfo& info, ImageTexture::Channel channel,
+                      float factor, const std::string& place);
+    void read_alpha();
+    void emit(Rgb radiance, const tinygltf::TextureInfo& info, const std::string& place);
+    void build_unlit();
+    void read_emission();
+    void read_normal_map();
+    void read_index();
+
+    CoatedDiffuseMaterial dielectric(TextureId roughness) const;
+    ConductorMaterial metal() const;
+
+    /// A material in two versions: as it is, and under a clear coat.
+    struct Coatable {
+        MaterialId plain = -1, coated = -1;
+    };
+    struct Clearcoat {
+        float factor = 0;
+        TextureId amount = -1, alpha = -1;
+    };
+
+    void read_clearcoat();
+    Coatable coatable(MaterialId plain, decltype(MaterialDescription::value) coated);
+    Coatable mixed(Coatable a, Coatable b, TextureId amount);
+    Coatable metal_surface();
+    Coatable opaque_dielectric();
+
+    /// KHR_materials_transmission: a body with a volume refracts, a surface without is a pane.
+    MaterialId glass();
+    /// Beer's law: transmittance `attenuationColor` after `attenuationDistance`.
+    void read_absorption(const tinygltf::Value& volume);
+    Coatable dielectric_surface();
+    Coatable metals_and_others(const tinygltf::TextureInfo& texture, float metallic);
+    MaterialId with_clearcoat(Coatable surface);
+
+    /// Panes up to this roughness are rendered clear: their blur is below 1/400 radian.
+    static constexpr double kClearRoughness = 0.05;
+
+    const Document& document_;
+    SceneDescription& scene_;
+    WarningLog& log_;
+    TextureReader& textures_;
+    const tinygltf::Material& material_;
+    const tinygltf::PbrMetallicRoughness& pbr_;
+    const std::string place_;
+    Surface surface_;
+    Rgb base_factor_;
+    TextureId base_ = -1, alpha_ = -1;
+    TextureId normal_map_ = -1;
+    float normal_scale_ = 1;
+    float eta_ = 1.5f;
+    std::optional<Clearcoat> clearcoat_;
+};
+
+}  // namespace covtrace::gltf

@@ -1,0 +1,11 @@
+/// Private to this folder: glTF's units in those of scenes.
+#pragma once
+
+#include "core/vec.h"
+
+namespace covtrace::gltf {
+
+inline constexpr float kDegrees = 180 / kPi;  ///< of a radian
+inline constexpr float kLumensPerWatt = 683;  ///< of monochromatic light at 555 nm
+
+}  // namespace covtrace::gltf
