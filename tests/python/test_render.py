@@ -62,7 +62,8 @@ class Rendering(unittest.TestCase):
             image = covtrace.render(path, spp=4, seed=7, threads=1)
             self.assertTrue(covtrace.compare(image, out).identical)
             subprocess.run([os.environ["COVTRACE"], "render", path, "-o", out, "--spp", "4", "--method",
-                            "covariance", "--progressive", "--texture-bandwidth", "highest", "--quiet"],
+                            "covariance", "--progressive", "--texture-bandwidth", "highest", "--quiet",
+                            "--layers", "all,inview,inviewfilter,scatteredcov,scatteredcovweight"],
                            check=True)
             image = covtrace.render(path, spp=4, method="covariance", progressive=True,
                                     texture_bandwidth="highest")
