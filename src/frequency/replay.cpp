@@ -182,21 +182,24 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
         if (!counts(light.weight)) light = {};
         if (light.weight > 0 || has_direct) {
             std::optional<ScatterPoint> point;
+            std::optional<ScatterSum> sum;
             if (v.medium < 0) {
                 point = scatter_point(scene_, v, half_pixel(i));
+                sum.emplace(*point);
                 own = own_outline(point->surface, point->motion, v.wo);
             }
-            const auto scattered = [&](const LightField& arriving,
-                                       const cov::Emitter<double>& emitter, const LobeShares& lobes,
-                                       double weight) {
-                if (point)
-                    return scatter(arriving, emitter, *point, lobes, rule_, least * total / weight);
-                const double g = scene_.media[size_t(v.medium)].g;
-                return cov::scatter_in_volume<double>(arriving, v.wo, g);
+            const auto scatter = [&](const LightField& arriving,
+                                     const cov::Emitter<double>& emitter, const LobeShares& lobes,
+                                     double weight) {
+                if (sum)
+                    sum->add(arriving, emitter, lobes, weight, rule_, least * total / weight);
+                else
+                    leaving.add(cov::scatter_in_volume<double>(arriving, v.wo,
+                                                               scene_.media[size_t(v.medium)].g),
+                                weight);
             };
             if (light.weight > 0)
-                leaving.add(scattered(light.field, light.emitter, v.next_event.lobes, light.weight),
-                            light.weight);
+                scatter(light.field, light.emitter, v.next_event.lobes, light.weight);
             if (has_direct) {
                 const SourceSpectrum s = scene_.lights.source_spectrum(v.light, v.hit.time);
                 const Vec3 from = std::isfinite(v.light.distance)
@@ -206,17 +209,16 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
                 const LightField arriving =
                     to_surface(source, {from, v.hit.position, v.hit.time, {}, owner(i)},
                                visible[size_t(i)], direct / total);
-                leaving.add(scattered(arriving, emitter_of(s, v.light.distance),
-                                      v.direct_event.lobes, direct),
-                            direct);
+                scatter(arriving, emitter_of(s, v.light.distance), v.direct_event.lobes, direct);
             }
+            if (sum) leaving.add(sum->leaving(), sum->weight());
         }
         const Vec3 next =
             i > 0 ? record.vertices[size_t(i - 1)].hit.position : record.camera_ray.origin;
         const double way = distance(v.hit.position, next);
         leaving.emitter = emitter_at(v, way);
         if (counts(emitted)) {
-            const SourceSpectrum s = scene_.lights.source_spectrum(v.hit);
+            const SourceSpectrum s = scene_.lights.source_spectrum(v.hit, v.seen_sharply);
             if (emitted > leaving.weight) leaving.emitter = emitter_of(s, way);
             const auto texture = emission_texture(scene_, v, s.tangent, half_pixel(i));
             leaving.add(source_field(s, v.wo, v.seen_sharply, smallest_, texture), emitted);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frequency/ggx_derivatives.h"
 #include "shading/lobe_function.h"
 #include "shading/normal_map.h"
 
@@ -27,19 +28,13 @@ constexpr float kWideLobe = 0.4f;
 /// factor give a window of at most a seventh of the cosine's.
 constexpr double kEvenTransmission = 0.7;
 
-/// The axes of a ray in the coordinates of the BSDF.
-struct Axes {
-    cov::Vec3<double> x, y, z;
-
-    Axes(const Frame& shading, const cov::Frame<double>& f)
-        : x(local(shading, f.x)), y(local(shading, f.y)), z(local(shading, f.z)) {}
-
-  private:
-    static cov::Vec3<double> local(const Frame& f, const cov::Vec3<double>& v) {
-        const auto along = [&](const Vec3& a) { return cov::dot(v, cov::Vec3<double>(a)); };
-        return {along(f.x), along(f.y), along(f.z)};
-    }
-};
+LocalAxes local_axes(const Frame& shading, const cov::Frame<double>& f) {
+    const cov::Vec3<double> x(shading.x), y(shading.y), z(shading.z);
+    const auto local = [&](const cov::Vec3<double>& v) -> cov::Vec3<double> {
+        return {cov::dot(v, x), cov::dot(v, y), cov::dot(v, z)};
+    };
+    return {local(f.x), local(f.y), local(f.z)};
+}
 
 LightField through_diffuse(const LightField& entered, const cov::Emitter<double>& emitter,
                            const ScatterPoint& p, const LobeShare& lobe, BrdfCovariance rule) {
@@ -52,8 +47,9 @@ LightField through_diffuse(const LightField& entered, const cov::Emitter<double>
     // Below a coat the diffuse lobe is a product: what the coat lets in from each direction, and
     // what it lets out.
     const auto transmission = [&](const cov::Frame<double>& f) -> cov::Sym2<double> {
-        const Axes axes(p.shading, f);
-        if (lobe.border_eta > 1 && std::abs(axes.z.z) > kEvenTransmission) return {};
+        const double cosine = cov::dot(f.z, cov::Vec3<double>(p.shading.z));
+        if (lobe.border_eta > 1 && std::abs(cosine) > kEvenTransmission) return {};
+        const LocalAxes axes = local_axes(p.shading, f);
         const auto direction = cov::jet_direction<double>(axes.x, axes.y, axes.z);
         return cov::local_lobe<double>(1 - border_reflectance(lobe, abs(direction.z)),
                                        cov::cosine_window<double>(f, p.facing.n));
@@ -69,6 +65,17 @@ LightField scatter_tailed(const LightField& field, const cov::GlossyPair<double>
     const bool is_peaked = cov::det(pair.lobe) > 1e-9 * size * size;
     const auto lobe = is_peaked ? cov::tailed_lobe(pair.lobe, left.angular()) : pair.lobe;
     return {cov::convolve_angular(left, lobe), pair.outgoing};
+}
+
+/// The lobe's covariance at the actual pair of directions.
+cov::Sym2<double> local_lobe_at(const LobeShare& lobe, const LocalAxes& in, const LocalAxes& out,
+                                const cov::Sym2<double>& peak) {
+    if (lobe.kind == LobeKind::glossy_reflection) {
+        const auto l = log_reflection(lobe, out, -in.z);
+        return l ? cov::local_lobe_of_log(*l, peak) : peak;
+    }
+    return cov::local_lobe(
+        lobe_function(lobe, cov::jet_direction<double>(out.x, out.y, out.z), -in.z), peak);
 }
 
 LightField through_glossy(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe,
@@ -87,18 +94,15 @@ LightField through_glossy(const LightField& entered, const ScatterPoint& p, cons
     // Distribution and Fresnel are functions of the half vector: what they do to the arriving
     // slopes is in the lobe already, and the window is left with masking, at half the price of
     // cov::local_lobe for any BRDF.
-    const Axes in(p.shading, entered.frame), out(p.shading, pair.outgoing);
-    const auto leaving =
-        lobe_function(lobe, cov::jet_direction<double>(out.x, out.y, out.z), -in.z);
-    const auto arriving =
-        masked_cosine(lobe, out.z, cov::jet_direction<double>(-in.x, -in.y, -in.z)) *
-        cov::jet_solid_angle<double>();
+    const LocalAxes in = local_axes(p.shading, entered.frame),
+                    out = local_axes(p.shading, pair.outgoing);
+    const cov::Jet<double> arriving = log_masked_cosine(lobe, out.z, {-in.x, -in.y, -in.z});
     const cov::Sym2<double> window =
-        cov::limited_by(cov::positive_part(cov::log_curvature(arriving)),
+        cov::limited_by(cov::positive_part(cov::curvature_of_log(arriving)),
                         cov::cosine_window<double>(entered.frame, p.facing.n));
     const LightField windowed = cov::add_angular_window(entered, window);
     const cov::GlossyPair<double> local{pair.outgoing, pair.map,
-                                        cov::local_lobe<double>(leaving, pair.lobe)};
+                                        local_lobe_at(lobe, in, out, pair.lobe)};
     return reflects ? scatter_tailed(windowed, local) : cov::scatter(windowed, local);
 }
 
@@ -190,31 +194,46 @@ cov::Sym2<double> emission_texture(const RenderScene& scene, const PathVertex& v
            texture_spectrum(scene, shape.alpha, vertex.hit, uv_from_tangent, footprint_uv);
 }
 
-LightField scatter(const LightField& arriving, const cov::Emitter<double>& emitter,
-                   const ScatterPoint& point, const LobeShares& lobes, BrdfCovariance rule,
-                   double least) {
-    const LightField entered = cov::surface_enter<double>(cov::motion_enter(arriving, point.motion),
-                                                          point.surface, point.normals);
+void ScatterSum::add(const LightField& arriving, const cov::Emitter<double>& emitter,
+                     const LobeShares& lobes, double weight, BrdfCovariance rule, double least) {
     double all = 0, most = 0;
-    for (int i = 0; i < lobes.count; ++i) {
-        const double weight = luminance(lobes.lobes[size_t(i)].value);
-        all += weight;
-        most = std::max(most, weight);
+    std::array<double, std::tuple_size_v<decltype(lobes.lobes)>> weights;
+    for (size_t i = 0; i < size_t(lobes.count); ++i) {
+        weights[i] = luminance(lobes.lobes[i].value);
+        all += weights[i];
+        most = std::max(most, weights[i]);
     }
-    LightField sum;
-    double total = 0;
-    for (int i = 0; i < lobes.count; ++i) {
-        const LobeShare& lobe = lobes.lobes[size_t(i)];
-        const double weight = luminance(lobe.value);
-        if (!(weight > 0) || (weight < least * all && weight < most)) continue;
-        const LightField left = cov::surface_exit<double>(
-            through_lobe(entered, emitter, point, lobe, rule), point.surface, point.normals);
-        const LightField outside = cov::motion_exit(left, point.motion);
-        sum = total > 0 ? cov::merge(sum, total, outside, weight) : outside;
-        total += weight;
+    double kept = 0;
+    for (size_t i = 0; i < size_t(lobes.count); ++i) {
+        if (weights[i] < least * all && weights[i] < most) weights[i] = 0;
+        kept += std::max(weights[i], 0.0);
     }
-    if (!(total > 0)) sum.frame = cov::frame_along<double>(point.outgoing);
-    return sum;
+    if (!(kept > 0)) return add({{}, cov::frame_along<double>(point_.outgoing)}, weight);
+    const LightField entered = cov::surface_enter<double>(
+        cov::motion_enter(arriving, point_.motion), point_.surface, point_.normals);
+    for (size_t i = 0; i < size_t(lobes.count); ++i)
+        if (weights[i] > 0)
+            add(through_lobe(entered, emitter, point_, lobes.lobes[i], rule),
+                weight * (weights[i] / kept));
+}
+
+void ScatterSum::add(const LightField& left, double weight) {
+    if (!(weight_ > 0)) {
+        left_ = left;
+        weight_ = weight;
+        return;
+    }
+    // Positions are along the tangents for all; only slopes have axes of their own.
+    const auto turned = cov::map_angular(
+        left.sigma, cov::projection<double>(left.frame, left_.frame.x, left_.frame.y));
+    weight_ += weight;
+    const double share = weight / weight_;
+    left_.sigma = (1 - share) * left_.sigma + share * turned;
+}
+
+LightField ScatterSum::leaving() const {
+    return cov::motion_exit(cov::surface_exit<double>(left_, point_.surface, point_.normals),
+                            point_.motion);
 }
 
 }  // namespace covtrace

@@ -33,12 +33,30 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
 covariance::Sym2<double> emission_texture(const RenderScene& scene, const PathVertex& vertex,
                                           const Frame& tangent, float footprint);
 
-/// Sends `arriving` (its frame's z is the direction of travel towards the surface) through the
-/// lobes of the event and merges them by luminance. `emitter`: where the light was last sent out.
-/// The result travels along point.outgoing, in whatever frame.
-/// Lobes with less than `least` of the event's light are left out, but for the brightest.
-LightField scatter(const LightField& arriving, const covariance::Emitter<double>& emitter,
-                   const ScatterPoint& point, const LobeShares& lobes, BrdfCovariance rule,
-                   double least = 0);
+/// The light that leaves a vertex towards the camera: the sum, by luminance, of what all lobes of
+/// all events there send on. Leaving is linear and the same for all of it, so it is done once.
+class ScatterSum {
+  public:
+    /// `point` must outlive this.
+    explicit ScatterSum(const ScatterPoint& point) : point_(point) {}
+
+    /// Sends `arriving` (its frame's z is the direction of travel towards the surface) through the
+    /// lobes of an event and adds what comes out of them, `weight` in all. `emitter`: where the
+    /// light was last sent out. Lobes with less than `least` of the event's light are left out, but
+    /// for the brightest.
+    void add(const LightField& arriving, const covariance::Emitter<double>& emitter,
+             const LobeShares& lobes, double weight, BrdfCovariance rule, double least = 0);
+
+    double weight() const { return weight_; }
+    /// Travels along point.outgoing, in whatever frame. Only where the weight is above 0.
+    LightField leaving() const;
+
+  private:
+    void add(const LightField& left, double weight);
+
+    const ScatterPoint& point_;
+    LightField left_;  ///< between surface_enter and surface_exit
+    double weight_ = 0;
+};
 
 }  // namespace covtrace

@@ -83,9 +83,12 @@ std::optional<Vec3> EmitterSpectrum::nearest_border(Vec3 position, const Transfo
     return q ? std::optional(now.point(motion.start().inverse().point(*q))) : std::nullopt;
 }
 
-SourceSpectrum EmitterSpectrum::at(Vec3 position, Vec3 normal, float time) const {
+SourceSpectrum EmitterSpectrum::at(Vec3 position, Vec3 normal, float time,
+                                   bool with_border) const {
     const AnimatedTransform& motion = shape_->description.object_to_world;
-    const Transform now = motion.at(time);
+    std::optional<Transform> moved;
+    if (motion.is_animated()) moved = motion.at(time);
+    const Transform& now = moved ? *moved : motion.start();
     SourceSpectrum s;
     s.kind = SourceSpectrum::Kind::area;
     s.tangent = Frame::from_z(normal);
@@ -97,6 +100,7 @@ SourceSpectrum EmitterSpectrum::at(Vec3 position, Vec3 normal, float time) const
         s.k11 = s.k22 = quadric->curvature(time);
     s.velocity = motion.velocity(position, time);
     s.angular_velocity = motion.angular_velocity(time);
+    if (!with_border) return s;
     if (const auto border = nearest_border(position, now)) {
         s.border_distance = distance(*border, position);
         const Vec3 towards = s.tangent.to_local(*border - position);

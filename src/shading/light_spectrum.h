@@ -18,8 +18,9 @@ class EmitterSpectrum {
     /// Both must outlive the spectrum.
     EmitterSpectrum(const PlacedShape& shape, const Emitter& emitter);
 
-    /// At a point of the shape with the unit normal `normal` on the emitting outside.
-    SourceSpectrum at(Vec3 position, Vec3 normal, float time) const;
+    /// At a point of the shape with the unit normal `normal` on the emitting outside, with the
+    /// nearest border where it is asked for.
+    SourceSpectrum at(Vec3 position, Vec3 normal, float time, bool with_border) const;
 
   private:
     std::optional<Vec3> nearest_border(Vec3 position, const Transform& now) const;

@@ -89,9 +89,11 @@ class Lights {
     /// Computes what the source spectra need; to be called once before asking for any. Not
     /// thread-safe.
     void prepare_spectra();
+    /// Of an emitter that lights something. Without its border, which only one in view shows.
     SourceSpectrum source_spectrum(const LightSample& s, float time) const;
-    /// Of the shape that was hit; empty where it does not emit.
-    SourceSpectrum source_spectrum(const SurfaceHit& emitter) const;
+    /// Of the shape that was hit; empty where it does not emit. The border is left infinitely far
+    /// unless it is asked for: finding it takes a search.
+    SourceSpectrum source_spectrum(const SurfaceHit& emitter, bool with_border) const;
     /// Of all infinite lights together around the direction `w`, weighted by radiance.
     SourceSpectrum environment_spectrum(Vec3 w) const;
 

@@ -80,7 +80,7 @@ SourceSpectrum Lights::source_spectrum(const LightSample& s, float time) const {
     if (s.light < impl_->first_point()) {
         const AreaLight& area = impl_->area_lights[impl_->owner[static_cast<size_t>(s.light)]];
         assert(area.spectrum && "prepare_spectra() comes first");
-        return area.spectrum->at(s.position, s.normal, time);
+        return area.spectrum->at(s.position, s.normal, time, false);
     }
     if (s.light < impl_->first_distant())
         return point_spectrum(impl_->points[static_cast<size_t>(s.light - impl_->first_point())],
@@ -89,11 +89,11 @@ SourceSpectrum Lights::source_spectrum(const LightSample& s, float time) const {
     return impl_->environment_spectrum(s.wi);
 }
 
-SourceSpectrum Lights::source_spectrum(const SurfaceHit& emitter) const {
+SourceSpectrum Lights::source_spectrum(const SurfaceHit& emitter, bool with_border) const {
     const AreaLight* area = impl_->area_light_of(emitter);
     if (!area) return {};
     assert(area->spectrum && "prepare_spectra() comes first");
-    return area->spectrum->at(emitter.position, emitter.ng, emitter.time);
+    return area->spectrum->at(emitter.position, emitter.ng, emitter.time, with_border);
 }
 
 SourceSpectrum Lights::environment_spectrum(Vec3 w) const {

@@ -76,14 +76,4 @@ auto lobe_function(const LobeShare& lobe, O wo, I wi) {
     return S((1 - fresnel) * d * ggx.g2_over_cos_o(wo, mirrored) * cos_o * -cos_i / half_length2);
 }
 
-/// The part of a glossy lobe's `lobe_function` that is not a function of the half vector: masking,
-/// and with it the cosine of wi.
-template <typename O, typename I>
-auto masked_cosine(const LobeShare& lobe, O wo, I wi) {
-    using std::abs;
-    wo.z = abs(wo.z);
-    wi.z = abs(wi.z);
-    return Ggx{lobe.alpha_x, lobe.alpha_y}.g2_over_cos_o(wo, wi);
-}
-
 }  // namespace covtrace

@@ -145,6 +145,12 @@ template <std::floating_point T, typename F>
     return compose(x, g.value, g.first, g.second);
 }
 
+/// The same of one variable: the derivatives are carried through.
+template <std::floating_point T, typename F>
+[[nodiscard]] Taylor<T> function_of(const F& f, const Taylor<T>& x) noexcept {
+    return f(x);
+}
+
 /// A vector of jets: a direction that depends on two slopes.
 template <std::floating_point T = double>
 struct JetVec3 {

@@ -24,6 +24,8 @@ namespace covariance {
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> limited_by(const Sym2<T>& a, const Sym2<NonDeduced<T>>& limit) noexcept {
     if (!(det(limit) > 0)) return limit;
+    const auto is_positive = [](const Sym2<T>& m) { return det(m) >= 0 && trace(m) >= 0; };
+    if (is_positive(limit - a) && is_positive(a)) return a;
     // With limit = L L^T: L^-1 a L^-T has eigenvalues at most 1.
     const T l00 = std::sqrt(limit.xx), l10 = limit.xy / l00, l11 = std::sqrt(det(limit)) / l00;
     const Mat2<T> to_limit{1 / l00, -l10 / (l00 * l11), 0, 1 / l11};  // L^-T
@@ -34,14 +36,44 @@ template <std::floating_point T>
 /// The negative part of a matrix removed: eigenvalues below 0 become 0.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> positive_part(const Sym2<T>& a) noexcept {
+    if (det(a) > 0) return a.xx > 0 ? a : Sym2<T>{};  // both of one sign
     return map_eigenvalues(a, [](T l) { return std::max(l, T(0)); });
 }
 
-/// -Hess log f / (4 pi^2), of either sign: the covariance of the Gaussian that touches f.
+/// The same matrix with the sizes of its eigenvalues.
+template <std::floating_point T>
+[[nodiscard]] Sym2<T> absolute(const Sym2<T>& a) noexcept {
+    if (det(a) > 0) return a.xx > 0 ? a : T(-1) * a;
+    return map_eigenvalues(a, [](T l) { return std::abs(l); });
+}
+
+/// The derivatives of log f; its value, of which nothing here depends, is left 0.
+template <std::floating_point T>
+[[nodiscard]] constexpr Jet<T> log_derivatives(const Jet<T>& f) noexcept {
+    const T i = 1 / f.value, gu = f.u * i, gv = f.v * i;
+    return {0, gu, gv, f.uu * i - gu * gu, f.uv * i - gu * gv, f.vv * i - gv * gv};
+}
+
+/// -Hess l / (4 pi^2) with f = exp(l), of either sign: the covariance of the Gaussian that touches
+/// f.
+template <std::floating_point T>
+[[nodiscard]] constexpr Sym2<T> curvature_of_log(const Jet<T>& l) noexcept {
+    return (-1 / four_pi_sq<T>)*Sym2<T>{l.uu, l.uv, l.vv};
+}
+
+/// The same from f itself.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> log_curvature(const Jet<T>& f) noexcept {
-    const T i = 1 / f.value, gu = f.u * i, gv = f.v * i;
-    return (1 / four_pi_sq<T>)*Sym2<T>{gu * gu - f.uu * i, gu * gv - f.uv * i, gv * gv - f.vv * i};
+    return curvature_of_log(log_derivatives(f));
+}
+
+/// `local_lobe` of f = exp(l), from the derivatives of l.
+template <std::floating_point T>
+[[nodiscard]] Sym2<T> local_lobe_of_log(const Jet<T>& l,
+                                        const Sym2<NonDeduced<T>>& peak) noexcept {
+    const Sym2<T> steep = (1 / four_pi_sq<T>)*Sym2<T>{l.u * l.u, l.u * l.v, l.v * l.v};
+    const Sym2<T> local = absolute(curvature_of_log(l)) + steep;
+    return std::isfinite(trace(local)) ? limited_by(local, peak) : peak;
 }
 
 /// C of a lobe f at the actual pair: (|Hess log f| + grad log f grad log f^T) / (4 pi^2), at most
@@ -53,12 +85,7 @@ template <std::floating_point T>
 /// Source   the idea is in Belcour's 2016 course notes; the form is derived in RULES.md.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> local_lobe(const Jet<T>& f, const Sym2<NonDeduced<T>>& peak) noexcept {
-    if (!(f.value > 0)) return peak;
-    const T gu = f.u / f.value, gv = f.v / f.value;
-    const Sym2<T> bent = map_eigenvalues(log_curvature(f), [](T l) { return std::abs(l); });
-    const Sym2<T> steep = (1 / four_pi_sq<T>)*Sym2<T>{gu * gu, gu * gv, gv * gv};
-    const Sym2<T> local = bent + steep;
-    return std::isfinite(trace(local)) ? limited_by(local, peak) : peak;
+    return f.value > 0 ? local_lobe_of_log(log_derivatives(f), peak) : peak;
 }
 
 /// What a BRDF does around one pair of directions.

@@ -1,0 +1,29 @@
+/// First and second derivatives of the logarithm of a GGX reflection, in closed form: what
+/// `lobe_function` and `masked_cosine` give with scalars that carry derivatives, for a tenth of the
+/// operations. (tests/unit/frequency_ggx_derivatives_test.cpp holds one against the other.)
+#pragma once
+
+#include <optional>
+
+#include "covariance/covariance.hpp"
+#include "shading/bsdf.h"
+
+namespace covtrace {
+
+/// The axes of a ray in the coordinates of the BSDF: the slopes (u, v) stand for the direction
+/// z + u x + v y, normalised.
+struct LocalAxes {
+    covariance::Vec3<double> x, y, z;
+};
+
+/// log f = log(BRDF * cos) of a glossy reflection about the leaving direction `wo`, up to its value
+/// (left 0); `wi` points towards the light. Empty where the lobe reflects nothing.
+std::optional<covariance::Jet<double>> log_reflection(const LobeShare& lobe, LocalAxes wo,
+                                                      covariance::Vec3<double> wi);
+
+/// The same for masking with its cosine (`masked_cosine`) times the solid angle per area of slopes,
+/// about the direction `wi` towards the light.
+covariance::Jet<double> log_masked_cosine(const LobeShare& lobe, covariance::Vec3<double> wo,
+                                          LocalAxes wi);
+
+}  // namespace covtrace
