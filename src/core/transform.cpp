@@ -236,6 +236,13 @@ AnimatedTransform::Decomposition AnimatedTransform::decompose(const Transform& m
 Transform AnimatedTransform::at(float time) const {
     if (!movement_ || time <= start_time_) return start_;
     if (time >= end_time_) return movement_->end;
+    const auto moved = Transform::from_matrix(matrix_at(time));
+    return moved ? *moved : start_;
+}
+
+Matrix4 AnimatedTransform::matrix_at(float time) const {
+    if (!movement_ || time <= start_time_) return start_.matrix();
+    if (time >= end_time_) return movement_->end.matrix();
     const auto& keys = movement_->keys;
     const double t = (double(time) - start_time_) / (double(end_time_) - start_time_);
     const Matrix3 rotation = to_matrix(slerp(t, keys[0].rotation, keys[1].rotation));
@@ -249,8 +256,7 @@ Transform AnimatedTransform::at(float time) const {
         }
         m.m[i][3] = (1 - t) * keys[0].translation[int(i)] + t * keys[1].translation[int(i)];
     }
-    const auto moved = Transform::from_matrix(m);
-    return moved ? *moved : start_;
+    return m;
 }
 
 Vec3 AnimatedTransform::velocity(Vec3 p, float time) const {

@@ -83,6 +83,8 @@ class AnimatedTransform {
     const Transform& start() const { return start_; }
     const Transform& end() const { return movement_ ? movement_->end : start_; }
     Transform at(float time) const;
+    /// at(time).matrix() without the price of the inverse.
+    Matrix4 matrix_at(float time) const;
     /// Velocity at `time` of the material point that is at world position `p` then, per unit of
     /// time. Zero outside the keys and where nothing moves.
     Vec3 velocity(Vec3 p, float time) const;

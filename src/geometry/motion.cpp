@@ -37,6 +37,11 @@ Transform Motion::at(float time) const {
     return inner ? outer->at(time) * inner->at(time) : outer->at(time);
 }
 
+Matrix4 Motion::matrix_at(float time) const {
+    if (!outer) return inner ? inner->matrix_at(time) : Matrix4{};
+    return inner ? outer->matrix_at(time) * inner->matrix_at(time) : outer->matrix_at(time);
+}
+
 bool Motion::moves(float begin, float end) const {
     return moves_between(outer, begin, end) || moves_between(inner, begin, end);
 }
@@ -65,7 +70,7 @@ Affine Motion::rate(float time, const ShutterClock& clock) const {
     const float h = 1e-4f * (hi - lo);
     const float t0 = std::max(lo, time - h), t1 = std::min(hi, time + h);
     if (!(t1 > t0)) return zero;
-    const Affine a = Affine::from_matrix(at(t0).matrix()), b = Affine::from_matrix(at(t1).matrix());
+    const Affine a = Affine::from_matrix(matrix_at(t0)), b = Affine::from_matrix(matrix_at(t1));
     const double s = 1 / (double(t1) - t0);
     Affine r;
     for (int i = 0; i < 3; ++i) r.row[i] = (b.row[i] - a.row[i]) * s;
