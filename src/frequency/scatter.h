@@ -17,6 +17,7 @@ struct ScatterPoint {
     covariance::NormalField<double> normals;
     covariance::Surface<double> facing;
     covariance::Motion<double> motion;
+    bool is_flat = false;  ///< no curvature, no normal map, no motion
     /// Spectra of the textures that scale the diffuse lobes, along surface.t1, t2, 1 / scene
     /// unit^2; zero where the recorded events have no such lobe.
     covariance::Sym2<double> reflectance, transmittance;
@@ -55,6 +56,19 @@ class ScatterSum {
     void add(const LightField& left, double weight);
 
     const ScatterPoint& point_;
+    LightField through(const LightField& entered, const covariance::Emitter<double>& emitter,
+                       const LobeShare& lobe, BrdfCovariance rule);
+    LightField through_diffuse(const LightField& entered,
+                               const covariance::Emitter<double>& emitter, const LobeShare& lobe,
+                               BrdfCovariance rule);
+
+    /// What the coat over a diffuse lobe lets out, computed when it is first needed.
+    struct CoatWindow {
+        float eta = 0;
+        covariance::Sym2<double> window;
+    };
+
+    CoatWindow let_out_;
     LightField left_;  ///< between surface_enter and surface_exit
     double weight_ = 0;
 };
