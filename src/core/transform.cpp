@@ -259,6 +259,56 @@ Matrix4 AnimatedTransform::matrix_at(float time) const {
     return m;
 }
 
+Matrix4 AnimatedTransform::rate(float time) const {
+    Matrix4 m;
+    for (auto& row : m.m) row = {};
+    if (!movement_) return m;
+    const auto& keys = movement_->keys;
+    const double per_time = 1 / (double(end_time_) - start_time_);
+    const double t = std::clamp((double(time) - start_time_) * per_time, 0.0, 1.0);
+    // The slerp's weights, sin((1 - t) angle) / sin(angle) and so on, and their derivatives by t.
+    const Quaternion& a = keys[0].rotation;
+    Quaternion b = keys[1].rotation;
+    double c = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
+    if (c < 0) {
+        b = {-b.x, -b.y, -b.z, -b.w};
+        c = -c;
+    }
+    double wa = 1 - t, wb = t, da = -1, db = 1;
+    if (c < 1 - 1e-12) {
+        const double angle = std::acos(c), sine = std::sqrt(1 - c * c);
+        const double s = std::sin(t * angle), cosine = std::cos(t * angle);
+        wa = cosine - s * c / sine;
+        wb = s / sine;
+        da = -angle * (s + cosine * c / sine);
+        db = angle * cosine / sine;
+    }
+    const Quaternion q{wa * a.x + wb * b.x, wa * a.y + wb * b.y, wa * a.z + wb * b.z,
+                       wa * a.w + wb * b.w};
+    const Quaternion d{da * a.x + db * b.x, da * a.y + db * b.y, da * a.z + db * b.z,
+                       da * a.w + db * b.w};
+    const double xx = 2 * q.x * d.x, yy = 2 * q.y * d.y, zz = 2 * q.z * d.z;
+    const double xy = q.x * d.y + d.x * q.y, xz = q.x * d.z + d.x * q.z, yz = q.y * d.z + d.y * q.z,
+                 wx = q.w * d.x + d.w * q.x, wy = q.w * d.y + d.w * q.y, wz = q.w * d.z + d.w * q.z;
+    const Matrix3 turning{{{-2 * (yy + zz), 2 * (xy - wz), 2 * (xz + wy)},
+                           {2 * (xy + wz), -2 * (xx + zz), 2 * (yz - wx)},
+                           {2 * (xz - wy), 2 * (yz + wx), -2 * (xx + yy)}}};
+    const Matrix3 rotation = to_matrix(q);
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            double s = 0;
+            for (size_t k = 0; k <= j; ++k) {
+                const double change = keys[1].scale[k][j] - keys[0].scale[k][j];
+                s += turning[i][k] * (keys[0].scale[k][j] + t * change) + rotation[i][k] * change;
+            }
+            m.m[i][j] = per_time * s;
+        }
+        m.m[i][3] =
+            per_time * (double(keys[1].translation[int(i)]) - keys[0].translation[int(i)]);
+    }
+    return m;
+}
+
 Vec3 AnimatedTransform::velocity(Vec3 p, float time) const {
     if (!movement_ || time < start_time_ || time > end_time_) return {};
     const Vec3 local = at(time).inverse().point(p);

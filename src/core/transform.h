@@ -85,6 +85,9 @@ class AnimatedTransform {
     Transform at(float time) const;
     /// at(time).matrix() without the price of the inverse.
     Matrix4 matrix_at(float time) const;
+    /// d/dt of matrix_at, one-sided at the keys; of the movement between them at all other times.
+    /// Zero where nothing moves.
+    Matrix4 rate(float time) const;
     /// Velocity at `time` of the material point that is at world position `p` then, per unit of
     /// time. Zero outside the keys and where nothing moves.
     Vec3 velocity(Vec3 p, float time) const;

@@ -45,6 +45,7 @@ constexpr double kSmallestShare = 0.1;
 constexpr double kInvisible = 0.02;
 
 cov::SymmetricMatrix5<double> to_sensor(const LightField& field, const SensorGeometry& g) {
+    if (cov::trace(field.sigma) == 0) return {};
     const LightField at_rest = cov::motion_enter(field, {g.velocity, g.angular_velocity});
     if (g.orthographic)
         return cov::sensor(at_rest, cov::OrthographicLens<double>{
@@ -184,7 +185,7 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
             std::optional<ScatterPoint> point;
             std::optional<ScatterSum> sum;
             if (v.medium < 0) {
-                point = scatter_point(scene_, v, half_pixel(i));
+                point.emplace(scene_, v, half_pixel(i));
                 sum.emplace(*point);
                 own = own_outline(point->surface, point->motion, v.wo);
             }

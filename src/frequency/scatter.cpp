@@ -125,30 +125,28 @@ bool has_lobe(const PathVertex& vertex, LobeKind kind) {
 
 }  // namespace
 
-ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, float footprint) {
+ScatterPoint::ScatterPoint(const RenderScene& scene, const PathVertex& vertex, float footprint)
+    : shading(vertex.shading), outgoing(vertex.wo) {
     const DifferentialGeometry d = scene.geometry.differential(vertex.hit);
-    ScatterPoint p;
-    p.surface = {d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}};
-    p.normals = cov::normal_field(p.surface);
-    p.facing = p.surface;
+    surface = {d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}};
+    normals = cov::normal_field(surface);
+    facing = surface;
     if (scene.materials.has_normal_map(vertex.material)) {
         const NormalMap map(scene.materials.description(vertex.material), scene.textures,
                             scene.geometry.shapes()[vertex.hit.shape], vertex.hit, d, footprint);
         // Positions stay on the geometry; the normal turns by both shape operators.
         const Frame turned = Frame::from_z_x(vertex.shading.z, d.tangent.x);
         const auto [k11, k12, k22] = map.curvature();
-        p.normals = {turned.z, turned.x * (d.k11 + k11) + turned.y * (d.k12 + k12),
+        normals = {turned.z, turned.x * (d.k11 + k11) + turned.y * (d.k12 + k12),
                      turned.x * (d.k12 + k12) + turned.y * (d.k22 + k22)};
-        p.facing = cov::shading_surface(p.surface, p.normals);
+        facing = cov::shading_surface(surface, normals);
     }
-    p.motion = {d.velocity, d.angular_velocity};
+    motion = {d.velocity, d.angular_velocity};
     const cov::Vec3<double> none;
-    p.is_flat = p.normals.d1 == none && p.normals.d2 == none && p.motion.at_rest();
-    p.shading = vertex.shading;
-    p.outgoing = vertex.wo;
+    is_flat = normals.d1 == none && normals.d2 == none && motion.at_rest();
     const bool reflects = has_lobe(vertex, LobeKind::diffuse_reflection),
                transmits = has_lobe(vertex, LobeKind::diffuse_transmission);
-    if (!reflects && !transmits) return p;
+    if (!reflects && !transmits) return;
     const auto& m = d.uv_from_tangent;
     const cov::Mat2<double> uv_from_tangent{m[0][0], m[0][1], m[1][0], m[1][1]};
     const float uv_per_length =
@@ -161,9 +159,8 @@ ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, f
         return texture_spectrum(scene, id, vertex.hit, uv_from_tangent, footprint_uv);
     };
     const cov::Sym2<double> edges = spectrum(alpha);
-    if (reflects) p.reflectance = spectrum(textures.reflectance) + edges;
-    if (transmits) p.transmittance = spectrum(textures.transmittance) + edges;
-    return p;
+    if (reflects) reflectance = spectrum(textures.reflectance) + edges;
+    if (transmits) transmittance = spectrum(textures.transmittance) + edges;
 }
 
 cov::Sym2<double> emission_texture(const RenderScene& scene, const PathVertex& vertex,
@@ -270,6 +267,7 @@ void ScatterSum::add(const LightField& left, double weight) {
 }
 
 LightField ScatterSum::leaving() const {
+    if (is_even(left_)) return left_;
     return cov::motion_exit(cov::surface_exit<double>(left_, point_.surface, point_.normals),
                             point_.motion);
 }

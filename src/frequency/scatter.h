@@ -23,11 +23,11 @@ struct ScatterPoint {
     covariance::Sym2<double> reflectance, transmittance;
     Frame shading;  ///< frame of the BSDF
     Vec3 outgoing;  ///< unit, the direction in which light leaves towards the camera
-};
 
-/// `footprint`: half a pixel's extent at the vertex, in scene units; no texture edge counts as
-/// nearer.
-ScatterPoint scatter_point(const RenderScene& scene, const PathVertex& vertex, float footprint);
+    /// `footprint`: half a pixel's extent at the vertex, in scene units; no texture edge counts as
+    /// nearer.
+    ScatterPoint(const RenderScene& scene, const PathVertex& vertex, float footprint);
+};
 
 /// Spectrum of the image and the alpha of an emitter that was hit, along the axes of `tangent`
 /// (z: its normal), 1 / scene unit^2. `footprint` as above.

@@ -37,11 +37,6 @@ Transform Motion::at(float time) const {
     return inner ? outer->at(time) * inner->at(time) : outer->at(time);
 }
 
-Matrix4 Motion::matrix_at(float time) const {
-    if (!outer) return inner ? inner->matrix_at(time) : Matrix4{};
-    return inner ? outer->matrix_at(time) * inner->matrix_at(time) : outer->matrix_at(time);
-}
-
 bool Motion::moves(float begin, float end) const {
     return moves_between(outer, begin, end) || moves_between(inner, begin, end);
 }
@@ -67,14 +62,17 @@ Affine Motion::rate(float time, const ShutterClock& clock) const {
     Affine zero;
     for (Vec3d& row : zero.row) row = {};
     if (!moves(lo, hi)) return zero;
-    const float h = 1e-4f * (hi - lo);
-    const float t0 = std::max(lo, time - h), t1 = std::min(hi, time + h);
-    if (!(t1 > t0)) return zero;
-    const Affine a = Affine::from_matrix(matrix_at(t0)), b = Affine::from_matrix(matrix_at(t1));
-    const double s = 1 / (double(t1) - t0);
-    Affine r;
-    for (int i = 0; i < 3; ++i) r.row[i] = (b.row[i] - a.row[i]) * s;
-    r.translation = (b.translation - a.translation) * s;
+    if (!outer) return Affine::from_matrix(inner->rate(time));
+    if (!inner) return Affine::from_matrix(outer->rate(time));
+    // (A B)' = A' B + A B'; the fourth row of a rate is zero.
+    Affine r = zero;
+    const auto add = [&r](const Matrix4& a, const Matrix4& b) {
+        const Affine product = Affine::from_matrix(a * b);
+        for (int i = 0; i < 3; ++i) r.row[i] = r.row[i] + product.row[i];
+        r.translation = r.translation + product.translation;
+    };
+    if (moves_between(outer, lo, hi)) add(outer->rate(time), inner->matrix_at(time));
+    if (moves_between(inner, lo, hi)) add(outer->matrix_at(time), inner->rate(time));
     return r;
 }
 

@@ -46,8 +46,6 @@ struct Motion {
     const AnimatedTransform* inner = nullptr;
 
     Transform at(float time) const;
-    /// at(time).matrix() without the price of the inverse.
-    Matrix4 matrix_at(float time) const;
     /// Whether anything moves between `begin` and `end`.
     bool moves(float begin, float end) const;
     /// d/dt of the map at `time`, per unit of scene time; one-sided at the ends of a movement.

@@ -37,13 +37,15 @@ struct AxisTaps {
     int first = 0, second = 0;
     float weight = 0;
 };
-AxisTaps axis_taps(float coordinate, float cells_per_unit, int n, bool repeats) {
+inline AxisTaps axis_taps(float coordinate, float cells_per_unit, int n, bool repeats) {
     float c = repeats ? coordinate - std::floor(coordinate) : coordinate;
     c = c > 0 ? std::min(c, 1.0f) : 0.0f;
     const float x = c * cells_per_unit - 0.5f;
     const float below = std::floor(x);
-    return {ScalarField::wrapped(int(below), n, repeats),
-            ScalarField::wrapped(int(below) + 1, n, repeats), x - below};
+    // At most one cell beyond either end.
+    const int first = std::min(int(below), n - 1), second = first + 1;
+    return {first >= 0 ? first : (repeats ? n - 1 : 0),
+            second < n ? second : (repeats ? 0 : n - 1), x - below};
 }
 
 }  // namespace
@@ -65,23 +67,25 @@ class ImageSpectrum::Scale {
         const ScalarField& image = values_[0];
         const AxisTaps x = axis_taps(s, 0.5f * texels_per_unit_.x, width_, image.repeat_x);
         const AxisTaps y = axis_taps(t, 0.5f * texels_per_unit_.y, height_, image.repeat_y);
-        const int tiles_x[2] = {x.first / kTile, x.second / kTile},
-                  tiles_y[2] = {y.first / kTile, y.second / kTile};
-        for (int j = 0; j <= int(tiles_y[1] != tiles_y[0]); ++j)
-            for (int i = 0; i <= int(tiles_x[1] != tiles_x[0]); ++i)
-                need_tile(tiles_x[i], tiles_y[j]);
-        Covariance sum;
-        const auto add = [&](int column, int row, float weight) {
+        const auto tile = [](int cell) { return int(unsigned(cell) / unsigned(kTile)); };
+        const int tile_x = tile(x.first), tile_y = tile(y.first), second_x = tile(x.second),
+                  second_y = tile(y.second);
+        need_tile(tile_x, tile_y);
+        if (second_x != tile_x || second_y != tile_y) {
+            need_tile(second_x, tile_y);
+            need_tile(tile_x, second_y);
+            need_tile(second_x, second_y);
+        }
+        using Float4 __attribute__((vector_size(16))) = float;
+        const auto cell = [&](int column, int row) {
             const Covariance& c = cells_[size_t(row) * size_t(width_) + size_t(column)];
-            sum.ss += weight * c.ss;
-            sum.st += weight * c.st;
-            sum.tt += weight * c.tt;
+            return Float4{c.ss, c.st, c.tt, 0};
         };
-        add(x.first, y.first, (1 - x.weight) * (1 - y.weight));
-        add(x.second, y.first, x.weight * (1 - y.weight));
-        add(x.first, y.second, (1 - x.weight) * y.weight);
-        add(x.second, y.second, x.weight * y.weight);
-        return sum;
+        const Float4 sum = cell(x.first, y.first) * ((1 - x.weight) * (1 - y.weight)) +
+                           cell(x.second, y.first) * (x.weight * (1 - y.weight)) +
+                           cell(x.first, y.second) * ((1 - x.weight) * y.weight) +
+                           cell(x.second, y.second) * (x.weight * y.weight);
+        return {sum[0], sum[1], sum[2]};
     }
 
     size_t memory() const {
