@@ -44,13 +44,17 @@ DifferentialGeometry Geometry::differential(const SurfaceHit& hit) const {
     const double i11 = p22 * inverse, i12 = -p12 * inverse;
     const double i21 = -p21 * inverse, i22 = p11 * inverse;
 
-    const double scale = (dot(d.n, ns) < 0 ? -1 : 1) / length(d.n);
-    const Vec3d na = d.dnda * scale, nb = d.dndb * scale;
-    const double n11 = dot(na, t1), n21 = dot(na, t2), n12 = dot(nb, t1), n22 = dot(nb, t2);
-    out.k11 = finite(n11 * i11 + n12 * i21);
-    out.k22 = finite(n21 * i12 + n22 * i22);
-    // Interpolated normals need not be those of a surface; its closest one has the symmetric part.
-    out.k12 = finite(0.5 * (n11 * i12 + n12 * i22 + n21 * i11 + n22 * i21));
+    const auto is_zero = [](Vec3d v) { return v.x == 0 && v.y == 0 && v.z == 0; };
+    if (!is_zero(d.dnda) || !is_zero(d.dndb)) {
+        const double scale = (dot(d.n, ns) < 0 ? -1 : 1) / length(d.n);
+        const Vec3d na = d.dnda * scale, nb = d.dndb * scale;
+        const double n11 = dot(na, t1), n21 = dot(na, t2), n12 = dot(nb, t1), n22 = dot(nb, t2);
+        out.k11 = finite(n11 * i11 + n12 * i21);
+        out.k22 = finite(n21 * i12 + n22 * i22);
+        // Interpolated normals need not be those of a surface; its closest one has the symmetric
+        // part.
+        out.k12 = finite(0.5 * (n11 * i12 + n12 * i22 + n21 * i11 + n22 * i21));
+    }
 
     out.uv_from_tangent[0][0] = finite(d.duvda.x * i11 + d.duvdb.x * i21);
     out.uv_from_tangent[0][1] = finite(d.duvda.x * i12 + d.duvdb.x * i22);

@@ -145,10 +145,18 @@ template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> sensor(const SymmetricMatrix5<T>& s,
                                                    const Frame<NonDeduced<T>>& arriving,
                                                    const ThinLens<NonDeduced<T>>& camera) noexcept {
-    const auto a = change_transverse(s, projection(arriving, camera.e1, camera.e2));
+    const Mat2<T> p = projection(arriving, camera.e1, camera.e2);
     const T c = -dot(arriving.z, camera.e3), radius = camera.lens_radius;
     const T k = c / camera.focus_distance, shutter = camera.shutter;
     SymmetricMatrix5<T> r;
+    if (radius == 0) {  // a pinhole sees slopes alone
+        const T ut = p.m00 * s(2, 4) + p.m10 * s(3, 4), vt = p.m01 * s(2, 4) + p.m11 * s(3, 4);
+        detail::set_pixels<T>(r, congruence(s.angular(), p), {}, shutter * ut, shutter * vt,
+                              -c / camera.pixels_x, -c / camera.pixels_y);
+        r(4, 4) = shutter * shutter * s(4, 4);
+        return detail::without_negative_axes(r);
+    }
+    const auto a = change_transverse(s, p);
     // Pixels turn the ray: slopes with the lens' R (positions + k slopes).
     const Mat2<T> lens = radius * (transpose(a.cross()) + k * Mat2<T>(a.angular()));
     detail::set_pixels<T>(r, a.angular(), lens, shutter * a(2, 4), shutter * a(3, 4),
