@@ -16,18 +16,33 @@ namespace covtrace {
 
 /// Eight floats that are computed with together.
 using Float8 __attribute__((vector_size(32))) = float;
-inline Float8 max8(const Float8& a, const Float8& b) {
-    return a > b ? a : b;
+inline Float8 all8(float a) {
+    return Float8{a, a, a, a, a, a, a, a};
 }
+/// a > b ? a : b, for which compilers take two instructions.
+inline Float8 max8(const Float8& a, const Float8& b) {
+#ifdef __AVX__
+    return reinterpret_cast<Float8>(
+        _mm256_max_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b)));
+#else
+    return a > b ? a : b;
+#endif
+}
+/// a < b ? a : b.
 inline Float8 min8(const Float8& a, const Float8& b) {
+#ifdef __AVX__
+    return reinterpret_cast<Float8>(
+        _mm256_min_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b)));
+#else
     return a < b ? a : b;
+#endif
 }
 inline Float8 abs8(const Float8& a) {
     return max8(a, -a);
 }
 /// Bit k tells whether a[k] < b.
 inline unsigned below8(const Float8& a, float b) {
-    const auto below = a < Float8{} + b;
+    const auto below = a < all8(b);
 #ifdef __AVX__
     return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(below)));
 #else

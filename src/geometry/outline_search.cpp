@@ -8,6 +8,8 @@ namespace {
 
 /// Edges so many times (squared) wider than the narrowest do not change what it allows.
 constexpr float kFaint = 16;
+/// What rounding may leave of a lower bound.
+constexpr float kBelow = 0.999f;
 
 }  // namespace
 
@@ -25,19 +27,19 @@ OutlineSearch::OutlineSearch(Vec3 begin, Vec3 end, const EdgeMeasure& measure, f
 
     for (size_t i = 0; i < 3; ++i) {
         const int axis = static_cast<int>(i);
-        wide_end_[i] = Float8{} + end_[axis];
-        wide_axis_[i] = Float8{} + axis_[axis];
-        wide_size_[i] = Float8{} + std::abs(axis_[axis]);
+        wide_end_[i] = all8(end_[axis]);
+        wide_axis_[i] = all8(axis_[axis]);
+        wide_size_[i] = all8(std::abs(axis_[axis]));
     }
-    wide_lo_ = Float8{} + lo_;
-    wide_hi_ = Float8{} + hi_;
-    wide_a0_ = Float8{} + measure.a0;
-    wide_a1_ = Float8{} + measure.a1;
-    wide_b_ = Float8{} + measure.b;
-    wide_h0_ = Float8{} + measure.h0;
-    wide_h1_ = Float8{} + measure.h1;
-    wide_h2_ = Float8{} + measure.h2;
-    least_h_ = Float8{} + 1e-6f * measure.h0;
+    wide_lo_ = all8(lo_);
+    wide_hi_ = all8(hi_);
+    wide_a0_ = all8(measure.a0);
+    wide_a1_ = all8(measure.a1);
+    wide_b_ = all8(measure.b);
+    wide_h0_ = all8(measure.h0);
+    wide_h1_ = all8(measure.h1);
+    wide_h2_ = all8(measure.h2);
+    least_h_ = all8(1e-6f * measure.h0);
 }
 
 void OutlineSearch::enter(const Affine& m) {
@@ -64,10 +66,19 @@ void OutlineSearch::meet(const FoldEdge& edge, Vec3 a, Vec3 b, Vec3 seen_from, u
     }
     if (!(t0 <= t1)) return;
     const Vec3 p = from - axis_ * za, dp = along - axis_ * dz;
+    // Most edges are too wide even with their least blur where they are nearest, whatever their z.
+    const float pdp = dot(p, dp), dp2 = length_squared(dp);
+    const float nearest = dp2 > 0 ? std::clamp(-pdp / dp2, t0, t1) : t0;
+    const float z0 = za + t0 * dz, z1 = za + t1 * dz;
+    const float blur0 = m.a0 + m.a1 * z0, blur1 = m.a0 + m.a1 * z1;
+    const float least_blur2 = blur0 * blur1 > 0 ? std::min(sqr(blur0), sqr(blur1)) : 0;
+    if (kBelow * (least_blur2 + m.b * length_squared(p + dp * nearest)) >=
+        limit_ * std::max(m.denominator(z0), m.denominator(z1)))
+        return;
     const float blur = m.a0 + m.a1 * za;
     const float n0 = blur * blur + m.b * length_squared(p),
-                n1 = 2 * (blur * m.a1 * dz + m.b * dot(p, dp)),
-                n2 = sqr(m.a1 * dz) + m.b * length_squared(dp);
+                n1 = 2 * (blur * m.a1 * dz + m.b * pdp),
+                n2 = sqr(m.a1 * dz) + m.b * dp2;
     const float h0 = m.denominator(za), h1 = (m.h1 + 2 * m.h2 * za) * dz, h2 = m.h2 * dz * dz;
     // Where the quotient of the two polynomials is stationary: again a quadratic.
     float best = kInfinity, best_t = t0;

@@ -111,7 +111,7 @@ inline Float8 OutlineSearch::bound(const Float8& x, const Float8& y, const Float
     const Float8 h = max8(max8(wide_h0_ + z0 * (wide_h1_ + z0 * wide_h2_),
                                wide_h0_ + z1 * (wide_h1_ + z1 * wide_h2_)),
                           least_h_);
-    return z0 <= z1 ? (blur + wide_b_ * r2) / h : Float8{} + kInfinity;
+    return z0 <= z1 ? (blur + wide_b_ * r2) / h : all8(kInfinity);
 }
 
 template <class Velocity>
