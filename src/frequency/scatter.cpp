@@ -113,14 +113,19 @@ LightField through_glossy(const LightField& entered, const ScatterPoint& p, cons
     return reflects ? scatter_tailed(windowed, local) : cov::scatter(windowed, local);
 }
 
-bool has_lobe(const PathVertex& vertex, LobeKind kind) {
-    const auto has = [kind](const LobeShares& shares) {
-        const auto* end = shares.lobes.begin() + shares.count;
-        return std::any_of(shares.lobes.begin(), end,
-                           [kind](const LobeShare& l) { return l.kind == kind; });
+constexpr unsigned bit(LobeKind kind) {
+    return 1u << static_cast<unsigned>(kind);
+}
+
+/// Bits of the lobes that the recorded events have.
+unsigned kinds_of_lobes(const PathVertex& vertex) {
+    unsigned kinds = 0;
+    const auto collect = [&kinds](const LobeShares& shares) {
+        for (size_t i = 0; i < size_t(shares.count); ++i) kinds |= bit(shares.lobes[i].kind);
     };
-    return (vertex.direct > 0 && has(vertex.direct_event.lobes)) ||
-           (vertex.scatters && has(vertex.next_event.lobes));
+    if (vertex.direct > 0) collect(vertex.direct_event.lobes);
+    if (vertex.scatters) collect(vertex.next_event.lobes);
+    return kinds;
 }
 
 }  // namespace
@@ -144,8 +149,9 @@ ScatterPoint::ScatterPoint(const RenderScene& scene, const PathVertex& vertex, f
     motion = {d.velocity, d.angular_velocity};
     const cov::Vec3<double> none;
     is_flat = normals.d1 == none && normals.d2 == none && motion.at_rest();
-    const bool reflects = has_lobe(vertex, LobeKind::diffuse_reflection),
-               transmits = has_lobe(vertex, LobeKind::diffuse_transmission);
+    const unsigned kinds = kinds_of_lobes(vertex);
+    const bool reflects = (kinds & bit(LobeKind::diffuse_reflection)) != 0,
+               transmits = (kinds & bit(LobeKind::diffuse_transmission)) != 0;
     if (!reflects && !transmits) return;
     const auto& m = d.uv_from_tangent;
     const cov::Mat2<double> uv_from_tangent{m[0][0], m[0][1], m[1][0], m[1][1]};

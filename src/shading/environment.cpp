@@ -95,7 +95,9 @@ void Environment::prepare_spectrum() {
         }
     });
     spectrum_.emplace(values, width, height, ImageSpectrum::Wrap::repeat_s);
-    spectrum_height_ = height;
+    // Two rows next to the poles share one factor: there the map's rows shrink to a point.
+    pole_sine_ = std::sin(std::min(2 * kPi / float(height), kPi / 2));
+    is_mirrored_ = light_to_world_.swaps_handedness();
 }
 
 AngularCovariance Environment::spectrum(Vec3 w) const {
@@ -112,18 +114,13 @@ AngularCovariance Environment::spectrum(Vec3 w) const {
     const float inverse = 1 / horizontal;
     const float cos_phi = horizontal > 0 ? local.x * inverse : 1,
                 sin_phi = horizontal > 0 ? local.y * inverse : 0;
-    const Vec3 along_phi{-sin_phi, cos_phi, 0};
-    const Vec3 along_theta{local.z * cos_phi, local.z * sin_phi, -horizontal};
-    a.tangent = Frame::from_z_x(-w, light_to_world_.vector(along_phi));
-    const bool mirrored = dot(light_to_world_.vector(along_theta), a.tangent.y) < 0;
+    a.tangent = Frame::from_z_x(-w, light_to_world_.vector({-sin_phi, cos_phi, 0}));
 
-    // Two rows next to the poles share one factor: there the map's rows shrink to a point.
-    const float sine =
-        std::max(horizontal, std::sin(std::min(2 * kPi / float(spectrum_height_), kPi / 2)));
+    const float sine = std::max(horizontal, pole_sine_);
     const float s_per_radian = 1 / (2 * kPi * sine), t_per_radian = 1 / kPi;
     const SpatialCovariance2 c = spectrum_->at(phi / (2 * kPi), theta / kPi);
     a.a11 = c.ss * s_per_radian * s_per_radian;
-    a.a12 = c.st * s_per_radian * t_per_radian * (mirrored ? -1.0f : 1.0f);
+    a.a12 = c.st * s_per_radian * t_per_radian * (is_mirrored_ ? -1.0f : 1.0f);
     a.a22 = c.tt * t_per_radian * t_per_radian;
     return a;
 }
