@@ -24,7 +24,8 @@ void expect_same(const cov::Jet<double>& a, const cov::Jet<double>& b) {
 
 /// Glossy reflections by a border of glass, of metal, and by one without Fresnel's factor.
 LobeShare lobe_of(int i, Rng& rng) {
-    LobeShare lobe{LobeKind::glossy_reflection};
+    LobeShare lobe;
+    lobe.kind = LobeKind::glossy_reflection;
     lobe.alpha_x = 0.02f + rng.next_float();
     lobe.alpha_y = 0.02f + rng.next_float();
     if (i % 3 == 0) return lobe;
