@@ -28,9 +28,9 @@ constexpr float kWideLobe = 0.4f;
 /// factor give a window of at most a seventh of the cosine's.
 constexpr double kEvenTransmission = 0.7;
 
-/// Even light that meets a flat surface at less than this angle (its cosine) stays even: what the
-/// cosine and masking make of it is at most 1.1 cycles per radian wide (1/(pi 0.3)), where the
-/// widest filter, of 15 pixels, passes more even at a hundred pixels per radian.
+/// Even light that meets a flat surface above this cosine stays even: what the cosine and masking
+/// make of it is at most 1.1 cycles per radian wide, 1/(pi 0.3), and the widest filter, of 15
+/// pixels, passes as much at a hundred pixels per radian.
 constexpr double kEvenCosine = 0.3;
 
 /// The same from all places and directions, at all times.
@@ -143,7 +143,7 @@ ScatterPoint::ScatterPoint(const RenderScene& scene, const PathVertex& vertex, f
         const Frame turned = Frame::from_z_x(vertex.shading.z, d.tangent.x);
         const auto [k11, k12, k22] = map.curvature();
         normals = {turned.z, turned.x * (d.k11 + k11) + turned.y * (d.k12 + k12),
-                     turned.x * (d.k12 + k12) + turned.y * (d.k22 + k22)};
+                   turned.x * (d.k12 + k12) + turned.y * (d.k22 + k22)};
         facing = cov::shading_surface(surface, normals);
     }
     motion = {d.velocity, d.angular_velocity};
@@ -203,8 +203,8 @@ LightField ScatterSum::through_diffuse(const LightField& entered,
         cov::Sym2<double> angular = entered.sigma.angular();
         if (coated) angular = angular + coat_window(lobe, p, entered.frame);
         left.sigma = entered.sigma;
-        left.sigma.set_angular(
-            angular + cov::diffuse_window(entered.frame, p.facing, emitter, angular));
+        left.sigma.set_angular(angular +
+                               cov::diffuse_window(entered.frame, p.facing, emitter, angular));
         left.sigma = cov::slice_angular(left.sigma);
     }
     left.sigma.set_spatial(left.sigma.spatial() + texture);
@@ -248,14 +248,12 @@ void ScatterSum::add(const LightField& arriving, const cov::Emitter<double>& emi
     }
     if (!(kept > 0)) return add({{}, cov::frame_along<double>(point_.outgoing)}, weight);
     const LightField entered =
-        is_even(arriving)
-            ? arriving
-            : cov::surface_enter<double>(cov::motion_enter(arriving, point_.motion),
-                                         point_.surface, point_.normals);
+        is_even(arriving) ? arriving
+                          : cov::surface_enter<double>(cov::motion_enter(arriving, point_.motion),
+                                                       point_.surface, point_.normals);
     for (size_t i = 0; i < size_t(lobes.count); ++i)
         if (weights[i] > 0)
-            add(through(entered, emitter, lobes.lobes[i], rule),
-                weight * (weights[i] / kept));
+            add(through(entered, emitter, lobes.lobes[i], rule), weight * (weights[i] / kept));
 }
 
 void ScatterSum::add(const LightField& left, double weight) {

@@ -76,8 +76,7 @@ void OutlineSearch::meet(const FoldEdge& edge, Vec3 a, Vec3 b, Vec3 seen_from, u
         limit_ * std::max(m.denominator(z0), m.denominator(z1)))
         return;
     const float blur = m.a0 + m.a1 * za;
-    const float n0 = blur * blur + m.b * length_squared(p),
-                n1 = 2 * (blur * m.a1 * dz + m.b * pdp),
+    const float n0 = blur * blur + m.b * length_squared(p), n1 = 2 * (blur * m.a1 * dz + m.b * pdp),
                 n2 = sqr(m.a1 * dz) + m.b * dp2;
     const float h0 = m.denominator(za), h1 = (m.h1 + 2 * m.h2 * za) * dz, h2 = m.h2 * dz * dz;
     // Where the quotient of the two polynomials is stationary: again a quadratic.

@@ -58,7 +58,7 @@ class Environment {
     Rgb scale_{1};
     std::optional<EnvironmentMap> map_;
     std::optional<ImageSpectrum> spectrum_;
-    float pole_sine_ = 1;      ///< of the spectrum's rows next to the poles
+    float pole_sine_ = 1;       ///< of the spectrum's rows next to the poles
     bool is_mirrored_ = false;  ///< the light's space in the world
 };
 

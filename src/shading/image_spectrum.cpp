@@ -44,8 +44,8 @@ inline AxisTaps axis_taps(float coordinate, float cells_per_unit, int n, bool re
     const float below = std::floor(x);
     // At most one cell beyond either end.
     const int first = std::min(int(below), n - 1), second = first + 1;
-    return {first >= 0 ? first : (repeats ? n - 1 : 0),
-            second < n ? second : (repeats ? 0 : n - 1), x - below};
+    return {first >= 0 ? first : (repeats ? n - 1 : 0), second < n ? second : (repeats ? 0 : n - 1),
+            x - below};
 }
 
 }  // namespace

@@ -83,8 +83,7 @@ std::optional<Vec3> EmitterSpectrum::nearest_border(Vec3 position, const Transfo
     return q ? std::optional(now.point(motion.start().inverse().point(*q))) : std::nullopt;
 }
 
-SourceSpectrum EmitterSpectrum::at(Vec3 position, Vec3 normal, float time,
-                                   bool with_border) const {
+SourceSpectrum EmitterSpectrum::at(Vec3 position, Vec3 normal, float time, bool with_border) const {
     const AnimatedTransform& motion = shape_->description.object_to_world;
     std::optional<Transform> moved;
     if (motion.is_animated()) moved = motion.at(time);

@@ -13,8 +13,7 @@ namespace {
 namespace cov = covariance;
 
 void expect_same(const cov::Jet<double>& a, const cov::Jet<double>& b) {
-    const double tolerance =
-        1e-9 * (1 + std::abs(b.uu) + std::abs(b.vv) + b.u * b.u + b.v * b.v);
+    const double tolerance = 1e-9 * (1 + std::abs(b.uu) + std::abs(b.vv) + b.u * b.u + b.v * b.v);
     EXPECT_NEAR(a.u, b.u, tolerance);
     EXPECT_NEAR(a.v, b.v, tolerance);
     EXPECT_NEAR(a.uu, b.uu, tolerance);
@@ -35,7 +34,8 @@ LobeShare lobe_of(int i, Rng& rng) {
 }
 
 LocalAxes axes_along(Vec3 direction) {
-    const auto f = cov::frame_along<double>(cov::Vec3<double>(direction));
+    // Of unit length in double, as the closed forms take for granted.
+    const auto f = cov::frame_along<double>(cov::normalized_or<double>(direction, {}));
     return {f.x, f.y, f.z};
 }
 

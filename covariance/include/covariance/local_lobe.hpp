@@ -69,8 +69,7 @@ template <std::floating_point T>
 
 /// `local_lobe` of f = exp(l), from the derivatives of l.
 template <std::floating_point T>
-[[nodiscard]] Sym2<T> local_lobe_of_log(const Jet<T>& l,
-                                        const Sym2<NonDeduced<T>>& peak) noexcept {
+[[nodiscard]] Sym2<T> local_lobe_of_log(const Jet<T>& l, const Sym2<NonDeduced<T>>& peak) noexcept {
     const Sym2<T> steep = (1 / four_pi_sq<T>)*Sym2<T>{l.u * l.u, l.u * l.v, l.v * l.v};
     const Sym2<T> local = absolute(curvature_of_log(l)) + steep;
     return std::isfinite(trace(local)) ? limited_by(local, peak) : peak;
