@@ -1,6 +1,7 @@
 /// First and second derivatives of the logarithm of a GGX reflection, in closed form: what
-/// `lobe_function` and `masked_cosine` give with scalars that carry derivatives, for a tenth of the
-/// operations. (tests/unit/frequency_ggx_derivatives_test.cpp holds one against the other.)
+/// `lobe_function` and `masked_cosine` give with scalars that carry derivatives, for less than
+/// half of the instructions. (tests/unit/frequency_ggx_derivatives_test.cpp holds one against the
+/// other.)
 #pragma once
 
 #include <optional>
