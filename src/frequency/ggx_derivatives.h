@@ -1,7 +1,6 @@
-/// First and second derivatives of the logarithm of a GGX reflection, in closed form: what
-/// `lobe_function` and `masked_cosine` give with scalars that carry derivatives, for less than
-/// half of the instructions. (tests/unit/frequency_ggx_derivatives_test.cpp holds one against the
-/// other.)
+/// First and second derivatives of the logarithm of a GGX reflection and of its masking, in closed
+/// form: what `lobe_function` and Ggx::g2_over_cos_o give with scalars that carry derivatives, for
+/// less than half of the instructions.
 #pragma once
 
 #include <optional>
@@ -22,7 +21,7 @@ struct LocalAxes {
 std::optional<covariance::Jet<double>> log_reflection(const LobeShare& lobe, LocalAxes wo,
                                                       covariance::Vec3<double> wi);
 
-/// The same for masking with its cosine (`masked_cosine`) times the solid angle per area of slopes,
+/// The same for masking with its cosine, G2 / cos(wo), times the solid angle per area of slopes,
 /// about the direction `wi` towards the light.
 covariance::Jet<double> log_masked_cosine(const LobeShare& lobe, covariance::Vec3<double> wo,
                                           LocalAxes wi);
