@@ -40,9 +40,12 @@ cov::Emitter<double> emitter_at(const PathVertex& v, double distance) {
 /// textures count as visible.
 constexpr double kSmallestShare = 0.1;
 
-/// Light below this part of a path's luminance is not followed: whatever a filter does to it
-/// changes a pixel by less than counts as a change (docs/prediction.md).
+/// A contribution or lobe below this part of a path's luminance is not followed: whatever a filter
+/// does to it alone changes a pixel by less than counts as a change (docs/prediction.md).
 constexpr double kInvisible = 0.02;
+/// All together they may be as much of a path's light as one contribution may be that is carried
+/// without its occluders; where they are more, every one is followed.
+constexpr double kLeastFollowed = 1 - kSmallestShare;
 
 cov::SymmetricMatrix5<double> to_sensor(const LightField& field, const SensorGeometry& g) {
     if (cov::trace(field.sigma) == 0) return {};
@@ -87,8 +90,7 @@ LightField PathReplay::to_camera(const LightField& field, const OccluderQuery::S
 PathCovariance PathReplay::operator()(const PathRecord& record, LightPart part) const {
     double kept = 0;
     const PathCovariance bright = follow(record, part, kInvisible, kept);
-    // Only where most of a path's light is made of small shares do these matter.
-    if (!(bright.weight > 0) || kept > 0.9 * bright.weight) return bright;
+    if (!(bright.weight > 0) || kept > kLeastFollowed * bright.weight) return bright;
     return follow(record, part, 0, kept);
 }
 
