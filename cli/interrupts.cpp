@@ -1,7 +1,6 @@
 #include "cli/interrupts.h"
 
 #include <csignal>
-#include <utility>
 
 namespace covtrace::cli {
 

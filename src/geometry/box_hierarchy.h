@@ -12,6 +12,10 @@
 
 #include "core/vec.h"
 
+// How such vectors are passed depends on the processor that is compiled for, which is one for all
+// of the program.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace covtrace {
 
 /// Eight floats that are computed with together.

@@ -179,8 +179,8 @@ class HybridRender {
         job_.monitor.update("reconstruction", job_.fraction(count), count);
         const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
         Halves halves = halves_of(s_.films);
-        if (last)  // the layers of the image have no need of what only weights and plans are made
-                   // of
+        // The layers of the image have no need of what only weights and plans are made of.
+        if (last)
             for (Film& film : s_.films) {
                 film.feature_squares = std::vector<FeatureSquares>();
                 film.rays = std::vector<uint32_t>();

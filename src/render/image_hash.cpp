@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 std::vector<fs::path> image_files(const SceneDescription& scene) {
     std::set<fs::path> files;
     for (const TextureDescription& texture : scene.textures)
-        // What is embedded in the scene's files is part of their own hash.
         if (const auto* image = std::get_if<ImageTexture>(&texture.value); image && !image->content)
             files.insert(image->file);
     for (const LightDescription& light : scene.lights) {

@@ -56,7 +56,7 @@ Comparison compare(const LensBoard& board, std::array<int, 2> size, const Forced
             const auto& f = open[at];
             const double extra = r * r / (4 * kSharpness * kSharpness);
             if (y < size[1] / 8) c.widths_at_top.push_back(std::sqrt(double(f.xx)));
-            if (r < 0.5 * size[1] / 135) continue;
+            if (r < 0.5) continue;
             c.ratio.push_back(std::sqrt(double(f.xx) / (double(closed[at].xx) + extra)));
             c.ratio.push_back(std::sqrt(double(f.yy) / (double(closed[at].yy) + extra)));
             c.blur.push_back(r);
@@ -115,10 +115,9 @@ Section lens(Workshop& workshop) {
 
     Table table{
         "Deviation of the forced filters over the closed form, of pixels that are out of focus by "
-        "a "
-        "pixel or more",
+        "a pixel or more",
         {"lens", "covariance paths", "pixels", "median ratio", "5 %", "95 %",
-         "median circle of confusion", "roundness (short over long axis)"},
+         "median radius of the circle of confusion", "roundness (short over long axis)"},
         {},
         s.figures[0].commands};
     table.commands.insert(table.commands.begin(), one_path_commands.begin(),
@@ -155,13 +154,11 @@ Section lens(Workshop& workshop) {
         "different depths, whose circles of confusion differ by some δr. Each path's covariance is "
         "right for its own point; their mean also has the spread of the shears, which integration "
         "over the lens takes for detail that the lens cannot blur. So filters of several paths "
-        "grow "
-        "to at most r/δr pinhole filters: nothing where the texture has its own bandwidth, but "
-        "much "
-        "less than the closed form where it is forced to the highest frequency and foreshortened. "
+        "grow to at most r/δr pinhole filters: nothing where the texture has its own bandwidth, "
+        "but much less than the closed form where it is forced to the highest frequency and "
+        "foreshortened. "
         "These filters are too narrow, which costs noise and adds no bias. The claim is about "
-        "single paths; the table "
-        "has both.");
+        "single paths; the table has both.");
     const double middle = median(all_ratios), low = quantile(all_ratios, 0.05),
                  high = quantile(all_ratios, 0.95);
     s.claims.push_back(

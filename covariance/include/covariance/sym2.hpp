@@ -117,8 +117,8 @@ template <std::floating_point T>
 [[nodiscard]] Eigen2<T> eigen(const Sym2<T>& a) noexcept {
     const T mean = (a.xx + a.yy) / 2;
     const T half = (a.xx - a.yy) / 2;
-    // hypot without its care for overflow: squares of entries this library meets may leave the range of
-    // float, their ratio does not.
+    // hypot, written out: squares of entries this library meets may leave the range of float, their
+    // ratio does not.
     const T longer = std::max(std::abs(half), std::abs(a.xy));
     const T shorter = std::min(std::abs(half), std::abs(a.xy));
     if (!(longer > 0)) return {mean, mean, 1, 0};
