@@ -1,0 +1,140 @@
+"""A scene with motion blur, made in Blender for both sides of bench/peers. Inside Blender:
+
+    blender --background --factory-startup -noaudio --python bench/blender_scene.py -- make FOLDER WxH
+    blender --background -noaudio FOLDER/scene.blend --threads N --python bench/blender_scene.py -- render SPP SEED IMAGE.exr
+
+`make` writes FOLDER/scene.blend and, by the add-on's exporter, FOLDER/scene.pbrt with the same meshes, materials, lights,
+camera, motion and most bounces. `render` is Cycles' render of the .blend, without adaptive sampling and denoiser.
+
+A room open to a grey sky and to the camera, a lamp under its ceiling, a ball and a block that cross it, a block that
+turns, a smooth and a rough metal ball that rest: matt and metal are what both engines compute alike."""
+import math
+import pathlib
+import sys
+
+import bpy
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+MOST_BOUNCES = 5
+SHUTTER = 1.0  # in frames, half of it before the frame
+
+
+def matt(name, colour):
+    return shader(name, "ShaderNodeBsdfDiffuse", Color=(*colour, 1))
+
+
+def metal(name, colour, roughness):
+    return shader(name, "ShaderNodeBsdfGlossy", Color=(*colour, 1), Roughness=roughness)
+
+
+def shader(name, kind, **inputs):
+    made = bpy.data.materials.new(name)
+    made.use_nodes = True
+    tree = made.node_tree
+    node = tree.nodes.new(kind)
+    for key, value in inputs.items():
+        node.inputs[key].default_value = value
+    tree.links.new(node.outputs["BSDF"], tree.nodes["Material Output"].inputs["Surface"])
+    return made
+
+
+def block(material, location, size):
+    bpy.ops.mesh.primitive_cube_add(size=1, location=location, scale=size)
+    return with_material(material)
+
+
+def ball(material, location, radius):
+    bpy.ops.mesh.primitive_uv_sphere_add(radius=radius, location=location, segments=64, ring_count=32)
+    bpy.ops.object.shade_smooth()
+    return with_material(material)
+
+
+def with_material(material):
+    bpy.context.object.data.materials.append(material)
+    return bpy.context.object
+
+
+def move(moved, path, by):
+    """Along `by` between opening and closing of the shutter, evenly; starts where it is."""
+    at = getattr(moved, path).copy()
+    for frame, share in ((0, -0.5), (2, 1.5)):  # the shutter is from frame 0.5 to 1.5
+        setattr(moved, path, [a + share * b for a, b in zip(at, by)])
+        moved.keyframe_insert(path, frame=frame)
+    for curve in moved.animation_data.action.fcurves:
+        for key in curve.keyframe_points:
+            key.interpolation = "LINEAR"
+
+
+def build():
+    grey, red, blue = (matt("grey", (0.7, 0.7, 0.7)), matt("red", (0.6, 0.1, 0.1)), matt("blue", (0.1, 0.2, 0.6)))
+    for name, material, location, size in (
+            ("floor", grey, (0, 0, -0.05), (6, 6, 0.1)), ("back", grey, (0, 3, 2), (6, 0.1, 4)),
+            ("left", red, (-3, 0, 2), (0.1, 6, 4)), ("right", blue, (3, 0, 2), (0.1, 6, 4))):
+        block(material, location, size).name = name
+    move(ball(matt("yellow", (0.8, 0.6, 0.1)), (-1.6, -0.5, 0.6), 0.6), "location", (1.2, 0, 0))
+    move(block(matt("green", (0.2, 0.6, 0.2)), (1.2, 0.5, 1.6), (0.8, 0.8, 0.8)), "location", (0, 0, 0.6))
+    move(block(matt("white", (0.8, 0.8, 0.8)), (-0.3, 1.2, 0.5), (1, 1, 1)), "rotation_euler", (0, 0, math.radians(30)))
+    ball(metal("mirror", (0.9, 0.9, 0.9), 0.05), (1.4, -1.2, 0.5), 0.5)
+    ball(metal("rough", (0.9, 0.6, 0.3), 0.4), (0.2, -1.4, 0.4), 0.4)
+
+    bpy.ops.object.light_add(type="AREA", location=(0, 0, 3.9))
+    lamp = bpy.context.object.data
+    lamp.energy, lamp.size = 150, 1
+    world = bpy.context.scene.world = bpy.data.worlds.new("sky")
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.3, 0.35, 0.4, 1)
+    bpy.ops.object.camera_add(location=(0, -9, 2), rotation=(math.radians(88.5), 0, 0))
+    bpy.context.scene.camera = bpy.context.object
+
+
+def make(folder, resolution):
+    sys.dont_write_bytecode = True
+    sys.path.insert(0, str(ROOT / "blender"))
+    import covtrace_blender
+    from covtrace_blender import export_scene
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    covtrace_blender.register()
+    build()
+    scene = bpy.context.scene
+    scene.frame_set(1)
+    render = scene.render
+    render.resolution_x, render.resolution_y = map(int, resolution.split("x"))
+    render.use_motion_blur, render.motion_blur_shutter = True, SHUTTER
+    scene.covtrace.max_depth = MOST_BOUNCES + 1  # of scatterings, the first of which Cycles does not count
+    settings = scene.cycles
+    render.engine = "CYCLES"
+    settings.use_adaptive_sampling = settings.use_denoising = False
+    settings.max_bounces = MOST_BOUNCES
+    for kind in ("diffuse_bounces", "glossy_bounces", "transmission_bounces", "transparent_max_bounces"):
+        setattr(settings, kind, MOST_BOUNCES)
+    settings.sample_clamp_direct = settings.sample_clamp_indirect = settings.blur_glossy = 0
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "scene.blend"))
+
+    class Engine:
+        """What the exporter asks of a render."""
+        frame_set = staticmethod(lambda frame, subframe: scene.frame_set(frame, subframe=subframe))
+
+    exporter = export_scene.SceneExporter(Engine, bpy.context.evaluated_depsgraph_get(), str(folder))
+    exporter.write()
+    if exporter.warnings:
+        sys.exit("\n".join(exporter.warnings))
+
+
+def render(samples, seed, image):
+    scene = bpy.context.scene
+    scene.cycles.samples, scene.cycles.seed = samples, seed
+    settings = scene.render.image_settings
+    settings.file_format, settings.color_depth, settings.color_mode = "OPEN_EXR", "32", "RGB"
+    scene.render.filepath = str(image)
+    bpy.ops.render.render(write_still=True)
+
+
+def main():
+    command, *arguments = sys.argv[sys.argv.index("--") + 1:]
+    if command == "make":
+        make(pathlib.Path(arguments[0]), arguments[1])
+    else:
+        render(int(arguments[0]), int(arguments[1]), arguments[2])
+
+
+main()
