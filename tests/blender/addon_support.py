@@ -1,5 +1,6 @@
 """What the tests of the add-on share: they run inside Blender, and render by covtrace and by Cycles."""
 
+import faulthandler
 import os
 import pathlib
 import sys
@@ -18,6 +19,7 @@ import exr
 from covtrace_blender import export_scene
 
 WIDTH, HEIGHT = 32, 24
+MOST_SECONDS = 180
 
 
 def render(engine_name, samples):
@@ -57,6 +59,9 @@ class BlenderTest(unittest.TestCase):
     MATT = dict(Base_Color=(0.5, 0.5, 0.5, 1), Specular=0.0, Roughness=1.0)
 
     def setUp(self):
+        # A test that hangs says where.
+        faulthandler.dump_traceback_later(MOST_SECONDS, exit=True)
+        self.addCleanup(faulthandler.cancel_dump_traceback_later)
         bpy.ops.wm.read_factory_settings(use_empty=True)
         if not hasattr(bpy.types.Scene, "covtrace"):
             covtrace_blender.register()
