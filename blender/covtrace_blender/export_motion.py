@@ -13,8 +13,9 @@ import numpy as np
 # Radian; its arc is 1/800 of the way off the chord.
 LEAST_TURN = 0.01
 
-# Of a piece's extent: below a hundredth of it a direction has none.
-RIDGE = 1e-4
+# Square of a share of a piece's extent: directions below a tenth of it hardly stretch. What noise would make of them turns
+# normals until patches go dark (decision 0057).
+RIDGE = 1e-2
 
 # Of a piece's volume; what is squeezed to nothing can't be undone.
 MOST_STRETCH = 20.0

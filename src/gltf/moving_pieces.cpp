@@ -15,8 +15,9 @@ using Triangle = std::array<uint32_t, 3>;
 
 /// Joints bend in a few steps each; every piece is an instance that moves.
 constexpr size_t kMostPieces = 256;
-/// Of a piece's extent: below a hundredth of it a direction has none.
-constexpr double kRidge = 1e-4;
+/// Square of a share of a piece's extent: directions below a tenth of it hardly stretch. What noise
+/// would make of them turns normals until patches go dark (decision 0057).
+constexpr double kRidge = 1e-2;
 /// Of a piece's volume; what is squeezed to nothing can't be undone.
 constexpr double kMostStretch = 20;
 
