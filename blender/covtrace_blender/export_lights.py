@@ -4,7 +4,9 @@ import math
 import os
 
 import numpy as np
+from mathutils import Euler, Matrix
 
+from .blackbody import blackbody, blackbody_temperature
 from .export_materials import numbers
 from .export_textures import pixels, write_pfm
 
@@ -52,12 +54,16 @@ def _shader_colour(lamp, warn):
     if shader.type != "EMISSION":
         warn(f"lamp '{lamp.name}': its shader '{shader.name}' is not supported; its own colour and power are used")
         return (1, 1, 1)
+    colour = tuple(shader.inputs["Color"].default_value)[:3]
     for socket in shader.inputs:
-        if socket.is_linked:
+        temperature = blackbody_temperature(socket)
+        if temperature is not None:
+            colour = blackbody(temperature)
+        elif socket.is_linked:
             warn(f"lamp '{lamp.name}': what is linked to '{socket.name}' of its shader is not supported; "
                  "the socket's own value is used")
     strength = shader.inputs["Strength"].default_value
-    return tuple(c * strength for c in tuple(shader.inputs["Color"].default_value)[:3])
+    return tuple(c * strength for c in colour)
 
 
 def _write_area(out, lamp, colour):
@@ -85,6 +91,30 @@ def area_scale(lamp, matrix):
     return 1 / max(abs(matrix.col[0].xyz.length * matrix.col[1].xyz.length), 1e-12) if lamp.type == "AREA" else 1
 
 
+def _world_turn(node, warn):
+    """The matrix that takes directions to the image's coordinates: the rotation of a Mapping node."""
+    if not node.inputs["Vector"].is_linked:
+        return Matrix()
+    source = node.inputs["Vector"].links[0].from_node
+    if source.type == "TEX_COORD":
+        if node.inputs["Vector"].links[0].from_socket.name == "Generated":
+            return Matrix()
+    elif source.type == "MAPPING":
+        vector = source.inputs["Vector"]
+        is_plain = vector.is_linked and vector.links[0].from_node.type == "TEX_COORD" and \
+            vector.links[0].from_socket.name == "Generated"
+        names = [name for name in ("Location", "Rotation", "Scale") if name in source.inputs]
+        values = {name: tuple(source.inputs[name].default_value) for name in names}
+        if is_plain and not any(source.inputs[name].is_linked for name in names) and \
+                max(map(abs, values.get("Location", (0, 0, 0)))) < 1e-6 and \
+                max(abs(s - 1) for s in values["Scale"]) < 1e-6:
+            turn = Euler(values["Rotation"]).to_matrix().to_4x4()
+            return turn.inverted() if source.vector_type == "TEXTURE" else turn
+    warn(f"the world's image is not turned: only the rotation of a Mapping node of generated coordinates is, "
+         f"not what '{source.name}' does")
+    return Matrix()
+
+
 def write_world(out, world, folder, warn):
     if world is None:
         return
@@ -105,8 +135,7 @@ def write_world(out, world, folder, warn):
         socket = background.inputs["Color"]
         node = socket.links[0].from_node if socket.is_linked else None
     if node is not None and node.type == "TEX_ENVIRONMENT" and node.image and node.projection == "EQUIRECTANGULAR":
-        if node.inputs["Vector"].is_linked:
-            warn("the world's image is not turned: its coordinates are those of the generated ones")
+        turn = _world_turn(node, warn)
         values = pixels(node.image)[..., :3] * strength
         height, width, _ = values.shape
         if width != 2 * height:
@@ -115,9 +144,12 @@ def write_world(out, world, folder, warn):
         # Blender's azimuth runs the other way, from the middle of the image.
         columns = (width // 2 - 1 - np.arange(width)) % width
         write_pfm(os.path.join(folder, "world.pfm"), values[:, columns])
-        out.write('LightSource "infinite" "string filename" "world.pfm"\n')
+        out.write(f'AttributeBegin\nConcatTransform [{numbers(turn.inverted()[row][column] for column in range(4) for row in range(4))}]\n'
+                  'LightSource "infinite" "string filename" "world.pfm"\nAttributeEnd\n')
         return
-    if node is not None:
+    if node is not None and (temperature := blackbody_temperature(socket)) is not None:
+        colour = blackbody(temperature)
+    elif node is not None:
         warn(f"world node '{node.name}' is not supported; the background's own colour is used")
     if max(colour) * strength > 0:
         out.write(f'LightSource "infinite" "rgb L" [{numbers(c * strength for c in colour)}]\n')

@@ -30,22 +30,21 @@ def uv_map(mesh, names):
     """
     active = next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
     wanted = [name or active for name in names] or [active]
-    chosen = wanted[0] if wanted[0] in mesh.uv_layers else active
+    chosen = wanted[0] if wanted[0] and wanted[0] in mesh.uv_layers else active
     return chosen, all(name == chosen for name in wanted)
 
 
-def edges(mesh):
-    """(n, 2) vertices."""
-    values = np.empty(2 * len(mesh.edges), dtype=np.int32)
-    mesh.edges.foreach_get("vertices", values)
-    return values.reshape(-1, 2)
+def triangles(mesh):
+    """(n, 3) vertices."""
+    return _triangles(mesh, "vertices")
 
 
-def parts(mesh, uv_of_slot, piece_of_vertex=None):
+def parts(mesh, uv_of_slot, piece_of_triangle=None):
     """Yields (material slot, piece, positions, normals or None, uvs or None, triangles).
 
-    uv_of_slot(slot): the name of its UV map, or None. piece_of_vertex: pieces that stay apart; None: all is piece 0. Corners that agree in everything are one vertex, so that smooth surfaces are closed. Faces without smooth
-    shading have no normals: the triangles' own are theirs.
+    uv_of_slot(slot): the name of its UV map, or None. piece_of_triangle: pieces that stay apart; None: all is piece 0. Corners that
+    agree in everything are one vertex, so that smooth surfaces are closed. Faces without smooth shading have no normals: the
+    triangles' own are theirs.
     """
     mesh.calc_loop_triangles()
     if not mesh.loop_triangles:
@@ -62,7 +61,7 @@ def parts(mesh, uv_of_slot, piece_of_vertex=None):
         normals = np.empty(3 * len(mesh.loops), dtype=np.float32)
         mesh.loops.foreach_get("normal", normals)
         normals = normals.reshape(-1, 3)
-    piece = np.zeros(len(slots), dtype=int) if piece_of_vertex is None else piece_of_vertex[vertices[:, 0]]
+    piece = np.zeros(len(slots), dtype=int) if piece_of_triangle is None else piece_of_triangle
     for slot, number in np.unique(np.column_stack((slots, piece)), axis=0):
         name, uvs = uv_of_slot(int(slot)), None
         if name is not None:

@@ -6,7 +6,7 @@ import os
 import numpy as np
 from mathutils import Matrix
 
-from . import export_lights, export_meshes, export_motion, ply
+from . import export_lights, export_meshes, export_motion, export_strands, ply
 from .export_materials import MaterialExporter, numbers
 
 # Blender's cameras look along -z, pbrt's along +z; both have x to the right and y up.
@@ -18,8 +18,7 @@ def matrix_text(matrix):
     return numbers(matrix[row][column] for column in range(4) for row in range(4))
 
 
-# Of the way that vertices go: less is not seen in a streak.
-MOST_LEFT_SILENTLY = 0.05
+SURFACES = ("MESH", "CURVE", "SURFACE", "FONT", "META")
 
 
 def is_same(a, b):
@@ -82,9 +81,14 @@ class SceneExporter:
         matrices = {key: instance.matrix_world.copy() for key, instance in self._instances()}
         matrices["camera"] = self._camera().matrix_world.copy()
         self.closing = {instance.object.name_full: export_meshes.positions(instance.object.data)
-                        for _, instance in self._instances() if instance.object.type == "MESH"}
+                        for _, instance in self._instances() if instance.object.type == "MESH" and self._is_own(instance.object)}
         self._go_to(frame - half)
         return matrices, (-half, half)
+
+    def _is_own(self, obj):
+        """Whether its data is that of the object of its name: geometry nodes place other data under their object's name."""
+        own = obj.original.evaluated_get(self.depsgraph).data
+        return own is not None and own.as_pointer() == obj.data.as_pointer()
 
     def _go_to(self, time):
         frame = math.floor(time)
@@ -92,7 +96,7 @@ class SceneExporter:
 
     def _instances(self):
         for instance in self.depsgraph.object_instances:
-            if instance.show_self:
+            if instance.show_self or instance.show_particles and instance.object.particle_systems:
                 parent = instance.parent.name_full if instance.parent else ""
                 yield (instance.object.name_full, parent, tuple(instance.persistent_id)), instance
 
@@ -147,30 +151,35 @@ class SceneExporter:
             obj = instance.object
             matrix = instance.matrix_world.copy()
             end = moving.get(key)
-            if obj.type == "LIGHT":
+            if obj.type == "LIGHT" and instance.show_self:
                 if end is not None and not is_same(matrix, end):
                     self.warn(f"lamp '{obj.name}' moves while the shutter is open; it stays where it is at the opening")
                 self._write_lamp(obj.data, matrix)
-            elif obj.type in ("MESH", "CURVE", "SURFACE", "FONT", "META"):
-                if obj.name_full not in exported:
-                    exported[obj.name_full] = self._export_parts(obj)
-                parts = exported[obj.name_full]
+            elif obj.type in SURFACES or obj.type == "CURVES":
+                # An emitter may be hidden behind its strands, and strands behind their emitter.
+                shown = (obj.name_full, obj.data.as_pointer(), instance.show_self, instance.show_particles)
+                if shown not in exported:
+                    exported[shown] = (self._export_parts(obj) if instance.show_self else []) + (
+                        self._export_strands(obj) if instance.show_particles else [])
+                parts = exported[shown]
                 if not parts:
                     continue
                 if abs(matrix.determinant()) < 1e-30:
                     continue
                 if instance.is_instance and not any(emission for *_, emission, _ in parts):
-                    if obj.name_full not in shared:
-                        shared[obj.name_full] = f"object {len(shared)}"
-                        self.out.write(f'ObjectBegin "{shared[obj.name_full]}"\n')
+                    if shown not in shared:
+                        shared[shown] = f"object {len(shared)}"
+                        self.out.write(f'ObjectBegin "{shared[shown]}"\n')
                         self._write_parts(parts)
                         self.out.write("ObjectEnd\n")
                     self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end) +
-                                   f'ObjectInstance "{shared[obj.name_full]}"\nAttributeEnd\n')
+                                   f'ObjectInstance "{shared[shown]}"\nAttributeEnd\n')
                 else:
                     self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end))
                     self._write_parts(parts)
                     self.out.write("AttributeEnd\n")
+            elif obj.type in ("VOLUME", "POINTCLOUD", "GPENCIL"):
+                self.warn(f"object '{obj.name}' is a {obj.type.lower()}, which is not rendered")
 
     def _write_lamp(self, lamp, matrix):
         scale = export_lights.area_scale(lamp, matrix)
@@ -183,16 +192,19 @@ class SceneExporter:
         export_lights.write_lamp(self.out, Scaled(), placement("ConcatTransform", matrix, None), self.warn)
 
     def _export_parts(self, obj):
-        """[(file, material name, alpha, emission, motion in object space or None)] of an evaluated object, its files and
+        """[(file, material name, alpha, emission, (transform at the opening, at the closing) or None)] of an evaluated object, its files and
         materials written."""
+        if obj.type == "CURVES":
+            tubes = export_strands.hair_curves(obj.data)
+            return [] if tubes is None else [self._tubes_part(obj, 0, *tubes)]
         mesh = obj.to_mesh()
         if mesh is None:
             return []
         piece, motions = self._motions(obj, mesh)
-        parts, slots = [], obj.material_slots
+        parts = []
 
         def material_of(slot):
-            return self.materials.material(slots[min(slot, len(slots) - 1)].material if slots else None)
+            return self._material_of(obj, slot)
 
         def uv_of_slot(slot):
             chosen, is_all = export_meshes.uv_map(mesh, material_of(slot)[3])
@@ -204,33 +216,64 @@ class SceneExporter:
             if not np.isfinite(positions).all():
                 self.warn(f"object '{obj.name}' has vertices that are not finite and is left out")
                 break
-            file = f"mesh{len(os.listdir(self.folder))}.ply"
-            ply.write(os.path.join(self.folder, file), positions, normals, uvs, triangles)
-            name, emission, alpha, _ = material_of(slot)
-            parts.append((file, name, alpha, emission, motions[number] if motions else None))
+            motion = None
+            if motions:
+                # Motions are interpolated as turns about the origin, which goes straight: the middle of the piece or,
+                # where joints move it, the point that it turns about.
+                origin = 0.5 * (positions.min(0) + positions.max(0)).astype(float)
+                if any(m.type == "ARMATURE" for m in obj.modifiers):
+                    origin = export_motion.pivot(motions[number], origin)
+                positions = positions - origin
+                place = np.eye(4)
+                place[:3, 3] = origin
+                motion = place, motions[number] @ place
+            parts.append(self._part(obj, slot, positions, normals, uvs, triangles, motion))
         obj.to_mesh_clear()
         return parts
 
+    def _export_strands(self, obj):
+        """The same of its hair."""
+        is_render = self.depsgraph.mode == "RENDER"
+        return [self._tubes_part(obj, *tubes) for tubes in export_strands.particle_systems(obj, is_render)]
+
+    def _tubes_part(self, obj, slot, positions, normals, triangles):
+        if self._material_of(obj, slot)[3]:
+            self.warn(f"object '{obj.name}': strands have no texture coordinates; their images are looked up at one place")
+        uvs = np.zeros((len(positions), 2)) if self._material_of(obj, slot)[3] else None
+        return self._part(obj, slot, positions, normals, uvs, triangles)
+
+    def _material_of(self, obj, slot):
+        materials = [s.material for s in obj.material_slots] if self._is_own(obj) else list(obj.data.materials)
+        return self.materials.material(materials[min(slot, len(materials) - 1)] if materials else None)
+
+    def _part(self, obj, slot, positions, normals, uvs, triangles, motion=None):
+        file = f"mesh{len(os.listdir(self.folder))}.ply"
+        ply.write(os.path.join(self.folder, file), positions, normals, uvs, triangles)
+        name, emission, alpha, _ = self._material_of(obj, slot)
+        return file, name, alpha, emission, motion
+
     def _motions(self, obj, mesh):
-        """(piece of each vertex, motion of each piece) of what changes its shape; (None, None) of what does not."""
-        closing = self.closing.get(obj.name_full) if self.shutter and obj.type == "MESH" else None
+        """(piece of each triangle, motion of each piece) of what changes its shape; (None, None) of what does not."""
+        has_motion = self.shutter and obj.type == "MESH" and self._is_own(obj)
+        closing = self.closing.get(obj.name_full) if has_motion else None
         opening = None if closing is None else export_meshes.positions(mesh)
         if closing is None or np.array_equal(closing, opening):
             return None, None
         if len(closing) != len(opening) or not np.isfinite(closing).all() or not np.isfinite(opening).all():
             self.warn(f"object '{obj.name}' has other vertices when the shutter closes; it keeps those of the opening")
             return None, None
-        piece, motions, left = export_motion.motions(opening, closing, export_meshes.edges(mesh))
-        if left > MOST_LEFT_SILENTLY:
-            self.warn(f"object '{obj.name}' bends while the shutter is open; its connected pieces move rigidly, "
-                      f"up to {100 * left:.0f} % of the way are left out")
+        mesh.calc_loop_triangles()
+        piece, motions, left = export_motion.motions(opening, closing, export_meshes.triangles(mesh))
+        if left > export_motion.MOST_LEFT_SILENTLY:
+            self.warn(f"object '{obj.name}' bends more while the shutter is open than {len(motions)} pieces that each "
+                      f"move as one can follow: {100 * left:.0f} % of the way are left out")
         return piece, motions
 
     def _write_parts(self, parts):
         for file, name, alpha, emission, motion in parts:
             self.out.write("AttributeBegin\n" f'NamedMaterial "{name}"\n')
             if motion is not None:
-                self.out.write(placement("ConcatTransform", np.eye(4), motion))
+                self.out.write(placement("ConcatTransform", *motion))
             if emission:
                 image = f' "string filename" "{emission.texture}"' if emission.texture else ""
                 scale = f'"float scale" {emission.radiance[0]:.9g}' if emission.texture else \

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from .blackbody import blackbody, temperature_of
+
 
 class Value:
     """What a socket gives: a constant, or an image with a treatment."""
@@ -85,6 +87,8 @@ class SocketReader:
     def _node_value(self, node, output, grey):
         if node.type == "RGB" or node.type == "VALUE":
             return self._constant(output.default_value, grey)
+        if node.type == "BLACKBODY" and temperature_of(node) is not None:
+            return self._constant(blackbody(temperature_of(node)), grey)
         if node.type == "TEX_IMAGE" and node.image:
             channel = "A" if output.name == "Alpha" else "grey" if grey else None
             if node.projection != "FLAT":

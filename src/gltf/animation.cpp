@@ -34,13 +34,16 @@ void Animations::read_channel(const Document& document, size_t a, size_t c, Warn
         path = Path::rotation;
     } else if (channel.target_path == "scale") {
         path = Path::scale;
+    } else if (channel.target_path == "weights") {
+        path = Path::weights;
     } else {
         log.add(document.place(place),
-                "only translation, rotation and scale of nodes are animated; the rest is left out");
+                "only translation, rotation, scale and morph weights of nodes are animated; the "
+                "rest is left out");
         return;
     }
     Channel read;
-    read.width = path == Path::rotation ? 4 : 3;
+    read.path = path;
     const tinygltf::AnimationSampler& sampler =
         at(document, animation.samplers, channel.sampler, element("animations", a) + ".samplers",
            place + ".sampler");
@@ -53,11 +56,15 @@ void Animations::read_channel(const Document& document, size_t a, size_t c, Warn
     else if (sampler.interpolation != "LINEAR")
         document.refuse(sampler_place + ".interpolation", "expected LINEAR, STEP or CUBICSPLINE");
     read.times = read_numbers(document, sampler.input, 1, sampler_place + ".input");
-    read.values = read_numbers(document, sampler.output, read.width, sampler_place + ".output");
+    const size_t width = path == Path::weights ? 1 : path == Path::rotation ? 4 : 3;
+    read.values = read_numbers(document, sampler.output, width, sampler_place + ".output");
     const size_t keys = read.times.count();
     const size_t expected = read.interpolation == Interpolation::cubic_spline ? 3 * keys : keys;
-    if (keys == 0 || read.values.count() != expected)
-        document.refuse(sampler_place, std::to_string(read.values.count()) + " values for " +
+    const size_t found = read.values.count();
+    if (path == Path::weights && expected > 0 && found >= expected && found % expected == 0)
+        read.values.components = found / expected;  // all targets' weights, key by key
+    else if (keys == 0 || found != expected)
+        document.refuse(sampler_place, std::to_string(found) + " values for " +
                                            std::to_string(keys) + " times; expected " +
                                            std::to_string(expected) + ", and at least one time");
     if (!std::is_sorted(read.times.values.begin(), read.times.values.end()))
@@ -70,6 +77,7 @@ void Animations::read_channel(const Document& document, size_t a, size_t c, Warn
 std::vector<double> Animations::Channel::at(double time) const {
     const std::vector<float>& t = times.values;
     const bool spline = interpolation == Interpolation::cubic_spline;
+    const size_t width = values.components;
     const auto value = [&](size_t key) { return values.element(spline ? 3 * key + 1 : key); };
     const auto held = [&](size_t key) {
         return std::vector<double>(value(key), value(key) + width);
@@ -82,7 +90,7 @@ std::vector<double> Animations::Channel::at(double time) const {
     const double length = double(t[after]) - double(t[before]);
     if (interpolation == Interpolation::step || !(length > 0)) return held(before);
     const double u = std::clamp((time - double(t[before])) / length, 0.0, 1.0);
-    if (!spline && width == 4) return slerp_values(u, value(before), value(after));
+    if (!spline && path == Path::rotation) return slerp_values(u, value(before), value(after));
 
     std::vector<double> result(width);
     for (size_t i = 0; i < width; ++i) {
@@ -101,10 +109,18 @@ std::vector<double> Animations::Channel::at(double time) const {
     return result;
 }
 
+std::vector<double> Animations::weights(int node, double time) const {
+    const auto it = channels_.find(node);
+    if (it == channels_.end()) return {};
+    const auto channel = it->second.find(Path::weights);
+    return channel == it->second.end() ? std::vector<double>{} : channel->second.at(time);
+}
+
 void Animations::apply(int node, double time, Pose& pose) const {
     const auto it = channels_.find(node);
     if (it == channels_.end()) return;
     for (const auto& [path, channel] : it->second) {
+        if (path == Path::weights) continue;
         const std::vector<double> v = channel.at(time);
         switch (path) {
             case Path::translation:
@@ -115,6 +131,8 @@ void Animations::apply(int node, double time, Pose& pose) const {
                 break;
             case Path::scale:
                 std::copy(v.begin(), v.end(), pose.scale.begin());
+                break;
+            case Path::weights:
                 break;
         }
     }

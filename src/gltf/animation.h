@@ -26,20 +26,22 @@ class Animations {
     Animations(const Document& document, WarningLog& log);
 
     bool empty() const { return channels_.empty(); }
+    /// Whether a channel places it, morphs it, or both.
     bool moves(int node) const { return channels_.contains(node); }
+    /// Of the node's morph targets; empty where no channel moves them.
+    std::vector<double> weights(int node, double time) const;
     /// Replaces what moves in `pose` by its value at `time`, held outside the keys.
     void apply(int node, double time, Pose& pose) const;
 
   private:
     enum class Interpolation { step, linear, cubic_spline };
+    enum class Path { translation, rotation, scale, weights };
     struct Channel {
+        Path path = Path::translation;
         Interpolation interpolation = Interpolation::linear;
         Numbers times, values;
-        size_t width = 3;  ///< numbers per value
         std::vector<double> at(double time) const;
     };
-    enum class Path { translation, rotation, scale };
-
     void read_channel(const Document& document, size_t animation, size_t channel, WarningLog& log);
 
     std::map<int, std::map<Path, Channel>> channels_;  ///< by node

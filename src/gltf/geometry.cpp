@@ -32,8 +32,9 @@ std::vector<std::array<uint32_t, 3>> triangles(const std::vector<uint32_t>& i, i
 }
 
 /// Leaves the vertices out that no triangle uses, where these are the more: files hold primitives
-/// that pick their triangles from the vertices of a whole model.
-void keep_used_vertices(TriangleMesh& mesh) {
+/// that pick their triangles from the vertices of a whole model. Those that are kept, in order;
+/// empty where all are.
+std::vector<uint32_t> keep_used_vertices(TriangleMesh& mesh) {
     constexpr uint32_t kUnused = ~uint32_t{0};
     std::vector<uint32_t> place(mesh.positions.size(), kUnused);
     std::vector<uint32_t> used;
@@ -43,7 +44,7 @@ void keep_used_vertices(TriangleMesh& mesh) {
             place[i] = static_cast<uint32_t>(used.size());
             used.push_back(i);
         }
-    if (used.size() > mesh.positions.size() / 2) return;
+    if (used.size() > mesh.positions.size() / 2) return {};
     const auto pick = [&](auto& values) {
         if (values.empty()) return;
         std::decay_t<decltype(values)> kept(used.size());
@@ -55,6 +56,7 @@ void keep_used_vertices(TriangleMesh& mesh) {
     pick(mesh.uvs);
     for (auto& triangle : mesh.triangles)
         for (uint32_t& i : triangle) i = place[i];
+    return used;
 }
 
 std::vector<Vec3> vectors(const Numbers& n) {
@@ -64,24 +66,63 @@ std::vector<Vec3> vectors(const Numbers& n) {
     return v;
 }
 
+std::string place_of(int mesh, size_t primitive) {
+    return element("meshes", static_cast<size_t>(mesh)) + "." + element("primitives", primitive);
+}
+
 }  // namespace
 
 std::shared_ptr<const TriangleMesh> GeometryReader::mesh(int mesh, size_t primitive, int uv_set) {
-    const auto [entry, is_new] = meshes_.try_emplace({mesh, primitive, uv_set});
-    if (!is_new) return entry->second;
-    const std::string place =
-        element("meshes", static_cast<size_t>(mesh)) + "." + element("primitives", primitive);
-    entry->second = read(document_.model.meshes[static_cast<size_t>(mesh)].primitives[primitive],
-                         uv_set, place);
-    return entry->second;
+    return entry(mesh, primitive, uv_set).mesh;
 }
 
-std::shared_ptr<const TriangleMesh> GeometryReader::read(const tinygltf::Primitive& primitive,
-                                                         int uv_set, const std::string& place) {
+GeometryReader::Entry& GeometryReader::entry(int mesh, size_t primitive, int uv_set) {
+    const auto [it, is_new] = meshes_.try_emplace({mesh, primitive, uv_set});
+    if (is_new)
+        it->second = read(document_.model.meshes[static_cast<size_t>(mesh)].primitives[primitive],
+                          uv_set, place_of(mesh, primitive));
+    return it->second;
+}
+
+const Deformation& GeometryReader::deformation(int mesh, size_t primitive, int uv_set) {
+    Entry& e = entry(mesh, primitive, uv_set);
+    if (!e.deformation)
+        e.deformation = read_deformation(
+            document_, document_.model.meshes[static_cast<size_t>(mesh)].primitives[primitive],
+            e.count, e.kept, place_of(mesh, primitive));
+    return *e.deformation;
+}
+
+bool GeometryReader::has_joints(int mesh, size_t primitive, int uv_set) {
+    return deformation(mesh, primitive, uv_set).influences > 0;
+}
+
+TriangleMesh GeometryReader::deformed(int mesh, size_t primitive, int uv_set,
+                                      std::span<const double> weights,
+                                      std::span<const Matrix4> joints, const std::string& place) {
+    const Deformation& d = deformation(mesh, primitive, uv_set);
+    const TriangleMesh& rest = *entry(mesh, primitive, uv_set).mesh;
+    // What is spent for targets and joints bounds the time, too.
+    const auto moving = static_cast<size_t>(
+        std::count_if(weights.begin(), weights.end(), [](double w) { return w != 0; }));
+    spend(rest.positions.size() * (1 + moving + d.influences), rest.triangles.size(), place);
+    return deform(document_, rest, d, weights, joints, place);
+}
+
+void GeometryReader::spend(size_t vertices, size_t triangles, const std::string& place) {
+    constexpr size_t kVertex = 2 * sizeof(Vec3) + sizeof(Vec2), kTriangle = 3 * sizeof(uint32_t);
+    if (!bytes_.spend(vertices, kVertex) || !bytes_.spend(triangles, kTriangle))
+        throw Error(ErrorKind::limit, document_.place(place),
+                    "it and the meshes before are too large for a file of " +
+                        std::to_string(document_.bytes) + " bytes");
+}
+
+GeometryReader::Entry GeometryReader::read(const tinygltf::Primitive& primitive, int uv_set,
+                                           const std::string& place) {
     const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
     if (mode < TINYGLTF_MODE_TRIANGLES) {
         warn(place, "points and lines are not rendered");
-        return nullptr;
+        return {};
     }
     if (mode > TINYGLTF_MODE_TRIANGLE_FAN)
         document_.refuse(place + ".mode",
@@ -92,7 +133,7 @@ std::shared_ptr<const TriangleMesh> GeometryReader::read(const tinygltf::Primiti
     };
     if (!primitive.attributes.contains("POSITION")) {
         warn(place, "a primitive without positions is left out");
-        return nullptr;
+        return {};
     }
     const std::string attributes = place + ".attributes.";
     const size_t count = accessor_count(document_, attribute("POSITION"), attributes + "POSITION");
@@ -121,8 +162,6 @@ std::shared_ptr<const TriangleMesh> GeometryReader::read(const tinygltf::Primiti
     }
     if (attribute("COLOR_0") >= 0)
         warn(place, "vertex colours (COLOR_0) are not supported and left out");
-    if (!primitive.targets.empty())
-        warn(place, "morph targets are not supported; the mesh is rendered unmorphed");
 
     std::vector<uint32_t> indices;
     if (primitive.indices >= 0) {
@@ -132,15 +171,13 @@ std::shared_ptr<const TriangleMesh> GeometryReader::read(const tinygltf::Primiti
         std::iota(indices.begin(), indices.end(), 0);
     }
     mesh->triangles = triangles(indices, mode);
-    if (mesh->triangles.empty()) return nullptr;
-    keep_used_vertices(*mesh);
-    constexpr size_t kVertex = 2 * sizeof(Vec3) + sizeof(Vec2), kTriangle = 3 * sizeof(uint32_t);
-    if (!bytes_.spend(mesh->positions.size(), kVertex) ||
-        !bytes_.spend(mesh->triangles.size(), kTriangle))
-        throw Error(ErrorKind::limit, document_.place(place),
-                    "it and the meshes before are too large for a file of " +
-                        std::to_string(document_.bytes) + " bytes");
-    return mesh;
+    if (mesh->triangles.empty()) return {};
+    Entry result;
+    result.count = count;
+    result.kept = keep_used_vertices(*mesh);
+    spend(mesh->positions.size(), mesh->triangles.size(), place);
+    result.mesh = std::move(mesh);
+    return result;
 }
 
 }  // namespace covtrace::gltf

@@ -3,8 +3,12 @@
 
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <tuple>
+#include <vector>
 
+#include "gltf/deformation.h"
 #include "gltf/document.h"
 #include "scene/scene_description.h"
 
@@ -23,16 +27,31 @@ class GeometryReader {
     /// Error(limit) where all meshes are too large for the file.
     std::shared_ptr<const TriangleMesh> mesh(int mesh, size_t primitive, int uv_set);
 
+    /// The same, which must not be null, with its morph targets and joints at work: as `deform`.
+    TriangleMesh deformed(int mesh, size_t primitive, int uv_set, std::span<const double> weights,
+                          std::span<const Matrix4> joints, const std::string& place);
+    bool has_joints(int mesh, size_t primitive, int uv_set);
+
   private:
-    std::shared_ptr<const TriangleMesh> read(const tinygltf::Primitive& primitive, int uv_set,
-                                             const std::string& place);
+    struct Entry {
+        std::shared_ptr<const TriangleMesh> mesh;
+        size_t count = 0;                        ///< of the file's vertices
+        std::vector<uint32_t> kept;              ///< which of them the mesh has; empty: all
+        std::optional<Deformation> deformation;  ///< once it was asked for
+    };
+
+    Entry& entry(int mesh, size_t primitive, int uv_set);
+    const Deformation& deformation(int mesh, size_t primitive, int uv_set);
+    Entry read(const tinygltf::Primitive& primitive, int uv_set, const std::string& place);
+    /// Errors: Error(limit) where the file's budget of meshes is spent.
+    void spend(size_t vertices, size_t triangles, const std::string& place);
     void warn(const std::string& place, const std::string& text) {
         log_.add(document_.place(place), text);
     }
 
     const Document& document_;
     WarningLog& log_;
-    std::map<std::tuple<int, size_t, int>, std::shared_ptr<const TriangleMesh>> meshes_;
+    std::map<std::tuple<int, size_t, int>, Entry> meshes_;
     Budget bytes_;  ///< that meshes may still take
 };
 

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "gltf/animation.h"
-
 namespace covtrace::gltf {
 namespace {
 
@@ -41,19 +39,20 @@ class Placer {
            WarningLog& log)
         : document_(document),
           log_(log),
-          animations_(document, log),
           shutter_(shutter),
-          parents_(document.model.nodes.size(), kNone) {
-        if (!animations_.empty() && !shutter)
+          parents_(document.model.nodes.size(), kNone),
+          placed_{{}, {}, Animations(document, log)} {
+        placed_.worlds.resize(parents_.size());
+        if (!placed_.animations.empty() && !shutter)
             log.add(document.place("animations"),
                     "the scene is rendered at rest, at 0 seconds; --shutter T0,T1 opens the "
                     "shutter over a part of its animations");
         find_parents();
     }
 
-    std::vector<PlacedNode> place() {
+    PlacedNodes place() {
         for (const int root : roots()) {
-            std::vector<Pending> stack{{root, Matrix4{}, Matrix4{}}};
+            std::vector<Pending> stack{{root, Matrix4{}, Matrix4{}, false}};
             while (!stack.empty()) {
                 const Pending next = stack.back();
                 stack.pop_back();
@@ -68,6 +67,7 @@ class Placer {
     struct Pending {
         int node;
         Matrix4 start, end;  ///< of the parent
+        bool is_hidden;
     };
 
     void find_parents() {
@@ -122,43 +122,67 @@ class Placer {
         copy_checked(document_, node.translation, pose.translation, place + ".translation");
         copy_checked(document_, node.rotation, pose.rotation, place + ".rotation");
         copy_checked(document_, node.scale, pose.scale, place + ".scale");
-        animations_.apply(index, time, pose);
+        placed_.animations.apply(index, time, pose);
         return matrix_of(pose);
     }
 
     void visit(const Pending& pending, std::vector<Pending>& stack) {
         const auto [t0, t1] = shutter_.value_or(std::array<float, 2>{0, 0});
         const Matrix4 start = pending.start * local(pending.node, t0);
-        const bool rests = !animations_.moves(pending.node) && pending.start == pending.end;
+        const bool rests = !placed_.animations.moves(pending.node) && pending.start == pending.end;
         const Matrix4 end = rests ? start : pending.end * local(pending.node, t1);
-        const auto start_transform = Transform::from_matrix(start);
-        const auto end_transform = Transform::from_matrix(end);
-        if (!start_transform || !end_transform) {
-            log_.add(document_.place(element("nodes", static_cast<size_t>(pending.node))),
-                     "a scale of zero hides the node and what is below it");
-            return;
+        const auto index = static_cast<size_t>(pending.node);
+        placed_.worlds[index] = {start, end};
+        bool is_hidden = pending.is_hidden;
+        if (!is_hidden) {
+            const auto start_transform = Transform::from_matrix(start);
+            const auto end_transform = Transform::from_matrix(end);
+            is_hidden = !start_transform || !end_transform;
+            if (is_hidden)
+                log_.add(document_.place(element("nodes", index)),
+                         "a scale of zero hides the node and what is below it");
+            else
+                placed_.nodes.push_back(
+                    {pending.node,
+                     start == end ? AnimatedTransform(*start_transform)
+                                  : AnimatedTransform(*start_transform, t0, *end_transform, t1)});
         }
-        placed_.push_back({pending.node, start == end ? AnimatedTransform(*start_transform)
-                                                      : AnimatedTransform(*start_transform, t0,
-                                                                          *end_transform, t1)});
-        const auto& children = document_.model.nodes[static_cast<size_t>(pending.node)].children;
+        const auto& children = document_.model.nodes[index].children;
         for (auto it = children.rbegin(); it != children.rend(); ++it)
-            stack.push_back({*it, start, end});
+            stack.push_back({*it, start, end, is_hidden});
     }
 
     const Document& document_;
     WarningLog& log_;
-    const Animations animations_;
     const std::optional<std::array<float, 2>> shutter_;
     std::vector<int> parents_;
-    std::vector<PlacedNode> placed_;
+    PlacedNodes placed_;
 };
 
 }  // namespace
 
-std::vector<PlacedNode> place_nodes(const Document& document,
-                                    const std::optional<std::array<float, 2>>& shutter,
-                                    WarningLog& log) {
+std::vector<double> morph_weights(const Document& document, const Animations& animations, int node,
+                                  double time) {
+    const tinygltf::Node& n = document.model.nodes[static_cast<size_t>(node)];
+    if (n.mesh < 0) return {};
+    const std::string place = element("nodes", static_cast<size_t>(node));
+    std::vector<double> values = animations.weights(node, time);
+    if (values.empty()) values = n.weights;
+    if (values.empty())
+        values = at(document, document.model.meshes, n.mesh, "meshes", place + ".mesh").weights;
+    // Any number of nodes may have the weights of one mesh.
+    if (!document.numbers.spend(values.size(), 1))
+        throw Error(ErrorKind::limit, document.place(place),
+                    "its weights and all numbers before are too many for a file of " +
+                        std::to_string(document.bytes) + " bytes");
+    for (const double v : values)
+        if (!(std::abs(v) < 1e30))
+            document.refuse(place, "expected finite weights of its mesh's morph targets");
+    return values;
+}
+
+PlacedNodes place_nodes(const Document& document,
+                        const std::optional<std::array<float, 2>>& shutter, WarningLog& log) {
     return Placer(document, shutter, log).place();
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/transform.h"
+#include "gltf/animation.h"
 #include "gltf/document.h"
 
 namespace covtrace::gltf {
@@ -16,12 +17,26 @@ struct PlacedNode {
     AnimatedTransform transform;  ///< node to world, over the shutter
 };
 
+/// A node's space to the world's at both ends of the shutter; may be singular, as joints are scaled
+/// to nothing to hide what they carry.
+using WorldMatrices = std::array<Matrix4, 2>;
+
+struct PlacedNodes {
+    std::vector<PlacedNode> nodes;  ///< parents before children, in the file's order
+    std::vector<std::optional<WorldMatrices>>
+        worlds;  ///< of the document's; none: not in the scene
+    Animations animations;
+};
+
+/// Of the morph targets of the node's mesh; missing ones are 0.
+std::vector<double> morph_weights(const Document& document, const Animations& animations, int node,
+                                  double time);
+
 /// The nodes of the document's default scene (the first one, where none is named; all roots, where
-/// there are no scenes), parents before children, in the file's order. Refuses nodes with two
-/// parents, which cycles are made of. What a scale of zero hides is left out.
+/// there are no scenes). Refuses nodes with two parents, which cycles are made of. What a scale of
+/// zero hides is left out of the placed ones.
 /// `shutter`: both ends in seconds; none: at rest, as at time 0 of the animations.
-std::vector<PlacedNode> place_nodes(const Document& document,
-                                    const std::optional<std::array<float, 2>>& shutter,
-                                    WarningLog& log);
+PlacedNodes place_nodes(const Document& document,
+                        const std::optional<std::array<float, 2>>& shutter, WarningLog& log);
 
 }  // namespace covtrace::gltf

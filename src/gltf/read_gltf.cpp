@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "gltf/camera.h"
+#include "gltf/deformed_nodes.h"
 #include "gltf/document.h"
 #include "gltf/extensions.h"
 #include "gltf/geometry.h"
@@ -29,18 +30,21 @@ void check_extensions(const Document& document) {
 /// Turns placed nodes into shapes, objects and instances of the scene.
 class SceneAssembler {
   public:
-    SceneAssembler(const Document& document, SceneDescription& scene, WarningLog& log)
+    SceneAssembler(const Document& document, const PlacedNodes& placed,
+                   std::array<float, 2> shutter, SceneDescription& scene, WarningLog& log)
         : document_(document),
+          placed_(placed),
           scene_(scene),
           log_(log),
           geometry_(document, log),
+          deformed_(document, log, geometry_, placed, shutter),
           materials_(document, scene, log) {}
 
-    void add(const std::vector<PlacedNode>& nodes) {
+    void add() {
         std::map<int, int> uses;
-        for (const PlacedNode& n : nodes)
+        for (const PlacedNode& n : placed_.nodes)
             if (node(n).mesh >= 0) ++uses[node(n).mesh];
-        for (const PlacedNode& n : nodes) {
+        for (const PlacedNode& n : placed_.nodes) {
             if (node(n).mesh >= 0) add_mesh(n, uses[node(n).mesh] > 1);
             add_light(document_, n, scene_, log_);
         }
@@ -57,9 +61,7 @@ class SceneAssembler {
     void add_mesh(const PlacedNode& placed, bool is_shared) {
         const std::string place = element("nodes", static_cast<size_t>(placed.node));
         at(document_, document_.model.meshes, node(placed).mesh, "meshes", place + ".mesh");
-        if (node(placed).skin >= 0)
-            log_.add(document_.place(place),
-                     "skins are not supported; the mesh is rendered as it is bound");
+        if (deformed_.deforms(placed)) return add_deformed(placed);
         const int object = is_shared ? object_of(node(placed).mesh) : -1;
         if (object >= 0)
             scene_.instances.push_back({object, placed.transform, document_.place(place)});
@@ -67,15 +69,19 @@ class SceneAssembler {
             grow(part.bounds, placed.transform);
             // Emitters are no parts of objects: each is a light of its own.
             if (object >= 0 && !part.emission) continue;
-            ShapeDescription shape = part.shape;
-            shape.object_to_world = placed.transform;
-            if (part.emission) {
-                scene_.area_lights.push_back(*part.emission);
-                shape.area_light = static_cast<int>(scene_.area_lights.size() - 1);
-                has_lamps_ = has_lamps_ || part.is_strong_light;
-            }
-            scene_.shapes.push_back(std::move(shape));
+            add_shape(part, part.shape.geometry, placed.transform);
         }
+    }
+
+    /// A mesh of its own for each node: its shape is the node's.
+    void add_deformed(const PlacedNode& placed) {
+        for (const Part& part : parts_of(node(placed).mesh))
+            for (MovedMesh& moved : deformed_.meshes(placed, part.primitive, part.uv_set)) {
+                Bounds3 bounds;
+                for (const Vec3& p : moved.mesh->positions) bounds.extend(p);
+                grow(bounds, moved.to_world);
+                add_shape(part, std::move(moved.mesh), moved.to_world);
+            }
     }
 
     /// The object of what doesn't emit in a mesh; -1 where there is nothing of that kind.
@@ -97,6 +103,8 @@ class SceneAssembler {
         std::optional<AreaLightDescription> emission;
         bool is_strong_light = false;
         Bounds3 bounds;
+        size_t primitive = 0;  ///< of the mesh's
+        int uv_set = -1;
     };
 
     /// Those with something to see, read once however many nodes place them.
@@ -107,6 +115,19 @@ class SceneAssembler {
         for (size_t i = 0; i < count; ++i)
             if (auto part = part_of(mesh, i)) entry->second.push_back(std::move(*part));
         return entry->second;
+    }
+
+    void add_shape(const Part& part, decltype(ShapeDescription::geometry) geometry,
+                   const AnimatedTransform& to_world) {
+        ShapeDescription shape = part.shape;
+        shape.geometry = std::move(geometry);
+        shape.object_to_world = to_world;
+        if (part.emission) {
+            scene_.area_lights.push_back(*part.emission);
+            shape.area_light = static_cast<int>(scene_.area_lights.size() - 1);
+            has_lamps_ = has_lamps_ || part.is_strong_light;
+        }
+        scene_.shapes.push_back(std::move(shape));
     }
 
     std::optional<Part> part_of(int mesh, size_t index) {
@@ -127,6 +148,8 @@ class SceneAssembler {
         part.shape.where = document_.place(place);
         part.emission = surface.emission;
         part.is_strong_light = surface.is_strong_light;
+        part.primitive = index;
+        part.uv_set = surface.uv_set;
         return part;
     }
 
@@ -138,9 +161,11 @@ class SceneAssembler {
     }
 
     const Document& document_;
+    const PlacedNodes& placed_;
     SceneDescription& scene_;
     WarningLog& log_;
     GeometryReader geometry_;
+    DeformedNodes deformed_;
     MaterialReader materials_;
     std::map<int, std::vector<Part>> parts_;
     std::map<int, int> objects_;
@@ -159,12 +184,13 @@ SceneDescription read(const std::filesystem::path& file, const ReadOptions& opti
     scene.max_depth = kDepth;
     scene.samples_per_pixel = kSamples;
 
-    const std::vector<PlacedNode> nodes = place_nodes(document, options.shutter, log);
-    SceneAssembler assembler(document, scene, log);
-    assembler.add(nodes);
+    const PlacedNodes placed = place_nodes(document, options.shutter, log);
+    SceneAssembler assembler(document, placed, options.shutter.value_or(std::array<float, 2>{0, 0}),
+                             scene, log);
+    assembler.add();
     if (scene.shapes.empty() && scene.instances.empty())
         document.refuse("", "the scene has no triangles to render");
-    set_view(document, nodes, assembler.bounds(), scene, log);
+    set_view(document, placed.nodes, assembler.bounds(), scene, log);
     if (options.shutter) {
         const auto [open, close] = *options.shutter;
         scene.camera.shutter_open = open;

@@ -14,7 +14,7 @@ import bpy
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import addon_test
+import addon_support
 
 SAMPLES = 64
 WHITE, GREY, BLACK = (1, 1, 1, 1), (0.5, 0.5, 0.5, 1), (0, 0, 0, 1)
@@ -23,17 +23,17 @@ WHITE, GREY, BLACK = (1, 1, 1, 1), (0.5, 0.5, 0.5, 1), (0, 0, 0, 1)
 def share(engine, tilt, test):
     test.camera.location = (0, -5 * math.sin(tilt), 5 * math.cos(tilt))
     test.camera.rotation_euler = (tilt, 0, 0)
-    return addon_test.mean(addon_test.render(engine, SAMPLES))[0]
+    return addon_support.mean(addon_support.render(engine, SAMPLES))[0]
 
 
 def row(name, **inputs):
     cells = []
     for tilt in (0, 1.2):
-        test = addon_test.AddonTest()
+        test = addon_support.BlenderTest()
         test.setUp()
         test.camera.data.lens = 200
         test.background.inputs["Color"].default_value = WHITE
-        test.plane(addon_test.material(**inputs))
+        test.plane(addon_support.material(**inputs))
         ours, theirs = (share(engine, tilt, test) for engine in ("COVTRACE", "CYCLES"))
         cells.append(f"{ours:.3f} | {theirs:.3f} | {ours / theirs:.3f}")
     return f"| {name} | {' | '.join(cells)} |"

@@ -8,7 +8,7 @@ import { pathToFileURL } from 'node:url';
 import { createRequire } from 'node:module';
 
 // The packages are installed in the build folder, beside which nothing of them is looked for.
-const { chromium } = createRequire(path.join(process.env.COVTRACE_NODE_MODULES, 'anchor.js'))('playwright-core');
+const { chromium, _bidiFirefox } = createRequire(path.join(process.env.COVTRACE_NODE_MODULES, 'anchor.js'))('playwright-core');
 
 export const folder = mkdtempSync(path.join(tmpdir(), 'covtrace-browser-'));
 process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
@@ -50,14 +50,16 @@ Shape "trianglemesh" "point3 P" [-4 -1 -4  4 -1 -4  4 -1 4  -4 -1 4] "integer in
     return name;
 }
 
+/** Chromium by its own protocol, or Firefox as it is installed, without changes, by WebDriver BiDi. */
 export async function launch() {
+    if (process.env.FIREFOX) return _bidiFirefox.launch({ executablePath: process.env.FIREFOX });
     const root = process.getuid?.() === 0;  // Chromium has no sandbox for root
     return chromium.launch({ executablePath: process.env.CHROMIUM, args: root ? ['--no-sandbox'] : [] });
 }
 
 /** The page of a report, painted. page.problems: errors; page.requests: everything that it asked for. */
-export async function open(browser, file) {
-    const context = await browser.newContext({ viewport: { width: 1200, height: 700 }, offline: true });
+export async function open(browser, file, offline = true) {
+    const context = await browser.newContext({ viewport: { width: 1200, height: 700 }, offline });
     const page = await context.newPage();
     page.problems = [];
     page.requests = [];

@@ -2,9 +2,12 @@
 
 import os
 import pathlib
+import pty
 import re
+import select
 import shutil
 import subprocess
+import time
 import unittest
 
 from support import DONE, USAGE, CliTest
@@ -56,6 +59,28 @@ class Completion(CliTest):
     def test_zsh(self):
         path = self.write("_covtrace", self.script("zsh"))
         subprocess.run(["zsh", "-n", path], check=True)
+        # zsh completes at a terminal only.
+        leader, follower = pty.openpty()
+        shell = subprocess.Popen(["zsh", "-f", "-i"], cwd=self.folder, stdin=follower, stdout=follower, stderr=follower,
+                                 env=dict(os.environ, TERM="dumb", PS1="> ", HOME=self.folder), start_new_session=True)
+        os.close(follower)
+        self.addCleanup(os.close, leader)
+        self.addCleanup(shell.wait)
+        self.addCleanup(shell.kill)
+
+        def wait_for(text):
+            seen, end = "", time.monotonic() + 30
+            while text not in seen and time.monotonic() < end:
+                if select.select([leader], [], [], 1)[0]:
+                    seen += os.read(leader, 4096).decode(errors="replace")
+            self.assertIn(text, seen)
+
+        os.write(leader, b"fpath=($PWD $fpath); autoload -Uz compinit; compinit -u -D; covtrace() print -r \"<$*>\"; covtrace\n")
+        wait_for("<>")
+        for typed, completed in (("rend", "render"), ("render --layer-n", "render --layer-names"),
+                                 ("render --progress per", "render --progress percent"), ("render --method unif", "render --method uniform")):
+            os.write(leader, b"covtrace " + typed.encode() + b"\t\n")
+            wait_for(f"<{completed}>")
 
     def test_unknown_shell(self):
         self.assert_fails(self.run_program("completion", "tcsh"), USAGE, "tcsh")

@@ -197,9 +197,21 @@ GltfFile rich_file() {
     file.root["nodes"][0].erase("matrix");
     file.add_node({{"camera", 0}, {"translation", {0, 0, 5}}});
     file.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    const int target = file.add_floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
+    const json four = {{"JOINTS_0", file.add<uint8_t>(std::vector<uint8_t>(16), 5121, "VEC4", 4)},
+                       {"WEIGHTS_0", file.add_floats(std::vector<float>(16, 0.25f), "VEC4", 4)}};
+    file.root["meshes"][0]["primitives"][0]["attributes"].update(four);
+    file.root["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", target}}};
+    const int bind = file.add_floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, "MAT4", 16);
+    file.root["skins"] = {{{"joints", {2}}, {"inverseBindMatrices", bind}}};
+    file.root["nodes"][0]["skin"] = 0;
+    const int weights = file.add_floats({0, 1}, "SCALAR", 1);
     file.root["animations"] = {
-        {{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "rotation"}}}}}},
-         {"samplers", {{{"input", times}, {"output", turns}}}}}};
+        {{"channels",
+          {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "rotation"}}}},
+           {{"sampler", 1}, {"target", {{"node", 0}, {"path", "weights"}}}}}},
+         {"samplers",
+          {{{"input", times}, {"output", turns}}, {{"input", times}, {"output", weights}}}}}};
     return file;
 }
 

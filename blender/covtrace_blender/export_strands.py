@@ -1,0 +1,103 @@
+"""Strands (hair of particle systems, hair curves) as thin tubes with smooth normals."""
+
+import math
+
+import numpy as np
+
+# Corners around a strand; it is widened so that seen from all sides it is as wide on average as the round one.
+SIDES = 4
+WIDENED = math.pi / (SIDES * math.sin(math.pi / SIDES))
+
+
+# Cycles' for hair curves that have none.
+DEFAULT_RADIUS = 0.005
+
+
+def _unit(v):
+    return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-30)
+
+
+def tubes(points, radii):
+    """(positions, normals, triangles) of strands with equally many points: points (strands, n, 3), radii (strands, n)."""
+    strands, n, _ = points.shape
+    along = _unit(np.gradient(points, axis=1))
+    # A normal that is carried along, so that tubes don't twist.
+    least = np.eye(3)[np.abs(along[:, 0]).argmin(-1)]
+    side = _unit(np.cross(along[:, 0], least))
+    sides = np.empty_like(points)
+    for k in range(n):
+        side = _unit(side - along[:, k] * (side * along[:, k]).sum(-1, keepdims=True))
+        sides[:, k] = side
+    others = np.cross(along, sides)
+    angles = 2 * math.pi * np.arange(SIDES) / SIDES
+    normals = (np.cos(angles)[:, None] * sides[:, :, None] + np.sin(angles)[:, None] * others[:, :, None])
+    positions = points[:, :, None] + WIDENED * radii[:, :, None, None] * normals
+    corner = np.arange(strands * n * SIDES).reshape(strands, n, SIDES)
+    a, b = corner[:, :-1], np.roll(corner, -1, axis=2)[:, :-1]
+    c, d = corner[:, 1:], np.roll(corner, -1, axis=2)[:, 1:]
+    triangles = np.concatenate([np.stack((a, b, d), -1).reshape(-1, 3), np.stack((a, d, c), -1).reshape(-1, 3)])
+    return positions.reshape(-1, 3), normals.reshape(-1, 3), triangles
+
+
+def _many(groups):
+    """The tubes of several [(points, radii)] as one mesh."""
+    meshes, first = [], 0
+    for points, radii in groups:
+        positions, normals, triangles = tubes(points, radii)
+        meshes.append((positions, normals, triangles + first))
+        first += len(positions)
+    return tuple(np.concatenate(part) for part in zip(*meshes)) if meshes else None
+
+
+def _radii(settings, n):
+    """Of a strand's points, by the particle settings, as Cycles has them."""
+    rest = 1 - np.linspace(0, 1, n)
+    shape = settings.shape
+    rest = rest ** (1 + shape if shape < 0 else 1 / max(1 - shape, 1e-3))
+    scale = 0.5 * settings.radius_scale
+    radii = scale * (settings.tip_radius + (settings.root_radius - settings.tip_radius) * rest)
+    if settings.use_close_tip:
+        radii[-1] = 0
+    return radii
+
+
+def particle_systems(obj, is_render):
+    """Yields (material slot, positions, normals, triangles) in object space of each system of strands of an evaluated object."""
+    to_object = np.array(obj.matrix_world.inverted_safe())
+    shown = [m.particle_system for m in obj.modifiers
+             if m.type == "PARTICLE_SYSTEM" and (m.show_render if is_render else m.show_viewport)]
+    for system in obj.particle_systems:
+        settings = system.settings
+        if settings.type != "HAIR" or settings.render_type != "PATH" or not any(system.name == s.name for s in shown):
+            continue
+        n = 2 ** (settings.render_step if is_render else settings.display_step) + 1
+        if settings.kink == "SPIRAL":
+            n += settings.kink_extra_steps
+        parents, children = len(system.particles), len(system.child_particles)
+        first = parents if settings.child_type != "NONE" and children else 0
+        points = np.array([system.co_hair(object=obj, particle_no=i, step=k)
+                           for i in range(first, parents + children) for k in range(n)]).reshape(-1, n, 3)
+        # What grows nowhere has all of its points in one.
+        points = points[np.abs(points - points[:, :1]).max((1, 2)) > 0]
+        if len(points):
+            points = points @ to_object[:3, :3].T + to_object[:3, 3]
+            radii = np.broadcast_to(_radii(settings, n), points.shape[:2])
+            yield (settings.material - 1, *tubes(points, radii))
+
+
+def hair_curves(data):
+    """(positions, normals, triangles) in object space of a hair curves object's data, or None."""
+    points = np.empty(3 * len(data.points), dtype=np.float32)
+    data.position_data.foreach_get("vector", points)
+    radii = np.full(len(data.points), DEFAULT_RADIUS, dtype=np.float32)
+    if "radius" in data.attributes:
+        data.points.foreach_get("radius", radii)
+    first, count = (np.empty(len(data.curves), dtype=np.int32) for _ in range(2))
+    data.curves.foreach_get("first_point_index", first)
+    data.curves.foreach_get("points_length", count)
+    points = points.reshape(-1, 3)
+    groups = []
+    for n in np.unique(count[count > 1]):
+        rows = first[count == n][:, None] + np.arange(n)
+        groups.append((points[rows].astype(float), radii[rows].astype(float)))
+    return _many(groups)

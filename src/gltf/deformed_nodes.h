@@ -1,0 +1,48 @@
+/// Private to this folder: what morph targets and skins make of the meshes of nodes over the
+/// shutter, as meshes that each move by one
+/// transform (gltf/moving_pieces.h).
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "gltf/geometry.h"
+#include "gltf/nodes.h"
+
+namespace covtrace::gltf {
+
+/// A mesh and its way to world space.
+struct MovedMesh {
+    std::shared_ptr<const TriangleMesh> mesh;
+    AnimatedTransform to_world;
+};
+
+class DeformedNodes {
+  public:
+    DeformedNodes(const Document& document, WarningLog& log, GeometryReader& geometry,
+                  const PlacedNodes& placed, std::array<float, 2> shutter)
+        : document_(document), log_(log), geometry_(geometry), placed_(placed), shutter_(shutter) {}
+
+    /// Whether the mesh of the node is another than the file's.
+    bool deforms(const PlacedNode& node);
+    /// What becomes of one primitive of its mesh: one mesh that may move with the node, or pieces.
+    std::vector<MovedMesh> meshes(const PlacedNode& node, size_t primitive, int uv_set);
+
+  private:
+    /// From the mesh's space to the world's at both ends of the shutter; empty without joints.
+    using JointMatrices = std::array<std::vector<Matrix4>, 2>;
+
+    const tinygltf::Node& node_of(const PlacedNode& node) const;
+    const JointMatrices& joints_of(int skin, const std::string& place);
+    JointMatrices read_joints(int skin, const std::string& place);
+
+    const Document& document_;
+    WarningLog& log_;
+    GeometryReader& geometry_;
+    const PlacedNodes& placed_;
+    const std::array<float, 2> shutter_;
+    std::map<int, JointMatrices> skins_;
+};
+
+}  // namespace covtrace::gltf

@@ -1,0 +1,110 @@
+"""What the tests of the add-on share: they run inside Blender, and render by covtrace and by Cycles."""
+
+import faulthandler
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+
+import bpy
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(SOURCE / "blender"))
+sys.path.append(str(SOURCE / "tests" / "cli"))
+
+import covtrace_blender
+import exr
+from covtrace_blender import export_scene
+
+WIDTH, HEIGHT = 32, 24
+MOST_SECONDS = 180
+
+
+def render(engine_name, samples):
+    """The render as channels by name, without the view layer's."""
+    scene = bpy.context.scene
+    scene.render.engine = engine_name
+    scene.covtrace.samples = samples
+    if engine_name == "CYCLES":
+        scene.cycles.samples = samples
+        scene.cycles.use_denoising = False
+        scene.cycles.use_adaptive_sampling = False
+    settings = scene.render.image_settings
+    settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
+    settings.exr_codec = "ZIP"
+    with tempfile.TemporaryDirectory() as folder:
+        scene.render.filepath = os.path.join(folder, "image.exr")
+        bpy.ops.render.render(write_still=True)
+        image = exr.read(scene.render.filepath)
+    return {name.split(".", 1)[1]: values for name, values in image.pixels.items()}
+
+
+def mean(image, x0=0, y0=0, x1=WIDTH, y1=HEIGHT):
+    """Mean colour of a part of the picture."""
+    return [sum(image[f"Combined.{c}"][y * WIDTH + x] for y in range(y0, y1) for x in range(x0, x1)) /
+            ((x1 - x0) * (y1 - y0)) for c in "RGB"]
+
+
+def material(name="material", **inputs):
+    m = bpy.data.materials.new(name)
+    m.use_nodes = True
+    for key, value in inputs.items():
+        m.node_tree.nodes["Principled BSDF"].inputs[key.replace("_", " ")].default_value = value
+    return m
+
+
+class BlenderTest(unittest.TestCase):
+    MATT = dict(Base_Color=(0.5, 0.5, 0.5, 1), Specular=0.0, Roughness=1.0)
+
+    def setUp(self):
+        # A test that hangs says where.
+        faulthandler.dump_traceback_later(MOST_SECONDS, exit=True)
+        self.addCleanup(faulthandler.cancel_dump_traceback_later)
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        if not hasattr(bpy.types.Scene, "covtrace"):
+            covtrace_blender.register()
+        scene = self.scene = bpy.context.scene
+        scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
+        scene.world = bpy.data.worlds.new("world")
+        scene.world.use_nodes = True
+        self.background = scene.world.node_tree.nodes["Background"]
+        self.background.inputs["Color"].default_value = (0, 0, 0, 1)
+        bpy.ops.object.camera_add(location=(0, 0, 5))
+        self.camera = scene.camera = bpy.context.object
+
+    def plane(self, m, size=20, z=0):
+        bpy.ops.mesh.primitive_plane_add(size=size, location=(0, 0, z))
+        bpy.context.object.data.materials.append(m)
+        return bpy.context.object
+
+    def lamp(self, kind, **values):
+        bpy.ops.object.light_add(type=kind, location=values.pop("location", (0, 0, 3)))
+        for key, value in values.items():
+            setattr(bpy.context.object.data, key, value)
+        return bpy.context.object
+
+    def assert_as_cycles(self, tolerance, samples=64):
+        """The whole pictures' means agree, per channel."""
+        ours, theirs = mean(render("COVTRACE", samples)), mean(render("CYCLES", samples))
+        for channel, (a, b) in enumerate(zip(ours, theirs)):
+            self.assertGreater(b, 1e-3)
+            self.assertAlmostEqual(a / b, 1, delta=tolerance, msg=f"channel {channel}: {ours} against {theirs}")
+
+    def centre(self):
+        return mean(render("COVTRACE", 64), WIDTH // 2 - 2, HEIGHT // 2 - 2, WIDTH // 2 + 2, HEIGHT // 2 + 2)[0]
+
+    def shining(self):
+        return material(Emission=(1, 1, 1, 1), Emission_Strength=1.0, Base_Color=(0, 0, 0, 1), Specular=0.0)
+
+    def export(self):
+        class Engine:
+            @staticmethod
+            def frame_set(frame, subframe):
+                bpy.context.scene.frame_set(frame, subframe=subframe)
+        with tempfile.TemporaryDirectory() as folder:
+            exporter = export_scene.SceneExporter(Engine(), bpy.context.evaluated_depsgraph_get(), folder)
+            text = pathlib.Path(exporter.write()).read_text()
+        self.warnings = exporter.warnings
+        return text

@@ -1,0 +1,108 @@
+"""Motion blur of objects and of meshes that change their shape, against Cycles."""
+
+import math
+
+import bpy
+from addon_support import BlenderTest, material, mean, render
+
+
+class MotionTest(BlenderTest):
+    def test_motion_blurs_along_the_way(self):
+        m = material(Emission=(1, 1, 1, 1), Emission_Strength=1.0, Base_Color=(0, 0, 0, 1), Specular=0.0)
+        plane = self.plane(m, size=0.5)
+        for frame, x in ((0, -1), (2, 1)):
+            plane.location.x = x
+            plane.keyframe_insert("location", frame=frame)
+        for curve in plane.animation_data.action.fcurves:
+            for key in curve.keyframe_points:
+                key.interpolation = "LINEAR"
+        self.scene.frame_set(1)
+        still = mean(render("COVTRACE", 64))[0]
+        self.scene.render.use_motion_blur, self.scene.render.motion_blur_shutter = True, 1.0
+        blurred = render("COVTRACE", 64)
+        self.assertAlmostEqual(mean(blurred)[0] / still, 1, delta=0.05)  # the same light,
+        middle = mean(blurred, 14, 10, 18, 14)[0]
+        self.assertAlmostEqual(middle, 0.5, delta=0.06)  # over twice the way
+        self.assertEqual(self.scene.frame_current, 1)
+
+    def deform(self, mesh_object, moved, distance=(2, 0, 0)):
+        """A shape key that moves these vertices, from no part at frame 0 to the whole way at frame 2; shutter over both."""
+        mesh_object.shape_key_add(name="Basis")
+        key = mesh_object.shape_key_add(name="moved")
+        for i in moved:
+            key.data[i].co = [a + b for a, b in zip(key.data[i].co, distance)]
+        for frame, value in ((0, 0.0), (2, 1.0)):
+            key.value = value
+            key.keyframe_insert("value", frame=frame)
+        for curve in mesh_object.data.shape_keys.animation_data.action.fcurves:
+            for point in curve.keyframe_points:
+                point.interpolation = "LINEAR"
+        self.scene.frame_set(1)
+        self.scene.render.use_motion_blur, self.scene.render.motion_blur_shutter = True, 2.0
+
+    def test_meshes_that_move_by_their_vertices_are_blurred(self):
+        plane = self.plane(self.shining(), size=0.5)
+        self.deform(plane, range(4))
+        ours, theirs = render("COVTRACE", 256), render("CYCLES", 256)
+        for part in ((14, 10, 18, 14), (18, 10, 22, 14), (22, 10, 26, 14)):
+            self.assertAlmostEqual(mean(ours, *part)[0], mean(theirs, *part)[0], delta=0.05)
+        self.export()
+        self.assertEqual(self.warnings, [])
+
+    def test_connected_pieces_move_alone(self):
+        bpy.ops.mesh.primitive_plane_add(size=0.5, location=(0, 1, 0))
+        still = bpy.context.object
+        plane = self.plane(self.shining(), size=0.5)
+        still.data.materials.append(plane.data.materials[0])
+        still.select_set(True)
+        bpy.ops.object.join()
+        self.deform(plane, range(4))
+        ours, theirs = render("COVTRACE", 256), render("CYCLES", 256)
+        for part in ((14, 0, 18, 10), (18, 10, 22, 14), (18, 0, 22, 10)):
+            self.assertAlmostEqual(mean(ours, *part)[0], mean(theirs, *part)[0], delta=0.05)
+
+    def test_what_one_triangle_cannot_follow_is_told(self):
+        plane = self.plane(self.shining(), size=0.5)
+        self.deform(plane, [0], (0.5, 0.5, 0))  # both triangles end as lines
+        self.export()
+        self.assertTrue(any("bends more while the shutter is open" in w for w in self.warnings), self.warnings)
+
+    def test_arms_bend_as_in_cycles(self):
+        """An arm of two bones along x, whose second one turns by 40 degrees while the shutter is open."""
+        bpy.ops.mesh.primitive_grid_add(x_subdivisions=40, y_subdivisions=4, size=1)
+        arm = bpy.context.object
+        for vertex in arm.data.vertices:
+            vertex.co = (vertex.co.x * 3, vertex.co.y * 0.5, 0)
+        arm.data.materials.append(self.shining())
+        bpy.ops.object.armature_add(enter_editmode=True)
+        rig = bpy.context.object
+        bones = rig.data.edit_bones
+        upper = bones[0]
+        upper.head, upper.tail = (-1.5, 0, 0), (0, 0, 0)
+        lower = bones.new("lower")
+        lower.head, lower.tail, lower.parent = (0, 0, 0), (1.5, 0, 0), upper
+        names = (upper.name, lower.name)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        for name, share in zip(names, (lambda t: 1 - t, lambda t: t)):
+            group = arm.vertex_groups.new(name=name)
+            for vertex in arm.data.vertices:
+                group.add([vertex.index], share(min(max(vertex.co.x / 0.6 + 0.5, 0), 1)), "REPLACE")
+        arm.modifiers.new("rig", "ARMATURE").object = rig
+        bone = rig.pose.bones[names[1]]
+        bone.rotation_mode = "XYZ"
+        for frame, turn in ((0, -20), (2, 20)):
+            bone.rotation_euler = (0, 0, math.radians(turn))
+            bone.keyframe_insert("rotation_euler", frame=frame)
+        for curve in rig.animation_data.action.fcurves:
+            for point in curve.keyframe_points:
+                point.interpolation = "LINEAR"
+        self.scene.frame_set(1)
+        self.scene.render.use_motion_blur, self.scene.render.motion_blur_shutter = True, 2.0
+        self.scene.cycles.motion_blur_position = "CENTER"
+        arm.cycles.motion_steps = 5  # Cycles' own are straight between its steps
+        ours, theirs = render("COVTRACE", 256), render("CYCLES", 256)
+        for x in range(0, 32, 4):
+            for y in range(0, 24, 4):
+                self.assertAlmostEqual(mean(ours, x, y, x + 4, y + 4)[0], mean(theirs, x, y, x + 4, y + 4)[0], delta=0.04)
+        self.export()
+        self.assertEqual(self.warnings, [])

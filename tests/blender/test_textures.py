@@ -1,0 +1,79 @@
+"""Where images lie on surfaces, and how they go on and shine, against Cycles."""
+
+import bpy
+from addon_support import BlenderTest, material, mean, render
+
+
+class TexturesTest(BlenderTest):
+    def test_textures_lie_as_in_cycles(self):
+        # Nearest texels: Cycles interpolates bytes before it decodes them, which contrasts as hard as these would show.
+        m = self.image_material()
+        self.plane(m, size=3)
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        # A turn or flip would change these means by more than 0.1.
+        self.assert_quarters_as_cycles(samples=64)
+
+    def image_material(self, size=4, extension="REPEAT", uv_map=None, is_float=False):
+        """Shows an image whose texels all differ, so that no turn or flip goes unseen."""
+        image = bpy.data.images.new("texels", size, size, float_buffer=is_float)
+        image.pixels = [v for i in range(size * size) for v in (i / 15, (i * 7 % 16) / 15, (i % 4) / 3, 1)]
+        m = bpy.data.materials.new("shown")
+        m.use_nodes = True
+        tree = m.node_tree
+        texture, principled = tree.nodes.new("ShaderNodeTexImage"), tree.nodes["Principled BSDF"]
+        texture.image, texture.interpolation, texture.extension = image, "Closest", extension
+        # The roughness at which Cycles' diffuse base is within 1 % of Lambert's (decision 0051).
+        principled.inputs["Specular"].default_value, principled.inputs["Roughness"].default_value = 0, 0.3
+        tree.links.new(texture.outputs["Color"], principled.inputs["Base Color"])
+        if uv_map is not None:
+            node = tree.nodes.new("ShaderNodeUVMap")
+            node.uv_map = uv_map
+            tree.links.new(node.outputs["UV"], texture.inputs["Vector"])
+        return m
+
+    def assert_quarters_as_cycles(self, delta=0.02, samples=32):
+        ours, theirs = render("COVTRACE", samples), render("CYCLES", samples)
+        for y0, y1 in ((2, 12), (12, 22)):
+            for x0, x1 in ((6, 16), (16, 26)):
+                for a, b in zip(mean(ours, x0, y0, x1, y1), mean(theirs, x0, y0, x1, y1)):
+                    self.assertAlmostEqual(a, b, delta=delta)
+
+    def test_uv_maps_are_those_of_the_render(self):
+        # Selected in the editor, active for the render, and named by a node: all three differ.
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        for uv_map in (None, "", "named"):
+            plane = self.plane(self.image_material(uv_map=uv_map), size=3)
+            layers = plane.data.uv_layers
+            for k, name in enumerate(("for the render", "named")):
+                layer = layers.new(name=name)
+                for loop in layer.data:
+                    loop.uv = (1 - loop.uv[0], loop.uv[1]) if k else (loop.uv[1], loop.uv[0])
+            layers["for the render"].active_render = True
+            layers.active = layers[0]
+            with self.subTest(uv_map):
+                self.assert_quarters_as_cycles()
+                self.export()
+                self.assertEqual(self.warnings, [])
+            bpy.data.objects.remove(plane)
+
+    def test_images_go_on_as_in_cycles(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        for extension in ("REPEAT", "EXTEND", "CLIP"):
+            plane = self.plane(self.image_material(extension=extension), size=3)
+            for loop in plane.data.uv_layers[0].data:
+                loop.uv = (2 * loop.uv[0] - 0.25, 2 * loop.uv[1] - 0.75)
+            with self.subTest(extension):
+                self.assert_quarters_as_cycles()
+            bpy.data.objects.remove(plane)
+
+    def test_images_shine_beyond_white(self):
+        image = bpy.data.images.new("bright", 2, 2, float_buffer=True)
+        image.pixels = [v for i in range(4) for v in (4, 2 * i, 0.25, 1)]
+        m = material(Base_Color=(0, 0, 0, 1), Specular=0.0, Emission_Strength=1.5)
+        texture = m.node_tree.nodes.new("ShaderNodeTexImage")
+        texture.image = image
+        m.node_tree.links.new(texture.outputs["Color"], m.node_tree.nodes["Principled BSDF"].inputs["Emission"])
+        self.plane(m, size=20)
+        ours, theirs = mean(render("COVTRACE", 64)), mean(render("CYCLES", 64))
+        for a, b in zip(ours, theirs):
+            self.assertAlmostEqual(a / b, 1, delta=0.02, msg=f"{ours} against {theirs}")
