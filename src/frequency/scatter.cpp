@@ -267,14 +267,14 @@ void ScatterSum::add(const LightField& left, double weight) {
     weight_ += weight;
     const double share = weight / weight_;
     // Positions are along the tangents for all; only slopes have axes of their own.
+    const cov::Frame<double>&from = left.frame, &to = left_.frame;
     const bool is_turned =
-        !(left.frame.x == left_.frame.x) && !(left.sigma.angular() == cov::Sym2<double>{});
-    left_.sigma =
-        (1 - share) * left_.sigma +
-        share * (is_turned
-                     ? cov::map_angular(left.sigma, cov::projection<double>(
-                                                        left.frame, left_.frame.x, left_.frame.y))
-                     : left.sigma);
+        !(from.x == to.x && from.y == to.y) && !(left.sigma.angular() == cov::Sym2<double>{});
+    const auto turned = [&] {
+        return is_turned ? cov::map_angular(left.sigma, cov::projection<double>(from, to.x, to.y))
+                         : left.sigma;
+    };
+    left_.sigma = (1 - share) * left_.sigma + share * turned();
 }
 
 LightField ScatterSum::leaving() const {
