@@ -24,10 +24,11 @@ RC_GTEST_PROP(Generic, Rotation, ()) {
     RC_ASSERT(distance(flip_y(s), transform(s, transverse_matrix(Mat2{1, 0, 0, -1}))) < kExact);
 }
 
-RC_GTEST_PROP(Generic, Surface, ()) {
+RC_GTEST_PROP(Generic, Surface, (bool is_flat)) {
     const Matrix s = draw_psd();
     const Frame f = draw_frame(draw_direction());
-    const auto hit = draw_surface(f.z);
+    auto hit = draw_surface(f.z);
+    if (is_flat) hit.curvature = {};
     RC_ASSERT(distance(surface_enter(s, f, hit), transform(s, surface_enter_matrix(f, hit))) <
               kExact);
     RC_ASSERT(distance(surface_exit(s, f, hit), transform(s, surface_exit_matrix(f, hit))) <

@@ -176,6 +176,20 @@ TEST(Reflection, AlignedLobeNarrowsAcrossThePlaneAtGrazing) {
     EXPECT_NEAR(lobe.yy, micro.yy / (4 * c * c), 1e-12);
 }
 
+RC_GTEST_PROP(Reflection, IsotropicLobeIsThatOfAnyTangents, ()) {
+    const Frame in = draw_frame(draw_direction());
+    const Surface hit = draw_surface(in.z);
+    const Vec3 h = half_vector(in.z, draw_leaving(hit.n), hit.n);
+    const Frame out = mirrored(in, h);
+    const double alpha = draw(0.05, 1), cos_h = std::abs(dot(h, out.z));
+    RC_PRE(cos_h > 0.05);
+    const Sym2 micro = micro_ggx(alpha, alpha), lobe = glossy_lobe(out, hit, h, micro);
+    const Sym2 general = reflection_cov(micro, surface_projection(out, tilted(hit, h)), cos_h);
+    RC_ASSERT(std::abs(lobe.xx - general.xx) + std::abs(lobe.xy - general.xy) +
+                  std::abs(lobe.yy - general.yy) <
+              1e-10 * trace(general));
+}
+
 RC_GTEST_PROP(Reflection, DiffuseForgetsDirections, ()) {
     const Field field{draw_psd(), draw_frame(draw_direction())};
     const Surface hit = draw_surface(field.frame.z);

@@ -39,7 +39,8 @@ LightField area_field(const SourceSpectrum& s, Vec3 travel, bool seen_sharply, d
         field = cov::add_texture(field, {q * dx * dx, q * dx * dy, q * dy * dy});
     }
     const cov::Motion<double> motion{s.velocity, s.angular_velocity};
-    return cov::motion_exit(cov::surface_exit(field, surface), motion);
+    const auto left = cov::surface_exit(field, surface);
+    return motion.at_rest() ? left : cov::motion_exit(left, motion);
 }
 
 }  // namespace

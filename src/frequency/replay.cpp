@@ -23,6 +23,10 @@ struct Arriving {
         field = weight > 0 ? cov::merge(field, weight, other, other_weight) : other;
         weight += other_weight;
     }
+    /// What an even medium emits on the way is the same for all neighbouring rays.
+    void add_glow(Vec3 travel, double glow) {
+        if (glow > 0) add({{}, cov::frame_along<double>(travel)}, glow);
+    }
 };
 
 /// What sends light on from a vertex, as a receiver at the given distance sees it. Mirrors show an
@@ -47,9 +51,9 @@ constexpr double kInvisible = 0.02;
 /// without its occluders; where they are more, every one is followed.
 constexpr double kLeastFollowed = 1 - kSmallestShare;
 
-cov::SymmetricMatrix5<double> to_sensor(const LightField& field, const SensorGeometry& g) {
-    if (cov::trace(field.sigma) == 0) return {};
-    const LightField at_rest = cov::motion_enter(field, {g.velocity, g.angular_velocity});
+/// `at_rest`: beside a camera that rests.
+cov::SymmetricMatrix5<double> to_sensor(const LightField& at_rest, const SensorGeometry& g) {
+    if (cov::trace(at_rest.sigma) == 0) return {};
     if (g.orthographic)
         return cov::sensor(at_rest, cov::OrthographicLens<double>{
                                         g.right, g.down, g.forward, g.focal_distance, g.lens_radius,
@@ -121,8 +125,6 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
         return luminance > 0 && luminance >= least * total;
     };
 
-    // What an even medium emits on the way is the same for all neighbouring rays.
-    const auto glow = [](Vec3 travel) { return LightField{{}, cov::frame_along<double>(travel)}; };
     // Half a pixel's extent grows with the distance travelled from the camera; what can be seen of
     // a vertex shrinks with every rough surface before it.
     std::array<float, PathRecord::kCapacity> distances;
@@ -139,10 +141,33 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
         visible[i] = i == 0 ? first_visibility(camera, d, sharpest_window(v))
                             : next_visibility(camera, visible[i - 1], d, sharpest_window(v));
     }
+    const auto position = [&record](int i) {
+        return i < 0 ? record.camera_ray.origin : record.vertices[size_t(i)].hit.position;
+    };
     const auto owner = [&record](int i) -> OccluderQuery::Owner {
         if (i < 0 || record.vertices[size_t(i)].medium >= 0) return {};
         const SurfaceHit& hit = record.vertices[size_t(i)].hit;
         return {hit.shape, hit.instance};
+    };
+
+    /// Carries light to vertex i, to the camera where i is below 0. `own`: of the surface it has
+    /// left.
+    const auto carry = [&](LightField& field, Vec3 from, OccluderQuery::Owner owner_of_from, int i,
+                           double weight, const OwnOutline* own = nullptr) {
+        const Vec3 to = position(i);
+        if (!occluders_) {
+            field.sigma = cov::travel(field.sigma, distance(from, to));
+            return;
+        }
+        const OccluderQuery::Segment segment{from, to, record.camera_ray.time, owner_of_from,
+                                             owner(i)};
+        field = i < 0 ? to_camera(field, segment, camera, weight / total, own)
+                      : to_surface(field, segment, visible[size_t(i)], weight / total, own);
+    };
+    /// The same from infinity, in direction w from there. Without occluders on the way nothing
+    /// changes: such light has no variation in space.
+    const auto carry_from_infinity = [&](LightField& field, Vec3 w, int i, double weight) {
+        if (occluders_) carry(field, entry(position(i), w), {}, i, weight);
     };
 
     Arriving light;
@@ -150,19 +175,9 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
         const SourceSpectrum s = scene_.lights.environment_spectrum(record.escape_direction);
         light.add(source_field(s, -record.escape_direction, record.escape_seen_sharply, smallest_),
                   escaped);
-        const Vec3 last = record.count > 0 ? record.vertices[size_t(record.count - 1)].hit.position
-                                           : record.camera_ray.origin;
-        const OccluderQuery::Segment segment{entry(last, record.escape_direction),
-                                             last,
-                                             record.camera_ray.time,
-                                             {},
-                                             owner(record.count - 1)};
-        light.field = record.count > 0
-                          ? to_surface(light.field, segment, visible[size_t(record.count - 1)],
-                                       light.weight / total)
-                          : to_camera(light.field, segment, camera, light.weight / total);
+        carry_from_infinity(light.field, record.escape_direction, record.count - 1, light.weight);
     }
-    light.add(glow(-record.escape_direction), taken(record.escape_glow, false));
+    light.add_glow(-record.escape_direction, taken(record.escape_glow, false));
 
     const auto own_outline = [this](const cov::Surface<double>& surface,
                                     const cov::Motion<double>& motion,
@@ -205,20 +220,16 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
                 scatter(light.field, light.emitter, v.next_event.lobes, light.weight);
             if (has_direct) {
                 const SourceSpectrum s = scene_.lights.source_spectrum(v.light, v.hit.time);
-                const Vec3 from = std::isfinite(v.light.distance)
-                                      ? v.hit.position + v.light.wi * v.light.distance
-                                      : entry(v.hit.position, v.light.wi);
-                const LightField source = source_field(s, -v.light.wi, false, smallest_);
-                const LightField arriving =
-                    to_surface(source, {from, v.hit.position, v.hit.time, {}, owner(i)},
-                               visible[size_t(i)], direct / total);
+                LightField arriving = source_field(s, -v.light.wi, false, smallest_);
+                if (std::isfinite(v.light.distance))
+                    carry(arriving, v.hit.position + v.light.wi * v.light.distance, {}, i, direct);
+                else
+                    carry_from_infinity(arriving, v.light.wi, i, direct);
                 scatter(arriving, emitter_of(s, v.light.distance), v.direct_event.lobes, direct);
             }
             if (sum) leaving.add(sum->leaving(), sum->weight());
         }
-        const Vec3 next =
-            i > 0 ? record.vertices[size_t(i - 1)].hit.position : record.camera_ray.origin;
-        const double way = distance(v.hit.position, next);
+        const double way = distance(v.hit.position, position(i - 1));
         leaving.emitter = emitter_at(v, way);
         if (counts(emitted)) {
             const SourceSpectrum s = scene_.lights.source_spectrum(v.hit, v.seen_sharply);
@@ -232,18 +243,15 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
             }
         }
         light = leaving;
-        const OccluderQuery::Segment segment{v.hit.position, next, v.hit.time, owner(i),
-                                             owner(i - 1)};
-        const OwnOutline* ends = own ? &*own : nullptr;
         if (light.weight > 0)
-            light.field = i > 0
-                              ? to_surface(light.field, segment, visible[size_t(i - 1)],
-                                           light.weight / total, ends)
-                              : to_camera(light.field, segment, camera, light.weight / total, ends);
-        light.add(glow(v.wo), taken(v.glow, false));
+            carry(light.field, v.hit.position, owner(i), i - 1, light.weight,
+                  own ? &*own : nullptr);
+        light.add_glow(v.wo, taken(v.glow, false));
     }
 
     kept = light.weight;
+    const cov::Motion<double> motion{camera.velocity, camera.angular_velocity};
+    if (!motion.at_rest()) light.field = cov::motion_enter(light.field, motion);
     const PathCovariance result{
         light.weight > 0 ? to_sensor(light.field, camera) : cov::SymmetricMatrix5<double>{}, total};
     if (!cov::is_finite(result.sigma) || !std::isfinite(result.weight)) return {};

@@ -147,8 +147,7 @@ ScatterPoint::ScatterPoint(const RenderScene& scene, const PathVertex& vertex, f
         facing = cov::shading_surface(surface, normals);
     }
     motion = {d.velocity, d.angular_velocity};
-    const cov::Vec3<double> none;
-    is_flat = normals.d1 == none && normals.d2 == none && motion.at_rest();
+    is_flat = normals.is_flat() && motion.at_rest();
     const unsigned kinds = kinds_of_lobes(vertex);
     const bool reflects = (kinds & bit(LobeKind::diffuse_reflection)) != 0,
                transmits = (kinds & bit(LobeKind::diffuse_transmission)) != 0;
@@ -247,10 +246,13 @@ void ScatterSum::add(const LightField& arriving, const cov::Emitter<double>& emi
         kept += std::max(weights[i], 0.0);
     }
     if (!(kept > 0)) return add({{}, cov::frame_along<double>(point_.outgoing)}, weight);
-    const LightField entered =
-        is_even(arriving) ? arriving
-                          : cov::surface_enter<double>(cov::motion_enter(arriving, point_.motion),
-                                                       point_.surface, point_.normals);
+    LightField entered = arriving;
+    if (!is_even(arriving)) {
+        if (!point_.motion.at_rest()) entered = cov::motion_enter(entered, point_.motion);
+        entered.sigma = cov::change_positions<double>(
+            entered.sigma, cov::surface_projection<double>(entered.frame, point_.surface),
+            cov::surface_curvature<double>(entered.frame, point_.normals));
+    }
     for (size_t i = 0; i < size_t(lobes.count); ++i)
         if (weights[i] > 0)
             add(through(entered, emitter, lobes.lobes[i], rule), weight * (weights[i] / kept));
@@ -262,18 +264,23 @@ void ScatterSum::add(const LightField& left, double weight) {
         weight_ = weight;
         return;
     }
-    // Positions are along the tangents for all; only slopes have axes of their own.
-    const auto turned = cov::map_angular(
-        left.sigma, cov::projection<double>(left.frame, left_.frame.x, left_.frame.y));
     weight_ += weight;
     const double share = weight / weight_;
-    left_.sigma = (1 - share) * left_.sigma + share * turned;
+    // Positions are along the tangents for all; only slopes have axes of their own.
+    const cov::Frame<double>&from = left.frame, &to = left_.frame;
+    const bool is_turned =
+        !(from.x == to.x && from.y == to.y) && !(left.sigma.angular() == cov::Sym2<double>{});
+    const auto turned = [&] {
+        return is_turned ? cov::map_angular(left.sigma, cov::projection<double>(from, to.x, to.y))
+                         : left.sigma;
+    };
+    left_.sigma = (1 - share) * left_.sigma + share * turned();
 }
 
 LightField ScatterSum::leaving() const {
     if (is_even(left_)) return left_;
-    return cov::motion_exit(cov::surface_exit<double>(left_, point_.surface, point_.normals),
-                            point_.motion);
+    const auto left = cov::surface_exit<double>(left_, point_.surface, point_.normals);
+    return point_.motion.at_rest() ? left : cov::motion_exit(left, point_.motion);
 }
 
 }  // namespace covtrace

@@ -55,7 +55,7 @@ void PathTracer::add_direct(const Surface& surface, float u_select, Vec2 u, Path
     shadow.time = hit.time;
     const MediumId medium = medium_beyond(surface.shape, hit, light->wi, medium_);
     if (add_light(*light, value, shadow, medium, vertex) && vertex)
-        vertex->direct_event.lobes = lobe_shares(surface.bsdf, surface.wo, wi_local);
+        vertex->direct_event.lobes = lobe_shares(surface.bsdf, surface.wo, wi_local, value.f);
 }
 
 bool PathTracer::add_light(const LightSample& light, const BsdfValue& value, Ray shadow,

@@ -64,7 +64,8 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, PathVerte
             vertex->next_event.lobes.count = 1;
             vertex->next_event.lobes.lobes[0] = {s->lobe, s->weight, 0, 0, s->eta};
         } else {
-            vertex->next_event.lobes = lobe_shares(surface.bsdf, surface.wo, s->wi);
+            vertex->next_event.lobes =
+                lobe_shares(surface.bsdf, surface.wo, s->wi, s->weight * s->pdf);
         }
     }
     const SurfaceHit& hit = surface.hit;

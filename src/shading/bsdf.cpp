@@ -14,7 +14,7 @@ Rgb eval(const InterfaceBsdf&, Vec3, Vec3) {
 float pdf(const InterfaceBsdf&, Vec3, Vec3) {
     return 0;
 }
-LobeShares lobe_shares(const InterfaceBsdf&, Vec3, Vec3) {
+LobeShares lobe_shares(const InterfaceBsdf&, Vec3, Vec3, Rgb) {
     return {};
 }
 Rgb eval(const ThinDielectricBsdf&, Vec3, Vec3) {
@@ -23,7 +23,7 @@ Rgb eval(const ThinDielectricBsdf&, Vec3, Vec3) {
 float pdf(const ThinDielectricBsdf&, Vec3, Vec3) {
     return 0;
 }
-LobeShares lobe_shares(const ThinDielectricBsdf&, Vec3, Vec3) {
+LobeShares lobe_shares(const ThinDielectricBsdf&, Vec3, Vec3, Rgb) {
     return {};
 }
 
@@ -117,8 +117,8 @@ bool has_sharp_lobe(const Bsdf& bsdf) {
            std::holds_alternative<CoatedDiffuseBsdf>(bsdf);
 }
 
-LobeShares lobe_shares(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
-    return std::visit([&](const auto& b) { return lobe_shares(b, wo, wi); }, bsdf);
+LobeShares lobe_shares(const Bsdf& bsdf, Vec3 wo, Vec3 wi, Rgb value) {
+    return std::visit([&](const auto& b) { return lobe_shares(b, wo, wi, value); }, bsdf);
 }
 
 Rgb albedo(const Bsdf& bsdf, Vec3 wo) {

@@ -53,7 +53,7 @@ struct LobeShare {
     float border_eta = 0, border_k = 0;
 };
 struct LobeShares {
-    std::array<LobeShare, 4> lobes;
+    std::array<LobeShare, 2> lobes;
     int count = 0;
 };
 
@@ -124,8 +124,9 @@ bool is_specular(const Bsdf& bsdf);
 bool has_diffuse_lobe(const Bsdf& bsdf);
 /// True for models with a lobe that reflects or refracts light about one direction.
 bool has_sharp_lobe(const Bsdf& bsdf);
-/// The parts of eval(wo, wi), lobe by lobe; their values sum to it. Specular lobes have no part.
-LobeShares lobe_shares(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
+/// The parts of `value` = eval(wo, wi), lobe by lobe; their values sum to it. Specular lobes have
+/// no part. Whoever asks has evaluated the pair before, so that nothing is computed twice.
+LobeShares lobe_shares(const Bsdf& bsdf, Vec3 wo, Vec3 wi, Rgb value);
 /// Directional albedo for this wo, approximate where no closed form exists; for the albedo layer.
 Rgb albedo(const Bsdf& bsdf, Vec3 wo);
 

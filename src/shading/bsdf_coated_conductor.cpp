@@ -257,7 +257,8 @@ std::optional<BsdfSample> sample(const CoatedConductorBsdf& b, Vec3 wo, float u_
     return {};
 }
 
-LobeShares lobe_shares(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi) {
+// Not from the value, which a random walk may have found.
+LobeShares lobe_shares(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi, Rgb) {
     if (!same_side(wo, wi) || is_specular(b)) return {};
     wo = to_upper_side(wo);
     wi = to_upper_side(wi);

@@ -60,22 +60,27 @@ Rgb eval_base(const CoatedDiffuseBsdf& b, const Outgoing& out, Vec3 wi) {
     return b.base * (out.transmission * shares(b, wi).transmission * wi.z);
 }
 
-/// The coat's part of value and density for a pair above the surface.
-BsdfValue eval_coat(const CoatedDiffuseBsdf& b, const Outgoing& out, Vec3 wi) {
-    if (is_smooth(b)) return {};
+/// The coat's part of the value of a pair above the surface, of all colours alike; `d`: density of
+/// the normals that reflect it, `stretched`: Ggx::stretched_length of wo.
+struct CoatValue {
+    float value = 0, d = 0;
+};
+CoatValue eval_coat(const CoatedDiffuseBsdf& b, Vec3 wo, float stretched, Vec3 wi) {
     const Ggx ggx{b.alpha_x, b.alpha_y};
-    const Vec3 m = normalize(out.wo + wi);
+    const Vec3 m = normalize(wo + wi);
     const float d = ggx.d(m);
     const float masked =
-        2 * wi.z / (out.stretched * wi.z + ggx.stretched_length(wi) * out.wo.z);  // over wo.z
-    return {Rgb(0.25f * fresnel_dielectric(dot(out.wo, m), b.eta).reflectance * d * masked),
-            out.choose_coat * d / (2 * (out.wo.z + out.stretched))};
+        2 * wi.z / (stretched * wi.z + ggx.stretched_length(wi) * wo.z);  // over wo.z
+    return {0.25f * fresnel_dielectric(dot(wo, m), b.eta).reflectance * d * masked, d};
 }
 
 BsdfValue value_and_density(const CoatedDiffuseBsdf& b, const Outgoing& out, Vec3 wi) {
-    const BsdfValue coat = eval_coat(b, out, wi);
-    return {coat.f + eval_base(b, out, wi),
-            coat.pdf + (1 - out.choose_coat) * cosine_hemisphere_pdf(wi.z)};
+    const Rgb base = eval_base(b, out, wi);
+    const float base_pdf = (1 - out.choose_coat) * cosine_hemisphere_pdf(wi.z);
+    if (is_smooth(b)) return {base, base_pdf};
+    const CoatValue coat = eval_coat(b, out.wo, out.stretched, wi);
+    return {Rgb(coat.value) + base,
+            out.choose_coat * coat.d / (2 * (out.wo.z + out.stretched)) + base_pdf};
 }
 
 }  // namespace
@@ -122,15 +127,17 @@ std::optional<BsdfSample> sample(const CoatedDiffuseBsdf& b, Vec3 wo, float u_lo
                       from_coat ? LobeKind::glossy_reflection : LobeKind::diffuse_reflection};
 }
 
-LobeShares lobe_shares(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi) {
+LobeShares lobe_shares(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi, Rgb value) {
     if (!same_side(wo, wi)) return {};
-    const Outgoing out(b, wo);
-    wi = to_upper_side(wi);
-    LobeShares found{
-        {LobeShare{LobeKind::diffuse_reflection, eval_base(b, out, wi), 0, 0, 1, b.eta}}, 1};
-    if (!is_smooth(b))
-        found.lobes[found.count++] = {
-            LobeKind::glossy_reflection, eval_coat(b, out, wi).f, b.alpha_x, b.alpha_y, 1, b.eta};
+    LobeShares found{{LobeShare{LobeKind::diffuse_reflection, value, 0, 0, 1, b.eta}}, 1};
+    if (is_smooth(b)) return found;
+    wo = to_upper_side(wo);
+    const float stretched = Ggx{b.alpha_x, b.alpha_y}.stretched_length(wo);
+    const float coat = eval_coat(b, wo, stretched, to_upper_side(wi)).value;
+    const auto rest = [coat](float channel) { return std::max(0.0f, channel - coat); };
+    found.lobes[0].value = {rest(value.r), rest(value.g), rest(value.b)};
+    found.lobes[1] = {LobeKind::glossy_reflection, Rgb(coat), b.alpha_x, b.alpha_y, 1, b.eta};
+    found.count = 2;
     return found;
 }
 

@@ -53,9 +53,9 @@ std::optional<BsdfSample> sample(const ConductorBsdf& b, Vec3 wo, float, Vec2 u)
                       ggx.reflection_pdf(wo, m), LobeKind::glossy_reflection};
 }
 
-LobeShares lobe_shares(const ConductorBsdf& b, Vec3 wo, Vec3 wi) {
+LobeShares lobe_shares(const ConductorBsdf& b, Vec3 wo, Vec3 wi, Rgb value) {
     if (is_smooth(b) || !same_side(wo, wi)) return {};
-    return {{LobeShare{LobeKind::glossy_reflection, eval(b, wo, wi), b.alpha_x, b.alpha_y, 1,
+    return {{LobeShare{LobeKind::glossy_reflection, value, b.alpha_x, b.alpha_y, 1,
                        luminance(b.eta), luminance(b.k)}},
             1};
 }

@@ -104,8 +104,7 @@ std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe,
                       LobeKind::glossy_transmission, eta};
 }
 
-LobeShares lobe_shares(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
-    const Rgb value = eval(b, wo, wi);
+LobeShares lobe_shares(const DielectricBsdf& b, Vec3 wo, Vec3 wi, Rgb value) {
     if (is_black(value)) return {};
     const float eta = wo.z > 0 ? b.eta : 1 / b.eta;
     if (same_side(wo, wi))

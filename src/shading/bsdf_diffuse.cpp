@@ -24,9 +24,9 @@ std::optional<BsdfSample> sample(const DiffuseBsdf& b, Vec3 wo, float, Vec2 u) {
                       LobeKind::diffuse_reflection};
 }
 
-LobeShares lobe_shares(const DiffuseBsdf& b, Vec3 wo, Vec3 wi) {
+LobeShares lobe_shares(const DiffuseBsdf&, Vec3 wo, Vec3 wi, Rgb value) {
     if (!same_side(wo, wi)) return {};
-    return {{LobeShare{LobeKind::diffuse_reflection, eval(b, wo, wi)}}, 1};
+    return {{LobeShare{LobeKind::diffuse_reflection, value}}, 1};
 }
 
 }  // namespace covtrace

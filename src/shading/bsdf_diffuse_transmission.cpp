@@ -36,10 +36,10 @@ std::optional<BsdfSample> sample(const DiffuseTransmissionBsdf& b, Vec3 wo, floa
                       transmit ? LobeKind::diffuse_transmission : LobeKind::diffuse_reflection};
 }
 
-LobeShares lobe_shares(const DiffuseTransmissionBsdf& b, Vec3 wo, Vec3 wi) {
+LobeShares lobe_shares(const DiffuseTransmissionBsdf&, Vec3 wo, Vec3 wi, Rgb value) {
     const LobeKind kind =
         same_side(wo, wi) ? LobeKind::diffuse_reflection : LobeKind::diffuse_transmission;
-    return {{LobeShare{kind, eval(b, wo, wi)}}, 1};
+    return {{LobeShare{kind, value}}, 1};
 }
 
 }  // namespace covtrace

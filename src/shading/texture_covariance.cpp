@@ -99,6 +99,11 @@ struct Analyser {
         return result;
     }
 
+    SpatialCovariance2 of_mixture(const MixNode& node) const {
+        return of_image(std::get<ImageNode>(graph.nodes[size_t(node.amount)]),
+                        node.mixture_spectrum);
+    }
+
     SpatialCovariance2 operator()(const CheckerboardNode& node) const {
         const Rgb a = eval(graph, node.tex1, at), b = eval(graph, node.tex2, at);
         const auto edge_at = [&](float coordinate, Vec2 gradient) {
@@ -128,17 +133,17 @@ struct Analyser {
     /// A sum of two signals, each weighted by what it contributes here. The amount multiplies their
     /// difference, so it counts as much as an edge between the two would.
     SpatialCovariance2 operator()(const MixNode& node) const {
+        const SpatialCovariance2 first = of(node.tex1), second = of(node.tex2);
+        const bool varies = first.ss + first.tt + second.ss + second.tt > 0;
+        if (node.mixture_spectrum >= 0 && !varies) return of_mixture(node);
         const Rgb a = eval(graph, node.tex1, at), b = eval(graph, node.tex2, at);
+        SpatialCovariance2 result =
+            node.mixture_spectrum >= 0 ? of_mixture(node) : of(node.amount) * contrast_weight(a, b);
+        if (!varies) return result;
         const Rgb amount = eval(graph, node.amount, at);
         const float wa = std::abs(luminance((Rgb(1) - amount) * a));
         const float wb = std::abs(luminance(amount * b));
-        SpatialCovariance2 result =
-            node.mixture_spectrum >= 0
-                ? of_image(std::get<ImageNode>(graph.nodes[size_t(node.amount)]),
-                           node.mixture_spectrum)
-                : of(node.amount) * contrast_weight(a, b);
-        if (wa + wb > 0)
-            result = result + of(node.tex1) * (wa / (wa + wb)) + of(node.tex2) * (wb / (wa + wb));
+        if (wa + wb > 0) result = result + first * (wa / (wa + wb)) + second * (wb / (wa + wb));
         return result;
     }
 };

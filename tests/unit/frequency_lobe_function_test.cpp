@@ -55,7 +55,8 @@ TEST(LobeFunction, IsProportionalToWhatThePathTracerEvaluates) {
             const Vec3 wo = square_to_sphere(rng.next_2d());
             const auto s = sample(model.bsdf, wo, rng.next_float(), rng.next_2d());
             if (!s || std::abs(wo.z) < 0.05f || std::abs(s->wi.z) < 0.05f) continue;
-            const LobeShares shares = lobe_shares(model.bsdf, wo, s->wi);
+            const LobeShares shares =
+                lobe_shares(model.bsdf, wo, s->wi, eval(model.bsdf, wo, s->wi));
             for (int j = 0; j < shares.count; ++j) {
                 const LobeShare& lobe = shares.lobes[size_t(j)];
                 const bool base = lobe.kind == LobeKind::diffuse_reflection && lobe.border_eta > 0;
@@ -77,7 +78,7 @@ TEST(LobeFunction, BaseBelowASmoothCoatIsSeenThroughItTwice) {
     double first = 0;
     for (const float z : {0.9f, 0.5f, 0.3f}) {
         const Vec3 wo{std::sqrt(1 - z * z), 0, z}, wi{0.6f, 0, 0.8f};
-        const LobeShares shares = lobe_shares(coat, wo, wi);
+        const LobeShares shares = lobe_shares(coat, wo, wi, eval(coat, wo, wi));
         ASSERT_EQ(shares.count, 1);
         const double ratio =
             double(luminance(shares.lobes[0].value)) / lobe_function(shares.lobes[0], wo, wi);
@@ -95,7 +96,8 @@ TEST(LobeFunction, DerivativesAreThoseOfFiniteDifferences) {
             const Vec3 wo = square_to_sphere(rng.next_2d());
             const auto s = sample(model.bsdf, wo, rng.next_float(), rng.next_2d());
             if (!s || std::abs(wo.z) < 0.2f || std::abs(s->wi.z) < 0.2f) continue;
-            const LobeShares shares = lobe_shares(model.bsdf, wo, s->wi);
+            const LobeShares shares =
+                lobe_shares(model.bsdf, wo, s->wi, eval(model.bsdf, wo, s->wi));
             for (int j = 0; j < shares.count; ++j) {
                 const LobeShare& lobe = shares.lobes[size_t(j)];
                 const auto f = cov::frame_along<double>(cov::Vec3<double>(wo));

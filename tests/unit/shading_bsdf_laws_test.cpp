@@ -151,7 +151,7 @@ TEST_P(BsdfLaws, LobesSumToEval) {
             const auto s = sample(bsdf, wo, rng.next_float(), rng.next_2d());
             if (s && !is_specular(s->lobe)) wi = s->wi;
         }
-        const LobeShares shares = lobe_shares(bsdf, wo, wi);
+        const LobeShares shares = lobe_shares(bsdf, wo, wi, eval(bsdf, wo, wi));
         Rgb sum;
         for (int j = 0; j < shares.count; ++j) {
             sum += shares.lobes[static_cast<size_t>(j)].value;
@@ -232,7 +232,7 @@ TEST(BsdfSpecular, ModelsWithoutOtherLobesNeverEvaluate) {
             const Vec3 wo = square_to_sphere(rng.next_2d()), wi = square_to_sphere(rng.next_2d());
             EXPECT_TRUE(is_black(eval(c.bsdf, wo, wi))) << c.name;
             EXPECT_EQ(pdf(c.bsdf, wo, wi), 0) << c.name;
-            EXPECT_EQ(lobe_shares(c.bsdf, wo, wi).count, 0) << c.name;
+            EXPECT_EQ(lobe_shares(c.bsdf, wo, wi, Rgb(0)).count, 0) << c.name;
             const auto s = sample(c.bsdf, wo, rng.next_float(), rng.next_2d());
             ASSERT_TRUE(s) << c.name;
             EXPECT_TRUE(is_specular(s->lobe)) << c.name;

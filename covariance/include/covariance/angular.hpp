@@ -71,8 +71,7 @@ template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> convolve_angular(
     SymmetricMatrix5<T> s, const Sym2<NonDeduced<T>>& kernel) noexcept {
     if (kernel == Sym2<T>{}) return slice_angular(s);
-    const SymmetricMatrix5<T> old = s;
-    const Sym2<T> b = kernel + s.angular();
+    const Sym2<T> own = s.angular(), b = kernel + own;
 
     // Elimination with the larger pivot p first: B = L diag(d1, d2) L^T with L = [1 0; l 1]. Unlike
     // an explicit inverse it keeps its accuracy where B is nearly singular. A second pivot that is
@@ -81,40 +80,45 @@ template <std::floating_point T>
     const std::size_t p = u_first ? axis::u : axis::v, q = u_first ? axis::v : axis::u;
     const T bp = u_first ? b.xx : b.yy, bq = u_first ? b.yy : b.xx;
     if (bp <= 0) return s;  // neither light nor kernel has angular content
-    const T l = b.xy / bp, d2 = bq - l * b.xy;
-    const T inv1 = 1 / bp, inv2 = d2 <= noise_level<T> * bq ? T(0) : 1 / d2;
-
-    constexpr std::array<bool, 5> angular{false, false, true, true, false};
-    std::array<T, 5> r1{}, r2{};
-    for (std::size_t i = 0; i < 5; ++i) {
-        r1[i] = old(i, p);
-        r2[i] = old(i, q) - l * r1[i];
-    }
-    for (std::size_t i = 0; i < 5; ++i)
-        for (std::size_t j = i; j < 5; ++j)
-            if (!angular[i] && !angular[j]) s(i, j) -= r1[i] * r1[j] * inv1 + r2[i] * r2[j] * inv2;
+    const T inv1 = 1 / bp, l = b.xy * inv1, d2 = bq - l * b.xy;
+    const T inv2 = d2 <= noise_level<T> * bq ? T(0) : 1 / d2;
+    const T xx = s(0, 0), yy = s(1, 1), tt = s(4, 4);
+    const T x1 = s(0, p), y1 = s(1, p), t1 = s(p, 4);
+    const T x2 = s(0, q) - l * x1, y2 = s(1, q) - l * y1, t2 = s(q, 4) - l * t1;
+    s(0, 0) -= x1 * x1 * inv1 + x2 * x2 * inv2;
+    s(0, 1) -= x1 * y1 * inv1 + x2 * y2 * inv2;
+    s(0, 4) -= x1 * t1 * inv1 + x2 * t2 * inv2;
+    s(1, 1) -= y1 * y1 * inv1 + y2 * y2 * inv2;
+    s(1, 4) -= y1 * t1 * inv1 + y2 * t2 * inv2;
+    s(4, 4) -= t1 * t1 * inv1 + t2 * t2 * inv2;
 
     // Rows u and v are R^T B^-1 C, a form in which nothing cancels.
-    std::array<T, 5> gain_u{}, gain_v{};
-    for (std::size_t i = 0; i < 5; ++i) {
-        const T gain_q = r2[i] * inv2, gain_p = r1[i] * inv1 - l * gain_q;
-        gain_u[i] = u_first ? gain_p : gain_q;
-        gain_v[i] = u_first ? gain_q : gain_p;
-    }
-    for (const std::size_t i : {axis::x, axis::y, axis::t}) {
-        s(i, axis::u) = gain_u[i] * kernel.xx + gain_v[i] * kernel.xy;
-        s(i, axis::v) = gain_u[i] * kernel.xy + gain_v[i] * kernel.yy;
-    }
-    s.set_angular({gain_u[2] * kernel.xx + gain_v[2] * kernel.xy,
-                   (gain_u[2] * kernel.xy + gain_v[2] * kernel.yy + gain_u[3] * kernel.xx +
-                    gain_v[3] * kernel.xy) /
-                       2,
-                   gain_u[3] * kernel.xy + gain_v[3] * kernel.yy});
+    const T kp = u_first ? kernel.xx : kernel.yy, kq = u_first ? kernel.yy : kernel.xx;
+    struct Row {
+        T p, q;
+    };
+    const auto row = [&](T r1, T r2) -> Row {
+        const T gain_q = r2 * inv2, gain_p = r1 * inv1 - l * gain_q;
+        return {gain_p * kp + gain_q * kernel.xy, gain_p * kernel.xy + gain_q * kq};
+    };
+    const Row x = row(x1, x2), y = row(y1, y2), t = row(t1, t2);
+    s(0, p) = x.p, s(0, q) = x.q;
+    s(1, p) = y.p, s(1, q) = y.q;
+    s(p, 4) = t.p, s(q, 4) = t.q;
+    const T own_p = u_first ? own.xx : own.yy, own_q = u_first ? own.yy : own.xx;
+    const Row along_p = row(own_p, own.xy - l * own_p), along_q = row(own.xy, own_q - l * own.xy);
+    s(p, p) = along_p.p;
+    s(q, q) = along_q.q;
+    s(p, q) = (along_p.q + along_q.p) / 2;
 
     constexpr T noise = 16 * std::numeric_limits<T>::epsilon();
-    for (const std::size_t i : {axis::x, axis::y, axis::t})
-        if (s(i, i) <= noise * old(i, i))
+    const auto remove_noise = [&s](std::size_t i, T before) {
+        if (s(i, i) <= noise * before)
             for (std::size_t j = 0; j < 5; ++j) s(i, j) = 0;
+    };
+    remove_noise(axis::x, xx);
+    remove_noise(axis::y, yy);
+    remove_noise(axis::t, tt);
     return s;
 }
 

@@ -55,6 +55,13 @@ template <std::floating_point T>
                                   const Vec3<NonDeduced<T>>& h,
                                   const Sym2<NonDeduced<T>>& micro) noexcept {
     const T cos_h = std::max(std::abs(dot(h, reflected.z)), min_surface_cosine<T>);
+    if (micro.xx == micro.yy && micro.xy == 0) {
+        // All tangents alike: with P^T P of those of h, I minus the outer product of what h has of
+        // X and Y.
+        const T scale = micro.xx / (4 * cos_h * cos_h);
+        const T x = dot(reflected.x, h), y = dot(reflected.y, h);
+        return {scale * (1 - x * x), -scale * x * y, scale * (1 - y * y)};
+    }
     return reflection_cov<T>(micro, surface_projection<T>(reflected, tilted<T>(surface, h)), cos_h);
 }
 

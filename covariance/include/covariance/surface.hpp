@@ -61,6 +61,11 @@ template <std::floating_point T = double>
 struct NormalField {
     Vec3<T> n{0, 0, 1};
     Vec3<T> d1, d2;  ///< dn/ds1, dn/ds2, in 1/scene unit, orthogonal to n
+
+    /// Whether the normal is the same everywhere.
+    [[nodiscard]] constexpr bool is_flat() const noexcept {
+        return d1 == Vec3<T>{} && d2 == Vec3<T>{};
+    }
 };
 
 /// The normals of the geometry itself: dn_j = kappa_1j t1 + kappa_2j t2.
@@ -74,6 +79,7 @@ template <std::floating_point T>
 template <std::floating_point T>
 [[nodiscard]] constexpr Mat2<T> surface_curvature(
     const Frame<T>& f, const NormalField<NonDeduced<T>>& normals) noexcept {
+    if (normals.is_flat()) return {};
     // (n x d) x Z = d (n.Z) - n (d.Z)
     const Vec3<T>&n = normals.n, &d1 = normals.d1, &d2 = normals.d2;
     const T nx = dot(f.x, n), ny = dot(f.y, n), nz = dot(f.z, n);
@@ -117,6 +123,14 @@ template <std::floating_point T>
         return s;
     }
     const Mat2<T> xu = s.cross();
+    if (g == Mat2<T>{}) {
+        s.set_spatial(congruence(s.spatial(), p));
+        s.set_cross(transpose(p) * xu);
+        const T xt = s(0, 4), yt = s(1, 4);
+        s(0, 4) = p.m00 * xt + p.m10 * yt;
+        s(1, 4) = p.m01 * xt + p.m11 * yt;
+        return s;
+    }
     // Xu' = P^T Xu + G^T Uu;   Xx' = P^T Xx P + P^T Xu G + G^T Xu^T P + G^T Uu G
     const Mat2<T> mixed = transpose(p) * xu * g;
     const Sym2<T> both{2 * mixed.m00, mixed.m01 + mixed.m10, 2 * mixed.m11};
