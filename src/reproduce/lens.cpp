@@ -56,7 +56,8 @@ Comparison compare(const LensBoard& board, std::array<int, 2> size, const Forced
             const auto& f = open[at];
             const double extra = r * r / (4 * kSharpness * kSharpness);
             if (y < size[1] / 8) c.widths_at_top.push_back(std::sqrt(double(f.xx)));
-            if (r < 0.5) continue;
+            // Half a pixel at 135 rows, and as much of the image at other sizes.
+            if (r < 0.5 * size[1] / 135) continue;
             c.ratio.push_back(std::sqrt(double(f.xx) / (double(closed[at].xx) + extra)));
             c.ratio.push_back(std::sqrt(double(f.yy) / (double(closed[at].yy) + extra)));
             c.blur.push_back(r);
@@ -114,8 +115,8 @@ Section lens(Workshop& workshop) {
     s.figures.push_back(std::move(figure));
 
     Table table{
-        "Deviation of the forced filters over the closed form, of pixels that are out of focus by "
-        "a pixel or more",
+        "Deviation of the forced filters over the closed form, of pixels whose circle of confusion "
+        "is a pixel or more across (at 135 rows; as much of the image at other sizes)",
         {"lens", "covariance paths", "pixels", "median ratio", "5 %", "95 %",
          "median radius of the circle of confusion", "roundness (short over long axis)"},
         {},
