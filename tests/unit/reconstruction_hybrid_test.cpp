@@ -172,6 +172,23 @@ TEST(Hybrid, NoiseOfFeaturesIsNoDetail) {
     EXPECT_GT(told / error, 0.4);
 }
 
+TEST(Hybrid, OneSampleOfEachHalfKnowsThatFeaturesVary) {
+    // Every second pixel sees the same surface in both halves, and nothing of its spread.
+    Halves halves{HalfBuffer(kSize, kSize), HalfBuffer(kSize, kSize)};
+    Rng rng(32);
+    for (HalfBuffer& half : halves) {
+        half.count = Plane(kSize, kSize, 1);
+        for (size_t i = 0; i < half.count.size(); ++i) {
+            const float seen = rng.next_float() < 0.5f ? 1.0f : 0.0f;
+            for (size_t c = 0; c < 3; ++c) half.color[c][i] = half.feature[c][i] = seen;
+        }
+    }
+    set_variance_from_difference(halves);
+    const auto truth = [](int, int) { return 0.5f; };
+    const double raw = 0.25 / 2;
+    EXPECT_LT(mean_squared_error(reconstruct(halves, kSpectrum).color, truth), 0.05 * raw);
+}
+
 TEST(Selector, WithoutJudgesTakesTheLast) {
     Halves halves{HalfBuffer(kSize, kSize), HalfBuffer(kSize, kSize)};
     const std::vector<Candidate> candidates{{constant(0), constant(0)}, {constant(3), constant(3)}};
