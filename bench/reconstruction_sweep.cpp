@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "error_bins.h"
 #include "image/compare.h"
 #include "reconstruction/hybrid.h"
 #include "reconstruction/selector.h"
@@ -57,44 +58,6 @@ Plane Case::true_error(const ColorPlanes& color) const {
                     (sqr(mean[c]) + kDarkSquared) / 3;
     }
     return e;
-}
-
-struct Calibration {
-    double ratio;  // mean true over mean estimated squared error
-    int bins;      // of 20, where it is right
-};
-Calibration calibration(const Plane& truth, const Plane& estimate) {
-    const auto tiles_of = [&](int side) {
-        return ((truth.width + side - 1) / side) * ((truth.height + side - 1) / side);
-    };
-    const int side = tiles_of(16) < 200 ? 8 : 16;
-    struct Tile {
-        double estimated = 0, real = 0;
-    };
-    std::vector<Tile> tiles(size_t(tiles_of(side)));
-    Tile all;
-    for (int y = 0; y < truth.height; ++y)
-        for (int x = 0; x < truth.width; ++x) {
-            Tile& t = tiles[size_t(y / side * ((truth.width + side - 1) / side) + x / side)];
-            for (Tile* sum : {&t, &all}) {
-                sum->estimated += double(estimate(x, y));
-                sum->real += double(truth(x, y));
-            }
-        }
-    std::sort(tiles.begin(), tiles.end(),
-              [](const Tile& a, const Tile& b) { return a.estimated < b.estimated; });
-    Calibration result{all.real / all.estimated, 0};
-    constexpr size_t kBins = 20;
-    for (size_t bin = 0; bin < kBins; ++bin) {
-        Tile sum;
-        for (size_t i = bin * tiles.size() / kBins; i < (bin + 1) * tiles.size() / kBins; ++i) {
-            sum.estimated += tiles[i].estimated;
-            sum.real += tiles[i].real;
-        }
-        const double ratio = sum.real / sum.estimated;
-        if (ratio >= 0.7 && ratio <= 1.4) ++result.bins;
-    }
-    return result;
 }
 
 Case load(double spp, const std::array<int, 2>& size, const char* scene_file,
@@ -170,9 +133,11 @@ int main(int argc, char** argv) {
                 const HybridImage image = reconstruct(c.halves, c.spectrum, settings);
                 const double e = c.error(image.color);
                 log_sum += std::log(c.raw / e);
-                const auto [ratio, bins] =
-                    calibration(c.true_error(image.color), image.relative_error);
-                each += fmt::format(" {:8.1f} ({:4.2f}, {:2})", 1e5 * e, ratio, bins);
+                const Plane real = c.true_error(image.color);
+                const ErrorBins bins = error_bins(
+                    error_tiles(image.relative_error, real, tile_side(real.width, real.height)));
+                each +=
+                    fmt::format(" {:8.1f} ({:4.2f}, {:2})", 1e5 * e, bins.all.ratio(), bins.good);
             }
             fmt::print("\n{:<30} {:6.2f} {}", name, std::exp(log_sum / double(cases.size())), each);
         }

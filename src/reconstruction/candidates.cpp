@@ -57,9 +57,9 @@ std::vector<Candidate> make_candidates(const Halves& halves,
     std::vector<RegressionWindow> windows;
     for (const auto& fit : settings.fits)
         windows.push_back({fit.k, fit.shaped ? &shape : nullptr, kWindowWidening});
-    const FeaturePlanes features = filter_features(halves);
-    auto a = regress(halves[0], halves[1], features, windows);
-    auto b = regress(halves[1], halves[0], features, windows);
+    const std::array<FeaturePlanes, 2> features = filter_features(halves);
+    auto a = regress(halves[0], halves[1], features[0], windows);
+    auto b = regress(halves[1], halves[0], features[1], windows);
     for (size_t k = 0; k < windows.size(); ++k)
         candidates.push_back({std::move(a[k]), std::move(b[k])});
     return candidates;

@@ -1,17 +1,33 @@
 #include "reconstruction/error_estimate.h"
 
+#include <array>
 #include <cmath>
 
 #include "core/parallel.h"
 #include "core/vec.h"
+#include "reconstruction/outliers.h"
 
 namespace covtrace {
 
 namespace {
 
-// docs/decisions/0041 has the fit.
-constexpr float kNoise = 1.6f, kNoiseOfFew = 6.7f, kRaw = 0.005f, kSpread = 0.22f;
 constexpr float kSmoothing = 3;  // pixels
+/// Red, green, blue, luminance.
+constexpr size_t kSignals = 4;
+using Signals = std::array<float, kSignals>;
+
+Signals signals(const ColorPlanes& color, size_t i) {
+    const Rgb c(color[0][i], color[1][i], color[2][i]);
+    return {c.r, c.g, c.b, luminance(c)};
+}
+
+/// The mean of both halves.
+Signals signals(const std::array<ColorPlanes, 2>& halves, size_t i) {
+    Signals a = signals(halves[0], i);
+    const Signals b = signals(halves[1], i);
+    for (size_t k = 0; k < kSignals; ++k) a[k] = 0.5f * (a[k] + b[k]);
+    return a;
+}
 
 float samples_per_pixel(const Halves& halves) {
     double sum = 0;
@@ -20,33 +36,52 @@ float samples_per_pixel(const Halves& halves) {
     return float(sum / double(halves[0].count.size()));
 }
 
+/// The mean over the neighbourhood's pixels that both halves know.
+void smooth_known(Plane& error, const Plane& known) {
+    error = gaussian_blur(error, kSmoothing);
+    for (size_t i = 0; i < error.size(); ++i) error[i] = known[i] > 0 ? error[i] / known[i] : 0.0f;
+}
+
 }  // namespace
 
-Plane estimate_error(const Halves& halves, std::span<const Candidate> candidates,
-                     const Selection& selection, const ColorPlanes& image, const ColorPlanes& g) {
-    const int w = g[0].width, h = g[0].height;
-    const float noise = kNoise + kNoiseOfFew / std::sqrt(std::max(1.0f, samples_per_pixel(halves)));
-    Plane error(w, h), known(w, h);
+ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> candidates,
+                             const Selection& selection, const ColorPlanes& image,
+                             const ColorPlanes& raw, const ColorPlanes& brightness,
+                             const ErrorFactors& factors) {
+    const int w = image[0].width, h = image[0].height;
+    const float noise =
+        factors.noise + factors.noise_of_few / std::max(1.0f, samples_per_pixel(halves));
+    const ColorPlanes g = error_weights(halves, brightness);
+    const Plane bright = luminance(brightness);
+    const Plane g_luminance = error_weights(halves, {bright, bright, bright})[0];
+    ErrorEstimate error{Plane(w, h), Plane(w, h)};
+    Plane known(w, h);
     parallel_for(h, [&](int64_t row) {
         for (size_t i = size_t(row) * size_t(w), end = i + size_t(w); i < end; ++i) {
             known[i] = g[0][i] > 0 ? 1.0f : 0.0f;
-            for (size_t k = 0; k < 3; ++k) {
-                const float ma = selection.half[0][k][i], mb = selection.half[1][k][i];
-                float spread = 0;
-                for (size_t c = 0; c < candidates.size(); ++c)
-                    spread += selection.share[c][i] *
-                              sqr(candidates[c][0][k][i] + candidates[c][1][k][i] - ma - mb);
-                error[i] += g[k][i] / 12 *
-                            (noise * sqr(ma - mb) +
-                             kRaw * sqr(halves[0].color[k][i] - halves[1].color[k][i]) +
-                             kSpread * spread + sqr(2 * image[k][i] - ma - mb));
+            const Signals ma = signals(selection.half[0], i), mb = signals(selection.half[1], i),
+                          m = signals(selection.half, i), delivered = signals(image, i),
+                          all = signals(raw, i), a = signals(halves[0].color, i),
+                          b = signals(halves[1].color, i);
+            Signals spread{};
+            for (size_t c = 0; c < candidates.size(); ++c) {
+                if (selection.share[c][i] == 0) continue;
+                const Signals mean = signals(candidates[c], i);
+                for (size_t k = 0; k < kSignals; ++k)
+                    spread[k] += selection.share[c][i] * std::abs(mean[k] - m[k]);
             }
+            Signals square;
+            for (size_t k = 0; k < kSignals; ++k)
+                square[k] = noise * sqr(ma[k] - mb[k]) / 4 + factors.spread * sqr(spread[k]) +
+                            factors.returned * sqr(delivered[k] - m[k]) +
+                            factors.cut * sqr(all[k] - 0.5f * (a[k] + b[k]));
+            for (size_t k = 0; k < 3; ++k) error.color[i] += g[k][i] / 3 * square[k];
+            error.luminance[i] = g_luminance[i] * square[3];
         }
     });
-    // The mean over the pixels that both halves know.
-    error = gaussian_blur(error, kSmoothing);
     known = gaussian_blur(known, kSmoothing);
-    for (size_t i = 0; i < error.size(); ++i) error[i] = known[i] > 0 ? error[i] / known[i] : 0.0f;
+    smooth_known(error.color, known);
+    smooth_known(error.luminance, known);
     return error;
 }
 

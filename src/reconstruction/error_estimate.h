@@ -7,20 +7,36 @@
 
 namespace covtrace {
 
-/// Estimated squared error of `image` times g, mean of the channels. The image is the mean of the
-/// mixed halves and what was added to it to keep the energy.
+/// What the terms of the estimate count. The defaults fit the true errors of a set of scenes best:
+/// `bench/error_fit` makes them, `bench/error_calibration` measures how well they do
+/// (docs/decisions/0053).
+struct ErrorFactors {
+    float noise = 1, noise_of_few = 14;
+    float spread = 1, returned = 0.45f, cut = 0.0033f;
+};
+
+/// Estimated squared errors over I^2 + 0.01, I the brightness.
+struct ErrorEstimate {
+    Plane color;      ///< mean of the three channels, each over its own brightness
+    Plane luminance;  ///< of the luminance: less where the channels err in different directions
+};
+
+/// Estimated error of `image`, the mean of the mixed halves and what was added to it to keep the
+/// energy. `raw`: the mean of the halves before rare bright paths were limited; `brightness`: I.
 ///
 /// What a pixel's halves measure of it is no estimate: raw pixels are ten times as noisy as the
 /// image, and the halves that judge have chosen shares and weights before (docs/decisions/0041).
 /// So it is told from what is known with little noise, averages over Gaussians of 3 pixels of
-///     N = g (M_A - M_B)^2 / 4, the noise that the mixtures M of the halves do not share,
-///     V = g (A - B)^2 / 4, that of the raw pixels,
-///     S = g sum over c of share_c (m_c - m)^2, how far the candidates c are from their mixture,
-///     E = g (image - m)^2, what light of the neighbourhood was added: all the error there is where
-///     nothing is noisy,
-/// as (a + a' / sqrt n) N + b V + c S + E, n the samples per pixel. The constants are those that
-/// fit the true errors of a set of scenes best; `bench/error_calibration` measures how well.
-Plane estimate_error(const Halves& halves, std::span<const Candidate> candidates,
-                     const Selection& selection, const ColorPlanes& image, const ColorPlanes& g);
+///     N = (M_A - M_B)^2 / 4, the noise that the mixtures M of the halves do not share,
+///     S = (sum over c of share_c |m_c - m|)^2, how far the candidates c are from their mixture m,
+///     E = (image - m)^2, what light of the neighbourhood was added,
+///     C = (raw - limited)^2, what light was cut off: it is known to be somewhere around only,
+/// as (noise + noise_of_few / n) N + spread S + returned E + cut C, n the samples per pixel. The
+/// part of N that grows with few samples stands for what the halves share: each takes its weights
+/// from the other one's noise.
+ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> candidates,
+                             const Selection& selection, const ColorPlanes& image,
+                             const ColorPlanes& raw, const ColorPlanes& brightness,
+                             const ErrorFactors& factors);
 
 }  // namespace covtrace

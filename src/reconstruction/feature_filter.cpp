@@ -12,9 +12,10 @@ namespace {
 
 constexpr int kReach = 5, kPatchRadius = 3, kBlock = PatchDistance::kBlock;
 
-/// Adds to `sum` the features [first, first + n) of one half, filtered with weights from `guide`.
-void add_filtered(const HalfBuffer& half, const HalfBuffer& guide, size_t first, size_t n,
-                  FeaturePlanes& sum) {
+/// Sets the features [first, first + n) of `out` to those of one half, filtered with weights from
+/// `guide`.
+void filter(const HalfBuffer& half, const HalfBuffer& guide, size_t first, size_t n,
+            FeaturePlanes& out) {
     const int w = half.count.width, h = half.count.height;
     const PatchDistance distance(std::span(guide.feature).subspan(first, n),
                                  std::span(guide.feature_variance).subspan(first, n), kReach,
@@ -49,22 +50,21 @@ void add_filtered(const HalfBuffer& half, const HalfBuffer& guide, size_t first,
             for (int x = x0; x < std::min(x0 + kBlock, w); ++x) {
                 const size_t i = size_t(y - y0) * kBlock + size_t(x - x0);
                 // The pixel itself always has the weight 1.
-                for (size_t f = 0; f < n; ++f)
-                    sum[first + f](x, y) += 0.5f * total[f][i] / total[3][i];
+                for (size_t f = 0; f < n; ++f) out[first + f](x, y) = total[f][i] / total[3][i];
             }
     });
 }
 
 }  // namespace
 
-FeaturePlanes filter_features(const Halves& halves) {
-    FeaturePlanes sum;
-    sum.fill(Plane(halves[0].count.width, halves[0].count.height));
-    for (const auto& [first, n] : {std::pair<size_t, size_t>{0, 3}, {3, 3}, {6, 1}}) {
-        add_filtered(halves[0], halves[1], first, n, sum);
-        add_filtered(halves[1], halves[0], first, n, sum);
+std::array<FeaturePlanes, 2> filter_features(const Halves& halves) {
+    std::array<FeaturePlanes, 2> filtered;
+    for (size_t k = 0; k < 2; ++k) {
+        filtered[k].fill(Plane(halves[k].count.width, halves[k].count.height));
+        for (const auto& [first, n] : {std::pair<size_t, size_t>{0, 3}, {3, 3}, {6, 1}})
+            filter(halves[k], halves[1 - k], first, n, filtered[k]);
     }
-    return sum;
+    return filtered;
 }
 
 }  // namespace covtrace

@@ -53,6 +53,8 @@ void set_variance_from_difference(Halves& halves) {
         const Plane &a = halves[0].feature[f], &b = halves[1].feature[f];
         Plane squares(a.width, a.height);
         for (size_t i = 0; i < squares.size(); ++i) squares[i] = (a[i] - b[i]) * (a[i] - b[i]) / 2;
+        // Two samples that see the same surface by chance do not say that there is no other.
+        squares = box_blur(squares, 3);
         for (HalfBuffer& half : halves) half.feature_variance[f] = squares;
     }
 }

@@ -30,7 +30,7 @@ using Halves = std::array<HalfBuffer, 2>;
 void fill_holes(HalfBuffer& half);
 
 /// Where no pixel has two samples their spread is unknown: sets the variances of both halves to
-/// what the difference of the halves says, box13((A - B)^2) / 2.
+/// what the difference of the halves says, box13((A - B)^2) / 2; of the features over 7 x 7 pixels.
 void set_variance_from_difference(Halves& halves);
 
 }  // namespace covtrace

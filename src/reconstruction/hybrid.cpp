@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/vec.h"
-#include "reconstruction/error_estimate.h"
 #include "reconstruction/outliers.h"
 #include "reconstruction/selector.h"
 
@@ -71,10 +70,11 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     for (Plane& channel : image.color)
         for (float& v : channel.values) v = std::max(0.0f, v);
     return_energy(all, image.color);
-    image.relative_error =
-        estimate_error(halves, candidates, s, image.color, error_weights(halves, guess));
+    ErrorEstimate error =
+        estimate_error(halves, candidates, s, image.color, all, guess, settings.error);
     image.share = std::move(s.share);
-    image.variance = image.relative_error;
+    image.relative_error = std::move(error.color);
+    image.variance = std::move(error.luminance);
     const Plane bright = luminance(image.color);
     for (size_t i = 0; i < bright.size(); ++i) image.variance[i] *= sqr(bright[i]) + kDarkSquared;
     return image;

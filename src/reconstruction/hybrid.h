@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "reconstruction/candidates.h"
+#include "reconstruction/error_estimate.h"
 #include "reconstruction/half_buffer.h"
 
 namespace covtrace {
 
 struct HybridSettings {
     CandidateSettings candidates;
+    ErrorFactors error;
     float sigma = 4;  ///< of the neighbourhood over which candidates are judged, pixels
     bool mix = true;  ///< false: the best single candidate, for comparisons
 };
@@ -20,7 +22,7 @@ struct HybridImage {
     /// Estimated squared error over I^2 + 0.01, mean of the three channels: its mean over the image
     /// estimates the relMSE.
     Plane relative_error;
-    Plane variance;            ///< the same as an absolute squared error of the luminance
+    Plane variance;            ///< estimated absolute squared error of the luminance
     std::vector<Plane> share;  ///< of each candidate: raw, Gaussians, fits
 };
 

@@ -31,6 +31,14 @@ ColorPlanes constant(float value) {
     return p;
 }
 
+ColorPlanes mean_of_both(const std::array<ColorPlanes, 2>& halves) {
+    ColorPlanes mean = halves[0];
+    for (size_t c = 0; c < 3; ++c)
+        for (size_t i = 0; i < mean[c].size(); ++i)
+            mean[c][i] = 0.5f * (mean[c][i] + halves[1][c][i]);
+    return mean;
+}
+
 ColorPlanes weights_at_one(const Halves& halves) {
     return error_weights(halves, constant(1));
 }
@@ -98,6 +106,87 @@ TEST(ErrorEstimate, FallsWithTheNoise) {
         EXPECT_LT(mean, before / 4) << "sigma " << sigma;
         before = mean;
     }
+}
+
+TEST(ErrorEstimate, CountsNoiseSpreadAndLightThatWasMoved) {
+    Halves halves{HalfBuffer(kSize, kSize), HalfBuffer(kSize, kSize)};
+    for (HalfBuffer& half : halves) {
+        half.count = Plane(kSize, kSize, 4);
+        half.color = constant(1);
+    }
+    const std::vector<Candidate> candidates{{constant(0.9f), constant(0.7f)},
+                                            {constant(1.3f), constant(1.1f)}};
+    const Selection s{{constant(1.1f), constant(0.9f)},
+                      {Plane(kSize, kSize, 0.5f), Plane(kSize, kSize, 0.5f)}};
+    const ErrorFactors factors{1, 16, 2, 3, 5};
+    const ErrorEstimate error = estimate_error(halves, candidates, s, constant(1.05f),
+                                               constant(1.3f), constant(1), factors);
+    // N = 0.1^2 with 8 samples, S = 0.2^2, E = 0.05^2, C = 0.3^2.
+    const float expected = (3 * 0.01f + 2 * 0.04f + 3 * 0.0025f + 5 * 0.09f) / 1.01f;
+    for (size_t i = 0; i < error.color.size(); ++i) {
+        ASSERT_NEAR(error.color[i], expected, 1e-4f);
+        ASSERT_NEAR(error.luminance[i], expected, 1e-4f);
+    }
+}
+
+TEST(ErrorEstimate, TellsLuminanceApartFromColours) {
+    Halves halves{HalfBuffer(kSize, kSize), HalfBuffer(kSize, kSize)};
+    for (HalfBuffer& half : halves) {
+        half.count = Plane(kSize, kSize, 4);
+        half.color = constant(1);
+    }
+    // The halves differ in hue and not in luminance.
+    ColorPlanes a = constant(1);
+    a[0] = Plane(kSize, kSize, 1.3f);
+    const float rest = luminance(Rgb(0.3f, 0, 0)) / luminance(Rgb(0, 1, 0));
+    a[1] = Plane(kSize, kSize, 1 - rest);
+    const Selection s{{a, constant(1)}, {Plane(kSize, kSize, 1)}};
+    const ErrorEstimate error = estimate_error(halves, std::vector<Candidate>{{a, constant(1)}}, s,
+                                               mean_of_both(s.half), constant(1), constant(1), {});
+    EXPECT_GT(error.color[100], 0.01f);
+    EXPECT_LT(error.luminance[100], 1e-6f);
+}
+
+TEST(Hybrid, NoiseOfFeaturesIsNoDetail) {
+    // Two samples of each half see either of two surfaces, and features whose spread is not known
+    // explain the colours altogether.
+    Halves halves{HalfBuffer(kSize, kSize), HalfBuffer(kSize, kSize)};
+    Rng rng(31);
+    for (HalfBuffer& half : halves) {
+        half.count = Plane(kSize, kSize, 2);
+        for (size_t i = 0; i < half.count.size(); ++i) {
+            const float seen =
+                (float(rng.next_float() < 0.5f) + float(rng.next_float() < 0.5f)) / 2;
+            for (size_t c = 0; c < 3; ++c) {
+                half.color[c][i] = half.feature[c][i] = seen;
+                half.color_variance[c][i] = 0.125f;
+            }
+        }
+    }
+    const auto truth = [](int, int) { return 0.5f; };
+    const HybridImage image = reconstruct(halves, kSpectrum);
+    const double error = mean_squared_error(image.color, truth), raw = 0.125 / 2;
+    EXPECT_LT(error, 0.25 * raw);  // what the predicted Gaussians leave
+    double told = 0;
+    for (float v : image.variance.values) told += double(v) / (kSize * kSize);
+    EXPECT_GT(told / error, 0.4);
+}
+
+TEST(Hybrid, OneSampleOfEachHalfKnowsThatFeaturesVary) {
+    // Every second pixel sees the same surface in both halves, and nothing of its spread.
+    Halves halves{HalfBuffer(kSize, kSize), HalfBuffer(kSize, kSize)};
+    Rng rng(32);
+    for (HalfBuffer& half : halves) {
+        half.count = Plane(kSize, kSize, 1);
+        for (size_t i = 0; i < half.count.size(); ++i) {
+            const float seen = rng.next_float() < 0.5f ? 1.0f : 0.0f;
+            for (size_t c = 0; c < 3; ++c) half.color[c][i] = half.feature[c][i] = seen;
+        }
+    }
+    set_variance_from_difference(halves);
+    const auto truth = [](int, int) { return 0.5f; };
+    const double raw = 0.25 / 2;
+    EXPECT_LT(mean_squared_error(reconstruct(halves, kSpectrum).color, truth), 0.05 * raw);
 }
 
 TEST(Selector, WithoutJudgesTakesTheLast) {

@@ -1,0 +1,219 @@
+// The factors of the error estimate (ErrorFactors) that fit the true errors of a set of images
+// best:
+//
+//     error_fit REFERENCE.exr REFERENCE2.exr FILM [REFERENCE REFERENCE2 FILM ...]
+//
+// The films are those of `covtrace render --method hybrid --checkpoint FILM`; the references are
+// two independent converged images of the same scene and size with other seeds. Minimises over the
+// tiles of all films, every film counting alike, the squared differences of true and estimated
+// error relative to the estimate and to the references' noise, with factors >= 0; colours and
+// luminances together. Then prints for every film how the luminance's errors are told with the
+// factors that the films of all *other* references give: mean true over mean estimated squared
+// error, and in how many of 20 bins of tiles, sorted by the estimate, it lies between 0.7 and 1.4;
+// last, in how many it may lie there for all that the references can tell (two deviations of their
+// noise).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "error_bins.h"
+#include "image/image.h"
+#include "planner/covariance_buffer.h"
+#include "reconstruction/hybrid.h"
+#include "reconstruction/outliers.h"
+#include "render/film_file.h"
+#include "render/hybrid_film.h"
+
+using namespace covtrace;
+
+namespace {
+
+constexpr size_t kFactors = 5;
+constexpr std::array<const char*, kFactors> kNames{"noise", "noise_of_few", "spread", "returned",
+                                                   "cut"};
+using Factors = std::array<double, kFactors>;
+
+/// One image as sums over tiles: the terms of the estimate, the truth and its variance.
+struct Tiles {
+    std::array<std::vector<double>, kFactors> term;
+    std::vector<double> real, variance;
+    double estimate(size_t tile, const Factors& f) const {
+        double sum = 0;
+        for (size_t k = 0; k < kFactors; ++k) sum += f[k] * term[k][tile];
+        return sum;
+    }
+};
+
+struct Case {
+    std::string film, reference;
+    Tiles color, luminance;
+};
+
+/// (v - a)(v - b) over the brightness squared, whose mean knows nothing of the references' noise,
+/// and that noise, (a - b)^2 / 2.
+struct Truth {
+    Plane error, noise;
+    void add(size_t i, float v, float a, float b, float share) {
+        const float scale = share / (sqr(0.5f * (a + b)) + kDarkSquared);
+        error[i] += scale * (v - a) * (v - b);
+        noise[i] += scale * sqr(a - b) / 2;
+    }
+};
+
+void set_truth(const Truth& truth, int side, Tiles& tiles) {
+    tiles.real = tile_sums(truth.error, side);
+    const std::vector<double> noise = tile_sums(truth.noise, side),
+                              n = tile_sums(Plane(truth.error.width, truth.error.height, 1), side);
+    for (size_t i = 0; i < noise.size(); ++i)
+        tiles.variance.push_back(noise[i] * (noise[i] + 2 * std::max(0.0, tiles.real[i])) / n[i]);
+}
+
+Case load(const char* const* files) {
+    Case c{files[2], files[0], {}, {}};
+    const std::array<Image, 2> reference{read_image(files[0]), read_image(files[1])};
+    const RenderState state = read_film(files[2]);
+    if (state.films.size() != 2) throw Error(ErrorKind::usage, c.film + ": not of --method hybrid");
+    for (const Image& r : reference)
+        if (r.pixel_count() != state.pixels())
+            throw Error(ErrorKind::usage, c.film + ": has other pixels than the references");
+    const Halves halves = halves_of(state.films);
+    const Prediction prediction = preintegrate(smooth(state.covariance()));
+    const int w = state.region.width(), h = state.region.height(), side = tile_side(w, h);
+    float ErrorFactors::*const each[] = {&ErrorFactors::noise, &ErrorFactors::spread,
+                                         &ErrorFactors::returned, &ErrorFactors::cut};
+    constexpr size_t kTo[] = {0, 2, 3, 4};
+    HybridImage image;
+    for (size_t k = 0; k < 4; ++k) {
+        HybridSettings settings;
+        settings.error = {0, 0, 0, 0, 0};
+        settings.error.*each[k] = 1;
+        image = reconstruct(halves, prediction.spectrum, settings);
+        c.color.term[kTo[k]] = tile_sums(image.relative_error, side);
+        const Plane y = luminance(image.color);
+        for (size_t i = 0; i < y.size(); ++i) image.variance[i] /= sqr(y[i]) + kDarkSquared;
+        c.luminance.term[kTo[k]] = tile_sums(image.variance, side);
+    }
+    for (Tiles* t : {&c.color, &c.luminance})
+        for (double v : t->term[0]) t->term[1].push_back(v / std::max(1.0, state.mean_count()));
+    Truth color{Plane(w, h), Plane(w, h)}, bright = color;
+    for (size_t i = 0; i < state.pixels(); ++i) {
+        const Rgb v(image.color[0][i], image.color[1][i], image.color[2][i]),
+            a = reference[0].rgb(i), b = reference[1].rgb(i);
+        for (int k = 0; k < 3; ++k) color.add(i, v[k], a[k], b[k], 1 / 3.0f);
+        bright.add(i, luminance(v), luminance(a), luminance(b), 1);
+    }
+    set_truth(color, side, c.color);
+    set_truth(bright, side, c.luminance);
+    return c;
+}
+
+/// Least squares with factors >= 0: those that would be negative are left out, the worst first.
+Factors solve(const double (&a)[kFactors][kFactors], const Factors& b) {
+    std::array<bool, kFactors> used;
+    used.fill(true);
+    for (;;) {
+        double m[kFactors][kFactors + 1] = {};
+        for (size_t i = 0; i < kFactors; ++i) {
+            for (size_t j = 0; j < kFactors; ++j)
+                m[i][j] = used[i] && used[j] ? a[i][j] : (i == j ? 1.0 : 0.0);
+            m[i][kFactors] = used[i] ? b[i] : 0;
+        }
+        for (size_t i = 0; i < kFactors; ++i)
+            for (size_t r = 0; r < kFactors; ++r) {
+                if (r == i || m[i][i] == 0) continue;
+                const double factor = m[r][i] / m[i][i];
+                for (size_t j = i; j <= kFactors; ++j) m[r][j] -= factor * m[i][j];
+            }
+        Factors x{};
+        for (size_t i = 0; i < kFactors; ++i) x[i] = m[i][i] != 0 ? m[i][kFactors] / m[i][i] : 0;
+        const size_t worst = size_t(std::min_element(x.begin(), x.end()) - x.begin());
+        if (!(x[worst] < 0)) return x;
+        used[worst] = false;
+    }
+}
+
+/// Over all cases but those of the reference `without`.
+Factors fit(const std::vector<Case>& cases, const std::string& without) {
+    Factors f{1, 10, 1, 0.5, 0.005};
+    // The weights follow the estimate, so it is done again until nothing changes.
+    for (int step = 0; step < 30; ++step) {
+        double a[kFactors][kFactors] = {};
+        Factors b{};
+        for (const Case& c : cases) {
+            if (c.reference == without) continue;
+            for (const Tiles* t : {&c.color, &c.luminance})
+                for (size_t i = 0; i < t->real.size(); ++i) {
+                    // Below this relative error nobody sees anything.
+                    constexpr double kLeast = 1e-6 * 256;
+                    const double weight =
+                        1 / ((sqr(t->estimate(i, f)) + t->variance[i] + sqr(kLeast)) *
+                             double(t->real.size()));
+                    for (size_t j = 0; j < kFactors; ++j) {
+                        for (size_t k = 0; k < kFactors; ++k)
+                            a[j][k] += weight * t->term[j][i] * t->term[k][i];
+                        b[j] += weight * t->term[j][i] * t->real[i];
+                    }
+                }
+        }
+        const Factors next = solve(a, b);
+        for (size_t k = 0; k < kFactors; ++k) f[k] = 0.5 * (f[k] + next[k]);
+    }
+    return f;
+}
+
+/// In how many bins the ratio may be right, given the truth's own noise.
+int may_be_good(const Tiles& tiles, const Factors& f) {
+    std::vector<size_t> order(tiles.real.size());
+    for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::sort(order.begin(), order.end(),
+              [&](size_t a, size_t b) { return tiles.estimate(a, f) < tiles.estimate(b, f); });
+    int good = 0;
+    for (size_t bin = 0; bin < kErrorBins; ++bin) {
+        double estimated = 0, real = 0, variance = 0;
+        for (size_t k = bin * order.size() / kErrorBins; k < (bin + 1) * order.size() / kErrorBins;
+             ++k) {
+            estimated += tiles.estimate(order[k], f);
+            real += tiles.real[order[k]];
+            variance += tiles.variance[order[k]];
+        }
+        const double slack = 2 * std::sqrt(variance);
+        if ((real + slack) / estimated >= 0.7 && (real - slack) / estimated <= 1.4) ++good;
+    }
+    return good;
+}
+
+void print(const Case& c, const Factors& f) {
+    std::vector<ErrorTile> tiles;
+    for (size_t i = 0; i < c.luminance.real.size(); ++i)
+        tiles.push_back({c.luminance.estimate(i, f), c.luminance.real[i], 1});
+    const ErrorBins bins = error_bins(tiles);
+    double color = 0, told = 0;
+    for (size_t i = 0; i < c.color.real.size(); ++i) {
+        color += c.color.real[i];
+        told += c.color.estimate(i, f);
+    }
+    fmt::print("{:<40} {:5.2f} {:5.2f} {:3} {:3}\n", c.film, bins.all.ratio(), color / told,
+               bins.good, may_be_good(c.luminance, f));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 4 || argc % 3 != 1) {
+        fmt::print(stderr, "usage: error_fit REFERENCE REFERENCE2 FILM [...]\n");
+        return 2;
+    }
+    try {
+        std::vector<Case> cases;
+        for (int i = 1; i < argc; i += 3) cases.push_back(load(argv + i));
+        const Factors all = fit(cases, "");
+        for (size_t k = 0; k < kFactors; ++k) fmt::print("{} {:.4f}\n", kNames[k], all[k]);
+        fmt::print("{:<40} {:>5} {:>5} {:>3} {:>3}\n", "told by the other scenes' fit", "Y", "RGB",
+                   "of", "20");
+        for (const Case& c : cases) print(c, fit(cases, c.reference));
+    } catch (const std::exception& e) {
+        fmt::print(stderr, "error_fit: {}\n", e.what());
+        return 1;
+    }
+}
