@@ -39,7 +39,7 @@ struct BlindCones {
         const Float8 across2 = max8(x * x + y * y + z * z - along2, Float8{});
         const Float8 inside = abs8(dot) * cosine - radius;
         // Both sides of `inside > across sine` squared.
-        return (inside > 0) & (inside * inside > across2 * sine2) ? all8(kInfinity) : lower;
+        return ((inside > 0) & (inside * inside > across2 * sine2)) ? all8(kInfinity) : lower;
     }
 };
 

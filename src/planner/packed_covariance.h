@@ -8,15 +8,17 @@
 
 namespace covtrace {
 
-/// The factor L of S = L L^T (Cholesky), lens and shutter before the position, in 16 bits an entry:
-/// a sign, and an exponent and ten bits of mantissa relative to the largest entry of its row, whose
-/// power of two is `exponent`.
+/// The factor L of S = L L^T (Cholesky), lens and shutter before the position, in 16 bits an entry
+/// and an exponent for each row. Factors, because the integral over lens and shutter takes
+/// differences of entries of S that are nearly equal where its axes are strongly correlated. With
+/// S = [A B; B^T C] that difference is C - B^T A^-1 B = M M^T, M the last rows of L right of A's
+/// columns, which are kept themselves: it has their relative precision however small it is beside
+/// C, and never loses its sign.
 ///
-/// Factors, because the integral over lens and shutter takes differences of entries of S that are
-/// nearly equal where its axes are strongly correlated. With S = [A B; B^T C] that difference is
-/// C - B^T A^-1 B = M M^T, M the last rows of L right of A's columns, which are kept themselves: it
-/// has the relative precision of the entries however small it is beside C, and never loses its
-/// sign. Entries of S come back to 2^-10 of sqrt(S_ii S_jj), docs/decisions/0052.
+/// The columns of A hold slopes, B^T A^-1. A mean of several such matrices has what their slopes
+/// differ by, squared, in its own difference: they are kept to 2^-16 of the row, while the diagonal
+/// and M have 11 and 10 bits after the leading one and a range of 2^31. Entries of S come back to
+/// 2^-10 of sqrt(S_ii S_jj), docs/decisions/0052 and 0056.
 struct PackedCovariance {
     std::array<uint16_t, 15> factor{};  ///< row by row
     std::array<int8_t, 5> exponent{};

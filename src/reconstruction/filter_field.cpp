@@ -32,7 +32,13 @@ FilterField filter_field(std::span<const covariance::Sym2<float>> spectrum, int 
                 rule == FilterRule::verified
                     ? covariance::filter_quadratic(spectrum[i], settings.c, settings.limits)
                     : covariance::thesis_filter_quadratic(spectrum[i], settings.limits);
-            f.covariance[i] = covariance::filter_covariance(quadratic);
+            covariance::Sym2<float>& filter = f.covariance[i];
+            filter = covariance::filter_covariance(quadratic);
+            // Of a spectrum beyond the range of floats, which damaged films have: no smoothing.
+            if (!std::isfinite(filter.xx + filter.xy + filter.yy)) {
+                const float narrowest = settings.limits.s_min * settings.limits.s_min;
+                filter = covariance::Sym2<float>::diagonal(narrowest, narrowest);
+            }
         }
     });
     return f;

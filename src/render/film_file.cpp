@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array<char, 8> kMagic{'\x89', 'C', 'V', 'F', '\r', '\n', '\x1a', '\n'};
 constexpr std::array<char, 8> kEnd{'c', 'v', 'f', ' ', 'e', 'n', 'd', '\n'};
-constexpr uint32_t kFormat = 2;
+constexpr uint32_t kFormat = 3;
 constexpr uint32_t kMostHeader = 1 << 20;  // bytes
 constexpr size_t kBlockRecords = 1 << 16;  // pixels in a block
 constexpr size_t kBlocksAtOnce = 32;       // in memory, compressed or being so

@@ -143,7 +143,11 @@ std::vector<ShapeGeometry> ShapeBuilder::mesh(size_t file) const {
 
 std::vector<ShapeGeometry> ShapeBuilder::subdivided_mesh(Entity& e) {
     constexpr int most_levels = 10;
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+    constexpr size_t most_triangles = size_t{1} << 16;  // refining more is what would be found
+#else
     constexpr size_t most_triangles = size_t{1} << 26;
+#endif
     TriangleMesh control;
     vertices(control, e, context_.log);
     control.triangles = faces<3>(e, control.positions.size(), context_.log);

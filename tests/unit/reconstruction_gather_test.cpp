@@ -130,6 +130,21 @@ TEST(FilterField, FiltersOfOtherLightLimitToo) {
             << x;
 }
 
+/// As damaged films have them.
+TEST(FilterField, SpectraBeyondFloatsGiveTheNarrowestFilter) {
+    constexpr float kMost = std::numeric_limits<float>::max(),
+                    kInf = std::numeric_limits<float>::infinity(),
+                    kNan = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<Sym2<float>> spectrum{
+        {kMost, 0, 1}, {kInf, 0, kInf}, {kInf, kInf, kInf}, {kNan, 0, 1}, {1, kNan, 1}};
+    const FilterSettings settings = filter_settings(16);
+    for (const FilterRule rule : {FilterRule::verified, FilterRule::thesis})
+        for (const auto& filter : filter_field(spectrum, 5, 1, rule, settings).covariance) {
+            EXPECT_NEAR(filter.xx, settings.limits.s_min * settings.limits.s_min, 1e-6f);
+            EXPECT_TRUE(std::isfinite(filter.xy) && std::isfinite(filter.yy));
+        }
+}
+
 TEST(FilterField, ThesisRuleIsWiderByItsConstant) {
     const std::vector<Sym2<float>> spectrum{{0.01f, 0, 0.01f}};
     const FilterSettings settings = filter_settings(16);
