@@ -49,7 +49,8 @@ double sharpest_window(const LobeShares& lobes) {
 
 LightField past_voxels(const VoxelGrid& grid, LightField field,
                        const OccluderQuery::Segment& segment, double length,
-                       EdgeMeasure::Range range, double& at) {
+                       EdgeMeasure::Range range) {
+    double at = 0;
     const float voxel = grid.voxel_size();
     const auto total = static_cast<float>(length);
     VoxelMarch march(grid, segment.begin, segment.end, total - range.hi, total - range.lo);
@@ -65,7 +66,7 @@ LightField past_voxels(const VoxelGrid& grid, LightField field,
                                        0.5 * voxel, e.velocity)
                         : cov::occlude(field, e.offset, 0.5 * voxel, e.velocity);
     }
-    return field;
+    return cov::travel(field, length - at);
 }
 
 /// Whether an own outline is narrow enough at the end of the segment.
@@ -76,10 +77,10 @@ bool matters(const OwnOutline& own, const EdgeMeasure& measure, const cov::Vec3<
     return measure.width_squared(z, r * r) < measure.widest * measure.widest;
 }
 
-LightField past_outlines(const OccluderQuery& query, LightField field,
-                         const OccluderQuery::Segment& segment, double length,
-                         const EdgeMeasure& measure, double smallest, double& at) {
-    const OutlineEvents found = query(segment, measure, static_cast<float>(smallest));
+LightField past_outlines(const OutlineEvents& found, const LightField& light, double length,
+                         double smallest) {
+    LightField field = light;
+    double at = 0;
     for (size_t i = 0; i < found.count; ++i) {
         const OutlineEvent& e = found.events[i];
         field = cov::travel(field, length - e.z - at);
@@ -87,7 +88,7 @@ LightField past_outlines(const OccluderQuery& query, LightField field,
         field =
             cov::occlude(field, e.direction * std::max(e.distance, 1e-30f), smallest, e.velocity);
     }
-    return field;
+    return cov::travel(field, length - at);
 }
 
 }  // namespace
@@ -142,21 +143,24 @@ EdgeMeasure measure_at_camera(const SensorGeometry& camera) {
     return m;
 }
 
-LightField travel_past(const Occluders& occluders, LightField field,
+LightField travel_past(const Occluders& occluders, const LightField& field,
                        const OccluderQuery::Segment& segment, const EdgeMeasure& measure,
                        const OwnOutline* own, double smallest) {
     const double length = distance(segment.begin, segment.end);
-    double at = 0;
     if (occluders.query) {
+        const OutlineEvents found =
+            (*occluders.query)(segment, measure, static_cast<float>(smallest));
         if (own && matters(*own, measure, field.frame.z, length))
-            field = cov::end_at_contour(field, own->contour, smallest, own->motion);
-        field = past_outlines(*occluders.query, field, segment, length, measure, smallest, at);
+            return past_outlines(found,
+                                 cov::end_at_contour(field, own->contour, smallest, own->motion),
+                                 length, smallest);
+        if (found.count > 0) return past_outlines(found, field, length, smallest);
     } else if (occluders.grid) {
         const EdgeMeasure::Range range = measure.reach(static_cast<float>(length));
         if (range.lo <= range.hi)
-            field = past_voxels(*occluders.grid, field, segment, length, range, at);
+            return past_voxels(*occluders.grid, field, segment, length, range);
     }
-    return cov::travel(field, length - at);
+    return cov::travel(field, length);
 }
 
 }  // namespace covtrace

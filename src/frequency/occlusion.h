@@ -52,7 +52,7 @@ struct OwnOutline {
 
 /// Carries light along a segment, past the occluders that matter. `own`: null where there is none;
 /// `smallest`: the extent that stands for a point, scene units.
-LightField travel_past(const Occluders& occluders, LightField field,
+LightField travel_past(const Occluders& occluders, const LightField& field,
                        const OccluderQuery::Segment& segment, const EdgeMeasure& measure,
                        const OwnOutline* own, double smallest);
 

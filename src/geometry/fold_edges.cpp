@@ -12,7 +12,6 @@ namespace covtrace {
 namespace {
 
 constexpr uint32_t kFree = ~uint32_t{0};
-constexpr float kUnit = 32767;
 /// Sine below which a point counts as in the plane of a face: a few times what the rounding of hit
 /// points gives at a thousandth of the scene's size.
 constexpr float kInPlane = 1e-3f;
@@ -34,10 +33,6 @@ uint64_t hash_of(Vec3 p) {
     return h;
 }
 
-Frame frame_along(Vec3 a, Vec3 b) {
-    return Frame::from_z(normalize(b - a));
-}
-
 /// One triangle beside an edge.
 struct Side {
     uint32_t other = 0;     ///< the edge's second corner, the larger
@@ -48,7 +43,7 @@ struct Side {
 bool wedge(Vec3 a, Vec3 b, const std::vector<Vec3>& corners, const Side* begin, const Side* end,
            FoldEdge& edge) {
     if (!(distance(a, b) > 0)) return false;
-    const Frame frame = frame_along(a, b);
+    const Frame frame = Frame::from_z(normalize(b - a));
     static thread_local std::vector<float> angles;
     angles.clear();
     for (const Side* s = begin; s != end; ++s) {
@@ -68,27 +63,22 @@ bool wedge(Vec3 a, Vec3 b, const std::vector<Vec3>& corners, const Side* begin, 
             last = angles[i];
         }
     if (widest < kPi + kLeastBend) return false;
-    const auto direction = [](float angle) {
-        return std::array<int16_t, 2>{static_cast<int16_t>(std::lround(kUnit * std::cos(angle))),
-                                      static_cast<int16_t>(std::lround(kUnit * std::sin(angle)))};
+    const auto normal = [&frame](float angle) {
+        return frame.y * std::cos(angle) - frame.x * std::sin(angle);
     };
-    edge = {a, b, direction(first), direction(last)};
+    edge = {a, b, normal(first), normal(last)};
     return true;
 }
 
 }  // namespace
 
 bool FoldEdge::is_outline_from(Vec3 p) const {
-    const Frame frame = frame_along(a, b);
-    // The plane's normal within the frame's x and y.
-    const Vec3 d = a - p;
-    const float x = dot(d, frame.x), y = dot(d, frame.y), l = std::sqrt(x * x + y * y);
-    if (!(l > 0)) return false;
-    const auto side = [&](const std::array<int16_t, 2>& face) {
-        return (y * static_cast<float>(face[0]) - x * static_cast<float>(face[1])) / (l * kUnit);
-    };
-    const float s0 = side(face0), s1 = side(face1);
-    return (s0 > kInPlane && s1 > kInPlane) || (s0 < -kInPlane && s1 < -kInPlane);
+    const Vec3 d = a - p, along = b - a;
+    const float s0 = dot(d, normal0), s1 = dot(d, normal1);
+    const float least = std::min(std::abs(s0), std::abs(s1));
+    // Beside the distance from the edge's line.
+    return s0 * s1 > 0 &&
+           sqr(least) * length_squared(along) > sqr(kInPlane) * length_squared(cross(d, along));
 }
 
 uint32_t FoldEdgeFinder::weld(Vec3 position) {

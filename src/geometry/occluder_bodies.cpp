@@ -61,15 +61,20 @@ Bounds3 transformed(const Bounds3& b, const Affine& map) {
 
 }  // namespace
 
-EdgeSet::EdgeSet(std::vector<FoldEdge> found) {
-    std::vector<Bounds3> boxes(found.size());
-    for (size_t i = 0; i < found.size(); ++i) {
+EdgeSet::EdgeSet(const std::vector<FoldEdge>& found) : count(found.size()) {
+    std::vector<Bounds3> boxes(count);
+    for (size_t i = 0; i < count; ++i) {
         boxes[i].extend(found[i].a);
         boxes[i].extend(found[i].b);
     }
-    hierarchy = BoxHierarchy(boxes);
-    edges.reserve(found.size());
-    for (uint32_t i : hierarchy.order()) edges.push_back(found[i]);
+    hierarchy = BoxHierarchy(boxes, BoxHierarchy::kWidth);
+    std::vector<FoldEdge> edges;
+    edges.reserve(count);
+    blocks.reserve(hierarchy.items());
+    for (size_t i = 0; i < hierarchy.items(); ++i) {
+        for (uint32_t k : hierarchy.item(i)) edges.push_back(found[k]);
+        blocks.emplace_back(std::span(edges).last(hierarchy.item(i).size()));
+    }
     cones = blind_cones(hierarchy, edges);
 }
 
@@ -110,7 +115,7 @@ OccluderBodies::OccluderBodies(const Geometry::Impl& g, std::function<bool()> ca
     for (const OccluderBody& body : bodies) boxes.push_back(bounds_of(body));
     hierarchy = BoxHierarchy(boxes);
     std::vector<OccluderBody> ordered;
-    for (uint32_t i : hierarchy.order()) ordered.push_back(bodies[i]);
+    for (size_t i = 0; i < hierarchy.items(); ++i) ordered.push_back(bodies[hierarchy.item(i)[0]]);
     bodies = std::move(ordered);
 }
 
@@ -166,13 +171,13 @@ std::vector<OccluderBody> OccluderBodies::add(const std::vector<uint32_t>& shape
 
 /// Whether there is anything to keep.
 bool OccluderBodies::keep(FoldEdgeFinder& finder, Owner curved, std::vector<OccluderBody>& parts) {
-    std::vector<FoldEdge> edges = finder.take();
+    const std::vector<FoldEdge> edges = finder.take();
     if (edges.empty()) return false;
     OccluderBody body;
     body.set = static_cast<uint32_t>(sets.size());
     body.curved = curved;
     parts.push_back(body);
-    sets.emplace_back(std::move(edges));
+    sets.emplace_back(edges);
     return true;
 }
 

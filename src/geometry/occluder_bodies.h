@@ -5,7 +5,9 @@
 #include <functional>
 #include <vector>
 
+#include "geometry/blind_cones.h"
 #include "geometry/box_hierarchy.h"
+#include "geometry/edge_block.h"
 #include "geometry/fold_edges.h"
 #include "geometry/geometry_impl.h"
 #include "geometry/occluder_query.h"
@@ -15,11 +17,12 @@ namespace covtrace {
 
 /// Edges in the local space of a scene of Embree.
 struct EdgeSet {
-    std::vector<FoldEdge> edges;  ///< in the order of the hierarchy
+    size_t count = 0;
     BoxHierarchy hierarchy;
+    std::vector<EdgeBlock> blocks;  ///< its items
     std::vector<BlindCones> cones;  ///< of its nodes
 
-    explicit EdgeSet(std::vector<FoldEdge> found);
+    explicit EdgeSet(const std::vector<FoldEdge>& found);
 };
 
 /// An edge set, or a ball, somewhere in the world.

@@ -23,14 +23,14 @@ OccluderQuery::~OccluderQuery() = default;
 
 size_t OccluderQuery::edges() const {
     size_t count = 0;
-    for (const EdgeSet& set : impl_->sets) count += set.edges.size();
+    for (const EdgeSet& set : impl_->sets) count += set.count;
     return count;
 }
 
 size_t OccluderQuery::memory() const {
     size_t bytes = impl_->hierarchy.memory() + impl_->bodies.capacity() * sizeof(OccluderBody);
     for (const EdgeSet& set : impl_->sets)
-        bytes += set.hierarchy.memory() + set.edges.capacity() * sizeof(FoldEdge) +
+        bytes += set.hierarchy.memory() + set.blocks.capacity() * sizeof(EdgeBlock) +
                  set.cones.capacity() * sizeof(BlindCones);
     return bytes;
 }
@@ -61,21 +61,20 @@ OutlineEvents OccluderQuery::operator()(const Segment& segment, const EdgeMeasur
             if (!body.instance) {
                 set.hierarchy.search(
                     [&](const Node& node, uint32_t i) {
-                        return set.cones[i].rule_out(node, segment.end, search.bound_world(node));
+                        return search.bound_world(node, set.cones[i]);
                     },
-                    limit, [&](uint32_t i) { search.meet(set.edges[i], index); });
+                    limit, [&](uint32_t i) { search.meet_world(set.blocks[i], index); });
                 return;
             }
             search.enter(g.geometry.world_from_local(*body.instance, segment.time));
-            set.hierarchy.search(
-                [&](const Node& node, uint32_t i) {
-                    return set.cones[i].rule_out(node, search.local_end(),
-                                                 search.bound_local(node));
-                },
-                limit, [&](uint32_t i) { search.meet_local(set.edges[i], index); });
+            set.hierarchy.search([&](const Node& node,
+                                     uint32_t i) { return search.bound_local(node, set.cones[i]); },
+                                 limit,
+                                 [&](uint32_t i) { search.meet_local(set.blocks[i], index); });
         });
 
     OutlineEvents events;
+    if (!search.has_found()) return events;
     search.collect(events, [&](uint32_t index, Vec3 point) -> Vec3 {
         const EmbreeInstance* instance = g.bodies[index].instance;
         if (!instance || !instance->moves) return {};

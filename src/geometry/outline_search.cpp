@@ -1,6 +1,9 @@
 #include "geometry/outline_search.h"
 
 #include <algorithm>
+#include <bit>
+
+#include "core/frame.h"
 
 namespace covtrace {
 
@@ -21,16 +24,12 @@ OutlineSearch::OutlineSearch(Vec3 begin, Vec3 end, const EdgeMeasure& measure, f
     lo_ = std::max(range.lo, nearest);
     hi_ = std::min(range.hi, length - nearest);
     axis_ = (begin - end) / length;
-    frame_ = Frame::from_z(axis_);
     limit_ = widest2_;
     if (is_over()) return;
 
-    for (size_t i = 0; i < 3; ++i) {
-        const int axis = static_cast<int>(i);
-        wide_end_[i] = all8(end_[axis]);
-        wide_axis_[i] = all8(axis_[axis]);
-        wide_size_[i] = all8(std::abs(axis_[axis]));
-    }
+    wide_end_ = all8(end_);
+    wide_axis_ = all8(axis_);
+    wide_size_ = abs8(wide_axis_);
     wide_lo_ = all8(lo_);
     wide_hi_ = all8(hi_);
     wide_a0_ = all8(measure.a0);
@@ -40,15 +39,61 @@ OutlineSearch::OutlineSearch(Vec3 begin, Vec3 end, const EdgeMeasure& measure, f
     wide_h1_ = all8(measure.h1);
     wide_h2_ = all8(measure.h2);
     least_h_ = all8(1e-6f * measure.h0);
+    wide_sharp_ = all8(measure.a1 != 0 ? -measure.a0 / measure.a1 : 0.0f);
 }
 
 void OutlineSearch::enter(const Affine& m) {
-    for (size_t i = 0; i < 3; ++i) {
-        rows_[i] = m.row[i].to_float();
-        absolute_[i] = abs(m.row[i]).to_float();
-    }
+    for (size_t i = 0; i < 3; ++i) rows_[i] = m.row[i].to_float();
     shift_ = m.translation.to_float();
     local_end_ = m.inverse().point(Vec3d(end_)).to_float();
+}
+
+Float8 OutlineSearch::bound_local(const BoxHierarchy::Node& node, const BlindCones& cones) const {
+    const auto row = [this](size_t i) { return all8(rows_[i]); };
+    const Vec3x8 x = row(0), y = row(1), z = row(2), shift = all8(shift_ - end_);
+    const Vec3x8 middle{dot8(x, node.middle) + shift.x, dot8(y, node.middle) + shift.y,
+                        dot8(z, node.middle) + shift.z};
+    const Vec3x8 half{dot8(abs8(x), node.half), dot8(abs8(y), node.half), dot8(abs8(z), node.half)};
+    return cones.hide(node.middle - all8(local_end_)) ? all8(kInfinity) : bound(middle, half);
+}
+
+inline auto OutlineSearch::may_matter(const Vec3x8& from, const Vec3x8& along) const {
+    const Float8 za = dot8(from, wide_axis_), dz = dot8(along, wide_axis_);
+    // The part of the edge, t0 to t1 of its length, that lies beside the segment. Edges at right
+    // angles to it have none or, by infinities, all.
+    const Float8 ta = (wide_lo_ - za) / dz, tb = (wide_hi_ - za) / dz;
+    const Float8 t0 = max8(min8(ta, tb), Float8{}), t1 = min8(max8(ta, tb), all8(1));
+    const Float8 z0 = add_product8(t0, dz, za), z1 = add_product8(t1, dz, za);
+    const Vec3x8 p = less_product8(wide_axis_, za, from), dp = less_product8(wide_axis_, dz, along);
+    const Float8 nearest = min8(max8(-dot8(p, dp) / dot8(dp, dp), t0), t1);
+    const Vec3x8 q = add_product8(dp, nearest, p);
+    const Float8 lower = add_product8(wide_b_, dot8(q, q), least_blur2(min8(z0, z1), max8(z0, z1)));
+    return (t0 <= t1) & (kBelow * lower < all8(limit_) * most_weight(z0, z1));
+}
+
+void OutlineSearch::meet_world(const EdgeBlock& edges, uint32_t body) {
+    const Vec3x8 from = edges.a - wide_end_;
+    const auto outlines = edges.may_be_outlines(from);
+    if (bits8(outlines) == 0) return;
+    for (unsigned left = bits8(outlines & may_matter(from, edges.along)); left != 0;
+         left &= left - 1) {
+        const FoldEdge edge = edges.edge(static_cast<size_t>(std::countr_zero(left)));
+        meet(edge, edge.a, edge.b, end_, body);
+    }
+}
+
+void OutlineSearch::meet_local(const EdgeBlock& edges, uint32_t body) {
+    const auto outlines = edges.may_be_outlines(edges.a - all8(local_end_));
+    if (bits8(outlines) == 0) return;
+    const auto row = [this](size_t i) { return all8(rows_[i]); };
+    const Vec3x8 x = row(0), y = row(1), z = row(2), shift = all8(shift_ - end_);
+    const Vec3x8 from{dot8(x, edges.a) + shift.x, dot8(y, edges.a) + shift.y,
+                      dot8(z, edges.a) + shift.z};
+    const Vec3x8 along{dot8(x, edges.along), dot8(y, edges.along), dot8(z, edges.along)};
+    for (unsigned left = bits8(outlines & may_matter(from, along)); left != 0; left &= left - 1) {
+        const FoldEdge edge = edges.edge(static_cast<size_t>(std::countr_zero(left)));
+        meet(edge, to_world(edge.a), to_world(edge.b), local_end_, body);
+    }
 }
 
 void OutlineSearch::meet(const FoldEdge& edge, Vec3 a, Vec3 b, Vec3 seen_from, uint32_t body) {
@@ -66,15 +111,7 @@ void OutlineSearch::meet(const FoldEdge& edge, Vec3 a, Vec3 b, Vec3 seen_from, u
     }
     if (!(t0 <= t1)) return;
     const Vec3 p = from - axis_ * za, dp = along - axis_ * dz;
-    // Most edges are too wide even with their least blur where they are nearest, whatever their z.
     const float pdp = dot(p, dp), dp2 = length_squared(dp);
-    const float nearest = dp2 > 0 ? std::clamp(-pdp / dp2, t0, t1) : t0;
-    const float z0 = za + t0 * dz, z1 = za + t1 * dz;
-    const float blur0 = m.a0 + m.a1 * z0, blur1 = m.a0 + m.a1 * z1;
-    const float least_blur2 = blur0 * blur1 > 0 ? std::min(sqr(blur0), sqr(blur1)) : 0;
-    if (kBelow * (least_blur2 + m.b * length_squared(p + dp * nearest)) >=
-        limit_ * std::max(m.denominator(z0), m.denominator(z1)))
-        return;
     const float blur = m.a0 + m.a1 * za;
     const float n0 = blur * blur + m.b * length_squared(p), n1 = 2 * (blur * m.a1 * dz + m.b * pdp),
                 n2 = sqr(m.a1 * dz) + m.b * dp2;
@@ -180,10 +217,12 @@ void OutlineSearch::meet_ball(Vec3 center, float radius, uint32_t body) {
 
 void OutlineSearch::keep(const Candidate& c) {
     // Sectors of 45 degrees of the line along the direction: quadrants of the doubled angle.
-    const float x = dot(c.event.direction, frame_.x), y = dot(c.event.direction, frame_.y);
+    const Frame frame = Frame::from_z(axis_);
+    const float x = dot(c.event.direction, frame.x), y = dot(c.event.direction, frame.y);
     const size_t sector = (x * x > y * y ? 0u : 1u) + (x * y > 0 ? 0u : 2u);
     if (!(c.width2 < best_[sector].width2)) return;
     best_[sector] = c;
+    has_found_ = true;
     float least = kInfinity, most = 0;
     for (const Candidate& b : best_) {
         least = std::min(least, b.width2);

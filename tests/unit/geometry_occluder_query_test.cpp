@@ -3,7 +3,8 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "geometry/fold_edges.h"
+#include "geometry/blind_cones.h"
+#include "geometry/edge_block.h"
 #include "geometry/occluder_query.h"
 #include "geometry_fixtures.h"
 
@@ -90,9 +91,15 @@ TEST(FoldEdges, BlindConesHideNoOutline) {
         boxes[i].extend(found[i].a);
         boxes[i].extend(found[i].b);
     }
-    const BoxHierarchy hierarchy(boxes);
+    const BoxHierarchy hierarchy(boxes, 8);
     std::vector<FoldEdge> edges;
-    for (uint32_t i : hierarchy.order()) edges.push_back(found[i]);
+    std::vector<size_t> first;
+    for (size_t i = 0; i < hierarchy.items(); ++i) {
+        first.push_back(edges.size());
+        ASSERT_LE(hierarchy.item(i).size(), 8u);
+        for (uint32_t e : hierarchy.item(i)) edges.push_back(found[e]);
+    }
+    ASSERT_EQ(edges.size(), found.size());
     const std::vector<BlindCones> cones = blind_cones(hierarchy, edges);
     Random random(8);
     for (int i = 0; i < 50; ++i) {
@@ -101,15 +108,25 @@ TEST(FoldEdges, BlindConesHideNoOutline) {
         size_t count = 0;
         hierarchy.search(
             [&](const BoxHierarchy::Node& node, uint32_t n) {
-                // The nodes hold what they say; missing children are no number.
-                Float8 all{};
-                for (size_t k = 0; k < 8; ++k) all[k] = node.middle[0][k] * 0;
-                return cones[n].rule_out(node, p, all);
+                const Vec3x8 middle = node.middle - all8(p);
+                // Missing children are no number.
+                return cones[n].hide(middle) ? all8(kInfinity) : 0 * middle.x;
             },
             [] { return 1.0f; },
-            [&](uint32_t e) {
-                met[e] = true;
-                ++count;
+            [&](uint32_t item) {
+                const std::span own =
+                    std::span(edges).subspan(first[item], hierarchy.item(item).size());
+                const EdgeBlock block(own);
+                const unsigned may = bits8(block.may_be_outlines(block.a - all8(p)));
+                for (size_t k = 0; k < own.size(); ++k) {
+                    met[first[item] + k] = true;
+                    ++count;
+                    ASSERT_EQ(block.edge(k).is_outline_from(p), own[k].is_outline_from(p));
+                    if (own[k].is_outline_from(p)) {
+                        ASSERT_TRUE(may >> k & 1);
+                    }
+                }
+                ASSERT_EQ(may >> own.size(), 0u);
             });
         for (size_t e = 0; e < edges.size(); ++e)
             if (edges[e].is_outline_from(p)) {
@@ -117,6 +134,44 @@ TEST(FoldEdges, BlindConesHideNoOutline) {
             }
         EXPECT_LT(count, edges.size() / 2);
     }
+}
+
+TEST(BoxHierarchy, HoldsEveryBoxOnce) {
+    Random random(4);
+    for (const size_t count : {1u, 2u, 8u, 9u, 70u, 5000u})
+        for (const uint32_t per_item : {1u, 8u}) {
+            std::vector<Bounds3> boxes(count);
+            for (size_t i = 0; i < count; ++i) {
+                // A third of them at the very same place.
+                const Vec3 p = i % 3 == 0 ? Vec3{1, 2, 3} : random.in_box(5);
+                boxes[i].extend(p);
+                boxes[i].extend(p + random.in_box(0.1f));
+            }
+            const BoxHierarchy hierarchy(boxes, per_item);
+            std::vector<int> seen(count, 0);
+            for (size_t i = 0; i < hierarchy.items(); ++i) {
+                ASSERT_GE(hierarchy.item(i).size(), 1u);
+                ASSERT_LE(hierarchy.item(i).size(), per_item);
+                for (uint32_t b : hierarchy.item(i)) ++seen[b];
+            }
+            ASSERT_EQ(seen, std::vector<int>(count, 1));
+            // Items whose boxes hold a point are met.
+            for (int i = 0; i < 20; ++i) {
+                const Vec3 p = i % 2 ? Vec3{1, 2, 3} : random.in_box(5);
+                std::vector<bool> met(hierarchy.items(), false);
+                hierarchy.search(
+                    [&](const BoxHierarchy::Node& node, uint32_t) {
+                        const Vec3x8 d = abs8(node.middle - all8(p)) - node.half;
+                        return max8(max8(d.x, d.y), d.z);
+                    },
+                    [] { return 1e-6f; }, [&](uint32_t item) { met[item] = true; });
+                for (size_t item = 0; item < hierarchy.items(); ++item)
+                    for (uint32_t b : hierarchy.item(item))
+                        if (boxes[b].contains(p)) {
+                            ASSERT_TRUE(met[item]);
+                        }
+            }
+        }
 }
 
 TEST(OccluderQuery, AnEdgeAtItsDistanceAndDirection) {
