@@ -14,10 +14,9 @@
 
 #include "core/parallel.h"
 #include "frequency/replay.h"
+#include "load_scene.h"
 #include "planner/covariance_buffer.h"
 #include "render/pass.h"
-#include "render/session.h"
-#include "scene/read_scene.h"
 
 namespace {
 
@@ -92,14 +91,9 @@ int main(int argc, char** argv) {
         return 2;
     }
     try {
-        SceneDescription description = read_pbrt(argv[1]);
-        SceneOverrides overrides;
-        overrides.resolution = {std::atoi(argv[2]), std::atoi(argv[3])};
-        apply(overrides, description);
-        RenderScene scene(std::move(description));
-        scene.prepare_spectra();
+        const auto scene = load_scene(argv[1], argv[2], argv[3]);
         const ThreadLimit one(1);
-        run(scene, static_cast<uint32_t>(std::atoi(argv[4])));
+        run(*scene, static_cast<uint32_t>(std::atoi(argv[4])));
     } catch (const std::exception& e) {
         std::fprintf(stderr, "%s\n", e.what());
         return 1;

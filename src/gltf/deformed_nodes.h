@@ -1,6 +1,5 @@
 /// Private to this folder: what morph targets and skins make of the meshes of nodes over the
-/// shutter, as meshes that each move by one
-/// transform (gltf/moving_pieces.h).
+/// shutter, as meshes that each move by one transform (gltf/moving_pieces.h).
 #pragma once
 
 #include <map>

@@ -6,11 +6,12 @@
 #include <numeric>
 #include <queue>
 
+#include "core/symmetric_eigen.h"
+
 namespace covtrace::gltf {
 namespace {
 
-using Matrix3 = std::array<std::array<double, 3>, 3>;
-using Symmetric4 = std::array<std::array<double, 4>, 4>;
+using Matrix3 = SquareMatrix<3>;
 using Triangle = std::array<uint32_t, 3>;
 
 /// Joints bend in a few steps each; every piece is an instance that moves.
@@ -20,38 +21,6 @@ constexpr size_t kMostPieces = 256;
 constexpr double kRidge = 1e-2;
 /// Of a piece's volume; what is squeezed to nothing can't be undone.
 constexpr double kMostStretch = 20;
-
-/// The unit eigenvector of the largest eigenvalue, by Jacobi's method.
-std::array<double, 4> largest_eigenvector(Symmetric4 a) {
-    Symmetric4 vectors{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
-    constexpr int kSweeps = 16;  // it converges quadratically: 6 to 10 reach rounding
-    for (int sweep = 0; sweep < kSweeps; ++sweep)
-        for (size_t p = 0; p < 4; ++p)
-            for (size_t q = p + 1; q < 4; ++q) {
-                if (a[p][q] == 0) continue;
-                const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-                const double t =
-                    std::copysign(1.0, theta) / (std::abs(theta) + std::hypot(1.0, theta));
-                const double c = 1 / std::hypot(1.0, t), s = t * c;
-                for (size_t k = 0; k < 4; ++k) {
-                    const double kp = a[k][p], kq = a[k][q];
-                    a[k][p] = c * kp - s * kq;
-                    a[k][q] = s * kp + c * kq;
-                }
-                for (size_t k = 0; k < 4; ++k) {
-                    const double pk = a[p][k], qk = a[q][k];
-                    a[p][k] = c * pk - s * qk;
-                    a[q][k] = s * pk + c * qk;
-                    const double vp = vectors[k][p], vq = vectors[k][q];
-                    vectors[k][p] = c * vp - s * vq;
-                    vectors[k][q] = s * vp + c * vq;
-                }
-            }
-    size_t largest = 0;
-    for (size_t k = 1; k < 4; ++k)
-        if (a[k][k] > a[largest][largest]) largest = k;
-    return {vectors[0][largest], vectors[1][largest], vectors[2][largest], vectors[3][largest]};
-}
 
 std::array<double, 3> mean(std::span<const Vec3> points) {
     std::array<double, 3> sum{};
@@ -64,13 +33,16 @@ std::array<double, 3> offset(Vec3 p, const std::array<double, 3>& from) {
     return {double(p.x) - from[0], double(p.y) - from[1], double(p.z) - from[2]};
 }
 
+/// The rotation whose quaternion is the eigenvector of the largest eigenvalue of Horn's matrix.
 /// `s`: sums of products of the start's i and the end's j, both from their means.
 Matrix4 nearest_rotation(const Matrix3& s) {
-    const auto [w, x, y, z] = largest_eigenvector(
+    const SymmetricEigen<4> e = symmetric_eigen<4>(
         {{{s[0][0] + s[1][1] + s[2][2], s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0]},
           {s[1][2] - s[2][1], s[0][0] - s[1][1] - s[2][2], s[0][1] + s[1][0], s[2][0] + s[0][2]},
           {s[2][0] - s[0][2], s[0][1] + s[1][0], s[1][1] - s[0][0] - s[2][2], s[1][2] + s[2][1]},
           {s[0][1] - s[1][0], s[2][0] + s[0][2], s[1][2] + s[2][1], s[2][2] - s[0][0] - s[1][1]}}});
+    const auto largest = std::max_element(e.values.begin(), e.values.end()) - e.values.begin();
+    const auto& [w, x, y, z] = e.vectors[static_cast<size_t>(largest)];
     Matrix4 m;
     m.m[0] = {1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 0};
     m.m[1] = {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), 0};

@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 #include "core/sampler.h"
-#include "laboratory/symmetric_eigen.h"
+#include "laboratory/covariance_eigen.h"
 
 namespace covtrace {
 
@@ -68,7 +68,7 @@ using Batches = std::array<HermiteSums, kBatches>;
 struct Window {
     /// Of the inverse covariance. Axes that are not looked at stay their own eigenvectors, in
     /// place.
-    SymmetricEigen precision;
+    SymmetricEigen<5> precision;
 
     SensorOffset offset(const std::array<double, 5>& z) const {
         SensorOffset p{};
@@ -185,14 +185,14 @@ MeasuredSpectrum measure(const LocalField& field, const MeasureOptions& o) {
     }
     Window window;
     for (int i = 0; i < kIterations; ++i) {
-        window = {symmetric_eigen(precision)};
+        window = {covariance_eigen(precision)};
         const Matrix l =
             whitened_bandwidth(sample_window(field, window, o.samples / kIterations, o));
         precision = widest + window.unwhiten(map_eigenvalues(l, [](double e) {
             return std::clamp(sqr(kFilterSharpness) * e, kWiden, kNarrow);
         }));
     }
-    window = {symmetric_eigen(precision)};
+    window = {covariance_eigen(precision)};
     return evaluate(window, sample_window(field, window, o.samples, o));
 }
 

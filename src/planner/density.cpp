@@ -26,9 +26,9 @@ std::vector<float> relative_density(const Prediction& prediction, DensityRule ru
 
 namespace {
 
-/// The level in [lo, hi] at which the sum of `wanted(i, level)`, which grows with it, is `total`: by
-/// regula falsi, whose kept end counts half (Illinois), and every third time by halves. The end
-/// that comes nearest where no level does.
+/// The level in [lo, hi] at which the sum of `wanted(i, level)`, which grows with it, is `total`:
+/// by regula falsi whose kept end counts half (the Illinois method: Dowell and Jarratt, BIT 11,
+/// 1971), and every third time by halves. The end that comes nearest where no level does.
 template <typename Wanted>
 double level_of(size_t n, int64_t total, const Wanted& wanted, double lo, double hi) {
     const auto excess = [&](double level) {

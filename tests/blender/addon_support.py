@@ -1,6 +1,7 @@
 """What the tests of the add-on share: they run inside Blender, and render by covtrace and by Cycles."""
 
 import faulthandler
+import math
 import os
 import pathlib
 import sys
@@ -97,6 +98,32 @@ class BlenderTest(unittest.TestCase):
 
     def shining(self):
         return material(Emission=(1, 1, 1, 1), Emission_Strength=1.0, Base_Color=(0, 0, 0, 1), Specular=0.0)
+
+    def bend(self, arm, turn, softness):
+        """Puts an arm along x, whose elbow is at 0, on two bones, of which the second turns about z by `turn` radian either way
+        from frame 0 to 2; `softness`: length over which it bends."""
+        bpy.ops.object.armature_add(enter_editmode=True)
+        rig = bpy.context.object
+        bones = rig.data.edit_bones
+        upper, lower = bones[0], bones.new("lower")
+        upper.head, upper.tail = (-1.5, 0, 0), (0, 0, 0)
+        lower.head, lower.tail, lower.parent = (0, 0, 0), (1.5, 0, 0), upper
+        names = (upper.name, lower.name)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        for name, share in zip(names, (lambda t: 1 - t, lambda t: t)):
+            group = arm.vertex_groups.new(name=name)
+            for vertex in arm.data.vertices:
+                group.add([vertex.index], share(min(max(vertex.co.x / softness + 0.5, 0), 1)), "REPLACE")
+        arm.parent = rig
+        arm.modifiers.new("rig", "ARMATURE").object = rig
+        bone = rig.pose.bones[names[1]]
+        bone.rotation_mode = "QUATERNION"
+        for frame, angle in ((0, -turn), (2, turn)):
+            bone.rotation_quaternion = (math.cos(angle / 2), 0, 0, math.sin(angle / 2))
+            bone.keyframe_insert("rotation_quaternion", frame=frame)
+        for curve in rig.animation_data.action.fcurves:
+            for point in curve.keyframe_points:
+                point.interpolation = "LINEAR"
 
     def export(self):
         class Engine:

@@ -1,12 +1,11 @@
 """Cameras and lenses against Cycles'."""
 
-from addon_support import BlenderTest, HEIGHT, WIDTH, material, mean, render
+from addon_support import BlenderTest, HEIGHT, WIDTH, mean, render
 
 
 class CameraTest(BlenderTest):
     def test_camera_sees_what_cycles_sees(self):
-        m = material(Emission=(1, 1, 1, 1), Emission_Strength=1.0, Base_Color=(0, 0, 0, 1), Specular=0.0)
-        self.plane(m, size=1.3)
+        self.plane(self.shining(), size=1.3)
         for values in (dict(), dict(shift_x=0.3, shift_y=0.1), dict(type="ORTHO", ortho_scale=4),
                        dict(sensor_fit="VERTICAL", lens=35)):
             for key, value in values.items():
@@ -16,8 +15,7 @@ class CameraTest(BlenderTest):
                 self.assertAlmostEqual(mean(ours, *part)[0], mean(theirs, *part)[0], delta=0.02, msg=str(values))
 
     def test_lens_blurs_as_in_cycles(self):
-        m = material(Emission=(1, 1, 1, 1), Emission_Strength=1.0, Base_Color=(0, 0, 0, 1), Specular=0.0)
-        self.plane(m, size=0.5)
+        self.plane(self.shining(), size=0.5)
         dof = self.camera.data.dof
         dof.use_dof, dof.focus_distance, dof.aperture_fstop = True, 2.5, 0.05
         ours, theirs = render("COVTRACE", 256), render("CYCLES", 256)

@@ -42,31 +42,13 @@ class GltfTest(BlenderTest):
         for point, vertex in zip(key.data, arm.data.vertices):
             grown = 1 + max(vertex.co.x, 0) / 1.5
             point.co = (vertex.co.x, vertex.co.y * grown, vertex.co.z * grown)
-        bpy.ops.object.armature_add(enter_editmode=True)
-        rig = bpy.context.object
-        bones = rig.data.edit_bones
-        upper, lower = bones[0], bones.new("lower")
-        upper.head, upper.tail = (-1.5, 0, 0), (0, 0, 0)
-        lower.head, lower.tail, lower.parent = (0, 0, 0), (1.5, 0, 0), upper
-        names = (upper.name, lower.name)
-        bpy.ops.object.mode_set(mode="OBJECT")
-        for name, share in zip(names, (lambda t: 1 - t, lambda t: t)):
-            group = arm.vertex_groups.new(name=name)
-            for vertex in arm.data.vertices:
-                group.add([vertex.index], share(min(max(vertex.co.x / 0.8 + 0.5, 0), 1)), "REPLACE")
-        arm.parent = rig
-        arm.modifiers.new("rig", "ARMATURE").object = rig
-        bone = rig.pose.bones[names[1]]
-        bone.rotation_mode = "QUATERNION"
-        for frame, turn, value in ((0, -20, thick[0]), (2, 20, thick[1])):
-            bone.rotation_quaternion = (math.cos(math.radians(turn) / 2), 0, 0, math.sin(math.radians(turn) / 2))
-            bone.keyframe_insert("rotation_quaternion", frame=frame)
+        self.bend(arm, math.radians(20), 0.8)
+        for frame, value in zip((0, 2), thick):
             key.value = value
             key.keyframe_insert("value", frame=frame)
-        for action in bpy.data.actions:
-            for curve in action.fcurves:
-                for point in curve.keyframe_points:
-                    point.interpolation = "LINEAR"
+        for curve in arm.data.shape_keys.animation_data.action.fcurves:
+            for point in curve.keyframe_points:
+                point.interpolation = "LINEAR"
         self.scene.frame_start, self.scene.frame_end = 0, 2
         return arm
 

@@ -3,13 +3,12 @@
 import math
 
 import bpy
-from addon_support import BlenderTest, material, mean, render
+from addon_support import BlenderTest, mean, render
 
 
 class MotionTest(BlenderTest):
     def test_motion_blurs_along_the_way(self):
-        m = material(Emission=(1, 1, 1, 1), Emission_Strength=1.0, Base_Color=(0, 0, 0, 1), Specular=0.0)
-        plane = self.plane(m, size=0.5)
+        plane = self.plane(self.shining(), size=0.5)
         for frame, x in ((0, -1), (2, 1)):
             plane.location.x = x
             plane.keyframe_insert("location", frame=frame)
@@ -74,28 +73,7 @@ class MotionTest(BlenderTest):
         for vertex in arm.data.vertices:
             vertex.co = (vertex.co.x * 3, vertex.co.y * 0.5, 0)
         arm.data.materials.append(self.shining())
-        bpy.ops.object.armature_add(enter_editmode=True)
-        rig = bpy.context.object
-        bones = rig.data.edit_bones
-        upper = bones[0]
-        upper.head, upper.tail = (-1.5, 0, 0), (0, 0, 0)
-        lower = bones.new("lower")
-        lower.head, lower.tail, lower.parent = (0, 0, 0), (1.5, 0, 0), upper
-        names = (upper.name, lower.name)
-        bpy.ops.object.mode_set(mode="OBJECT")
-        for name, share in zip(names, (lambda t: 1 - t, lambda t: t)):
-            group = arm.vertex_groups.new(name=name)
-            for vertex in arm.data.vertices:
-                group.add([vertex.index], share(min(max(vertex.co.x / 0.6 + 0.5, 0), 1)), "REPLACE")
-        arm.modifiers.new("rig", "ARMATURE").object = rig
-        bone = rig.pose.bones[names[1]]
-        bone.rotation_mode = "XYZ"
-        for frame, turn in ((0, -20), (2, 20)):
-            bone.rotation_euler = (0, 0, math.radians(turn))
-            bone.keyframe_insert("rotation_euler", frame=frame)
-        for curve in rig.animation_data.action.fcurves:
-            for point in curve.keyframe_points:
-                point.interpolation = "LINEAR"
+        self.bend(arm, math.radians(20), 0.6)
         self.scene.frame_set(1)
         self.scene.render.use_motion_blur, self.scene.render.motion_blur_shutter = True, 2.0
         self.scene.cycles.motion_blur_position = "CENTER"
