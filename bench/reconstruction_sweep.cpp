@@ -1,14 +1,13 @@
 // Compares reconstructions of the same samples, without rendering again for each:
 //
-//     reconstruction_sweep SPP WIDTHxHEIGHT SCENE.pbrt REFERENCE.exr REFERENCE2.exr [SCENE
-//     REFERENCE REFERENCE2 ...]
+//     reconstruction_sweep REFERENCE.exr REFERENCE2.exr FILM [REFERENCE REFERENCE2 FILM ...]
 //
-// Traces every scene with `--method hybrid` at SPP (seed 1) and prints for every set of candidates
-// and selector the trimmed relMSE per scene, the geometric mean of raw error over error, and how
-// good the image's own estimate of its error is: mean true over mean estimated squared error, and
-// in how many of 20 bins of tiles (16 x 16 pixels, 8 x 8 where that makes fewer than 200), sorted
-// by the estimate, it lies between 0.7 and 1.4. The references are two independent images, whose
-// own noise is taken out. docs/reconstruction.md has the table.
+// The films are those of `covtrace render --method hybrid --checkpoint FILM`. Prints for every set
+// of candidates and selector the trimmed relMSE per scene, the geometric mean of raw error over
+// error, and how good the image's own estimate of its error is: mean true over mean estimated
+// squared error, and in how many of 20 bins of tiles (16 x 16 pixels, 8 x 8 where that makes fewer
+// than 200), sorted by the estimate, it lies between 0.7 and 1.4. The references are two
+// independent images, whose own noise is taken out. docs/reconstruction.md has the table.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,10 +16,11 @@
 
 #include "error_bins.h"
 #include "image/compare.h"
+#include "planner/covariance_buffer.h"
 #include "reconstruction/hybrid.h"
 #include "reconstruction/selector.h"
-#include "render/hybrid.h"
-#include "scene/read_scene.h"
+#include "render/film_file.h"
+#include "render/hybrid_film.h"
 
 using namespace covtrace;
 
@@ -60,22 +60,17 @@ Plane Case::true_error(const ColorPlanes& color) const {
     return e;
 }
 
-Case load(double spp, const std::array<int, 2>& size, const char* scene_file,
-          const std::array<const char*, 2>& reference) {
-    SceneDescription description = read_pbrt(scene_file);
-    SceneOverrides overrides;
-    overrides.resolution = size;
-    apply(overrides, description);
-    RenderScene scene(std::move(description));
-    RenderOptions options;
-    options.spp = spp;
-    options.seed = 1;
-    Monitor monitor;
-    RenderJob job(scene, options, monitor);
-    const HybridSamples samples = trace_hybrid(job);
-    Case c{halves_of(samples.film),
-           samples.prediction.spectrum,
-           {read_image(reference[0]), read_image(reference[1])}};
+Case load(const char* const* files) {
+    const RenderState state = read_film(files[2]);
+    if (state.films.size() != 2)
+        throw Error(ErrorKind::usage, fmt::format("{}: not of --method hybrid", files[2]));
+    Case c{halves_of(state.films),
+           preintegrate(smooth(state.covariance())).spectrum,
+           {read_image(files[0]), read_image(files[1])}};
+    for (const Image& r : c.reference)
+        if (r.pixel_count() != state.pixels())
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: has other pixels than the references", files[2]));
     c.noise = compare(c.reference[0], c.reference[1]).relmse_trimmed / 2;
     ColorPlanes raw = c.halves[0].color;
     for (size_t k = 0; k < 3; ++k)
@@ -93,10 +88,22 @@ std::vector<std::pair<std::string, HybridSettings>> variants() {
         change(list.back().second);
     };
     add("best single candidate", [](auto& s) { s.mix = false; });
-    for (float sigma : {1.5f, 5.0f})
-        add(fmt::format("judged over sigma {}", sigma), [&](auto& s) { s.sigma = sigma; });
+    for (float sigma : {3.0f, 9.0f})
+        add(fmt::format("judged over sigma {}", sigma), [&](auto& s) { s.likeness.sigma = sigma; });
+    for (float any : {0.02f, 0.1f, 1.0f})
+        add(fmt::format("unlike pixels count {}", any), [&](auto& s) { s.likeness.any = any; });
+    add("fits of 0.5, 1, 2 shaped", [](auto& s) {
+        s.candidates.fits = {{0.5f, false}, {1, false}, {2, true}};
+    });
+    add("fits of 0.5, 2, 4 shaped", [](auto& s) {
+        s.candidates.fits = {{0.5f, false}, {2, false}, {4, true}};
+    });
+    add("without the wider Gaussian", [](auto& s) { s.candidates.gaussians = {0.5f}; });
+    add("without the narrower Gaussian", [](auto& s) { s.candidates.gaussians = {1}; });
     add("without the Gaussians", [](auto& s) { s.candidates.gaussians.clear(); });
-    add("without shaped windows", [](auto& s) { s.candidates.fits.back().shaped = false; });
+    add("without shaped windows", [](auto& s) {
+        for (auto& fit : s.candidates.fits) fit.shaped = false;
+    });
     add("Gaussians alone", [](auto& s) { s.candidates.fits.clear(); });
     add("plain windows, mixed", [](auto& s) {
         s.candidates.gaussians.clear();
@@ -113,16 +120,13 @@ std::vector<std::pair<std::string, HybridSettings>> variants() {
 }  // namespace
 
 int main(int argc, char** argv) {
-    std::array<int, 2> size{};
-    if (argc < 6 || argc % 3 != 0 || std::sscanf(argv[2], "%dx%d", &size[0], &size[1]) != 2) {
-        fmt::print(stderr,
-                   "usage: reconstruction_sweep SPP WxH SCENE REFERENCE REFERENCE2 [...]\n");
+    if (argc < 4 || argc % 3 != 1) {
+        fmt::print(stderr, "usage: reconstruction_sweep REFERENCE REFERENCE2 FILM [...]\n");
         return 2;
     }
     try {
         std::vector<Case> cases;
-        for (int i = 3; i < argc; i += 3)
-            cases.push_back(load(std::atof(argv[1]), size, argv[i], {argv[i + 1], argv[i + 2]}));
+        for (int i = 1; i < argc; i += 3) cases.push_back(load(argv + i));
         fmt::print("{:<30}  gain   per scene: relMSE x 1e5 (true / estimated, bins)\n{:<38}", "",
                    "raw");
         for (const Case& c : cases) fmt::print(" {:8.1f}          ", 1e5 * c.raw);

@@ -22,7 +22,7 @@ struct CandidateSettings {
         float k;
         bool shaped;
     };
-    std::vector<Fit> fits{{0.5f, false}, {1.0f, false}, {2.0f, true}};
+    std::vector<Fit> fits{{0.5f, false}, {2.0f, false}, {1.0f, true}, {4.0f, true}};
 };
 
 /// The raw pixels, the Gaussians, the fits, in this order. `spectrum`: the predicted ones after the

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/vec.h"
+#include "reconstruction/guides.h"
 #include "reconstruction/outliers.h"
 #include "reconstruction/selector.h"
 
@@ -54,15 +55,16 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
         for (Plane& v : half.color_variance) v = box_blur(v, 1);
     const std::vector<Candidate> candidates =
         make_candidates(halves, spectrum, settings.candidates);
+    Likeness likeness(settings.likeness);
+    add_features(halves, likeness);
     for (HalfBuffer& half : halves) half.feature = half.feature_variance = {};  // large, not needed
-    const auto mixture = [&](const ColorPlanes& brightness) {
-        return select(halves, candidates, error_weights(halves, brightness), settings.sigma,
-                      settings.mix);
-    };
     // Twice, as candidates that spread highlights also lift the first guess of what is dark, which
-    // hides their errors there.
-    const ColorPlanes guess = mean_of(mixture(common_brightness(candidates)));
-    Selection s = mixture(guess);
+    // hides their errors there; and as the guess tells which pixels are alike.
+    const ColorPlanes guess =
+        mean_of(select(halves, candidates, error_weights(halves, common_brightness(candidates)),
+                       settings.sigma, settings.mix));
+    add_light_and_noise(halves, guess, likeness);
+    Selection s = select(halves, candidates, error_weights(halves, guess), likeness, settings.mix);
 
     HybridImage image;
     image.color = mean_of(s);

@@ -7,14 +7,16 @@
 #include "reconstruction/candidates.h"
 #include "reconstruction/error_estimate.h"
 #include "reconstruction/half_buffer.h"
+#include "reconstruction/likeness.h"
 
 namespace covtrace {
 
 struct HybridSettings {
     CandidateSettings candidates;
     ErrorFactors error;
-    float sigma = 4;  ///< of the neighbourhood over which candidates are judged, pixels
-    bool mix = true;  ///< false: the best single candidate, for comparisons
+    float sigma = 4;            ///< of the neighbourhood by which a first mixture is judged, pixels
+    LikenessSettings likeness;  ///< of the pixels by which the final one is
+    bool mix = true;            ///< false: the best single candidate, for comparisons
 };
 
 struct HybridImage {

@@ -47,6 +47,11 @@ inline Lanes exp_of_negative(const Lanes& x) {
     return sum * scale;
 }
 
+/// The sum of all eight.
+inline float total(const Lanes& s) {
+    return ((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7]));
+}
+
 /// result[i][j] = sum over k < n of a[i][k] b[j][k]; n a multiple of kLanes.
 template <size_t Rows, size_t Columns>
 inline void products(const float* const (&a)[Rows], const float* const (&b)[Columns], size_t n,
@@ -61,10 +66,7 @@ inline void products(const float* const (&a)[Rows], const float* const (&b)[Colu
         }
     }
     for (size_t i = 0; i < Rows; ++i)
-        for (size_t j = 0; j < Columns; ++j) {
-            const Lanes s = sum[i][j];
-            result[i][j] = ((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7]));
-        }
+        for (size_t j = 0; j < Columns; ++j) result[i][j] = total(sum[i][j]);
 }
 
 }  // namespace covtrace

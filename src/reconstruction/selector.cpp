@@ -10,8 +10,9 @@ namespace covtrace {
 
 namespace {
 
-constexpr size_t kMost = 12;  // candidates
-constexpr int kSteps = 24;    // of the minimisation; more change nothing
+constexpr size_t kMost = 12;        // candidates
+constexpr int kSteps = 24;          // of the minimisation; more change nothing
+constexpr float kSmoothing = 0.5f;  // of the shares, pixels
 
 /// Index of G_cd, c <= d, in the list of planes.
 size_t entry(size_t c, size_t d) {
@@ -47,18 +48,53 @@ void minimise(const float (&g)[kMost][kMost], size_t n, int steps, float (&w)[kM
     }
 }
 
-/// G_cd of every pixel.
-Plane products_of_errors(const Halves& halves, const Candidate& c, const Candidate& d,
-                         const ColorPlanes& g, float sigma) {
-    Plane sum(g[0].width, g[0].height);
+/// What pixel i adds to G_cd.
+float product_of_errors(const Halves& halves, const Candidate& c, const Candidate& d,
+                        const ColorPlanes& g, size_t i) {
+    float sum = 0;
     for (size_t k = 0; k < 3; ++k) {
-        const Plane &a = halves[0].color[k], &b = halves[1].color[k];
-        const Plane &ac = c[0][k], &bc = c[1][k], &ad = d[0][k], &bd = d[1][k];
-        for (size_t i = 0; i < sum.size(); ++i)
-            sum[i] += 0.5f * g[k][i] *
-                      ((ac[i] - b[i]) * (ad[i] - b[i]) + (bc[i] - a[i]) * (bd[i] - a[i]));
+        const float a = halves[0].color[k][i], b = halves[1].color[k][i];
+        sum += 0.5f * g[k][i] *
+               ((c[0][k][i] - b) * (d[0][k][i] - b) + (c[1][k][i] - a) * (d[1][k][i] - a));
     }
-    return gaussian_blur(sum, sigma);
+    return sum;
+}
+
+/// Calls `of_pair(c, d, entry)` for all pairs c <= d of candidates, on all threads.
+template <typename OfPair>
+void for_pairs(size_t n, const OfPair& of_pair) {
+    parallel_for(int64_t(n * n), [&](int64_t pair) {
+        const size_t c = size_t(pair) % n, d = size_t(pair) / n;
+        if (c <= d) of_pair(c, d, entry(c, d));
+    });
+}
+
+/// Shares from G, which `gram(x, y, entries)` tells of every pixel.
+template <typename Gram>
+Selection mixed(std::span<const Candidate> candidates, int w, int h, bool mix, const Gram& gram) {
+    const size_t n = candidates.size();
+    Selection s;
+    s.share.assign(n, Plane(w, h));
+    parallel_for(h, [&](int64_t row) {
+        for (int x = 0; x < w; ++x) {
+            float entries[kMost * (kMost + 1) / 2], errors[kMost][kMost], share[kMost];
+            gram(x, int(row), entries);
+            for (size_t d = 0; d < n; ++d)
+                for (size_t c = 0; c <= d; ++c) errors[c][d] = errors[d][c] = entries[entry(c, d)];
+            minimise(errors, n, mix ? kSteps : 0, share);
+            for (size_t c = 0; c < n; ++c) s.share[c](x, int(row)) = share[c];
+        }
+    });
+    // Shares that jump from pixel to pixel would show as noise.
+    for (Plane& p : s.share) p = gaussian_blur(p, kSmoothing);
+    for (size_t k = 0; k < 2; ++k) {
+        s.half[k].fill(Plane(w, h));
+        for (size_t c = 0; c < n; ++c)
+            for (size_t channel = 0; channel < 3; ++channel)
+                for (size_t i = 0; i < s.share[c].size(); ++i)
+                    s.half[k][channel][i] += s.share[c][i] * candidates[c][k][channel][i];
+    }
+    return s;
 }
 
 }  // namespace
@@ -78,33 +114,33 @@ Selection select(const Halves& halves, std::span<const Candidate> candidates, co
     const int w = g[0].width, h = g[0].height;
     const size_t n = candidates.size();
     std::vector<Plane> gram(n * (n + 1) / 2);
-    parallel_for(int64_t(n * n), [&](int64_t pair) {
-        const size_t c = size_t(pair) % n, d = size_t(pair) / n;
-        if (c <= d)
-            gram[entry(c, d)] = products_of_errors(halves, candidates[c], candidates[d], g, sigma);
+    for_pairs(n, [&](size_t c, size_t d, size_t e) {
+        Plane local(w, h);
+        for (size_t i = 0; i < local.size(); ++i)
+            local[i] = product_of_errors(halves, candidates[c], candidates[d], g, i);
+        gram[e] = gaussian_blur(local, sigma);
     });
+    return mixed(candidates, w, h, mix, [&](int x, int y, float* entries) {
+        for (const Plane& plane : gram) *entries++ = plane(x, y);
+    });
+}
 
-    Selection s;
-    s.share.assign(n, Plane(w, h));
-    parallel_for(h, [&](int64_t row) {
-        for (size_t i = size_t(row) * size_t(w), end = i + size_t(w); i < end; ++i) {
-            float errors[kMost][kMost], share[kMost];
-            for (size_t d = 0; d < n; ++d)
-                for (size_t c = 0; c <= d; ++c) errors[c][d] = errors[d][c] = gram[entry(c, d)][i];
-            minimise(errors, n, mix ? kSteps : 0, share);
-            for (size_t c = 0; c < n; ++c) s.share[c][i] = share[c];
-        }
+Selection select(const Halves& halves, std::span<const Candidate> candidates, const ColorPlanes& g,
+                 const Likeness& likeness, bool mix) {
+    const int w = g[0].width, h = g[0].height;
+    const size_t n = candidates.size();
+    std::vector<MarginPlane> gram(n * (n + 1) / 2, MarginPlane(w, h));
+    for_pairs(n, [&](size_t c, size_t d, size_t e) {
+        for (int y = 0; y < h; ++y)
+            for (int x = 0; x < w; ++x)
+                gram[e](x, y) = product_of_errors(halves, candidates[c], candidates[d], g,
+                                                  size_t(y) * size_t(w) + size_t(x));
     });
-    // Weights that jump from pixel to pixel would show as noise.
-    for (Plane& p : s.share) p = gaussian_blur(p, 1);
-    for (size_t k = 0; k < 2; ++k) {
-        s.half[k].fill(Plane(w, h));
-        for (size_t c = 0; c < n; ++c)
-            for (size_t channel = 0; channel < 3; ++channel)
-                for (size_t i = 0; i < s.share[c].size(); ++i)
-                    s.half[k][channel][i] += s.share[c][i] * candidates[c][k][channel][i];
-    }
-    return s;
+    return mixed(candidates, w, h, mix, [&](int x, int y, float* entries) {
+        Likeness::Window weights;
+        likeness.weigh(x, y, weights);
+        weighted_sums(gram, weights, x, y, entries);
+    });
 }
 
 }  // namespace covtrace

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "reconstruction/candidates.h"
+#include "reconstruction/likeness.h"
 
 namespace covtrace {
 
@@ -33,5 +34,10 @@ struct Selection {
 /// taken where nothing judges. Without `mix`: the best single one.
 Selection select(const Halves& halves, std::span<const Candidate> candidates, const ColorPlanes& g,
                  float sigma, bool mix = true);
+
+/// The same over the pixels around that are alike: what is out of focus, dark or clean is not
+/// judged by what is sharp, bright or noisy beside it.
+Selection select(const Halves& halves, std::span<const Candidate> candidates, const ColorPlanes& g,
+                 const Likeness& likeness, bool mix = true);
 
 }  // namespace covtrace

@@ -1,0 +1,50 @@
+#include "reconstruction/guides.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/vec.h"
+#include "reconstruction/outliers.h"
+#include "reconstruction/selector.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Samples' own noise should not tell pixels apart.
+constexpr float kSmoothing = 1;
+/// What counts as a difference; half or twice as much changes the error by less than 1 %.
+constexpr float kAlbedo = 0.3f, kNormal = 0.5f, kLogDepth = 0.3f, kLogLight = 0.35f,
+                kLogNoise = 0.35f;
+/// Light and squared relative noise below which nothing is told apart.
+constexpr float kDark = 0.03f, kClean = 1e-5f;
+
+}  // namespace
+
+void add_features(const Halves& halves, Likeness& likeness) {
+    constexpr std::array<float, kFeatures> kUnit{kAlbedo, kAlbedo, kAlbedo,  kNormal,
+                                                 kNormal, kNormal, kLogDepth};
+    for (size_t f = 0; f < kFeatures; ++f) {
+        Plane mean = halves[0].feature[f];
+        for (size_t i = 0; i < mean.size(); ++i)
+            mean[i] = 0.5f * (mean[i] + halves[1].feature[f][i]) / kUnit[f];
+        likeness.add(gaussian_blur(mean, kSmoothing));
+    }
+}
+
+void add_light_and_noise(const Halves& halves, const ColorPlanes& guess, Likeness& likeness) {
+    const Plane light = luminance(guess);
+    Plane noise(light.width, light.height);
+    for (const HalfBuffer& half : halves)
+        for (const Plane& variance : half.color_variance)
+            for (size_t i = 0; i < noise.size(); ++i) noise[i] += variance[i];
+    noise = gaussian_blur(noise, kSmoothing);
+    for (size_t i = 0; i < noise.size(); ++i)
+        noise[i] = 0.5f * std::log(noise[i] / (sqr(light[i]) + kDarkSquared) + kClean) / kLogNoise;
+    likeness.add(noise);
+    Plane logarithm = gaussian_blur(light, kSmoothing);
+    for (float& v : logarithm.values) v = std::log(std::max(0.0f, v) + kDark) / kLogLight;
+    likeness.add(logarithm);
+}
+
+}  // namespace covtrace

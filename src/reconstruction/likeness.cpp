@@ -1,0 +1,54 @@
+#include "reconstruction/likeness.h"
+
+#include <cmath>
+
+#include "core/vec.h"
+
+namespace covtrace {
+
+static_assert(Likeness::kColumns > 2 * Likeness::kReach &&
+              MarginPlane::kMargin >= Likeness::kReach);
+
+MarginPlane::MarginPlane(const Plane& plane) : MarginPlane(plane.width, plane.height) {
+    for (int y = 0; y < plane.height; ++y)
+        for (int x = 0; x < plane.width; ++x) (*this)(x, y) = plane(x, y);
+}
+
+Likeness::Likeness(const LikenessSettings& settings) : any_(settings.any) {
+    for (int dy = -kReach; dy <= kReach; ++dy)
+        for (int dx = -kReach; dx <= kReach; ++dx)
+            gaussian_[size_t(dy + kReach) * kColumns + size_t(dx + kReach)] =
+                std::exp(-0.5f * (sqr(float(dx)) + sqr(float(dy))) / sqr(settings.sigma));
+}
+
+void Likeness::weigh(int x, int y, Window& weights) const {
+    for (size_t row = 0; row < kRows; ++row)
+        for (size_t column = 0; column < kColumns; column += kLanes) {
+            Lanes squared{};
+            for (const MarginPlane& guide : guides_) {
+                const Lanes difference =
+                    load(guide.at(x - kReach + int(column), y - kReach + int(row))) -
+                    *guide.at(x, y);
+                squared += difference * difference;
+            }
+            const size_t i = row * kColumns + column;
+            store(load(&gaussian_[i]) * (any_ + (1 - any_) * exp_of_negative(-0.5f * squared)),
+                  &weights[i]);
+        }
+}
+
+void weighted_sums(std::span<const MarginPlane> planes, const Likeness::Window& weights, int x,
+                   int y, float* sums) {
+    constexpr int kReach = Likeness::kReach;
+    for (const MarginPlane& plane : planes) {
+        Lanes sum{};
+        for (size_t row = 0; row < Likeness::kRows; ++row) {
+            const float* from = plane.at(x - kReach, y - kReach + int(row));
+            for (size_t column = 0; column < Likeness::kColumns; column += kLanes)
+                sum += load(&weights[row * Likeness::kColumns + column]) * load(from + column);
+        }
+        *sums++ = total(sum);
+    }
+}
+
+}  // namespace covtrace

@@ -1,0 +1,65 @@
+/// How alike pixels are to those around them: sums over what should be reconstructed in one way.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/plane.h"
+#include "reconstruction/lanes.h"
+
+namespace covtrace {
+
+/// A plane with a margin of zeros, so that windows around its pixels never leave it.
+class MarginPlane {
+  public:
+    static constexpr int kMargin = 12;
+    MarginPlane(int width, int height)
+        : stride_(size_t(width) + 2 * kMargin + kLanes),
+          values_(stride_ * (size_t(height) + 2 * kMargin)) {}
+    explicit MarginPlane(const Plane& plane);
+
+    /// Pixels up to kMargin outside the image may be read.
+    const float* at(int x, int y) const { return values_.data() + index(x, y); }
+    float& operator()(int x, int y) { return values_[index(x, y)]; }
+
+  private:
+    size_t index(int x, int y) const { return size_t(y + kMargin) * stride_ + size_t(x + kMargin); }
+    size_t stride_;
+    std::vector<float> values_;
+};
+
+/// Both from the sweep in docs/decisions/0061-judged-by-pixels-that-are-alike.md.
+struct LikenessSettings {
+    float sigma = 6;    ///< of the Gaussian G, pixels
+    float any = 0.05f;  ///< the share that everything around has, alike or not
+};
+
+/// Weights of the pixels q around p, up to kReach pixels away in x and in y:
+///     w(p, q) = G(q - p) (any + (1 - any) exp(-1/2 sum_k (guide_k(p) - guide_k(q))^2))
+class Likeness {
+  public:
+    static constexpr int kReach = 11;
+    static constexpr size_t kRows = 2 * kReach + 1, kColumns = 3 * kLanes;
+    /// Row by row from the upper left; what is right of the window has no weight.
+    using Window = std::array<float, kRows * kColumns>;
+
+    explicit Likeness(const LikenessSettings& settings);
+
+    /// `guide`: in units in which pixels that differ by 1 are not alike.
+    void add(const Plane& guide) { guides_.emplace_back(guide); }
+
+    void weigh(int x, int y, Window& weights) const;
+
+  private:
+    std::vector<MarginPlane> guides_;
+    Window gaussian_{};
+    float any_;
+};
+
+/// Of every plane the sum of its values times the weights around a pixel; nothing is beyond the
+/// image.
+void weighted_sums(std::span<const MarginPlane> planes, const Likeness::Window& weights, int x,
+                   int y, float* sums);
+
+}  // namespace covtrace
