@@ -2,6 +2,8 @@
 // with a lobe (a product of spectra), and linear maps of the slopes.
 #pragma once
 
+#include <algorithm>
+
 #include "covariance/light_field.hpp"
 #include "covariance/matrix5.hpp"
 
@@ -25,35 +27,118 @@ template <std::floating_point T>
     return {add_angular_window(field.sigma, window), field.frame};
 }
 
+namespace detail {
+
+/// AngularPivots of the axes P and Q (u and v in either order) by B, an angular block whose larger
+/// diagonal entry is that of P: B = L diag(d1, d2) L^T with L = [1 0; l 1]. Unlike an explicit
+/// inverse it keeps its accuracy where B is nearly singular. A second pivot that is only rounding
+/// noise is left out, which gives a generalised inverse.
+template <std::size_t P, std::size_t Q, std::floating_point T>
+struct AngularPivots {
+    T inv1, l, inv2;
+
+    /// Pre: B(P, P) > 0.
+    explicit constexpr AngularPivots(const Sym2<T>& b) noexcept {
+        const T bq = along<Q>(b);
+        inv1 = 1 / along<P>(b);
+        l = b.xy * inv1;
+        const T d2 = multiply_add(-l, b.xy, bq);
+        inv2 = d2 <= noise_level<T> * bq ? T(0) : 1 / d2;
+    }
+    /// The diagonal entry of axis I.
+    template <std::size_t I>
+    [[nodiscard]] static constexpr T along(const Sym2<T>& b) noexcept {
+        return I == axis::u ? b.xx : b.yy;
+    }
+
+    /// A row of R: L^-1 r, and that over the pivots.
+    struct Row {
+        T r1, r2, over1, over2;
+    };
+    [[nodiscard]] constexpr Row row(T rp, T rq) const noexcept {
+        const T r2 = multiply_add(-l, rp, rq);
+        return {rp, r2, rp * inv1, r2 * inv2};
+    }
+    [[nodiscard]] constexpr Row row(const SymmetricMatrix5<T>& s, std::size_t i) const noexcept {
+        return row(s(i, P), s(i, Q));
+    }
+
+    /// a - r B^-1 s^T.
+    [[nodiscard]] static constexpr T rest(T a, const Row& r, const Row& s) noexcept {
+        return multiply_add(-r.over1, s.r1, multiply_add(-r.over2, s.r2, a));
+    }
+    /// The position and time block of `s` less R^T B^-1 R, written to `to`.
+    static constexpr void eliminate(SymmetricMatrix5<T>& to, const SymmetricMatrix5<T>& s,
+                                    const Row& x, const Row& y, const Row& t) noexcept {
+        to(0, 0) = rest(s(0, 0), x, x);
+        to(0, 1) = rest(s(0, 1), x, y);
+        to(0, 4) = rest(s(0, 4), x, t);
+        to(1, 1) = rest(s(1, 1), y, y);
+        to(1, 4) = rest(s(1, 4), y, t);
+        to(4, 4) = rest(s(4, 4), t, t);
+    }
+
+    [[nodiscard]] constexpr SymmetricMatrix5<T> slice(const SymmetricMatrix5<T>& s) const noexcept {
+        SymmetricMatrix5<T> r;
+        eliminate(r, s, row(s, 0), row(s, 1), row(s, 4));
+        constexpr T noise = 16 * std::numeric_limits<T>::epsilon();
+        if (r(0, 0) <= noise * s(0, 0)) r(0, 0) = r(0, 1) = r(0, 4) = 0;
+        if (r(1, 1) <= noise * s(1, 1)) r(0, 1) = r(1, 1) = r(1, 4) = 0;
+        if (r(4, 4) <= noise * s(4, 4)) r(0, 4) = r(1, 4) = r(4, 4) = 0;
+        return r;
+    }
+
+    [[nodiscard]] constexpr SymmetricMatrix5<T> convolve(const SymmetricMatrix5<T>& s,
+                                                         const Sym2<T>& kernel) const noexcept {
+        // Rows u and v are R^T B^-1 C, a form in which nothing cancels.
+        const T kp = along<P>(kernel), kq = along<Q>(kernel);
+        const auto gain_p = [&](const Row& r) { return multiply_add(-l, r.over2, r.over1); };
+        const auto at_p = [&](const Row& r) {
+            return sum_of_products(gain_p(r), kp, r.over2, kernel.xy);
+        };
+        const auto at_q = [&](const Row& r) {
+            return sum_of_products(gain_p(r), kernel.xy, r.over2, kq);
+        };
+        SymmetricMatrix5<T> c;
+        const Row x = row(s, 0), y = row(s, 1), t = row(s, 4);
+        eliminate(c, s, x, y, t);
+        c(0, P) = at_p(x), c(0, Q) = at_q(x);
+        c(1, P) = at_p(y), c(1, Q) = at_q(y);
+        c(4, P) = at_p(t), c(4, Q) = at_q(t);
+        const Row own_p = row(s, P), own_q = row(s, Q);
+        c(P, P) = at_p(own_p);
+        c(Q, Q) = at_q(own_q);
+        c(P, Q) = (at_q(own_p) + at_p(own_q)) / 2;
+
+        constexpr T noise = 16 * std::numeric_limits<T>::epsilon();
+        for (const std::size_t i : {axis::x, axis::y, axis::t})
+            if (c(i, i) <= noise * s(i, i))
+                for (std::size_t j = 0; j < 5; ++j) c(i, j) = 0;
+        return c;
+    }
+};
+
+}  // namespace detail
+
 /// Integrates over all directions, the angular slice Sigma' = Sigma - R^T R_uv^+ R with R = rows u,
-/// v: `convolve_angular` with a kernel that is constant. Rows u and v become exactly zero.
+/// v: `convolve_angular` with a kernel that is constant. Rows u and v become exactly
+/// zero. `b`: the angular block, with windows by which the light is to be multiplied first.
 ///
 /// Post     positive semi-definite; variances that are only rounding noise are set to zero.
 /// Errors   none; NaN in gives NaN out. Exact for Gaussians.
 template <std::floating_point T>
+[[nodiscard]] constexpr SymmetricMatrix5<T> slice_angular(const SymmetricMatrix5<T>& s,
+                                                          const Sym2<NonDeduced<T>>& b) noexcept {
+    // The larger pivot first.
+    if (std::max(b.xx, b.yy) <= 0) return s;  // no angular content: the rows are zero already
+    if (b.xx >= b.yy) return detail::AngularPivots<axis::u, axis::v, T>(b).slice(s);
+    return detail::AngularPivots<axis::v, axis::u, T>(b).slice(s);
+}
+
+/// The same of light as it is.
+template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> slice_angular(const SymmetricMatrix5<T>& s) noexcept {
-    // Elimination with the larger pivot p first, as in `convolve_angular`.
-    const Sym2<T> b = s.angular();
-    const bool u_first = b.xx >= b.yy;
-    const std::size_t p = u_first ? axis::u : axis::v, q = u_first ? axis::v : axis::u;
-    const T bp = u_first ? b.xx : b.yy, bq = u_first ? b.yy : b.xx;
-    if (bp <= 0) return s;  // no angular content: the rows are zero already
-    const T inv1 = 1 / bp, l = b.xy * inv1, d2 = bq - l * b.xy;
-    const T inv2 = d2 <= noise_level<T> * bq ? T(0) : 1 / d2;
-    const T x1 = s(0, p), y1 = s(1, p), t1 = s(p, 4);
-    const T x2 = s(0, q) - l * x1, y2 = s(1, q) - l * y1, t2 = s(q, 4) - l * t1;
-    SymmetricMatrix5<T> r;
-    r(0, 0) = s(0, 0) - x1 * x1 * inv1 - x2 * x2 * inv2;
-    r(0, 1) = s(0, 1) - x1 * y1 * inv1 - x2 * y2 * inv2;
-    r(0, 4) = s(0, 4) - x1 * t1 * inv1 - x2 * t2 * inv2;
-    r(1, 1) = s(1, 1) - y1 * y1 * inv1 - y2 * y2 * inv2;
-    r(1, 4) = s(1, 4) - y1 * t1 * inv1 - y2 * t2 * inv2;
-    r(4, 4) = s(4, 4) - t1 * t1 * inv1 - t2 * t2 * inv2;
-    constexpr T noise = 16 * std::numeric_limits<T>::epsilon();
-    if (r(0, 0) <= noise * s(0, 0)) r(0, 0) = r(0, 1) = r(0, 4) = 0;
-    if (r(1, 1) <= noise * s(1, 1)) r(0, 1) = r(1, 1) = r(1, 4) = 0;
-    if (r(4, 4) <= noise * s(4, 4)) r(0, 4) = r(1, 4) = r(4, 4) = 0;
-    return r;
+    return slice_angular(s, s.angular());
 }
 
 /// Convolves the light with an angular kernel whose spectrum has the covariance C.
@@ -69,57 +154,12 @@ template <std::floating_point T>
 /// Errors   none; NaN in gives NaN out. Exact for Gaussians.
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> convolve_angular(
-    SymmetricMatrix5<T> s, const Sym2<NonDeduced<T>>& kernel) noexcept {
+    const SymmetricMatrix5<T>& s, const Sym2<NonDeduced<T>>& kernel) noexcept {
     if (kernel == Sym2<T>{}) return slice_angular(s);
-    const Sym2<T> own = s.angular(), b = kernel + own;
-
-    // Elimination with the larger pivot p first: B = L diag(d1, d2) L^T with L = [1 0; l 1]. Unlike
-    // an explicit inverse it keeps its accuracy where B is nearly singular. A second pivot that is
-    // only rounding noise is left out, which gives a generalised inverse.
-    const bool u_first = b.xx >= b.yy;
-    const std::size_t p = u_first ? axis::u : axis::v, q = u_first ? axis::v : axis::u;
-    const T bp = u_first ? b.xx : b.yy, bq = u_first ? b.yy : b.xx;
-    if (bp <= 0) return s;  // neither light nor kernel has angular content
-    const T inv1 = 1 / bp, l = b.xy * inv1, d2 = bq - l * b.xy;
-    const T inv2 = d2 <= noise_level<T> * bq ? T(0) : 1 / d2;
-    const T xx = s(0, 0), yy = s(1, 1), tt = s(4, 4);
-    const T x1 = s(0, p), y1 = s(1, p), t1 = s(p, 4);
-    const T x2 = s(0, q) - l * x1, y2 = s(1, q) - l * y1, t2 = s(q, 4) - l * t1;
-    s(0, 0) -= x1 * x1 * inv1 + x2 * x2 * inv2;
-    s(0, 1) -= x1 * y1 * inv1 + x2 * y2 * inv2;
-    s(0, 4) -= x1 * t1 * inv1 + x2 * t2 * inv2;
-    s(1, 1) -= y1 * y1 * inv1 + y2 * y2 * inv2;
-    s(1, 4) -= y1 * t1 * inv1 + y2 * t2 * inv2;
-    s(4, 4) -= t1 * t1 * inv1 + t2 * t2 * inv2;
-
-    // Rows u and v are R^T B^-1 C, a form in which nothing cancels.
-    const T kp = u_first ? kernel.xx : kernel.yy, kq = u_first ? kernel.yy : kernel.xx;
-    struct Row {
-        T p, q;
-    };
-    const auto row = [&](T r1, T r2) -> Row {
-        const T gain_q = r2 * inv2, gain_p = r1 * inv1 - l * gain_q;
-        return {gain_p * kp + gain_q * kernel.xy, gain_p * kernel.xy + gain_q * kq};
-    };
-    const Row x = row(x1, x2), y = row(y1, y2), t = row(t1, t2);
-    s(0, p) = x.p, s(0, q) = x.q;
-    s(1, p) = y.p, s(1, q) = y.q;
-    s(p, 4) = t.p, s(q, 4) = t.q;
-    const T own_p = u_first ? own.xx : own.yy, own_q = u_first ? own.yy : own.xx;
-    const Row along_p = row(own_p, own.xy - l * own_p), along_q = row(own.xy, own_q - l * own.xy);
-    s(p, p) = along_p.p;
-    s(q, q) = along_q.q;
-    s(p, q) = (along_p.q + along_q.p) / 2;
-
-    constexpr T noise = 16 * std::numeric_limits<T>::epsilon();
-    const auto remove_noise = [&s](std::size_t i, T before) {
-        if (s(i, i) <= noise * before)
-            for (std::size_t j = 0; j < 5; ++j) s(i, j) = 0;
-    };
-    remove_noise(axis::x, xx);
-    remove_noise(axis::y, yy);
-    remove_noise(axis::t, tt);
-    return s;
+    const Sym2<T> b = kernel + s.angular();
+    if (std::max(b.xx, b.yy) <= 0) return s;  // neither light nor kernel has angular content
+    if (b.xx >= b.yy) return detail::AngularPivots<axis::u, axis::v, T>(b).convolve(s, kernel);
+    return detail::AngularPivots<axis::v, axis::u, T>(b).convolve(s, kernel);
 }
 
 /// The same on a light field, whose frame stays.
@@ -137,13 +177,14 @@ template <std::floating_point T>
 
 /// Applies a linear map of the slopes, (u, v)_old = M (u, v): Suu' = M^T Suu M, Sxu' = Sxu M.
 template <std::floating_point T>
-[[nodiscard]] constexpr SymmetricMatrix5<T> map_angular(SymmetricMatrix5<T> s,
+[[nodiscard]] constexpr SymmetricMatrix5<T> map_angular(const SymmetricMatrix5<T>& old,
                                                         const Mat2<NonDeduced<T>>& m) noexcept {
+    SymmetricMatrix5<T> s = old;
     s.set_cross(s.cross() * m);
     s.set_angular(congruence(s.angular(), m));
     const T ut = s(2, 4), vt = s(3, 4);
-    s(2, 4) = m.m00 * ut + m.m10 * vt;
-    s(3, 4) = m.m01 * ut + m.m11 * vt;
+    s(2, 4) = sum_of_products(m.m00, ut, m.m10, vt);
+    s(3, 4) = sum_of_products(m.m01, ut, m.m11, vt);
     return s;
 }
 

@@ -90,17 +90,24 @@ inline constexpr T min_window_cosine = T(0.05);
 /// incoming one; to be added between `surface_enter` and the slice, not elsewhere: it
 ///          does not commute with curvature.
 /// Errors   none; cosines below 0.05 count as 0.05.
+/// `n`: the normal along X, Y, Z of that frame.
 template <std::floating_point T>
-[[nodiscard]] Sym2<T> cosine_window(const Frame<T>& incoming,
-                                    const Vec3<NonDeduced<T>>& n) noexcept {
-    const T c = std::max(std::abs(dot(incoming.z, n)), min_window_cosine<T>);
+[[nodiscard]] Sym2<T> cosine_window(const Vec3<T>& n) noexcept {
+    const T c = std::max(std::abs(n.z), min_window_cosine<T>);
     // The tangential part of Z has the transverse coordinates -(Z.n)(n.X, n.Y).
-    const T nx = dot(incoming.x, n), ny = dot(incoming.y, n);
+    const T nx = n.x, ny = n.y;
     const T size_sq = nx * nx + ny * ny;
     const T across = 1 / (pi<T> * pi<T>);
     if (!(size_sq > noise_level<T>)) return Sym2<T>::diagonal(across, across);
     const T excess = across * (1 / (c * c) - 1) / size_sq;
     return {across + excess * nx * nx, excess * nx * ny, across + excess * ny * ny};
+}
+
+/// The same from the normal in the scene.
+template <std::floating_point T>
+[[nodiscard]] Sym2<T> cosine_window(const Frame<T>& incoming,
+                                    const Vec3<NonDeduced<T>>& n) noexcept {
+    return cosine_window<T>({dot(incoming.x, n), dot(incoming.y, n), dot(incoming.z, n)});
 }
 
 }  // namespace covariance

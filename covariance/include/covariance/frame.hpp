@@ -36,7 +36,8 @@ template <std::floating_point T = double>
 template <std::floating_point T>
 [[nodiscard]] constexpr Frame<T> mirrored(const Frame<T>& f,
                                           const Vec3<NonDeduced<T>>& h) noexcept {
-    return {f.x - 2 * dot(f.x, h) * h, f.y - 2 * dot(f.y, h) * h, f.z - 2 * dot(f.z, h) * h};
+    return {add_scaled(f.x, -2 * dot(f.x, h), h), add_scaled(f.y, -2 * dot(f.y, h), h),
+            add_scaled(f.z, -2 * dot(f.z, h), h)};
 }
 
 /// The frame turned by the smallest rotation that brings its Z to the unit vector `z`.

@@ -126,10 +126,14 @@ constexpr void set_lens(SymmetricMatrix5<T>& r, const SymmetricMatrix5<T>& s, T 
     if (radius == 0) return;
     const Sym2<T> xx = s.spatial(), uu = s.angular();
     const Mat2<T> xu = s.cross();
-    r.set_angular((radius * radius) *
-                  (xx + k * Sym2<T>{2 * xu.m00, xu.m01 + xu.m10, 2 * xu.m11} + (k * k) * uu));
-    r(2, 4) = radius * shutter * (s(0, 4) + k * s(2, 4));
-    r(3, 4) = radius * shutter * (s(1, 4) + k * s(3, 4));
+    const auto moved = [k](T a, T twice, T b) {
+        return multiply_add(k, multiply_add(k, b, twice), a);
+    };
+    r.set_angular((radius * radius) * Sym2<T>{moved(xx.xx, 2 * xu.m00, uu.xx),
+                                              moved(xx.xy, xu.m01 + xu.m10, uu.xy),
+                                              moved(xx.yy, 2 * xu.m11, uu.yy)});
+    r(2, 4) = radius * shutter * multiply_add(k, s(2, 4), s(0, 4));
+    r(3, 4) = radius * shutter * multiply_add(k, s(3, 4), s(1, 4));
 }
 
 }  // namespace detail

@@ -17,14 +17,15 @@ template <std::floating_point T>
 /// Applies the same 2x2 map Q (old from new) to positions and slopes: blockdiag(Q, Q, 1).
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> change_transverse(
-    SymmetricMatrix5<T> s, const Mat2<NonDeduced<T>>& q) noexcept {
+    const SymmetricMatrix5<T>& old, const Mat2<NonDeduced<T>>& q) noexcept {
+    SymmetricMatrix5<T> s = old;
     s.set_spatial(congruence(s.spatial(), q));
     s.set_angular(congruence(s.angular(), q));
     s.set_cross(transpose(q) * s.cross() * q);
     for (const std::size_t i : {axis::x, axis::u}) {
         const T a = s(i, 4), b = s(i + 1, 4);
-        s(i, 4) = q.m00 * a + q.m10 * b;
-        s(i + 1, 4) = q.m01 * a + q.m11 * b;
+        s(i, 4) = sum_of_products(q.m00, a, q.m10, b);
+        s(i + 1, 4) = sum_of_products(q.m01, a, q.m11, b);
     }
     return s;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <limits>
 #include <numbers>
@@ -27,5 +28,23 @@ using NonDeduced = std::type_identity_t<T>;
 /// 1e-13 in double, 16 machine epsilons in float.
 template <std::floating_point T>
 inline constexpr T noise_level = std::max(T(1e-13), 16 * std::numeric_limits<T>::epsilon());
+
+/// a b + c, rounded once where the processor does both in one instruction, which is also half of
+/// the work. Which of the two is decided when the code is compiled, so that the same program always
+/// gives the same bits, inlined or not.
+template <std::floating_point T>
+[[nodiscard]] constexpr T multiply_add(T a, NonDeduced<T> b, NonDeduced<T> c) noexcept {
+#ifdef __FMA__
+    if (!std::is_constant_evaluated()) return std::fma(a, b, c);
+#endif
+    return a * b + c;
+}
+
+/// a b + c d.
+template <std::floating_point T>
+[[nodiscard]] constexpr T sum_of_products(T a, NonDeduced<T> b, NonDeduced<T> c,
+                                          NonDeduced<T> d) noexcept {
+    return multiply_add(a, b, c * d);
+}
 
 }  // namespace covariance

@@ -50,6 +50,11 @@ template <std::floating_point T>
 /// (4 pi^2 S)^-1, with no eigenvalue above `cap`: the spectrum of a Gaussian of covariance S.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> spectrum_of_moments(const Sym2<T>& moments, NonDeduced<T> cap) noexcept {
+    const T least = 1 / (four_pi_sq<T> * cap);
+    const Sym2<T> rest = moments - Sym2<T>::diagonal(least, least);
+    // Beyond rounding of the determinants.
+    const T size = rest.xx * rest.yy;
+    if (rest.xx > 0 && det(rest) > T(1e-3) * size) return inverse(four_pi_sq<T> * moments);
     return map_eigenvalues(
         moments, [=](T l) { return l * four_pi_sq<T> * cap > 1 ? 1 / (l * four_pi_sq<T>) : cap; });
 }

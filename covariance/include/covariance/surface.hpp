@@ -110,35 +110,40 @@ template <std::floating_point T>
     return Matrix5<T>::identity().set_block(0, 0, p).set_block(2, 0, g);
 }
 
+/// Applies x_old = P x: what entering and leaving a flat surface share.
+template <std::floating_point T>
+[[nodiscard]] constexpr SymmetricMatrix5<T> change_positions(
+    const SymmetricMatrix5<T>& old, const Mat2<NonDeduced<T>>& p) noexcept {
+    SymmetricMatrix5<T> s = old;
+    s.set_spatial(congruence(s.spatial(), p));
+    s.set_cross(transpose(p) * s.cross());
+    const T xt = s(0, 4), yt = s(1, 4);
+    s(0, 4) = sum_of_products(p.m00, xt, p.m10, yt);
+    s(1, 4) = sum_of_products(p.m01, xt, p.m11, yt);
+    return s;
+}
+
 /// Applies x_old = P x, u_old = u + G x: the shape that entering and leaving a surface share.
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> change_positions(
-    SymmetricMatrix5<T> s, const Mat2<NonDeduced<T>>& p, const Mat2<NonDeduced<T>>& g) noexcept {
+    const SymmetricMatrix5<T>& old, const Mat2<NonDeduced<T>>& p,
+    const Mat2<NonDeduced<T>>& g) noexcept {
+    SymmetricMatrix5<T> s = change_positions(old, p);
     const Sym2<T> angular = s.angular();
-    if (angular.xx == 0 && angular.yy == 0) {  // after a slice, at a source: no slopes to follow
-        s.set_spatial(congruence(s.spatial(), p));
-        const T xt = s(0, 4), yt = s(1, 4);
-        s(0, 4) = p.m00 * xt + p.m10 * yt;
-        s(1, 4) = p.m01 * xt + p.m11 * yt;
-        return s;
-    }
-    const Mat2<T> xu = s.cross();
-    if (g == Mat2<T>{}) {
-        s.set_spatial(congruence(s.spatial(), p));
-        s.set_cross(transpose(p) * xu);
-        const T xt = s(0, 4), yt = s(1, 4);
-        s(0, 4) = p.m00 * xt + p.m10 * yt;
-        s(1, 4) = p.m01 * xt + p.m11 * yt;
-        return s;
-    }
-    // Xu' = P^T Xu + G^T Uu;   Xx' = P^T Xx P + P^T Xu G + G^T Xu^T P + G^T Uu G
-    const Mat2<T> mixed = transpose(p) * xu * g;
-    const Sym2<T> both{2 * mixed.m00, mixed.m01 + mixed.m10, 2 * mixed.m11};
-    s.set_spatial(congruence(s.spatial(), p) + both + congruence(s.angular(), g));
-    s.set_cross(transpose(p) * xu + transpose(g) * Mat2<T>(s.angular()));
-    const T xt = s(0, 4), yt = s(1, 4), ut = s(2, 4), vt = s(3, 4);
-    s(0, 4) = p.m00 * xt + p.m10 * yt + g.m00 * ut + g.m10 * vt;
-    s(1, 4) = p.m01 * xt + p.m11 * yt + g.m01 * ut + g.m11 * vt;
+    // Without slopes (after a slice, at a source) there is nothing to follow the curvature.
+    if ((angular.xx == 0 && angular.yy == 0) || g == Mat2<T>{}) return s;
+    // Xu' = P^T Xu + G^T Uu;   Xx' = P^T Xx P + (P^T Xu) G + G^T Xu'^T
+    const Mat2<T> projected = s.cross(), both = projected + transpose(g) * Mat2<T>(angular),
+                  sum = projected + both;
+    const Sym2<T> xx = s.spatial();
+    s.set_spatial({xx.xx + sum_of_products(sum.m00, g.m00, sum.m01, g.m10),
+                   xx.xy + sum_of_products(projected.m00, g.m01, projected.m01, g.m11) +
+                       sum_of_products(both.m10, g.m00, both.m11, g.m10),
+                   xx.yy + sum_of_products(sum.m10, g.m01, sum.m11, g.m11)});
+    s.set_cross(both);
+    const T ut = s(2, 4), vt = s(3, 4);
+    s(0, 4) += sum_of_products(g.m00, ut, g.m10, vt);
+    s(1, 4) += sum_of_products(g.m01, ut, g.m11, vt);
     return s;
 }
 
@@ -167,6 +172,8 @@ template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> surface_enter(
     const SymmetricMatrix5<T>& s, const Frame<NonDeduced<T>>& incoming,
     const Surface<NonDeduced<T>>& surface) noexcept {
+    if (surface.curvature == Sym2<T>{})
+        return change_positions(s, surface_projection(incoming, surface));
     return change_positions(s, surface_projection(incoming, surface),
                             surface_curvature(incoming, surface));
 }
@@ -187,6 +194,7 @@ template <std::floating_point T>
                                                const Frame<NonDeduced<T>>& outgoing,
                                                const Surface<NonDeduced<T>>& surface) noexcept {
     const Mat2<T> inv = inverse_projection(outgoing, surface);
+    if (surface.curvature == Sym2<T>{}) return change_positions(s, inv);
     return change_positions(s, inv, T(-1) * (surface_curvature(outgoing, surface) * inv));
 }
 

@@ -16,8 +16,10 @@ struct Mat2 {
     [[nodiscard]] static constexpr Mat2 identity() noexcept { return {1, 0, 0, 1}; }
 
     friend constexpr Mat2 operator*(const Mat2& a, const Mat2& b) noexcept {
-        return {a.m00 * b.m00 + a.m01 * b.m10, a.m00 * b.m01 + a.m01 * b.m11,
-                a.m10 * b.m00 + a.m11 * b.m10, a.m10 * b.m01 + a.m11 * b.m11};
+        return {sum_of_products(a.m00, b.m00, a.m01, b.m10),
+                sum_of_products(a.m00, b.m01, a.m01, b.m11),
+                sum_of_products(a.m10, b.m00, a.m11, b.m10),
+                sum_of_products(a.m10, b.m01, a.m11, b.m11)};
     }
     friend constexpr Mat2 operator+(const Mat2& a, const Mat2& b) noexcept {
         return {a.m00 + b.m00, a.m01 + b.m01, a.m10 + b.m10, a.m11 + b.m11};
@@ -84,8 +86,9 @@ template <std::floating_point T>
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> congruence(const Sym2<T>& s, const Mat2<T>& m) noexcept {
     const Mat2<T> sm = Mat2<T>(s) * m;
-    return {m.m00 * sm.m00 + m.m10 * sm.m10, m.m00 * sm.m01 + m.m10 * sm.m11,
-            m.m01 * sm.m01 + m.m11 * sm.m11};
+    return {sum_of_products(m.m00, sm.m00, m.m10, sm.m10),
+            sum_of_products(m.m00, sm.m01, m.m10, sm.m11),
+            sum_of_products(m.m01, sm.m01, m.m11, sm.m11)};
 }
 
 /// The inverse; infinite or NaN entries where the matrix is singular.

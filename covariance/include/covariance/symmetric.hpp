@@ -83,6 +83,14 @@ struct SymmetricMatrix5 {
                                      const SymmetricMatrix5&) noexcept = default;
 };
 
+/// Adds w s to `sum`.
+template <std::floating_point T>
+constexpr void add_scaled(SymmetricMatrix5<T>& sum, NonDeduced<T> w,
+                          const SymmetricMatrix5<NonDeduced<T>>& s) noexcept {
+    for (std::size_t i = 0; i < 15; ++i)
+        sum.values[i] = multiply_add(s.values[i], w, sum.values[i]);
+}
+
 /// The sum of the diagonal, whose entries differ in unit: a size for tolerances.
 template <std::floating_point T>
 [[nodiscard]] constexpr T trace(const SymmetricMatrix5<T>& s) noexcept {
@@ -92,7 +100,10 @@ template <std::floating_point T>
 /// Whether every entry is a finite number. Give a path whose matrix is not the weight 0.
 template <std::floating_point T>
 [[nodiscard]] bool is_finite(const SymmetricMatrix5<T>& s) noexcept {
-    return std::all_of(s.values.begin(), s.values.end(), [](T v) { return std::isfinite(v); });
+    // 0 times what is not finite is not a number.
+    bool finite = true;
+    for (const T v : s.values) finite &= v * 0 == 0;
+    return finite;
 }
 
 /// The same matrix in another precision, for example to keep floats in a pixel buffer.

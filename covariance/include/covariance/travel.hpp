@@ -25,18 +25,22 @@ template <std::floating_point T>
 /// Post     det unchanged, positive semi-definite where the input is.
 /// Errors   none; NaN in gives NaN out.
 template <std::floating_point T>
-[[nodiscard]] constexpr SymmetricMatrix5<T> travel(SymmetricMatrix5<T> s,
+[[nodiscard]] constexpr SymmetricMatrix5<T> travel(const SymmetricMatrix5<T>& old,
                                                    NonDeduced<T> distance) noexcept {
+    SymmetricMatrix5<T> s = old;
     const T d = distance;
-    s(2, 2) += d * (d * s(0, 0) - 2 * s(0, 2));
-    s(2, 3) += d * (d * s(0, 1) - s(0, 3) - s(1, 2));
-    s(3, 3) += d * (d * s(1, 1) - 2 * s(1, 3));
-    s(0, 2) -= d * s(0, 0);
-    s(0, 3) -= d * s(0, 1);
-    s(1, 2) -= d * s(0, 1);
-    s(1, 3) -= d * s(1, 1);
-    s(2, 4) -= d * s(0, 4);
-    s(3, 4) -= d * s(1, 4);
+    const auto subtract = [&](std::size_t i, std::size_t j, T a) {
+        s(i, j) = multiply_add(-d, a, s(i, j));
+    };
+    subtract(2, 2, multiply_add(-d, s(0, 0), 2 * s(0, 2)));
+    subtract(2, 3, multiply_add(-d, s(0, 1), s(0, 3) + s(1, 2)));
+    subtract(3, 3, multiply_add(-d, s(1, 1), 2 * s(1, 3)));
+    subtract(0, 2, s(0, 0));
+    subtract(0, 3, s(0, 1));
+    subtract(1, 2, s(0, 1));
+    subtract(1, 3, s(1, 1));
+    subtract(2, 4, s(0, 4));
+    subtract(3, 4, s(1, 4));
     return s;
 }
 

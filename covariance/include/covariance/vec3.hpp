@@ -45,7 +45,14 @@ struct Vec3 {
 /// The scalar product.
 template <std::floating_point T>
 [[nodiscard]] constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) noexcept {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
+    return multiply_add(a.x, b.x, multiply_add(a.y, b.y, a.z * b.z));
+}
+
+/// a + s b.
+template <std::floating_point T>
+[[nodiscard]] constexpr Vec3<T> add_scaled(const Vec3<T>& a, NonDeduced<T> s,
+                                           const Vec3<NonDeduced<T>>& b) noexcept {
+    return {multiply_add(b.x, s, a.x), multiply_add(b.y, s, a.y), multiply_add(b.z, s, a.z)};
 }
 
 /// The vector product, right-handed.
