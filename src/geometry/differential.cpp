@@ -1,4 +1,5 @@
 #include <cmath>
+#include <optional>
 
 #include "geometry/geometry_impl.h"
 
@@ -13,26 +14,30 @@ float finite(double v) {
 }  // namespace
 
 DifferentialGeometry Geometry::differential(const SurfaceHit& hit) const {
-    DifferentialGeometry out;
-    out.tangent = Frame::from_z_x(hit.ns, hit.dpdu);
-    const Vec3d t1(out.tangent.x), t2(out.tangent.y), ns(hit.ns);
+    return differential(hit, Frame::from_z_x(hit.ns, hit.dpdu));
+}
 
-    Affine map;
+DifferentialGeometry Geometry::differential(const SurfaceHit& hit, const Frame& tangent) const {
+    DifferentialGeometry out;
+    out.tangent = tangent;
+    const Vec3d t1(out.tangent.x), t2(out.tangent.y);
+
     const EmbreeInstance* instance = nullptr;
+    std::optional<Affine> map;
     Vec3d near(hit.position);
     if (hit.instance > 0) {
         instance = &impl_->instances[hit.instance - 1];
         map = impl_->world_from_local(*instance, hit.time);
-        near = map.inverse().point(near);
+        near = map->inverse().point(near);
     }
     SurfaceDerivatives d =
         surface_derivatives(impl_->local[hit.shape], hit.primitive, hit.barycentric, near);
     if (instance) {
-        d.dpda = map.vector(d.dpda);
-        d.dpdb = map.vector(d.dpdb);
-        d.n = map.normal(d.n);
-        d.dnda = map.normal(d.dnda);
-        d.dndb = map.normal(d.dndb);
+        d.dpda = map->vector(d.dpda);
+        d.dpdb = map->vector(d.dpdb);
+        d.n = map->normal(d.n);
+        d.dnda = map->normal(d.dnda);
+        d.dndb = map->normal(d.dndb);
     }
 
     // Displacements in the tangent plane, dq = P (da, db), and the change of the unit normal that
@@ -44,8 +49,8 @@ DifferentialGeometry Geometry::differential(const SurfaceHit& hit) const {
     const double i11 = p22 * inverse, i12 = -p12 * inverse;
     const double i21 = -p21 * inverse, i22 = p11 * inverse;
 
-    const auto is_zero = [](Vec3d v) { return v.x == 0 && v.y == 0 && v.z == 0; };
-    if (!is_zero(d.dnda) || !is_zero(d.dndb)) {
+    if (!d.is_flat) {
+        const Vec3d ns(out.tangent.z);
         const double scale = (dot(d.n, ns) < 0 ? -1 : 1) / length(d.n);
         const Vec3d na = d.dnda * scale, nb = d.dndb * scale;
         const double n11 = dot(na, t1), n21 = dot(na, t2), n12 = dot(nb, t1), n22 = dot(nb, t2);
@@ -65,7 +70,7 @@ DifferentialGeometry Geometry::differential(const SurfaceHit& hit) const {
         const Affine rate = instance->motion.rate(hit.time, impl_->clock);
         out.velocity = rate.point(near).to_float();
         // Half the curl of the velocity field x -> rate(map^-1(x)).
-        const Affine local = map.inverse();
+        const Affine local = map->inverse();
         Vec3d gradient[3];
         for (int i = 0; i < 3; ++i) gradient[i] = local.transposed(rate.row[i]);
         const Vec3d curl{gradient[2].y - gradient[1].z, gradient[0].z - gradient[2].x,

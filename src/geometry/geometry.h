@@ -54,6 +54,8 @@ class Geometry {
     static Vec3 offset_origin(const SurfaceHit& hit, Vec3 direction);
 
     DifferentialGeometry differential(const SurfaceHit& hit) const;
+    /// The same where the frame of hit.ns and hit.dpdu is known.
+    DifferentialGeometry differential(const SurfaceHit& hit, const Frame& tangent) const;
 
     const std::vector<PlacedShape>& shapes() const;
     /// Of a mesh's triangle (or of a patch: halves 2i and 2i+1), at `time`. Not for instanced

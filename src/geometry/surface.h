@@ -65,8 +65,10 @@ struct SurfacePoint {
 struct SurfaceDerivatives {
     Vec3d dpda, dpdb;
     Vec2 duvda, duvdb;
-    /// A normal field that need not be of unit length, and its derivatives.
+    /// A normal field that need not be of unit length, and its derivatives; left alone where the
+    /// normal is the same everywhere.
     Vec3d n, dnda, dndb;
+    bool is_flat = false;
 };
 
 /// `barycentric` as Embree gives it; quadrics use `near` instead, a local point close to the

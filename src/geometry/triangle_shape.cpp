@@ -84,7 +84,7 @@ SurfaceDerivatives triangle_derivatives(const TriangleShape& shape, uint32_t pri
     d.duvda = c.duv1;
     d.duvdb = c.duv2;
     if (shape.mesh->normals.empty()) {
-        d.n = cross(c.e1, c.e2);
+        d.is_flat = true;
         return d;
     }
     const auto& normals = shape.mesh->normals;

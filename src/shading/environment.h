@@ -41,6 +41,8 @@ class Environment {
     /// Measures the image, once; without it the light counts as uniform below.
     void prepare_spectrum();
     AngularCovariance spectrum(Vec3 w) const;
+    /// Whether the spectrum is anything but zero.
+    bool varies() const { return spectrum_.has_value(); }
 
   private:
     /// The linear part of a transform, in float: what directions need of it.

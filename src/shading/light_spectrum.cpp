@@ -88,17 +88,20 @@ SourceSpectrum EmitterSpectrum::at(Vec3 position, Vec3 normal, float time, bool 
     std::optional<Transform> moved;
     if (motion.is_animated()) moved = motion.at(time);
     const Transform& now = moved ? *moved : motion.start();
-    SourceSpectrum s;
-    s.kind = SourceSpectrum::Kind::area;
-    s.tangent = Frame::from_z(normal);
-    const auto x = transposed_vector(now, s.tangent.x), y = transposed_vector(now, s.tangent.y);
-    s.s11 = static_cast<float>(quadratic_form(moments_, x, x));
-    s.s12 = static_cast<float>(quadratic_form(moments_, x, y));
-    s.s22 = static_cast<float>(quadratic_form(moments_, y, y));
-    if (const auto* quadric = std::get_if<EmissiveQuadric>(emitter_))
-        s.k11 = s.k22 = quadric->curvature(time);
-    s.velocity = motion.velocity(position, time);
-    s.angular_velocity = motion.angular_velocity(time);
+    const Frame tangent = Frame::from_z(normal);
+    const auto x = transposed_vector(now, tangent.x), y = transposed_vector(now, tangent.y);
+    const auto* quadric = std::get_if<EmissiveQuadric>(emitter_);
+    const float curvature = quadric ? quadric->curvature(time) : 0;
+    SourceSpectrum s{
+        .kind = SourceSpectrum::Kind::area,
+        .tangent = tangent,
+        .s11 = static_cast<float>(quadratic_form(moments_, x, x)),
+        .s12 = static_cast<float>(quadratic_form(moments_, x, y)),
+        .s22 = static_cast<float>(quadratic_form(moments_, y, y)),
+        .k11 = curvature,
+        .k22 = curvature,
+        .velocity = motion.is_animated() ? motion.velocity(position, time) : Vec3{},
+        .angular_velocity = motion.is_animated() ? motion.angular_velocity(time) : Vec3{}};
     if (!with_border) return s;
     if (const auto border = nearest_border(position, now)) {
         s.border_distance = distance(*border, position);

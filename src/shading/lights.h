@@ -94,6 +94,8 @@ class Lights {
     /// Of the shape that was hit; empty where it does not emit. The border is left infinitely far
     /// unless it is asked for: finding it takes a search.
     SourceSpectrum source_spectrum(const SurfaceHit& emitter, bool with_border) const;
+    /// Whether the infinite lights shine alike from all directions, with a spectrum that is zero.
+    bool has_even_sky() const;
     /// Of all infinite lights together around the direction `w`, weighted by radiance.
     SourceSpectrum environment_spectrum(Vec3 w) const;
 

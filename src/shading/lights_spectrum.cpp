@@ -96,6 +96,10 @@ SourceSpectrum Lights::source_spectrum(const SurfaceHit& emitter, bool with_bord
     return area->spectrum->at(emitter.position, emitter.ng, emitter.time, with_border);
 }
 
+bool Lights::has_even_sky() const {
+    return impl_->environments.size() == 1 && !impl_->environments[0].varies();
+}
+
 SourceSpectrum Lights::environment_spectrum(Vec3 w) const {
     return impl_->environment_spectrum(w);
 }

@@ -46,20 +46,25 @@ float distance_to_integer(float v) {
     return std::abs(v - std::round(v));
 }
 
-/// Of a window with a's and b's in equal shares: standard deviation over mean, `kept` of it left by
-/// the pixel filter, then saturated.
-float contrast_weight(Rgb a, Rgb b, float kept = 1) {
+/// Of a window with a's and b's in equal shares: standard deviation over mean, in units of the
+/// contrast from which on it counts in full.
+float relative_contrast(Rgb a, Rgb b) {
     const Rgb difference(std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b));
-    const float d = kept * luminance(difference), sum = luminance(a + b);
-    if (!(d > 0)) return 0;
-    return d < kFullContrast * sum ? d / (kFullContrast * sum) : 1;
+    const float d = luminance(difference);
+    return d > 0 ? d / (kFullContrast * luminance(a + b)) : 0;
+}
+float contrast_weight(Rgb a, Rgb b) {
+    return std::min(1.0f, relative_contrast(a, b));
 }
 
-/// What a pixel leaves of the fundamental wave of unit cells, two cells long: a Gaussian with a
-/// deviation of half a pixel, `gradient` taking uv to cells.
-float kept_by_pixel(Vec2 gradient, float footprint_uv) {
-    const float deviation = footprint_uv * length(gradient);
-    return std::exp(-0.5f * sqr(kPi * deviation));
+/// The weight of such a contrast between unit cells once a pixel has smoothed it: a Gaussian with a
+/// deviation of half a pixel leaves this much of their fundamental wave, two cells long. `gradient`
+/// takes uv to cells.
+float kept_weight(float contrast, Vec2 gradient, float footprint_uv) {
+    const float exponent = 0.5f * sqr(kPi * footprint_uv) * dot(gradient, gradient);
+    // exp(-x) >= 1 - x: most contrasts count in full whatever it is.
+    if (contrast * (1 - exponent) >= 1) return 1;
+    return std::min(1.0f, contrast * std::exp(-exponent));
 }
 
 struct Analyser {
@@ -106,9 +111,10 @@ struct Analyser {
 
     SpatialCovariance2 operator()(const CheckerboardNode& node) const {
         const Rgb a = eval(graph, node.tex1, at), b = eval(graph, node.tex2, at);
+        const float contrast = relative_contrast(a, b);
         const auto edge_at = [&](float coordinate, Vec2 gradient) {
             return edge(distance_to_integer(coordinate), gradient, footprint_uv) *
-                   contrast_weight(a, b, kept_by_pixel(gradient, footprint_uv));
+                   kept_weight(contrast, gradient, footprint_uv);
         };
         SpatialCovariance2 edges;
         if (node.dimension == 2) {
