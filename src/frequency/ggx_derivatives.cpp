@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "shading/lobe_function.h"
+#include "frequency/fresnel_derivatives.h"
 
 namespace covtrace {
 
@@ -76,7 +76,7 @@ std::optional<Jet> log_reflection(const LobeShare& lobe, LocalAxes wo, Vec wi) {
     if (!(lobe.border_eta > 0)) return sum;
     // Fresnel's factor of x = cos(wo, h), x^2 = (1 + c) / 2 with c = wo.wi.
     const double x = std::sqrt(0.5 * (1 + c)), x1 = 0.25 / x, x2 = -x1 * x1 / x;
-    const auto r = border_reflectance(lobe, cov::Taylor<double>{x, 1, 0});
+    const auto r = reflectance_at(lobe, x);
     if (!(r.value > 0)) return std::nullopt;
     const double l1 = r.first / r.value, l2 = r.second / r.value - l1 * l1;
     const double g1 = l1 * x1, g2 = l1 * x2 + l2 * x1 * x1;

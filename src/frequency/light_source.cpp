@@ -1,6 +1,7 @@
 #include "frequency/light_source.h"
 
 #include <cmath>
+#include <optional>
 
 namespace covtrace {
 
@@ -24,8 +25,30 @@ LightField ball_field(const SourceSpectrum& s, Vec3 travel, double cap) {
     return cov::motion_exit(cov::travel(disc, depth), motion);
 }
 
+/// Light of a flat emitter at rest: what area_source and surface_exit do to its moments S is
+/// (4 pi^2 P S P^T)^-1, the spectrum of the moments as the receiver sees them. Empty where one of
+/// the two has to limit anything.
+std::optional<LightField> flat_field(const SourceSpectrum& s, Vec3 travel, double cap) {
+    const bool is_flat = s.k11 == 0 && s.k12 == 0 && s.k22 == 0;
+    if (!is_flat || s.velocity != Vec3{} || s.angular_velocity != Vec3{}) return std::nullopt;
+    const double least = 1 / (cov::four_pi_sq<double> * cap);
+    const cov::Sym2<double> moments{s.s11, s.s12, s.s22},
+        rest = moments - cov::Sym2<double>::diagonal(least, least);
+    const cov::Frame<double> frame = cov::frame_along<double>(travel);
+    const auto p = cov::projection<double>(frame, s.tangent.x, s.tangent.y);
+    const bool is_limited = !(rest.xx > 0) || !(cov::det(rest) > 1e-3 * rest.xx * rest.yy) ||
+                            std::abs(cov::det(p)) < 1.01 * cov::min_surface_cosine<double>;
+    if (is_limited) return std::nullopt;
+    LightField field{{}, frame};
+    field.sigma.set_spatial(
+        cov::inverse(cov::four_pi_sq<double> * cov::congruence(moments, cov::transpose(p))));
+    return field;
+}
+
 LightField area_field(const SourceSpectrum& s, Vec3 travel, bool seen_sharply, double smallest,
                       const cov::Sym2<double>& texture) {
+    if (!seen_sharply)
+        if (const auto field = flat_field(s, travel, cov::edge_variance(smallest))) return *field;
     const cov::Surface<double> surface{
         s.tangent.z, s.tangent.x, s.tangent.y, {s.k11, s.k12, s.k22}};
     const double cap = cov::edge_variance(smallest);

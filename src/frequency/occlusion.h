@@ -23,9 +23,9 @@ struct Occluders {
 struct Visibility {
     /// Standard deviation of the widest feature at the vertex that may still narrow a filter, scene
     /// units; 0: none may.
-    double extent = 0;
+    double extent;
     /// Angular variance, 1/rad^2 per axis, of the sharpest lobe by which the vertex sends light on.
-    double window = 0;
+    double window;
 };
 
 /// The angular window of the sharpest lobe of a recorded vertex: that of the cosine for diffuse

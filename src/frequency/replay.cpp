@@ -14,14 +14,23 @@ namespace {
 
 /// Light that arrives at one place from one direction, and how much of it.
 struct Arriving {
-    LightField field;
+    std::optional<LightField> field;  ///< where the weight is above 0
     double weight = 0;
     cov::Emitter<double> emitter;
 
+    Arriving() {}  // not one that sets the field to zero first
+
     void add(const LightField& other, double other_weight) {
         if (!(other_weight > 0)) return;
-        field = weight > 0 ? cov::merge(field, weight, other, other_weight) : other;
+        if (weight > 0)
+            *field = cov::merge(*field, weight, other, other_weight);
+        else
+            field.emplace(other);
         weight += other_weight;
+    }
+    void clear() {
+        field.reset();
+        weight = 0;
     }
     /// What an even medium emits on the way is the same for all neighbouring rays.
     void add_glow(Vec3 travel, double glow) {
@@ -127,7 +136,7 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
 
     // Half a pixel's extent grows with the distance travelled from the camera; what can be seen of
     // a vertex shrinks with every rough surface before it.
-    std::array<float, PathRecord::kCapacity> distances;
+    std::array<float, PathRecord::kCapacity> ways, distances;  // to the previous vertex, to all
     std::array<Visibility, PathRecord::kCapacity> visible;
     Vec3 previous = record.camera_ray.origin;
     float travelled = 0;
@@ -135,6 +144,7 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
         const PathVertex& v = record.vertices[i];
         const float d = distance(previous, v.hit.position);
         travelled += d;
+        ways[i] = d;
         distances[i] = travelled;
         previous = v.hit.position;
         if (!occluders_) continue;
@@ -150,15 +160,11 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
         return {hit.shape, hit.instance};
     };
 
-    /// Carries light to vertex i, to the camera where i is below 0. `own`: of the surface it has
-    /// left.
+    /// Carries light past occluders to vertex i, to the camera where i is below 0. `own`: of the
+    /// surface it has left.
     const auto carry = [&](LightField& field, Vec3 from, OccluderQuery::Owner owner_of_from, int i,
                            double weight, const OwnOutline* own = nullptr) {
         const Vec3 to = position(i);
-        if (!occluders_) {
-            field.sigma = cov::travel(field.sigma, distance(from, to));
-            return;
-        }
         const OccluderQuery::Segment segment{from, to, record.camera_ray.time, owner_of_from,
                                              owner(i)};
         field = i < 0 ? to_camera(field, segment, camera, weight / total, own)
@@ -170,19 +176,20 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
         if (occluders_) carry(field, entry(position(i), w), {}, i, weight);
     };
 
+    const auto sky_field = [&](Vec3 w) -> LightField {
+        if (scene_.lights.has_even_sky()) return {{}, cov::frame_along<double>(-w)};
+        return source_field(scene_.lights.environment_spectrum(w), -w, false, smallest_);
+    };
     Arriving light;
     if (counts(escaped)) {
-        const SourceSpectrum s = scene_.lights.environment_spectrum(record.escape_direction);
-        light.add(source_field(s, -record.escape_direction, record.escape_seen_sharply, smallest_),
-                  escaped);
-        carry_from_infinity(light.field, record.escape_direction, record.count - 1, light.weight);
+        light.add(sky_field(record.escape_direction), escaped);
+        carry_from_infinity(*light.field, record.escape_direction, record.count - 1, light.weight);
     }
     light.add_glow(-record.escape_direction, taken(record.escape_glow, false));
 
-    const auto own_outline = [this](const cov::Surface<double>& surface,
-                                    const cov::Motion<double>& motion,
-                                    Vec3 outgoing) -> std::optional<OwnOutline> {
-        if (!occluders_.query) return std::nullopt;
+    const auto own_outline = [](const cov::Surface<double>& surface,
+                                const cov::Motion<double>& motion,
+                                Vec3 outgoing) -> std::optional<OwnOutline> {
         const auto contour = cov::contour<double>(surface, outgoing);
         if (!contour) return std::nullopt;
         return OwnOutline{*contour, motion};
@@ -194,66 +201,82 @@ PathCovariance PathReplay::follow(const PathRecord& record, LightPart part, doub
     for (int i = record.count - 1; i >= 0; --i) {
         const PathVertex& v = record.vertices[size_t(i)];
         const float emitted = taken(v.emitted, v.in_view), direct = taken(v.direct, false);
-        Arriving leaving;
         std::optional<OwnOutline> own;
         const bool has_direct = counts(direct);
-        if (!counts(light.weight)) light = {};
+        if (!counts(light.weight)) light.clear();
         if (light.weight > 0 || has_direct) {
-            std::optional<ScatterPoint> point;
-            std::optional<ScatterSum> sum;
-            if (v.medium < 0) {
-                point.emplace(scene_, v, half_pixel(i));
-                sum.emplace(*point);
-                own = own_outline(point->surface, point->motion, v.wo);
-            }
-            const auto scatter = [&](const LightField& arriving,
-                                     const cov::Emitter<double>& emitter, const LobeShares& lobes,
-                                     double weight) {
-                if (sum)
-                    sum->add(arriving, emitter, lobes, weight, rule_, least * total / weight);
+            /// Sends on, by `scatter`, what arrives from further on and from the sampled light.
+            const auto scatter_all = [&](const auto& scatter) {
+                if (light.weight > 0)
+                    scatter(*light.field, light.emitter, v.next_event.lobes, light.weight);
+                if (!has_direct) return;
+                const LightSample& sample = v.light;
+                const LobeShares& lobes = v.direct_event.lobes;
+                if (!std::isfinite(sample.distance) && !sample.is_delta) {
+                    LightField arriving = sky_field(sample.wi);
+                    carry_from_infinity(arriving, sample.wi, i, direct);
+                    return scatter(arriving, {}, lobes, direct);
+                }
+                const SourceSpectrum s = scene_.lights.source_spectrum(sample, v.hit.time);
+                LightField arriving = source_field(s, -sample.wi, false, smallest_);
+                if (!occluders_ && std::isfinite(sample.distance))
+                    arriving.sigma = cov::travel(arriving.sigma, sample.distance);
+                else if (std::isfinite(sample.distance))
+                    carry(arriving, v.hit.position + sample.wi * sample.distance, {}, i, direct);
                 else
-                    leaving.add(cov::scatter_in_volume<double>(arriving, v.wo,
-                                                               scene_.media[size_t(v.medium)].g),
-                                weight);
+                    carry_from_infinity(arriving, sample.wi, i, direct);
+                scatter(arriving, emitter_of(s, sample.distance), lobes, direct);
             };
-            if (light.weight > 0)
-                scatter(light.field, light.emitter, v.next_event.lobes, light.weight);
-            if (has_direct) {
-                const SourceSpectrum s = scene_.lights.source_spectrum(v.light, v.hit.time);
-                LightField arriving = source_field(s, -v.light.wi, false, smallest_);
-                if (std::isfinite(v.light.distance))
-                    carry(arriving, v.hit.position + v.light.wi * v.light.distance, {}, i, direct);
-                else
-                    carry_from_infinity(arriving, v.light.wi, i, direct);
-                scatter(arriving, emitter_of(s, v.light.distance), v.direct_event.lobes, direct);
+            if (v.medium < 0) {
+                const ScatterPoint point(scene_, v, half_pixel(i));
+                ScatterSum sum(point);
+                scatter_all([&](const LightField& arriving, const cov::Emitter<double>& emitter,
+                                const LobeShares& lobes, double weight) {
+                    sum.add(arriving, emitter, lobes, weight, rule_, least * total / weight);
+                });
+                light.field.emplace(sum.leaving());
+                light.weight = sum.weight();
+                if (occluders_.query)
+                    own = own_outline(point.surface, point.motion.value_or(cov::Motion<double>{}),
+                                      v.wo);
+            } else {
+                const float g = scene_.media[size_t(v.medium)].g;
+                Arriving leaving;
+                scatter_all([&](const LightField& arriving, const cov::Emitter<double>&,
+                                const LobeShares&, double weight) {
+                    leaving.add(cov::scatter_in_volume<double>(arriving, v.wo, g), weight);
+                });
+                light = leaving;
             }
-            if (sum) leaving.add(sum->leaving(), sum->weight());
         }
-        const double way = distance(v.hit.position, position(i - 1));
-        leaving.emitter = emitter_at(v, way);
+        const double way = ways[size_t(i)];
+        light.emitter = emitter_at(v, way);
         if (counts(emitted)) {
             const SourceSpectrum s = scene_.lights.source_spectrum(v.hit, v.seen_sharply);
-            if (emitted > leaving.weight) leaving.emitter = emitter_of(s, way);
+            if (emitted > light.weight) light.emitter = emitter_of(s, way);
             const auto texture = emission_texture(scene_, v, s.tangent, half_pixel(i));
-            leaving.add(source_field(s, v.wo, v.seen_sharply, smallest_, texture), emitted);
+            light.add(source_field(s, v.wo, v.seen_sharply, smallest_, texture), emitted);
             if (!own && occluders_.query) {
                 const DifferentialGeometry d = scene_.geometry.differential(v.hit);
                 own = own_outline({d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}},
                                   {d.velocity, d.angular_velocity}, v.wo);
             }
         }
-        light = leaving;
-        if (light.weight > 0)
-            carry(light.field, v.hit.position, owner(i), i - 1, light.weight,
+        if (light.weight > 0 && !occluders_)
+            light.field->sigma = cov::travel(light.field->sigma, way);
+        else if (light.weight > 0)
+            carry(*light.field, v.hit.position, owner(i), i - 1, light.weight,
                   own ? &*own : nullptr);
         light.add_glow(v.wo, taken(v.glow, false));
     }
 
     kept = light.weight;
-    const cov::Motion<double> motion{camera.velocity, camera.angular_velocity};
-    if (!motion.at_rest()) light.field = cov::motion_enter(light.field, motion);
-    const PathCovariance result{
-        light.weight > 0 ? to_sensor(light.field, camera) : cov::SymmetricMatrix5<double>{}, total};
+    PathCovariance result{{}, total};
+    if (light.field) {
+        const cov::Motion<double> motion{camera.velocity, camera.angular_velocity};
+        if (!motion.at_rest()) light.field = cov::motion_enter(*light.field, motion);
+        result.sigma = to_sensor(*light.field, camera);
+    }
     if (!cov::is_finite(result.sigma) || !std::isfinite(result.weight)) return {};
     return result;
 }

@@ -3,23 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frequency/fresnel_derivatives.h"
 #include "frequency/ggx_derivatives.h"
+#include "frequency/round_lobe.h"
 #include "shading/lobe_function.h"
-#include "shading/normal_map.h"
 
 namespace covtrace {
 
 namespace cov = covariance;
 
 namespace {
-
-cov::Sym2<double> texture_spectrum(const RenderScene& scene, TextureId id, const SurfaceHit& hit,
-                                   const cov::Mat2<double>& uv_from_tangent, float footprint_uv) {
-    if (id < 0 || scene.textures.is_constant(id)) return {};
-    const SpatialCovariance2 t =
-        scene.textures.uv_covariance(id, {hit.uv, hit.position}, hit.dpdu, hit.dpdv, footprint_uv);
-    return cov::texture_on_surface<double>({t.ss, t.st, t.tt}, uv_from_tangent);
-}
 
 /// A lobe as wide as this feels the horizon: the cosine limits it as it limits a diffuse surface.
 constexpr float kWideLobe = 0.4f;
@@ -38,8 +31,9 @@ bool is_even(const LightField& field) {
     return cov::trace(field.sigma) == 0;
 }
 
-LocalAxes local_axes(const Frame& shading, const cov::Frame<double>& f) {
-    const cov::Vec3<double> x(shading.x), y(shading.y), z(shading.z);
+/// In the coordinates of the BSDF.
+LocalAxes local_axes(const cov::Frame<double>& shading, const cov::Frame<double>& f) {
+    const cov::Vec3<double>&x = shading.x, &y = shading.y, &z = shading.z;
     const auto local = [&](const cov::Vec3<double>& v) -> cov::Vec3<double> {
         return {cov::dot(v, x), cov::dot(v, y), cov::dot(v, z)};
     };
@@ -50,25 +44,30 @@ LocalAxes local_axes(const Frame& shading, const cov::Frame<double>& f) {
 /// function of the cosine alone, which is c + u x.z + v y.z - c (u^2 + v^2)/2 in the ray's slopes.
 cov::Sym2<double> coat_window(const LobeShare& lobe, const ScatterPoint& p,
                               const cov::Frame<double>& f) {
-    const cov::Vec3<double> n(p.shading.z);
+    const cov::Vec3<double>& n = p.facing().n;
     const double z = cov::dot(f.z, n), c = std::abs(z);
     if (lobe.border_eta > 1 && c > kEvenTransmission) return {};
-    const cov::Sym2<double> limit = cov::cosine_window<double>(f, p.facing.n);
-    const auto t = 1 - border_reflectance(lobe, cov::Taylor<double>{c, 1, 0});
+    const double nx = cov::dot(f.x, n), ny = cov::dot(f.y, n);
+    const cov::Sym2<double> limit = cov::cosine_window<double>({nx, ny, z});
+    const auto t = 1 - reflectance_at(lobe, c);
     if (!(t.value > 0)) return limit;
-    const double l1 = t.first / t.value, l2 = t.second / t.value - l1 * l1;
-    const double sign = z < 0 ? -1 : 1, x = sign * cov::dot(f.x, n), y = sign * cov::dot(f.y, n);
+    const double i = 1 / t.value, l1 = t.first * i, l2 = t.second * i - l1 * l1;
+    const double sign = z < 0 ? -1 : 1, x = sign * nx, y = sign * ny;
     return cov::local_lobe_of_log<double>(
         {0, l1 * x, l1 * y, l2 * x * x - l1 * c, l2 * x * y, l2 * y * y - l1 * c}, limit);
 }
 
-/// Through a lobe of GGX's slopes, which are distributed like cov::tailed_lobe.
-LightField scatter_tailed(const LightField& field, const cov::GlossyPair<double>& pair) {
-    const auto left = cov::map_angular(field.sigma, pair.map);
-    const double size = cov::trace(pair.lobe);
-    const bool is_peaked = cov::det(pair.lobe) > 1e-9 * size * size;
-    const auto lobe = is_peaked ? cov::tailed_lobe(pair.lobe, left.angular()) : pair.lobe;
-    return {cov::convolve_angular(left, lobe), pair.outgoing};
+/// A lobe of GGX's slopes, which are distributed like cov::tailed_lobe, as light finds it.
+cov::Sym2<double> tailed(const cov::Sym2<double>& lobe, const cov::Sym2<double>& light) {
+    const double size = cov::trace(lobe);
+    const bool is_peaked = cov::det(lobe) > 1e-9 * size * size;
+    return is_peaked ? cov::tailed_lobe(lobe, light) : lobe;
+}
+
+/// Through such a lobe. Reflections do not map slopes.
+LightField reflect_tailed(const LightField& field, const cov::GlossyPair<double>& pair) {
+    return {cov::convolve_angular(field.sigma, tailed(pair.lobe, field.sigma.angular())),
+            pair.outgoing};
 }
 
 /// The lobe's covariance at the actual pair of directions.
@@ -82,153 +81,118 @@ cov::Sym2<double> local_lobe_at(const LobeShare& lobe, const LocalAxes& in, cons
         lobe_function(lobe, cov::jet_direction<double>(out.x, out.y, out.z), -in.z), peak);
 }
 
+/// What masking makes of the arriving light, from the derivatives of its logarithm.
+cov::Sym2<double> masking_window(const cov::Jet<double>& log_masking,
+                                 const cov::Sym2<double>& limit) {
+    return cov::limited_by(cov::positive_part(cov::curvature_of_log(log_masking)), limit);
+}
+
+/// A reflection by a lobe of one roughness, whose axes do not matter.
+LightField reflect_round(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe) {
+    const RoundReflection round = round_reflection(lobe, entered.frame, p.leaving.z, p.facing().n);
+    LightField left{entered.sigma, round.outgoing};
+    const cov::Sym2<double> light = left.sigma.angular() + round.window;
+    left.sigma.set_angular(light);
+    left.sigma = cov::convolve_angular(left.sigma, tailed(round.lobe, light));
+    return left;
+}
+
 LightField through_glossy(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe,
                           BrdfCovariance rule) {
-    if (rule == BrdfCovariance::local && p.is_flat && is_even(entered) &&
-        std::abs(cov::dot(entered.frame.z, p.facing.n)) > kEvenCosine)
-        return {{}, cov::frame_along<double>(p.outgoing)};
-    const auto micro = cov::micro_ggx<double>(lobe.alpha_x, lobe.alpha_y);
     const bool reflects = lobe.kind == LobeKind::glossy_reflection;
+    if (reflects && rule == BrdfCovariance::local && lobe.alpha_x == lobe.alpha_y)
+        return reflect_round(entered, p, lobe);
+    const auto micro = cov::micro_ggx<double>(lobe.alpha_x, lobe.alpha_y);
     const cov::GlossyPair<double> pair =
-        reflects
-            ? cov::reflection_pair<double>(entered.frame, p.facing, p.outgoing, micro)
-            : cov::refraction_pair<double>(entered.frame, p.facing, p.outgoing, lobe.eta, 1, micro);
+        reflects ? cov::reflection_pair<double>(entered.frame, p.facing(), p.leaving.z, micro)
+                 : cov::refraction_pair<double>(entered.frame, p.facing(), p.leaving.z, lobe.eta, 1,
+                                                micro);
     if (rule == BrdfCovariance::global) {
         const bool wide = std::max(lobe.alpha_x, lobe.alpha_y) > kWideLobe;
-        const LightField windowed = wide ? cov::add_cosine_window(entered, p.facing) : entered;
-        return reflects ? scatter_tailed(windowed, pair) : cov::scatter(windowed, pair);
+        const LightField windowed = wide ? cov::add_cosine_window(entered, p.facing()) : entered;
+        return reflects ? reflect_tailed(windowed, pair) : cov::scatter(windowed, pair);
     }
     // Distribution and Fresnel are functions of the half vector: what they do to the arriving
     // slopes is in the lobe already, and the window is left with masking, at half the price of
     // cov::local_lobe for any BRDF.
-    const LocalAxes in = local_axes(p.shading, entered.frame),
-                    out = local_axes(p.shading, pair.outgoing);
+    const cov::Frame<double> shading{p.shading.x, p.shading.y, p.shading.z};
+    const LocalAxes in = local_axes(shading, entered.frame),
+                    out = local_axes(shading, pair.outgoing);
     const cov::Jet<double> arriving = log_masked_cosine(lobe, out.z, {-in.x, -in.y, -in.z});
     const cov::Sym2<double> window =
-        cov::limited_by(cov::positive_part(cov::curvature_of_log(arriving)),
-                        cov::cosine_window<double>(entered.frame, p.facing.n));
+        masking_window(arriving, cov::cosine_window<double>(entered.frame, p.facing().n));
     const LightField windowed = cov::add_angular_window(entered, window);
     const cov::GlossyPair<double> local{pair.outgoing, pair.map,
                                         local_lobe_at(lobe, in, out, pair.lobe)};
-    return reflects ? scatter_tailed(windowed, local) : cov::scatter(windowed, local);
-}
-
-constexpr unsigned bit(LobeKind kind) {
-    return 1u << static_cast<unsigned>(kind);
-}
-
-/// Bits of the lobes that the recorded events have.
-unsigned kinds_of_lobes(const PathVertex& vertex) {
-    unsigned kinds = 0;
-    const auto collect = [&kinds](const LobeShares& shares) {
-        for (size_t i = 0; i < size_t(shares.count); ++i) kinds |= bit(shares.lobes[i].kind);
-    };
-    if (vertex.direct > 0) collect(vertex.direct_event.lobes);
-    if (vertex.scatters) collect(vertex.next_event.lobes);
-    return kinds;
+    return reflects ? reflect_tailed(windowed, local) : cov::scatter(windowed, local);
 }
 
 }  // namespace
 
-ScatterPoint::ScatterPoint(const RenderScene& scene, const PathVertex& vertex, float footprint)
-    : shading(vertex.shading), outgoing(vertex.wo) {
-    const DifferentialGeometry d = scene.geometry.differential(vertex.hit);
-    surface = {d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}};
-    normals = cov::normal_field(surface);
-    facing = surface;
-    if (scene.materials.has_normal_map(vertex.material)) {
-        const NormalMap map(scene.materials.description(vertex.material), scene.textures,
-                            scene.geometry.shapes()[vertex.hit.shape], vertex.hit, d, footprint);
-        // Positions stay on the geometry; the normal turns by both shape operators.
-        const Frame turned = Frame::from_z_x(vertex.shading.z, d.tangent.x);
-        const auto [k11, k12, k22] = map.curvature();
-        normals = {turned.z, turned.x * (d.k11 + k11) + turned.y * (d.k12 + k12),
-                   turned.x * (d.k12 + k12) + turned.y * (d.k22 + k22)};
-        facing = cov::shading_surface(surface, normals);
-    }
-    motion = {d.velocity, d.angular_velocity};
-    is_flat = normals.is_flat() && motion.at_rest();
-    const unsigned kinds = kinds_of_lobes(vertex);
-    const bool reflects = (kinds & bit(LobeKind::diffuse_reflection)) != 0,
-               transmits = (kinds & bit(LobeKind::diffuse_transmission)) != 0;
-    if (!reflects && !transmits) return;
-    const auto& m = d.uv_from_tangent;
-    const cov::Mat2<double> uv_from_tangent{m[0][0], m[0][1], m[1][0], m[1][1]};
-    const float uv_per_length =
-        std::sqrt(0.5f * (sqr(m[0][0]) + sqr(m[0][1]) + sqr(m[1][0]) + sqr(m[1][1])));
-    const float footprint_uv = footprint * uv_per_length;
-    const MaterialTextures textures = scene.materials.textures(vertex.material);
-    // What alpha lets stand of the surface varies like its reflectance.
-    const TextureId alpha = scene.geometry.shapes()[vertex.hit.shape].description.alpha;
-    const auto spectrum = [&](TextureId id) {
-        return texture_spectrum(scene, id, vertex.hit, uv_from_tangent, footprint_uv);
-    };
-    const cov::Sym2<double> edges = spectrum(alpha);
-    if (reflects) reflectance = spectrum(textures.reflectance) + edges;
-    if (transmits) transmittance = spectrum(textures.transmittance) + edges;
-}
-
-cov::Sym2<double> emission_texture(const RenderScene& scene, const PathVertex& vertex,
-                                   const Frame& tangent, float footprint) {
-    const ShapeDescription& shape = scene.geometry.shapes()[vertex.hit.shape].description;
-    if (shape.area_light < 0) return {};
-    const TextureId image =
-        scene.description.area_lights[static_cast<size_t>(shape.area_light)].image;
-    if (image < 0 && shape.alpha < 0) return {};
-    const DifferentialGeometry d = scene.geometry.differential(vertex.hit);
-    const auto& m = d.uv_from_tangent;
-    const auto along = [&m, &d](int i, Vec3 axis) {
-        return m[i][0] * dot(d.tangent.x, axis) + m[i][1] * dot(d.tangent.y, axis);
-    };
-    const cov::Mat2<double> uv_from_tangent{along(0, tangent.x), along(0, tangent.y),
-                                            along(1, tangent.x), along(1, tangent.y)};
-    const float footprint_uv =
-        footprint * std::sqrt(0.5f * (sqr(m[0][0]) + sqr(m[0][1]) + sqr(m[1][0]) + sqr(m[1][1])));
-    return texture_spectrum(scene, image, vertex.hit, uv_from_tangent, footprint_uv) +
-           texture_spectrum(scene, shape.alpha, vertex.hit, uv_from_tangent, footprint_uv);
-}
-
-LightField ScatterSum::through_diffuse(const LightField& entered,
-                                       const cov::Emitter<double>& emitter, const LobeShare& lobe,
-                                       BrdfCovariance rule) {
-    const ScatterPoint& p = point_;
-    const cov::Sym2<double>& texture = is_transmission(lobe.kind) ? p.transmittance : p.reflectance;
+void ScatterSum::add_diffuse(const LightField& entered, bool even,
+                             const cov::Emitter<double>& emitter, const LobeShare& lobe,
+                             double weight, BrdfCovariance rule) {
+    weight_ += weight;
+    (is_transmission(lobe.kind) ? transmitted_ : reflected_) += weight;
     // Below a coat the diffuse lobe is a product: what the coat lets in from each direction, and
     // what it lets out.
     const bool coated = rule == BrdfCovariance::local && lobe.border_eta > 0;
-    LightField left{{}, cov::frame_along<double>(p.outgoing)};
-    if (!is_even(entered)) {
-        // cov::reflect_diffuse with the coat's window.
-        cov::Sym2<double> angular = entered.sigma.angular();
-        if (coated) angular = angular + coat_window(lobe, p, entered.frame);
-        left.sigma = entered.sigma;
-        left.sigma.set_angular(angular +
-                               cov::diffuse_window(entered.frame, p.facing, emitter, angular));
-        left.sigma = cov::slice_angular(left.sigma);
+    if (coated) {
+        if (coat_ && coat_->border_eta != lobe.border_eta) add_let_out();
+        coat_ = &lobe;
+        coated_ += weight;
     }
-    left.sigma.set_spatial(left.sigma.spatial() + texture);
-    if (!coated) return left;
-    if (let_out_.eta != lobe.border_eta)
-        let_out_ = {lobe.border_eta, coat_window(lobe, p, left.frame)};
-    left.sigma.set_angular(left.sigma.angular() + let_out_.window);
-    return left;
+    if (even) return;
+    // cov::reflect_diffuse with the coat's window.
+    cov::Sym2<double> angular = entered.sigma.angular();
+    if (coated) angular = angular + coat_window(lobe, point_, entered.frame);
+    const cov::Sym2<double> window =
+        cov::diffuse_window(entered.frame, point_.facing(), emitter, angular);
+    cov::add_scaled(sum_, weight, cov::slice_angular<double>(entered.sigma, angular + window));
 }
 
-LightField ScatterSum::through(const LightField& entered, const cov::Emitter<double>& emitter,
-                               const LobeShare& lobe, BrdfCovariance rule) {
+void ScatterSum::add_let_out() {
+    add_slopes(coated_ * coat_window(*coat_, point_, point_.leaving), point_.leaving);
+    coated_ = 0;
+}
+
+void ScatterSum::add_through(const LightField& entered, bool even,
+                             const cov::Emitter<double>& emitter, const LobeShare& lobe,
+                             double weight, BrdfCovariance rule) {
     switch (lobe.kind) {
         case LobeKind::specular_reflection:
-            return cov::reflect_specular<double>(entered, point_.facing, point_.outgoing);
+            return add(cov::reflect_specular<double>(entered, point_.facing(), point_.leaving.z),
+                       weight);
         case LobeKind::specular_transmission:
-            return cov::refract<double>(entered, point_.facing, point_.outgoing, lobe.eta, 1);
+            return add(
+                cov::refract<double>(entered, point_.facing(), point_.leaving.z, lobe.eta, 1),
+                weight);
         case LobeKind::diffuse_reflection:
         case LobeKind::diffuse_transmission:
-            return through_diffuse(entered, emitter, lobe, rule);
+            return add_diffuse(entered, even, emitter, lobe, weight, rule);
         case LobeKind::glossy_reflection:
         case LobeKind::glossy_transmission:
             break;
     }
-    return through_glossy(entered, point_, lobe, rule);
+    if (even && rule == BrdfCovariance::local && !point_.normals && !point_.motion &&
+        std::abs(cov::dot(entered.frame.z, point_.facing().n)) > kEvenCosine) {
+        weight_ += weight;  // and no variation
+        return;
+    }
+    add(through_glossy(entered, point_, lobe, rule), weight);
+}
+
+LightField ScatterSum::enter(const LightField& arriving) const {
+    const ScatterPoint& p = point_;
+    if (p.motion) {
+        const LightField resting = cov::motion_enter(arriving, *p.motion);
+        return p.normals ? cov::surface_enter<double>(resting, p.surface, *p.normals)
+                         : cov::surface_enter<double>(resting, p.surface);
+    }
+    if (p.normals) return cov::surface_enter<double>(arriving, p.surface, *p.normals);
+    return {cov::change_positions<double>(
+                arriving.sigma, cov::surface_projection<double>(arriving.frame, p.surface)),
+            arriving.frame};
 }
 
 void ScatterSum::add(const LightField& arriving, const cov::Emitter<double>& emitter,
@@ -245,42 +209,62 @@ void ScatterSum::add(const LightField& arriving, const cov::Emitter<double>& emi
         if (weights[i] < least * all && weights[i] < most) weights[i] = 0;
         kept += std::max(weights[i], 0.0);
     }
-    if (!(kept > 0)) return add({{}, cov::frame_along<double>(point_.outgoing)}, weight);
-    LightField entered = arriving;
-    if (!is_even(arriving)) {
-        if (!point_.motion.at_rest()) entered = cov::motion_enter(entered, point_.motion);
-        entered.sigma = cov::change_positions<double>(
-            entered.sigma, cov::surface_projection<double>(entered.frame, point_.surface),
-            cov::surface_curvature<double>(entered.frame, point_.normals));
+    if (!(kept > 0)) {
+        weight_ += weight;
+        return;
     }
-    for (size_t i = 0; i < size_t(lobes.count); ++i)
-        if (weights[i] > 0)
-            add(through(entered, emitter, lobes.lobes[i], rule), weight * (weights[i] / kept));
+    const double scale = weight / kept;
+    const auto add_lobes = [&](const LightField& entered, bool even) {
+        for (size_t i = 0; i < size_t(lobes.count); ++i)
+            if (weights[i] > 0)
+                add_through(entered, even, emitter, lobes.lobes[i], weights[i] * scale, rule);
+    };
+    if (is_even(arriving))
+        add_lobes(arriving, true);
+    else
+        add_lobes(enter(arriving), false);
 }
 
 void ScatterSum::add(const LightField& left, double weight) {
-    if (!(weight_ > 0)) {
-        left_ = left;
-        weight_ = weight;
-        return;
-    }
     weight_ += weight;
-    const double share = weight / weight_;
     // Positions are along the tangents for all; only slopes have axes of their own.
-    const cov::Frame<double>&from = left.frame, &to = left_.frame;
-    const bool is_turned =
-        !(from.x == to.x && from.y == to.y) && !(left.sigma.angular() == cov::Sym2<double>{});
-    const auto turned = [&] {
-        return is_turned ? cov::map_angular(left.sigma, cov::projection<double>(from, to.x, to.y))
-                         : left.sigma;
-    };
-    left_.sigma = (1 - share) * left_.sigma + share * turned();
+    if (takes_slopes_of(left.frame))
+        cov::add_scaled(sum_, weight, left.sigma);
+    else
+        cov::add_scaled(sum_, weight, cov::map_angular(left.sigma, to_own(left.frame)));
 }
 
-LightField ScatterSum::leaving() const {
-    if (is_even(left_)) return left_;
-    const auto left = cov::surface_exit<double>(left_, point_.surface, point_.normals);
-    return point_.motion.at_rest() ? left : cov::motion_exit(left, point_.motion);
+void ScatterSum::add_slopes(const cov::Sym2<double>& window, const cov::Frame<double>& frame) {
+    if (cov::trace(window) == 0) return;
+    sum_.set_angular(sum_.angular() +
+                     (takes_slopes_of(frame) ? window : cov::congruence(window, to_own(frame))));
+}
+
+bool ScatterSum::takes_slopes_of(const cov::Frame<double>& frame) {
+    if (has_slopes_) return frame.x == frame_.x && frame.y == frame_.y;
+    frame_ = frame;
+    has_slopes_ = true;
+    return true;
+}
+
+cov::Mat2<double> ScatterSum::to_own(const cov::Frame<double>& frame) const {
+    return cov::projection<double>(frame, frame_.x, frame_.y);
+}
+
+LightField ScatterSum::leaving() {
+    const ScatterPoint& p = point_;
+    if (coated_ > 0) add_let_out();
+    sum_.set_spatial(sum_.spatial() + reflected_ * p.reflectance + transmitted_ * p.transmittance);
+    if (cov::trace(sum_) == 0) return {{}, frame_};
+    const auto mean = (1 / weight_) * sum_;
+    if (!p.normals && !p.motion)
+        return {
+            cov::change_positions<double>(mean, cov::inverse_projection<double>(frame_, p.surface)),
+            frame_};
+    const LightField field{mean, frame_};
+    const auto left = p.normals ? cov::surface_exit<double>(field, p.surface, *p.normals)
+                                : cov::surface_exit<double>(field, p.surface);
+    return p.motion ? cov::motion_exit(left, *p.motion) : left;
 }
 
 }  // namespace covtrace

@@ -4,73 +4,57 @@
 #include "covariance/covariance.hpp"
 #include "frequency/brdf_covariance.h"
 #include "frequency/light_source.h"
-#include "integrator/path_record.h"
-#include "integrator/render_scene.h"
+#include "frequency/scatter_point.h"
 
 namespace covtrace {
-
-/// A recorded vertex as the operators see it, gathered once for all the light that meets there.
-struct ScatterPoint {
-    covariance::Surface<double> surface;  ///< the geometry, on which positions are measured
-    /// What the BSDF faces: the normals of a bump or normal map over the geometry, if there is one,
-    /// and the surface with its tangents turned along.
-    covariance::NormalField<double> normals;
-    covariance::Surface<double> facing;
-    covariance::Motion<double> motion;
-    bool is_flat = false;  ///< no curvature, no normal map, no motion
-    /// Spectra of the textures that scale the diffuse lobes, along surface.t1, t2, 1 / scene
-    /// unit^2; zero where the recorded events have no such lobe.
-    covariance::Sym2<double> reflectance, transmittance;
-    Frame shading;  ///< frame of the BSDF
-    Vec3 outgoing;  ///< unit, the direction in which light leaves towards the camera
-
-    /// `footprint`: half a pixel's extent at the vertex, in scene units; no texture edge counts as
-    /// nearer.
-    ScatterPoint(const RenderScene& scene, const PathVertex& vertex, float footprint);
-};
-
-/// Spectrum of the image and the alpha of an emitter that was hit, along the axes of `tangent`
-/// (z: its normal), 1 / scene unit^2. `footprint` as above.
-covariance::Sym2<double> emission_texture(const RenderScene& scene, const PathVertex& vertex,
-                                          const Frame& tangent, float footprint);
 
 /// The light that leaves a vertex towards the camera: the sum, by luminance, of what all lobes of
 /// all events there send on. Leaving is linear and the same for all of it, so it is done once.
 class ScatterSum {
   public:
     /// `point` must outlive this.
-    explicit ScatterSum(const ScatterPoint& point) : point_(point) {}
+    explicit ScatterSum(const ScatterPoint& point) : point_(point), frame_(point.leaving) {}
 
     /// Sends `arriving` (its frame's z is the direction of travel towards the surface) through the
     /// lobes of an event and adds what comes out of them, `weight` in all. `emitter`: where the
     /// light was last sent out. Lobes with less than `least` of the event's light are left out, but
-    /// for the brightest.
+    /// for the brightest. `lobes` must outlive this.
     void add(const LightField& arriving, const covariance::Emitter<double>& emitter,
              const LobeShares& lobes, double weight, BrdfCovariance rule, double least = 0);
 
     double weight() const { return weight_; }
-    /// Travels along point.outgoing, in whatever frame. Only where the weight is above 0.
-    LightField leaving() const;
+    /// Travels along point.leaving.z, in whatever frame. Only where the weight is above 0, and
+    /// once.
+    LightField leaving();
 
   private:
+    LightField enter(const LightField& arriving) const;
+    /// `even`: the light has no variation; it need not have entered then.
+    void add_through(const LightField& entered, bool even,
+                     const covariance::Emitter<double>& emitter, const LobeShare& lobe,
+                     double weight, BrdfCovariance rule);
+    void add_diffuse(const LightField& entered, bool even,
+                     const covariance::Emitter<double>& emitter, const LobeShare& lobe,
+                     double weight, BrdfCovariance rule);
     void add(const LightField& left, double weight);
+    /// What the coat over diffuse lobes lets out.
+    void add_let_out();
+    void add_slopes(const covariance::Sym2<double>& window, const covariance::Frame<double>& frame);
+    /// Whether slopes along this frame are added as they are: the first to come decide.
+    bool takes_slopes_of(const covariance::Frame<double>& frame);
+    covariance::Mat2<double> to_own(const covariance::Frame<double>& frame) const;
 
     const ScatterPoint& point_;
-    LightField through(const LightField& entered, const covariance::Emitter<double>& emitter,
-                       const LobeShare& lobe, BrdfCovariance rule);
-    LightField through_diffuse(const LightField& entered,
-                               const covariance::Emitter<double>& emitter, const LobeShare& lobe,
-                               BrdfCovariance rule);
-
-    /// What the coat over a diffuse lobe lets out, computed when it is first needed.
-    struct CoatWindow {
-        float eta = 0;
-        covariance::Sym2<double> window;
-    };
-
-    CoatWindow let_out_;
-    LightField left_;  ///< between surface_enter and surface_exit
+    /// Weighted sum of what leaves, between surface_enter and surface_exit, with slopes along
+    /// `frame_`; without what all light of a diffuse lobe has in common.
+    covariance::SymmetricMatrix5<double> sum_;
+    covariance::Frame<double> frame_;
+    bool has_slopes_ = false;
     double weight_ = 0;
+    /// Of diffuse lobes, whose light all has the spectrum of their texture.
+    double reflected_ = 0, transmitted_ = 0;
+    const LobeShare* coat_ = nullptr;  ///< over those of the weight `coated_`
+    double coated_ = 0;
 };
 
 }  // namespace covtrace

@@ -23,7 +23,6 @@ void PathTracer::escape() {
     if (in_view()) result_.in_view += contribution;
     if (record_ && record_->count == static_cast<int>(result_.vertices)) {
         record_->escaped = luminance(contribution);
-        record_->escape_seen_sharply = sharp_so_far_;
         record_->escape_in_view = in_view();
     }
 }

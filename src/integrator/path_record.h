@@ -57,7 +57,6 @@ struct PathRecord {
     /// by.
     float escaped = 0;
     Vec3 escape_direction;
-    bool escape_seen_sharply = false;
     float escape_glow = 0;  ///< luminance from the media behind the last vertex
     bool escape_in_view = false;
 

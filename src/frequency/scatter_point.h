@@ -1,0 +1,45 @@
+/// A recorded vertex as the operators of scattering see it: geometry, motion, textures.
+#pragma once
+
+#include <optional>
+
+#include "covariance/covariance.hpp"
+#include "integrator/path_record.h"
+#include "integrator/render_scene.h"
+
+namespace covtrace {
+
+/// Gathered once for all the light that meets there.
+struct ScatterPoint {
+    covariance::Surface<double> surface;  ///< the geometry, on which positions are measured
+    /// Where they change: the normals that the BSDF faces, of the geometry or of a bump or normal
+    /// map over it.
+    std::optional<covariance::NormalField<double>> normals;
+    /// Where there is such a map: the surface with its tangents turned along.
+    std::optional<covariance::Surface<double>> turned;
+    std::optional<covariance::Motion<double>> motion;  ///< where there is any
+    /// Spectra of the textures that scale the diffuse lobes, along surface.t1, t2, 1 / scene
+    /// unit^2; zero where the recorded events have no such lobe.
+    covariance::Sym2<double> reflectance, transmittance;
+    const Frame& shading;  ///< frame of the BSDF
+    /// The surface as the BSDF sees it.
+    const covariance::Surface<double>& facing() const { return turned ? *turned : surface; }
+
+    /// Some axes along the direction in which light leaves towards the camera.
+    covariance::Frame<double> leaving;
+
+    /// `footprint`: half a pixel's extent at the vertex, in scene units; no texture edge counts as
+    /// nearer. `vertex` must outlive this.
+    ScatterPoint(const RenderScene& scene, const PathVertex& vertex, float footprint);
+
+  private:
+    ScatterPoint(const RenderScene& scene, const PathVertex& vertex, float footprint,
+                 const DifferentialGeometry& geometry);
+};
+
+/// Spectrum of the image and the alpha of an emitter that was hit, along the axes of `tangent`
+/// (z: its normal), 1 / scene unit^2. `footprint` as above.
+covariance::Sym2<double> emission_texture(const RenderScene& scene, const PathVertex& vertex,
+                                          const Frame& tangent, float footprint);
+
+}  // namespace covtrace
