@@ -71,12 +71,14 @@ class CovarianceRender {
         const DensityRule rule = job_.options.density;
         if (!job_.options.progressive)
             return relative_density(*prediction_, rule, settings.c, settings.limits);
-        // The variance of a filtered pixel is that of the means under its filter, weighted by its
-        // square: a Gaussian with half of its covariance.
+        // A few paths tell N with much noise: the mean under the pixel's filter, where the light is
+        // alike, tells it better. And it is asked of all pixels there, by the squared weights that
+        // their variances have in that of the filtered pixel, a Gaussian with half of the
+        // covariance. Both together have one and a half of it.
         FilterField field = filter_field(prediction_->spectrum, prediction_->width,
                                          prediction_->height, job_.options.filter, settings);
         if (job_.options.filter == FilterRule::verified) limit_by_neighbours(field, settings);
-        for (auto& s : field.covariance) s = 0.5f * s;
+        for (auto& s : field.covariance) s = 1.5f * s;
         return density_on_demand(mean_under_filters(
             relative_demand(*prediction_, rule, settings.c, settings.limits), field));
     }
