@@ -29,8 +29,7 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
     c->add_option("--max-spp", a.options.max_spp, "most samples in a pixel (default: 16 x average)")
         ->check(CLI::Range(1, 1 << 30))
         ->option_text("N");
-    c->add_flag("--progressive", a.options.progressive,
-                "covariance: rounds where most samples are missing");
+    c->add_flag("--progressive", a.options.progressive, "covariance: rounds of samples on demand");
     c->add_flag("--even-counts", a.options.even_counts, "hybrid: the same count in every pixel");
     add_choice<Occlusion>(
         c, "--occlusion", a.options.occlusion,

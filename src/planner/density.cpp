@@ -5,10 +5,22 @@
 
 namespace covtrace {
 
-std::vector<float> relative_density(const Prediction& prediction, DensityRule rule, float c,
-                                    const covariance::FilterLimits<float>& limits) {
-    std::vector<float> g(prediction.spectrum.size());
+namespace {
+
+/// With mean 1, a share of it even.
+std::vector<float> relative(std::vector<float> g, float even_share) {
     double sum = 0;
+    for (const float v : g) sum += v;
+    const float mean = g.empty() ? 0.0f : float(sum / double(g.size()));
+    for (float& v : g) v = covariance::share_of_budget(v, mean, 1.0f, even_share);
+    return g;
+}
+
+constexpr float kEvenShare = 0.1f;
+
+std::vector<float> densities(const Prediction& prediction, DensityRule rule, float c,
+                             const covariance::FilterLimits<float>& limits) {
+    std::vector<float> g(prediction.spectrum.size());
     for (size_t i = 0; i < g.size(); ++i) {
         const auto usable =
             covariance::limit_spectrum(prediction.spectrum[i], c, limits.s_min, limits.s_max);
@@ -16,12 +28,30 @@ std::vector<float> relative_density(const Prediction& prediction, DensityRule ru
         g[i] = rule == DensityRule::thesis ? covariance::thesis_density(usable, interior)
                                            : covariance::tempered_density(usable, interior);
         if (!std::isfinite(g[i])) g[i] = 0;
-        sum += g[i];
     }
-    const float mean = g.empty() ? 0.0f : float(sum / double(g.size()));
-    const float even_share = rule == DensityRule::tempered ? 0.1f : 0.0f;
-    for (float& v : g) v = covariance::share_of_budget(v, mean, 1.0f, even_share);
     return g;
+}
+
+}  // namespace
+
+std::vector<float> relative_demand(const Prediction& prediction, DensityRule rule, float c,
+                                   const covariance::FilterLimits<float>& limits) {
+    std::vector<float> demand = densities(prediction, rule, c, limits);
+    if (rule == DensityRule::tempered)
+        for (float& v : demand) v *= v;  // its square root is in the density already
+    return demand;
+}
+
+std::vector<float> relative_density(const Prediction& prediction, DensityRule rule, float c,
+                                    const covariance::FilterLimits<float>& limits) {
+    return relative(densities(prediction, rule, c, limits),
+                    rule == DensityRule::tempered ? kEvenShare : 0.0f);
+}
+
+std::vector<float> density_on_demand(std::span<const float> demand) {
+    std::vector<float> g(demand.begin(), demand.end());
+    for (float& v : g) v = std::sqrt(v);
+    return relative(std::move(g), kEvenShare);
 }
 
 namespace {
@@ -79,14 +109,14 @@ std::vector<uint32_t> counts_of(size_t n, int64_t total, const Wanted& wanted, d
     return counts;
 }
 
-}  // namespace
-
-std::vector<uint32_t> allocate(std::span<const float> density, int64_t total,
-                               std::span<const uint32_t> at_least, uint32_t at_most) {
+/// Counts as near to one multiple of the density as `most(i)`, never below `at_least`, allows.
+template <typename Most>
+std::vector<uint32_t> counts_by_density(std::span<const float> density, int64_t total,
+                                        std::span<const uint32_t> at_least, const Most& most) {
     const size_t n = density.size();
     const auto wanted = [&](size_t i, double scale) {
         const double lo = at_least[i];
-        return std::clamp(scale * double(density[i]), lo, std::max(lo, double(at_most)));
+        return std::clamp(scale * double(density[i]), lo, std::max(lo, most(i)));
     };
     const auto sum = [&](double scale) {
         double s = 0;
@@ -98,19 +128,17 @@ std::vector<uint32_t> allocate(std::span<const float> density, int64_t total,
     return counts_of(n, total, wanted, 0, hi);
 }
 
-std::vector<uint32_t> allocate_unmet(std::span<const float> density, int64_t total,
-                                     std::span<const uint32_t> have, uint32_t at_most) {
-    const size_t n = density.size();
-    const double scale = n > 0 ? double(total) / double(n) : 0.0;
-    double most = 0;
-    for (size_t i = 0; i < n; ++i)
-        most = std::max({most, scale * double(density[i]), double(have[i])});
-    const auto wanted = [&](size_t i, double level) {
-        const double lo = have[i];
-        return std::clamp(scale * double(density[i]) + level, lo, lo + double(at_most));
-    };
-    // At the lowest level nobody lacks anything; at the highest every pixel is at its limit.
-    return counts_of(n, total, wanted, -most, most + double(at_most));
+}  // namespace
+
+std::vector<uint32_t> allocate(std::span<const float> density, int64_t total,
+                               std::span<const uint32_t> at_least, uint32_t at_most) {
+    return counts_by_density(density, total, at_least, [&](size_t) { return double(at_most); });
+}
+
+std::vector<uint32_t> allocate_on_demand(std::span<const float> density, int64_t total,
+                                         std::span<const uint32_t> have, uint32_t at_most) {
+    return counts_by_density(density, total, have,
+                             [&](size_t i) { return double(have[i]) + double(at_most); });
 }
 
 }  // namespace covtrace

@@ -4,6 +4,7 @@
 
 #include "planner/density.h"
 #include "reconstruction/filter_field.h"
+#include "reconstruction/gather.h"
 #include "render/develop.h"
 #include "render/job.h"
 
@@ -52,19 +53,34 @@ class CovarianceRender {
         const PhaseTimer timer(job_.monitor, job_.phase("plan"));
         // The filters that the whole round leads to: a budget must not change what it begins with.
         const FilterSettings settings = filter_settings(end);
-        std::vector<float> density =
-            relative_density(*prediction_, job_.options.density, settings.c, settings.limits);
+        std::vector<float> density = relative_counts(settings);
         std::vector<uint32_t> have(s_.pixels());
         for (size_t i = 0; i < have.size(); ++i) have[i] = s_.films[0].pixels[i].count;
         const int64_t total = std::llround(target * double(job_.pixels()));
         const auto most = uint32_t(std::clamp(job_.most_samples(target), 1.0, 4e9));
         std::vector<uint32_t> counts = job_.options.progressive
-                                           ? allocate_unmet(density, total, have, most)
+                                           ? allocate_on_demand(density, total, have, most)
                                            : allocate(density, total, have, most);
         if (!job_.begin_round(target, {std::move(counts)})) return false;
         for (float& d : density) d *= float(target);
         s_.density = std::move(density);
         return true;
+    }
+
+    std::vector<float> relative_counts(const FilterSettings& settings) const {
+        const DensityRule rule = job_.options.density;
+        if (!job_.options.progressive)
+            return relative_density(*prediction_, rule, settings.c, settings.limits);
+        // A few paths tell N with much noise: the mean under the pixel's filter, where the light is
+        // alike, tells it better. And it is asked of all pixels there, by the squared weights that
+        // their variances have in that of the filtered pixel, a Gaussian with half of the
+        // covariance. Both together have one and a half of it.
+        FilterField field = filter_field(prediction_->spectrum, prediction_->width,
+                                         prediction_->height, job_.options.filter, settings);
+        if (job_.options.filter == FilterRule::verified) limit_by_neighbours(field, settings);
+        for (auto& s : field.covariance) s = 1.5f * s;
+        return density_on_demand(mean_under_filters(
+            relative_demand(*prediction_, rule, settings.c, settings.limits), field));
     }
 
     void trace() {

@@ -48,8 +48,8 @@ struct RenderOptions {
     FilterRule filter = FilterRule::verified;
     std::optional<int> max_spp;    ///< most samples in any pixel; default 16 times the average
     std::optional<int> max_depth;  ///< default: the scene's
-    /// covariance: each round traces the pixels that lack most of what the prediction asks for, and
-    /// `max_spp` limits what a pixel gets in one round, not in all.
+    /// covariance: each round samples on demand, where a sample takes most off the predicted error,
+    /// and `max_spp` limits what a pixel gets in one round, not in all.
     bool progressive = false;
     bool even_counts = false;     ///< hybrid: every pixel the same count, for comparisons
     bool emitters_apart = false;  ///< uniform: keeps the light of emitters in view apart

@@ -55,40 +55,67 @@ TEST(Allocate, SpreadsLessThanOneSamplePerPixel) {
             25u);
 }
 
-RC_GTEST_PROP(AllocateUnmet, MeetsTheBudgetAndLevelsWhatIsMissing, ()) {
+RC_GTEST_PROP(AllocateOnDemand, MeetsTheBudgetAndFillsUpToOneMultipleOfTheDensity, ()) {
     const auto n = *rc::gen::inRange<size_t>(1, 200);
     std::vector<float> density(n);
     std::vector<uint32_t> have(n);
     int64_t taken = 0;
-    double sum = 0;
     for (size_t i = 0; i < n; ++i) {
-        sum += density[i] = float(*rc::gen::inRange(0, 1000)) * 0.01f + 0.01f;
+        density[i] = float(*rc::gen::inRange(0, 1000)) * 0.01f + 0.01f;
         taken += have[i] = uint32_t(*rc::gen::inRange(0, 20));
     }
-    for (float& d : density) d *= float(double(n) / sum);
     const int64_t budget = taken + *rc::gen::inRange<int64_t>(0, 3000);
-    const auto counts = allocate_unmet(density, budget, have, 1u << 20);
+    const auto counts = allocate_on_demand(density, budget, have, 1u << 20);
     RC_ASSERT(total(counts) == budget);
-    // Nobody who was given anything lacks less than somebody who was not, but for roundings.
-    const auto lack = [&](size_t i) {
-        return double(budget) / double(n) * double(density[i]) - double(counts[i]);
-    };
-    double least_given = 1e30, most_left = -1e30;
+    // Nobody got anything beyond the multiple that those who got nothing have, but for roundings.
+    double least_left = 1e30;
     for (size_t i = 0; i < n; ++i) {
         RC_ASSERT(counts[i] >= have[i]);
-        most_left = std::max(most_left, lack(i));
-        if (counts[i] > have[i]) least_given = std::min(least_given, lack(i));
+        least_left = std::min(least_left, (double(counts[i]) + 1) / double(density[i]));
     }
-    RC_ASSERT(least_given >= most_left - 3);
+    for (size_t i = 0; i < n; ++i)
+        if (counts[i] > have[i]) RC_ASSERT((double(counts[i]) - 2) / density[i] <= least_left);
 }
 
-TEST(AllocateUnmet, SamplesOnlyWhereMostIsMissing) {
-    const std::vector<float> density{0.1f, 0.4f, 3.5f};
-    const std::vector<uint32_t> capped{4, 4, 4};
-    // 1, 4 and 35 are asked for: only the last lacks anything.
-    EXPECT_EQ(allocate_unmet(density, 30, capped, 1000), (std::vector<uint32_t>{4, 4, 22}));
-    // But no more than a round may give it, and then the others have their turn.
-    EXPECT_EQ(allocate_unmet(density, 30, capped, 10), (std::vector<uint32_t>{7, 9, 14}));
+TEST(AllocateOnDemand, LimitsWhatARoundAdds) {
+    const std::vector<float> density{1, 4, 5};
+    const std::vector<uint32_t> have{4, 4, 4};
+    EXPECT_EQ(allocate_on_demand(density, 40, have, 1000), (std::vector<uint32_t>{4, 16, 20}));
+    // What the limit of a round leaves goes to the others; the next round may add as much again.
+    const auto first = allocate_on_demand(density, 34, have, 10);
+    EXPECT_EQ(first, (std::vector<uint32_t>{6, 14, 14}));
+    EXPECT_EQ(allocate_on_demand(density, 54, first, 10), (std::vector<uint32_t>{6, 24, 24}));
+}
+
+TEST(DensityOnDemand, LeavesLessErrorThanAnyOtherSplit) {
+    // Squared errors N / n; the even tenth, which no prediction asks for, taken off.
+    const std::vector<float> demand{0.5f, 3, 80, 20000};
+    std::vector<float> density = density_on_demand(demand);
+    EXPECT_NEAR(std::accumulate(density.begin(), density.end(), 0.0f), 4, 1e-5f);
+    for (float& v : density) v -= 0.1f;
+    const auto error = [&](const std::vector<float>& n) {
+        double sum = 0;
+        for (size_t i = 0; i < n.size(); ++i) sum += double(demand[i]) / double(n[i]);
+        return sum;
+    };
+    const double least = error(density);
+    for (size_t i = 0; i < 4; ++i)
+        for (size_t j = 0; j < 4; ++j) {
+            if (i == j) continue;
+            std::vector<float> other = density;
+            const float moved = 0.1f * std::min(density[i], density[j]);
+            other[i] += moved, other[j] -= moved;
+            EXPECT_GT(error(other), least) << i << ' ' << j;
+        }
+}
+
+TEST(RelativeDemand, IsWhatTheThesisAsksForAndTheSquareOfTheTemperedDensity) {
+    const Prediction p{2, 1, {{0.01f, 0, 0.0225f}, {0.02f, 0.01f, 0.03f}}, {2, 50}};
+    const auto thesis = relative_demand(p, DensityRule::thesis, 2, {0.4f, 15});
+    EXPECT_NEAR(thesis[0], 2 * 0.015f, 1e-6f);
+    const auto tempered = relative_demand(p, DensityRule::tempered, 2, {0.4f, 15});
+    EXPECT_NEAR(tempered[0], 2 * 0.015f, 1e-6f);
+    EXPECT_NEAR(thesis[1] / tempered[1], 50.0f / 4, 1e-4f);
 }
 
 TEST(RelativeDensity, HasMeanOneAndAnEvenShare) {
