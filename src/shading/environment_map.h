@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/huge_pages.h"
 #include "core/vec.h"
 #include "shading/light_weight.h"
 #include "shading/table_cdf.h"
@@ -38,6 +39,17 @@ class EnvironmentMap {
     Rgb radiance(Vec3 w) const { return look(w).radiance; }
     /// A unit direction with density `pdf`, for u in [0, 1)^2. Not for black maps.
     Vec3 sample(Vec2 u) const;
+    /// The same in three steps. Each of the first two ends with a request to memory, which takes as
+    /// long as hundreds of instructions: who can do something else meanwhile does not wait for it.
+    struct Draw {
+        Vec2 u;
+        size_t row = 0, column = 0;
+    };
+    Draw begin_draw(Vec2 u) const;
+    void choose_texel(Draw& draw) const;
+    /// With what lies there, for less than `look` would take.
+    struct Found;
+    Found find(const Draw& draw) const;
     /// Per solid angle.
     float pdf(Vec3 w) const { return look(w).pdf; }
     /// Both from the same texels.
@@ -45,7 +57,7 @@ class EnvironmentMap {
         Rgb radiance;
         float pdf = 0;
     };
-    Sight look(Vec3 w) const;
+    Sight look(Vec3 w) const { return look_at(to_square(w), w); }
 
     /// Mean radiance over the sphere.
     Rgb mean() const { return mean_; }
@@ -53,6 +65,8 @@ class EnvironmentMap {
     Rgb irradiance_from_above() const;
 
   private:
+    /// At the place `uv` of the unit direction w.
+    Sight look_at(Vec2 uv, Vec3 w) const;
     Vec2 to_square(Vec3 w) const;
     Vec3 to_direction(Vec2 uv) const;
     /// With x in [-1, width] and y in [-1, height].
@@ -69,15 +83,20 @@ class EnvironmentMap {
     void build_distribution();
 
     /// Row by row with one more texel on every side: what lies beyond the edge.
-    std::vector<Rgb> texels_;
+    HugePageVector<Rgb> texels_;
     int width_ = 0, height_ = 0;
     Layout layout_ = Layout::equal_area;
     /// Of the polar angle at the rows' centres, with a row more at both ends; 1 on equal-area maps.
     std::vector<float> row_sine_;
-    std::vector<TableCdf> columns_;  // of each row
+    TableCdf columns_;  // of each row
     TableCdf rows_;
     float mean_weight_ = 0;  // over the square
     Rgb mean_;
+};
+
+struct EnvironmentMap::Found {
+    Vec3 w;  ///< unit
+    Sight sight;
 };
 
 }  // namespace covtrace

@@ -45,12 +45,15 @@ struct Lights::Impl {
                                            Vec2 u) const;
     std::optional<LightSample> sample_point(int light, float probability, Vec3 p) const;
     std::optional<LightSample> sample_infinite(const InfiniteShare& share, Vec3 n, float u_select,
-                                               Vec2 u) const;
+                                               Draw draw) const;
+    void advance(const Environment& light, Draw& draw, int steps) const;
 
     InfiniteShare infinite_share(Vec3 p, Vec3 n) const;
     /// Estimated irradiance by infinite light i (distant ones first), for choosing among them.
     float infinite_estimate(size_t i, Vec3 n) const;
-    Sky sky(const InfiniteShare& share, Vec3 n, Vec3 w) const;
+    /// `known`, where it is given: what the environment of index `from` shows there.
+    Sky sky(const InfiniteShare& share, Vec3 n, Vec3 w, size_t from = 0,
+            const EnvironmentMap::Sight* known = nullptr) const;
     Rgb environment(Vec3 w) const;
     SourceSpectrum environment_spectrum(Vec3 w) const;
 
