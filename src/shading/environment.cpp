@@ -48,30 +48,20 @@ Environment::Linear Environment::linear(const Transform& t) {
     return {t.vector({1, 0, 0}), t.vector({0, 1, 0}), t.vector({0, 0, 1})};
 }
 
-EnvironmentMap::Found Environment::find(Vec3 n, const EnvironmentMap::Draw& draw) const {
-    if (!map_) {
-        const Vec3 w =
-            n == Vec3{} ? square_to_sphere(draw.u)
-                        : normalize(Frame::from_z(n).to_world(square_to_cosine_hemisphere(draw.u)));
-        return {w, look(n, w)};
-    }
-    const EnvironmentMap::Found found = map_->find(draw);
-    const Vec3 w = to_world_(found.w);
-    const float l = length(w);
-    return {w / l, in_world(found.sight, 1 / l)};
-}
-
-EnvironmentMap::Sight Environment::in_world(EnvironmentMap::Sight sight, float stretched) const {
-    sight.radiance *= scale_;
-    if (!is_rigid_) sight.pdf *= determinant_ / (stretched * stretched * stretched);
-    return sight;
+Vec3 Environment::direction(Vec3 n, const EnvironmentMap::Draw& draw) const {
+    if (map_) return normalize(to_world_(map_->direction(draw)));
+    if (n == Vec3{}) return square_to_sphere(draw.u);
+    return normalize(Frame::from_z(n).to_world(square_to_cosine_hemisphere(draw.u)));
 }
 
 EnvironmentMap::Sight Environment::look(Vec3 n, Vec3 w) const {
     if (!map_) return {scale_, n == Vec3{} ? kUniformSpherePdf : cosine_hemisphere_pdf(dot(n, w))};
     const Vec3 stretched = to_light_(w);
     const float l = length(stretched);
-    return in_world(map_->look(stretched / l), l);
+    EnvironmentMap::Sight sight = map_->look(stretched / l);
+    sight.radiance *= scale_;
+    if (!is_rigid_) sight.pdf *= determinant_ / (l * l * l);
+    return sight;
 }
 
 Rgb Environment::mean_radiance() const {

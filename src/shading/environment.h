@@ -27,15 +27,15 @@ class Environment {
                 const SourceLocation& where);
 
     Rgb radiance(Vec3 w) const { return map_ ? scale_ * map_->radiance(to_light(w)) : scale_; }
-    /// A direction, and what lies there, for a surface with the unit normal n, which uniform light
-    /// is sampled about by the cosine; n zero: from all sides. In three steps as of a map.
+    /// A direction for a surface with the unit normal n, which uniform light is sampled about by
+    /// the cosine; n zero: from all sides. In three steps as of a map.
     EnvironmentMap::Draw begin_draw(Vec2 u) const {
         return map_ ? map_->begin_draw(u) : EnvironmentMap::Draw{u};
     }
     void choose_texel(EnvironmentMap::Draw& draw) const {
         if (map_) map_->choose_texel(draw);
     }
-    EnvironmentMap::Found find(Vec3 n, const EnvironmentMap::Draw& draw) const;
+    Vec3 direction(Vec3 n, const EnvironmentMap::Draw& draw) const;
     bool is_map() const { return map_.has_value(); }
     float pdf(Vec3 n, Vec3 w) const { return look(n, w).pdf; }
     /// Both at once.
@@ -58,9 +58,6 @@ class Environment {
         Vec3 operator()(Vec3 v) const { return x * v.x + y * v.y + z * v.z; }
     };
     static Linear linear(const Transform& t);
-    /// What a map shows, in the units of the world; `stretched`: length of the world's direction in
-    /// light space.
-    EnvironmentMap::Sight in_world(EnvironmentMap::Sight sight, float stretched) const;
     Vec3 to_light(Vec3 w) const { return normalize(to_light_(w)); }
 
     Transform light_to_world_;

@@ -126,7 +126,8 @@ Position position(float s, int n) {
 
 }  // namespace
 
-EnvironmentMap::Sight EnvironmentMap::look_at(Vec2 uv, Vec3 w) const {
+EnvironmentMap::Sight EnvironmentMap::look(Vec3 w) const {
+    const Vec2 uv = to_square(w);
     const Position x = position(uv.x, width_), y = position(uv.y, height_);
     const Rgb* texels = &texel(x.index, y.index);
     const size_t stride = static_cast<size_t>(width_ + 2);
@@ -221,10 +222,10 @@ void EnvironmentMap::choose_texel(Draw& draw) const {
 Vec3 EnvironmentMap::sample(Vec2 u) const {
     Draw draw = begin_draw(u);
     choose_texel(draw);
-    return find(draw).w;
+    return direction(draw);
 }
 
-EnvironmentMap::Found EnvironmentMap::find(const Draw& draw) const {
+Vec3 EnvironmentMap::direction(const Draw& draw) const {
     Vec2 u = draw.u;
     const size_t x = draw.column, y = draw.row;
     // Interpolation is bilinear in each quarter of the texel: values at its corners, edges and
@@ -251,10 +252,8 @@ EnvironmentMap::Found EnvironmentMap::find(const Draw& draw) const {
     const float t = sample_linear(g[j][i] + g[j][i + 1], g[j + 1][i] + g[j + 1][i + 1], u.y);
     const float s = sample_linear(g[j][i] * (1 - t) + g[j + 1][i] * t,
                                   g[j][i + 1] * (1 - t) + g[j + 1][i + 1] * t, u.x);
-    const Vec2 uv{(float(x) + (float(i) + s) / 2) / float(width_),
-                  (float(y) + (float(j) + t) / 2) / float(height_)};
-    const Vec3 w = to_direction(uv);
-    return {w, look_at(uv, w)};
+    return to_direction({(float(x) + (float(i) + s) / 2) / float(width_),
+                         (float(y) + (float(j) + t) / 2) / float(height_)});
 }
 
 Rgb EnvironmentMap::irradiance_from_above() const {

@@ -47,9 +47,7 @@ class EnvironmentMap {
     };
     Draw begin_draw(Vec2 u) const;
     void choose_texel(Draw& draw) const;
-    /// With what lies there, for less than `look` would take.
-    struct Found;
-    Found find(const Draw& draw) const;
+    Vec3 direction(const Draw& draw) const;
     /// Per solid angle.
     float pdf(Vec3 w) const { return look(w).pdf; }
     /// Both from the same texels.
@@ -57,7 +55,7 @@ class EnvironmentMap {
         Rgb radiance;
         float pdf = 0;
     };
-    Sight look(Vec3 w) const { return look_at(to_square(w), w); }
+    Sight look(Vec3 w) const;
 
     /// Mean radiance over the sphere.
     Rgb mean() const { return mean_; }
@@ -65,8 +63,6 @@ class EnvironmentMap {
     Rgb irradiance_from_above() const;
 
   private:
-    /// At the place `uv` of the unit direction w.
-    Sight look_at(Vec2 uv, Vec3 w) const;
     Vec2 to_square(Vec3 w) const;
     Vec3 to_direction(Vec2 uv) const;
     /// With x in [-1, width] and y in [-1, height].
@@ -92,11 +88,6 @@ class EnvironmentMap {
     TableCdf rows_;
     float mean_weight_ = 0;  // over the square
     Rgb mean_;
-};
-
-struct EnvironmentMap::Found {
-    Vec3 w;  ///< unit
-    Sight sight;
 };
 
 }  // namespace covtrace

@@ -132,12 +132,10 @@ Rgb Lights::Impl::environment(Vec3 w) const {
     return sum;
 }
 
-Lights::Sky Lights::Impl::sky(const InfiniteShare& share, Vec3 n, Vec3 w, size_t from,
-                              const EnvironmentMap::Sight* known) const {
+Lights::Sky Lights::Impl::sky(const InfiniteShare& share, Vec3 n, Vec3 w) const {
     Sky sky;
     for (size_t i = 0; i < environments.size(); ++i) {
-        const EnvironmentMap::Sight sight =
-            known && i == from ? *known : environments[i].look(n, w);
+        const EnvironmentMap::Sight sight = environments[i].look(n, w);
         const float estimate = infinite_estimate(distants.size() + i, n);
         sky.radiance += sight.radiance;
         if (estimate > 0) sky.pdf += estimate * sight.pdf;
@@ -219,9 +217,8 @@ std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& sh
     }
     const Environment& environment_light = environments[chosen - distants.size()];
     advance(environment_light, draw, 2);
-    const EnvironmentMap::Found found = environment_light.find(n, draw.sky);
-    s.wi = found.w;
-    const Sky there = sky(share, n, s.wi, chosen - distants.size(), &found.sight);
+    s.wi = environment_light.direction(n, draw.sky);
+    const Sky there = sky(share, n, s.wi);
     s.radiance = there.radiance;
     s.pdf = there.pdf;
     if (!(s.pdf > 0) || is_black(s.radiance)) return std::nullopt;

@@ -51,9 +51,7 @@ struct Lights::Impl {
     InfiniteShare infinite_share(Vec3 p, Vec3 n) const;
     /// Estimated irradiance by infinite light i (distant ones first), for choosing among them.
     float infinite_estimate(size_t i, Vec3 n) const;
-    /// `known`, where it is given: what the environment of index `from` shows there.
-    Sky sky(const InfiniteShare& share, Vec3 n, Vec3 w, size_t from = 0,
-            const EnvironmentMap::Sight* known = nullptr) const;
+    Sky sky(const InfiniteShare& share, Vec3 n, Vec3 w) const;
     Rgb environment(Vec3 w) const;
     SourceSpectrum environment_spectrum(Vec3 w) const;
 
