@@ -46,6 +46,8 @@ function(covtrace_library name)
     add_library(${name} STATIC ${ARG_SOURCES})
     target_link_libraries(${name} PUBLIC covtrace_flags ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
     set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    # Nobody replaces the libraries' functions at run time: those of one file may be inlined into each other.
+    target_compile_options(${name} PRIVATE -fno-semantic-interposition)
 endfunction()
 
 # covtrace_tests(NAME LABEL label SOURCES a.cpp … [DEPENDS …]): a GoogleTest program, one ctest per test case.

@@ -87,6 +87,9 @@ constexpr uint32_t reversed_sobol_1(uint32_t index) {
     return index ^ ((index >> 1) & 0x55555555u);
 }
 
+/// Keys of the camera's numbers.
+constexpr uint64_t kCameraIndex = 0x63616d, kCameraScramble = 0x100;
+
 /// A Sobol number, given reversed, scrambled.
 constexpr float scrambled(uint32_t reversed, uint32_t seed) {
     return to_unit_float(reverse_bits(laine_karras(reversed, seed)));
@@ -104,10 +107,10 @@ uint32_t Sampler::shuffled_index(uint64_t key) const {
 
 Sampler::CameraSample Sampler::camera() {
     constexpr size_t kLanes = 8;  // five are used
-    const uint32_t index = shuffled_index(hash_combine(key_, 0x63616d));
+    const uint32_t index = shuffled_index(hash_combine(key_, kCameraIndex));
     std::array<uint32_t, kLanes> number{}, scramble{};
     for (size_t d = 0; d < 5; ++d) {
-        scramble[d] = static_cast<uint32_t>(hash_combine(key_, 0x100 + d));
+        scramble[d] = static_cast<uint32_t>(hash_combine(key_, kCameraScramble + d));
         number[d] = reversed_sobol(index, d);
     }
     std::array<float, kLanes> x;
@@ -115,8 +118,20 @@ Sampler::CameraSample Sampler::camera() {
     return {{x[0], x[1]}, {x[2], x[3]}, x[4]};
 }
 
+Vec2 Sampler::film() const {
+    const uint32_t index = shuffled_index(hash_combine(key_, kCameraIndex));
+    const auto scramble = [this](uint64_t d) {
+        return static_cast<uint32_t>(hash_combine(key_, kCameraScramble + d));
+    };
+    return {scrambled(index, scramble(0)), scrambled(reversed_sobol_1(index), scramble(1))};
+}
+
 Vec2 Sampler::next_2d() {
-    const uint64_t key = hash_combine(key_, kFirstPair + pair_++);
+    return pair(pair_++);
+}
+
+Vec2 Sampler::pair(uint32_t at) const {
+    const uint64_t key = hash_combine(key_, kFirstPair + at);
     const uint32_t index = shuffled_index(key);
     const uint64_t scrambles = mix_bits(key);
     return {scrambled(index, static_cast<uint32_t>(scrambles)),

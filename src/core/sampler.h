@@ -25,9 +25,12 @@ class Sampler {
         float time = 0;
     };
     CameraSample camera();
+    /// The position on the film alone, at less than half the price.
+    Vec2 film() const;
 
-    float next_1d();  ///< the first number of a fresh pair
-    Vec2 next_2d();   ///< a fresh pair
+    Vec2 pair(uint32_t index) const;  ///< of a fixed index, wherever the stream stands
+    float next_1d();                  ///< the first number of a fresh pair
+    Vec2 next_2d();                   ///< a fresh pair
     /// Four fresh pairs, the same as from next_2d, at less than the price of two.
     std::array<Vec2, 4> next_four_2d();
     /// Skips to a fixed dimension, so that later events see the same numbers whatever came before.

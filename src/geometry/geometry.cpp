@@ -53,18 +53,22 @@ double instance_error(const Affine& world_from_local, const Affine& local_from_w
     return 6 * kHalfUlp * length(world_from_local.absolute(local));
 }
 
-/// `point` of the local space that `map` takes to the world; null: it is the world already.
-void fill_hit(SurfacePoint point, const Affine* map, SurfaceHit& hit) {
-    if (map) {
-        point.error *= std::max({length(map->row[0]), length(map->row[1]), length(map->row[2])});
-        point.position = map->point(point.position);
-        point.error += instance_error(*map, map->inverse(), point.position);
-        point.ng = normalize(map->normal(point.ng));
-        point.ns = normalize(map->normal(point.ns));
-        if (dot(point.ng, point.ns) < 0) point.ns = point.ns * -1.0;
-        point.dpdu = map->vector(point.dpdu);
-        point.dpdv = map->vector(point.dpdv);
-    }
+/// `point` of the local space of an instance in the world.
+void place(SurfacePoint& point, const Affine& world_from_local, const Affine& local_from_world) {
+    const Affine& map = world_from_local;
+    point.error *= std::sqrt(std::max(
+        {dot(map.row[0], map.row[0]), dot(map.row[1], map.row[1]), dot(map.row[2], map.row[2])}));
+    point.position = map.point(point.position);
+    point.error += instance_error(map, local_from_world, point.position);
+    point.ng = normalize(map.normal(point.ng));
+    point.ns = normalize(map.normal(point.ns));
+    if (dot(point.ng, point.ns) < 0) point.ns = point.ns * -1.0;
+    point.dpdu = map.vector(point.dpdu);
+    point.dpdv = map.vector(point.dpdv);
+}
+
+/// `point` in the world.
+void fill_hit(const SurfacePoint& point, SurfaceHit& hit) {
     hit.position = point.position.to_float();
     hit.ng = point.ng.to_float();
     hit.ns = point.ns.to_float();
@@ -128,18 +132,18 @@ bool Geometry::Impl::nearest(const Ray& ray, unsigned mask, SurfaceHit& hit) con
     if (query.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
         hit.instance = 0;
         hit.shape = top.shape_of_geometry[query.hit.geomID];
-        fill_hit(surface_point(local[hit.shape], hit.primitive, hit.barycentric, near), nullptr,
-                 hit);
+        fill_hit(surface_point(local[hit.shape], hit.primitive, hit.barycentric, near), hit);
         return true;
     }
     hit.instance = query.hit.instID[0] + 1;
     const EmbreeInstance& instance = instances[query.hit.instID[0]];
     hit.shape = scenes[instance.scene].shape_of_geometry[query.hit.geomID];
     const Affine map = world_from_local(instance, ray.time);
-    const LocalShape& shape = local[hit.shape];
-    const Vec3d local_near =
-        std::holds_alternative<Quadric>(shape) ? map.inverse().point(near) : near;
-    fill_hit(surface_point(shape, hit.primitive, hit.barycentric, local_near), &map, hit);
+    const Affine inverse = map.inverse();
+    SurfacePoint point =
+        surface_point(local[hit.shape], hit.primitive, hit.barycentric, inverse.point(near));
+    place(point, map, inverse);
+    fill_hit(point, hit);
     return true;
 }
 

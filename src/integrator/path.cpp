@@ -30,6 +30,10 @@ const PathResult& PathTracer::run() {
 bool PathTracer::step() {
     SurfaceHit hit;
     ++(depth_ == 0 ? result_.rays.camera : result_.rays.bounce);
+    // The lights' second pair of the vertex to come.
+    if (draws_ahead_)
+        light_draw_ = scene_.lights.begin_draw(
+            sampler_.pair(static_cast<uint32_t>(depth_ + 1) * kPairsPerBounce + 1));
     const bool found = scene_.geometry.intersect(ray_, hit);
     if (medium_ >= 0) {
         const float length = found ? hit.t : scene_.unbounded_distance;
@@ -40,6 +44,7 @@ bool PathTracer::step() {
         escape();
         return false;
     }
+    if (draws_ahead_) scene_.lights.continue_draw(light_draw_);
     const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
     const MaterialId material =
         scene_.materials.at(shape.description.material, hit, scene_.textures);
@@ -47,10 +52,10 @@ bool PathTracer::step() {
     // eighth of it, so that the filter of the texture adds nothing to that of the pixel.
     const Vec3 from_eye = hit.position - camera_origin_;
     const float away = length(from_eye);
-    const Bsdf bsdf = away > 0 ? scene_.materials.bsdf(material, hit, scene_.textures,
-                                                       from_eye / away,
-                                                       scene_.camera.half_pixel(away) / 4)
-                               : scene_.materials.bsdf(material, hit, scene_.textures);
+    const Bsdf bsdf = away > 0
+                          ? scene_.materials.bsdf(material, hit, scene_.textures, from_eye / away,
+                                                  scene_.camera.half_pixel(away) / 4)
+                          : scene_.materials.bsdf(material, hit, scene_.textures);
     if (!std::holds_alternative<InterfaceBsdf>(bsdf))
         return meet_surface(hit, shape, material, bsdf);
     medium_ = medium_beyond(shape, hit, ray_.direction, medium_);
@@ -118,8 +123,8 @@ void PathTracer::describe_first_vertex(Vec3 position, Rgb albedo, Vec3 normal) {
 }
 
 bool PathTracer::survives(float u) {
-    // Between surfaces that absorb nothing a path would go on for as many bounces as it may: a scene
-    // may allow a million. Beyond a thousand it goes on for a hundred more in the mean.
+    // Between surfaces that absorb nothing a path would go on for as many bounces as it may: a
+    // scene may allow a million. Beyond a thousand it goes on for a hundred more in the mean.
     constexpr int kLongWalk = 1000;
     constexpr float kLeastEnd = 0.01f;
     const float carried = max_component(beta_) * roulette_scale_;

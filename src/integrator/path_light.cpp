@@ -44,7 +44,9 @@ void PathTracer::add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex
 
 void PathTracer::add_direct(const Surface& surface, float u_select, Vec2 u, PathVertex* vertex) {
     const SurfaceHit& hit = surface.hit;
-    const auto light = scene_.lights.sample(hit.position, light_normal_, hit.time, u_select, u);
+    const auto light =
+        scene_.lights.finish_draw(hit.position, light_normal_, hit.time, u_select,
+                                  draws_ahead_ ? light_draw_ : Lights::Draw{u, {}, 0});
     if (!light || is_black(light->radiance) || !(light->pdf > 0)) return;
     const Vec3 wi_local = surface.frame.to_local(light->wi);
     const BsdfValue value = eval_direction(surface, wi_local, light->wi);

@@ -28,7 +28,12 @@ class PathTracer {
   public:
     PathTracer(const RenderScene& scene, Ray ray, Sampler& sampler, int max_depth,
                PathRecord* record)
-        : scene_(scene), ray_(ray), sampler_(sampler), max_depth_(max_depth), record_(record) {
+        : scene_(scene),
+          ray_(ray),
+          sampler_(sampler),
+          max_depth_(max_depth),
+          record_(record),
+          draws_ahead_(scene.lights.draws_ahead()) {
         camera_origin_ = ray.origin;
         medium_ = scene.description.camera.medium;
     }
@@ -105,11 +110,13 @@ class PathTracer {
     float roulette_scale_ = 1;
     MediumId medium_ = -1;
     int passed_interfaces_ = 0;
-    int depth_ = 0;       ///< scattering events so far
-    float glow_ = 0;      ///< luminance from media since the last vertex, for the record
-    Vec3 camera_origin_;  ///< where the path starts
-    GuideMixture guide_;  // at the current vertex
-    Vec3 light_normal_;   // what the lights are told at the current vertex
+    int depth_ = 0;            ///< scattering events so far
+    float glow_ = 0;           ///< luminance from media since the last vertex, for the record
+    Vec3 camera_origin_;       ///< where the path starts
+    GuideMixture guide_;       // at the current vertex
+    Lights::Draw light_draw_;  // of the next vertex, where the lights can begin before it is known
+    const bool draws_ahead_;
+    Vec3 light_normal_;                         // what the lights are told at the current vertex
     Vec3 previous_position_, previous_normal_;  // and at the last one, for the weights
 };
 

@@ -71,6 +71,8 @@ PixelFilter::PixelFilter(const FilterDescription& description) {
 
 std::array<float, 2> PixelFilter::Axis::sample(float u) const {
     size_t cell = first[static_cast<size_t>(u * kCells)];
+    // Mostly none or one step, which nobody could predict; seldom more.
+    cell += cdf[cell + 1] <= u ? 1 : 0;
     while (cdf[cell + 1] <= u) ++cell;
     const float span = cdf[cell + 1] - cdf[cell];
     const float within = span > 0 ? (u - cdf[cell]) / span : 0.5f;

@@ -1,8 +1,27 @@
 #include "integrator/render_scene.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace covtrace {
+
+namespace {
+
+bool anything_moves(const SceneDescription& d) {
+    const auto shape_moves = [](const ShapeDescription& s) {
+        return s.object_to_world.is_animated();
+    };
+    return d.camera.camera_to_world.is_animated() ||
+           std::any_of(d.shapes.begin(), d.shapes.end(), shape_moves) ||
+           std::any_of(
+               d.instances.begin(), d.instances.end(),
+               [](const InstanceDescription& i) { return i.instance_to_world.is_animated(); }) ||
+           std::any_of(d.objects.begin(), d.objects.end(), [&](const ObjectDescription& o) {
+               return std::any_of(o.shapes.begin(), o.shapes.end(), shape_moves);
+           });
+}
+
+}  // namespace
 
 RenderScene::RenderScene(SceneDescription scene_description, const std::string& isa,
                          size_t texture_bytes)
@@ -20,6 +39,7 @@ RenderScene::RenderScene(SceneDescription scene_description, const std::string& 
     description.warnings.insert(description.warnings.end(), reduced.begin(), reduced.end());
     for (const MediumDescription& m : description.media)
         media.push_back({m.sigma_a, m.sigma_s, m.emission, m.g});
+    has_lens_or_motion = camera.has_lens() || anything_moves(description);
     has_interfaces = geometry.has_interfaces();
     unbounded_distance = 2 * geometry.bounds().radius();
     guide = CausticGuide(*this);

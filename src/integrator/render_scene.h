@@ -38,7 +38,9 @@ struct RenderScene {
     MaterialStore materials;  ///< reflectances as they are in the light of all `lights` together
     Camera camera;
     PixelFilter filter;
-    std::vector<Medium> media;    ///< by MediumId
+    std::vector<Medium> media;  ///< by MediumId
+    /// Whether the place on the lens or the time of a ray makes any difference.
+    bool has_lens_or_motion = true;
     bool has_interfaces = false;  ///< surfaces that only separate media
     /// What a ray crosses of a medium without an end, in scene units: twice the radius of the
     /// scene's bounds, as far away as pbrt-v4 puts its infinite lights.

@@ -117,7 +117,9 @@ void PassStatistics::add(const PassStatistics& other) {
 FilmSample take_sample(const PassContext& context, int x, int y, uint32_t index, PathRecord* record,
                        PathResult& path) {
     Sampler sampler(context.seed, x, y, index);
-    const Sampler::CameraSample u = sampler.camera();
+    const Sampler::CameraSample u = context.scene.has_lens_or_motion
+                                        ? sampler.camera()
+                                        : Sampler::CameraSample{sampler.film(), {}, 0};
     const PixelFilter::Sample position = context.scene.filter.sample(u.film);
     const Vec2 film{float(x) + 0.5f + position.offset.x, float(y) + 0.5f + position.offset.y};
     const Ray ray = context.scene.camera.generate_ray(film, u.lens, u.time);

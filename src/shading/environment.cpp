@@ -48,10 +48,10 @@ Environment::Linear Environment::linear(const Transform& t) {
     return {t.vector({1, 0, 0}), t.vector({0, 1, 0}), t.vector({0, 0, 1})};
 }
 
-Vec3 Environment::sample(Vec3 n, Vec2 u) const {
-    if (map_) return normalize(to_world_(map_->sample(u)));
-    if (n == Vec3{}) return square_to_sphere(u);
-    return normalize(Frame::from_z(n).to_world(square_to_cosine_hemisphere(u)));
+Vec3 Environment::direction(Vec3 n, const EnvironmentMap::Draw& draw) const {
+    if (map_) return normalize(to_world_(map_->direction(draw)));
+    if (n == Vec3{}) return square_to_sphere(draw.u);
+    return normalize(Frame::from_z(n).to_world(square_to_cosine_hemisphere(draw.u)));
 }
 
 EnvironmentMap::Sight Environment::look(Vec3 n, Vec3 w) const {

@@ -28,8 +28,15 @@ class Environment {
 
     Rgb radiance(Vec3 w) const { return map_ ? scale_ * map_->radiance(to_light(w)) : scale_; }
     /// A direction for a surface with the unit normal n, which uniform light is sampled about by
-    /// the cosine; n zero: from all sides.
-    Vec3 sample(Vec3 n, Vec2 u) const;
+    /// the cosine; n zero: from all sides. In three steps as of a map.
+    EnvironmentMap::Draw begin_draw(Vec2 u) const {
+        return map_ ? map_->begin_draw(u) : EnvironmentMap::Draw{u};
+    }
+    void choose_texel(EnvironmentMap::Draw& draw) const {
+        if (map_) map_->choose_texel(draw);
+    }
+    Vec3 direction(Vec3 n, const EnvironmentMap::Draw& draw) const;
+    bool is_map() const { return map_.has_value(); }
     float pdf(Vec3 n, Vec3 w) const { return look(n, w).pdf; }
     /// Both at once.
     EnvironmentMap::Sight look(Vec3 n, Vec3 w) const;

@@ -170,7 +170,7 @@ float EnvironmentMap::solid_angle(int y) const {
 
 void EnvironmentMap::build_distribution() {
     const auto w = static_cast<size_t>(width_), h = static_cast<size_t>(height_);
-    columns_.resize(h);
+    columns_ = TableCdf(h, w);
     std::vector<double> row_sum(h);
     std::vector<std::array<double, 3>> row_mean(h);
     parallel_for(height_, [&](int64_t row) {
@@ -188,7 +188,7 @@ void EnvironmentMap::build_distribution() {
             cumulated[static_cast<size_t>(x)] = sum;
             for (int c = 0; c < 3; ++c) mean[static_cast<size_t>(c)] += texel(x, y)[c];
         }
-        columns_[r] = TableCdf(cumulated);
+        columns_.set_row(r, cumulated);
         row_sum[r] = sum;
         for (double& channel : mean) channel *= solid_angle(y);
         row_mean[r] = mean;
@@ -206,9 +206,28 @@ void EnvironmentMap::build_distribution() {
     rows_ = TableCdf(row_sum);
 }
 
+EnvironmentMap::Draw EnvironmentMap::begin_draw(Vec2 u) const {
+    Draw draw{u};
+    draw.row = rows_.sample(draw.u.y);
+    draw.column = columns_.begin(u.x, draw.row);
+    return draw;
+}
+
+void EnvironmentMap::choose_texel(Draw& draw) const {
+    draw.column = columns_.finish(draw.column, draw.u.x, draw.row);
+    for (int j = -1; j <= 1; ++j)
+        __builtin_prefetch(&texel(static_cast<int>(draw.column), static_cast<int>(draw.row) + j));
+}
+
 Vec3 EnvironmentMap::sample(Vec2 u) const {
-    const size_t y = rows_.sample(u.y);
-    const size_t x = columns_[y].sample(u.x);
+    Draw draw = begin_draw(u);
+    choose_texel(draw);
+    return direction(draw);
+}
+
+Vec3 EnvironmentMap::direction(const Draw& draw) const {
+    Vec2 u = draw.u;
+    const size_t x = draw.column, y = draw.row;
     // Interpolation is bilinear in each quarter of the texel: values at its corners, edges and
     // centre.
     std::array<std::array<float, 3>, 3> g;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/huge_pages.h"
 #include "core/vec.h"
 #include "shading/light_weight.h"
 #include "shading/table_cdf.h"
@@ -38,6 +39,15 @@ class EnvironmentMap {
     Rgb radiance(Vec3 w) const { return look(w).radiance; }
     /// A unit direction with density `pdf`, for u in [0, 1)^2. Not for black maps.
     Vec3 sample(Vec2 u) const;
+    /// The same in three steps. Each of the first two ends with a request to memory, which takes as
+    /// long as hundreds of instructions: who can do something else meanwhile does not wait for it.
+    struct Draw {
+        Vec2 u;
+        size_t row = 0, column = 0;
+    };
+    Draw begin_draw(Vec2 u) const;
+    void choose_texel(Draw& draw) const;
+    Vec3 direction(const Draw& draw) const;
     /// Per solid angle.
     float pdf(Vec3 w) const { return look(w).pdf; }
     /// Both from the same texels.
@@ -69,12 +79,12 @@ class EnvironmentMap {
     void build_distribution();
 
     /// Row by row with one more texel on every side: what lies beyond the edge.
-    std::vector<Rgb> texels_;
+    HugePageVector<Rgb> texels_;
     int width_ = 0, height_ = 0;
     Layout layout_ = Layout::equal_area;
     /// Of the polar angle at the rows' centres, with a row more at both ends; 1 on equal-area maps.
     std::vector<float> row_sine_;
-    std::vector<TableCdf> columns_;  // of each row
+    TableCdf columns_;  // of each row
     TableCdf rows_;
     float mean_weight_ = 0;  // over the square
     Rgb mean_;

@@ -194,7 +194,7 @@ std::optional<LightSample> Lights::Impl::sample_point(int light, float probabili
 }
 
 std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& share, Vec3 n,
-                                                         float u_select, Vec2 u) const {
+                                                         float u_select, Draw draw) const {
     // The last one with any light takes what rounding leaves over.
     float rest = u_select * share.estimate, chosen_estimate = 0;
     size_t chosen = 0;
@@ -215,12 +215,20 @@ std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& sh
         s.is_delta = true;
         return s;
     }
-    s.wi = environments[chosen - distants.size()].sample(n, u);
+    const Environment& environment_light = environments[chosen - distants.size()];
+    advance(environment_light, draw, 2);
+    s.wi = environment_light.direction(n, draw.sky);
     const Sky there = sky(share, n, s.wi);
     s.radiance = there.radiance;
     s.pdf = there.pdf;
     if (!(s.pdf > 0) || is_black(s.radiance)) return std::nullopt;
     return s;
+}
+
+void Lights::Impl::advance(const Environment& light, Draw& draw, int steps) const {
+    if (draw.steps < 1 && steps >= 1) draw.sky = light.begin_draw(draw.u);
+    if (draw.steps < 2 && steps >= 2) light.choose_texel(draw.sky);
+    draw.steps = std::max(draw.steps, steps);
 }
 
 Rgb Lights::Impl::radiance_at(const AreaLight& area, const TexturePoint& at) const {
@@ -237,11 +245,25 @@ Lights::Lights(const SceneDescription& scene, const Geometry& geometry,
     : impl_(std::make_unique<Impl>(scene, geometry, textures)) {}
 Lights::~Lights() = default;
 
-std::optional<LightSample> Lights::sample(Vec3 p, Vec3 n, float time, float u_select,
-                                          Vec2 u) const {
+bool Lights::draws_ahead() const {
+    return impl_->infinite_count() == 1 && has_environment() && impl_->environments[0].is_map();
+}
+
+Lights::Draw Lights::begin_draw(Vec2 u) const {
+    Draw draw{u, {}, 0};
+    if (draws_ahead()) impl_->advance(impl_->environments[0], draw, 1);
+    return draw;
+}
+
+void Lights::continue_draw(Draw& draw) const {
+    if (draws_ahead()) impl_->advance(impl_->environments[0], draw, 2);
+}
+
+std::optional<LightSample> Lights::finish_draw(Vec3 p, Vec3 n, float time, float u_select,
+                                               Draw draw) const {
     const InfiniteShare share = impl_->infinite_share(p, n);
     if (u_select < share.probability)
-        return impl_->sample_infinite(share, n, u_select / share.probability, u);
+        return impl_->sample_infinite(share, n, u_select / share.probability, draw);
     const float finite = 1 - share.probability;
     if (!(finite > 0)) return std::nullopt;
     const float u_tree = std::min((u_select - share.probability) / finite, kLargestBelowOne);
@@ -249,7 +271,7 @@ std::optional<LightSample> Lights::sample(Vec3 p, Vec3 n, float time, float u_se
     if (!choice) return std::nullopt;
     const float probability = finite * choice->probability;
     return choice->light < impl_->first_point()
-               ? impl_->sample_area(choice->light, probability, p, time, u)
+               ? impl_->sample_area(choice->light, probability, p, time, draw.u)
                : impl_->sample_point(choice->light, probability, p);
 }
 

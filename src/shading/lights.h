@@ -7,6 +7,7 @@
 
 #include "geometry/geometry.h"
 #include "scene/scene_description.h"
+#include "shading/environment_map.h"
 #include "shading/texture.h"
 
 namespace covtrace {
@@ -66,7 +67,26 @@ class Lights {
     ///
     /// All infinite lights with extent count as one here: `radiance` and `pdf` are of all of them
     /// together.
-    std::optional<LightSample> sample(Vec3 p, Vec3 n, float time, float u_select, Vec2 u) const;
+    std::optional<LightSample> sample(Vec3 p, Vec3 n, float time, float u_select, Vec2 u) const {
+        return finish_draw(p, n, time, u_select, {u, {}, 0});
+    }
+
+    /// What of a sample depends on `u` alone: where it falls in an environment map. Begun as soon
+    /// as u is known, it lets memory answer while a path looks for p.
+    struct Draw {
+        Vec2 u;
+        EnvironmentMap::Draw sky;
+        int steps = 0;  ///< of it that are done
+    };
+    /// Whether there is anything to gain: one infinite light with an image, and no other.
+    bool draws_ahead() const;
+    /// The first step.
+    Draw begin_draw(Vec2 u) const;
+    /// The second one, best before something else that takes its time.
+    void continue_draw(Draw& draw) const;
+    /// `sample` with a draw that was taken as far as time allowed.
+    std::optional<LightSample> finish_draw(Vec3 p, Vec3 n, float time, float u_select,
+                                           Draw draw) const;
 
     /// Radiance that the surface at `hit` emits towards `wo` (unit, away from the surface).
     Rgb emitted(const SurfaceHit& hit, Vec3 wo) const;

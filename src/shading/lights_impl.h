@@ -45,7 +45,8 @@ struct Lights::Impl {
                                            Vec2 u) const;
     std::optional<LightSample> sample_point(int light, float probability, Vec3 p) const;
     std::optional<LightSample> sample_infinite(const InfiniteShare& share, Vec3 n, float u_select,
-                                               Vec2 u) const;
+                                               Draw draw) const;
+    void advance(const Environment& light, Draw& draw, int steps) const;
 
     InfiniteShare infinite_share(Vec3 p, Vec3 n) const;
     /// Estimated irradiance by infinite light i (distant ones first), for choosing among them.

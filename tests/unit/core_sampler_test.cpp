@@ -93,6 +93,16 @@ TEST(Sampler, PixelsSeedsAndPairsDiffer) {
     EXPECT_NE(a, s.next_2d());
 }
 
+TEST(Sampler, GivesPartsOfTheStreamAlone) {
+    for (uint32_t i = 0; i < 1000; ++i) {
+        Sampler s(7, 5, int(i % 13), i);
+        EXPECT_EQ(s.film(), s.camera().film);
+        s.set_dimension(9);
+        const auto four = s.next_four_2d();
+        for (uint32_t k = 0; k < 4; ++k) EXPECT_EQ(s.pair(9 + k), four[k]);
+    }
+}
+
 TEST(Sampler, NumbersStayBelowOne) {
     for (uint32_t i = 0; i < 100000; ++i) {
         Sampler s(3, 1, 1, i);

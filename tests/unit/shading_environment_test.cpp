@@ -274,5 +274,19 @@ TEST(EnvironmentSpectrum, SeveralLightsAreAveragedByRadiance) {
     EXPECT_NEAR(b.a11, a.a11 * l / (l + 2), 0.02f * a.a11);
 }
 
+TEST(EnvironmentMap, DrawsInStepsWhatItDrawsAtOnce) {
+    const auto shade = [](Vec3 w) { return Rgb{1 + w.x, 1 + w.y * w.y, std::exp(3 * w.z)}; };
+    for (const int width : {32, 64}) {
+        const EnvironmentMap map(texels_of(width, 32, shade), width, 32);
+        Rng rng(3);
+        for (int i = 0; i < 10000; ++i) {
+            const Vec2 u = rng.next_2d();
+            EnvironmentMap::Draw draw = map.begin_draw(u);
+            map.choose_texel(draw);
+            ASSERT_EQ(map.direction(draw), map.sample(u));
+        }
+    }
+}
+
 }  // namespace
 }  // namespace covtrace

@@ -50,6 +50,24 @@ TEST(TableCdf, FindsWhatBisectionFinds) {
     }
 }
 
+TEST(TableCdf, KeepsRowsApart) {
+    constexpr size_t kRows = 5, kEntries = 100;
+    TableCdf rows(kRows, kEntries);
+    for (size_t row = 0; row < kRows; ++row) rows.set_row(row, cumulated(uneven(kEntries, row)));
+    Rng rng(6);
+    for (size_t row = 0; row < kRows; ++row) {
+        const TableCdf alone(cumulated(uneven(kEntries, row)));
+        for (int i = 0; i < 1000; ++i) {
+            const float u = rng.next_float();
+            float a = u, b = u, c = u;
+            ASSERT_EQ(rows.sample(a, row), alone.sample(b));
+            ASSERT_EQ(a, b);
+            ASSERT_EQ(rows.finish(rows.begin(c, row), c, row), alone.sample(b = u));
+            ASSERT_EQ(a, c);
+        }
+    }
+}
+
 TEST(TableCdf, TreatsAllAlikeWhereNothingWeighs) {
     const TableCdf cdf(std::vector<double>(4, 0.0));
     for (size_t i = 0; i < 4; ++i) {
