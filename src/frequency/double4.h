@@ -1,7 +1,9 @@
 /// Four doubles that are computed with together.
 #pragma once
 
+#ifdef __FMA__
 #include <immintrin.h>
+#endif
 
 #include "covariance/covariance.hpp"
 
