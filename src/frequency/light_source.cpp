@@ -31,14 +31,12 @@ LightField ball_field(const SourceSpectrum& s, Vec3 travel, double cap) {
 std::optional<LightField> flat_field(const SourceSpectrum& s, Vec3 travel, double cap) {
     const bool is_flat = s.k11 == 0 && s.k12 == 0 && s.k22 == 0;
     if (!is_flat || s.velocity != Vec3{} || s.angular_velocity != Vec3{}) return std::nullopt;
-    const double least = 1 / (cov::four_pi_sq<double> * cap);
-    const cov::Sym2<double> moments{s.s11, s.s12, s.s22},
-        rest = moments - cov::Sym2<double>::diagonal(least, least);
+    const cov::Sym2<double> moments{s.s11, s.s12, s.s22};
     const cov::Frame<double> frame = cov::frame_along<double>(travel);
     const auto p = cov::projection<double>(frame, s.tangent.x, s.tangent.y);
-    const bool is_limited = !(rest.xx > 0) || !(cov::det(rest) > 1e-3 * rest.xx * rest.yy) ||
-                            std::abs(cov::det(p)) < 1.01 * cov::min_surface_cosine<double>;
-    if (is_limited) return std::nullopt;
+    // surface_exit limits cosines; near that limit the two need not agree on which side they are.
+    const bool is_grazing = std::abs(cov::det(p)) < 1.01 * cov::min_surface_cosine<double>;
+    if (is_grazing || !cov::is_spectrum_below(moments, cap)) return std::nullopt;
     LightField field{{}, frame};
     field.sigma.set_spatial(
         cov::inverse(cov::four_pi_sq<double> * cov::congruence(moments, cov::transpose(p))));

@@ -39,7 +39,7 @@ struct LikenessSettings {
 ///     w(p, q) = G(q - p) (any + (1 - any) exp(-1/2 sum_k (guide_k(p) - guide_k(q))^2))
 class Likeness {
   public:
-    static constexpr int kReach = 11;
+    static constexpr int kReach = 11;  ///< as far as three vectors of a row go
     static constexpr size_t kRows = 2 * kReach + 1, kColumns = 3 * kLanes;
     /// Row by row from the upper left; what is right of the window has no weight.
     using Window = std::array<float, kRows * kColumns>;

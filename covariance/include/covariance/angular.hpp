@@ -29,7 +29,7 @@ template <std::floating_point T>
 
 namespace detail {
 
-/// AngularPivots of the axes P and Q (u and v in either order) by B, an angular block whose larger
+/// Elimination of the axes P and Q (u and v in either order) by B, an angular block whose larger
 /// diagonal entry is that of P: B = L diag(d1, d2) L^T with L = [1 0; l 1]. Unlike an explicit
 /// inverse it keeps its accuracy where B is nearly singular. A second pivot that is only rounding
 /// noise is left out, which gives a generalised inverse.
@@ -78,16 +78,24 @@ struct AngularPivots {
         to(4, 4) = rest(s(4, 4), t, t);
     }
 
+    /// Sets to zero what of `s` only rounding has left in `to`.
+    static constexpr void drop_noise(SymmetricMatrix5<T>& to,
+                                     const SymmetricMatrix5<T>& s) noexcept {
+        constexpr T noise = 16 * std::numeric_limits<T>::epsilon();
+        for (const std::size_t i : {axis::x, axis::y, axis::t})
+            if (to(i, i) <= noise * s(i, i))
+                for (std::size_t j = 0; j < 5; ++j) to(i, j) = 0;
+    }
+
+    /// `slice_angular`.
     [[nodiscard]] constexpr SymmetricMatrix5<T> slice(const SymmetricMatrix5<T>& s) const noexcept {
         SymmetricMatrix5<T> r;
         eliminate(r, s, row(s, 0), row(s, 1), row(s, 4));
-        constexpr T noise = 16 * std::numeric_limits<T>::epsilon();
-        if (r(0, 0) <= noise * s(0, 0)) r(0, 0) = r(0, 1) = r(0, 4) = 0;
-        if (r(1, 1) <= noise * s(1, 1)) r(0, 1) = r(1, 1) = r(1, 4) = 0;
-        if (r(4, 4) <= noise * s(4, 4)) r(0, 4) = r(1, 4) = r(4, 4) = 0;
+        drop_noise(r, s);
         return r;
     }
 
+    /// `convolve_angular`.
     [[nodiscard]] constexpr SymmetricMatrix5<T> convolve(const SymmetricMatrix5<T>& s,
                                                          const Sym2<T>& kernel) const noexcept {
         // Rows u and v are R^T B^-1 C, a form in which nothing cancels.
@@ -109,11 +117,7 @@ struct AngularPivots {
         c(P, P) = at_p(own_p);
         c(Q, Q) = at_q(own_q);
         c(P, Q) = (at_q(own_p) + at_p(own_q)) / 2;
-
-        constexpr T noise = 16 * std::numeric_limits<T>::epsilon();
-        for (const std::size_t i : {axis::x, axis::y, axis::t})
-            if (c(i, i) <= noise * s(i, i))
-                for (std::size_t j = 0; j < 5; ++j) c(i, j) = 0;
+        drop_noise(c, s);
         return c;
     }
 };
@@ -121,8 +125,8 @@ struct AngularPivots {
 }  // namespace detail
 
 /// Integrates over all directions, the angular slice Sigma' = Sigma - R^T R_uv^+ R with R = rows u,
-/// v: `convolve_angular` with a kernel that is constant. Rows u and v become exactly
-/// zero. `b`: the angular block, with windows by which the light is to be multiplied first.
+/// v: `convolve_angular` with a kernel that is constant. Rows u and v become exactly zero.
+/// `b`: the angular block, with windows by which the light is to be multiplied first.
 ///
 /// Post     positive semi-definite; variances that are only rounding noise are set to zero.
 /// Errors   none; NaN in gives NaN out. Exact for Gaussians.

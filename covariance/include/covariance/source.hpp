@@ -47,14 +47,20 @@ template <std::floating_point T>
     return (T(1) / 12) * sum;
 }
 
+/// Whether no eigenvalue of (4 pi^2 S)^-1 reaches `cap`. May also be false, to be safe, where S
+/// less the smallest moments that `cap` allows is so flat that its determinant in float is
+/// rounding.
+template <std::floating_point T>
+[[nodiscard]] constexpr bool is_spectrum_below(const Sym2<T>& moments, NonDeduced<T> cap) noexcept {
+    const T least = 1 / (four_pi_sq<T> * cap);
+    const Sym2<T> rest = moments - Sym2<T>::diagonal(least, least);
+    return rest.xx > 0 && det(rest) > T(1e-3) * rest.xx * rest.yy;
+}
+
 /// (4 pi^2 S)^-1, with no eigenvalue above `cap`: the spectrum of a Gaussian of covariance S.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> spectrum_of_moments(const Sym2<T>& moments, NonDeduced<T> cap) noexcept {
-    const T least = 1 / (four_pi_sq<T> * cap);
-    const Sym2<T> rest = moments - Sym2<T>::diagonal(least, least);
-    // Beyond rounding of the determinants.
-    const T size = rest.xx * rest.yy;
-    if (rest.xx > 0 && det(rest) > T(1e-3) * size) return inverse(four_pi_sq<T> * moments);
+    if (is_spectrum_below(moments, cap)) return inverse(four_pi_sq<T> * moments);
     return map_eigenvalues(
         moments, [=](T l) { return l * four_pi_sq<T> * cap > 1 ? 1 / (l * four_pi_sq<T>) : cap; });
 }
