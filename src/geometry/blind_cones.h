@@ -16,8 +16,8 @@ struct BlindCones {
     Float8 cosine{}, sine2 = Float8{} + 1;  ///< of `angle`; the sine squared
     Float8 radius{};                        ///< of the boxes
 
-    /// All bits set where no edge in a box is an outline; `middle`: of the boxes, from who looks.
-    auto hide(const Vec3x8& middle) const {
+    /// Where no edge in a box is an outline; `middle`: of the boxes, from who looks.
+    Mask8 hide(const Vec3x8& middle) const {
         const Float8 along = abs8(dot8(middle, axis));
         const Float8 across2 = max8(less_product8(along, along, dot8(middle, middle)), Float8{});
         const Float8 inside = add_product8(along, cosine, -radius);

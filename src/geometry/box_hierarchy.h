@@ -45,11 +45,11 @@ class BoxHierarchy {
                (order_.capacity() + first_.capacity()) * sizeof(uint32_t);
     }
 
-    /// Best first. bounds(node, index) gives a lower bound on what is wanted for each of the node's
-    /// boxes; children at or above limit() are left out; visit(item) is called for the items that
-    /// remain.
-    template <class LowerBounds, class Limit, class Visit>
-    void search(const LowerBounds& bounds, const Limit& limit, const Visit& visit) const;
+    /// Calls visit(item) for the items whose boxes, and all boxes around them, are met: bit k of
+    /// meets(node, index) tells so of the node's k-th. Not best first: most searches find nothing,
+    /// and no order makes them shorter.
+    template <class Meets, class Visit>
+    void search(const Meets& meets, const Visit& visit) const;
 
   private:
     struct Builder;
@@ -60,41 +60,27 @@ class BoxHierarchy {
     Bounds3 bounds_;
 };
 
-template <class LowerBounds, class Limit, class Visit>
-void BoxHierarchy::search(const LowerBounds& bounds, const Limit& limit, const Visit& visit) const {
-    struct Entry {
-        float bound;
-        uint32_t child;
-    };
-    std::array<Entry, kMostDepth * kWidth> stack;
+template <class Meets, class Visit>
+void BoxHierarchy::search(const Meets& meets, const Visit& visit) const {
+    std::array<uint32_t, kMostDepth * kWidth> stack;
     if (nodes_.empty()) return;
     size_t size = 0;
     // A single item needs no look at its box.
     for (uint32_t next = items() == 1 ? kItem : 0;;) {
         if (next < kItem) {
             const Node& node = nodes_[next];
-            const Float8 lower = bounds(node, next);
-            unsigned below = bits8(lower < all8(limit()));
-            if (std::has_single_bit(below)) {
-                next = node.child[static_cast<size_t>(std::countr_zero(below))];
+            unsigned left = meets(node, next);
+            if (std::has_single_bit(left)) {
+                next = node.child[static_cast<size_t>(std::countr_zero(left))];
                 continue;
             }
-            const size_t base = size;
-            for (; below != 0; below &= below - 1) {
-                const auto k = static_cast<size_t>(std::countr_zero(below));
-                const float bound = lower[k];
-                // Farthest at the bottom.
-                size_t at = size++;
-                for (; at > base && stack[at - 1].bound < bound; --at) stack[at] = stack[at - 1];
-                stack[at] = {bound, node.child[k]};
-            }
+            for (; left != 0; left &= left - 1)
+                stack[size++] = node.child[static_cast<size_t>(std::countr_zero(left))];
         } else {
             visit(next - kItem);
         }
-        do {
-            if (size == 0) return;
-            next = stack[--size].child;
-        } while (!(stack[size].bound < limit()));
+        if (size == 0) return;
+        next = stack[--size];
     }
 }
 

@@ -11,9 +11,6 @@ void put(Vec3x8& to, size_t k, Vec3 v) {
     to.y[k] = v.y;
     to.z[k] = v.z;
 }
-Vec3 get(const Vec3x8& from, size_t k) {
-    return {from.x[k], from.y[k], from.z[k]};
-}
 
 }  // namespace
 
@@ -26,11 +23,6 @@ EdgeBlock::EdgeBlock(std::span<const FoldEdge> edges) {
         put(normal0, k, edges[k].normal0);
         put(normal1, k, edges[k].normal1);
     }
-}
-
-FoldEdge EdgeBlock::edge(size_t k) const {
-    const Vec3 from = get(a, k);
-    return {from, from + get(along, k), get(normal0, k), get(normal1, k)};
 }
 
 }  // namespace covtrace

@@ -3,6 +3,8 @@
 
 #include <immintrin.h>
 
+#include <cmath>
+
 #include "core/vec.h"
 
 // How such vectors are passed depends on the processor that is compiled for, which is one for all
@@ -12,6 +14,8 @@
 namespace covtrace {
 
 using Float8 __attribute__((vector_size(32))) = float;
+/// What a comparison gives: all bits of the k-th set where it holds for the k-th.
+using Mask8 = decltype(Float8{} < Float8{});
 inline Float8 all8(float a) {
     return Float8{a, a, a, a, a, a, a, a};
 }
@@ -41,6 +45,15 @@ inline Float8 abs8(const Float8& a) {
     return max8(a, -a);
 #endif
 }
+inline Float8 sqrt8(const Float8& a) {
+#ifdef __AVX__
+    return reinterpret_cast<Float8>(_mm256_sqrt_ps(reinterpret_cast<__m256>(a)));
+#else
+    Float8 roots;
+    for (int k = 0; k < 8; ++k) roots[k] = std::sqrt(a[k]);
+    return roots;
+#endif
+}
 /// a b + c; whether the product is rounded depends on the processor that is compiled for.
 inline Float8 add_product8(const Float8& a, const Float8& b, const Float8& c) {
 #ifdef __FMA__
@@ -59,9 +72,8 @@ inline Float8 less_product8(const Float8& a, const Float8& b, const Float8& c) {
     return c - a * b;
 #endif
 }
-/// Bit k tells whether the comparison that gave `mask` holds for the k-th.
-template <class Mask>
-unsigned bits8(const Mask& mask) {
+/// Bit k tells whether the k-th is set.
+inline unsigned bits8(const Mask8& mask) {
 #ifdef __AVX__
     return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
 #else
@@ -86,6 +98,9 @@ inline Vec3x8 abs8(const Vec3x8& a) {
 }
 inline Float8 dot8(const Vec3x8& a, const Vec3x8& b) {
     return add_product8(a.z, b.z, add_product8(a.y, b.y, a.x * b.x));
+}
+inline Vec3x8 cross8(const Vec3x8& a, const Vec3x8& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 /// c - a s.
 inline Vec3x8 less_product8(const Vec3x8& a, const Float8& s, const Vec3x8& c) {

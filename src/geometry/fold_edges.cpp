@@ -12,9 +12,6 @@ namespace covtrace {
 namespace {
 
 constexpr uint32_t kFree = ~uint32_t{0};
-/// Sine below which a point counts as in the plane of a face: a few times what the rounding of hit
-/// points gives at a thousandth of the scene's size.
-constexpr float kInPlane = 1e-3f;
 /// Bends below this angle, radians, cast no outline worth knowing.
 constexpr float kLeastBend = 1e-3f;
 
@@ -71,15 +68,6 @@ bool wedge(Vec3 a, Vec3 b, const std::vector<Vec3>& corners, const Side* begin, 
 }
 
 }  // namespace
-
-bool FoldEdge::is_outline_from(Vec3 p) const {
-    const Vec3 d = a - p, along = b - a;
-    const float s0 = dot(d, normal0), s1 = dot(d, normal1);
-    const float least = std::min(std::abs(s0), std::abs(s1));
-    // Beside the distance from the edge's line.
-    return s0 * s1 > 0 &&
-           sqr(least) * length_squared(along) > sqr(kInPlane) * length_squared(cross(d, along));
-}
 
 uint32_t FoldEdgeFinder::weld(Vec3 position) {
     if (2 * (corners_.size() + 1) > table_.size()) grow();

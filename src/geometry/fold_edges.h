@@ -17,10 +17,6 @@ struct FoldEdge {
     /// Normals, unit and across the edge, of the wedge's two outer faces: the directions from the
     /// edge into the faces, turned by a right angle about the edge.
     Vec3 normal0, normal1;
-
-    /// Whether `p` sees the edge as an outline. Where p is in the plane of a face itself, as a
-    /// point of that face is, it is none.
-    bool is_outline_from(Vec3 p) const;
 };
 
 /// Collects triangles, of one space, and finds their edges. Corners at the very same place are one,

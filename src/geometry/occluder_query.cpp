@@ -41,10 +41,9 @@ OutlineEvents OccluderQuery::operator()(const Segment& segment, const EdgeMeasur
     OutlineSearch search(segment.begin, segment.end, measure, nearest);
     if (search.is_over() || g.hierarchy.empty()) return {};
     const auto is = [](Owner a, Owner b) { return a.shape == b.shape && a.instance == b.instance; };
-    const auto limit = [&search] { return search.limit(); };
     using Node = BoxHierarchy::Node;
     g.hierarchy.search(
-        [&](const Node& node, uint32_t) { return search.bound_world(node); }, limit,
+        [&](const Node& node, uint32_t) { return search.near_world(node); },
         [&](uint32_t index) {
             const OccluderBody& body = g.bodies[index];
             if (body.curved.shape != Owner::kNone &&
@@ -61,16 +60,15 @@ OutlineEvents OccluderQuery::operator()(const Segment& segment, const EdgeMeasur
             if (!body.instance) {
                 set.hierarchy.search(
                     [&](const Node& node, uint32_t i) {
-                        return search.bound_world(node, set.cones[i]);
+                        return search.near_world(node, set.cones[i]);
                     },
-                    limit, [&](uint32_t i) { search.meet_world(set.blocks[i], index); });
+                    [&](uint32_t i) { search.meet_world(set.blocks[i], index); });
                 return;
             }
             search.enter(g.geometry.world_from_local(*body.instance, segment.time));
-            set.hierarchy.search([&](const Node& node,
-                                     uint32_t i) { return search.bound_local(node, set.cones[i]); },
-                                 limit,
-                                 [&](uint32_t i) { search.meet_local(set.blocks[i], index); });
+            set.hierarchy.search(
+                [&](const Node& node, uint32_t i) { return search.near_local(node, set.cones[i]); },
+                [&](uint32_t i) { search.meet_local(set.blocks[i], index); });
         });
 
     OutlineEvents events;

@@ -11,8 +11,6 @@ namespace {
 
 /// Edges so many times (squared) wider than the narrowest do not change what it allows.
 constexpr float kFaint = 16;
-/// What rounding may leave of a lower bound.
-constexpr float kBelow = 0.999f;
 
 }  // namespace
 
@@ -26,20 +24,8 @@ OutlineSearch::OutlineSearch(Vec3 begin, Vec3 end, const EdgeMeasure& measure, f
     axis_ = (begin - end) / length;
     limit_ = widest2_;
     if (is_over()) return;
-
-    wide_end_ = all8(end_);
-    wide_axis_ = all8(axis_);
-    wide_size_ = abs8(wide_axis_);
-    wide_lo_ = all8(lo_);
-    wide_hi_ = all8(hi_);
-    wide_a0_ = all8(measure.a0);
-    wide_a1_ = all8(measure.a1);
-    wide_b_ = all8(measure.b);
-    wide_h0_ = all8(measure.h0);
-    wide_h1_ = all8(measure.h1);
-    wide_h2_ = all8(measure.h2);
-    least_h_ = all8(1e-6f * measure.h0);
-    wide_sharp_ = all8(measure.a1 != 0 ? -measure.a0 / measure.a1 : 0.0f);
+    least_ = 1e-6f * measure.h0;
+    sharp_ = measure.a1 != 0 ? -measure.a0 / measure.a1 : 0.0f;
 }
 
 void OutlineSearch::enter(const Affine& m) {
@@ -48,114 +34,84 @@ void OutlineSearch::enter(const Affine& m) {
     local_end_ = m.inverse().point(Vec3d(end_)).to_float();
 }
 
-Float8 OutlineSearch::bound_local(const BoxHierarchy::Node& node, const BlindCones& cones) const {
+unsigned OutlineSearch::near_local(const BoxHierarchy::Node& node, const BlindCones& cones) const {
     const auto row = [this](size_t i) { return all8(rows_[i]); };
     const Vec3x8 x = row(0), y = row(1), z = row(2), shift = all8(shift_ - end_);
     const Vec3x8 middle{dot8(x, node.middle) + shift.x, dot8(y, node.middle) + shift.y,
                         dot8(z, node.middle) + shift.z};
     const Vec3x8 half{dot8(abs8(x), node.half), dot8(abs8(y), node.half), dot8(abs8(z), node.half)};
-    return cones.hide(node.middle - all8(local_end_)) ? all8(kInfinity) : bound(middle, half);
+    return may_matter(middle, half) & ~bits8(cones.hide(node.middle - all8(local_end_)));
 }
 
-inline auto OutlineSearch::may_matter(const Vec3x8& from, const Vec3x8& along) const {
-    const Float8 za = dot8(from, wide_axis_), dz = dot8(along, wide_axis_);
+inline OutlineSearch::Nearest OutlineSearch::nearest(const Vec3x8& from,
+                                                     const Vec3x8& along) const {
+    const EdgeMeasure& m = measure_;
+    const Vec3x8 axis = all8(axis_);
+    const Float8 za = dot8(from, axis), dz = dot8(along, axis);
     // The part of the edge, t0 to t1 of its length, that lies beside the segment. Edges at right
     // angles to it have none or, by infinities, all.
-    const Float8 ta = (wide_lo_ - za) / dz, tb = (wide_hi_ - za) / dz;
+    const Float8 ta = (all8(lo_) - za) / dz, tb = (all8(hi_) - za) / dz;
     const Float8 t0 = max8(min8(ta, tb), Float8{}), t1 = min8(max8(ta, tb), all8(1));
-    const Float8 z0 = add_product8(t0, dz, za), z1 = add_product8(t1, dz, za);
-    const Vec3x8 p = less_product8(wide_axis_, za, from), dp = less_product8(wide_axis_, dz, along);
-    const Float8 nearest = min8(max8(-dot8(p, dp) / dot8(dp, dp), t0), t1);
-    const Vec3x8 q = add_product8(dp, nearest, p);
-    const Float8 lower = add_product8(wide_b_, dot8(q, q), least_blur2(min8(z0, z1), max8(z0, z1)));
-    return (t0 <= t1) & (kBelow * lower < all8(limit_) * most_weight(z0, z1));
+    const Vec3x8 p = less_product8(axis, za, from), dp = less_product8(axis, dz, along);
+    // Numerator and denominator along the edge, polynomials in t.
+    const Float8 a1 = all8(m.a1), b = all8(m.b), h2 = all8(m.h2);
+    const Float8 blur = add_product8(a1, za, all8(m.a0)), slope = a1 * dz;
+    const Float8 p2 = dot8(p, p), pdp = dot8(p, dp), dp2 = dot8(dp, dp);
+    const Float8 n0 = add_product8(blur, blur, b * p2), n1 = 2 * add_product8(blur, slope, b * pdp),
+                 n2 = add_product8(slope, slope, b * dp2);
+    const Float8 least = all8(least_);
+    const Float8 bend = h2 * dz;
+    const Float8 d0 = max8(add_product8(add_product8(h2, za, all8(m.h1)), za, all8(m.h0)), least),
+                 d1 = add_product8(2 * za, bend, m.h1 * dz), d2 = bend * dz;
+    // The quotient's derivative has the sign of a quadratic, qa t^2 + 2 qb t + qc; the quotient is
+    // least where that crosses zero upwards.
+    const Float8 qa = less_product8(n1, d2, n2 * d1), qb = less_product8(n0, d2, n2 * d0),
+                 qc = less_product8(n0, d1, n1 * d0);
+    const Float8 root = sqrt8(less_product8(qa, qc, qb * qb));
+    const Mask8 rises = qb > Float8{};
+    const Float8 valley = (rises ? -qc : root - qb) / (rises ? qb + root : qa);
+    const Float8 t2 = min8(max8(valley, t0), t1);
+    // Not by the polynomials: what is left of their terms beside the axis would be rounding.
+    const auto width2 = [&](const Float8& t) {
+        const Float8 z = add_product8(t, dz, za);
+        const Vec3x8 q = add_product8(dp, t, p);
+        const Float8 a = add_product8(a1, z, all8(m.a0));
+        const Float8 h = add_product8(add_product8(h2, z, all8(m.h1)), z, all8(m.h0));
+        return add_product8(a, a, b * dot8(q, q)) / max8(h, least);
+    };
+    const Float8 w0 = width2(t0), w1 = width2(t1), w2 = width2(t2);
+    const Float8 ends = min8(w0, w1), best = min8(ends, w2);
+    const Float8 at = w2 < ends ? t2 : (w1 < w0 ? t1 : t0);
+    return {t0 <= t1 ? best : all8(kInfinity), at, (at > t0) & (at < t1)};
 }
 
 void OutlineSearch::meet_world(const EdgeBlock& edges, uint32_t body) {
-    const Vec3x8 from = edges.a - wide_end_;
-    const auto outlines = edges.may_be_outlines(from);
-    if (bits8(outlines) == 0) return;
-    for (unsigned left = bits8(outlines & may_matter(from, edges.along)); left != 0;
-         left &= left - 1) {
-        const FoldEdge edge = edges.edge(static_cast<size_t>(std::countr_zero(left)));
-        meet(edge, edge.a, edge.b, end_, body);
-    }
+    const Vec3x8 from = edges.a - all8(end_);
+    meet(edges.are_outlines(from), from, edges.along, body);
 }
 
 void OutlineSearch::meet_local(const EdgeBlock& edges, uint32_t body) {
-    const auto outlines = edges.may_be_outlines(edges.a - all8(local_end_));
-    if (bits8(outlines) == 0) return;
     const auto row = [this](size_t i) { return all8(rows_[i]); };
     const Vec3x8 x = row(0), y = row(1), z = row(2), shift = all8(shift_ - end_);
     const Vec3x8 from{dot8(x, edges.a) + shift.x, dot8(y, edges.a) + shift.y,
                       dot8(z, edges.a) + shift.z};
     const Vec3x8 along{dot8(x, edges.along), dot8(y, edges.along), dot8(z, edges.along)};
-    for (unsigned left = bits8(outlines & may_matter(from, along)); left != 0; left &= left - 1) {
-        const FoldEdge edge = edges.edge(static_cast<size_t>(std::countr_zero(left)));
-        meet(edge, to_world(edge.a), to_world(edge.b), local_end_, body);
-    }
+    meet(edges.are_outlines(edges.a - all8(local_end_)), from, along, body);
 }
 
-void OutlineSearch::meet(const FoldEdge& edge, Vec3 a, Vec3 b, Vec3 seen_from, uint32_t body) {
-    const EdgeMeasure& m = measure_;
-    const Vec3 from = a - end_, along = b - a;
-    const float za = dot(from, axis_), dz = dot(along, axis_);
-    // The part of the edge, t0 to t1 of its length, that lies beside the segment.
-    float t0 = 0, t1 = 1;
-    if (dz != 0) {
-        const float ta = (lo_ - za) / dz, tb = (hi_ - za) / dz;
-        t0 = std::max(t0, std::min(ta, tb));
-        t1 = std::min(t1, std::max(ta, tb));
-    } else if (za < lo_ || za > hi_) {
-        return;
+inline void OutlineSearch::meet(const Mask8& outlines, const Vec3x8& from, const Vec3x8& along,
+                                uint32_t body) {
+    if (bits8(outlines) == 0) return;
+    const Nearest nearest = this->nearest(from, along);
+    unsigned left = bits8(outlines & (nearest.width2 < all8(limit_)));
+    if (left == 0) return;
+    const unsigned inside = bits8(nearest.inside);
+    const Vec3x8 point = add_product8(along, nearest.t, from);
+    for (; left != 0; left &= left - 1) {
+        const auto k = static_cast<size_t>(std::countr_zero(left));
+        keep(nearest.width2[k], {point.x[k], point.y[k], point.z[k]},
+             {along.x[k], along.y[k], along.z[k]}, (inside >> k & 1) != 0, body);
     }
-    if (!(t0 <= t1)) return;
-    const Vec3 p = from - axis_ * za, dp = along - axis_ * dz;
-    const float pdp = dot(p, dp), dp2 = length_squared(dp);
-    const float blur = m.a0 + m.a1 * za;
-    const float n0 = blur * blur + m.b * length_squared(p), n1 = 2 * (blur * m.a1 * dz + m.b * pdp),
-                n2 = sqr(m.a1 * dz) + m.b * dp2;
-    const float h0 = m.denominator(za), h1 = (m.h1 + 2 * m.h2 * za) * dz, h2 = m.h2 * dz * dz;
-    // Where the quotient of the two polynomials is stationary: again a quadratic.
-    float best = kInfinity, best_t = t0;
-    const auto attempt = [&](float t) {
-        if (!(t >= t0 && t <= t1)) return;
-        const float value = m.width_squared(za + t * dz, length_squared(p + dp * t));
-        if (!(value < best)) return;
-        best = value;
-        best_t = t;
-    };
-    attempt(t0);
-    attempt(t1);
-    const float qa = n2 * h1 - n1 * h2, qb = n2 * h0 - n0 * h2, qc = n1 * h0 - n0 * h1;
-    const float discriminant = qb * qb - qa * qc;
-    if (discriminant >= 0) {
-        const float q = -(qb + std::copysign(std::sqrt(discriminant), qb));
-        if (qa != 0) attempt(q / qa);
-        if (q != 0) attempt(qc / q);
-    }
-    if (!(best < limit_) || !edge.is_outline_from(seen_from)) return;
-
-    Candidate c;
-    c.width2 = best;
-    c.body = body;
-    c.event.z = za + best_t * dz;
-    c.point = a + along * best_t;
-    const Vec3 offset = p + dp * best_t;
-    const Vec3 across = cross(along, axis_);  // at right angles to the edge as it is seen
-    const float l = length(across), r = length(offset);
-    const bool is_inside = best_t > t0 && best_t < t1;
-    if (l > 0 && (is_inside || !(r > 1e-6f * c.event.z))) {
-        const float side = dot(offset, across) / l;
-        c.event.direction = across * (side < 0 ? -1 / l : 1 / l);
-        c.event.distance = std::abs(side);
-    } else if (r > 0) {
-        c.event.direction = offset / r;
-        c.event.distance = r;
-    } else {
-        return;  // seen end on, at a point: no direction
-    }
-    keep(c);
 }
 
 void OutlineSearch::meet_ball(Vec3 center, float radius, uint32_t body) {
@@ -197,38 +153,31 @@ void OutlineSearch::meet_ball(Vec3 center, float radius, uint32_t body) {
 
     const float sine = safe_sqrt(1 - best_cosine * best_cosine);
     for (const float side : {1.0f, -1.0f}) {
-        const Vec3 from_end = middle + u * (rho * best_cosine) + v * (side * rho * sine);
-        Candidate c;
-        c.width2 = best;
-        c.body = body;
-        c.event.z = dot(from_end, axis_);
-        c.point = end_ + from_end;
-        const Vec3 offset = from_end - axis_ * c.event.z;
-        const Vec3 across = cross(v * best_cosine - u * (side * sine), axis_);
-        const float a = length(across);
-        if (!(a > 0)) return;
-        const float beside = dot(offset, across) / a;
-        c.event.direction = across * (beside < 0 ? -1 / a : 1 / a);
-        c.event.distance = std::abs(beside);
-        keep(c);
+        const Vec3 point = middle + u * (rho * best_cosine) + v * (side * rho * sine);
+        keep(best, point, v * best_cosine - u * (side * sine), true, body);
         if (sine == 0) return;
     }
 }
 
-void OutlineSearch::keep(const Candidate& c) {
+void OutlineSearch::keep(float width2, Vec3 point, Vec3 along, bool is_inside, uint32_t body) {
+    if (!(width2 < limit_)) return;
+    const float z = dot(point, axis_);
+    const Vec3 offset = point - axis_ * z;
+    Vec3 towards = cross(along, axis_);  // at right angles to the edge as it is seen
+    if (!(length_squared(towards) > 0) || !(is_inside || length_squared(offset) <= sqr(1e-6f * z)))
+        towards = offset;
+    if (!(length_squared(towards) > 0)) return;  // seen end on, at a point: no direction
     // Sectors of 45 degrees of the line along the direction: quadrants of the doubled angle.
-    const Frame frame = Frame::from_z(axis_);
-    const float x = dot(c.event.direction, frame.x), y = dot(c.event.direction, frame.y);
-    const size_t sector = (x * x > y * y ? 0u : 1u) + (x * y > 0 ? 0u : 2u);
-    if (!(c.width2 < best_[sector].width2)) return;
-    best_[sector] = c;
+    if (!has_found_) frame_ = Frame::from_z(axis_);
     has_found_ = true;
-    float least = kInfinity, most = 0;
-    for (const Candidate& b : best_) {
-        least = std::min(least, b.width2);
-        most = std::max(most, b.width2);
-    }
-    limit_ = std::min({widest2_, most, kFaint * least});
+    const float x = dot(towards, frame_.x), y = dot(towards, frame_.y);
+    const size_t sector = (x * x > y * y ? 0u : 1u) + (x * y > 0 ? 0u : 2u);
+    if (!(width2 < widths2_[sector])) return;
+    widths2_[sector] = width2;
+    best_[sector] = {point, towards, body};
+    const auto [a, b, c, d] = widths2_;
+    limit_ = std::min({widest2_, std::max(std::max(a, b), std::max(c, d)),
+                       kFaint * std::min(std::min(a, b), std::min(c, d))});
 }
 
 }  // namespace covtrace

@@ -1,10 +1,11 @@
-/// The state of one search for outlines beside a segment: bounds for boxes, and what was found.
+/// The state of one search for outlines beside a segment: which boxes to enter, what was found.
 /// Only for occluder_query.cpp.
 #pragma once
 
 #include <array>
 #include <cmath>
 
+#include "core/frame.h"
 #include "geometry/affine.h"
 #include "geometry/blind_cones.h"
 #include "geometry/edge_block.h"
@@ -18,19 +19,17 @@ class OutlineSearch {
 
     /// Whether no edge can matter.
     bool is_over() const { return !(lo_ <= hi_); }
-    /// Squared width that an edge must stay below to be of interest.
-    float limit() const { return limit_; }
 
-    /// Lower bounds on the squared widths of what the boxes of a node hold, in the world; infinity
-    /// where `cones` say that nothing there is an outline.
-    Float8 bound_world(const BoxHierarchy::Node& node) const;
-    Float8 bound_world(const BoxHierarchy::Node& node, const BlindCones& cones) const;
+    /// Bit k tells whether the k-th box of a node, in the world, may hold edges that are narrow
+    /// enough and, by `cones`, outlines.
+    unsigned near_world(const BoxHierarchy::Node& node) const;
+    unsigned near_world(const BoxHierarchy::Node& node, const BlindCones& cones) const;
     /// Edges of the world that belong to `body`.
     void meet_world(const EdgeBlock& edges, uint32_t body);
 
     /// The space of the edges that follow.
     void enter(const Affine& world_from_local);
-    Float8 bound_local(const BoxHierarchy::Node& node, const BlindCones& cones) const;
+    unsigned near_local(const BoxHierarchy::Node& node, const BlindCones& cones) const;
     void meet_local(const EdgeBlock& edges, uint32_t body);
 
     /// A whole ball of the world: outlined by the circle on which its tangents from end_ touch it.
@@ -43,102 +42,101 @@ class OutlineSearch {
 
   private:
     struct Candidate {
-        float width2 = kInfinity;
-        OutlineEvent event;
-        Vec3 point;
-        uint32_t body = 0;
+        Vec3 point;    ///< from end_
+        Vec3 towards;  ///< along OutlineEvent::direction or against it, not of length 1
+        uint32_t body;
+    };
+    /// Where eight edges are narrowest.
+    struct Nearest {
+        Float8 width2;  ///< infinity where nothing of the edge is beside the segment
+        Float8 t;       ///< the place, 0 to 1 along the edge
+        Mask8 inside;   ///< all bits set where it is no end of it
     };
 
-    Vec3 to_world(Vec3 p) const {
-        return {dot(rows_[0], p) + shift_.x, dot(rows_[1], p) + shift_.y,
-                dot(rows_[2], p) + shift_.z};
-    }
     /// From middles relative to end_ and half sizes, by axis.
-    Float8 bound(const Vec3x8& middle, const Vec3x8& half) const;
-    /// Over [z0, z1]: of the measure's numerator without the distance, and of its denominator.
-    Float8 least_blur2(const Float8& z0, const Float8& z1) const;
-    Float8 most_weight(const Float8& z0, const Float8& z1) const;
-    /// Where an edge may be narrow enough. `from`, `along`: in the world, from end_.
-    auto may_matter(const Vec3x8& from, const Vec3x8& along) const;
-    /// `a`, `b`: the edge in the world; `seen_from`: end_ in the edge's space.
-    void meet(const FoldEdge& edge, Vec3 a, Vec3 b, Vec3 seen_from, uint32_t body);
-    void keep(const Candidate& candidate);
+    unsigned may_matter(const Vec3x8& middle, const Vec3x8& half) const;
+    /// `from`, `along`: of edges, in the world, from end_.
+    Nearest nearest(const Vec3x8& from, const Vec3x8& along) const;
+    void meet(const Mask8& outlines, const Vec3x8& from, const Vec3x8& along, uint32_t body);
+    /// `point`: from end_, the edge's nearest, `is_inside` where that is no end of it.
+    void keep(float width2, Vec3 point, Vec3 along, bool is_inside, uint32_t body);
 
     Vec3 end_, axis_;  ///< unit, from the end to the beginning
     EdgeMeasure measure_;
     float lo_ = 1, hi_ = 0;  ///< distances from the end
-    float limit_ = 0;
+    float limit_ = 0;        ///< squared width that an edge must stay below to be of interest
     float widest2_ = 0;
+    float least_ = 0;  ///< that the measure's denominator is
+    float sharp_ = 0;  ///< where the blur is least; 0 where it is the same everywhere
     bool has_found_ = false;
-    std::array<Candidate, OutlineEvents::kMost> best_;  ///< by sector of direction
+    /// By sector of direction.
+    std::array<float, OutlineEvents::kMost> widths2_{kInfinity, kInfinity, kInfinity, kInfinity};
+    std::array<Candidate, OutlineEvents::kMost> best_;
+    Frame frame_;  ///< about axis_, where anything was found
 
     std::array<Vec3, 3> rows_;
     Vec3 shift_, local_end_;
-
-    /// The same numbers in all lanes: end_, axis_, its absolute value, the range and the measure.
-    Vec3x8 wide_end_, wide_axis_, wide_size_;
-    Float8 wide_lo_, wide_hi_, wide_a0_, wide_a1_, wide_b_, wide_h0_, wide_h1_, wide_h2_, least_h_;
-    /// Where the blur is least: 0 in all lanes where it is the same everywhere.
-    Float8 wide_sharp_;
 };
 
-inline Float8 OutlineSearch::bound_world(const BoxHierarchy::Node& node) const {
-    return bound(node.middle - wide_end_, node.half);
+inline unsigned OutlineSearch::near_world(const BoxHierarchy::Node& node) const {
+    return may_matter(node.middle - all8(end_), node.half);
 }
 
-inline Float8 OutlineSearch::bound_world(const BoxHierarchy::Node& node,
-                                         const BlindCones& cones) const {
-    const Vec3x8 middle = node.middle - wide_end_;
-    return cones.hide(middle) ? all8(kInfinity) : bound(middle, node.half);
+inline unsigned OutlineSearch::near_world(const BoxHierarchy::Node& node,
+                                          const BlindCones& cones) const {
+    const Vec3x8 middle = node.middle - all8(end_);
+    return may_matter(middle, node.half) & ~bits8(cones.hide(middle));
 }
 
-inline Float8 OutlineSearch::bound(const Vec3x8& middle, const Vec3x8& half) const {
-    const Float8 along = dot8(middle, wide_axis_), reach = dot8(half, wide_size_);
-    const Float8 z0 = max8(along - reach, wide_lo_), z1 = min8(along + reach, wide_hi_);
-    // Across the axis: the box lies beyond a plane at right angles to the way to its middle.
-    const Vec3x8 p = less_product8(wide_axis_, along, middle);
+inline unsigned OutlineSearch::may_matter(const Vec3x8& middle, const Vec3x8& half) const {
+    const EdgeMeasure& m = measure_;
+    const Vec3x8 axis = all8(axis_);
+    const Float8 along = dot8(middle, axis), reach = dot8(half, abs8(axis));
+    const Float8 z0 = max8(along - reach, all8(lo_)), z1 = min8(along + reach, all8(hi_));
+    // Across the axis: the box lies beyond a plane at right angles to the way to its middle, at
+    // beyond / |p|. Both sides of the comparison are multiplied by what a quotient would divide by;
+    // equal ones count, as both vanish where their products become too small.
+    const Vec3x8 p = less_product8(axis, along, middle);
     const Float8 p2 = dot8(p, p);
     const Float8 beyond = max8(p2 - dot8(half, abs8(p)), Float8{});
-    const Float8 r2 = beyond * beyond / (p2 + 1e-30f);
-    const Float8 width2 = add_product8(wide_b_, r2, least_blur2(z0, z1)) / most_weight(z0, z1);
-    return z0 <= z1 ? width2 : all8(kInfinity);
-}
-
-inline Float8 OutlineSearch::least_blur2(const Float8& z0, const Float8& z1) const {
-    const Float8 sharpest = min8(max8(wide_sharp_, z0), z1);
-    const Float8 blur = add_product8(wide_a1_, sharpest, wide_a0_);
-    return blur * blur;
-}
-
-inline Float8 OutlineSearch::most_weight(const Float8& z0, const Float8& z1) const {
-    const Float8 h0 = add_product8(add_product8(wide_h2_, z0, wide_h1_), z0, wide_h0_);
-    const Float8 h1 = add_product8(add_product8(wide_h2_, z1, wide_h1_), z1, wide_h0_);
-    return max8(max8(h0, h1), least_h_);
+    const Float8 scale = p2 + 1e-20f;
+    const Float8 blur = add_product8(all8(m.a1), min8(max8(all8(sharp_), z0), z1), all8(m.a0));
+    const Float8 numerator = add_product8(beyond * beyond, all8(m.b), blur * blur * scale);
+    const Float8 h0 = all8(m.h0), h1 = all8(m.h1), h2 = all8(m.h2);
+    const Float8 at0 = add_product8(add_product8(h2, z0, h1), z0, h0),
+                 at1 = add_product8(add_product8(h2, z1, h1), z1, h0),
+                 denominator = max8(max8(at0, at1), all8(least_));
+    return bits8((z0 <= z1) & (numerator <= all8(limit_) * denominator * scale));
 }
 
 template <class Velocity>
 void OutlineSearch::collect(OutlineEvents& events, const Velocity& velocity) {
-    std::array<const Candidate*, OutlineEvents::kMost> narrowest;
-    for (size_t i = 0; i < narrowest.size(); ++i) narrowest[i] = &best_[i];
+    std::array<size_t, OutlineEvents::kMost> narrowest{0, 1, 2, 3};
     std::sort(narrowest.begin(), narrowest.end(),
-              [](const Candidate* a, const Candidate* b) { return a->width2 < b->width2; });
+              [this](size_t a, size_t b) { return widths2_[a] < widths2_[b]; });
     /// Cosine of the angle within which two edges limit the light in the same direction.
     constexpr float kSameDirection = 0.87f;
-    for (const Candidate* candidate : narrowest) {
-        const Candidate& c = *candidate;
-        if (c.width2 == kInfinity || c.width2 > limit_) break;
+    for (const size_t sector : narrowest) {
+        const float width2 = widths2_[sector];
+        if (width2 == kInfinity || width2 > limit_) break;
+        const Candidate& c = best_[sector];
+        OutlineEvent e;
+        const Vec3 unit = c.towards / length(c.towards);
+        e.z = dot(c.point, axis_);
+        const float side = dot(c.point - axis_ * e.z, unit);
+        e.direction = side < 0 ? -unit : unit;
+        e.distance = std::abs(side);
         bool repeats = false;
         for (size_t i = 0; i < events.count; ++i)
-            repeats = repeats ||
-                      std::abs(dot(events.events[i].direction, c.event.direction)) > kSameDirection;
+            repeats =
+                repeats || std::abs(dot(events.events[i].direction, e.direction)) > kSameDirection;
         if (repeats) continue;
+        e.width = std::sqrt(width2);
+        e.velocity = velocity(c.body, end_ + c.point);
         size_t at = events.count++;
-        for (; at > 0 && events.events[at - 1].z < c.event.z; --at)
+        for (; at > 0 && events.events[at - 1].z < e.z; --at)
             events.events[at] = events.events[at - 1];
-        OutlineEvent& e = events.events[at];
-        e = c.event;
-        e.width = std::sqrt(c.width2);
-        e.velocity = velocity(c.body, c.point);
+        events.events[at] = e;
     }
 }
 
