@@ -5,10 +5,9 @@
 
 namespace covtrace {
 
-std::vector<float> adaptive_density(const SampleKnowledge& known) {
+std::vector<float> adaptive_density(const SampleKnowledge& known, float even_share) {
     constexpr float kDark = 0.01f;  // the measure's: errors of dark pixels count as they are
     constexpr float kSmoothing = 1.5f;
-    constexpr float kEvenShare = 0.3f;
     // Filters between these deviations exist (pixels), so spectra beyond them ask for nothing more.
     constexpr float kNarrowest = 0.35f, kWidest = 15, kSharpness = 2;
     const Plane brightness = gaussian_blur(known.brightness, kSmoothing);
@@ -23,11 +22,12 @@ std::vector<float> adaptive_density(const SampleKnowledge& known) {
             covariance::limit_spectrum(known.spectrum[i], kSharpness, kNarrowest, kWidest);
         const float detail = std::pow(std::max(covariance::det(usable), 0.0f), 0.25f);
         density[i] = noise[i] * detail / std::sqrt(std::max(known.cost[i], 1.0f));
+        if (known.emphasis.size() > 0) density[i] *= known.emphasis[i];
         if (!std::isfinite(density[i])) density[i] = 0;
         sum += density[i];
     }
     const float mean = density.empty() ? 0.0f : float(sum / double(density.size()));
-    for (float& v : density) v = covariance::share_of_budget(v, mean, 1.0f, kEvenShare);
+    for (float& v : density) v = covariance::share_of_budget(v, mean, 1.0f, even_share);
     return density;
 }
 

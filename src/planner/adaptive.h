@@ -15,6 +15,9 @@ struct SampleKnowledge {
     Plane variance;                                     ///< of the luminance of one sample
     Plane cost;                                         ///< of one sample, any unit
     std::span<const covariance::Sym2<float>> spectrum;  ///< predicted, (cycles/pixel)^2
+    /// What the counts are multiplied with, any unit, beyond what lowers the error of the image
+    /// most; empty: alike.
+    Plane emphasis;
 };
 
 /// Relative densities with mean 1.
@@ -25,8 +28,8 @@ struct SampleKnowledge {
 /// For the predicted Gaussian, whose squares sum to 1 / (4 pi sqrt|C|) ~ sqrt|S_2D|,
 ///     n ~ sigma |S_2D|^(1/4) / (sqrt(I^2 + eps) sqrt(c)).
 /// sigma / I is averaged over a few pixels, as few samples know little of it: not its square, which
-/// one rare bright path would own. A share is given out evenly, so that nothing that the samples
-/// have not seen yet is starved.
-std::vector<float> adaptive_density(const SampleKnowledge& known);
+/// one rare bright path would own. `even_share` is given out evenly, so that nothing that the
+/// samples have not seen yet is starved.
+std::vector<float> adaptive_density(const SampleKnowledge& known, float even_share);
 
 }  // namespace covtrace

@@ -34,24 +34,22 @@ std::vector<float> densities(const Prediction& prediction, DensityRule rule, flo
 
 }  // namespace
 
-std::vector<float> relative_demand(const Prediction& prediction, DensityRule rule, float c,
-                                   const covariance::FilterLimits<float>& limits) {
-    std::vector<float> demand = densities(prediction, rule, c, limits);
-    if (rule == DensityRule::tempered)
-        for (float& v : demand) v *= v;  // its square root is in the density already
-    return demand;
-}
-
 std::vector<float> relative_density(const Prediction& prediction, DensityRule rule, float c,
                                     const covariance::FilterLimits<float>& limits) {
     return relative(densities(prediction, rule, c, limits),
                     rule == DensityRule::tempered ? kEvenShare : 0.0f);
 }
 
-std::vector<float> density_on_demand(std::span<const float> demand) {
-    std::vector<float> g(demand.begin(), demand.end());
-    for (float& v : g) v = std::sqrt(v);
-    return relative(std::move(g), kEvenShare);
+Plane emphasis(const Prediction& prediction, DensityRule rule, float c,
+               const covariance::FilterLimits<float>& limits) {
+    constexpr float kExponent = 0.7f, kSmoothing = 3;  // pixels
+    Plane beyond(prediction.width, prediction.height, 1);
+    if (rule == DensityRule::tempered) return beyond;
+    const std::vector<float> asked = densities(prediction, rule, c, limits),
+                             tempered = densities(prediction, DensityRule::tempered, c, limits);
+    for (size_t i = 0; i < beyond.size(); ++i)
+        beyond[i] = tempered[i] > 0 ? std::pow(asked[i] / tempered[i], kExponent) : 0.0f;
+    return gaussian_blur(beyond, kSmoothing);
 }
 
 namespace {

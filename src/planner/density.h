@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/plane.h"
 #include "planner/covariance_buffer.h"
 
 namespace covtrace {
@@ -20,16 +21,11 @@ enum class DensityRule {
 std::vector<float> relative_density(const Prediction& prediction, DensityRule rule, float c,
                                     const covariance::FilterLimits<float>& limits);
 
-/// What the estimates of the pixels need for one relative error in all, up to a common factor: N =
-/// sqrt(det S2D) N_int, tempered with min(N_int, 4). One per pixel, limited as above.
-std::vector<float> relative_demand(const Prediction& prediction, DensityRule rule, float c,
-                                   const covariance::FilterLimits<float>& limits);
-
-/// The relative density, with mean 1, that meets a demand best. With n samples a pixel whose demand
-/// is N has a squared relative error in proportion to N / n; its sum over all pixels is least, for
-/// a given total, where n ~ sqrt(N): where every pixel's next sample takes as much off it. A tenth
-/// is shared out evenly, for what the prediction does not see.
-std::vector<float> density_on_demand(std::span<const float> demand);
+/// What `rule` asks for beyond the tempered density, (g / g_tempered)^0.7, as a mean over a few
+/// pixels since a few paths tell it with much noise: SampleKnowledge::emphasis (docs/decisions/0062
+/// has the sweep of the exponent). One in every pixel for the tempered rule itself.
+Plane emphasis(const Prediction& prediction, DensityRule rule, float c,
+               const covariance::FilterLimits<float>& limits);
 
 /// Sample counts with the given total, as near to `total / pixels * density` as `at_least` (per
 /// pixel, what has been taken already) and `at_most` (one number) allow. The sum is exactly `total`
@@ -37,9 +33,9 @@ std::vector<float> density_on_demand(std::span<const float> demand);
 std::vector<uint32_t> allocate(std::span<const float> density, int64_t total,
                                std::span<const uint32_t> at_least, uint32_t at_most);
 
-/// Sampling on demand, the thesis' progressive method (section 5.1.3): the same, but `at_most` is
-/// what one call may add to a pixel, so that repeated calls, in rounds, go beyond it and sample
-/// again where the limit of samples left noise. `density` is that of density_on_demand.
+/// The same, but `at_most` is what one call may add to a pixel, so that repeated calls, in rounds,
+/// go beyond it and sample again where the limit of samples left noise: the thesis' progressive
+/// method (section 5.1.3).
 std::vector<uint32_t> allocate_on_demand(std::span<const float> density, int64_t total,
                                          std::span<const uint32_t> have, uint32_t at_most);
 

@@ -4,13 +4,16 @@
 
 #include "planner/density.h"
 #include "reconstruction/filter_field.h"
-#include "reconstruction/gather.h"
 #include "render/develop.h"
 #include "render/job.h"
+#include "render/sample_knowledge.h"
 
 namespace covtrace {
 
 namespace {
+
+/// Of the samples on demand.
+constexpr float kEvenShare = 0.1f;
 
 class CovarianceRender {
   public:
@@ -71,16 +74,9 @@ class CovarianceRender {
         const DensityRule rule = job_.options.density;
         if (!job_.options.progressive)
             return relative_density(*prediction_, rule, settings.c, settings.limits);
-        // A few paths tell N with much noise: the mean under the pixel's filter, where the light is
-        // alike, tells it better. And it is asked of all pixels there, by the squared weights that
-        // their variances have in that of the filtered pixel, a Gaussian with half of the
-        // covariance. Both together have one and a half of it.
-        FilterField field = filter_field(prediction_->spectrum, prediction_->width,
-                                         prediction_->height, job_.options.filter, settings);
-        if (job_.options.filter == FilterRule::verified) limit_by_neighbours(field, settings);
-        for (auto& s : field.covariance) s = 1.5f * s;
-        return density_on_demand(mean_under_filters(
-            relative_demand(*prediction_, rule, settings.c, settings.limits), field));
+        SampleKnowledge known = knowledge_from(s_.films[0], prediction_->spectrum);
+        known.emphasis = emphasis(*prediction_, rule, settings.c, settings.limits);
+        return adaptive_density(known, kEvenShare);
     }
 
     void trace() {

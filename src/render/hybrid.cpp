@@ -3,12 +3,12 @@
 #include <optional>
 #include <utility>
 
-#include "planner/adaptive.h"
 #include "planner/error_goal.h"
 #include "reconstruction/hybrid.h"
 #include "render/develop.h"
 #include "render/hybrid.h"
 #include "render/job.h"
+#include "render/sample_knowledge.h"
 
 namespace covtrace {
 
@@ -16,6 +16,8 @@ namespace {
 
 /// Samples per pixel of the pilot, both halves together.
 constexpr double kPilot = 4;
+/// Of the samples; what rare light does to the filters' choice is not in the planner's variances.
+constexpr float kEvenShare = 0.3f;
 
 class HybridRender {
   public:
@@ -135,19 +137,7 @@ class HybridRender {
 
     /// What the planner may know for one half: the samples of the other one.
     std::vector<float> density_from(const Film& film) const {
-        const int w = film.bounds.width(), h = film.bounds.height();
-        SampleKnowledge known{Plane(w, h), Plane(w, h), Plane(w, h), prediction_->spectrum};
-        for (size_t i = 0; i < film.pixels.size(); ++i) {
-            const FilmPixel& p = film.pixels[i];
-            known.brightness[i] = luminance(p.mean);
-            if (p.count > 1) {
-                const Rgb v = p.squares / float(p.count - 1);
-                known.variance[i] =
-                    sqr(luminance({std::sqrt(v.r), std::sqrt(v.g), std::sqrt(v.b)}));
-            }
-            known.cost[i] = p.count > 0 ? float(film.rays[i]) / float(p.count) : 1.0f;
-        }
-        return adaptive_density(known);
+        return adaptive_density(knowledge_from(film, prediction_->spectrum), kEvenShare);
     }
 
     bool plan_samples(double target) {

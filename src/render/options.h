@@ -48,7 +48,7 @@ struct RenderOptions {
     FilterRule filter = FilterRule::verified;
     std::optional<int> max_spp;    ///< most samples in any pixel; default 16 times the average
     std::optional<int> max_depth;  ///< default: the scene's
-    /// covariance: each round samples on demand, where a sample takes most off the predicted error,
+    /// covariance: each round samples on demand, where the noise of the samples so far asks for it,
     /// and `max_spp` limits what a pixel gets in one round, not in all.
     bool progressive = false;
     bool even_counts = false;     ///< hybrid: every pixel the same count, for comparisons

@@ -9,21 +9,21 @@ namespace covtrace {
 namespace {
 
 constexpr int kSize = 48;
+constexpr float kEven = 0.3f;
 
 /// Left half as `base`, right half as the caller changes it.
 struct Case {
     Case() : spectrum(size_t(kSize) * kSize, covariance::Sym2<float>{0.01f, 0, 0.01f}) {}
     std::vector<covariance::Sym2<float>> spectrum;
     SampleKnowledge known{
-        Plane(kSize, kSize, 1), Plane(kSize, kSize, 1), Plane(kSize, kSize, 4), {}};
+        Plane(kSize, kSize, 1), Plane(kSize, kSize, 1), Plane(kSize, kSize, 4), {}, {}};
     /// Density at the middle of the right half over that of the left one, of what is not even.
     double ratio() {
         known.spectrum = spectrum;
-        const std::vector<float> d = adaptive_density(known);
+        const std::vector<float> d = adaptive_density(known, kEven);
         const double mean = std::accumulate(d.begin(), d.end(), 0.0) / double(d.size());
         EXPECT_NEAR(mean, 1, 1e-4);
         const size_t row = size_t(kSize) * kSize / 2;
-        constexpr double kEven = 0.3;
         return (double(d[row + 3 * kSize / 4]) - kEven) / (double(d[row + kSize / 4]) - kEven);
     }
     template <typename Body>
@@ -58,18 +58,25 @@ TEST(AdaptiveDensity, FollowsTheRootOfTheFilterSize) {
     EXPECT_NEAR(c.ratio(), 2, 0.01);
 }
 
+TEST(AdaptiveDensity, FollowsTheEmphasis) {
+    Case c;
+    c.known.emphasis = Plane(kSize, kSize, 0.5f);
+    c.right([&](size_t i) { c.known.emphasis[i] = 3; });
+    EXPECT_NEAR(c.ratio(), 6, 0.02);
+}
+
 TEST(AdaptiveDensity, NothingIsStarved) {
     Case c;
     c.right([&](size_t i) { c.known.variance[i] = 0; });
     c.known.spectrum = c.spectrum;
-    for (float d : adaptive_density(c.known)) EXPECT_GE(d, 0.29f);
+    for (float d : adaptive_density(c.known, kEven)) EXPECT_GE(d, 0.29f);
 }
 
 TEST(AdaptiveDensity, BlackImageIsEven) {
     Case c;
     std::fill(c.known.variance.values.begin(), c.known.variance.values.end(), 0.0f);
     c.known.spectrum = c.spectrum;
-    for (float d : adaptive_density(c.known)) EXPECT_FLOAT_EQ(d, 1);
+    for (float d : adaptive_density(c.known, kEven)) EXPECT_FLOAT_EQ(d, 1);
 }
 
 }  // namespace

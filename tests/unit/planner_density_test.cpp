@@ -87,35 +87,24 @@ TEST(AllocateOnDemand, LimitsWhatARoundAdds) {
     EXPECT_EQ(allocate_on_demand(density, 54, first, 10), (std::vector<uint32_t>{6, 24, 24}));
 }
 
-TEST(DensityOnDemand, LeavesLessErrorThanAnyOtherSplit) {
-    // Squared errors N / n; the even tenth, which no prediction asks for, taken off.
-    const std::vector<float> demand{0.5f, 3, 80, 20000};
-    std::vector<float> density = density_on_demand(demand);
-    EXPECT_NEAR(std::accumulate(density.begin(), density.end(), 0.0f), 4, 1e-5f);
-    for (float& v : density) v -= 0.1f;
-    const auto error = [&](const std::vector<float>& n) {
-        double sum = 0;
-        for (size_t i = 0; i < n.size(); ++i) sum += double(demand[i]) / double(n[i]);
-        return sum;
-    };
-    const double least = error(density);
-    for (size_t i = 0; i < 4; ++i)
-        for (size_t j = 0; j < 4; ++j) {
-            if (i == j) continue;
-            std::vector<float> other = density;
-            const float moved = 0.1f * std::min(density[i], density[j]);
-            other[i] += moved, other[j] -= moved;
-            EXPECT_GT(error(other), least) << i << ' ' << j;
-        }
-}
-
-TEST(RelativeDemand, IsWhatTheThesisAsksForAndTheSquareOfTheTemperedDensity) {
-    const Prediction p{2, 1, {{0.01f, 0, 0.0225f}, {0.02f, 0.01f, 0.03f}}, {2, 50}};
-    const auto thesis = relative_demand(p, DensityRule::thesis, 2, {0.4f, 15});
-    EXPECT_NEAR(thesis[0], 2 * 0.015f, 1e-6f);
-    const auto tempered = relative_demand(p, DensityRule::tempered, 2, {0.4f, 15});
-    EXPECT_NEAR(tempered[0], 2 * 0.015f, 1e-6f);
-    EXPECT_NEAR(thesis[1] / tempered[1], 50.0f / 4, 1e-4f);
+TEST(Emphasis, IsWhatTheThesisAsksForBeyondTheTemperedDensity) {
+    constexpr int kSide = 40;
+    constexpr size_t kPixels = size_t(kSide) * kSide;
+    const covariance::Sym2<float> spectrum{0.01f, 0, 0.0225f};
+    Prediction p{kSide, kSide, std::vector(kPixels, spectrum), std::vector<float>(kPixels, 2)};
+    // On the right 64 samples more for lens and shutter than a pinhole at rest would need.
+    for (size_t i = 0; i < kPixels; ++i)
+        if (i % kSide >= kSide / 2) p.interior_count[i] = 128;
+    const covariance::FilterLimits<float> limits{0.4f, 15};
+    const Plane thesis = emphasis(p, DensityRule::thesis, 2, limits);
+    const float detail = std::sqrt(0.015f);
+    EXPECT_NEAR(thesis(0, 20), std::pow(2 * detail * detail / (detail * std::sqrt(2.0f)), 0.7f),
+                1e-4f);
+    EXPECT_NEAR(thesis(39, 20), std::pow(128 * detail * detail / (detail * 2), 0.7f), 1e-3f);
+    // A mean over a few pixels.
+    EXPECT_NEAR(thesis(19, 20) + thesis(20, 20), thesis(0, 20) + thesis(39, 20), 1e-3f);
+    EXPECT_GT(thesis(19, 20), 3 * thesis(0, 20));
+    for (const float v : emphasis(p, DensityRule::tempered, 2, limits).values) EXPECT_EQ(v, 1);
 }
 
 TEST(RelativeDensity, HasMeanOneAndAnEvenShare) {
