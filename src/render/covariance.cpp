@@ -12,7 +12,7 @@ namespace covtrace {
 
 namespace {
 
-/// Of the samples on demand.
+/// Of the samples on demand, spread evenly.
 constexpr float kEvenShare = 0.1f;
 
 class CovarianceRender {
