@@ -34,11 +34,15 @@ struct OwnWidth {
 
 /// Samples per pixel that the variance of a filtered pixel has, of those under the filter.
 std::vector<float> effective_counts(const PredictedImage& r, FilterField field) {
-    std::vector<float> inverse(r.count.size());
-    for (size_t i = 0; i < inverse.size(); ++i) inverse[i] = 1 / float(std::max(1u, r.count[i]));
+    std::vector<Rgb> inverse(r.count.size());
+    for (size_t i = 0; i < inverse.size(); ++i)
+        inverse[i] = Rgb(1 / float(std::max(1u, r.count[i])));
     for (auto& s : field.covariance) s = 0.5f * s;  // of the squared weights
-    std::vector<float> counts = mean_under_filters(inverse, field);
-    for (float& n : counts) n = 1 / n;
+    const std::vector<float> no_variance(inverse.size(), 0.0f);
+    const std::vector<uint32_t> one(inverse.size(), 1);
+    const GatheredImage means = gather(inverse, no_variance, one, field);
+    std::vector<float> counts(inverse.size());
+    for (size_t i = 0; i < counts.size(); ++i) counts[i] = 1 / means.color[i].r;
     return counts;
 }
 

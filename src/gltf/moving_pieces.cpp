@@ -234,7 +234,7 @@ Vec3 pivot(const Transform& motion, Vec3 middle) {
     const double sine = std::hypot(q.x, q.y, q.z);
     if (sine < kLeastTurn / 2) return middle;
     const double tangent = sine / q.w;  // of half the angle; infinite for half a turn
-    const Vec3 axis = Vec3(float(q.x), float(q.y), float(q.z)) / static_cast<float>(sine);
+    const Vec3 axis = Vec3{float(q.x), float(q.y), float(q.z)} / static_cast<float>(sine);
     const Vec3 way = motion.point(middle) - middle, across = way - axis * dot(axis, way);
     return middle + across * 0.5f + cross(axis, across) * static_cast<float>(0.5 / tangent);
 }

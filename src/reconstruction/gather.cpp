@@ -126,15 +126,4 @@ GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
     return result;
 }
 
-std::vector<float> mean_under_filters(std::span<const float> values, const FilterField& field) {
-    std::vector<Rgb> as_colour(values.size());
-    for (size_t i = 0; i < values.size(); ++i) as_colour[i].r = values[i];
-    const std::vector<float> no_variance(values.size(), 0.0f);
-    const std::vector<uint32_t> one(values.size(), 1);
-    const GatheredImage image = gather(as_colour, no_variance, one, field);
-    std::vector<float> means(values.size());
-    for (size_t i = 0; i < means.size(); ++i) means[i] = image.color[i].r;
-    return means;
-}
-
 }  // namespace covtrace

@@ -26,7 +26,4 @@ struct GatheredImage {
 GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
                      std::span<const uint32_t> count, const FilterField& field);
 
-/// The mean of `values`, one per pixel, under every pixel's filter.
-std::vector<float> mean_under_filters(std::span<const float> values, const FilterField& field);
-
 }  // namespace covtrace

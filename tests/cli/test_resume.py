@@ -106,13 +106,14 @@ class Interrupted(FilmTest):
 class MoreSamples(FilmTest):
     def test_a_finished_film_takes_more_samples(self):
         """From the end of one round to that of another: as in one call."""
-        for method in METHODS:
+        on_demand = ("covariance", "--progressive", "--density", "thesis")
+        for method, *options in [*([m] for m in METHODS), on_demand]:
             for first in ("16", "32"):
-                with self.subTest(method=method, first=first):
-                    film = f"{method}{first}.film"
-                    self.run_render("sky", method, "--spp", first, "--film", film)
-                    self.run_render("sky", method, "--spp", "64", "--checkpoint", film, "--resume")
-                    self.run_render("sky", method, "--spp", "64", output="whole.exr")
+                with self.subTest(method=method, options=options, first=first):
+                    film = f"{method}{len(options)}{first}.film"
+                    self.run_render("sky", method, *options, "--spp", first, "--film", film)
+                    self.run_render("sky", method, *options, "--spp", "64", "--checkpoint", film, "--resume")
+                    self.run_render("sky", method, *options, "--spp", "64", output="whole.exr")
                     self.assert_identical("whole.exr", "out.exr")
                     self.assertAlmostEqual(exr.read(self.folder / "out.exr").value("spp"), 64, delta=0.1)
 

@@ -92,7 +92,7 @@ TEST(Emphasis, IsWhatTheThesisAsksForBeyondTheTemperedDensity) {
     constexpr size_t kPixels = size_t(kSide) * kSide;
     const covariance::Sym2<float> spectrum{0.01f, 0, 0.0225f};
     Prediction p{kSide, kSide, std::vector(kPixels, spectrum), std::vector<float>(kPixels, 2)};
-    // On the right 64 samples more for lens and shutter than a pinhole at rest would need.
+    // On the right lens and shutter ask for 64 times as many samples as on the left.
     for (size_t i = 0; i < kPixels; ++i)
         if (i % kSide >= kSide / 2) p.interior_count[i] = 128;
     const covariance::FilterLimits<float> limits{0.4f, 15};

@@ -95,15 +95,16 @@ TEST(Gather, VarianceFallsByTheEffectiveNumberOfPixels) {
     EXPECT_NEAR(g.variance[50 * 101 + 50] * 4 * 3.14159f * 9, 1, 0.05f);
 }
 
-TEST(Gather, MeansUnderFiltersKeepTheTotalAndSpreadIt) {
-    std::vector<float> values(61 * 61, 0.0f);
-    values[30 * 61 + 30] = 1;
-    const auto means = mean_under_filters(values, uniform_field(61, 61, {4, 0, 9}));
+TEST(Gather, KeepsTheTotalAndSpreadsIt) {
+    std::vector<Rgb> mean(61 * 61, Rgb(0));
+    mean[30 * 61 + 30] = Rgb(1);
+    const auto g = run(mean, uniform_field(61, 61, {4, 0, 9}));
     double sum = 0;
-    for (const float v : means) sum += v;
+    for (const Rgb& c : g.color) sum += c.r;
     EXPECT_NEAR(sum, 1, 1e-3);
-    EXPECT_NEAR(means[30 * 61 + 30], 1 / (2 * 3.14159f * 2 * 3), 5e-4f);
-    EXPECT_NEAR(means[33 * 61 + 30] / means[30 * 61 + 32], 1, 1e-3f);  // a deviation off, each
+    EXPECT_NEAR(g.color[30 * 61 + 30].r, 1 / (2 * 3.14159f * 2 * 3), 5e-4f);
+    // A deviation off, each.
+    EXPECT_NEAR(g.color[33 * 61 + 30].r / g.color[30 * 61 + 32].r, 1, 1e-3f);
 }
 
 TEST(FilterField, SettingsFollowTheCount) {
