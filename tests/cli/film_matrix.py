@@ -13,7 +13,7 @@ import time
 import unittest
 
 from films import LENS, METHODS, MOVING, SCENES, SIZED, SKY, FilmTest
-from support import DONE, PROGRAM, WORLD
+from support import DONE, PROGRAM, SANITIZED, WORLD
 from test_mpi import ENVIRONMENT, MODULE, MPIRUN
 
 THREADS, RANKS = (1, 2, 3, 8), (1, 2, 4)
@@ -47,7 +47,7 @@ def ranks_of(run):
 
 
 @unittest.skipUnless(MPIRUN and MODULE.exists(), "OpenMPI is not installed")
-@unittest.skipIf(os.environ.get("COVTRACE_SANITIZE") == "1", "OpenMPI leaks")
+@unittest.skipIf(SANITIZED, "OpenMPI leaks")
 class Matrix(FilmTest):
     def setUp(self):
         super().setUp()

@@ -11,6 +11,8 @@ import unittest
 from dataclasses import dataclass
 
 PROGRAM = os.environ.get("COVTRACE", "covtrace")
+SANITIZED = os.environ.get("COVTRACE_SANITIZE") == "1"
+SLOWER = 20 if SANITIZED else 1  # at most: times are told apart all the same
 
 DONE, USAGE, SCENE, LIMIT, IO, INTERRUPTED, INTERNAL = 0, 2, 3, 4, 5, 6, 7
 
@@ -51,7 +53,7 @@ class Result:
 
 def limits(**values):
     """For `before`: sets limits such as AS=2**30 in the child; AS is left out where a sanitizer needs terabytes of it."""
-    if os.environ.get("COVTRACE_SANITIZE") == "1":
+    if SANITIZED:
         values.pop("AS", None)
 
     def apply():
@@ -83,7 +85,7 @@ class CliTest(unittest.TestCase):
             cwd=self.folder,
             stdin=subprocess.DEVNULL,
             capture_output=not options,
-            timeout=timeout,
+            timeout=SLOWER * timeout,
             preexec_fn=before,
             **options,
         )

@@ -7,7 +7,7 @@ import unittest
 
 import exr
 from films import METHODS, FilmTest
-from support import DONE, HEADER, LIMIT, USAGE, WORLD
+from support import DONE, HEADER, LIMIT, SANITIZED, USAGE, WORLD
 
 # Close to its light the sphere is brighter than the largest float; elsewhere the film limits it.
 TOO_BRIGHT = HEADER.replace('Film "rgb"', 'Film "rgb" "float maxcomponentvalue" 10') + """\
@@ -43,6 +43,7 @@ class Memory(FilmTest):
                 self.assert_no_file()
         self.run_render("plain", "hybrid", "--max-memory", "4G", "--spp", "1")
 
+    @unittest.skipIf(SANITIZED, "a sanitizer takes several times what the program does")
     def test_what_is_refused_would_not_have_fit(self):
         """The estimate is near the most that the process then has in memory."""
         factor = 1.6

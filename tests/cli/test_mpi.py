@@ -9,7 +9,7 @@ import time
 import unittest
 
 from films import METHODS, FilmTest
-from support import DONE, PROGRAM, USAGE
+from support import DONE, PROGRAM, SANITIZED, USAGE
 
 MODULE = pathlib.Path(PROGRAM).resolve().parent / "covtrace_mpi.so"
 MPIRUN = shutil.which("mpirun")
@@ -20,7 +20,7 @@ ENVIRONMENT = {
 
 
 @unittest.skipUnless(MPIRUN and MODULE.exists(), "OpenMPI is not installed")
-@unittest.skipIf(os.environ.get("COVTRACE_SANITIZE") == "1", "OpenMPI leaks")
+@unittest.skipIf(SANITIZED, "OpenMPI leaks")
 class Ranks(FilmTest):
     def command(self, ranks, scene, method, *arguments):
         return [MPIRUN, "--oversubscribe", "-n", str(ranks), PROGRAM, "render", f"{scene}.pbrt", "--method", method,
