@@ -92,11 +92,12 @@ std::vector<std::pair<std::string, HybridSettings>> variants() {
         add(fmt::format("judged over sigma {}", sigma), [&](auto& s) { s.likeness.sigma = sigma; });
     for (float any : {0.02f, 0.1f, 1.0f})
         add(fmt::format("unlike pixels count {}", any), [&](auto& s) { s.likeness.any = any; });
-    add("fits of 0.5, 1, 2 shaped", [](auto& s) {
-        s.candidates.fits = {{0.5f, false}, {1, false}, {2, true}};
-    });
-    add("fits of 0.5, 2, 4 shaped", [](auto& s) {
-        s.candidates.fits = {{0.5f, false}, {2, false}, {4, true}};
+    for (float k : {0.35f, 0.7f, 1.0f})
+        add(fmt::format("noisy features: k = {}", k), [&](auto& s) { s.candidates.fits[0].k = k; });
+    add("a shaped window with them, too",
+        [](auto& s) { s.candidates.fits[2].noise = FeatureNoise::kept; });
+    add("filtered features alone", [](auto& s) {
+        for (auto& fit : s.candidates.fits) fit.noise = FeatureNoise::filtered;
     });
     add("without the wider Gaussian", [](auto& s) { s.candidates.gaussians = {0.5f}; });
     add("without the narrower Gaussian", [](auto& s) { s.candidates.gaussians = {1}; });
@@ -107,11 +108,11 @@ std::vector<std::pair<std::string, HybridSettings>> variants() {
     add("Gaussians alone", [](auto& s) { s.candidates.fits.clear(); });
     add("plain windows, mixed", [](auto& s) {
         s.candidates.gaussians.clear();
-        s.candidates.fits = {{0.5f, false}, {1, false}};
+        s.candidates.fits = {{0.5f}, {1}};
     });
     add("plain windows, best single", [](auto& s) {
         s.candidates.gaussians.clear();
-        s.candidates.fits = {{0.5f, false}, {1, false}};
+        s.candidates.fits = {{0.5f}, {1}};
         s.mix = false;
     });
     return list;

@@ -56,7 +56,7 @@ std::vector<Candidate> make_candidates(const Halves& halves,
     const FilterField shape = predicted_filters(spectrum, w, h, 1);
     std::vector<RegressionWindow> windows;
     for (const auto& fit : settings.fits)
-        windows.push_back({fit.k, fit.shaped ? &shape : nullptr, kWindowWidening});
+        windows.push_back({fit.k, fit.shaped ? &shape : nullptr, kWindowWidening, fit.noise});
     const std::array<FeaturePlanes, 2> features = filter_features(halves);
     auto a = regress(halves[0], halves[1], features[0], windows);
     auto b = regress(halves[1], halves[0], features[1], windows);

@@ -6,6 +6,7 @@
 
 #include "reconstruction/filter_field.h"
 #include "reconstruction/half_buffer.h"
+#include "reconstruction/regression.h"
 
 namespace covtrace {
 
@@ -16,13 +17,14 @@ using Candidate = std::array<ColorPlanes, 2>;
 struct CandidateSettings {
     /// Scales of the predicted Gaussians; 1: the width factor c = 2.
     std::vector<float> gaussians{0.5f, 1.0f};
-    /// First-order regressions: tolerance of the colours' patches, and whether the window also
-    /// falls off as the predicted Gaussian, 2.5 times as wide.
+    /// First-order regressions: tolerance of the colours' patches, whether the window also falls
+    /// off as the predicted Gaussian, 2.5 times as wide, and the features that explain the colours.
     struct Fit {
         float k;
-        bool shaped;
+        bool shaped = false;
+        FeatureNoise noise = FeatureNoise::filtered;
     };
-    std::vector<Fit> fits{{0.5f, false}, {2.0f, false}, {1.0f, true}, {4.0f, true}};
+    std::vector<Fit> fits{{0.5f, false, FeatureNoise::kept}, {2.0f}, {1.0f, true}, {4.0f, true}};
 };
 
 /// The raw pixels, the Gaussians, the fits, in this order. `spectrum`: the predicted ones after the

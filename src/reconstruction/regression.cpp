@@ -47,7 +47,7 @@ class Block {
                                 kCells];
                 for (size_t k = 0; k < windows_.size(); ++k) {
                     window_.set_weights(windows_[k], d, x0 + x, y0 + y, weight_);
-                    if (window_.fit(weight_, fitted_)) add(x, y, out[k]);
+                    if (window_.fit(windows_[k].noise, weight_, fitted_)) add(x, y, out[k]);
                 }
             }
     }
@@ -91,10 +91,10 @@ class Block {
 }  // namespace
 
 std::vector<ColorPlanes> regress(const HalfBuffer& half, const HalfBuffer& guide,
-                                 const FeaturePlanes& features,
+                                 const FeaturePlanes& filtered,
                                  std::span<const RegressionWindow> windows) {
     const int w = half.count.width, h = half.count.height;
-    const RegressionInputs in(half, features);
+    const RegressionInputs in(half, filtered);
     const PatchDistance distance(guide.color, guide.color_variance, kReach, kPatchRadius);
 
     const int blocks_x = (w + kBlock - 1) / kBlock, blocks_y = (h + kBlock - 1) / kBlock;

@@ -9,7 +9,13 @@
 
 namespace covtrace {
 
-/// The weights of the pixels q around a centre p, beside those of the colours' patches.
+/// Which features a fit explains the colours by. Lens and shutter leave noise in them. `filtered`:
+/// freed of it, and of the details that look like it. `kept`: those of the samples themselves,
+/// which know every detail, but the fit takes on the noise that they share with the colours.
+enum class FeatureNoise { filtered, kept };
+
+/// The weights of the pixels q around a centre p, beside those of the colours' patches, and what
+/// the colours are explained by.
 struct RegressionWindow {
     /// Patches count as alike up to k times the noise: weight exp(-d / k^2), d of PatchDistance.
     float k = 1;
@@ -17,19 +23,20 @@ struct RegressionWindow {
     /// times `widen`^2. Null: every pixel within the reach counts alike.
     const FilterField* shape = nullptr;
     float widen = 1;
+    FeatureNoise noise = FeatureNoise::filtered;
 };
 
 constexpr int kRegressionReach = 9;  ///< windows are 19 x 19 pixels
 
 /// For every window: around each centre p (every second pixel of every second row) the colours of
-/// `half` are fitted by  b_0 + b_x (x_q - x_p) + b_y (y_q - y_p) + sum_i b_i (f_i(q) - f_i(p))
-/// with weights w_pq that come from the patches of `guide`, the other half, so that the noise of a
-/// pixel does not choose its own weights. A ridge keeps the fit from following noise. Every pixel
-/// then is the mean of what the fits around it say, weighted by w_pq; one without any weight, or
-/// without samples in all of its window, keeps its own colour. Colours that are linear in features
-/// and position come out unchanged but for the ridge.
+/// `half` are fitted by  b_0 + b_x (x_q - x_p) + b_y (y_q - y_p) + sum_i b_i (f_i(q) - f_i(p)),
+/// f the features of `half` or `filtered`, with weights w_pq that come from the patches of `guide`,
+/// the other half, so that the noise of a pixel does not choose its own weights. A ridge keeps the
+/// fit from following noise. Every pixel then is the mean of what the fits around it say, weighted
+/// by w_pq; one without any weight, or without samples in all of its window, keeps its own colour.
+/// Colours that are linear in features and position come out unchanged but for the ridge.
 std::vector<ColorPlanes> regress(const HalfBuffer& half, const HalfBuffer& guide,
-                                 const FeaturePlanes& features,
+                                 const FeaturePlanes& filtered,
                                  std::span<const RegressionWindow> windows);
 
 }  // namespace covtrace

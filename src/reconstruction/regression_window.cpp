@@ -16,10 +16,13 @@ void cut_out(const PaddedPlane& plane, int x, int y, FitWindow::Cells& out) {
 
 }  // namespace
 
-RegressionInputs::RegressionInputs(const HalfBuffer& half, const FeaturePlanes& features) {
+RegressionInputs::RegressionInputs(const HalfBuffer& half, const FeaturePlanes& filtered) {
     constexpr int kReach = FitWindow::kReach;
     const int w = half.count.width, h = half.count.height;
-    for (size_t f = 0; f < kFeatures; ++f) feature[f] = PaddedPlane(features[f], kReach);
+    for (size_t f = 0; f < kFeatures; ++f) {
+        feature[size_t(FeatureNoise::filtered)][f] = PaddedPlane(filtered[f], kReach);
+        feature[size_t(FeatureNoise::kept)][f] = PaddedPlane(half.feature[f], kReach);
+    }
     for (size_t c = 0; c < 3; ++c) color[c] = PaddedPlane(half.color[c], kReach);
     Plane has_samples(w, h);
     for (size_t i = 0; i < has_samples.size(); ++i)
@@ -36,16 +39,21 @@ FitWindow::FitWindow() {
             x_[o] = float(dx) / kReach;
             y_[o] = float(dy) / kReach;
         }
-    basis_ = {&one_, &x_, &y_};
-    for (size_t f = 0; f < kFeatures; ++f) basis_[kPositions + f] = &feature_[f];
+    for (Basis& basis : basis_) {
+        basis.function = {&one_, &x_, &y_};
+        for (size_t f = 0; f < kFeatures; ++f) basis.function[kPositions + f] = &basis.feature[f];
+    }
 }
 
 void FitWindow::move_to(const RegressionInputs& in, int x, int y) {
-    size_ = kPositions;
-    for (const PaddedPlane& plane : in.feature) {
-        Cells& feature = feature_[size_ - kPositions];
-        cut_out(plane, x, y, feature);
-        if (centre(feature)) ++size_;
+    for (size_t k = 0; k < basis_.size(); ++k) {
+        Basis& basis = basis_[k];
+        basis.size = kPositions;
+        for (const PaddedPlane& plane : in.feature[k]) {
+            Cells& feature = basis.feature[basis.size - kPositions];
+            cut_out(plane, x, y, feature);
+            if (centre(feature)) ++basis.size;
+        }
     }
     for (size_t c = 0; c < 3; ++c) cut_out(in.color[c], x, y, color_[c]);
     cut_out(in.inside, x, y, inside_);
@@ -70,14 +78,15 @@ void FitWindow::set_weights(const RegressionWindow& window, const float* distanc
     }
 }
 
-bool FitWindow::fit(const Cells& weight, std::array<Cells, 3>& fitted) {
-    solve_normal_equations(weight);
+bool FitWindow::fit(FeatureNoise noise, const Cells& weight, std::array<Cells, 3>& fitted) {
+    const Basis& basis = basis_[size_t(noise)];
+    solve_normal_equations(basis, weight);
     if (!(total_ > 0)) return false;
     for (size_t o = 0; o < kCells; o += kLanes) {
         Lanes sum[3];
         for (size_t c = 0; c < 3; ++c) sum[c] = coefficient_[c][0] - Lanes{};
-        for (size_t i = 1; i < size_; ++i) {
-            const Lanes x = load(&(*basis_[i])[o]);
+        for (size_t i = 1; i < basis.size; ++i) {
+            const Lanes x = load(&(*basis.function[i])[o]);
             for (size_t c = 0; c < 3; ++c) sum[c] += coefficient_[c][i] * x;
         }
         for (size_t c = 0; c < 3; ++c) store(sum[c], &fitted[c][o]);
@@ -103,16 +112,16 @@ bool FitWindow::centre(Cells& feature) {
     return false;
 }
 
-void FitWindow::solve_normal_equations(const Cells& weight) {
-    const size_t n = size_;
+void FitWindow::solve_normal_equations(const Basis& basis, const Cells& weight) {
+    const size_t n = basis.size;
     for (size_t i = 0; i < n; ++i) {
-        const Cells& x = *basis_[i];
+        const Cells& x = *basis.function[i];
         Cells& z = weighted_[i];
         for (size_t o = 0; o < kCells; ++o) z[o] = weight[o] * sampled_[o] * x[o];
     }
     // Columns beyond the basis: the colours.
     std::array<const float*, kBasis + 3> column{};
-    for (size_t i = 0; i < n; ++i) column[i] = basis_[i]->data();
+    for (size_t i = 0; i < n; ++i) column[i] = basis.function[i]->data();
     for (size_t c = 0; c < 3; ++c) column[n + c] = color_[c].data();
     double a[kBasis][kBasis + 3] = {};
     for (size_t i = 0; i < n; i += 2) {
@@ -135,12 +144,11 @@ void FitWindow::solve_normal_equations(const Cells& weight) {
     // counts as constant: what differs by less is rounding and left-over noise.
     constexpr double kRidge = 1e-3, kFloor = 1e-5;
     for (size_t i = 1; i < n; ++i) a[i][i] += kRidge * a[i][i] + kFloor * a[0][0];
-    eliminate(a);
+    eliminate(n, a);
 }
 
 /// Gauss elimination of the symmetric positive definite system; only its upper half is read.
-void FitWindow::eliminate(double (&a)[kBasis][kBasis + 3]) {
-    const size_t n = size_;
+void FitWindow::eliminate(size_t n, double (&a)[kBasis][kBasis + 3]) {
     for (size_t i = 0; i < n; ++i) {
         const double inverse = 1 / a[i][i];
         for (size_t r = i + 1; r < n; ++r) {

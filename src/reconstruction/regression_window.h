@@ -12,8 +12,8 @@ namespace covtrace {
 
 /// What windows are cut from, with borders as wide as they reach.
 struct RegressionInputs {
-    RegressionInputs(const HalfBuffer& half, const FeaturePlanes& features);
-    std::array<PaddedPlane, kFeatures> feature;
+    RegressionInputs(const HalfBuffer& half, const FeaturePlanes& filtered);
+    std::array<std::array<PaddedPlane, kFeatures>, 2> feature;  ///< by FeatureNoise
     std::array<PaddedPlane, 3> color;
     PaddedPlane inside;   ///< 1 in the image, 0 outside
     PaddedPlane sampled;  ///< 1 where a pixel has samples, 0 elsewhere and outside
@@ -38,24 +38,29 @@ class FitWindow {
     void set_weights(const RegressionWindow& window, const float* distance, int x, int y,
                      Cells& weight) const;
 
-    /// Fits the colours with the weights and writes the fit's value at every pixel. False where
-    /// there is nothing to fit.
-    bool fit(const Cells& weight, std::array<Cells, 3>& fitted);
+    /// Fits the colours with these features and weights and writes the fit's value at every pixel.
+    /// False where there is nothing to fit.
+    bool fit(FeatureNoise noise, const Cells& weight, std::array<Cells, 3>& fitted);
 
   private:
     static constexpr size_t kPositions = 3;                   // 1, x, y
     static constexpr size_t kBasis = kPositions + kFeatures;  // and the features
 
-    static bool centre(Cells& feature);
-    void solve_normal_equations(const Cells& weight);
-    void eliminate(double (&a)[kBasis][kBasis + 3]);
+    /// What the colours are explained by.
+    struct Basis {
+        std::array<Cells, kFeatures> feature{};  // those that vary come first
+        std::array<const Cells*, kBasis> function{};
+        size_t size = kPositions;
+    };
 
-    Cells one_{}, x_{}, y_{};  // positions relative to the centre, in units of the reach
-    std::array<Cells, kFeatures> feature_{};  // those that vary come first
+    static bool centre(Cells& feature);
+    void solve_normal_equations(const Basis& basis, const Cells& weight);
+    void eliminate(size_t n, double (&a)[kBasis][kBasis + 3]);
+
+    Cells one_{}, x_{}, y_{};       // positions relative to the centre, in units of the reach
+    std::array<Basis, 2> basis_{};  // by FeatureNoise
     std::array<Cells, 3> color_{};
     Cells inside_{}, sampled_{};
-    std::array<const Cells*, kBasis> basis_{};
-    size_t size_ = kPositions;  // of the basis here
     std::array<Cells, kBasis> weighted_{};
     float total_ = 0;
     float coefficient_[3][kBasis] = {};

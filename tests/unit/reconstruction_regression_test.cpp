@@ -50,6 +50,24 @@ TEST(Regression, ReproducesLinearFunctionsOfFeaturesAndPosition) {
             EXPECT_NEAR(fitted[0][c][i], l.halves[0].color[c][i], 14e-3f);
 }
 
+TEST(Regression, ExplainsColoursByTheSamplesOwnFeaturesWhereAsked) {
+    Linear l = linear_image();
+    for (HalfBuffer& half : l.halves) half.feature = l.features;
+    FeaturePlanes filtered;  // of all detail
+    filtered.fill(Plane(kWidth, kHeight, 0.5f));
+    const std::array windows{RegressionWindow{.noise = FeatureNoise::kept}, RegressionWindow{}};
+    const auto fitted = regress(l.halves[0], l.halves[1], filtered, windows);
+    float worst = 0, worst_filtered = 0;
+    for (size_t c = 0; c < 3; ++c)
+        for (size_t i = 0; i < fitted[0][c].size(); ++i) {
+            const float truth = l.halves[0].color[c][i];
+            worst = std::max(worst, std::abs(fitted[0][c][i] - truth));
+            worst_filtered = std::max(worst_filtered, std::abs(fitted[1][c][i] - truth));
+        }
+    EXPECT_LT(worst, 14e-3f);
+    EXPECT_GT(worst_filtered, 0.5f);
+}
+
 TEST(Regression, PixelsWithoutSamplesTakeNoPart) {
     Linear l = linear_image();
     Rng rng(5);
