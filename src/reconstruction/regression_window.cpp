@@ -14,15 +14,29 @@ void cut_out(const PaddedPlane& plane, int x, int y, FitWindow::Cells& out) {
     }
 }
 
+/// The same of a plane without a border: its outermost pixels are repeated.
+void cut_out(const Plane& plane, int x, int y, FitWindow::Cells& out) {
+    constexpr int kReach = FitWindow::kReach, kSide = FitWindow::kSide;
+    const bool inside = x >= kReach && x + kReach < plane.width;
+    float* to = out.data();
+    for (int dy = -kReach; dy <= kReach; ++dy, to += kSide) {
+        const float* row =
+            &plane.values[size_t(std::clamp(y + dy, 0, plane.height - 1)) * size_t(plane.width)];
+        if (inside) {
+            std::copy_n(row + (x - kReach), kSide, to);
+            continue;
+        }
+        for (int k = 0; k < kSide; ++k) to[k] = row[std::clamp(x - kReach + k, 0, plane.width - 1)];
+    }
+}
+
 }  // namespace
 
-RegressionInputs::RegressionInputs(const HalfBuffer& half, const FeaturePlanes& filtered) {
+RegressionInputs::RegressionInputs(const HalfBuffer& half, const FeaturePlanes& features)
+    : noisy(half.feature) {
     constexpr int kReach = FitWindow::kReach;
     const int w = half.count.width, h = half.count.height;
-    for (size_t f = 0; f < kFeatures; ++f) {
-        feature[size_t(FeatureNoise::filtered)][f] = PaddedPlane(filtered[f], kReach);
-        feature[size_t(FeatureNoise::kept)][f] = PaddedPlane(half.feature[f], kReach);
-    }
+    for (size_t f = 0; f < kFeatures; ++f) filtered[f] = PaddedPlane(features[f], kReach);
     for (size_t c = 0; c < 3; ++c) color[c] = PaddedPlane(half.color[c], kReach);
     Plane has_samples(w, h);
     for (size_t i = 0; i < has_samples.size(); ++i)
@@ -46,15 +60,17 @@ FitWindow::FitWindow() {
 }
 
 void FitWindow::move_to(const RegressionInputs& in, int x, int y) {
-    for (size_t k = 0; k < basis_.size(); ++k) {
-        Basis& basis = basis_[k];
+    const auto explain_by = [&](FeatureNoise noise, const auto& planes) {
+        Basis& basis = basis_[size_t(noise)];
         basis.size = kPositions;
-        for (const PaddedPlane& plane : in.feature[k]) {
+        for (const auto& plane : planes) {
             Cells& feature = basis.feature[basis.size - kPositions];
             cut_out(plane, x, y, feature);
             if (centre(feature)) ++basis.size;
         }
-    }
+    };
+    explain_by(FeatureNoise::filtered, in.filtered);
+    explain_by(FeatureNoise::kept, in.noisy);
     for (size_t c = 0; c < 3; ++c) cut_out(in.color[c], x, y, color_[c]);
     cut_out(in.inside, x, y, inside_);
     cut_out(in.sampled, x, y, sampled_);

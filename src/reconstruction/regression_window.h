@@ -10,10 +10,11 @@
 
 namespace covtrace {
 
-/// What windows are cut from, with borders as wide as they reach.
+/// What windows are cut from, with borders as wide as they reach. `half` must outlive it.
 struct RegressionInputs {
-    RegressionInputs(const HalfBuffer& half, const FeaturePlanes& filtered);
-    std::array<std::array<PaddedPlane, kFeatures>, 2> feature;  ///< by FeatureNoise
+    RegressionInputs(const HalfBuffer& half, const FeaturePlanes& features);
+    std::array<PaddedPlane, kFeatures> filtered;
+    const FeaturePlanes& noisy;  ///< without borders: a copy would cost 32 bytes per pixel
     std::array<PaddedPlane, 3> color;
     PaddedPlane inside;   ///< 1 in the image, 0 outside
     PaddedPlane sampled;  ///< 1 where a pixel has samples, 0 elsewhere and outside
