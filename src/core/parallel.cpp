@@ -5,7 +5,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
 
-#ifdef __SANITIZE_THREAD__
+#ifdef COVTRACE_TELL_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
 #endif
 
@@ -13,8 +13,10 @@ namespace covtrace {
 namespace {
 
 // What a thread did before `release` happened before what others do after `acquire` of the same
-// address. oneTBB sees to that; the thread sanitizer does not see into it and has to be told.
-#ifdef __SANITIZE_THREAD__
+// address. oneTBB sees to that; the thread sanitizer does not see into it and has to be told. This
+// file is not instrumented itself: oneTBB's templates would be, but not the library that orders
+// what they do.
+#ifdef COVTRACE_TELL_THREAD_SANITIZER
 void release(void* address) {
     __tsan_release(address);
 }
