@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 PROGRAM = os.environ.get("COVTRACE", "covtrace")
 SANITIZED = os.environ.get("COVTRACE_SANITIZE") == "1"
-SLOWER = 40 if SANITIZED else 1  # at most: times are told apart all the same
+SLOWER = 40 if SANITIZED else 1  # times as long may a sanitized program take, on a loaded machine
 
 DONE, USAGE, SCENE, LIMIT, IO, INTERRUPTED, INTERNAL = 0, 2, 3, 4, 5, 6, 7
 
