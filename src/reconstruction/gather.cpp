@@ -1,9 +1,11 @@
 #include "reconstruction/gather.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/parallel.h"
+#include "reconstruction/lanes.h"
 
 namespace covtrace {
 
@@ -13,34 +15,38 @@ using Sym2 = covariance::Sym2<float>;
 
 /// One level of the pyramid: sums over 2^level x 2^level pixels.
 struct Level {
-    int width = 0, height = 0;
-    struct Cell {
-        Rgb sum;
-        float variance = 0;  // of the sum's luminance
-        float weight = 0;    // how many pixels had samples
+    enum Sum : size_t {
+        red,
+        green,
+        blue,
+        variance,  // of the sum's luminance
+        weight,    // how many pixels had samples
+        kSums
     };
-    std::vector<Cell> cells;
+
+    Level(int w, int h) : width(w), height(h), stride(size_t(w) + kLanes) {
+        for (auto& plane : sums) plane.resize(stride * size_t(h));
+    }
+    size_t index(int x, int y) const { return size_t(y) * stride + size_t(x); }
+
+    int width, height;
+    size_t stride;  // rows end with zeros, so that whole vectors may be read from any pixel
+    std::array<std::vector<float>, kSums> sums;
 };
 
 Level halve(const Level& fine) {
-    Level c;
-    c.width = (fine.width + 1) / 2;
-    c.height = (fine.height + 1) / 2;
-    c.cells.resize(size_t(c.width) * size_t(c.height));
-    parallel_for(c.height, [&](int64_t row) {
+    Level coarse((fine.width + 1) / 2, (fine.height + 1) / 2);
+    parallel_for(coarse.height, [&](int64_t row) {
         const int y = int(row);
-        for (int x = 0; x < c.width; ++x) {
-            Level::Cell& cell = c.cells[size_t(y) * size_t(c.width) + size_t(x)];
-            for (int fy = 2 * y; fy < std::min(2 * y + 2, fine.height); ++fy)
-                for (int fx = 2 * x; fx < std::min(2 * x + 2, fine.width); ++fx) {
-                    const Level::Cell& f = fine.cells[size_t(fy) * size_t(fine.width) + size_t(fx)];
-                    cell.sum += f.sum;
-                    cell.variance += f.variance;
-                    cell.weight += f.weight;
-                }
-        }
+        for (size_t k = 0; k < Level::kSums; ++k)
+            for (int x = 0; x < coarse.width; ++x) {
+                float& sum = coarse.sums[k][coarse.index(x, y)];
+                for (int fy = 2 * y; fy < std::min(2 * y + 2, fine.height); ++fy)
+                    for (int fx = 2 * x; fx < std::min(2 * x + 2, fine.width); ++fx)
+                        sum += fine.sums[k][fine.index(fx, fy)];
+            }
     });
-    return c;
+    return coarse;
 }
 
 constexpr float kCut = 9;  // squared number of standard deviations
@@ -54,8 +60,9 @@ float gaussian_mean(const Level& level, float cx, float cy, const Sym2& s, Rgb& 
     const float reach_y = std::sqrt(kCut * s.yy);
     const int y0 = std::max(0, int(std::ceil(cy - reach_y)));
     const int y1 = std::min(level.height - 1, int(std::floor(cy + reach_y)));
-    Rgb sum;
-    float squares = 0, total = 0;
+    Lanes lane;
+    for (size_t k = 0; k < kLanes; ++k) lane[k] = float(k);
+    std::array<Lanes, Level::kSums> sum{};
     for (int y = y0; y <= y1; ++y) {
         // The row's chord of the ellipse: qxx x^2 + 2 qxy x dy + qyy dy^2 <= cut.
         const float dy = float(y) - cy;
@@ -64,37 +71,39 @@ float gaussian_mean(const Level& level, float cx, float cy, const Sym2& s, Rgb& 
         const float half = std::sqrt(std::max(0.0f, rest / qxx));
         const int x0 = std::max(0, int(std::ceil(cx + centre - half)));
         const int x1 = std::min(level.width - 1, int(std::floor(cx + centre + half)));
-        const size_t row = size_t(y) * size_t(level.width);
-        for (int x = x0; x <= x1; ++x) {
-            const Level::Cell& cell = level.cells[row + size_t(x)];
-            if (cell.weight == 0) continue;
-            const float dx = float(x) - cx;
-            const float h = std::exp(-0.5f * (qxx * dx * dx + 2 * qxy * dx * dy + qyy * dy * dy));
-            sum += h * cell.sum;
-            squares += h * h * cell.variance;
-            total += h * cell.weight;
+        for (int x = x0; x <= x1; x += int(kLanes)) {
+            const Lanes dx = lane + (float(x) - cx);
+            const Lanes power =
+                multiply_add(-0.5f * dx, qxx * dx + 2 * qxy * dy, -0.5f * qyy * dy * dy - Lanes{});
+            const Lanes h = lane <= float(x1 - x) ? exp_of_negative(power) : Lanes{};
+            const size_t at = level.index(x, y);
+            for (size_t k = 0; k < Level::kSums; ++k)
+                sum[k] = multiply_add(k == Level::variance ? h * h : h, load(&level.sums[k][at]),
+                                      sum[k]);
         }
     }
-    if (total > 0) {
-        mean = sum / total;
-        variance = squares / (total * total);
+    const float all = total(sum[Level::weight]);
+    if (all > 0) {
+        mean = Rgb(total(sum[Level::red]), total(sum[Level::green]), total(sum[Level::blue])) / all;
+        variance = total(sum[Level::variance]) / (all * all);
     }
-    return total;
+    return all;
 }
 
 }  // namespace
 
 GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
                      std::span<const uint32_t> count, const FilterField& field) {
-    std::vector<Level> pyramid(1);
+    std::vector<Level> pyramid{Level(field.width, field.height)};
     Level& base = pyramid[0];
-    base.width = field.width;
-    base.height = field.height;
-    base.cells.resize(mean.size());
-    for (size_t i = 0; i < mean.size(); ++i) {
-        if (count[i] > 0 && is_finite(mean[i]))
-            base.cells[i] = {mean[i], std::isfinite(variance[i]) ? variance[i] : 0.0f, 1.0f};
-    }
+    for (int y = 0; y < base.height; ++y)
+        for (int x = 0; x < base.width; ++x) {
+            const size_t i = size_t(y) * size_t(base.width) + size_t(x), at = base.index(x, y);
+            if (count[i] == 0 || !is_finite(mean[i])) continue;
+            for (int c = 0; c < 3; ++c) base.sums[size_t(c)][at] = mean[i][c];
+            base.sums[Level::variance][at] = std::isfinite(variance[i]) ? variance[i] : 0.0f;
+            base.sums[Level::weight][at] = 1;
+        }
     constexpr size_t kMostLevels = 12;
     while (pyramid.size() < kMostLevels &&
            std::max(pyramid.back().width, pyramid.back().height) > 1)

@@ -1,5 +1,10 @@
-/// Sums of products over arrays, eight at a time in a fixed order: the same bits on any machine.
+/// Sums of products over arrays, eight at a time in a fixed order: a build gives the same bits on
+/// any machine.
 #pragma once
+
+#ifdef __FMA__
+#include <immintrin.h>
+#endif
 
 #include <cstddef>
 #include <cstdint>
@@ -23,6 +28,14 @@ inline Lanes load(const float* from) {
 inline void store(const Lanes& v, float* to) {
     std::memcpy(to, &v, sizeof v);
 }
+/// a b + c, rounded once where the processor that is compiled for can.
+inline Lanes multiply_add(const Lanes& a, const Lanes& b, const Lanes& c) {
+#ifdef __FMA__
+    return _mm256_fmadd_ps(a, b, c);
+#else
+    return a * b + c;
+#endif
+}
 inline Lanes smaller(const Lanes& a, const Lanes& b) {
     return a < b ? a : b;
 }
@@ -43,7 +56,7 @@ inline Lanes exp_of_negative(const Lanes& x) {
     Lanes sum = 1.5403530e-4f - Lanes{};
     for (float c :
          {1.3333558e-3f, 9.6181291e-3f, 5.5504109e-2f, 2.4022651e-1f, 6.9314718e-1f, 1.0f})
-        sum = sum * rest + c;
+        sum = multiply_add(sum, rest, c - Lanes{});
     return sum * scale;
 }
 
@@ -62,7 +75,7 @@ inline void products(const float* const (&a)[Rows], const float* const (&b)[Colu
         for (size_t i = 0; i < Rows; ++i) x[i] = load(a[i] + k);
         for (size_t j = 0; j < Columns; ++j) {
             const Lanes y = load(b[j] + k);
-            for (size_t i = 0; i < Rows; ++i) sum[i][j] += x[i] * y;
+            for (size_t i = 0; i < Rows; ++i) sum[i][j] = multiply_add(x[i], y, sum[i][j]);
         }
     }
     for (size_t i = 0; i < Rows; ++i)

@@ -1,5 +1,6 @@
 #include "reconstruction/likeness.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/vec.h"
@@ -29,7 +30,7 @@ void Likeness::weigh(int x, int y, Window& weights) const {
                 const Lanes difference =
                     load(guide.at(x - kReach + int(column), y - kReach + int(row))) -
                     *guide.at(x, y);
-                squared += difference * difference;
+                squared = multiply_add(difference, difference, squared);
             }
             const size_t i = row * kColumns + column;
             store(load(&gaussian_[i]) * (any_ + (1 - any_) * exp_of_negative(-0.5f * squared)),
@@ -40,14 +41,21 @@ void Likeness::weigh(int x, int y, Window& weights) const {
 void weighted_sums(std::span<const MarginPlane> planes, const Likeness::Window& weights, int x,
                    int y, float* sums) {
     constexpr int kReach = Likeness::kReach;
-    for (const MarginPlane& plane : planes) {
-        Lanes sum{};
+    constexpr size_t kAtOnce = 4;  // share the weights that were read
+    for (size_t first = 0; first < planes.size(); first += kAtOnce) {
+        const size_t n = std::min(kAtOnce, planes.size() - first);
+        Lanes sum[kAtOnce] = {};
         for (size_t row = 0; row < Likeness::kRows; ++row) {
-            const float* from = plane.at(x - kReach, y - kReach + int(row));
-            for (size_t column = 0; column < Likeness::kColumns; column += kLanes)
-                sum += load(&weights[row * Likeness::kColumns + column]) * load(from + column);
+            const float* from[kAtOnce];
+            for (size_t k = 0; k < kAtOnce; ++k)
+                from[k] = planes[first + std::min(k, n - 1)].at(x - kReach, y - kReach + int(row));
+            for (size_t column = 0; column < Likeness::kColumns; column += kLanes) {
+                const Lanes weight = load(&weights[row * Likeness::kColumns + column]);
+                for (size_t k = 0; k < kAtOnce; ++k)
+                    sum[k] = multiply_add(weight, load(from[k] + column), sum[k]);
+            }
         }
-        *sums++ = total(sum);
+        for (size_t k = 0; k < n; ++k) *sums++ = total(sum[k]);
     }
 }
 

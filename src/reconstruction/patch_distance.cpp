@@ -31,54 +31,83 @@ PaddedPlane::PaddedPlane(const Plane& plane, int width_of_border, float outside)
 }
 
 PatchDistance::PatchDistance(std::span<const Plane> values, std::span<const Plane> variances,
-                             int reach, int patch_radius)
-    : patch_radius_(patch_radius) {
+                             int reach, int patch_radius, int row_step)
+    : patch_radius_(patch_radius), row_step_(row_step) {
     const int border = reach + patch_radius + 1;
+    Plane noise(values[0].width, values[0].height);
     for (const Plane& p : values) values_.emplace_back(p, border);
-    for (const Plane& p : variances) variances_.emplace_back(p, border);
+    for (const Plane& p : variances) {
+        variances_.emplace_back(p, border);
+        for (size_t i = 0; i < noise.size(); ++i) noise[i] += p[i];
+    }
+    noise_ = PaddedPlane(noise, border);
 }
 
-template <int Radius>
-void PatchDistance::block_of(int x0, int y0, int dx, int dy, float* out) const {
-    static_assert(Radius <= kLargestPatch && kRow % kLanes == 0 && kBlock % kLanes == 0);
-    constexpr int kSide = kBlock + 2 * Radius;
+/// The distances of the single pixels of a block and of what its patches reach, kRow in a row.
+template <size_t Planes>
+void PatchDistance::differences(int x0, int y0, int dx, int dy, float* out) const {
     // Differences beyond this say "not alike" however much larger they are; without the limit one
     // of them would drown the rounding of the sums.
     constexpr float kMost = 1e4f;
-    std::array<float, size_t(kSide) * kRow> d;
-    for (int y = 0; y < kSide; ++y)
+    const int rows = kBlock + 2 * patch_radius_, px = x0 - patch_radius_;
+    for (int y = 0; y < rows; ++y, out += kRow) {
+        const int py = y0 - patch_radius_ + y;
+        const auto of_planes = [&](const std::vector<PaddedPlane>& planes, int x, int row) {
+            std::array<const float*, Planes> at;
+            for (size_t c = 0; c < Planes; ++c) at[c] = planes[c].at(x, row);
+            return at;
+        };
+        const auto u_p = of_planes(values_, px, py), u_q = of_planes(values_, px + dx, py + dy),
+                   v_p = of_planes(variances_, px, py),
+                   v_q = of_planes(variances_, px + dx, py + dy);
+        const float *n_p = noise_.at(px, py), *n_q = noise_.at(px + dx, py + dy);
         for (int x = 0; x < kRow; x += int(kLanes)) {
-            const int px = x0 - Radius + x, py = y0 - Radius + y;
-            Lanes above{}, below{};
-            for (size_t c = 0; c < values_.size(); ++c) {
-                const Lanes v = load(variances_[c].at(px, py)),
-                            v_q = load(variances_[c].at(px + dx, py + dy));
-                const Lanes difference =
-                    load(values_[c].at(px, py)) - load(values_[c].at(px + dx, py + dy));
-                above += difference * difference - (v + smaller(v, v_q));
-                below += v + v_q;
+            const Lanes noise = load(n_p + x);
+            Lanes above = -noise;
+            for (size_t c = 0; c < Planes; ++c) {
+                const Lanes difference = load(u_p[c] + x) - load(u_q[c] + x);
+                above = multiply_add(difference, difference,
+                                     above - smaller(load(v_p[c] + x), load(v_q[c] + x)));
             }
-            store(smaller(above / (1e-10f + below), kMost - Lanes{}),
-                  &d[size_t(y) * kRow + size_t(x)]);
-        }
-    const float scale = 1 / float((2 * Radius + 1) * (2 * Radius + 1));
-    for (int y = 0; y < kBlock; ++y) {
-        std::array<float, kRow> column;
-        for (int x = 0; x < kRow; x += int(kLanes)) {
-            Lanes sum{};
-            for (int k = 0; k <= 2 * Radius; ++k) sum += load(&d[size_t(y + k) * kRow + size_t(x)]);
-            store(sum, &column[size_t(x)]);
-        }
-        for (int x = 0; x < kBlock; x += int(kLanes)) {
-            Lanes sum{};
-            for (int k = 0; k <= 2 * Radius; ++k) sum += load(&column[size_t(x + k)]);
-            store(sum * scale, out + size_t(y) * kBlock + size_t(x));
+            const Lanes below = 1e-10f + noise + load(n_q + x);
+            store(smaller(above / below, kMost - Lanes{}), out + x);
         }
     }
 }
 
+namespace {
+
+/// Means over the patches around the pixels of a block, of every `row_step`-th row.
+template <int Radius>
+void average_patches(const float* d, int row_step, float* out) {
+    constexpr int kBlock = PatchDistance::kBlock, kRow = PatchDistance::kRow;
+    constexpr int kPatch = 2 * Radius + 1;
+    static_assert(Radius <= PatchDistance::kLargestPatch && kRow % kLanes == 0 &&
+                  kBlock % kLanes == 0);
+    const float scale = 1 / float(kPatch * kPatch);
+    for (int y = 0; y < kBlock; y += row_step) {
+        std::array<float, kRow> column;
+        for (int x = 0; x < kRow; x += int(kLanes)) {
+            Lanes sum{};
+            for (int k = 0; k < kPatch; ++k) sum += load(d + (y + k) * kRow + x);
+            store(sum, &column[size_t(x)]);
+        }
+        for (int x = 0; x < kBlock; x += int(kLanes)) {
+            Lanes sum{};
+            for (int k = 0; k < kPatch; ++k) sum += load(&column[size_t(x + k)]);
+            store(sum * scale, out + y * kBlock + x);
+        }
+    }
+}
+
+}  // namespace
+
 void PatchDistance::block(int x0, int y0, int dx, int dy, float* out) const {
-    patch_radius_ == 1 ? block_of<1>(x0, y0, dx, dy, out) : block_of<3>(x0, y0, dx, dy, out);
+    std::array<float, size_t(kBlock + 2 * kLargestPatch) * kRow> d;
+    values_.size() == 1 ? differences<1>(x0, y0, dx, dy, d.data())
+                        : differences<3>(x0, y0, dx, dy, d.data());
+    patch_radius_ == 1 ? average_patches<1>(d.data(), row_step_, out)
+                       : average_patches<kLargestPatch>(d.data(), row_step_, out);
 }
 
 }  // namespace covtrace

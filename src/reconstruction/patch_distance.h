@@ -35,20 +35,22 @@ class PatchDistance {
     /// Pixels of a row that are worked on for a block, patches included.
     static constexpr int kRow = (kBlock + 2 * kLargestPatch + 7) / 8 * 8;
 
-    /// Planes of one size. `reach`: largest offset along an axis; `patch_radius`: 1 or 3.
+    /// One plane, or three of one size. `reach`: largest offset along an axis;
+    /// `patch_radius`: 1 or 3; `row_step`: every how manieth row of a block is asked for.
     PatchDistance(std::span<const Plane> values, std::span<const Plane> variances, int reach,
-                  int patch_radius);
+                  int patch_radius, int row_step = 1);
 
-    /// d(p, p + (dx, dy)) for the kBlock x kBlock pixels from (x0, y0), row by row. Pixels outside
-    /// the image get some value.
+    /// d(p, p + (dx, dy)) for the kBlock x kBlock pixels from (x0, y0), row by row, of which every
+    /// row_step-th is set. Pixels outside the image get some value.
     void block(int x0, int y0, int dx, int dy, float* out) const;
 
   private:
-    template <int Radius>
-    void block_of(int x0, int y0, int dx, int dy, float* out) const;
+    template <size_t Planes>
+    void differences(int x0, int y0, int dx, int dy, float* out) const;
 
     std::vector<PaddedPlane> values_, variances_;
-    int patch_radius_;
+    PaddedPlane noise_;  // the sum of the variances
+    int patch_radius_, row_step_;
 };
 
 /// 1 at d <= 0, falls as exp(-d), 0 from d = 4 on: (1 - d/4)^4. Numbers or Lanes.

@@ -37,7 +37,7 @@ class Block {
 
     void run(int x0, int y0, std::span<Contribution> out) {
         for (Contribution& c : out)
-            for (auto& plane : c) plane.assign(size_t(kHaloSide) * kHaloSide, 0.0f);
+            for (auto& plane : c) plane.assign(size_t(kHaloSide) * kHaloSide + kLanes, 0.0f);
         collect_distances(x0, y0);
         for (int y = 0; y < kBlock && y0 + y < height_; y += kStride)
             for (int x = 0; x < kBlock && x0 + x < width_; x += kStride) {
@@ -68,12 +68,18 @@ class Block {
     }
 
     void add(int x, int y, Contribution& out) const {
+        constexpr size_t kWhole = kSide / kLanes * kLanes;
         for (int row = 0; row < kSide; ++row) {
             const size_t to = size_t(y + row) * kHaloSide + size_t(x), from = size_t(row) * kSide;
-            for (size_t k = 0; k < kSide; ++k) {
-                const float w = weight_[from + k];
-                for (size_t c = 0; c < 3; ++c) out[c][to + k] += w * fitted_[c][from + k];
-                out[3][to + k] += w;
+            for (size_t k = 0; k < kSide; k += kLanes) {
+                Lanes w = load(&weight_[from + k]);
+                if (k == kWhole)  // the next row of the window follows
+                    for (size_t lane = kSide - kWhole; lane < kLanes; ++lane) w[lane] = 0;
+                const auto add_to = [&](std::vector<float>& sums, const Lanes& value) {
+                    store(multiply_add(w, value, load(&sums[to + k])), &sums[to + k]);
+                };
+                for (size_t c = 0; c < 3; ++c) add_to(out[c], load(&fitted_[c][from + k]));
+                add_to(out[3], 1 - Lanes{});
             }
         }
     }
@@ -95,7 +101,7 @@ std::vector<ColorPlanes> regress(const HalfBuffer& half, const HalfBuffer& guide
                                  std::span<const RegressionWindow> windows) {
     const int w = half.count.width, h = half.count.height;
     const RegressionInputs in(half, filtered);
-    const PatchDistance distance(guide.color, guide.color_variance, kReach, kPatchRadius);
+    const PatchDistance distance(guide.color, guide.color_variance, kReach, kPatchRadius, kStride);
 
     const int blocks_x = (w + kBlock - 1) / kBlock, blocks_y = (h + kBlock - 1) / kBlock;
     // Rows of blocks; those above and below a pixel's own reach it too, and no others.

@@ -1,6 +1,7 @@
 #include "reconstruction/regression_window.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace covtrace {
 
@@ -10,7 +11,7 @@ void cut_out(const PaddedPlane& plane, int x, int y, FitWindow::Cells& out) {
     constexpr int kReach = FitWindow::kReach, kSide = FitWindow::kSide;
     for (int dy = -kReach; dy <= kReach; ++dy) {
         const float* row = plane.at(x - kReach, y + dy);
-        std::copy(row, row + kSide, &out[size_t(dy + kReach) * kSide]);
+        std::memcpy(&out[size_t(dy + kReach) * kSide], row, kSide * sizeof(float));
     }
 }
 
@@ -23,7 +24,7 @@ void cut_out(const Plane& plane, int x, int y, FitWindow::Cells& out) {
         const float* row =
             &plane.values[size_t(std::clamp(y + dy, 0, plane.height - 1)) * size_t(plane.width)];
         if (inside) {
-            std::copy_n(row + (x - kReach), kSide, to);
+            std::memcpy(to, row + (x - kReach), kSide * sizeof(float));
             continue;
         }
         for (int k = 0; k < kSide; ++k) to[k] = row[std::clamp(x - kReach + k, 0, plane.width - 1)];
@@ -89,7 +90,7 @@ void FitWindow::set_weights(const RegressionWindow& window, const float* distanc
     const float qxx = s.yy * norm, qxy = -2 * s.xy * norm, qyy = s.xx * norm;
     for (size_t o = 0; o < kCells; o += kLanes) {
         const Lanes dx = load(&x_[o]), dy = load(&y_[o]);
-        const Lanes power = qxx * (dx * dx) + qxy * (dx * dy) + qyy * (dy * dy);
+        const Lanes power = multiply_add(dx, qxx * dx + qxy * dy, qyy * (dy * dy));
         store(load(&weight[o]) * exp_of_negative(power), &weight[o]);
     }
 }
@@ -103,7 +104,8 @@ bool FitWindow::fit(FeatureNoise noise, const Cells& weight, std::array<Cells, 3
         for (size_t c = 0; c < 3; ++c) sum[c] = coefficient_[c][0] - Lanes{};
         for (size_t i = 1; i < basis.size; ++i) {
             const Lanes x = load(&(*basis.function[i])[o]);
-            for (size_t c = 0; c < 3; ++c) sum[c] += coefficient_[c][i] * x;
+            for (size_t c = 0; c < 3; ++c)
+                sum[c] = multiply_add(coefficient_[c][i] - Lanes{}, x, sum[c]);
         }
         for (size_t c = 0; c < 3; ++c) store(sum[c], &fitted[c][o]);
     }
@@ -130,10 +132,13 @@ bool FitWindow::centre(Cells& feature) {
 
 void FitWindow::solve_normal_equations(const Basis& basis, const Cells& weight) {
     const size_t n = basis.size;
-    for (size_t i = 0; i < n; ++i) {
+    // The first function is 1: its products with the weights are the weights.
+    Cells& w = weighted_[0];
+    for (size_t o = 0; o < kCells; o += kLanes) store(load(&weight[o]) * load(&sampled_[o]), &w[o]);
+    for (size_t i = 1; i < n; ++i) {
         const Cells& x = *basis.function[i];
-        Cells& z = weighted_[i];
-        for (size_t o = 0; o < kCells; ++o) z[o] = weight[o] * sampled_[o] * x[o];
+        for (size_t o = 0; o < kCells; o += kLanes)
+            store(load(&w[o]) * load(&x[o]), &weighted_[i][o]);
     }
     // Columns beyond the basis: the colours.
     std::array<const float*, kBasis + 3> column{};
@@ -143,15 +148,30 @@ void FitWindow::solve_normal_equations(const Basis& basis, const Cells& weight) 
     for (size_t i = 0; i < n; i += 2) {
         const size_t next = std::min(i + 1, n - 1);
         const float* const rows[2] = {weighted_[i].data(), weighted_[next].data()};
-        for (size_t j = i; j < n + 3; j += 4) {
-            const auto at = [&](size_t k) { return column[std::min(j + k, n + 2)]; };
-            const float* const columns[4] = {at(0), at(1), at(2), at(3)};
-            float sums[2][4];
-            products(rows, columns, kCells, sums);
-            for (size_t k = 0; k < 4 && j + k < n + 3; ++k) {
+        const auto multiply = [&]<size_t Columns>(size_t j) {
+            const float* columns[Columns];
+            std::copy_n(&column[j], Columns, columns);
+            float sums[2][Columns];
+            products<2, Columns>(rows, columns, kCells, sums);
+            for (size_t k = 0; k < Columns; ++k) {
                 a[i][j + k] = double(sums[0][k]);
                 a[next][j + k] = double(sums[1][k]);
             }
+        };
+        size_t j = i;
+        for (; j + 4 <= n + 3; j += 4) multiply.operator()<4>(j);
+        switch (n + 3 - j) {
+            case 1:
+                multiply.operator()<1>(j);
+                break;
+            case 2:
+                multiply.operator()<2>(j);
+                break;
+            case 3:
+                multiply.operator()<3>(j);
+                break;
+            default:
+                break;
         }
     }
     total_ = float(a[0][0]);
@@ -172,12 +192,12 @@ void FitWindow::eliminate(size_t n, double (&a)[kBasis][kBasis + 3]) {
             for (size_t j = r; j < n + 3; ++j) a[r][j] -= factor * a[i][j];
         }
     }
-    for (size_t c = 0; c < 3; ++c)
-        for (size_t i = n; i-- > 0;) {
-            double sum = a[i][n + c];
-            for (size_t j = i + 1; j < n; ++j) sum -= a[i][j] * double(coefficient_[c][j]);
-            coefficient_[c][i] = float(sum / a[i][i]);
-        }
+    for (size_t i = n; i-- > 0;) {
+        double sum[3] = {a[i][n], a[i][n + 1], a[i][n + 2]};
+        for (size_t j = i + 1; j < n; ++j)
+            for (size_t c = 0; c < 3; ++c) sum[c] -= a[i][j] * double(coefficient_[c][j]);
+        for (size_t c = 0; c < 3; ++c) coefficient_[c][i] = float(sum[c] / a[i][i]);
+    }
 }
 
 }  // namespace covtrace

@@ -25,8 +25,9 @@ class FitWindow {
     static constexpr int kReach = kRegressionReach, kSide = 2 * kReach + 1;
     static constexpr size_t kOffsets = size_t(kSide) * kSide;
     static constexpr size_t kCells = (kOffsets + kLanes - 1) / kLanes * kLanes;
-    /// One number per pixel of the window, row by row; the padding is 0.
-    using Cells = std::array<float, kCells>;
+    /// One number per pixel of the window, row by row; the padding is 0. Aligned, or every second
+    /// vector of them would lie across two lines of the cache.
+    struct alignas(sizeof(Lanes)) Cells : std::array<float, kCells> {};
 
     FitWindow();
     FitWindow(const FitWindow&) = delete;

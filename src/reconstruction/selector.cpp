@@ -28,12 +28,9 @@ void minimise(const float (&g)[kMost][kMost], size_t n, int steps, float (&w)[kM
         if (g[c][c] <= g[best][best]) best = c;
     std::fill(w, w + n, 0.0f);
     w[best] = 1;
+    float slope[kMost];  // G w
+    std::copy_n(g[best], n, slope);
     for (int step = 0; step < steps; ++step) {
-        float slope[kMost];
-        for (size_t c = 0; c < n; ++c) {
-            slope[c] = 0;
-            for (size_t d = 0; d < n; ++d) slope[c] += g[c][d] * w[d];
-        }
         size_t to = 0, from = best;
         for (size_t c = 1; c < n; ++c)
             if (slope[c] < slope[to]) to = c;
@@ -45,6 +42,7 @@ void minimise(const float (&g)[kMost][kMost], size_t n, int steps, float (&w)[kM
         if (!(move > 1e-4f)) break;
         w[to] += move;
         w[from] -= move;
+        for (size_t c = 0; c < n; ++c) slope[c] += move * (g[to][c] - g[from][c]);
     }
 }
 
