@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "render/film_arrays.h"
 
@@ -32,9 +34,22 @@ json to_json(const std::optional<double>& v) {
     throw Error(ErrorKind::scene, "the header of the film is wrong: " + what);
 }
 
+/// The JSON library would cut any number to one that fits.
+template <std::integral Integer>
+Integer integer(const json& j) {
+    if (j.is_number_unsigned() && std::in_range<Integer>(j.get<uint64_t>()))
+        return static_cast<Integer>(j.get<uint64_t>());
+    if (j.is_number_integer() && !j.is_number_unsigned() &&
+        std::in_range<Integer>(j.get<int64_t>()))
+        return static_cast<Integer>(j.get<int64_t>());
+    refuse(j.is_number() ? "the integer " + j.dump()
+                         : "no integer, but " + std::string(j.type_name()));
+}
+
 PixelBounds bounds(const json& j) {
     constexpr int kMost = 1 << 24;  // pixels a side
-    const PixelBounds b{j.at(0), j.at(1), j.at(2), j.at(3)};
+    const auto side = [&](size_t i) { return integer<int>(j.at(i)); };
+    const PixelBounds b{side(0), side(1), side(2), side(3)};
     for (int v : {b.x0, b.y0, b.x1, b.y1})
         if (v < -kMost || v > kMost) refuse("a window of " + j.dump());
     if (b.empty()) refuse("an empty window");
@@ -45,7 +60,7 @@ Metadata metadata(const json& j) {
     Metadata m;
     for (const auto& [name, value] : j.items()) {
         if (value.is_number_integer())
-            m[name] = value.get<int>();
+            m[name] = integer<int>(value);
         else if (value.is_number_float())
             m[name] = value.get<float>();
         else if (value.is_string())
@@ -139,11 +154,12 @@ RenderState parse(const json& j, size_t most_bytes) {
     s.seconds_spp = j.at("seconds_spp");
     const json& goal = j.at("error_goal");
     s.goal = {goal.at(0), goal.at(1), goal.at(2)};
-    s.rejected = j.at("rejected");
+    s.rejected = integer<decltype(s.rejected)>(j.at("rejected"));
     for (const json& r : j.at("first_rejected"))
-        s.first_rejected.push_back({r.at(0), r.at(1), r.at(2)});
-    s.shards = j.at("shards");
-    s.present = j.at("present").get<std::vector<int>>();
+        s.first_rejected.push_back({integer<int>(r.at(0)), integer<int>(r.at(1)),
+                                    integer<decltype(RejectedSample::sample)>(r.at(2))});
+    s.shards = integer<int>(j.at("shards"));
+    for (const json& k : j.at("present")) s.present.push_back(integer<int>(k));
     if (s.method == Method::uniform && s.stage != Stage::rounds) refuse("a stage of 'uniform'");
     check_shards(s);
 

@@ -91,6 +91,10 @@ TEST(FilmHeader, LyingHeadersAreRefused) {
     for (const char* wrong : {"[]", "[1,1]", "[3,1]", "[-1,1]", "[1,5]"})
         refused(Method::uniform, Stage::rounds, present, std::string("\"present\": ") + wrong);
     refused(Method::uniform, Stage::rounds, "\"shards\": 5", "\"shards\": 1");
+    // Cut to 32 bits the first would be 5 again.
+    for (const char* wrong : {"4294967301", "-4294967291", "5.0", "1e70", "true", "\"5\""})
+        refused(Method::uniform, Stage::rounds, "\"shards\": 5",
+                std::string("\"shards\": ") + wrong);
     refused(Method::uniform, Stage::rounds, "\"rounds\"", "\"first_paths\"");
     refused(Method::uniform, Stage::rounds, "\"rounds\"", "\"pilot\"");
     refused(Method::hybrid, Stage::rounds, "\"rounds\"", "\"pilot\"");
