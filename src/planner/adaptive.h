@@ -18,6 +18,8 @@ struct SampleKnowledge {
     /// What the counts are multiplied with, any unit, beyond what lowers the error of the image
     /// most; empty: alike.
     Plane emphasis;
+    /// Whether the counts are for the very sequence of samples that is known, not for another one.
+    bool own = false;
 };
 
 /// Relative densities with mean 1.
@@ -27,9 +29,10 @@ struct SampleKnowledge {
 ///     n_q ~ sigma_q sqrt(A_q / c_q),   A_q = sum_p g_p a_pq^2.
 /// For the predicted Gaussian, whose squares sum to 1 / (4 pi sqrt|C|) ~ sqrt|S_2D|,
 ///     n ~ sigma |S_2D|^(1/4) / (sqrt(I^2 + eps) sqrt(c)).
-/// sigma / I is averaged over a few pixels, as few samples know little of it: not its square, which
-/// one rare bright path would own. `even_share` is given out evenly, so that nothing that the
-/// samples have not seen yet is starved.
+/// Few samples know little of sigma / I: its square is averaged over the nearest pixels. But counts
+/// that follow `own` samples make rare light too dark, the more the fewer pixels own the average:
+/// there sigma / I itself is averaged over a few pixels (docs/decisions/0064). `even_share` is
+/// given out evenly, so that nothing that the samples have not seen yet is starved.
 std::vector<float> adaptive_density(const SampleKnowledge& known, float even_share);
 
 }  // namespace covtrace

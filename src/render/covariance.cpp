@@ -75,6 +75,7 @@ class CovarianceRender {
         if (!job_.options.progressive)
             return relative_density(*prediction_, rule, settings.c, settings.limits);
         SampleKnowledge known = knowledge_from(s_.films[0], prediction_->spectrum);
+        known.own = true;
         known.emphasis = emphasis(*prediction_, rule, settings.c, settings.limits);
         return adaptive_density(known, kEvenShare);
     }

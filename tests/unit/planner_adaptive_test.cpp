@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace covtrace {
@@ -16,7 +18,7 @@ struct Case {
     Case() : spectrum(size_t(kSize) * kSize, covariance::Sym2<float>{0.01f, 0, 0.01f}) {}
     std::vector<covariance::Sym2<float>> spectrum;
     SampleKnowledge known{
-        Plane(kSize, kSize, 1), Plane(kSize, kSize, 1), Plane(kSize, kSize, 4), {}, {}};
+        Plane(kSize, kSize, 1), Plane(kSize, kSize, 1), Plane(kSize, kSize, 4), {}, {}, false};
     /// Density at the middle of the right half over that of the left one, of what is not even.
     double ratio() {
         known.spectrum = spectrum;
@@ -63,6 +65,25 @@ TEST(AdaptiveDensity, FollowsTheEmphasis) {
     c.known.emphasis = Plane(kSize, kSize, 0.5f);
     c.right([&](size_t i) { c.known.emphasis[i] = 3; });
     EXPECT_NEAR(c.ratio(), 6, 0.02);
+}
+
+TEST(AdaptiveDensity, FollowsARareBrightPathWhereItWasSeenAndOwnSamplesLess) {
+    for (const bool own : {false, true}) {
+        Case c;
+        const size_t middle = size_t(kSize) * kSize / 2 + kSize / 2;
+        c.known.variance[middle] = 1e4f;
+        c.known.spectrum = c.spectrum;
+        c.known.own = own;
+        const std::vector<float> d = adaptive_density(c.known, kEven);
+        const auto beyond_even = [&](size_t i) { return double(d[i]) - double(kEven); };
+        const double far = beyond_even(0);
+        // The middle of a Gaussian: of 1e4 under the root, of the root 100 itself.
+        const double sigma = own ? 1.5 : 0.7, share = 1 / (2 * std::numbers::pi * sigma * sigma);
+        const double expected = own ? 1 + 99 * share : std::sqrt(1 + 9999 * share);
+        EXPECT_NEAR(beyond_even(middle) / far, expected, 0.05 * expected);
+        EXPECT_NEAR(beyond_even(middle + 4) / far, own ? 1 + 99 * share * std::exp(-8 / 2.25) : 1,
+                    0.1);
+    }
 }
 
 TEST(AdaptiveDensity, NothingIsStarved) {
