@@ -86,8 +86,9 @@ bool read_row(JpegReader& reader) {
 void append_row(PlainImage& image, const JpegReader& reader) {
     const size_t width = size_t(image.width), channels = size_t(image.channels);
     if (reader.jpeg.out_color_space != JCS_CMYK) {
-        for (size_t i = 0; i < width * channels; ++i)
-            image.values.push_back(float(reader.row[i]) / 255.0f);
+        const size_t count = width * channels, start = image.values.size();
+        image.values.resize(start + count);
+        for (size_t i = 0; i < count; ++i) image.values[start + i] = float(reader.row[i]) / 255.0f;
         return;
     }
     // Adobe's files hold the inks inverted: 255 is none.

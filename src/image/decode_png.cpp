@@ -65,11 +65,14 @@ bool read_row(PngReader& reader, png_bytep row) {
 }
 
 void append_row(PlainImage& image, const png_byte* row) {
-    const size_t count = size_t(image.width) * size_t(image.channels);
-    for (size_t i = 0; i < count; ++i)
-        image.values.push_back(image.integer_bits == 8
-                                   ? float(row[i]) / 255.0f
-                                   : float(row[2 * i] << 8 | row[2 * i + 1]) / 65535.0f);
+    const size_t count = size_t(image.width) * size_t(image.channels), start = image.values.size();
+    image.values.resize(start + count);
+    float* values = &image.values[start];
+    if (image.integer_bits == 8)
+        for (size_t i = 0; i < count; ++i) values[i] = float(row[i]) / 255.0f;
+    else
+        for (size_t i = 0; i < count; ++i)
+            values[i] = float(row[2 * i] << 8 | row[2 * i + 1]) / 65535.0f;
 }
 
 }  // namespace

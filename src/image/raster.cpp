@@ -51,6 +51,7 @@ RasterImage from_plain(PlainImage plain) {
 }
 
 void repair(RasterImage& raster) {
+    if (raster.is_8bit || raster.is_16bit) return;
     float largest = 0;
     for (float v : raster.values)
         if (std::isfinite(v)) largest = std::max(largest, std::abs(v));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace covtrace {
 
@@ -34,21 +35,52 @@ struct Misfit {
     }
 };
 
+using Four = double __attribute__((vector_size(32)));
+
+Four square_root(Four v) {
+    for (int k = 0; k < 4; ++k) v[k] = std::sqrt(v[k]);
+    return v;
+}
+
+/// The observer's samples, four side by side; those beyond the last have no weight.
+struct FourSamples {
+    Four position{};
+    std::array<Four, 3> weight{};
+};
+const std::vector<FourSamples>& four_samples() {
+    static const std::vector<FourSamples> all = [] {
+        const auto samples = observer_samples();
+        std::vector<FourSamples> list((samples.size() + 3) / 4);
+        for (size_t i = 0; i < samples.size(); ++i) {
+            FourSamples& four = list[i / 4];
+            four.position[i % 4] = position(samples[i].wavelength);
+            for (size_t c = 0; c < 3; ++c) four.weight[c][i % 4] = samples[i].weight[c];
+        }
+        return list;
+    }();
+    return all;
+}
+
 Misfit misfit(const Triple& c, const Triple& target) {
-    Misfit m;
-    for (const ObserverSample& sample : observer_samples()) {
-        const double t = position(sample.wavelength), p = polynomial(c, t);
-        const double q = 1 / std::sqrt(1 + p * p);
-        const double s = 0.5 + 0.5 * p * q, slope = 0.5 * q * q * q;
+    std::array<std::array<Four, 4>, 3> sum{};  // of the channels: value, derivatives
+    for (const FourSamples& samples : four_samples()) {
+        const Four t = samples.position, p = (c[2] * t + c[1]) * t + c[0];
+        const Four q = 1 / square_root(1 + p * p);
+        const Four s = 0.5 + 0.5 * p * q, slope = 0.5 * q * q * q;
         for (size_t i = 0; i < 3; ++i) {
-            const double w = sample.weight[i] * slope;
-            m.value[i] += sample.weight[i] * s;
-            m.derivative[i][0] += w;
-            m.derivative[i][1] += w * t;
-            m.derivative[i][2] += w * t * t;
+            const Four w = samples.weight[i] * slope, wt = w * t;
+            sum[i][0] += samples.weight[i] * s;
+            sum[i][1] += w;
+            sum[i][2] += wt;
+            sum[i][3] += wt * t;
         }
     }
-    for (size_t i = 0; i < 3; ++i) m.value[i] -= target[i];
+    const auto total = [](const Four& v) { return (v[0] + v[2]) + (v[1] + v[3]); };
+    Misfit m;
+    for (size_t i = 0; i < 3; ++i) {
+        m.value[i] = total(sum[i][0]) - target[i];
+        for (size_t k = 0; k < 3; ++k) m.derivative[i][k] = total(sum[i][k + 1]);
+    }
     return m;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/parallel.h"
 #include "image/color_encoding.h"
 
 namespace covtrace {
@@ -53,6 +54,10 @@ TextureImage::TextureImage(const RasterImage& raster, Encoding encoding, float g
     const size_t stride = size_t(raster.channels);
     if (raster.is_8bit) {
         for (size_t i = 0; i < 256; ++i) decode_[i] = to_linear(float(i) / 255, encoding, gamma);
+        for (size_t j = 0; j <= kEncodeSteps; ++j)
+            encode_from_[j] = uint8_t(
+                std::lower_bound(decode_.begin(), decode_.end() - 1, float(j) / kEncodeSteps) -
+                decode_.begin());
         level.bytes.resize(texels * channels_);
     } else {
         level.floats.resize(texels * channels_);
@@ -69,11 +74,11 @@ TextureImage::TextureImage(const RasterImage& raster, Encoding encoding, float g
 }
 
 uint8_t TextureImage::encode(float v) const {
-    const auto above = std::lower_bound(decode_.begin(), decode_.end(), v);
-    if (above == decode_.begin()) return 0;
-    if (above == decode_.end()) return 255;
-    const auto i = above - decode_.begin();
-    return uint8_t(v - *(above - 1) < *above - v ? i - 1 : i);
+    if (v <= decode_.front()) return 0;
+    if (v > decode_.back()) return 255;
+    size_t i = encode_from_[size_t(v * kEncodeSteps)];
+    while (decode_[i] < v) ++i;
+    return uint8_t(v - decode_[i - 1] < decode_[i] - v ? i - 1 : i);
 }
 
 TextureImage::Level TextureImage::coarser(const Level& fine) const {
@@ -87,21 +92,27 @@ TextureImage::Level TextureImage::coarser(const Level& fine) const {
         level.bytes.resize(values);
     else
         level.floats.resize(values);
-    for (int y = 0; y < level.height; ++y)
-        for (int x = 0; x < level.width; ++x)
+    parallel_for(level.height, [&](int64_t row) {
+        const int y = int(row), rows = std::min(2, fine.height - 2 * y);
+        for (int x = 0; x < level.width; ++x) {
+            const int columns = std::min(2, fine.width - 2 * x);
+            const size_t from = size_t(2 * y) * size_t(fine.width) + size_t(2 * x);
+            const size_t to = (size_t(y) * size_t(level.width) + size_t(x)) * channels_;
             for (size_t c = 0; c < channels_; ++c) {
                 float sum = 0;
-                int count = 0;
-                for (int v = 2 * y; v < std::min(2 * y + 2, fine.height); ++v)
-                    for (int u = 2 * x; u < std::min(2 * x + 2, fine.width); ++u, ++count)
+                for (int v = 0; v < rows; ++v)
+                    for (int u = 0; u < columns; ++u)
                         sum += channel(
-                            fine, (size_t(v) * size_t(fine.width) + size_t(u)) * channels_ + c);
-                const size_t i = (size_t(y) * size_t(level.width) + size_t(x)) * channels_ + c;
+                            fine,
+                            (from + size_t(v) * size_t(fine.width) + size_t(u)) * channels_ + c);
+                const float mean = sum / float(rows * columns);
                 if (is_8bit_)
-                    level.bytes[i] = encode(sum / float(count));
+                    level.bytes[to + c] = encode(mean);
                 else
-                    level.floats[i] = sum / float(count);
+                    level.floats[to + c] = mean;
             }
+        }
+    });
     return level;
 }
 

@@ -144,6 +144,9 @@ class TextureImage {
     Wrap wrap_ = Wrap::repeat;
     std::vector<Level> levels_;  ///< the finest first; at least one
     std::array<float, 256> decode_{};
+    /// Of every value j / kEncodeSteps the first byte that decodes to no less.
+    static constexpr size_t kEncodeSteps = 1024;
+    std::array<uint8_t, kEncodeSteps + 1> encode_from_{};
 };
 
 }  // namespace covtrace
