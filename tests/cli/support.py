@@ -5,6 +5,7 @@ import pathlib
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import tempfile
 import unittest
@@ -52,11 +53,17 @@ class Result:
 
 
 def limits(**values):
-    """For `before`: sets limits such as AS=2**30 in the child; AS is left out where a sanitizer needs terabytes of it."""
+    """For `before`: sets limits such as AS=2**30 in the child.
+
+    Sanitizers: AS is left out where they need terabytes of it; the thread sanitizer writes a file of its own before main(), of
+    which FSIZE=0 must not kill it.
+    """
     if SANITIZED:
         values.pop("AS", None)
 
     def apply():
+        if SANITIZED:
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         for name, value in values.items():
             resource.setrlimit(getattr(resource, f"RLIMIT_{name}"), (value, value))
 
