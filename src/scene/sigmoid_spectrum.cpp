@@ -37,9 +37,8 @@ struct Misfit {
 
 using Four = double __attribute__((vector_size(32)));
 
-Four square_root(Four v) {
+void take_square_roots(Four& v) {
     for (int k = 0; k < 4; ++k) v[k] = std::sqrt(v[k]);
-    return v;
 }
 
 /// The observer's samples, four side by side; those beyond the last have no weight.
@@ -65,8 +64,9 @@ Misfit misfit(const Triple& c, const Triple& target) {
     std::array<std::array<Four, 4>, 3> sum{};  // of the channels: value, derivatives
     for (const FourSamples& samples : four_samples()) {
         const Four t = samples.position, p = (c[2] * t + c[1]) * t + c[0];
-        const Four q = 1 / square_root(1 + p * p);
-        const Four s = 0.5 + 0.5 * p * q, slope = 0.5 * q * q * q;
+        Four root = 1 + p * p;
+        take_square_roots(root);
+        const Four q = 1 / root, s = 0.5 + 0.5 * p * q, slope = 0.5 * q * q * q;
         for (size_t i = 0; i < 3; ++i) {
             const Four w = samples.weight[i] * slope, wt = w * t;
             sum[i][0] += samples.weight[i] * s;
