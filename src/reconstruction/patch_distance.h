@@ -36,7 +36,7 @@ class PatchDistance {
     static constexpr int kRow = (kBlock + 2 * kLargestPatch + 7) / 8 * 8;
 
     /// One plane, or three of one size. `reach`: largest offset along an axis;
-    /// `patch_radius`: 1 or 3; `row_step`: every how manieth row of a block is asked for.
+    /// `patch_radius`: 1 or 3; of a block every `row_step`-th row is asked for.
     PatchDistance(std::span<const Plane> values, std::span<const Plane> variances, int reach,
                   int patch_radius, int row_step = 1);
 
