@@ -74,7 +74,7 @@ TextureImage::TextureImage(const RasterImage& raster, Encoding encoding, float g
 }
 
 uint8_t TextureImage::encode(float v) const {
-    if (v <= decode_.front()) return 0;
+    if (!(v > decode_.front())) return 0;  // NaN, too: the gamma is the file's
     if (v > decode_.back()) return 255;
     size_t i = encode_from_[size_t(v * kEncodeSteps)];
     while (decode_[i] < v) ++i;
