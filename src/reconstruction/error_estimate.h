@@ -9,10 +9,10 @@ namespace covtrace {
 
 /// What the terms of the estimate count. The defaults fit the true errors of a set of scenes best:
 /// `bench/error_fit` makes them, `bench/error_calibration` measures how well they do
-/// (docs/decisions/0053).
+/// (docs/decisions/0065).
 struct ErrorFactors {
-    float noise = 1, noise_of_few = 14;
-    float spread = 1, returned = 0.45f, cut = 0.0033f;
+    float noise = 1.35f, noise_of_few = 3;
+    float spread = 1.1f, returned = 0.65f, cut = 0.004f;
 };
 
 /// Estimated squared errors over I^2 + 0.01, I the brightness.
