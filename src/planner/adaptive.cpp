@@ -7,14 +7,14 @@ namespace covtrace {
 
 std::vector<float> adaptive_density(const SampleKnowledge& known, float even_share) {
     constexpr float kDark = 0.01f;  // the measure's: errors of dark pixels count as they are
-    constexpr float kSmoothing = 1.5f, kNarrowSmoothing = 0.7f;
+    constexpr float kSmoothing = 1.5f;
     // Filters between these deviations exist (pixels), so spectra beyond them ask for nothing more.
     constexpr float kNarrowest = 0.35f, kWidest = 15, kSharpness = 2;
     const Plane brightness = gaussian_blur(known.brightness, kSmoothing);
     Plane noise(known.variance.width, known.variance.height);
     for (size_t i = 0; i < noise.size(); ++i)
         noise[i] = known.variance[i] / (brightness[i] * brightness[i] + kDark);
-    if (!known.own) noise = gaussian_blur(noise, kNarrowSmoothing);
+    if (!known.own) noise = gaussian_blur(noise, kSmoothing);
     for (float& v : noise.values) v = std::sqrt(v);
     if (known.own) noise = gaussian_blur(noise, kSmoothing);
     std::vector<float> density(noise.size());

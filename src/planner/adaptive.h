@@ -29,10 +29,12 @@ struct SampleKnowledge {
 ///     n_q ~ sigma_q sqrt(A_q / c_q),   A_q = sum_p g_p a_pq^2.
 /// For the predicted Gaussian, whose squares sum to 1 / (4 pi sqrt|C|) ~ sqrt|S_2D|,
 ///     n ~ sigma |S_2D|^(1/4) / (sqrt(I^2 + eps) sqrt(c)).
-/// Few samples know little of sigma / I: its square is averaged over the nearest pixels. But counts
-/// that follow `own` samples make rare light too dark, the more the fewer pixels own the average:
-/// there sigma / I itself is averaged over a few pixels (docs/decisions/0064). `even_share` is
-/// given out evenly, so that nothing that the samples have not seen yet is starved.
+/// Few samples know little of sigma / I: its square is averaged over a few pixels. Where light is
+/// rare, who has seen some gets more samples and sees more; counts that follow `own` samples, or,
+/// through several rounds, those of another half that followed them, so make the image too dark,
+/// the more the fewer pixels own the average (docs/decisions/0066). For `own` samples sigma / I
+/// itself is averaged. `even_share` is given out evenly, so that nothing that the samples have not
+/// seen yet is starved.
 std::vector<float> adaptive_density(const SampleKnowledge& known, float even_share);
 
 }  // namespace covtrace

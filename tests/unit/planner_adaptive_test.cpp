@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+
+#include "core/rng.h"
+#include "planner/density.h"
 
 namespace covtrace {
 namespace {
@@ -78,12 +82,76 @@ TEST(AdaptiveDensity, FollowsARareBrightPathWhereItWasSeenAndOwnSamplesLess) {
         const auto beyond_even = [&](size_t i) { return double(d[i]) - double(kEven); };
         const double far = beyond_even(0);
         // The middle of a Gaussian: of 1e4 under the root, of the root 100 itself.
-        const double sigma = own ? 1.5 : 0.7, share = 1 / (2 * std::numbers::pi * sigma * sigma);
-        const double expected = own ? 1 + 99 * share : std::sqrt(1 + 9999 * share);
-        EXPECT_NEAR(beyond_even(middle) / far, expected, 0.05 * expected);
-        EXPECT_NEAR(beyond_even(middle + 4) / far, own ? 1 + 99 * share * std::exp(-8 / 2.25) : 1,
-                    0.1);
+        const double share = 1 / (2 * std::numbers::pi * 1.5 * 1.5);
+        for (const auto& [beside, falloff] :
+             {std::pair<size_t, double>{0, 1}, {4, std::exp(-8 / 2.25)}}) {
+            const double expected =
+                own ? 1 + 99 * share * falloff : std::sqrt(1 + 9999 * share * falloff);
+            EXPECT_NEAR(beyond_even(middle + beside) / far, expected, 0.05 * expected);
+        }
     }
+}
+
+/// Two halves of samples of light that one path in fifty finds, each planned from the other.
+struct RareLight {
+    static constexpr int kSide = 96;
+    static constexpr size_t kPixels = size_t(kSide) * kSide;
+    static constexpr float kChance = 0.02f;
+    struct Half {
+        std::vector<uint32_t> count = std::vector<uint32_t>(kPixels);
+        std::vector<double> sum = std::vector<double>(kPixels);
+    };
+    explicit RareLight(uint64_t seed) : rng(seed) {}
+    Rng rng;
+    std::array<Half, 2> half;
+    const std::vector<covariance::Sym2<float>> spectrum{kPixels, {0.01f, 0, 0.01f}};
+
+    void take(Half& h, std::span<const uint32_t> counts) {
+        for (size_t i = 0; i < kPixels; ++i)
+            for (; h.count[i] < counts[i]; ++h.count[i])
+                if (rng.next_float() < kChance) h.sum[i] += 1 / double(kChance);
+    }
+    std::vector<float> density_from(const Half& h) const {
+        SampleKnowledge known{
+            Plane(kSide, kSide), Plane(kSide, kSide), Plane(kSide, kSide, 1), spectrum, {}, false};
+        for (size_t i = 0; i < kPixels; ++i) {
+            const double n = h.count[i], mean = h.sum[i] / n;
+            known.brightness[i] = float(mean);
+            known.variance[i] = float((h.sum[i] / double(kChance) - n * mean * mean) / (n - 1));
+        }
+        return adaptive_density(known, kEven);
+    }
+    /// Doubles the average count.
+    void round(uint32_t spp) {
+        const std::array density{density_from(half[1]), density_from(half[0])};
+        for (size_t k = 0; k < 2; ++k)
+            take(half[k],
+                 allocate(density[k], int64_t(spp / 2) * int64_t(kPixels), half[k].count, 8 * spp));
+    }
+    /// Of the mean of the halves; 1 is true.
+    double mean() const {
+        double sum = 0;
+        for (const Half& h : half)
+            for (size_t i = 0; i < kPixels; ++i) sum += h.sum[i] / double(h.count[i]) / 2;
+        return sum / double(kPixels);
+    }
+};
+
+// The mean of 20 images of even counts would vary by 0.4 % at 16 samples per pixel and 0.2 % at 64;
+// the seeds are fixed. 3.2 and 0.1 % are lost here, 18 and 3.3 % with means over 0.7 pixels.
+TEST(AdaptiveDensity, HalvesThatDriveEachOtherLoseLittleOfRareLight) {
+    double at_16 = 0, at_64 = 0;
+    constexpr int kImages = 20;
+    for (int seed = 0; seed < kImages; ++seed) {
+        RareLight light(uint64_t(seed) + 1);
+        for (auto& h : light.half) light.take(h, std::vector<uint32_t>(RareLight::kPixels, 2));
+        for (uint32_t spp : {8u, 16u}) light.round(spp);
+        at_16 += light.mean() / kImages;
+        for (uint32_t spp : {32u, 64u}) light.round(spp);
+        at_64 += light.mean() / kImages;
+    }
+    EXPECT_NEAR(at_16, 1, 0.05);
+    EXPECT_NEAR(at_64, 1, 0.006);
 }
 
 TEST(AdaptiveDensity, NothingIsStarved) {

@@ -5,6 +5,7 @@
 
 #include <numeric>
 
+#include "core/rng.h"
 #include "image/color_encoding.h"
 
 namespace covtrace {
@@ -104,6 +105,36 @@ TEST(TextureImage, DecodesEightBitsByTableAndOthersOnce) {
         }
         EXPECT_EQ(srgb.memory(), is_8bit ? size_t(256) : 256 * sizeof(float));
     }
+}
+
+TEST(TextureImage, CoarserLevelsOfBytesAreThoseNearestToTheMean) {
+    constexpr int kBlocks = 96;
+    Rng rng(3);
+    RasterImage bytes = raster(2 * kBlocks, 2 * kBlocks, 1, {}, true);
+    for (int i = 0; i < 4 * kBlocks * kBlocks; ++i)
+        bytes.values.push_back(std::floor(256 * rng.next_float()) / 255);
+    const auto gammas = {1.0f, 0.1f, 2.2f, 9.0f};
+    for (const Encoding encoding : {Encoding::linear, Encoding::srgb, Encoding::gamma})
+        for (const float gamma : gammas) {
+            std::vector<float> every(256);
+            for (size_t i = 0; i < 256; ++i) every[i] = float(i) / 255;
+            const TextureImage table(raster(256, 1, 1, every, true), encoding, gamma, Wrap::clamp);
+            TextureImage image(bytes, encoding, gamma, Wrap::clamp);
+            image.build_levels();
+            for (int y = 0; y < kBlocks; ++y)
+                for (int x = 0; x < kBlocks; ++x) {
+                    float mean = 0;
+                    for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}})
+                        mean +=
+                            image.value(size_t(2 * y + dy) * 2 * kBlocks + size_t(2 * x + dx)) / 4;
+                    float least = kInfinity;
+                    for (size_t i = 0; i < 256; ++i)
+                        least = std::min(least, std::abs(table.value(i) - mean));
+                    const Vec2 st{(float(x) + 0.5f) / kBlocks, (float(y) + 0.5f) / kBlocks};
+                    ASSERT_NEAR(std::abs(image.value(image.nearest(st, 1)) - mean), least, 1e-7f);
+                }
+            if (encoding != Encoding::gamma) break;  // the others have none
+        }
 }
 
 TEST(TextureImage, FloatValueIsTheMeanOrAMeaningfulAlpha) {
