@@ -85,8 +85,8 @@ class Scene:
         return image
 
 
-def info(path, key):
-    """The value that `covtrace info` prints after a key."""
+def info(path, key, value=r"\w+"):
+    """The value that `covtrace info` prints after a key, and that looks like `value`."""
     done = subprocess.run([str(COVTRACE), "info", str(path)], check=True, capture_output=True, text=True)
-    found = re.search(rf"{key}\W+(\w+)", done.stdout)
-    return found.group(1) if found else None
+    found = re.search(rf"{key}\W+({value})", done.stdout)
+    return found.group(1).strip('"') if found else None
