@@ -5,32 +5,54 @@
 
 namespace covtrace {
 
-std::vector<float> adaptive_density(const SampleKnowledge& known, float even_share) {
-    constexpr float kDark = 0.01f;  // the measure's: errors of dark pixels count as they are
+std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSettings& settings) {
     constexpr float kSmoothing = 1.5f;
-    // Filters between these deviations exist (pixels), so spectra beyond them ask for nothing more.
-    constexpr float kNarrowest = 0.35f, kWidest = 15, kSharpness = 2;
+    // No filter is narrower (deviation, pixels), so spectra beyond it ask for nothing more.
+    constexpr float kNarrowest = 0.35f, kSharpness = 2;
     const Plane brightness = gaussian_blur(known.brightness, kSmoothing);
     Plane noise(known.variance.width, known.variance.height);
     for (size_t i = 0; i < noise.size(); ++i)
-        noise[i] = known.variance[i] / (brightness[i] * brightness[i] + kDark);
-    if (!known.own) noise = gaussian_blur(noise, kSmoothing);
+        noise[i] = known.variance[i] / (brightness[i] * brightness[i] + settings.dark_squared);
+    if (!settings.own) noise = gaussian_blur(noise, kSmoothing);
     for (float& v : noise.values) v = std::sqrt(v);
-    if (known.own) noise = gaussian_blur(noise, kSmoothing);
+    if (settings.own) noise = gaussian_blur(noise, kSmoothing);
     std::vector<float> density(noise.size());
     double sum = 0;
     for (size_t i = 0; i < density.size(); ++i) {
-        const auto usable =
-            covariance::limit_spectrum(known.spectrum[i], kSharpness, kNarrowest, kWidest);
-        const float detail = std::pow(std::max(covariance::det(usable), 0.0f), 0.25f);
+        const auto usable = covariance::limit_spectrum(known.spectrum[i], kSharpness, kNarrowest,
+                                                       settings.widest_filter);
+        const float detail =
+            std::pow(std::max(covariance::det(usable), 0.0f), settings.spectrum_power);
         density[i] = noise[i] * detail / std::sqrt(std::max(known.cost[i], 1.0f));
         if (known.emphasis.size() > 0) density[i] *= known.emphasis[i];
         if (!std::isfinite(density[i])) density[i] = 0;
         sum += density[i];
     }
     const float mean = density.empty() ? 0.0f : float(sum / double(density.size()));
-    for (float& v : density) v = covariance::share_of_budget(v, mean, 1.0f, even_share);
+    for (float& v : density) v = covariance::share_of_budget(v, mean, 1.0f, 0.0f);
     return density;
+}
+
+float even_share(std::span<const float> a, std::span<const float> b) {
+    constexpr double kLeast = 0.15, kNoise = 2;
+    double sum_a = 0, sum_b = 0, roots_a = 0, roots_b = 0, products = 0;
+    for (size_t i = 0; i < a.size(); ++i) {
+        const double root_a = std::sqrt(double(a[i])), root_b = std::sqrt(double(b[i]));
+        sum_a += double(a[i]);
+        sum_b += double(b[i]);
+        roots_a += root_a;
+        roots_b += root_b;
+        products += root_a * root_b;
+    }
+    const double n = double(a.size());
+    const double covariance = products - roots_a * roots_b / n;
+    const double variances = (sum_a - roots_a * roots_a / n) * (sum_b - roots_b * roots_b / n);
+    const double correlation = variances > 0 ? covariance / std::sqrt(variances) : 1;
+    return float(std::clamp(kNoise * (1 - correlation), kLeast, 1.0));
+}
+
+void spread_evenly(std::span<float> density, float share) {
+    for (float& v : density) v = covariance::share_of_budget(v, 1.0f, 1.0f, share);
 }
 
 }  // namespace covtrace

@@ -18,9 +18,22 @@ struct SampleKnowledge {
     /// What the counts are multiplied with, any unit, beyond what lowers the error of the image
     /// most; empty: alike.
     Plane emphasis;
-    /// Whether the counts are for the very sequence of samples that is known, not for another one.
-    bool own = false;
 };
+
+/// What is made of the samples.
+struct PlanSettings {
+    /// Whether the counts are for the very sequence of samples that is known, not for another one.
+    bool own;
+    float dark_squared;    ///< eps below
+    float widest_filter;   ///< deviation of the widest one that smooths the samples, pixels
+    float spectrum_power;  ///< of |S_2D|
+};
+
+/// For the predicted Gaussians: what the derivation below says.
+constexpr PlanSettings kOwnPlan{true, 0.01f, 15, 0.25f};
+/// For two halves that plan for each other and regressions, whose windows do not reach further than
+/// such a Gaussian: as found by a sweep (docs/decisions/0067).
+constexpr PlanSettings kHalvesPlan{false, 0.1f, 2, 0.2f};
 
 /// Relative densities with mean 1.
 ///
@@ -30,11 +43,21 @@ struct SampleKnowledge {
 /// For the predicted Gaussian, whose squares sum to 1 / (4 pi sqrt|C|) ~ sqrt|S_2D|,
 ///     n ~ sigma |S_2D|^(1/4) / (sqrt(I^2 + eps) sqrt(c)).
 /// Few samples know little of sigma / I: its square is averaged over a few pixels. Where light is
-/// rare, who has seen some gets more samples and sees more; counts that follow `own` samples, or,
-/// through several rounds, those of another half that followed them, so make the image too dark,
-/// the more the fewer pixels own the average (docs/decisions/0066). For `own` samples sigma / I
-/// itself is averaged. `even_share` is given out evenly, so that nothing that the samples have not
-/// seen yet is starved.
-std::vector<float> adaptive_density(const SampleKnowledge& known, float even_share);
+/// rare, who has seen some gets more samples and sees more; counts that follow their own samples,
+/// or, through several rounds, those of another half that followed them, so make the image too
+/// dark, the more the fewer pixels own the average (docs/decisions/0066). For own samples
+/// sigma / I itself is averaged.
+std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSettings& settings);
+
+/// The share of all samples that two densities of the same pixels, made from different samples,
+/// leave to be given out evenly, since nothing that the samples have not seen yet may be starved:
+/// 2 (1 - r), but at least 0.15, r the correlation of their square roots. What counts miss the best
+/// ones by costs, to second order, the squared difference of their roots; of two measurements that
+/// agree by r, 1 - r of the variance is noise. Twice that and the least share are from a sweep
+/// (docs/decisions/0067). Pre: as many of both, none negative.
+float even_share(std::span<const float> a, std::span<const float> b);
+
+/// Gives `share` of all samples out evenly. Pre: densities with mean 1.
+void spread_evenly(std::span<float> density, float share);
 
 }  // namespace covtrace

@@ -75,9 +75,10 @@ class CovarianceRender {
         if (!job_.options.progressive)
             return relative_density(*prediction_, rule, settings.c, settings.limits);
         SampleKnowledge known = knowledge_from(s_.films[0], prediction_->spectrum);
-        known.own = true;
         known.emphasis = emphasis(*prediction_, rule, settings.c, settings.limits);
-        return adaptive_density(known, kEvenShare);
+        std::vector<float> density = adaptive_density(known, kOwnPlan);
+        spread_evenly(density, kEvenShare);
+        return density;
     }
 
     void trace() {

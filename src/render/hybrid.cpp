@@ -16,9 +16,6 @@ namespace {
 
 /// Samples per pixel of the pilot, both halves together.
 constexpr double kPilot = 4;
-/// Of the samples, spread evenly. With a tenth, scenes of rare light are up to half as bad again
-/// (docs/decisions/0062).
-constexpr float kEvenShare = 0.3f;
 
 class HybridRender {
   public:
@@ -138,14 +135,16 @@ class HybridRender {
 
     /// What the planner may know for one half: the samples of the other one.
     std::vector<float> density_from(const Film& film) const {
-        return adaptive_density(knowledge_from(film, prediction_->spectrum), kEvenShare);
+        return adaptive_density(knowledge_from(film, prediction_->spectrum), kHalvesPlan);
     }
 
     bool plan_samples(double target) {
         const PhaseTimer timer(job_.monitor, job_.phase("plan"));
         const double most = std::clamp(0.5 * job_.most_samples(target), 1.0, 4e9);
-        const std::array<std::vector<float>, 2> density{density_from(s_.films[1]),
-                                                        density_from(s_.films[0])};
+        std::array<std::vector<float>, 2> density{density_from(s_.films[1]),
+                                                  density_from(s_.films[0])};
+        const float even_samples = even_share(density[0], density[1]);
+        for (std::vector<float>& d : density) spread_evenly(d, even_samples);
         const std::vector<float> even(size(), 1.0f);
         std::vector<std::vector<uint32_t>> counts;
         for (size_t k = 0; k < 2; ++k) {
