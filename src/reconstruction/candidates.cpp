@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/parallel.h"
 #include "reconstruction/feature_filter.h"
 #include "reconstruction/gather.h"
 #include "reconstruction/regression.h"
@@ -49,11 +50,16 @@ std::vector<Candidate> make_candidates(const Halves& halves,
                                        const CandidateSettings& settings) {
     const int w = halves[0].count.width, h = halves[0].count.height;
     std::vector<Candidate> candidates{{halves[0].color, halves[1].color}};
-    for (float scale : settings.gaussians) {
-        const FilterField field = predicted_filters(spectrum, w, h, scale);
-        candidates.push_back({gaussian(halves[0], field), gaussian(halves[1], field)});
-    }
-    const FilterField shape = predicted_filters(spectrum, w, h, 1);
+    // The last one is the windows'.
+    std::vector<float> scales = settings.gaussians;
+    scales.push_back(1);
+    std::vector<FilterField> fields(scales.size());
+    parallel_for(int64_t(scales.size()), [&](int64_t k) {
+        fields[size_t(k)] = predicted_filters(spectrum, w, h, scales[size_t(k)]);
+    });
+    const FilterField& shape = fields.back();
+    for (size_t k = 0; k < settings.gaussians.size(); ++k)
+        candidates.push_back({gaussian(halves[0], fields[k]), gaussian(halves[1], fields[k])});
     std::vector<RegressionWindow> windows;
     for (const auto& fit : settings.fits)
         windows.push_back({fit.k, fit.shaped ? &shape : nullptr, kWindowWidening, fit.noise});

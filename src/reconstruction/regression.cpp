@@ -13,7 +13,7 @@ namespace covtrace {
 namespace {
 
 constexpr int kReach = FitWindow::kReach, kSide = FitWindow::kSide;
-constexpr int kBlock = PatchDistance::kBlock, kStride = 2, kPatchRadius = 1;
+constexpr int kBlock = PatchDistance::kBlock, kStride = 3, kPatchRadius = 1;
 constexpr size_t kCells = FitWindow::kCells;
 constexpr size_t kCentresPerSide = (kBlock + kStride - 1) / kStride;
 constexpr size_t kCentres = kCentresPerSide * kCentresPerSide;

@@ -28,7 +28,7 @@ struct RegressionWindow {
 
 constexpr int kRegressionReach = 9;  ///< windows are 19 x 19 pixels
 
-/// For every window: around each centre p (every second pixel of every second row) the colours of
+/// For every window: around each centre p (every third pixel of every third row) the colours of
 /// `half` are fitted by  b_0 + b_x (x_q - x_p) + b_y (y_q - y_p) + sum_i b_i (f_i(q) - f_i(p)),
 /// f the features of `half` or `filtered`, with weights w_pq that come from the patches of `guide`,
 /// the other half, so that the noise of a pixel does not choose its own weights. A ridge keeps the

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/hash.h"
+#include "core/parallel.h"
 
 namespace covtrace {
 
@@ -67,8 +68,7 @@ class PooledVariance {
     Plane freedom_, around_;
 };
 
-HalfBuffer half_buffer(const Film& film) {
-    HalfBuffer out(film.bounds.width(), film.bounds.height());
+void fill(HalfBuffer& out, const Film& film) {
     const PooledVariance variance(film);
     const auto& pixels = film.pixels;
     const auto& squares = film.feature_squares;
@@ -95,13 +95,14 @@ HalfBuffer half_buffer(const Film& film) {
         const float z = pixels[i].depth;
         return z > 0 ? squares[i].depth / (z * z) : 0.0f;  // of the logarithm
     });
-    return out;
 }
 
 }  // namespace
 
 Halves halves_of(std::span<const Film> film) {
-    Halves halves{half_buffer(film[0]), half_buffer(film[1])};
+    const int w = film[0].bounds.width(), h = film[0].bounds.height();
+    Halves halves{HalfBuffer(w, h), HalfBuffer(w, h)};
+    parallel_for(2, [&](int64_t k) { fill(halves[size_t(k)], film[size_t(k)]); });
     const auto repeated = [](const Film& half) {
         return std::any_of(half.pixels.begin(), half.pixels.end(),
                            [](const FilmPixel& p) { return p.count > 1; });
