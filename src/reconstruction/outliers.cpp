@@ -1,6 +1,8 @@
 #include "reconstruction/outliers.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "core/vec.h"
 
@@ -10,8 +12,11 @@ namespace {
 
 /// How many times brighter than all that the other half saw around it a pixel may be.
 constexpr float kMostTimes = 2;
-/// Deviation of the Gaussian that spreads what is given back, pixels.
-constexpr float kSpread = 12;
+/// Deviations of the Gaussians that spread what is given back, pixels.
+constexpr float kSpread = 12, kWideSpread = 48;
+/// What one pixel may bring to its surroundings of what all others bring there: more is the light
+/// of one path, which would be seen as a blotch, and is spread widely (docs/decisions/0069).
+constexpr float kMostOfOthers = 0.1f;
 
 /// Largest value within 3 x 3 pixels.
 Plane largest_around(const Plane& p) {
@@ -25,6 +30,19 @@ Plane largest_around(const Plane& p) {
             result(x, y) = most;
         }
     return result;
+}
+
+/// Gives every pixel's light to what is around it, in proportion to the light that is there.
+void give(const ColorPlanes& from, const Plane& light, float spread, ColorPlanes& to) {
+    // Where everything around is black the light goes everywhere alike.
+    constexpr float kFloor = 1e-6f;
+    const Plane around = gaussian_sum(light, spread);
+    for (size_t c = 0; c < 3; ++c) {
+        Plane share = from[c];
+        for (size_t i = 0; i < share.size(); ++i) share[i] /= around[i] + kFloor;
+        share = gaussian_sum(share, spread);
+        for (size_t i = 0; i < share.size(); ++i) to[c][i] += share[i] * (light[i] + kFloor);
+    }
 }
 
 }  // namespace
@@ -55,17 +73,29 @@ void limit_outliers(Halves& halves) {
 
 void return_energy(const ColorPlanes& raw, ColorPlanes& color) {
     const Plane light = luminance(color);
-    // Where everything around is black the light goes everywhere alike.
-    constexpr float kFloor = 1e-6f;
-    const Plane around = gaussian_sum(light, kSpread);
-    for (size_t c = 0; c < 3; ++c) {
-        Plane share = raw[c];
-        for (size_t i = 0; i < share.size(); ++i)
-            share[i] = (share[i] - color[c][i]) / (around[i] + kFloor);
-        share = gaussian_sum(share, kSpread);
-        for (size_t i = 0; i < share.size(); ++i)
-            color[c][i] = std::max(0.0f, color[c][i] + share[i] * (light[i] + kFloor));
+    const size_t n = light.size();
+    ColorPlanes near = raw;
+    for (size_t c = 0; c < 3; ++c)
+        for (size_t i = 0; i < n; ++i) near[c][i] -= color[c][i];
+    Plane brought = luminance(near);
+    for (float& v : brought.values) v = std::abs(v);
+    const Plane all = gaussian_sum(brought, kSpread);
+    ColorPlanes far = near;
+    bool any = false;
+    for (size_t i = 0; i < n; ++i) {
+        const float own = brought[i] / (2 * std::numbers::pi_v<float> * sqr(kSpread)),
+                    most = kMostOfOthers * (all[i] - own);
+        const float keep = own > most ? std::max(0.0f, most) / own : 1.0f;
+        any = any || keep < 1;
+        for (size_t c = 0; c < 3; ++c) {
+            near[c][i] *= keep;
+            far[c][i] -= near[c][i];
+        }
     }
+    give(near, light, kSpread, color);
+    if (any) give(far, light, kWideSpread, color);
+    for (Plane& channel : color)
+        for (float& v : channel.values) v = std::max(0.0f, v);
 }
 
 }  // namespace covtrace

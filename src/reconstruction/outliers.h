@@ -13,7 +13,9 @@ void limit_outliers(Halves& halves);
 /// Gives the neighbourhoods of `color` the energy of `raw` back: what was cut off, and what filters
 /// took from small bright things. The difference e = raw - color of p goes to q as
 /// G(q - p) Y(q) / (G * Y)(p), in proportion to the light Y that is there, G a wide Gaussian: the
-/// sum over the image is that of `raw`, but for pixels that would become negative.
+/// sum over the image is that of `raw`, but for pixels that would become negative. What one pixel
+/// has of e beyond a tenth of all others around it goes further away: one path's light, were it
+/// rare enough, would be a blotch.
 void return_energy(const ColorPlanes& raw, ColorPlanes& color);
 
 /// Luminance of every pixel.
