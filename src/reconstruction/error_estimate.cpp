@@ -46,8 +46,8 @@ void smooth_known(Plane& error, const Plane& known) {
 
 ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> candidates,
                              const Selection& selection, const ColorPlanes& image,
-                             const ColorPlanes& raw, const ColorPlanes& brightness,
-                             const ErrorFactors& factors) {
+                             const ColorPlanes& raw, const Plane& near,
+                             const ColorPlanes& brightness, const ErrorFactors& factors) {
     const int w = image[0].width, h = image[0].height;
     const float noise =
         factors.noise + factors.noise_of_few / std::max(1.0f, samples_per_pixel(halves));
@@ -70,11 +70,12 @@ ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> ca
                 for (size_t k = 0; k < kSignals; ++k)
                     spread[k] += selection.share[c][i] * std::abs(mean[k] - m[k]);
             }
+            const float cut = factors.cut * (sqr(near[i]) + sqr((1 - near[i]) / kWidening));
             Signals square;
             for (size_t k = 0; k < kSignals; ++k)
                 square[k] = noise * sqr(ma[k] - mb[k]) / 4 + factors.spread * sqr(spread[k]) +
                             factors.returned * sqr(delivered[k] - m[k]) +
-                            factors.cut * sqr(all[k] - 0.5f * (a[k] + b[k]));
+                            cut * sqr(all[k] - 0.5f * (a[k] + b[k]));
             for (size_t k = 0; k < 3; ++k) error.color[i] += g[k][i] / 3 * square[k];
             error.luminance[i] = g_luminance[i] * square[3];
         }

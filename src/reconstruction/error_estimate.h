@@ -22,7 +22,8 @@ struct ErrorEstimate {
 };
 
 /// Estimated error of `image`, the mean of the mixed halves and what was added to it to keep the
-/// energy. `raw`: the mean of the halves before rare bright paths were limited; `brightness`: I.
+/// energy. `raw`: the mean of the halves before rare bright paths were limited; `near`: of what was
+/// cut off, the share that stays near (return_energy); `brightness`: I.
 ///
 /// What a pixel's halves measure of it is no estimate: raw pixels are ten times as noisy as the
 /// image, and the halves that judge have chosen shares and weights before (docs/decisions/0041).
@@ -30,13 +31,15 @@ struct ErrorEstimate {
 ///     N = (M_A - M_B)^2 / 4, the noise that the mixtures M of the halves do not share,
 ///     S = (sum over c of share_c |m_c - m|)^2, how far the candidates c are from their mixture m,
 ///     E = (image - m)^2, what light of the neighbourhood was added,
-///     C = (raw - limited)^2, what light was cut off: it is known to be somewhere around only,
+///     C = (raw - limited)^2 (near^2 + (1 - near)^2 / 16), what light was cut off: it is known to
+///     be
+///         somewhere around only, and errs the less the larger the area that it is spread over,
 /// as (noise + noise_of_few / n) N + spread S + returned E + cut C, n the samples per pixel. The
 /// part of N that grows with few samples stands for what the halves share: each takes its weights
 /// from the other one's noise.
 ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> candidates,
                              const Selection& selection, const ColorPlanes& image,
-                             const ColorPlanes& raw, const ColorPlanes& brightness,
-                             const ErrorFactors& factors);
+                             const ColorPlanes& raw, const Plane& near,
+                             const ColorPlanes& brightness, const ErrorFactors& factors);
 
 }  // namespace covtrace

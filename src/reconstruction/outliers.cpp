@@ -13,7 +13,7 @@ namespace {
 /// How many times brighter than all that the other half saw around it a pixel may be.
 constexpr float kMostTimes = 2;
 /// Deviations of the Gaussians that spread what is given back, pixels.
-constexpr float kSpread = 12, kWideSpread = 48;
+constexpr float kSpread = 12, kWideSpread = kWidening * kSpread;
 /// What one pixel may bring to its surroundings of what all others bring there: more is the light
 /// of one path, which would be seen as a blotch, and is spread widely (docs/decisions/0069).
 constexpr float kMostOfOthers = 0.1f;
@@ -71,7 +71,7 @@ void limit_outliers(Halves& halves) {
     }
 }
 
-void return_energy(const ColorPlanes& raw, ColorPlanes& color) {
+Plane return_energy(const ColorPlanes& raw, ColorPlanes& color) {
     const Plane light = luminance(color);
     const size_t n = light.size();
     ColorPlanes near = raw;
@@ -81,14 +81,15 @@ void return_energy(const ColorPlanes& raw, ColorPlanes& color) {
     for (float& v : brought.values) v = std::abs(v);
     const Plane all = gaussian_sum(brought, kSpread);
     ColorPlanes far = near;
+    Plane share(light.width, light.height);
     bool any = false;
     for (size_t i = 0; i < n; ++i) {
         const float own = brought[i] / (2 * std::numbers::pi_v<float> * sqr(kSpread)),
                     most = kMostOfOthers * (all[i] - own);
-        const float keep = own > most ? std::max(0.0f, most) / own : 1.0f;
-        any = any || keep < 1;
+        share[i] = own > most ? std::max(0.0f, most) / own : 1.0f;
+        any = any || share[i] < 1;
         for (size_t c = 0; c < 3; ++c) {
-            near[c][i] *= keep;
+            near[c][i] *= share[i];
             far[c][i] -= near[c][i];
         }
     }
@@ -96,6 +97,7 @@ void return_energy(const ColorPlanes& raw, ColorPlanes& color) {
     if (any) give(far, light, kWideSpread, color);
     for (Plane& channel : color)
         for (float& v : channel.values) v = std::max(0.0f, v);
+    return share;
 }
 
 }  // namespace covtrace

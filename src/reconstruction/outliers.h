@@ -5,6 +5,9 @@
 
 namespace covtrace {
 
+/// How many times as far as other light that of one path goes.
+constexpr float kWidening = 4;
+
 /// Limits every pixel of each half to a multiple of the brightest pixel of the *other* half within
 /// 3 x 3 pixels. What both halves see is never cut, so nothing is in the limit of many samples.
 /// Colours keep their hue.
@@ -15,8 +18,8 @@ void limit_outliers(Halves& halves);
 /// G(q - p) Y(q) / (G * Y)(p), in proportion to the light Y that is there, G a wide Gaussian: the
 /// sum over the image is that of `raw`, but for pixels that would become negative. What one pixel
 /// has of e beyond a tenth of all others around it goes further away: one path's light, were it
-/// rare enough, would be a blotch.
-void return_energy(const ColorPlanes& raw, ColorPlanes& color);
+/// rare enough, would be a blotch. Returns the share of every pixel's e that stays near.
+Plane return_energy(const ColorPlanes& raw, ColorPlanes& color);
 
 /// Luminance of every pixel.
 Plane luminance(const ColorPlanes& color);

@@ -121,10 +121,12 @@ TEST(ErrorEstimate, CountsNoiseSpreadAndLightThatWasMoved) {
     const Selection s{{constant(1.1f), constant(0.9f)},
                       {Plane(kSize, kSize, 0.5f), Plane(kSize, kSize, 0.5f)}};
     const ErrorFactors factors{1, 16, 2, 3, 5};
-    const ErrorEstimate error = estimate_error(halves, candidates, s, constant(1.05f),
-                                               constant(1.3f), constant(1), factors);
-    // N = 0.1^2 with 8 samples, S = 0.2^2, E = 0.05^2, C = 0.3^2.
-    const float expected = (3 * 0.01f + 2 * 0.04f + 3 * 0.0025f + 5 * 0.09f) / 1.01f;
+    const ErrorEstimate error =
+        estimate_error(halves, candidates, s, constant(1.05f), constant(1.3f),
+                       Plane(kSize, kSize, 0.5f), constant(1), factors);
+    // N = 0.1^2 with 8 samples, S = 0.2^2, E = 0.05^2, C = 0.3^2 of which half went further away.
+    const float cut = 0.09f * (0.25f + 0.25f / 16);
+    const float expected = (3 * 0.01f + 2 * 0.04f + 3 * 0.0025f + 5 * cut) / 1.01f;
     for (size_t i = 0; i < error.color.size(); ++i) {
         ASSERT_NEAR(error.color[i], expected, 1e-4f);
         ASSERT_NEAR(error.luminance[i], expected, 1e-4f);
@@ -143,8 +145,9 @@ TEST(ErrorEstimate, TellsLuminanceApartFromColours) {
     const float rest = luminance(Rgb(0.3f, 0, 0)) / luminance(Rgb(0, 1, 0));
     a[1] = Plane(kSize, kSize, 1 - rest);
     const Selection s{{a, constant(1)}, {Plane(kSize, kSize, 1)}};
-    const ErrorEstimate error = estimate_error(halves, std::vector<Candidate>{{a, constant(1)}}, s,
-                                               mean_of_both(s.half), constant(1), constant(1), {});
+    const ErrorEstimate error =
+        estimate_error(halves, std::vector<Candidate>{{a, constant(1)}}, s, mean_of_both(s.half),
+                       constant(1), Plane(kSize, kSize, 1), constant(1), {});
     EXPECT_GT(error.color[100], 0.01f);
     EXPECT_LT(error.luminance[100], 1e-6f);
 }
