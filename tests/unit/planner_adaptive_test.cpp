@@ -152,8 +152,8 @@ struct RareLight {
 };
 
 // The mean of 20 images of even counts would vary by 0.4 % at 16 samples per pixel and 0.2 % at 64;
-// the seeds are fixed. 0.03 and 0.07 % are lost here; 3.2 and 0.1 % with 30 % given out evenly whatever
-// the halves agree on, 18 and 3.3 % with means over 0.7 pixels beside that.
+// the seeds are fixed. 0.03 and 0.07 % are lost here; 3.2 and 0.1 % where 30 % is given out evenly
+// whatever the halves agree on, 18 and 3.3 % with means over 0.7 pixels beside that.
 TEST(AdaptiveDensity, HalvesThatDriveEachOtherLoseLittleOfRareLight) {
     double at_16 = 0, at_64 = 0;
     constexpr int kImages = 20;
