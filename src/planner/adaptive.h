@@ -20,19 +20,19 @@ struct SampleKnowledge {
     Plane emphasis;
 };
 
-/// What is made of the samples.
+/// Whose samples a plan is for, and what will be made of them.
 struct PlanSettings {
     /// Whether the counts are for the very sequence of samples that is known, not for another one.
     bool own;
-    float dark_squared;    ///< eps below
+    float dark_squared;    ///< eps of adaptive_density
     float widest_filter;   ///< deviation of the widest one that smooths the samples, pixels
     float spectrum_power;  ///< of |S_2D|
 };
 
 /// For the predicted Gaussians: what the derivation below says.
 constexpr PlanSettings kOwnPlan{true, 0.01f, 15, 0.25f};
-/// For two halves that plan for each other and regressions, whose windows do not reach further than
-/// such a Gaussian: as found by a sweep (docs/decisions/0067).
+/// For two halves that plan for each other, and regressions, which leave no less noise than a
+/// Gaussian of some 2 pixels does: as found by a sweep (docs/decisions/0067).
 constexpr PlanSettings kHalvesPlan{false, 0.1f, 2, 0.2f};
 
 /// Relative densities with mean 1.

@@ -58,8 +58,10 @@ std::vector<Candidate> make_candidates(const Halves& halves,
         fields[size_t(k)] = predicted_filters(spectrum, w, h, scales[size_t(k)]);
     });
     const FilterField& shape = fields.back();
-    for (size_t k = 0; k < settings.gaussians.size(); ++k)
+    for (size_t k = 0; k < settings.gaussians.size(); ++k) {
         candidates.push_back({gaussian(halves[0], fields[k]), gaussian(halves[1], fields[k])});
+        fields[k] = {};  // large, not needed
+    }
     std::vector<RegressionWindow> windows;
     for (const auto& fit : settings.fits)
         windows.push_back({fit.k, fit.shaped ? &shape : nullptr, kWindowWidening, fit.noise});
