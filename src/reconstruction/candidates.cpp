@@ -14,24 +14,6 @@ namespace {
 /// The windows of regressions reach this many times as far as the predicted filters.
 constexpr float kWindowWidening = 2.5f;
 
-ColorPlanes gaussian(const HalfBuffer& half, const FilterField& field) {
-    const size_t n = half.count.size();
-    std::vector<Rgb> mean(n);
-    const std::vector<float> variance(n, 0.0f);
-    std::vector<uint32_t> count(n);
-    for (size_t i = 0; i < n; ++i) {
-        mean[i] = {half.color[0][i], half.color[1][i], half.color[2][i]};
-        count[i] = half.count[i] > 0 ? 1 : 0;
-    }
-    const GatheredImage image = gather(mean, variance, count, field);
-    ColorPlanes out;
-    for (size_t c = 0; c < 3; ++c) {
-        out[c] = Plane(half.count.width, half.count.height);
-        for (size_t i = 0; i < n; ++i) out[c][i] = image.color[i][int(c)];
-    }
-    return out;
-}
-
 /// The predicted Gaussians, `scale` times as wide as with c = 2.
 FilterField predicted_filters(std::span<const covariance::Sym2<float>> spectrum, int w, int h,
                               float scale) {
@@ -59,7 +41,7 @@ std::vector<Candidate> make_candidates(const Halves& halves,
     });
     const FilterField& shape = fields.back();
     for (size_t k = 0; k < settings.gaussians.size(); ++k) {
-        candidates.push_back({gaussian(halves[0], fields[k]), gaussian(halves[1], fields[k])});
+        candidates.push_back(gather(halves, fields[k]));
         fields[k] = {};  // large, not needed
     }
     std::vector<RegressionWindow> windows;

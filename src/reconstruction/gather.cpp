@@ -13,17 +13,9 @@ namespace {
 
 using Sym2 = covariance::Sym2<float>;
 
-/// One level of the pyramid: sums over 2^level x 2^level pixels.
+/// One level of the pyramid: N sums over 2^level x 2^level pixels.
+template <size_t N>
 struct Level {
-    enum Sum : size_t {
-        red,
-        green,
-        blue,
-        variance,  // of the sum's luminance
-        weight,    // how many pixels had samples
-        kSums
-    };
-
     Level(int w, int h) : width(w), height(h), stride(size_t(w) + kLanes) {
         for (auto& plane : sums) plane.resize(stride * size_t(h));
     }
@@ -31,14 +23,15 @@ struct Level {
 
     int width, height;
     size_t stride;  // rows end with zeros, so that whole vectors may be read from any pixel
-    std::array<std::vector<float>, kSums> sums;
+    std::array<std::vector<float>, N> sums;
 };
 
-Level halve(const Level& fine) {
-    Level coarse((fine.width + 1) / 2, (fine.height + 1) / 2);
+template <size_t N>
+Level<N> halve(const Level<N>& fine) {
+    Level<N> coarse((fine.width + 1) / 2, (fine.height + 1) / 2);
     parallel_for(coarse.height, [&](int64_t row) {
         const int y = int(row);
-        for (size_t k = 0; k < Level::kSums; ++k)
+        for (size_t k = 0; k < N; ++k)
             for (int x = 0; x < coarse.width; ++x) {
                 float& sum = coarse.sums[k][coarse.index(x, y)];
                 for (int fy = 2 * y; fy < std::min(2 * y + 2, fine.height); ++fy)
@@ -49,12 +42,25 @@ Level halve(const Level& fine) {
     return coarse;
 }
 
+template <size_t N>
+using Pyramid = std::vector<Level<N>>;
+
+template <size_t N>
+Pyramid<N> pyramid_over(Level<N> base) {
+    constexpr size_t kMostLevels = 12;
+    Pyramid<N> levels;
+    levels.push_back(std::move(base));
+    while (levels.size() < kMostLevels && std::max(levels.back().width, levels.back().height) > 1)
+        levels.push_back(halve(levels.back()));
+    return levels;
+}
+
 constexpr float kCut = 9;  // squared number of standard deviations
 
-/// The Gaussian mean with covariance `s` (level pixels^2) about (cx, cy) (level pixel coordinates).
-/// Returns the total weight; `mean` and `variance` are set where it is positive.
-float gaussian_mean(const Level& level, float cx, float cy, const Sym2& s, Rgb& mean,
-                    float& variance) {
+/// Sums weighted by the Gaussian with covariance `s` (level pixels^2) about (cx, cy) (level pixel
+/// coordinates), those of plane `Squared` by its square.
+template <size_t Squared, size_t N>
+std::array<float, N> gaussian_sums(const Level<N>& level, float cx, float cy, const Sym2& s) {
     const float determinant = s.xx * s.yy - s.xy * s.xy;
     const float qxx = s.yy / determinant, qxy = -s.xy / determinant, qyy = s.xx / determinant;
     const float reach_y = std::sqrt(kCut * s.yy);
@@ -62,7 +68,7 @@ float gaussian_mean(const Level& level, float cx, float cy, const Sym2& s, Rgb& 
     const int y1 = std::min(level.height - 1, int(std::floor(cy + reach_y)));
     Lanes lane;
     for (size_t k = 0; k < kLanes; ++k) lane[k] = float(k);
-    std::array<Lanes, Level::kSums> sum{};
+    std::array<Lanes, N> sum{};
     for (int y = y0; y <= y1; ++y) {
         // The row's chord of the ellipse: qxx x^2 + 2 qxy x dy + qyy dy^2 <= cut.
         const float dy = float(y) - cy;
@@ -77,58 +83,102 @@ float gaussian_mean(const Level& level, float cx, float cy, const Sym2& s, Rgb& 
                 multiply_add(-0.5f * dx, qxx * dx + 2 * qxy * dy, -0.5f * qyy * dy * dy - Lanes{});
             const Lanes h = lane <= float(x1 - x) ? exp_of_negative(power) : Lanes{};
             const size_t at = level.index(x, y);
-            for (size_t k = 0; k < Level::kSums; ++k)
-                sum[k] = multiply_add(k == Level::variance ? h * h : h, load(&level.sums[k][at]),
-                                      sum[k]);
+            for (size_t k = 0; k < N; ++k)
+                sum[k] = multiply_add(k == Squared ? h * h : h, load(&level.sums[k][at]), sum[k]);
         }
     }
-    const float all = total(sum[Level::weight]);
-    if (all > 0) {
-        mean = Rgb(total(sum[Level::red]), total(sum[Level::green]), total(sum[Level::blue])) / all;
-        variance = total(sum[Level::variance]) / (all * all);
-    }
-    return all;
+    std::array<float, N> result;
+    for (size_t k = 0; k < N; ++k) result[k] = total(sum[k]);
+    return result;
 }
+
+/// The same around a pixel of the image, `s` in its pixels^2, from the level that suits it.
+template <size_t Squared, size_t N>
+std::array<float, N> sums_around(const Pyramid<N>& pyramid, int x, int y, const Sym2& s) {
+    const float narrow = std::sqrt(std::max(0.0f, covariance::eigen(s).low));
+    size_t level = 0;
+    while (level + 1 < pyramid.size() && float(2 << level) <= 0.5f * narrow) ++level;
+    const float size = float(1 << level);
+    // A box of that size has blurred already: (size^2 - 1) / 12 beside single pixels.
+    const float blurred = (size * size - 1) / 12;
+    const Sym2 rest{(s.xx - blurred) / (size * size), s.xy / (size * size),
+                    (s.yy - blurred) / (size * size)};
+    return gaussian_sums<Squared>(pyramid[level], (float(x) + 0.5f) / size - 0.5f,
+                                  (float(y) + 0.5f) / size - 0.5f, rest);
+}
+
+/// Weights below this are next to nothing: another attempt with a wider filter is made.
+constexpr float kLeastWeight = 1e-3f;
+constexpr int kAttempts = 6;
+constexpr float kWidening = 16;
 
 }  // namespace
 
 GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
                      std::span<const uint32_t> count, const FilterField& field) {
-    std::vector<Level> pyramid{Level(field.width, field.height)};
-    Level& base = pyramid[0];
+    // Red, green, blue, the variance of the luminance, and whether a pixel has samples.
+    constexpr size_t kVariance = 3, kWeight = 4, kSums = 5;
+    Level<kSums> base(field.width, field.height);
     for (int y = 0; y < base.height; ++y)
         for (int x = 0; x < base.width; ++x) {
             const size_t i = size_t(y) * size_t(base.width) + size_t(x), at = base.index(x, y);
             if (count[i] == 0 || !is_finite(mean[i])) continue;
             for (int c = 0; c < 3; ++c) base.sums[size_t(c)][at] = mean[i][c];
-            base.sums[Level::variance][at] = std::isfinite(variance[i]) ? variance[i] : 0.0f;
-            base.sums[Level::weight][at] = 1;
+            base.sums[kVariance][at] = std::isfinite(variance[i]) ? variance[i] : 0.0f;
+            base.sums[kWeight][at] = 1;
         }
-    constexpr size_t kMostLevels = 12;
-    while (pyramid.size() < kMostLevels &&
-           std::max(pyramid.back().width, pyramid.back().height) > 1)
-        pyramid.push_back(halve(pyramid.back()));
-
+    const Pyramid<kSums> pyramid = pyramid_over(std::move(base));
     GatheredImage result{std::vector<Rgb>(mean.size()), std::vector<float>(mean.size())};
     parallel_for(field.height, [&](int64_t row) {
         for (int x = 0; x < field.width; ++x) {
             const size_t i = size_t(row) * size_t(field.width) + size_t(x);
             Sym2 s = field.covariance[i];
-            for (int attempt = 0; attempt < 6; ++attempt) {
-                const float narrow = std::sqrt(std::max(0.0f, covariance::eigen(s).low));
-                size_t level = 0;
-                while (level + 1 < pyramid.size() && float(2 << level) <= 0.5f * narrow) ++level;
-                const float size = float(1 << level);
-                // A box of that size has blurred already: (size^2 - 1) / 12 beside single pixels.
-                const float blurred = (size * size - 1) / 12;
-                const Sym2 rest{(s.xx - blurred) / (size * size), s.xy / (size * size),
-                                (s.yy - blurred) / (size * size)};
-                const float cx = (float(x) + 0.5f) / size - 0.5f,
-                            cy = (float(row) + 0.5f) / size - 0.5f;
-                const float total = gaussian_mean(pyramid[level], cx, cy, rest, result.color[i],
-                                                  result.variance[i]);
-                if (total > 1e-3f) break;
-                s = 16.0f * s;
+            for (int attempt = 0; attempt < kAttempts; ++attempt, s = kWidening * s) {
+                const std::array<float, kSums> sum =
+                    sums_around<kVariance>(pyramid, x, int(row), s);
+                const float all = sum[kWeight];
+                if (!(all > 0)) continue;
+                result.color[i] = Rgb(sum[0], sum[1], sum[2]) / all;
+                result.variance[i] = sum[kVariance] / (all * all);
+                if (all > kLeastWeight) break;
+            }
+        }
+    });
+    return result;
+}
+
+std::array<ColorPlanes, 2> gather(const Halves& halves, const FilterField& field) {
+    // Of each half red, green, blue, and whether a pixel has samples.
+    constexpr size_t kWeight = 3, kOfHalf = 4, kSums = 2 * kOfHalf;
+    Level<kSums> base(field.width, field.height);
+    std::array<ColorPlanes, 2> result;
+    for (size_t k = 0; k < 2; ++k) {
+        result[k].fill(Plane(field.width, field.height));
+        for (int y = 0; y < base.height; ++y)
+            for (int x = 0; x < base.width; ++x) {
+                if (!(halves[k].count(x, y) > 0)) continue;
+                const size_t at = base.index(x, y);
+                for (size_t c = 0; c < 3; ++c)
+                    base.sums[k * kOfHalf + c][at] = halves[k].color[c](x, y);
+                base.sums[k * kOfHalf + kWeight][at] = 1;
+            }
+    }
+    const Pyramid<kSums> pyramid = pyramid_over(std::move(base));
+    parallel_for(field.height, [&](int64_t row) {
+        const int y = int(row);
+        for (int x = 0; x < field.width; ++x) {
+            Sym2 s = field.covariance[size_t(row) * size_t(field.width) + size_t(x)];
+            std::array<bool, 2> done{};
+            for (int attempt = 0; attempt < kAttempts && !(done[0] && done[1]);
+                 ++attempt, s = kWidening * s) {
+                const std::array<float, kSums> sum = sums_around<kSums>(pyramid, x, y, s);
+                for (size_t k = 0; k < 2; ++k) {
+                    const float* of_half = &sum[k * kOfHalf];
+                    if (done[k] || !(of_half[kWeight] > 0)) continue;
+                    for (size_t c = 0; c < 3; ++c)
+                        result[k][c](x, y) = of_half[c] / of_half[kWeight];
+                    done[k] = of_half[kWeight] > kLeastWeight;
+                }
             }
         }
     });

@@ -7,6 +7,7 @@
 
 #include "core/vec.h"
 #include "reconstruction/filter_field.h"
+#include "reconstruction/half_buffer.h"
 
 namespace covtrace {
 
@@ -25,5 +26,8 @@ struct GatheredImage {
 };
 GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
                      std::span<const uint32_t> count, const FilterField& field);
+
+/// The same of the colours of both halves, which share the filters and so their weights.
+std::array<ColorPlanes, 2> gather(const Halves& halves, const FilterField& field);
 
 }  // namespace covtrace

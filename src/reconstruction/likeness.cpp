@@ -38,6 +38,12 @@ void Likeness::weigh(int x, int y, Window& weights) const {
         }
 }
 
+float Likeness::difference(int px, int py, int qx, int qy) const {
+    float sum = 0;
+    for (const MarginPlane& guide : guides_) sum += sqr(*guide.at(px, py) - *guide.at(qx, qy));
+    return sum;
+}
+
 void weighted_sums(std::span<const MarginPlane> planes, const Likeness::Window& weights, int x,
                    int y, float* sums) {
     constexpr int kReach = Likeness::kReach;

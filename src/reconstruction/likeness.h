@@ -51,6 +51,9 @@ class Likeness {
 
     void weigh(int x, int y, Window& weights) const;
 
+    /// sum_k (guide_k(p) - guide_k(q))^2 of two pixels of the image.
+    float difference(int px, int py, int qx, int qy) const;
+
   private:
     std::vector<MarginPlane> guides_;
     Window gaussian_{};

@@ -36,10 +36,8 @@ PatchDistance::PatchDistance(std::span<const Plane> values, std::span<const Plan
     const int border = reach + patch_radius + 1;
     Plane noise(values[0].width, values[0].height);
     for (const Plane& p : values) values_.emplace_back(p, border);
-    for (const Plane& p : variances) {
-        variances_.emplace_back(p, border);
+    for (const Plane& p : variances)
         for (size_t i = 0; i < noise.size(); ++i) noise[i] += p[i];
-    }
     noise_ = PaddedPlane(noise, border);
 }
 
@@ -52,24 +50,20 @@ void PatchDistance::differences(int x0, int y0, int dx, int dy, float* out) cons
     const int rows = kBlock + 2 * patch_radius_, px = x0 - patch_radius_;
     for (int y = 0; y < rows; ++y, out += kRow) {
         const int py = y0 - patch_radius_ + y;
-        const auto of_planes = [&](const std::vector<PaddedPlane>& planes, int x, int row) {
-            std::array<const float*, Planes> at;
-            for (size_t c = 0; c < Planes; ++c) at[c] = planes[c].at(x, row);
-            return at;
-        };
-        const auto u_p = of_planes(values_, px, py), u_q = of_planes(values_, px + dx, py + dy),
-                   v_p = of_planes(variances_, px, py),
-                   v_q = of_planes(variances_, px + dx, py + dy);
+        std::array<const float*, Planes> u_p, u_q;
+        for (size_t c = 0; c < Planes; ++c) {
+            u_p[c] = values_[c].at(px, py);
+            u_q[c] = values_[c].at(px + dx, py + dy);
+        }
         const float *n_p = noise_.at(px, py), *n_q = noise_.at(px + dx, py + dy);
         for (int x = 0; x < kRow; x += int(kLanes)) {
-            const Lanes noise = load(n_p + x);
-            Lanes above = -noise;
+            const Lanes noise = load(n_p + x), other = load(n_q + x);
+            Lanes above = -noise - smaller(noise, other);
             for (size_t c = 0; c < Planes; ++c) {
                 const Lanes difference = load(u_p[c] + x) - load(u_q[c] + x);
-                above = multiply_add(difference, difference,
-                                     above - smaller(load(v_p[c] + x), load(v_q[c] + x)));
+                above = multiply_add(difference, difference, above);
             }
-            const Lanes below = 1e-10f + noise + load(n_q + x);
+            const Lanes below = 1e-10f + noise + other;
             store(smaller(above / below, kMost - Lanes{}), out + x);
         }
     }

@@ -23,10 +23,10 @@ struct PaddedPlane {
 };
 
 /// The squared distance of patches, less what noise alone explains (Rousselle, Knaus and Zwicker
-/// 2012):  d(p, q) = mean over the patch and all channels of
-///     ((u_p - u_q)^2 - (v_p + min(v_p, v_q))) / (v_p + v_q)
-/// with u the values and v their variances. About -1/2..0 for pixels that differ by noise.
-/// The channels share one denominator.
+/// 2012):  d(p, q) = mean over the patch of
+///     (sum_c (u_p - u_q)^2 - (v_p + min(v_p, v_q))) / (v_p + v_q)
+/// with u_p the values of the channels c and v_p the sum of their variances. About -1/2..0 for
+/// pixels that differ by noise.
 class PatchDistance {
   public:
     /// The side of the blocks of pixels that are worked on at once.
@@ -48,7 +48,7 @@ class PatchDistance {
     template <size_t Planes>
     void differences(int x0, int y0, int dx, int dy, float* out) const;
 
-    std::vector<PaddedPlane> values_, variances_;
+    std::vector<PaddedPlane> values_;
     PaddedPlane noise_;  // the sum of the variances
     int patch_radius_, row_step_;
 };

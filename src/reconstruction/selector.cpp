@@ -10,7 +10,11 @@ namespace covtrace {
 
 namespace {
 
-constexpr size_t kMost = 12;        // candidates
+constexpr size_t kMost = 12;  // candidates
+// Shares are judged at every kStep-th pixel and where pixels differ from those around them: by this
+// sum of squared differences of the guides (docs/decisions/0070).
+constexpr int kStep = 4;
+constexpr float kAlike = 0.5f;
 constexpr int kSteps = 24;          // of the minimisation; more change nothing
 constexpr float kSmoothing = 0.5f;  // of the shares, pixels
 
@@ -67,21 +71,54 @@ void for_pairs(size_t n, const OfPair& of_pair) {
     });
 }
 
-/// Shares from G, which `gram(x, y, entries)` tells of every pixel.
-template <typename Gram>
-Selection mixed(std::span<const Candidate> candidates, int w, int h, bool mix, const Gram& gram) {
+/// Calls `set(x, y)` for every kStep-th pixel in x and in y, then halves the step until all pixels
+/// are done: `between(x, y, left, top, right, bottom)` for those of which `alike(x, y, u, v)` holds
+/// with the nearest done ones, `set` for the others. On all threads.
+template <typename Set, typename Alike, typename Between>
+void coarse_to_fine(int w, int h, const Set& set, const Alike& alike, const Between& between) {
+    parallel_for((h + kStep - 1) / kStep, [&](int64_t row) {
+        for (int x = 0; x < w; x += kStep) set(x, int(row) * kStep);
+    });
+    for (int step = kStep; step > 1; step /= 2) {
+        const int half = step / 2;
+        parallel_for((h + half - 1) / half, [&](int64_t row) {
+            const int y = int(row) * half;
+            const bool some_done = y % step == 0;
+            for (int x = some_done ? half : 0; x < w; x += some_done ? step : half) {
+                const int left = x - x % step, top = y - y % step,
+                          right = x == left ? left : left + step,
+                          bottom = y == top ? top : top + step;
+                const bool inside = right < w && bottom < h;
+                if (inside && alike(x, y, left, top) && alike(x, y, right, top) &&
+                    alike(x, y, left, bottom) && alike(x, y, right, bottom))
+                    between(x, y, left, top, right, bottom);
+                else
+                    set(x, y);
+            }
+        });
+    }
+}
+
+/// Shares from G, which `gram(x, y, entries)` tells of a pixel. Pixels of which `alike` tells that
+/// they are like those around them have the mean of their shares.
+template <typename Gram, typename Alike>
+Selection mixed(std::span<const Candidate> candidates, int w, int h, bool mix, const Gram& gram,
+                const Alike& alike) {
     const size_t n = candidates.size();
     Selection s;
     s.share.assign(n, Plane(w, h));
-    parallel_for(h, [&](int64_t row) {
-        for (int x = 0; x < w; ++x) {
-            float entries[kMost * (kMost + 1) / 2], errors[kMost][kMost], share[kMost];
-            gram(x, int(row), entries);
-            for (size_t d = 0; d < n; ++d)
-                for (size_t c = 0; c <= d; ++c) errors[c][d] = errors[d][c] = entries[entry(c, d)];
-            minimise(errors, n, mix ? kSteps : 0, share);
-            for (size_t c = 0; c < n; ++c) s.share[c](x, int(row)) = share[c];
-        }
+    const auto judge = [&](int x, int y) {
+        float entries[kMost * (kMost + 1) / 2], errors[kMost][kMost], share[kMost];
+        gram(x, y, entries);
+        for (size_t d = 0; d < n; ++d)
+            for (size_t c = 0; c <= d; ++c) errors[c][d] = errors[d][c] = entries[entry(c, d)];
+        minimise(errors, n, mix ? kSteps : 0, share);
+        for (size_t c = 0; c < n; ++c) s.share[c](x, y) = share[c];
+    };
+    coarse_to_fine(w, h, judge, alike, [&](int x, int y, int left, int top, int right, int bottom) {
+        for (Plane& share : s.share)
+            share(x, y) = 0.25f * ((share(left, top) + share(right, top)) +
+                                   (share(left, bottom) + share(right, bottom)));
     });
     // Shares that jump from pixel to pixel would show as noise.
     for (Plane& p : s.share) p = gaussian_blur(p, kSmoothing);
@@ -118,9 +155,10 @@ Selection select(const Halves& halves, std::span<const Candidate> candidates, co
             local[i] = product_of_errors(halves, candidates[c], candidates[d], g, i);
         gram[e] = gaussian_blur(local, sigma);
     });
-    return mixed(candidates, w, h, mix, [&](int x, int y, float* entries) {
+    const auto sums = [&](int x, int y, float* entries) {
         for (const Plane& plane : gram) *entries++ = plane(x, y);
-    });
+    };
+    return mixed(candidates, w, h, mix, sums, [](int, int, int, int) { return false; });
 }
 
 Selection select(const Halves& halves, std::span<const Candidate> candidates, const ColorPlanes& g,
@@ -134,11 +172,16 @@ Selection select(const Halves& halves, std::span<const Candidate> candidates, co
                 gram[e](x, y) = product_of_errors(halves, candidates[c], candidates[d], g,
                                                   size_t(y) * size_t(w) + size_t(x));
     });
-    return mixed(candidates, w, h, mix, [&](int x, int y, float* entries) {
+    const auto sums = [&](int x, int y, float* entries) {
         Likeness::Window weights;
         likeness.weigh(x, y, weights);
         weighted_sums(gram, weights, x, y, entries);
-    });
+    };
+    // The best single candidates of pixels have no mean.
+    const auto alike = [&](int x, int y, int u, int v) {
+        return mix && likeness.difference(x, y, u, v) < kAlike;
+    };
+    return mixed(candidates, w, h, mix, sums, alike);
 }
 
 }  // namespace covtrace

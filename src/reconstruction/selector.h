@@ -36,7 +36,8 @@ Selection select(const Halves& halves, std::span<const Candidate> candidates, co
                  float sigma, bool mix = true);
 
 /// The same over the pixels around that are alike: what is out of focus, dark or clean is not
-/// judged by what is sharp, bright or noisy beside it.
+/// judged by what is sharp, bright or noisy beside it. Where the guides say that pixels hardly
+/// differ only some are judged, and mixtures in between are means of theirs.
 Selection select(const Halves& halves, std::span<const Candidate> candidates, const ColorPlanes& g,
                  const Likeness& likeness, bool mix = true);
 

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 namespace covtrace {
 namespace {
@@ -87,6 +88,38 @@ TEST(Gather, NonFiniteMeansAreLeftOut) {
     std::vector<Rgb> mean(9, Rgb(2));
     mean[4] = Rgb(NAN, 1, 1);
     for (const Rgb& c : run(mean, uniform_field(3, 3, {1, 0, 1})).color) EXPECT_FLOAT_EQ(c.r, 2);
+}
+
+TEST(Gather, HalvesAreGatheredAsIfAlone) {
+    constexpr int kSize = 24;
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> value(0, 1);
+    Halves halves{HalfBuffer(kSize, kSize), HalfBuffer(kSize, kSize)};
+    for (size_t k = 0; k < 2; ++k) {
+        for (Plane& channel : halves[k].color)
+            for (float& v : channel.values) v = value(random);
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x) {
+                // Each half lacks another corner, more of it than its filters reach.
+                const int u = k == 0 ? x : kSize - 1 - x;
+                halves[k].count(x, y) = u + y < 12 ? 0.0f : 2.0f;
+            }
+    }
+    const FilterField field = uniform_field(kSize, kSize, {1, 0.3f, 0.5f});
+    const std::array<ColorPlanes, 2> both = gather(halves, field);
+    for (size_t k = 0; k < 2; ++k) {
+        std::vector<Rgb> mean;
+        std::vector<uint32_t> count;
+        for (size_t i = 0; i < halves[k].count.size(); ++i) {
+            const ColorPlanes& c = halves[k].color;
+            mean.emplace_back(c[0][i], c[1][i], c[2][i]);
+            count.push_back(uint32_t(halves[k].count[i]));
+        }
+        const auto alone = run(mean, field, count).color;
+        for (size_t i = 0; i < alone.size(); ++i)
+            for (size_t c = 0; c < 3; ++c)
+                ASSERT_NEAR(both[k][c][i], alone[i][int(c)], 1e-5) << "half " << k << " at " << i;
+    }
 }
 
 TEST(Gather, VarianceFallsByTheEffectiveNumberOfPixels) {

@@ -102,6 +102,43 @@ TEST(Selector, JudgesEachSideOfABorderByItself) {
     EXPECT_LT(apart, 0.25 * together);
 }
 
+TEST(Selector, PixelsBesideABorderAreJudgedThemselves) {
+    // As above, without noise; the border passes all columns and is nowhere between pixels that
+    // share their mixture.
+    const auto is_right = [](int x, int y) { return x > 8 + 0.7f * float(y) ? 1.0f : 0.0f; };
+    Halves halves{HalfBuffer(kWidth, kHeight), HalfBuffer(kWidth, kHeight)};
+    ColorPlanes left, right, ones;
+    ones.fill(Plane(kWidth, kHeight, 1));
+    left.fill(Plane(kWidth, kHeight));
+    right = left;
+    Plane guide(kWidth, kHeight);
+    for (HalfBuffer& half : halves) {
+        half.color = ones;
+        half.count = ones[0];
+    }
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            guide(x, y) = 10 * is_right(x, y);
+            for (size_t c = 0; c < 3; ++c) {
+                left[c](x, y) = 1 + 0.5f * is_right(x, y);
+                right[c](x, y) = 1.5f - 0.5f * is_right(x, y);
+            }
+        }
+    Likeness likeness(LikenessSettings{6, 0});
+    likeness.add(guide);
+    const Selection s = select(halves, std::vector<Candidate>{{left, left}, {right, right}},
+                               error_weights(halves, ones), likeness);
+    for (int y = 2; y < kHeight - 2; ++y)
+        for (int x = 2; x < kWidth - 2; ++x) {
+            bool beside = false;  // shares are smoothed over half a pixel
+            for (int v = -2; v <= 2; ++v)
+                for (int u = -2; u <= 2; ++u)
+                    beside = beside || is_right(x + u, y + v) != is_right(x, y);
+            if (beside) continue;
+            ASSERT_NEAR(s.half[0][0](x, y), 1, 0.01f) << x << " " << y;
+        }
+}
+
 TEST(Guides, TellNoisyFromCleanAndBrightFromDark) {
     const auto one = [](int, int) { return 1.0f; };
     Halves halves = noisy_halves(kWidth, kHeight, one, 0.1f, 6);
