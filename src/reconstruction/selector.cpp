@@ -158,7 +158,8 @@ Selection select(const Halves& halves, std::span<const Candidate> candidates, co
     const auto sums = [&](int x, int y, float* entries) {
         for (const Plane& plane : gram) *entries++ = plane(x, y);
     };
-    return mixed(candidates, w, h, mix, sums, [](int, int, int, int) { return false; });
+    // What is judged over a Gaussian hardly changes from pixel to pixel.
+    return mixed(candidates, w, h, mix, sums, [mix](int, int, int, int) { return mix; });
 }
 
 Selection select(const Halves& halves, std::span<const Candidate> candidates, const ColorPlanes& g,

@@ -30,8 +30,9 @@ struct Selection {
 /// normaliser g for all candidates: one of its own for each would reward those that spread
 /// highlights.
 ///
-/// `g`: of `error_weights`. `sigma`: of the Gaussian neighbourhood, pixels. The last candidate is
-/// taken where nothing judges. Without `mix`: the best single one.
+/// `g`: of `error_weights`. `sigma`: of the Gaussian neighbourhood, pixels; every fourth pixel is
+/// judged, the others have means of their mixtures. The last candidate is taken where nothing
+/// judges. Without `mix`: the best single one.
 Selection select(const Halves& halves, std::span<const Candidate> candidates, const ColorPlanes& g,
                  float sigma, bool mix = true);
 
