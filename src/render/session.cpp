@@ -19,7 +19,7 @@ std::map<std::string, size_t> render_memory(const FilmDescription& film,
     // Layers and the buffers of the reconstruction: `bench/film_cost memory`.
     const size_t image = options.method == Method::uniform      ? 68
                          : options.method == Method::covariance ? 396
-                                                                : 486;
+                                                                : 472;
     const size_t kept = film_bytes_per_pixel(options.method, options.emitters_apart);
     const PixelBounds region = render_region(film);
     const size_t pixels = size_t(region.width()) * size_t(region.height());
