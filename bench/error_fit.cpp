@@ -18,12 +18,9 @@
 #include <cmath>
 
 #include "error_bins.h"
+#include "hybrid_samples.h"
 #include "image/image.h"
-#include "planner/covariance_buffer.h"
-#include "reconstruction/hybrid.h"
 #include "reconstruction/outliers.h"
-#include "render/film_file.h"
-#include "render/hybrid_film.h"
 
 using namespace covtrace;
 
@@ -72,14 +69,12 @@ void set_truth(const Truth& truth, int side, Tiles& tiles) {
 Case load(const char* const* files) {
     Case c{files[2], files[0], {}, {}};
     const std::array<Image, 2> reference{read_image(files[0]), read_image(files[1])};
-    const RenderState state = read_film(files[2]);
-    if (state.films.size() != 2) throw Error(ErrorKind::usage, c.film + ": not of --method hybrid");
+    const HybridSamples samples = read_hybrid_samples(files[2]);
+    const int w = samples.region.width(), h = samples.region.height(), side = tile_side(w, h);
+    const size_t pixels = size_t(w) * size_t(h);
     for (const Image& r : reference)
-        if (r.pixel_count() != state.pixels())
+        if (r.pixel_count() != pixels)
             throw Error(ErrorKind::usage, c.film + ": has other pixels than the references");
-    const Halves halves = halves_of(state.films);
-    const Prediction prediction = preintegrate(smooth(state.covariance()));
-    const int w = state.region.width(), h = state.region.height(), side = tile_side(w, h);
     float ErrorFactors::*const each[] = {&ErrorFactors::noise, &ErrorFactors::spread,
                                          &ErrorFactors::returned, &ErrorFactors::cut};
     constexpr size_t kTo[] = {0, 2, 3, 4};
@@ -88,16 +83,16 @@ Case load(const char* const* files) {
         HybridSettings settings;
         settings.error = {0, 0, 0, 0, 0};
         settings.error.*each[k] = 1;
-        image = reconstruct(halves, prediction.spectrum, settings);
+        image = reconstruct(samples.halves, samples.spectrum, settings);
         c.color.term[kTo[k]] = tile_sums(image.relative_error, side);
         const Plane y = luminance(image.color);
         for (size_t i = 0; i < y.size(); ++i) image.variance[i] /= sqr(y[i]) + kDarkSquared;
         c.luminance.term[kTo[k]] = tile_sums(image.variance, side);
     }
     for (Tiles* t : {&c.color, &c.luminance})
-        for (double v : t->term[0]) t->term[1].push_back(v / std::max(1.0, state.mean_count()));
+        for (double v : t->term[0]) t->term[1].push_back(v / std::max(1.0, samples.mean_count));
     Truth color{Plane(w, h), Plane(w, h)}, bright = color;
-    for (size_t i = 0; i < state.pixels(); ++i) {
+    for (size_t i = 0; i < pixels; ++i) {
         const Rgb v(image.color[0][i], image.color[1][i], image.color[2][i]),
             a = reference[0].rgb(i), b = reference[1].rgb(i);
         for (int k = 0; k < 3; ++k) color.add(i, v[k], a[k], b[k], 1 / 3.0f);

@@ -3,33 +3,22 @@
 ///
 ///     plain_regression FILM OUT.exr
 ///
-/// The film is that of `covtrace render --method hybrid --checkpoint FILM`. Of the candidates of
-/// the hybrid method only plain windows of two tolerances are left, explained by filtered features,
-/// the better one of each pixel by the errors that the other half shows.
+/// The film is that of `covtrace render --method hybrid --checkpoint FILM`.
 #include <fmt/format.h>
 
+#include "hybrid_samples.h"
 #include "image/image.h"
-#include "planner/covariance_buffer.h"
-#include "reconstruction/hybrid.h"
-#include "render/film_file.h"
-#include "render/hybrid_film.h"
 
 using namespace covtrace;
 
 namespace {
 
 void write_plain_regression(const char* film, const char* out) {
-    const RenderState state = read_film(film);
-    if (state.films.size() != 2)
-        throw Error(ErrorKind::usage, fmt::format("{}: not of --method hybrid", film));
-    HybridSettings settings;
-    settings.candidates.gaussians.clear();
-    settings.candidates.fits = {{0.5f}, {1}};
-    settings.mix = false;
-    const HybridImage reconstructed = reconstruct(
-        halves_of(state.films), preintegrate(smooth(state.covariance())).spectrum, settings);
+    const HybridSamples samples = read_hybrid_samples(film);
+    const HybridImage reconstructed =
+        reconstruct(samples.halves, samples.spectrum, plain_regression());
     Image image;
-    image.data = image.display = state.region;
+    image.data = image.display = samples.region;
     for (size_t c = 0; c < 3; ++c)
         image.add_channel(std::string(1, "RGB"[c])).values = reconstructed.color[c].values;
     write_exr(image, out);

@@ -15,12 +15,9 @@
 #include <cstdlib>
 
 #include "error_bins.h"
+#include "hybrid_samples.h"
 #include "image/compare.h"
-#include "planner/covariance_buffer.h"
-#include "reconstruction/hybrid.h"
 #include "reconstruction/selector.h"
-#include "render/film_file.h"
-#include "render/hybrid_film.h"
 
 using namespace covtrace;
 
@@ -61,14 +58,12 @@ Plane Case::true_error(const ColorPlanes& color) const {
 }
 
 Case load(const char* const* files) {
-    const RenderState state = read_film(files[2]);
-    if (state.films.size() != 2)
-        throw Error(ErrorKind::usage, fmt::format("{}: not of --method hybrid", files[2]));
-    Case c{halves_of(state.films),
-           preintegrate(smooth(state.covariance())).spectrum,
+    HybridSamples samples = read_hybrid_samples(files[2]);
+    Case c{std::move(samples.halves),
+           std::move(samples.spectrum),
            {read_image(files[0]), read_image(files[1])}};
     for (const Image& r : c.reference)
-        if (r.pixel_count() != state.pixels())
+        if (r.pixel_count() != c.halves[0].count.size())
             throw Error(ErrorKind::usage,
                         fmt::format("{}: has other pixels than the references", files[2]));
     c.noise = compare(c.reference[0], c.reference[1]).relmse_trimmed / 2;
@@ -106,15 +101,9 @@ std::vector<std::pair<std::string, HybridSettings>> variants() {
         for (auto& fit : s.candidates.fits) fit.shaped = false;
     });
     add("Gaussians alone", [](auto& s) { s.candidates.fits.clear(); });
-    add("plain windows, mixed", [](auto& s) {
-        s.candidates.gaussians.clear();
-        s.candidates.fits = {{0.5f}, {1}};
-    });
-    add("plain windows, best single", [](auto& s) {
-        s.candidates.gaussians.clear();
-        s.candidates.fits = {{0.5f}, {1}};
-        s.mix = false;
-    });
+    list.emplace_back("plain windows, mixed", plain_regression());
+    list.back().second.mix = true;
+    list.emplace_back("plain windows, best single", plain_regression());
     return list;
 }
 

@@ -107,10 +107,10 @@ std::array<float, N> sums_around(const Pyramid<N>& pyramid, int x, int y, const 
                                   (float(y) + 0.5f) / size - 0.5f, rest);
 }
 
-/// Weights below this are next to nothing: another attempt with a wider filter is made.
-constexpr float kLeastWeight = 1e-3f;
+/// Where the weights are less than this nothing is near: the filter is made four times as wide (its
+/// covariance 16 times).
+constexpr float kLeastWeight = 1e-3f, kFourTimesAsWide = 16;
 constexpr int kAttempts = 6;
-constexpr float kWidening = 16;
 
 }  // namespace
 
@@ -133,7 +133,7 @@ GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
         for (int x = 0; x < field.width; ++x) {
             const size_t i = size_t(row) * size_t(field.width) + size_t(x);
             Sym2 s = field.covariance[i];
-            for (int attempt = 0; attempt < kAttempts; ++attempt, s = kWidening * s) {
+            for (int attempt = 0; attempt < kAttempts; ++attempt, s = kFourTimesAsWide * s) {
                 const std::array<float, kSums> sum =
                     sums_around<kVariance>(pyramid, x, int(row), s);
                 const float all = sum[kWeight];
@@ -170,7 +170,7 @@ std::array<ColorPlanes, 2> gather(const Halves& halves, const FilterField& field
             Sym2 s = field.covariance[size_t(row) * size_t(field.width) + size_t(x)];
             std::array<bool, 2> done{};
             for (int attempt = 0; attempt < kAttempts && !(done[0] && done[1]);
-                 ++attempt, s = kWidening * s) {
+                 ++attempt, s = kFourTimesAsWide * s) {
                 const std::array<float, kSums> sum = sums_around<kSums>(pyramid, x, y, s);
                 for (size_t k = 0; k < 2; ++k) {
                     const float* of_half = &sum[k * kOfHalf];

@@ -11,9 +11,9 @@ namespace covtrace {
 namespace {
 
 constexpr size_t kMost = 12;  // candidates
-// Shares are judged at every kStep-th pixel and where pixels differ from those around them: by this
-// sum of squared differences of the guides (docs/decisions/0070).
-constexpr int kStep = 4;
+/// Shares are judged at every so many pixels, and where pixels differ from those around them by
+/// this sum of squared differences of the guides (docs/decisions/0070).
+constexpr int kCoarsest = 4;
 constexpr float kAlike = 0.5f;
 constexpr int kSteps = 24;          // of the minimisation; more change nothing
 constexpr float kSmoothing = 0.5f;  // of the shares, pixels
@@ -71,15 +71,15 @@ void for_pairs(size_t n, const OfPair& of_pair) {
     });
 }
 
-/// Calls `set(x, y)` for every kStep-th pixel in x and in y, then halves the step until all pixels
-/// are done: `between(x, y, left, top, right, bottom)` for those of which `alike(x, y, u, v)` holds
-/// with the nearest done ones, `set` for the others. On all threads.
+/// Calls `set(x, y)` for every kCoarsest-th pixel in x and in y, then halves the step until all
+/// pixels are done: `between(x, y, left, top, right, bottom)` for those of which `alike(x, y, u,
+/// v)` holds with the nearest done ones, `set` for the others. On all threads.
 template <typename Set, typename Alike, typename Between>
 void coarse_to_fine(int w, int h, const Set& set, const Alike& alike, const Between& between) {
-    parallel_for((h + kStep - 1) / kStep, [&](int64_t row) {
-        for (int x = 0; x < w; x += kStep) set(x, int(row) * kStep);
+    parallel_for((h + kCoarsest - 1) / kCoarsest, [&](int64_t row) {
+        for (int x = 0; x < w; x += kCoarsest) set(x, int(row) * kCoarsest);
     });
-    for (int step = kStep; step > 1; step /= 2) {
+    for (int step = kCoarsest; step > 1; step /= 2) {
         const int half = step / 2;
         parallel_for((h + half - 1) / half, [&](int64_t row) {
             const int y = int(row) * half;

@@ -1,0 +1,28 @@
+/// The samples of a film of the hybrid method, and reconstructions of them to compare with.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "reconstruction/hybrid.h"
+#include "render/film_file.h"
+
+namespace covtrace {
+
+/// What reconstruct() needs.
+struct HybridSamples {
+    PixelBounds region;
+    double mean_count;  ///< samples per pixel
+    Halves halves;
+    std::vector<Covariance2> spectrum;
+};
+
+/// Of `covtrace render --method hybrid --checkpoint FILM`. Throws Error for other films.
+HybridSamples read_hybrid_samples(const std::filesystem::path& film);
+
+/// First-order regression alone, as NFOR (Bitterli et al. 2016) has it: plain windows of two
+/// tolerances, explained by filtered features, of each pixel the better one (or the raw pixel) by
+/// the errors that the other half shows.
+HybridSettings plain_regression();
+
+}  // namespace covtrace
