@@ -6,12 +6,12 @@
 // The films are those of `covtrace render --method hybrid --checkpoint FILM`; the references are
 // two independent converged images of the same scene and size with other seeds. Minimises over the
 // tiles of all films, every film counting alike, the squared differences of true and estimated
-// error relative to the estimate and to the references' noise, with factors >= 0; colours and
-// luminances together. Then prints for every film how the luminance's errors are told with the
-// factors that the films of all *other* references give: mean true over mean estimated squared
-// error, and in how many of 20 bins of tiles, sorted by the estimate, it lies between 0.7 and 1.4;
-// last, in how many it may lie there for all that the references can tell (two deviations of their
-// noise).
+// error relative to the estimate and to the references' noise, with factors >= 0; relative errors
+// of colours and of luminances and absolute errors of luminances together. Then prints for every
+// film how the luminance's relative and absolute errors are told with the factors that the films of
+// all *other* references give: mean true over mean estimated squared error, in how many of 20 bins
+// of tiles, sorted by the estimate, it lies between 0.7 and 1.4, and in how many it may lie there
+// for all that the references can tell (two deviations of their noise).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,19 +44,25 @@ struct Tiles {
 
 struct Case {
     std::string film, reference;
-    Tiles color, luminance;
+    Tiles color, luminance;  ///< relative
+    Tiles absolute;          ///< of the luminance
+    std::array<const Tiles*, 3> all() const { return {&color, &luminance, &absolute}; }
 };
 
-/// (v - a)(v - b) over the brightness squared, whose mean knows nothing of the references' noise,
-/// and that noise, (a - b)^2 / 2.
+/// (v - a)(v - b), whose mean knows nothing of the references' noise, and that noise, (a - b)^2
+/// / 2.
 struct Truth {
     Plane error, noise;
-    void add(size_t i, float v, float a, float b, float share) {
-        const float scale = share / (sqr(0.5f * (a + b)) + kDarkSquared);
+    void add(size_t i, float v, float a, float b, float scale) {
         error[i] += scale * (v - a) * (v - b);
         noise[i] += scale * sqr(a - b) / 2;
     }
 };
+
+/// What makes squared errors relative: 1 / (I^2 + eps), I the mean of the references.
+float error_scale(float a, float b) {
+    return 1 / (sqr(0.5f * (a + b)) + kDarkSquared);
+}
 
 void set_truth(const Truth& truth, int side, Tiles& tiles) {
     tiles.real = tile_sums(truth.error, side);
@@ -67,7 +73,7 @@ void set_truth(const Truth& truth, int side, Tiles& tiles) {
 }
 
 Case load(const char* const* files) {
-    Case c{files[2], files[0], {}, {}};
+    Case c{files[2], files[0], {}, {}, {}};
     const std::array<Image, 2> reference{read_image(files[0]), read_image(files[1])};
     const HybridSamples samples = read_hybrid_samples(files[2]);
     const int w = samples.region.width(), h = samples.region.height(), side = tile_side(w, h);
@@ -78,6 +84,9 @@ Case load(const char* const* files) {
     float ErrorFactors::*const each[] = {&ErrorFactors::noise, &ErrorFactors::spread,
                                          &ErrorFactors::returned, &ErrorFactors::cut};
     constexpr size_t kTo[] = {0, 2, 3, 4};
+    Plane relative(w, h);  // relative errors of absolute ones
+    for (size_t i = 0; i < pixels; ++i)
+        relative[i] = error_scale(luminance(reference[0].rgb(i)), luminance(reference[1].rgb(i)));
     HybridImage image;
     for (size_t k = 0; k < 4; ++k) {
         HybridSettings settings;
@@ -85,21 +94,23 @@ Case load(const char* const* files) {
         settings.error.*each[k] = 1;
         image = reconstruct(samples.halves, samples.spectrum, settings);
         c.color.term[kTo[k]] = tile_sums(image.relative_error, side);
-        const Plane y = luminance(image.color);
-        for (size_t i = 0; i < y.size(); ++i) image.variance[i] /= sqr(y[i]) + kDarkSquared;
+        c.absolute.term[kTo[k]] = tile_sums(image.variance, side);
+        for (size_t i = 0; i < pixels; ++i) image.variance[i] *= relative[i];
         c.luminance.term[kTo[k]] = tile_sums(image.variance, side);
     }
-    for (Tiles* t : {&c.color, &c.luminance})
+    for (Tiles* t : {&c.color, &c.luminance, &c.absolute})
         for (double v : t->term[0]) t->term[1].push_back(v / std::max(1.0, samples.mean_count));
-    Truth color{Plane(w, h), Plane(w, h)}, bright = color;
+    Truth color{Plane(w, h), Plane(w, h)}, bright = color, absolute = color;
     for (size_t i = 0; i < pixels; ++i) {
         const Rgb v(image.color[0][i], image.color[1][i], image.color[2][i]),
             a = reference[0].rgb(i), b = reference[1].rgb(i);
-        for (int k = 0; k < 3; ++k) color.add(i, v[k], a[k], b[k], 1 / 3.0f);
-        bright.add(i, luminance(v), luminance(a), luminance(b), 1);
+        for (int k = 0; k < 3; ++k) color.add(i, v[k], a[k], b[k], error_scale(a[k], b[k]) / 3);
+        bright.add(i, luminance(v), luminance(a), luminance(b), relative[i]);
+        absolute.add(i, luminance(v), luminance(a), luminance(b), 1);
     }
     set_truth(color, side, c.color);
     set_truth(bright, side, c.luminance);
+    set_truth(absolute, side, c.absolute);
     return c;
 }
 
@@ -137,9 +148,9 @@ Factors fit(const std::vector<Case>& cases, const std::string& without) {
         Factors b{};
         for (const Case& c : cases) {
             if (c.reference == without) continue;
-            for (const Tiles* t : {&c.color, &c.luminance})
+            for (const Tiles* t : c.all())
                 for (size_t i = 0; i < t->real.size(); ++i) {
-                    // Below this relative error nobody sees anything.
+                    // Below this error, relative or of light that is 1, nobody sees anything.
                     constexpr double kLeast = 1e-6 * 256;
                     const double weight =
                         1 / ((sqr(t->estimate(i, f)) + t->variance[i] + sqr(kLeast)) *
@@ -178,18 +189,24 @@ int may_be_good(const Tiles& tiles, const Factors& f) {
     return good;
 }
 
-void print(const Case& c, const Factors& f) {
+ErrorBins bins(const Tiles& t, const Factors& f) {
     std::vector<ErrorTile> tiles;
-    for (size_t i = 0; i < c.luminance.real.size(); ++i)
-        tiles.push_back({c.luminance.estimate(i, f), c.luminance.real[i], 1});
-    const ErrorBins bins = error_bins(tiles);
+    for (size_t i = 0; i < t.real.size(); ++i) tiles.push_back({t.estimate(i, f), t.real[i], 1});
+    return error_bins(tiles);
+}
+
+void print(const Case& c, const Factors& f) {
     double color = 0, told = 0;
     for (size_t i = 0; i < c.color.real.size(); ++i) {
         color += c.color.real[i];
         told += c.color.estimate(i, f);
     }
-    fmt::print("{:<40} {:5.2f} {:5.2f} {:3} {:3}\n", c.film, bins.all.ratio(), color / told,
-               bins.good, may_be_good(c.luminance, f));
+    fmt::print("{:<40} {:5.2f}", c.film, color / told);
+    for (const Tiles* t : {&c.luminance, &c.absolute}) {
+        const ErrorBins b = bins(*t, f);
+        fmt::print(" {:8.2f} {:3} {:3}", b.all.ratio(), b.good, may_be_good(*t, f));
+    }
+    fmt::print("\n");
 }
 
 }  // namespace
@@ -204,8 +221,8 @@ int main(int argc, char** argv) {
         for (int i = 1; i < argc; i += 3) cases.push_back(load(argv + i));
         const Factors all = fit(cases, "");
         for (size_t k = 0; k < kFactors; ++k) fmt::print("{} {:.4f}\n", kNames[k], all[k]);
-        fmt::print("{:<40} {:>5} {:>5} {:>3} {:>3}\n", "told by the other scenes' fit", "Y", "RGB",
-                   "of", "20");
+        fmt::print("{:<40} {:>5} {:>16} {:>16}\n", "told by the other scenes' fit", "RGB",
+                   "Y relative of 20", "Y absolute of 20");
         for (const Case& c : cases) print(c, fit(cases, c.reference));
     } catch (const std::exception& e) {
         fmt::print(stderr, "error_fit: {}\n", e.what());

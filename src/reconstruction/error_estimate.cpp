@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "core/vec.h"
+#include "reconstruction/bilateral.h"
 #include "reconstruction/outliers.h"
 
 namespace covtrace {
@@ -12,6 +13,9 @@ namespace covtrace {
 namespace {
 
 constexpr float kSmoothing = 3;  // pixels
+/// Terms of a bright pixel say nothing of a dark one beside it: only pixels whose
+/// brightness differs by less than this factor are averaged.
+const float kAlike = std::log(1.5f);
 /// Red, green, blue, luminance.
 constexpr size_t kSignals = 4;
 using Signals = std::array<float, kSignals>;
@@ -36,10 +40,11 @@ float samples_per_pixel(const Halves& halves) {
     return float(sum / double(halves[0].count.size()));
 }
 
-/// The mean over the neighbourhood's pixels that both halves know.
-void smooth_known(Plane& error, const Plane& known) {
-    error = gaussian_blur(error, kSmoothing);
-    for (size_t i = 0; i < error.size(); ++i) error[i] = known[i] > 0 ? error[i] / known[i] : 0.0f;
+/// Half the logarithm of Y^2 + eps: differences are ratios of brightness, but in the dark.
+Plane log_brightness(const Plane& bright) {
+    Plane result = bright;
+    for (float& v : result.values) v = 0.5f * std::log(sqr(v) + kDarkSquared);
+    return result;
 }
 
 }  // namespace
@@ -80,9 +85,8 @@ ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> ca
             error.luminance[i] = g_luminance[i] * square[3];
         }
     });
-    known = gaussian_blur(known, kSmoothing);
-    smooth_known(error.color, known);
-    smooth_known(error.luminance, known);
+    bilateral_blur(std::array{&error.color, &error.luminance}, known, log_brightness(bright),
+                   kSmoothing, kAlike);
     return error;
 }
 

@@ -9,10 +9,10 @@ namespace covtrace {
 
 /// What the terms of the estimate count. The defaults fit the true errors of a set of scenes best:
 /// `bench/error_fit` makes them, `bench/error_calibration` measures how well they do
-/// (docs/decisions/0065).
+/// (docs/decisions/0071).
 struct ErrorFactors {
-    float noise = 1.35f, noise_of_few = 3;
-    float spread = 1.1f, returned = 0.65f, cut = 0.004f;
+    float noise = 1.35f, noise_of_few = 4.4f;
+    float spread = 1.15f, returned = 0.45f, cut = 0.0055f;
 };
 
 /// Estimated squared errors over I^2 + 0.01, I the brightness.
@@ -27,7 +27,8 @@ struct ErrorEstimate {
 ///
 /// What a pixel's halves measure of it is no estimate: raw pixels are ten times as noisy as the
 /// image, and the halves that judge have chosen shares and weights before (docs/decisions/0041).
-/// So it is told from what is known with little noise, averages over Gaussians of 3 pixels of
+/// So it is told from what is known with little noise, averages over the pixels around that are
+/// about as bright of
 ///     N = (M_A - M_B)^2 / 4, the noise that the mixtures M of the halves do not share,
 ///     S = (sum over c of share_c |m_c - m|)^2, how far the candidates c are from their mixture m,
 ///     E = (image - m)^2, what light of the neighbourhood was added,

@@ -152,6 +152,31 @@ TEST(ErrorEstimate, TellsLuminanceApartFromColours) {
     EXPECT_LT(error.luminance[100], 1e-6f);
 }
 
+TEST(ErrorEstimate, OfADarkPixelIsNotThatOfALightBesideIt) {
+    // Halves differ by a tenth of the brightness: in squares, a light errs 10000 times as much.
+    Halves halves{HalfBuffer(kSize, kSize), HalfBuffer(kSize, kSize)};
+    Selection s{{constant(1), constant(1)}, {Plane(kSize, kSize, 1)}};
+    ColorPlanes guess = constant(1);
+    for (HalfBuffer& half : halves) half.count = Plane(kSize, kSize, 4);
+    for (size_t c = 0; c < 3; ++c)
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x) {
+                const float bright = x < kSize / 2 ? 1.0f : 100.0f;
+                guess[c](x, y) = bright;
+                s.half[0][c](x, y) = 1.05f * bright;
+                // The light itself is known: only the pixels in the dark err.
+                s.half[1][c](x, y) = x < kSize / 2 ? 0.95f * bright : 1.05f * bright;
+                for (HalfBuffer& half : halves) half.color[c](x, y) = bright;
+            }
+    const ErrorEstimate error = estimate_error(
+        halves, std::vector<Candidate>{{s.half[0], s.half[1]}}, s, mean_of_both(s.half), guess,
+        Plane(kSize, kSize, 1), guess, ErrorFactors{1, 0, 0, 0, 0});
+    for (int y = 0; y < kSize; ++y) {
+        ASSERT_NEAR(error.luminance(kSize / 2 - 1, y), 0.0025f / 1.01f, 1e-6f);
+        ASSERT_EQ(error.luminance(kSize / 2, y), 0);
+    }
+}
+
 TEST(Hybrid, NoiseOfFeaturesIsNoDetail) {
     // Two samples of each half see either of two surfaces, and features whose spread is not known
     // explain the colours altogether.
