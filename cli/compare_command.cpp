@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/pixel_description.h"
 #include "cli/report_file.h"
+#include "cli/options.h"
 #include "cli/values.h"
 #include "image/compare.h"
 #include "image/layer_names.h"
@@ -27,6 +28,8 @@ struct CompareArguments {
 /// The image after a Gaussian of the given standard deviation in pixels: the baseline that any
 /// renderer can have.
 void smooth_root(Image& image, double deviation) {
+    if (!image.find("R") || !image.find("G") || !image.find("B"))
+        throw Error(ErrorKind::usage, "--smooth: expected an image with the channels R, G and B");
     const auto variance = float(deviation * deviation);
     const std::vector<covariance::Sym2<float>> same(image.pixel_count(), {variance, 0, variance});
     std::vector<Rgb> mean(image.pixel_count());
@@ -111,6 +114,7 @@ void add_compare(CLI::App& app, Invocation& invocation) {
     c->add_option("IMAGE", a->image, "the image")->required()->option_text(" ");
     c->add_option("REFERENCE", a->reference, "what it should be")->required()->option_text(" ");
     c->add_option("--crop", a->crop, "only these pixels, end exclusive")
+        ->check(not_empty())
         ->option_text("x0,y0,x1,y1");
     c->add_option_function<std::string>(
          "--smooth",

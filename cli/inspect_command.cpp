@@ -9,6 +9,7 @@
 #include "cli/image_summary.h"
 #include "cli/pixel_description.h"
 #include "cli/report_file.h"
+#include "cli/options.h"
 #include "cli/values.h"
 #include "image/layer_names.h"
 
@@ -82,6 +83,7 @@ void add_inspect(CLI::App& app, Invocation& invocation) {
     c->add_option("--pixel", a->pixel, "all about one pixel: covariance, filter, samples")
         ->option_text("x,y");
     c->add_option("--crop", a->crop, "only these pixels, end exclusive")
+        ->check(not_empty())
         ->option_text("x0,y0,x1,y1");
     c->add_option("--report", a->report, "a page for any browser instead of text")
         ->option_text("FILE.html");

@@ -156,7 +156,9 @@ int measure_pixel(MeasureArguments a) {
 void add_measure(CLI::App& app, Invocation& invocation) {
     auto a = std::make_shared<MeasureArguments>();
     CLI::App* c = app.add_subcommand("measure", "Hold a pixel's prediction against measurement");
-    c->add_option("SCENE", a->scene, "the scene, a pbrt-v4 file")->required()->option_text(" ");
+    c->add_option("SCENE", a->scene, "the scene, a pbrt-v4 or glTF 2.0 file")
+        ->required()
+        ->option_text(" ");
     c->add_option("--pixel", a->pixel, "the pixel whose middle is looked through")
         ->required()
         ->option_text("x,y");
@@ -177,7 +179,9 @@ void add_measure(CLI::App& app, Invocation& invocation) {
     c->add_option("--voxels", a->voxels, "width of the occlusion grid (default 200)")
         ->check(CLI::Range(1, 2048))
         ->option_text("N");
-    c->add_option("--resolution", a->resolution, "in place of the scene's")->option_text("WxH");
+    c->add_option("--resolution", a->resolution, "in place of the scene's")
+        ->check(not_empty())
+        ->option_text("WxH");
     c->add_option("--max-depth", a->max_depth, "most scattering events (default: the scene's)")
         ->check(CLI::NonNegativeNumber)
         ->option_text("N");
@@ -191,7 +195,9 @@ void add_measure(CLI::App& app, Invocation& invocation) {
     c->add_option("--isa", a->isa, "instruction set of the ray tracing")
         ->check(CLI::IsMember({"sse2", "avx", "avx2", "avx512"}).description(""))
         ->option_text("sse2|avx|avx2|avx512");
-    c->add_option("--shutter", a->shutter, "in place of the scene's")->option_text("T0,T1");
+    c->add_option("--shutter", a->shutter, "in place of the scene's")
+        ->check(not_empty())
+        ->option_text("T0,T1");
     add_positive(c, "--focus", a->overrides.focal_distance, 1e30,
                  "focal distance in place of the scene's");
     add_positive(c, "--fstop", a->overrides.f_number, 1e30,

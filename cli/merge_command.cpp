@@ -54,7 +54,7 @@ void add_merge(CLI::App& app, Invocation& invocation) {
     c->add_option("FILM", a->films, "the films, in any order")->required()->option_text(" ");
     c->add_option("-o,--output", a->output, "the image")->option_text("FILE");
     c->add_option("--film", a->film, "the joined film, to go on from")->option_text("FILE");
-    c->add_option("--png", a->png, "also a tone-mapped sRGB picture")->option_text("FILE");
+    c->add_option("--png", a->png, "also an 8-bit sRGB picture, cut at white")->option_text("FILE");
     add_layers(c, "--layers", a->layers, "all, or name,name…: layers beside the image");
     c->add_flag("--quiet", a->quiet, "errors only");
     c->callback([a, &invocation] { invocation.action = [a] { return merge_films(*a); }; });

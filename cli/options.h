@@ -37,4 +37,12 @@ void add_positive(CLI::App* c, const std::string& name, std::optional<T>& value,
     c->add_option_function<std::string>(name, parse, help)->option_text("N");
 }
 
+/// Of options whose text is parsed later: an unset shell variable is no value.
+inline CLI::Validator not_empty() {
+    const auto check = [](const std::string& text) {
+        return text.empty() ? std::string("expected a value") : std::string();
+    };
+    return CLI::Validator(check, "");
+}
+
 }  // namespace covtrace::cli

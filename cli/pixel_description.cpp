@@ -94,7 +94,7 @@ PrincipalAxes principal_axes(double xx, double xy, double yy) {
 
 PixelDescription describe_pixel(const Image& image, int x, int y) {
     const PixelBounds& d = image.data;
-    if (!d.contains({x, y, x + 1, y + 1}))
+    if (x < d.x0 || x >= d.x1 || y < d.y0 || y >= d.y1)
         throw Error(ErrorKind::usage,
                     fmt::format("--pixel: {},{} is outside the image, which has x from {} to {} "
                                 "and y from {} to {}",

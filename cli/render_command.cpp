@@ -49,6 +49,8 @@ void require_writable(const fs::path& file) {
     if (!fs::is_directory(folder, error))
         throw Error(ErrorKind::usage,
                     "the folder of the output '" + file.string() + "' does not exist");
+    // A pipe would end where the probe closes it.
+    if (fs::is_fifo(file, error)) return;
     const OutputFile probe(file);
 }
 
@@ -174,6 +176,9 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
         };
     }
     RenderResult result = render(scene, a.options, monitor, std::move(keeping));
+    if (monitor.cancelled() && result.statistics.samples_per_pixel == 0)
+        throw Error(ErrorKind::interrupted,
+                    "interrupted before the first sample: nothing is written");
     result.statistics.seconds["load"] = loaded;
     result.statistics.seconds["build"] = built - loaded;
     const double rendered = monitor.elapsed();

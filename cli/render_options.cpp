@@ -17,7 +17,9 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
                        "plain, the thesis' method, or hybrid (default)");
     add_positive(c, "--spp", a.options.spp, 1 << 30,
                  "average samples per pixel (default: the scene's)");
-    c->add_option("--time", a.seconds, "wall-clock budget: 2.5, 45s, 3m, 1h30m")->option_text("T");
+    c->add_option("--time", a.seconds, "wall-clock budget: 2.5, 45s, 3m, 1h30m")
+        ->check(not_empty())
+        ->option_text("T");
     add_positive(c, "--error", a.options.error, 1e6, "stop at this estimated sqrt(relMSE)");
     c->add_option("--cov-spp", a.options.cov_spp,
                   "covariance paths per pixel (default: 2, hybrid: 1)")
@@ -49,8 +51,12 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
     add_choice<FilterRule>(c, "--filter", a.options.filter,
                            {{"verified", FilterRule::verified}, {"thesis", FilterRule::thesis}},
                            "its constant: verified, or the thesis' eq. 5.7");
-    c->add_option("--resolution", a.resolution, "in place of the scene's")->option_text("WxH");
-    c->add_option("--crop", a.crop, "only these pixels, end exclusive")->option_text("x0,y0,x1,y1");
+    c->add_option("--resolution", a.resolution, "in place of the scene's")
+        ->check(not_empty())
+        ->option_text("WxH");
+    c->add_option("--crop", a.crop, "only these pixels, end exclusive")
+        ->check(not_empty())
+        ->option_text("x0,y0,x1,y1");
     c->add_option("--max-depth", a.options.max_depth,
                   "most scattering events (default: the scene's)")
         ->check(CLI::NonNegativeNumber)
@@ -65,7 +71,9 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
     c->add_option("--isa", a.isa, "instruction set of the ray tracing")
         ->check(CLI::IsMember({"sse2", "avx", "avx2", "avx512"}).description(""))
         ->option_text("sse2|avx|avx2|avx512");
-    c->add_option("--shutter", a.shutter, "in place of the scene's")->option_text("T0,T1");
+    c->add_option("--shutter", a.shutter, "in place of the scene's")
+        ->check(not_empty())
+        ->option_text("T0,T1");
     add_positive(c, "--focus", a.overrides.focal_distance, 1e30,
                  "focal distance in place of the scene's");
     add_positive(c, "--fstop", a.overrides.f_number, 1e30,
@@ -75,7 +83,7 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
         ->check(CLI::ExistingDirectory.description(""))
         ->allow_extra_args(false)
         ->option_text("DIR");
-    c->add_option("--png", a.png, "also a tone-mapped sRGB picture")->option_text("FILE");
+    c->add_option("--png", a.png, "also an 8-bit sRGB picture, cut at white")->option_text("FILE");
     add_layers(c, "--layers", a.layers, "all, or name,name…: layers beside the image");
     add_choice<LayerNames>(c, "--layer-names", a.layer_names,
                            {{"default", LayerNames::standard},

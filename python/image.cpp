@@ -74,6 +74,9 @@ using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>
 SharedPlanes from_channels(const std::vector<std::pair<std::string, FloatArray>>& channels) {
     if (channels.empty()) throw py::value_error("an image needs at least one channel");
     const FloatArray& first = channels.front().second;
+    if (first.ndim() != 2)
+        throw py::value_error("channel '" + channels.front().first +
+                              "' must be a (height, width) array");
     Image image;
     image.data = image.display = {0, 0, int(first.shape(1)), int(first.shape(0))};
     for (const auto& [name, values] : channels) {

@@ -125,7 +125,7 @@ class Image:
         return self._planes.display_window
 
     def write(self, file: str | os.PathLike[str]) -> None:
-        """Writes all layers (.exr) or the tone-mapped picture (.png); beside and renamed."""
+        """Writes all layers (.exr) or the sRGB picture, cut at white (.png); beside and renamed."""
         file = os.fspath(file)
         if file.endswith(".png"):
             self._planes.write_png(file)

@@ -151,6 +151,7 @@ Comparison compare(const Image& image, const Image& reference, std::optional<Pix
     if (result.pixels == 0) {
         constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
         result.mse = result.relmse = result.relmse_trimmed = result.psnr = result.flip = kNan;
+        result.flip_map.assign(colors.size(), 0.0f);
         return result;
     }
     result.mse = sum / values;

@@ -121,7 +121,7 @@ SensorGeometry Camera::spherical_sensor(const Ray& ray, const Transform& camera_
 float Camera::half_pixel(float distance) const {
     switch (description_.kind) {
         case CameraDescription::Kind::orthographic:
-            return 0.5f * per_pixel_.x;
+            return 0.5f * per_pixel_.x * length(still_.x);
         case CameraDescription::Kind::spherical:
             return 0.5f * kPi / static_cast<float>(height_) * distance;
         case CameraDescription::Kind::perspective:

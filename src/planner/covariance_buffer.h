@@ -55,9 +55,9 @@ struct Prediction {
 /// Pre-integrates every pixel as it is, without smoothing: the `spectrum` layer.
 Prediction preintegrate(const CovarianceBuffer& buffer);
 
-/// The buffer with pixels of weight 0 filled from their nearest neighbours that have one, then
-/// averaged by weight over 3x3 pixels: the noise of few paths is larger than what the mean hides.
-/// Where no pixel at all has a weight every covariance is zero.
+/// The buffer averaged by weight over 3x3 pixels: the noise of few paths is larger than what the
+/// mean hides. Where none of the nine has a weight, the covariance of a nearest pixel that has one.
+/// Weights stay. Where no pixel at all has a weight every covariance is zero.
 CovarianceBuffer smooth(const CovarianceBuffer& buffer);
 
 }  // namespace covtrace

@@ -13,7 +13,8 @@ namespace covtrace {
 /// One way to reconstruct: each half by itself, from the samples of that half.
 using Candidate = std::array<ColorPlanes, 2>;
 
-/// The candidates beside the raw pixels. docs/reconstruction.md has the table of what each gives.
+/// The candidates beside the raw pixels. docs/decisions/0063-features-with-their-noise.md has the
+/// table of what each gives.
 struct CandidateSettings {
     /// Scales of the predicted Gaussians; 1: the width factor c = 2.
     std::vector<float> gaussians{0.5f, 1.0f};

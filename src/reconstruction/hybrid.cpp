@@ -12,12 +12,31 @@ namespace covtrace {
 
 namespace {
 
+/// The light of the samples themselves: where one half has none, that of the other.
 ColorPlanes mean_of(const Halves& halves) {
     ColorPlanes mean = halves[0].color;
+    const Plane &a = halves[0].count, &b = halves[1].count;
     for (size_t c = 0; c < 3; ++c)
-        for (size_t i = 0; i < mean[c].size(); ++i)
-            mean[c][i] = 0.5f * (mean[c][i] + halves[1].color[c][i]);
+        for (size_t i = 0; i < mean[c].size(); ++i) {
+            const float share = (a[i] > 0) == (b[i] > 0) ? 0.5f : (a[i] > 0 ? 1.0f : 0.0f);
+            mean[c][i] = share * mean[c][i] + (1 - share) * halves[1].color[c][i];
+        }
     return mean;
+}
+
+bool is_empty(const HalfBuffer& half) {
+    return std::none_of(half.count.values.begin(), half.count.values.end(),
+                        [](float count) { return count > 0; });
+}
+
+/// What a render that was interrupted at its start leaves: a half without samples is not black.
+void replace_empty_half(Halves& halves) {
+    for (size_t k = 0; k < 2; ++k)
+        if (is_empty(halves[k])) {
+            const Plane none = halves[k].count;
+            halves[k] = halves[1 - k];
+            halves[k].count = none;  // it judges nothing
+        }
 }
 
 /// A first guess of the brightness that errors are measured against: the mean over all candidates
@@ -47,6 +66,7 @@ ColorPlanes mean_of(const Selection& s) {
 HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> spectrum,
                         const HybridSettings& settings) {
     for (HalfBuffer& half : halves) fill_holes(half);
+    replace_empty_half(halves);
     const ColorPlanes all = mean_of(halves);
     limit_outliers(halves);
     // Variances that know of their own pixel's mean would let bright pixels accept dark ones and

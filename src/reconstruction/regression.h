@@ -17,7 +17,8 @@ enum class FeatureNoise { filtered, kept };
 /// The weights of the pixels q around a centre p, beside those of the colours' patches, and what
 /// the colours are explained by.
 struct RegressionWindow {
-    /// Patches count as alike up to k times the noise: weight exp(-d / k^2), d of PatchDistance.
+    /// Patches count as alike up to k times the noise: patch_weight(d / k^2), d of
+    /// PatchDistance.
     float k = 1;
     /// Where given: also exp(-(q - p)^T C_p^-1 (q - p) / 2), C_p the covariance of `shape` at p
     /// times `widen`^2. Null: every pixel within the reach counts alike.

@@ -267,10 +267,11 @@ FoundFilm find_film(const fs::path& file) {
 }
 
 fs::path set_aside(const fs::path& file) {
-    fs::path damaged = file;
+    const fs::path target = OutputFile::resolved(file);  // a link stays
+    fs::path damaged = target;
     damaged += ".damaged";
     std::error_code error;
-    fs::rename(file, damaged, error);
+    fs::rename(target, damaged, error);
     if (error)
         throw Error(ErrorKind::io, "cannot set the damaged film '" + file.string() +
                                        "' aside: " + error.message());

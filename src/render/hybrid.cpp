@@ -48,16 +48,25 @@ class HybridRender {
 
   private:
     size_t size() const { return s_.pixels(); }
-    double pilot() const { return job_.target_spp ? std::min(kPilot, *job_.target_spp) : kPilot; }
+    double pilot() const {
+        const double most = job_.options.max_spp ? double(*job_.options.max_spp) : kPilot;
+        return std::min({kPilot, most, job_.target_spp.value_or(kPilot)});
+    }
 
-    /// The same count in every pixel, `spp` for both halves together; the checkerboard decides
-    /// which half gets the odd sample.
+    /// The same count in every pixel, `spp` for both halves together. Odd samples go to the halves
+    /// in turn, along rows and from row to row: like a checkerboard where all pixels have one.
     std::vector<uint32_t> share_between_halves(size_t k, double spp) const {
         std::vector<uint32_t> counts = job_.even_counts(spp);
         const size_t w = size_t(job_.region.width());
-        for (size_t i = 0; i < counts.size(); ++i) {
-            const bool odd = (i % w + i / w) % 2 == k;
-            counts[i] = counts[i] / 2 + (counts[i] % 2 && odd ? 1 : 0);
+        size_t rows = 0;  // that have odd samples
+        for (size_t begin = 0; begin < counts.size(); begin += w) {
+            size_t turn = rows;
+            for (size_t i = begin; i < begin + w; ++i) {
+                const bool odd = counts[i] % 2 == 1;
+                counts[i] = counts[i] / 2 + (odd && turn % 2 == k ? 1 : 0);
+                turn += odd ? 1 : 0;
+            }
+            rows += turn > rows ? 1 : 0;
         }
         return counts;
     }
@@ -183,9 +192,18 @@ class HybridRender {
     double enough_samples() {
         if (!job_.options.error) return kInfinity;
         reconstruct_image();
-        double sum = 0;
-        for (float e : image_->relative_error.values) sum += double(e);
-        return s_.goal.samples(s_.taken, std::sqrt(sum / double(size())), *job_.options.error);
+        // Light beyond what squares can hold has no error that could be told.
+        double sum = 0, known = 0;
+        for (float e : image_->relative_error.values) {
+            if (!std::isfinite(e)) continue;
+            sum += double(e);
+            ++known;
+        }
+        if (known == 0) return kInfinity;
+        const double error = std::sqrt(sum / known);
+        job_.monitor.set_error(error);
+        job_.enough_for_error = s_.goal.samples(s_.taken, error, *job_.options.error);
+        return *job_.enough_for_error;
     }
 
     /// Seconds that the reconstruction of this image will take, by that of a part of it. It decides

@@ -112,6 +112,7 @@ double RenderJob::fraction(double spp) const {
     double f = 0;
     if (target_spp) f = spp / *target_spp;
     if (options.seconds) f = std::max(f, monitor.elapsed() / *options.seconds);
+    if (enough_for_error) f = std::max(f, spp / *enough_for_error);
     return std::clamp(f, 0.0, 1.0) * kTracingShare;
 }
 

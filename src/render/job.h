@@ -44,7 +44,9 @@ class RenderJob {
     const PixelBounds region;  ///< the pixels to render
     PassContext context;
     RenderResult result;
-    const std::optional<double> target_spp;  ///< none: the time alone decides
+    const std::optional<double> target_spp;  ///< none: time or error alone decide
+    /// The average at which the error will be as asked for, by what is known of it.
+    std::optional<double> enough_for_error;
 
     /// The tiles that this process traces.
     Shard tiles() const;

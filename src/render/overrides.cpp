@@ -18,6 +18,10 @@ void apply(const SceneOverrides& overrides, SceneDescription& scene) {
         }
         film.width = (*overrides.resolution)[0];
         film.height = (*overrides.resolution)[1];
+        if (film.is_too_large())
+            throw Error(ErrorKind::limit, "--resolution: " + std::to_string(film.width) + "x" +
+                                              std::to_string(film.height) + " is too large; " +
+                                              film.kLargest);
     }
     if (overrides.crop) {
         const PixelBounds& c = *overrides.crop;

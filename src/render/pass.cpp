@@ -96,6 +96,10 @@ void sample_pixel(const PassContext& context, Film& film, size_t pixel, int x, i
             statistics.first_rejected.push_back({x, y, context.sample_name(index)});
         s.radiance = s.in_view = Rgb(0);
     }
+    // Filters that are led by features would spread what is no number.
+    if (!is_finite(s.albedo)) s.albedo = Rgb(0);
+    if (!is_finite(s.normal)) s.normal = {};
+    if (!std::isfinite(s.depth)) s.hit = false;
     film.add(pixel, s);
 }
 
@@ -207,7 +211,8 @@ double limit_weights(const Film& film, CovarianceBuffers& buffers) {
         sum += buffers.scattered[i].weight;
         paths += film.pixels[i].count;
     }
-    const double limit = paths > 0 ? kMost * sum / paths : 0.0;
+    if (paths == 0) return kInfinity;
+    const double limit = kMost * sum / paths;
     for (PackedCovariance& mean : buffers.scattered)
         mean.weight = float(std::min(double(mean.weight), limit));
     return limit;

@@ -20,7 +20,8 @@ struct Progress {
     double samples_per_pixel = 0;  ///< taken so far
     double elapsed = 0;            ///< seconds
     double remaining = kUnknown;   ///< estimated seconds; kUnknown at first
-    double error = kUnknown;       ///< estimated sqrt(relMSE) after the last round; kUnknown before
+    double error = kUnknown;       ///< estimated sqrt(relMSE) after the last round; kUnknown where
+                                   ///< nobody has told it
 };
 
 /// Shared by a session and its caller; all members may be used from any thread.

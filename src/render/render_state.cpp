@@ -61,6 +61,7 @@ double covariance_paths(const RenderOptions& options, std::optional<double> spp)
     if (options.method == Method::uniform) return 0;
     double paths = options.method == Method::covariance ? kCovariance : kHybrid;
     if (options.cov_spp) paths = *options.cov_spp;
+    if (options.max_spp) paths = std::min(paths, double(*options.max_spp));
     return spp ? std::min(paths, *spp) : paths;
 }
 

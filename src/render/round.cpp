@@ -22,9 +22,9 @@ double estimated_error(const Film& film) {
     return std::sqrt(sum / (3 * double(known)));
 }
 
-void report_round(Monitor& monitor, const Film& film, const PixelBounds& display, bool has_holes) {
-    monitor.set_error(estimated_error(film));
-    if (monitor.watched()) monitor.show(make_layers(film, display, has_holes, std::nullopt));
+void show_round(const Monitor& monitor, const Film& film, const PixelBounds& display,
+                bool has_holes) {
+    monitor.show(make_layers(film, display, has_holes, std::nullopt));
 }
 
 }  // namespace covtrace

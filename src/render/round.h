@@ -11,8 +11,8 @@ namespace covtrace {
 /// two samples.
 double estimated_error(const Film& film);
 
-/// Gives the monitor the error and, where somebody watches, the image as it is without
-/// reconstruction.
-void report_round(Monitor& monitor, const Film& film, const PixelBounds& display, bool has_holes);
+/// Shows who watches the image as it is without reconstruction.
+void show_round(const Monitor& monitor, const Film& film, const PixelBounds& display,
+                bool has_holes);
 
 }  // namespace covtrace

@@ -69,16 +69,22 @@ void begin_shard(RenderJob& job) {
         s.rejected = 0;
         s.first_rejected.clear();
     }
-    if (s.in_round() && job.keeping.part && is_same_part(*job.keeping.part, s))
+    if (s.in_round() && job.keeping.part && is_same_part(*job.keeping.part, s)) {
+        const std::optional<double> budget = s.spp;  // may have grown since
         s = *job.keeping.part;
+        s.spp = budget;
+    }
 }
 
 void report(RenderJob& job) {
     RenderState& s = job.state;
-    if (s.films.size() == 1)
-        report_round(job.monitor, s.films[0], s.display, s.has_holes);
-    else if (job.monitor.watched())
-        report_round(job.monitor, whole_film(s), s.display, s.has_holes);
+    if (s.films.size() == 1) {
+        job.monitor.set_error(estimated_error(s.films[0]));
+        if (job.monitor.watched()) show_round(job.monitor, s.films[0], s.display, s.has_holes);
+    } else if (job.monitor.watched()) {
+        // Of an image that comes from halves the raw pixels' error says nothing.
+        show_round(job.monitor, whole_film(s), s.display, s.has_holes);
+    }
 }
 
 /// Traces the round in progress, in this process and in all that take part.
@@ -130,8 +136,10 @@ void trace_rounds(RenderJob& job, const Rounds& rounds) {
         finish_round(s);
         if (of_rounds) report(job);
     }
-    checkpoints.keep(job.monitor.cancelled() && !s.complete ? KeepReason::interrupted
-                                                            : KeepReason::done);
+    // An older film is worth more than one without samples.
+    if (!job.monitor.cancelled() || s.mean_count() > 0)
+        checkpoints.keep(job.monitor.cancelled() && !s.complete ? KeepReason::interrupted
+                                                                : KeepReason::done);
     job.note_memory();
     job.result.statistics.samples_per_pixel = s.mean_count();
     job.result.statistics.rejected = s.rejected;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vec.h"
 #include "planner/density.h"
 #include "render/develop.h"
 #include "render/job.h"
@@ -18,7 +19,13 @@ double next_round(double taken) {
 bool plan_uniform(RenderJob& job) {
     const RenderState& s = job.state;
     const Film& film = s.films[0];
-    if (job.options.error && estimated_error(film) < *job.options.error) return false;
+    if (job.options.error) {
+        const double error = estimated_error(film);
+        if (error < *job.options.error) return false;
+        // Not a number as long as the error is not known.
+        if (const double enough = s.taken * sqr(error / *job.options.error); enough > 0)
+            job.enough_for_error = enough;
+    }
     const bool alone = job.keeping.shard.is_all();
     const double target = job.plan_round(alone ? next_round(s.taken) : *job.target_spp);
     if (!(target > s.taken)) return false;

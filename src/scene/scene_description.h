@@ -290,6 +290,10 @@ struct CameraDescription {
 
 struct FilmDescription {
     int width = 1280, height = 720;
+    static constexpr const char* kLargest = "at most 65536 pixels a side and 2^30 in all";
+    bool is_too_large() const {
+        return width > 65536 || height > 65536 || int64_t{width} * height > int64_t{1} << 30;
+    }
     std::array<float, 4> crop_window{0, 1, 0, 1};    ///< x0, x1, y0, y1 as fractions
     std::optional<std::array<int, 4>> pixel_bounds;  ///< x0, x1, y0, y1 in pixels, end exclusive
     std::string filename;                            ///< empty: not given

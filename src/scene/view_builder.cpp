@@ -13,9 +13,6 @@ namespace covtrace {
 
 namespace {
 
-constexpr int kLongestSide = 65536;
-constexpr int64_t kMostPixels = int64_t{1} << 30;
-
 [[noreturn]] void refuse(const Entity& e, std::string_view parameter, const std::string& text) {
     throw Error(ErrorKind::scene, e.parameters.where(parameter, e.where), text);
 }
@@ -167,11 +164,9 @@ void build_film(ViewEntities& view, BuildContext& context) {
     if (film.width < 1 || film.height < 1)
         refuse(e, bad_width ? "xresolution" : "yresolution",
                "the resolution " + resolution + " has no pixels");
-    if (film.width > kLongestSide || film.height > kLongestSide ||
-        int64_t{film.width} * film.height > kMostPixels)
+    if (film.is_too_large())
         throw Error(ErrorKind::limit, p.where("xresolution", e.where),
-                    "the resolution " + resolution + " is too large; at most " +
-                        std::to_string(kLongestSide) + " pixels a side and 2^30 in all");
+                    "the resolution " + resolution + " is too large; " + film.kLargest);
     film.filename = p.text("filename");
     film.iso = positive(e, "iso", 100);
     film.max_component_value = positive(e, "maxcomponentvalue", kInfinity);

@@ -75,12 +75,19 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
                 luminance(exitance(area.radiance * area.mean_factor, area.two_sided));
             area.radiance *= normalisation(*light.power, measured);
         }
-        if (area.alpha >= 0) area.mean_factor *= textures->mean(area.alpha).r;
+        Rgb choice_factor = area.mean_factor;
+        if (area.alpha >= 0) {
+            // Where position decides, the mean over the parameters may miss all that shines.
+            constexpr float kLeast = 0.05f;
+            const float alpha = textures->mean(area.alpha).r;
+            area.mean_factor *= alpha;
+            choice_factor *= std::max(alpha, kLeast);
+        }
         std::visit(
             [&](const auto& emitter) {
                 for (int k = 0; k < emitter.light_count(); ++k) {
                     LightBounds bounds = emitter.bounds(k);
-                    bounds.intensity *= choice_weight(area.radiance * area.mean_factor);
+                    bounds.intensity *= choice_weight(area.radiance * choice_factor);
                     bounds.two_sided = bounds.two_sided || light.two_sided;
                     finite.push_back(bounds);
                     owner.push_back(static_cast<uint32_t>(area_lights.size()));

@@ -12,9 +12,16 @@ Vec3 normal_change(const DifferentialGeometry& g, Vec3 t) {
     return g.tangent.x * (g.k11 * a + g.k12 * b) + g.tangent.y * (g.k12 * a + g.k22 * b);
 }
 
+template <typename Mesh>
 bool has_vertex_normals(const ShapeDescription& shape) {
-    const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape.geometry);
+    const auto* mesh = std::get_if<std::shared_ptr<const Mesh>>(&shape.geometry);
     return mesh && !(*mesh)->normals.empty();
+}
+
+/// v, turned by the smallest rotation that takes the unit vector `from` to `to`.
+Vec3 turned(Vec3 v, Vec3 from, Vec3 to) {
+    const Vec3 axis = cross(from, to), across = cross(axis, v);
+    return v + across + cross(axis, across) / (1 + dot(from, to));
 }
 
 /// A step of `footprint` along a tangent, in its parameter; not so small that the parameter's
@@ -38,7 +45,16 @@ NormalMap::NormalMap(const MaterialDescription& material, const TextureStore& te
       dpdu_(hit.dpdu),
       dpdv_(hit.dpdv) {
     if (material.normal_map_follows_v && dot(cross(hit.dpdu, hit.dpdv), hit.ns) < 0) y_sign_ = -1;
-    if (has_vertex_normals(shape.description)) {
+    if (has_vertex_normals<BilinearMesh>(shape.description)) {
+        // pbrt's shading tangents of patches: the parameters' own, turned as the normal is.
+        Vec3 flat = cross(hit.dpdu, hit.dpdv);
+        if (dot(flat, hit.ns) < 0) flat = -flat;
+        if (length_squared(flat) > 0 && is_finite(normalize(flat))) {
+            dpdu_ = turned(hit.dpdu, normalize(flat), hit.ns);
+            dpdv_ = turned(hit.dpdv, normalize(flat), hit.ns);
+        }
+    }
+    if (has_vertex_normals<TriangleMesh>(shape.description)) {
         // pbrt's shading tangents of such meshes: orthogonal to the normal and to each other, both
         // as long as dp/du.
         const Vec3 t = cross(hit.ns, hit.dpdu);

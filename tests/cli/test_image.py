@@ -57,6 +57,27 @@ class Layers(CliTest):
                     samples = self.layers("--method", method, "--spp", spp).pixels["samples.Y"]
                     self.assertAlmostEqual(sum(samples) / len(samples), spp, delta=1 / len(samples) + 0.01 * spp)
 
+    def test_image_is_as_bright_as_its_few_samples(self):
+        size = ["--resolution", "49x32"]  # in odd widths every second pixel is on the same fields of a checkerboard
+        for arguments in (["--spp", "0.5"], ["--spp", "0.25"], ["--spp", "0.125"], ["--spp", "0.5", "--crop", "0,20,49,21"],
+                          ["--spp", "1", "--crop", "24,16,25,17"]):
+            with self.subTest(arguments=arguments):
+                image = self.layers(*size, *arguments)
+                sampled = [g for g, n in zip(image.pixels["raw.G"], image.pixels["samples.Y"]) if n > 0]
+                brightness = sum(image.pixels["G"]) / len(image.pixels["G"])
+                self.assertAlmostEqual(brightness / (sum(sampled) / len(sampled)), 1, delta=0.15)
+
+    def test_features_that_are_not_finite_spoil_nothing(self):
+        black = 'Texture "k" "spectrum" "constant" "rgb value" [1e10 1e10 1e10]\nMaterial "conductor" "texture k" "k"\n'
+        shape = 'Shape "sphere" "float radius" 1'
+        image = self.layers("--spp", "8", scene=TINY.replace(shape, "AttributeBegin\n" + black + shape + "\nAttributeEnd"))
+        for name, values in image.pixels.items():
+            self.assertTrue(all(map(math.isfinite, values)), name)
+        # The floor in front is no darker than its samples.
+        rows = range(12 * 24, 16 * 24)
+        ratio = sum(image.pixels["G"][i] for i in rows) / sum(image.pixels["raw.G"][i] for i in rows)
+        self.assertAlmostEqual(ratio, 1, delta=0.1)
+
     def test_max_spp(self):
         samples = self.layers("--spp", "8", "--max-spp", "10").pixels["samples.Y"]
         self.assertLessEqual(max(samples), 10)

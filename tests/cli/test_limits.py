@@ -30,6 +30,11 @@ class Memory(FilmTest):
                     self.assertLessEqual(sum(pixel.values()), most[method])
                     self.assertGreaterEqual(pixel["film"], 60)
 
+    def test_resolution_has_the_limits_of_a_scene(self):
+        for size in ("65537x1", "1x65537", "65536x16385"):
+            result = self.run_program("render", "plain.pbrt", "-o", "out.exr", "--resolution", size)
+            self.assert_fails(result, LIMIT, "--resolution", "65536")
+
     def test_most_memory(self):
         for method, size in (("uniform", "100M"), ("covariance", "200M"), ("hybrid", "500M")):
             with self.subTest(method=method):

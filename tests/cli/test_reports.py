@@ -252,6 +252,31 @@ class Progress(CliTest):
         self.assertLess(math.sqrt(mean), 1.05 * known[-1]["error"])
         self.assertGreater(math.sqrt(mean), known[-1]["error"] / 2)  # rounds grow by half
 
+    def test_hybrid_tells_the_error_that_is_asked_for(self):
+        self.write("scene.pbrt", TINY)
+        arguments = ["-o", "out.exr", "--error", "0.0001", "--time", "3", "--resolution", "64x48", "--quiet"]
+        result = self.run_program("render", "scene.pbrt", *arguments, "--progress", "json")
+        self.assertEqual(result.code, DONE, result)
+        known = [r["error"] for r in map(json.loads, result.stderr.splitlines()) if r["error"] is not None]
+        self.assertGreater(len(known), 1)
+        self.assertLess(known[-1], known[0])
+        # What was said last is about what the layer of the delivered image says.
+        image = exr.read(self.folder / "out.exr")
+        brightness = [0.2126 * r + 0.7152 * g + 0.0722 * b for r, g, b in zip(*(image.pixels[c] for c in "RGB"))]
+        mean = sum(e**2 / (y**2 + 0.01) for e, y in zip(image.pixels["error.Y"], brightness)) / len(brightness)
+        self.assertLess(math.sqrt(mean), 1.5 * known[-1])
+        self.assertGreater(math.sqrt(mean), known[-1] / 4)  # rounds double; colours err in different directions
+
+    def test_progress_of_a_render_until_an_error(self):
+        self.write("scene.pbrt", TINY)
+        for method in ("uniform", "hybrid"):
+            with self.subTest(method=method):
+                arguments = ["-o", "out.exr", "--method", method, "--error", "0.002", "--resolution", "64x48", "--quiet"]
+                result = self.run_program("render", "scene.pbrt", *arguments, "--progress", "json")
+                self.assertEqual(result.code, DONE, result)
+                fractions = [json.loads(line)["fraction"] for line in result.stderr.splitlines()]
+                self.assertGreater(max(fractions[:-1]), 0.1)
+
     def test_percent(self):
         *lines, last = self.lines("percent")
         for line in lines:

@@ -49,6 +49,29 @@ class Interrupts(CliTest):
                     self.assert_no_leftovers()
 
 
+    def test_nothing_is_written_before_the_first_sample(self):
+        self.write("scene.pbrt", TINY + 200000 * "Translate 0.00001 0 0\nShape \"sphere\"\n")  # takes seconds to load
+        for method in ("uniform", "covariance", "hybrid"):
+            with self.subTest(method=method):
+                self.write("out.exr", "an earlier image")
+                self.write("c.film", "an earlier film")
+                program = subprocess.Popen(
+                    [PROGRAM, "render", "scene.pbrt", "-o", "out.exr", "--method", method, "--checkpoint", "c.film"],
+                    cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                )
+                try:
+                    time.sleep(0.3)
+                    program.send_signal(signal.SIGINT)
+                    _, stderr = program.communicate(timeout=30 * SLOWER)
+                finally:
+                    program.kill()
+                    program.communicate()
+                self.assertEqual(program.returncode, INTERRUPTED, stderr)
+                self.assertIn(b"before the first sample", stderr)
+                self.assertEqual((self.folder / "out.exr").read_text(), "an earlier image")
+                self.assertEqual((self.folder / "c.film").read_text(), "an earlier film")
+
+
 class Budgets(CliTest):
     def test_time_is_kept(self):
         for method in ("uniform", "covariance", "hybrid"):

@@ -83,6 +83,24 @@ TEST(Camera, SensorGeometryPredictsNeighbouringRays) {
     }
 }
 
+TEST(Camera, HalfAPixelIsThatOfTheWorldUnderAnyScale) {
+    for (const auto kind :
+         {CameraDescription::Kind::perspective, CameraDescription::Kind::orthographic})
+        for (double scale : {0.02, 1.0, 50.0}) {
+            CameraDescription d;
+            d.kind = kind;
+            d.fov = 1;
+            d.camera_to_world = AnimatedTransform(Transform::scale(scale, scale, scale));
+            const Camera camera(d, 100, 100);
+            const Ray a = camera.generate_ray({50, 50}, {}, 0),
+                      b = camera.generate_ray({50.5f, 50}, {}, 0);
+            constexpr float kFar = 7;
+            const float apart =
+                distance(a.origin + a.direction * kFar, b.origin + b.direction * kFar);
+            EXPECT_NEAR(camera.half_pixel(kFar) / apart, 1, 1e-3f) << "scale " << scale;
+        }
+}
+
 TEST(Camera, WorldToNdcAgreesWithRays) {
     const Camera camera(description(0), 320, 180);
     const Ray ray = camera.generate_ray({80, 135}, {}, 0);

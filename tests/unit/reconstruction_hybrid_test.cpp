@@ -89,6 +89,27 @@ double told_over_true(float sigma, float samples, uint64_t seed) {
     return told / mean_squared_error(image.color, smooth_truth);
 }
 
+TEST(Hybrid, AHalfWithoutSamplesIsNotBlack) {
+    for (size_t empty : {0u, 1u}) {
+        Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.1f, 23);
+        halves[empty] = HalfBuffer(kSize, kSize);
+        const HybridImage image = reconstruct(halves, kSpectrum);
+        EXPECT_LT(mean_squared_error(image.color, smooth_truth), 0.1 * 0.1) << "half " << empty;
+    }
+}
+
+TEST(Hybrid, WhereOneHalfHasNoSampleTheOtherTellsTheLight) {
+    // One half has seen the left, the other one the right: neither may fill the other's light in.
+    const auto truth = [](int x, int) { return x < kSize / 2 ? 1.0f : 0.1f; };
+    Halves halves = noisy_halves(kSize, kSize, truth, 0.01f, 24);
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) halves[x < kSize / 2 ? 1 : 0].count(x, y) = 0;
+    const HybridImage image = reconstruct(halves, kSpectrum);
+    double light = 0;
+    for (float v : image.color[1].values) light += double(v) / (kSize * kSize);
+    EXPECT_NEAR(light, 0.55, 0.02);
+}
+
 TEST(ErrorEstimate, IsOfTheErrorsSizeWhateverTheNoise) {
     // Flat noise without features is none of the scenes that the estimate was fitted to.
     for (float sigma : {0.5f, 0.05f}) {

@@ -87,6 +87,18 @@ TEST(NormalMap, ConstantHeightOnASphereChangesNothing) {
     expect_near(m.map().frame().z, m.hit.ns, 1e-4f);
 }
 
+TEST(NormalMap, ConstantHeightOnAPatchWithNormalsChangesNothing) {
+    const TemporaryImage image({Rgb(1)}, 1, 1);
+    BilinearMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+    mesh.normals = {{-0.5f, -0.5f, 1}, {0.5f, -0.5f, 1}, {-0.5f, 0.5f, 1}, {0.5f, 0.5f, 1}};
+    mesh.patches = {{0, 1, 2, 3}};
+    const Mapped m(image, true, 0, {0.8f, 0.3f, 0},
+                   shape_of(std::make_shared<const BilinearMesh>(std::move(mesh))));
+    EXPECT_GT(m.hit.ns.x, 0.1f);
+    expect_near(m.map().frame().z, m.hit.ns, 1e-5f);
+}
+
 TEST(NormalMap, ImagesHoldNormalsInTheFrameOfTheSurface) {
     const TemporaryImage image({Rgb(0.8f, 0.5f, 0.9f)}, 1, 1);
     const Mapped m(image, false, 1, {0.5f, 0.5f, 0});
