@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/options.h"
 #include "cli/pixel_description.h"
 #include "cli/report_file.h"
-#include "cli/options.h"
 #include "cli/values.h"
 #include "image/compare.h"
 #include "image/layer_names.h"

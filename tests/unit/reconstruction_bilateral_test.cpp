@@ -38,7 +38,8 @@ TEST(BilateralBlur, IsTheWeightedMeanOfItsDefinition) {
                     if (std::abs(u - x) > 4 || std::abs(v - y) > 4) continue;
                     const double far = double((u - x) * (u - x) + (v - y) * (v - y)) / 8,
                                  other = double(guide(u, v) - guide(x, y)) / double(kReach),
-                                 k = std::exp(-far) * std::pow(std::max(0.0, 1 - other * other), 2) *
+                                 k = std::exp(-far) *
+                                     std::pow(std::max(0.0, 1 - other * other), 2) *
                                      double(weight(u, v));
                     sum_a += k * double(first(u, v));
                     sum_b += k * double(second(u, v));
