@@ -49,8 +49,8 @@ struct Case {
     std::array<const Tiles*, 3> all() const { return {&color, &luminance, &absolute}; }
 };
 
-/// (v - a)(v - b), whose mean knows nothing of the references' noise, and that noise, (a - b)^2
-/// / 2.
+/// (v - a)(v - b), whose mean knows nothing of the references' noise, and half of (a - b)^2, that
+/// noise.
 struct Truth {
     Plane error, noise;
     void add(size_t i, float v, float a, float b, float scale) {

@@ -77,7 +77,8 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
         }
         Rgb choice_factor = area.mean_factor;
         if (area.alpha >= 0) {
-            // Where position decides, the mean over the parameters may miss all that shines.
+            // Where position decides, the mean over the parameters may miss all that shines; a
+            // twentieth takes little from the other lights.
             constexpr float kLeast = 0.05f;
             const float alpha = textures->mean(area.alpha).r;
             area.mean_factor *= alpha;

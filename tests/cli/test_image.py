@@ -81,6 +81,9 @@ class Layers(CliTest):
     def test_max_spp(self):
         samples = self.layers("--spp", "8", "--max-spp", "10").pixels["samples.Y"]
         self.assertLessEqual(max(samples), 10)
+        # The first samples, too.
+        for method in ("covariance", "hybrid"):
+            self.assertLessEqual(max(self.layers("--method", method, "--spp", "8", "--max-spp", "2").pixels["samples.Y"]), 2)
 
     def test_chosen_layers(self):
         few = self.layers("--layers", "N,samples")

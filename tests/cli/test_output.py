@@ -1,5 +1,6 @@
 """Where results go, and what happens where they cannot be written."""
 
+import json
 import os
 import pathlib
 import stat
@@ -60,6 +61,14 @@ class CannotBeWritten(CliTest):
             with self.subTest(option=option):
                 result = self.render(TINY, *LONG, option, "nowhere/file", output=None, timeout=10)
                 self.assert_fails(result, USAGE, "nowhere/file")
+
+    def test_statistics_go_into_a_named_pipe(self):
+        os.mkfifo(self.folder / "stats")
+        with open(self.folder / "read", "wb") as read:
+            reader = subprocess.Popen(["cat", self.folder / "stats"], stdout=read)
+            self.rendered("--stats", "stats")
+            self.assertEqual(reader.wait(timeout=30), 0)
+        self.assertIn("seconds_total", json.loads((self.folder / "read").read_text()))
 
     def test_folder_in_place_of_the_file(self):
         (self.folder / "taken").mkdir()

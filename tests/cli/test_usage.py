@@ -39,6 +39,10 @@ class Help(CliTest):
 
 
 class WrongCommandLines(CliTest):
+    def test_only_colours_are_smoothed(self):
+        self.write("grey.pgm", b"P5 2 2 255\n" + bytes(4))
+        self.assert_fails(self.run_program("compare", "grey.pgm", "grey.pgm", "--smooth", "1"), USAGE, "--smooth")
+
     def test_no_command_or_an_unknown_one(self):
         self.assert_fails(self.run_program(), USAGE)
         self.assert_fails(self.run_program("paint"), USAGE, "'paint'")
