@@ -2,12 +2,21 @@
 
 namespace covtrace {
 
+namespace {
+
+/// The weight of a pixel's sample number `count`, from 1.
+float weight_in(const FilmSample& s, uint32_t count) {
+    return count > 1 ? s.weight : 1.0f;
+}
+
+}  // namespace
+
 void FilmPixel::add(const FilmSample& s) {
     ++count;
     const float share = 1.0f / static_cast<float>(count);
-    const Rgb before = s.radiance - mean;
-    mean += before * share;
-    squares += before * (s.radiance - mean);
+    const Rgb step = (s.radiance - mean) * weight_in(s, count);
+    mean += step * share;
+    squares += step * step * (1 - share);
     albedo += (s.albedo - albedo) * share;
     normal += (s.normal - normal) * share;
     coverage += ((s.hit ? 1.0f : 0.0f) - coverage) * share;
@@ -27,7 +36,8 @@ void Film::add(size_t i, const FilmSample& s) {
     const float depth = s.depth - p.depth;
     p.add(s);
     if (!in_view.empty())
-        in_view[i] += (s.in_view - in_view[i]) * (1.0f / static_cast<float>(p.count));
+        in_view[i] +=
+            (s.in_view - in_view[i]) * (weight_in(s, p.count) / static_cast<float>(p.count));
     if (!rays.empty()) rays[i] += s.rays;
     if (feature_squares.empty()) return;
     FeatureSquares& q = feature_squares[i];

@@ -13,8 +13,9 @@ namespace covtrace {
 /// What one sample adds to its pixel.
 struct FilmSample {
     uint32_t rays = 0;  ///< traced for it, shadow rays included: what it cost
-    Rgb radiance;       ///< filter weight and imaging scale applied; finite
+    Rgb radiance;       ///< imaging scale applied; finite
     Rgb in_view;        ///< the part of it from emitters in view (PathResult::in_view)
+    float weight = 1;   ///< of the pixel filter: 1, or of either sign with expectation 1
     Rgb albedo;
     Vec3 normal;
     float depth = 0;
@@ -22,6 +23,12 @@ struct FilmSample {
 };
 
 /// Running means over a pixel's samples in index order (Welford 1962). 60 bytes.
+///
+/// The pixel's colour is the mean of m + w (L - m): L a sample's radiance, w its filter weight and
+/// m the mean of the samples before it. m is independent of the sample and E[w] = 1, so that this
+/// has the expectation of w L, but a constant image stays constant whatever the weights sum up to,
+/// as with pbrt's sum of w L over sum of w, and nothing is divided by sums that may vanish. The
+/// first sample has no m and counts as it is: of its lobes' part of the image 1/n is missing.
 struct FilmPixel {
     uint32_t count = 0;  ///< samples taken; the next sample has this index
     Rgb mean;            ///< of the weighted radiance: the raw pixel

@@ -142,8 +142,9 @@ FilmSample take_sample(const PassContext& context, int x, int y, uint32_t index,
     s.in_view = balanced(path.in_view);
     const float largest = max_component(s.radiance);
     const float limit = largest > context.max_component ? context.max_component / largest : 1.0f;
-    s.radiance *= limit * position.weight;
-    s.in_view *= limit * position.weight;
+    s.radiance *= limit;
+    s.in_view *= limit;
+    s.weight = position.weight;
     s.albedo = path.albedo;
     s.normal = path.normal;
     s.depth = path.depth;
