@@ -46,7 +46,8 @@ std::vector<Candidate> make_candidates(const Halves& halves,
     }
     std::vector<RegressionWindow> windows;
     for (const auto& fit : settings.fits)
-        windows.push_back({fit.k, fit.shaped ? &shape : nullptr, kWindowWidening, fit.noise});
+        windows.push_back(
+            {fit.k, fit.shaped ? &shape : nullptr, kWindowWidening, fit.noise, fit.patches});
     const std::array<FeaturePlanes, 2> features = filter_features(halves);
     auto a = regress(halves[0], halves[1], features[0], windows);
     auto b = regress(halves[1], halves[0], features[1], windows);

@@ -24,8 +24,12 @@ struct CandidateSettings {
         float k;
         bool shaped = false;
         FeatureNoise noise = FeatureNoise::filtered;
+        PatchesOf patches = PatchesOf::colors;
     };
-    std::vector<Fit> fits{{0.5f, false, FeatureNoise::kept}, {2.0f}, {1.0f, true}, {4.0f, true}};
+    std::vector<Fit> fits{{0.5f, false, FeatureNoise::kept, PatchesOf::colors_or_light},
+                          {2.0f},
+                          {1.0f, true},
+                          {4.0f, true, FeatureNoise::filtered, PatchesOf::colors_or_light}};
 };
 
 /// The raw pixels, the Gaussians, the fits, in this order. `spectrum`: the predicted ones after the

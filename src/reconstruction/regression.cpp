@@ -24,10 +24,50 @@ using Cells = FitWindow::Cells;
 /// What one block of centres adds to the pixels it reaches: weighted colours and weights.
 using Contribution = std::array<std::vector<float>, 4>;
 
+/// The patches of the half that guides, by their colours and by their light.
+struct PatchDistances {
+    explicit PatchDistances(const HalfBuffer& guide)
+        : color(guide.color, guide.color_variance, kReach, kPatchRadius, kStride),
+          light(light_of(guide)) {}
+    PatchDistance color, light;
+
+  private:
+    /// Median of the colours' noise over their brightness.
+    static float relative_noise(const HalfBuffer& guide) {
+        std::vector<float> noise(guide.count.size());
+        for (size_t i = 0; i < noise.size(); ++i) {
+            float variance = 0, sum = 0;
+            for (size_t c = 0; c < 3; ++c) {
+                variance += guide.color_variance[c][i];
+                sum += guide.color[c][i];
+            }
+            noise[i] = std::sqrt(3 * variance) / (std::max(0.0f, sum) + 3 * kDark);
+        }
+        const auto middle = noise.begin() + std::ptrdiff_t(noise.size() / 2);
+        std::nth_element(noise.begin(), middle, noise.end());
+        return *middle;
+    }
+
+    static PatchDistance light_of(const HalfBuffer& guide) {
+        // What reflects less than the noise is, shows other light: highlights, what lies behind.
+        const float least = std::max(kLeastAlbedo, relative_noise(guide));
+        ColorPlanes light = guide.color, variance = guide.color_variance;
+        for (size_t c = 0; c < 3; ++c)
+            for (size_t i = 0; i < light[c].size(); ++i) {
+                const float scale = 1 / (std::max(0.0f, guide.feature[c][i]) + least);
+                light[c][i] *= scale;
+                variance[c][i] *= scale * scale;
+            }
+        return {light, variance, kReach, kPatchRadius, kStride};
+    }
+
+    static constexpr float kDark = 0.05f, kLeastAlbedo = 0.01f;
+};
+
 /// All centres of one block, for every window.
 class Block {
   public:
-    Block(const RegressionInputs& in, const HalfBuffer& half, const PatchDistance& distance,
+    Block(const RegressionInputs& in, const HalfBuffer& half, const PatchDistances& distance,
           std::span<const RegressionWindow> windows)
         : in_(in),
           width_(half.count.width),
@@ -38,14 +78,18 @@ class Block {
     void run(int x0, int y0, std::span<Contribution> out) {
         for (Contribution& c : out)
             for (auto& plane : c) plane.assign(size_t(kHaloSide) * kHaloSide + kLanes, 0.0f);
-        collect_distances(x0, y0);
+        collect_distances(distance_.color, x0, y0, distances_[size_t(PatchesOf::colors)]);
+        std::vector<float>& either = distances_[size_t(PatchesOf::colors_or_light)];
+        collect_distances(distance_.light, x0, y0, either);
+        const std::vector<float>& color = distances_[size_t(PatchesOf::colors)];
+        for (size_t i = 0; i < either.size(); ++i) either[i] = std::min(either[i], color[i]);
         for (int y = 0; y < kBlock && y0 + y < height_; y += kStride)
             for (int x = 0; x < kBlock && x0 + x < width_; x += kStride) {
                 window_.move_to(in_, x0 + x, y0 + y);
-                const float* d =
-                    &distances_[(size_t(y / kStride) * kCentresPerSide + size_t(x / kStride)) *
-                                kCells];
+                const size_t first =
+                    (size_t(y / kStride) * kCentresPerSide + size_t(x / kStride)) * kCells;
                 for (size_t k = 0; k < windows_.size(); ++k) {
+                    const float* d = &distances_[size_t(windows_[k].patches)][first];
                     window_.set_weights(windows_[k], d, x0 + x, y0 + y, weight_);
                     if (window_.fit(windows_[k].noise, weight_, fitted_)) add(x, y, out[k]);
                 }
@@ -53,17 +97,18 @@ class Block {
     }
 
   private:
-    void collect_distances(int x0, int y0) {
-        distances_.resize(kCentres * kCells);
+    static void collect_distances(const PatchDistance& distance, int x0, int y0,
+                                  std::vector<float>& distances) {
+        distances.resize(kCentres * kCells);
         std::array<float, size_t(kBlock) * kBlock> d;
         size_t o = 0;
         for (int dy = -kReach; dy <= kReach; ++dy)
             for (int dx = -kReach; dx <= kReach; ++dx, ++o) {
-                distance_.block(x0, y0, dx, dy, d.data());
+                distance.block(x0, y0, dx, dy, d.data());
                 size_t centre = 0;
                 for (size_t y = 0; y < kBlock; y += kStride)
                     for (size_t x = 0; x < kBlock; x += kStride, ++centre)
-                        distances_[centre * kCells + o] = d[y * kBlock + x];
+                        distances[centre * kCells + o] = d[y * kBlock + x];
             }
     }
 
@@ -86,12 +131,12 @@ class Block {
 
     const RegressionInputs& in_;
     const int width_, height_;
-    const PatchDistance& distance_;
+    const PatchDistances& distance_;
     std::span<const RegressionWindow> windows_;
     FitWindow window_;
     Cells weight_{};
     std::array<Cells, 3> fitted_{};
-    std::vector<float> distances_;  // centre by centre
+    std::array<std::vector<float>, 2> distances_;  // by PatchesOf; centre by centre
 };
 
 }  // namespace
@@ -101,7 +146,7 @@ std::vector<ColorPlanes> regress(const HalfBuffer& half, const HalfBuffer& guide
                                  std::span<const RegressionWindow> windows) {
     const int w = half.count.width, h = half.count.height;
     const RegressionInputs in(half, filtered);
-    const PatchDistance distance(guide.color, guide.color_variance, kReach, kPatchRadius, kStride);
+    const PatchDistances distance(guide);
 
     const int blocks_x = (w + kBlock - 1) / kBlock, blocks_y = (h + kBlock - 1) / kBlock;
     // Rows of blocks; those above and below a pixel's own reach it too, and no others.

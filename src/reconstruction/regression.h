@@ -14,6 +14,11 @@ namespace covtrace {
 /// which know every detail, but the fit takes on the noise that they share with the colours.
 enum class FeatureNoise { filtered, kept };
 
+/// What tells which pixels' patches are alike. `colors_or_light`: those whose colours are or whose
+/// light is, the colours over the albedo. Where a texture varies under even light only the latter
+/// are alike once there is little noise, and the fit explains the texture by the albedo.
+enum class PatchesOf { colors, colors_or_light };
+
 /// The weights of the pixels q around a centre p, beside those of the colours' patches, and what
 /// the colours are explained by.
 struct RegressionWindow {
@@ -25,6 +30,7 @@ struct RegressionWindow {
     const FilterField* shape = nullptr;
     float widen = 1;
     FeatureNoise noise = FeatureNoise::filtered;
+    PatchesOf patches = PatchesOf::colors;
 };
 
 constexpr int kRegressionReach = 9;  ///< windows are 19 x 19 pixels

@@ -95,6 +95,31 @@ TEST(Regression, DoesNotMixWhatTheOtherHalfTellsApart) {
         for (int x = 0; x < kWidth; ++x) EXPECT_NEAR(fitted[0][0](x, y), step(x, y), 0.03f);
 }
 
+TEST(Regression, TexturesUnderEvenLightShareTheirSamples) {
+    // No two pixels' colours are alike, but what they reflect is; the albedo is a feature.
+    FeaturePlanes features;
+    features.fill(Plane(kWidth, kHeight));
+    Rng rng(11);
+    for (size_t i = 0; i < features[0].size(); ++i)
+        features[0][i] = features[1][i] = features[2][i] = 0.4f + 0.4f * rng.next_float();
+    const float sigma = 0.01f;
+    const auto color = [&](int x, int y) { return features[0](x, y) * (1 + 0.001f * float(x)); };
+    Halves halves = test::noisy_halves(kWidth, kHeight, color, sigma, 2);
+    for (HalfBuffer& half : halves) half.feature = features;
+    const std::array windows{RegressionWindow{},
+                             RegressionWindow{.patches = PatchesOf::colors_or_light}};
+    const auto fitted = regress(halves[0], halves[1], features, windows);
+    double squares[2] = {0, 0};
+    for (size_t k = 0; k < 2; ++k)
+        for (size_t c = 0; c < 3; ++c)
+            for (int y = 0; y < kHeight; ++y)
+                for (int x = 0; x < kWidth; ++x)
+                    squares[k] += sqr(double(fitted[k][c](x, y) - color(x, y)) / sigma);
+    const double n = 3.0 * kWidth * kHeight;
+    EXPECT_GT(squares[0] / n, 0.5);
+    EXPECT_LT(squares[1] / n, 0.1);
+}
+
 TEST(Regression, ExponentialIsExact) {
     for (int i = 0; i < 1000; ++i) {
         const float x = -0.09f * float(i);
