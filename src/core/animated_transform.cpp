@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/transform.h"
+#include "core/decomposition.h"
 
 namespace covtrace {
 
@@ -14,58 +14,6 @@ Matrix3 to_matrix(Quaternion q) {
     return {{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
              {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
              {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
-}
-
-Quaternion from_matrix(const Matrix3& m) {
-    const double trace = m[0][0] + m[1][1] + m[2][2];
-    Quaternion q;
-    if (trace > 0) {
-        const double s = std::sqrt(trace + 1.0) * 2;
-        q = {(m[2][1] - m[1][2]) / s, (m[0][2] - m[2][0]) / s, (m[1][0] - m[0][1]) / s, 0.25 * s};
-    } else {
-        const size_t i =
-            m[0][0] > m[1][1] ? (m[0][0] > m[2][2] ? 0 : 2) : (m[1][1] > m[2][2] ? 1 : 2);
-        const size_t j = (i + 1) % 3, k = (i + 2) % 3;
-        const double s = std::sqrt(std::max(0.0, m[i][i] - m[j][j] - m[k][k] + 1.0)) * 2;
-        double v[3];
-        v[i] = 0.25 * s;
-        v[j] = (m[j][i] + m[i][j]) / s;
-        v[k] = (m[k][i] + m[i][k]) / s;
-        q = {v[0], v[1], v[2], (m[k][j] - m[j][k]) / s};
-    }
-    const double n = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-    return {q.x / n, q.y / n, q.z / n, q.w / n};
-}
-
-/// Gram-Schmidt: linear part = rotation * upper triangular. A reflection goes into the last scale.
-AnimatedTransform::Decomposition decompose_matrix(const Matrix4& a) {
-    AnimatedTransform::Decomposition d;
-    d.translation = {static_cast<float>(a.m[0][3]), static_cast<float>(a.m[1][3]),
-                     static_cast<float>(a.m[2][3])};
-    double q[3][3];  // q[i]: i-th orthonormal column
-    Matrix3 r{};
-    for (size_t c = 0; c < 3; ++c) {
-        double v[3] = {a.m[0][c], a.m[1][c], a.m[2][c]};
-        for (size_t p = 0; p < c; ++p) {
-            r[p][c] = q[p][0] * v[0] + q[p][1] * v[1] + q[p][2] * v[2];
-            for (int i = 0; i < 3; ++i) v[i] -= r[p][c] * q[p][i];
-        }
-        r[c][c] = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-        for (int i = 0; i < 3; ++i)
-            q[c][i] = r[c][c] > 0 ? v[i] / r[c][c] : (i == int(c) ? 1.0 : 0.0);
-    }
-    const double det = q[0][0] * (q[1][1] * q[2][2] - q[1][2] * q[2][1]) -
-                       q[0][1] * (q[1][0] * q[2][2] - q[1][2] * q[2][0]) +
-                       q[0][2] * (q[1][0] * q[2][1] - q[1][1] * q[2][0]);
-    if (det < 0) {
-        for (int i = 0; i < 3; ++i) q[2][i] = -q[2][i];
-        r[2][2] = -r[2][2];
-    }
-    const Matrix3 rotation{
-        {{q[0][0], q[1][0], q[2][0]}, {q[0][1], q[1][1], q[2][1]}, {q[0][2], q[1][2], q[2][2]}}};
-    d.rotation = from_matrix(rotation);
-    d.scale = r;
-    return d;
 }
 
 }  // namespace
@@ -85,15 +33,21 @@ Quaternion slerp(double t, Quaternion a, Quaternion b) {
     return {wa * a.x + wb * b.x, wa * a.y + wb * b.y, wa * a.z + wb * b.z, wa * a.w + wb * b.w};
 }
 
+struct AnimatedTransform::Movement {
+    Transform end;
+    std::array<Decomposition, 2> keys;
+};
+
 AnimatedTransform::AnimatedTransform(const Transform& start, float start_time, const Transform& end,
                                      float end_time)
     : start_(start), start_time_(start_time), end_time_(end_time) {
     if (start == end || !(end_time > start_time)) return;
-    movement_ = std::make_shared<const Movement>(Movement{end, {decompose(start), decompose(end)}});
+    movement_ = std::make_shared<const Movement>(
+        Movement{end, {polar_decomposition(start.matrix()), polar_decomposition(end.matrix())}});
 }
 
-AnimatedTransform::Decomposition AnimatedTransform::decompose(const Transform& map) {
-    return decompose_matrix(map.matrix());
+const Transform& AnimatedTransform::end() const {
+    return movement_ ? movement_->end : start_;
 }
 
 Transform AnimatedTransform::at(float time) const {
@@ -113,8 +67,8 @@ Matrix4 AnimatedTransform::matrix_at(float time) const {
     for (size_t i = 0; i < 3; ++i) {
         for (size_t j = 0; j < 3; ++j) {
             double s = 0;
-            for (size_t k = 0; k <= j; ++k)
-                s += rotation[i][k] * ((1 - t) * keys[0].scale[k][j] + t * keys[1].scale[k][j]);
+            for (size_t k = 0; k < 3; ++k)
+                s += rotation[i][k] * ((1 - t) * keys[0].stretch[k][j] + t * keys[1].stretch[k][j]);
             m.m[i][j] = s;
         }
         m.m[i][3] = (1 - t) * keys[0].translation[int(i)] + t * keys[1].translation[int(i)];
@@ -160,9 +114,9 @@ Matrix4 AnimatedTransform::rate(float time) const {
     for (size_t i = 0; i < 3; ++i) {
         for (size_t j = 0; j < 3; ++j) {
             double s = 0;
-            for (size_t k = 0; k <= j; ++k) {
-                const double change = keys[1].scale[k][j] - keys[0].scale[k][j];
-                s += turning[i][k] * (keys[0].scale[k][j] + t * change) + rotation[i][k] * change;
+            for (size_t k = 0; k < 3; ++k) {
+                const double change = keys[1].stretch[k][j] - keys[0].stretch[k][j];
+                s += turning[i][k] * (keys[0].stretch[k][j] + t * change) + rotation[i][k] * change;
             }
             m.m[i][j] = per_time * s;
         }

@@ -58,9 +58,9 @@ struct Quaternion {
 Quaternion slerp(double t, Quaternion a, Quaternion b);
 
 /// A transform that moves between two keys over [start_time, end_time] and rests outside.
-/// Each key is decomposed into translation, rotation and an upper triangular scale-and-skew, which
-/// are interpolated linearly, spherically (the short way) and linearly; a half turn is a half
-/// circle.
+/// Each key is decomposed into translation, rotation and a symmetric stretch (polar_decomposition),
+/// which are interpolated linearly, spherically (the short way) and linearly, as in pbrt; a half
+/// turn is a half circle.
 class AnimatedTransform {
   public:
     AnimatedTransform() = default;
@@ -68,20 +68,11 @@ class AnimatedTransform {
     AnimatedTransform(const Transform& start, float start_time, const Transform& end,
                       float end_time);
 
-    struct Decomposition {
-        Vec3 translation;
-        Quaternion rotation;
-        /// Upper triangular, rows first.
-        std::array<std::array<double, 3>, 3> scale{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    };
-
-    static Decomposition decompose(const Transform& map);
-
     bool is_animated() const { return movement_ != nullptr; }
     float start_time() const { return start_time_; }
     float end_time() const { return end_time_; }
     const Transform& start() const { return start_; }
-    const Transform& end() const { return movement_ ? movement_->end : start_; }
+    const Transform& end() const;
     Transform at(float time) const;
     /// at(time).matrix() without the price of the inverse.
     Matrix4 matrix_at(float time) const;
@@ -98,10 +89,7 @@ class AnimatedTransform {
 
   private:
     /// Most transforms of a scene rest: what only moving ones need is kept apart, and shared.
-    struct Movement {
-        Transform end;
-        std::array<Decomposition, 2> keys;
-    };
+    struct Movement;
     Transform start_;
     float start_time_ = 0, end_time_ = 1;
     std::shared_ptr<const Movement> movement_;  ///< null where it rests

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
+#include "core/decomposition.h"
 #include "geometry/embree_shapes.h"
 
 namespace covtrace {
@@ -12,6 +14,10 @@ namespace {
 
 constexpr unsigned kMostSteps = 128;          ///< Embree's limit is 129 keys
 constexpr double kInterpolationError = 5e-6;  ///< of the extent, at the tested times
+/// Embree bounds what turns by searching for extremes between any two keys, in 0.1 ms per key and
+/// instance; straight lines cost it nothing, but are off by the square of the angle between keys.
+constexpr unsigned kFewSteps = 8;
+constexpr double kStraightError = 1e-5;  ///< of the extent; reached by motions up to 60 degrees
 
 GeometryHandle new_instance(const EmbreeDevice& device, RTCScene scene) {
     GeometryHandle instance(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
@@ -21,10 +27,10 @@ GeometryHandle new_instance(const EmbreeDevice& device, RTCScene scene) {
     return instance;
 }
 
-/// A matrix as translation * rotation * upper triangular scale, which is what Embree interpolates
-/// too.
+/// What Embree interpolates. Between two poses it does not always go the way of AnimatedTransform,
+/// whose stretch is symmetric.
 RTCQuaternionDecomposition decompose(const Transform& map) {
-    const AnimatedTransform::Decomposition key = AnimatedTransform::decompose(map);
+    const Decomposition key = triangular_decomposition(map.matrix());
     const auto number = [](double v) { return static_cast<float>(v); };
     RTCQuaternionDecomposition d;
     rtcInitQuaternionDecomposition(&d);
@@ -32,10 +38,36 @@ RTCQuaternionDecomposition decompose(const Transform& map) {
                                              key.translation.z);
     const Quaternion& q = key.rotation;
     rtcQuaternionDecompositionSetQuaternion(&d, number(q.w), number(q.x), number(q.y), number(q.z));
-    const auto& s = key.scale;
+    const auto& s = key.stretch;
     rtcQuaternionDecompositionSetScale(&d, number(s[0][0]), number(s[1][1]), number(s[2][2]));
     rtcQuaternionDecompositionSetSkew(&d, number(s[0][1]), number(s[0][2]), number(s[1][2]));
     return d;
+}
+
+std::array<float, 12> rows_of(const Transform& map) {
+    std::array<float, 12> rows;
+    for (size_t i = 0; i < 12; ++i) rows[i] = static_cast<float>(map.matrix().m[i / 4][i % 4]);
+    return rows;
+}
+
+/// How Embree goes from key to key: by decompositions, or element by element.
+enum class Between { turning, straight };
+
+void set_keys(const EmbreeDevice& device, RTCGeometry instance, const Motion& motion,
+              const ShutterClock& clock, unsigned steps, Between between) {
+    rtcSetGeometryTimeStepCount(instance, steps + 1);
+    for (unsigned i = 0; i <= steps; ++i) {
+        const Transform pose = motion.at(clock.key_time(i, steps));
+        if (between == Between::straight) {
+            rtcSetGeometryTransform(instance, i, RTC_FORMAT_FLOAT3X4_ROW_MAJOR,
+                                    rows_of(pose).data());
+        } else {
+            const RTCQuaternionDecomposition key = decompose(pose);
+            rtcSetGeometryTransformQuaternion(instance, i, &key);
+        }
+    }
+    rtcCommitGeometry(instance);
+    device.check();
 }
 
 /// Largest distance between the corners of `box` as Embree and as `motion` place them, less what
@@ -69,9 +101,7 @@ double interpolation_error(RTCGeometry instance, const RTCBounds& box, const Mot
 GeometryHandle new_still_instance(const EmbreeDevice& device, RTCScene scene,
                                   const Transform& map) {
     GeometryHandle instance = new_instance(device, scene);
-    std::array<float, 12> rows;
-    for (size_t i = 0; i < 12; ++i) rows[i] = static_cast<float>(map.matrix().m[i / 4][i % 4]);
-    rtcSetGeometryTransform(instance.get(), 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, rows.data());
+    rtcSetGeometryTransform(instance.get(), 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, rows_of(map).data());
     rtcCommitGeometry(instance.get());
     device.check();
     return instance;
@@ -79,21 +109,31 @@ GeometryHandle new_still_instance(const EmbreeDevice& device, RTCScene scene,
 
 GeometryHandle new_moving_instance(const EmbreeDevice& device, RTCScene scene, const Motion& motion,
                                    const ShutterClock& clock) {
-    GeometryHandle instance = new_instance(device, scene);
     RTCBounds box;
     rtcGetSceneBounds(scene, &box);
-    for (unsigned steps = clock.segments();; steps *= 2) {
-        rtcSetGeometryTimeStepCount(instance.get(), steps + 1);
-        for (unsigned i = 0; i <= steps; ++i) {
-            const RTCQuaternionDecomposition key = decompose(motion.at(clock.key_time(i, steps)));
-            rtcSetGeometryTransformQuaternion(instance.get(), i, &key);
+    const auto error = [&](const GeometryHandle& instance, unsigned steps) {
+        return interpolation_error(instance.get(), box, motion, clock, steps);
+    };
+    // Sets 2, 4, ... times as many keys until what is left is below `enough`; returns that.
+    const auto refine = [&](const GeometryHandle& instance, Between between, unsigned first,
+                            unsigned most, double enough) {
+        for (unsigned steps = first;; steps *= 2) {
+            set_keys(device, instance.get(), motion, clock, steps, between);
+            const double left = error(instance, steps);
+            if (left < enough || 2 * steps > most) return left;
         }
-        rtcCommitGeometry(instance.get());
-        device.check();
-        if (2 * steps > kMostSteps ||
-            interpolation_error(instance.get(), box, motion, clock, steps) < kInterpolationError)
-            return instance;
-    }
+    };
+    GeometryHandle turning = new_instance(device, scene);
+    const unsigned least = clock.segments();
+    const unsigned few = std::min(kMostSteps, least * kFewSteps);
+    if (refine(turning, Between::turning, least, few, kInterpolationError) < kInterpolationError)
+        return turning;
+    GeometryHandle straight = new_instance(device, scene);
+    const double left = refine(straight, Between::straight, least, kMostSteps, kStraightError);
+    if (left < kStraightError) return straight;
+    return refine(turning, Between::turning, least, kMostSteps, kInterpolationError) < left
+               ? std::move(turning)
+               : std::move(straight);
 }
 
 Affine instance_transform(RTCGeometry instance, float parameter) {

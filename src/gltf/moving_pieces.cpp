@@ -6,6 +6,7 @@
 #include <numeric>
 #include <queue>
 
+#include "core/decomposition.h"
 #include "core/symmetric_eigen.h"
 
 namespace covtrace::gltf {
@@ -230,7 +231,7 @@ Matrix4 nearest_motion(std::span<const Vec3> start, std::span<const Vec3> end) {
 
 Vec3 pivot(const Transform& motion, Vec3 middle) {
     constexpr float kLeastTurn = 0.01f;  // radian; its arc is 1/800 of the way off the chord
-    const Quaternion q = AnimatedTransform::decompose(motion).rotation;
+    const Quaternion q = polar_decomposition(motion.matrix()).rotation;
     const double sine = std::hypot(q.x, q.y, q.z);
     if (sine < kLeastTurn / 2) return middle;
     const double tangent = sine / q.w;  // of half the angle; infinite for half a turn

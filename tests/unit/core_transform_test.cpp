@@ -73,6 +73,63 @@ TEST(AnimatedTransform, RestsOutsideItsKeys) {
     expect_near(motion.velocity({4, 0, 0}, 0.9f), {0, 0, 0}, 0);
 }
 
+TEST(AnimatedTransform, AScaleBeforeARotationIsInterpolatedAsInPbrt) {
+    // `Scale 2 1 1  Rotate 45 0 0 1` at the end, `Scale 2 1 1` at the start: the polar stretches
+    // are diag(2, 1) and R^T diag(2, 1) R = ((1.5, -0.5), (-0.5, 1.5)), and R turns by 45 degrees.
+    const Transform scale = Transform::scale(2, 1, 1);
+    const AnimatedTransform motion(scale, 0, scale * Transform::rotate(45, {0, 0, 1}), 1);
+    const Transform turn = Transform::rotate(22.5, {0, 0, 1});
+    expect_near(motion.at(0.5f).point({1, 0, 0}), turn.point({1.75f, -0.25f, 0}), 1e-6f);
+    expect_near(motion.at(0.5f).point({0, 1, 0}), turn.point({-0.25f, 1.25f, 0}), 1e-6f);
+    expect_near(motion.at(0.5f).point({0, 0, 1}), {0, 0, 1}, 1e-6f);
+}
+
+/// A symmetric stretch along random axes by factors of one sign.
+Transform random_stretch(double sign) {
+    const auto factor = [&] { return sign * *rc::gen::inRange(1, 1000) * 0.01; };
+    const double x = factor(), y = factor();
+    const Transform axes =
+        Transform::rotate(*rc::gen::inRange(0, 360), random_vector() + Vec3{0.001f, 0, 0});
+    return axes * Transform::scale(x, y, factor()) * axes.inverse();
+}
+
+RC_GTEST_PROP(AnimatedTransform, RotationsAndSymmetricStretchesAreInterpolatedApart, ()) {
+    // What the decomposition has to find is what the keys are made of; a reflection is the opposite
+    // of a rotation.
+    const double sign = *rc::gen::element(1.0, -1.0);
+    const Vec3 axis = random_vector() + Vec3{0.001f, 0, 0};
+    const double degrees = *rc::gen::inRange(-170, 171);
+    const Vec3 from = random_vector(), to = random_vector();
+    const Transform first = Transform::rotate(*rc::gen::inRange(0, 360), random_vector() + axis);
+    const Transform a = random_stretch(sign), b = random_stretch(sign);
+    const AnimatedTransform motion(
+        Transform::translate(from) * first * a, 2,
+        Transform::translate(to) * Transform::rotate(degrees, axis) * first * b, 4);
+    const float t = float(*rc::gen::inRange(1, 1000)) * 0.001f;
+    Matrix4 stretch;
+    for (size_t i = 0; i < 3; ++i)
+        for (size_t j = 0; j < 3; ++j)
+            stretch.m[i][j] = (1 - t) * a.matrix().m[i][j] + t * b.matrix().m[i][j];
+    const Vec3 p = random_vector();
+    const Vec3 expected =
+        from * (1 - t) + to * t +
+        (Transform::rotate(degrees * t, axis) * first * *Transform::from_matrix(stretch)).vector(p);
+    RC_ASSERT(distance(motion.at(2 + 2 * t).point(p), expected) < 1e-4f * (1 + length(expected)));
+}
+
+RC_GTEST_PROP(AnimatedTransform, TheRateIsTheDerivative, ()) {
+    const AnimatedTransform motion(random_rigid() * random_stretch(1), 1,
+                                   random_rigid() * random_stretch(1), 2);
+    const float time = 1 + float(*rc::gen::inRange(1, 127)) / 128;
+    constexpr float kStep = 1.0f / 1024;
+    const Matrix4 before = motion.matrix_at(time - kStep), after = motion.matrix_at(time + kStep);
+    const Matrix4 rate = motion.rate(time);
+    for (size_t i = 0; i < 3; ++i)
+        for (size_t j = 0; j < 4; ++j)
+            RC_ASSERT(std::abs((after.m[i][j] - before.m[i][j]) / (2 * kStep) - rate.m[i][j]) <
+                      1e-3);
+}
+
 RC_GTEST_PROP(AnimatedTransform, KeysAreReproduced, ()) {
     const Transform scale = Transform::scale(1.5, -2, 0.7);
     const AnimatedTransform motion(random_rigid() * scale, 0, random_rigid() * scale, 1);

@@ -77,6 +77,33 @@ TEST(GeometryMotion, QuarterAndHalfTurnsAreCircles) {
     }
 }
 
+TEST(GeometryMotion, ScalesBeforeRotationsAreMetWherePbrtPutsThem) {
+    // What pbrt interpolates, in closed form: the rotation R by the angle, and the symmetric
+    // stretches S and R^T S R of the keys S and S R. Embree's own way between two keys is another.
+    struct Case {
+        Transform scale;
+        float degrees, error;
+    };
+    const Transform mild = Transform::scale(2, 1, 0.5), strong = Transform::scale(10, 1, 1);
+    const Vec3 axis{0.3f, 1, 0.2f};
+    for (const auto& [scale, degrees, error] :
+         {Case{mild, 2, 5e-5f}, Case{mild, 30, 5e-5f}, Case{mild, 90, 5e-5f},
+          Case{mild, 170, 2e-4f}, Case{strong, 90, 1.5e-3f}}) {
+        const Transform turn = Transform::rotate(degrees, axis), end = scale * turn;
+        const Transform turned = turn.inverse() * end;
+        const auto exact = [&, scale = scale, degrees = degrees](float t) {
+            Matrix4 stretch;
+            for (size_t i = 0; i < 3; ++i)
+                for (size_t j = 0; j < 3; ++j)
+                    stretch.m[i][j] =
+                        (1 - t) * scale.matrix().m[i][j] + t * turned.matrix().m[i][j];
+            return Transform::rotate(degrees * t, axis) * *Transform::from_matrix(stretch);
+        };
+        const Geometry g{scene_of({mesh(probe(), AnimatedTransform(scale, 0, end, 1))})};
+        EXPECT_LT(worst_error(g, probe(), 0, 1, exact), error) << degrees;
+    }
+}
+
 TEST(GeometryMotion, ShapesRestOutsideTheirKeys) {
     const AnimatedTransform motion(
         Transform{}, 0.25f,
