@@ -156,7 +156,9 @@ class OrderedRings {
     std::vector<Link> links_;
 };
 
-/// Cross product of the limit surface's tangents; `ring` in order, open at a border.
+/// Cross product of the limit surface's tangents, on the side that pbrt calls outside: the one from
+/// which the corners of triangles are seen clockwise. `ring` in the triangles' order, open at a
+/// border.
 Vec3 limit_normal(const std::vector<Vec3>& p, Vec3 centre, const std::vector<uint32_t>& ring,
                   bool is_border) {
     const size_t n = ring.size();
@@ -168,7 +170,7 @@ Vec3 limit_normal(const std::vector<Vec3>& p, Vec3 centre, const std::vector<uin
             s += std::cos(angle) * p[ring[i]];
             t += std::sin(angle) * p[ring[i]];
         }
-        return cross(s, t);
+        return cross(t, s);  // pbrt goes around the other way
     }
     const auto at = [&](size_t i) { return p[ring[i]]; };
     s = at(n - 1) - at(0);
@@ -188,12 +190,13 @@ Vec3 limit_normal(const std::vector<Vec3>& p, Vec3 centre, const std::vector<uin
 }
 
 /// Limit normals from the control points `p`; where there is no tangent plane, the mean of the
-/// faces of `limit`.
+/// faces of `limit`. Opposite to (p1 - p0) x (p2 - p0), as in pbrt, for which vertex normals decide
+/// which side is outside.
 std::vector<Vec3> normals(const std::vector<Vec3>& p, const std::vector<Vec3>& limit,
                           const std::vector<Triangle>& triangles, const Topology& m) {
     std::vector<Vec3> face_normals(p.size());
     for (const Triangle& t : triangles) {
-        const Vec3 n = cross(limit[t[1]] - limit[t[0]], limit[t[2]] - limit[t[0]]);
+        const Vec3 n = cross(limit[t[2]] - limit[t[0]], limit[t[1]] - limit[t[0]]);
         for (const uint32_t v : t) face_normals[v] += n;
     }
     OrderedRings rings(p.size(), triangles);
@@ -203,7 +206,7 @@ std::vector<Vec3> normals(const std::vector<Vec3>& p, const std::vector<Vec3>& l
         const Vec3 faces = normalize(face_normals[v]);
         if (!(length(n) > 0.5f) || !is_finite(n)) n = faces;
         if (!(length(n) > 0.5f) || !is_finite(n)) n = {0, 0, 1};
-        all[v] = dot(n, faces) < 0 ? -n : n;
+        all[v] = n;
     }
     return all;
 }

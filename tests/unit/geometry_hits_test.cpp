@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry_fixtures.h"
+#include "scene/loop_subdivision.h"
 
 namespace covtrace {
 namespace {
@@ -101,6 +102,24 @@ TEST(GeometryHits, VertexNormalsDecideTheSide) {
     hit = must_hit(Geometry{scene_of({s})}, {0.25f, 0.25f, 3}, {0, 0, -1});
     EXPECT_TRUE(near_vec(hit.ns, {-0.6f, 0, 0.8f}, 1e-6f));
     EXPECT_TRUE(near_vec(hit.ng, {0, 0, 1}, 1e-6f));
+}
+
+TEST(GeometryHits, TheOutsideOfSubdividedMeshesIsPbrts) {
+    // Corners that are seen counterclockwise from +z: a plain mesh's outside, and the inside of
+    // what pbrt's limit normals, which decide, make of it.
+    ShapeDescription plain = mesh(unit_triangle());
+    const TriangleMesh& m = *std::get<std::shared_ptr<const TriangleMesh>>(plain.geometry);
+    ShapeDescription fine = mesh(loop_subdivide(m.positions, m.triangles, 2, {}));
+    const auto normal = [](const ShapeDescription& s, float x) {
+        return must_hit(Geometry{scene_of({s})}, {x, 0.25f, 3}, {0, 0, -1}).ng;
+    };
+    const Vec3 up{0, 0, 1};
+    EXPECT_TRUE(near_vec(normal(plain, 0.25f), up, 1e-6f));
+    EXPECT_TRUE(near_vec(normal(fine, 0.25f), -up, 1e-6f));
+    fine.reverse_orientation = true;
+    EXPECT_TRUE(near_vec(normal(fine, 0.25f), up, 1e-6f));
+    fine.object_to_world = AnimatedTransform(Transform::scale(-1, 1, 1));
+    EXPECT_TRUE(near_vec(normal(fine, -0.25f), up, 1e-6f));
 }
 
 TEST(GeometryHits, VanishingVertexNormalsFallBackToTheFace) {

@@ -59,17 +59,18 @@ TEST(SceneLoopSubdivision, TheTetrahedronsLimitIsKnown) {
     const auto m = loop_subdivide(kTetrahedron, kTetrahedronFaces, 2, {});
     for (size_t i = 0; i < 4; ++i) {
         expect_near(m.positions[i], 0.2f * kTetrahedron[i], 1e-6f);
-        expect_near(m.normals[i], normalize(kTetrahedron[i]), 1e-5f);
+        // The faces are seen counterclockwise from outside; pbrt's normals are opposite to that.
+        expect_near(m.normals[i], -normalize(kTetrahedron[i]), 1e-5f);
     }
 }
 
-TEST(SceneLoopSubdivision, NormalsAreThoseOfTheSurface) {
+TEST(SceneLoopSubdivision, NormalsAreThoseOfTheSurfaceOnPbrtsSide) {
     const auto m = loop_subdivide(kCube, kCubeFaces, 5, {});
     double worst = 1;
     for (const auto& t : m.triangles) {
         const Vec3 face = normalize(
             cross(m.positions[t[1]] - m.positions[t[0]], m.positions[t[2]] - m.positions[t[0]]));
-        for (const uint32_t v : t) worst = std::min(worst, double(dot(face, m.normals[v])));
+        for (const uint32_t v : t) worst = std::min(worst, double(dot(-face, m.normals[v])));
     }
     EXPECT_GT(worst, 0.995);
     for (const Vec3& n : m.normals) EXPECT_NEAR(length(n), 1, 1e-5f);
@@ -90,7 +91,7 @@ TEST(SceneLoopSubdivision, FlatSheetsStayFlatWithTheirBorder) {
     float largest = 0;
     for (size_t i = 0; i < m.positions.size(); ++i) {
         EXPECT_NEAR(m.positions[i].z, 0, 1e-6f);
-        expect_near(m.normals[i], {0, 0, 1}, 1e-4f);
+        expect_near(m.normals[i], {0, 0, -1}, 1e-4f);  // inside and on the border alike
         largest = std::max(largest, std::max(m.positions[i].x, m.positions[i].y));
     }
     // A straight border stays where it is, away from the corners.
