@@ -91,6 +91,7 @@ struct CoatedConductorBsdf {
     float thickness = 0;  ///< of the gap between them, in optical depths
     int bounces = 5;      ///< most reflections at the metal
     int samples = 1;      ///< walks per evaluation
+    uint32_t place = 0;   ///< of `eval`'s walks: pairs have the same ones where this is the same
 };
 /// A pane without thickness; both faces' reflections together.
 struct ThinDielectricBsdf {

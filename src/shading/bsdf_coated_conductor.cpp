@@ -10,6 +10,8 @@
 /// g: all that happens between first and last meeting of the metal. There is no closed form. As in
 /// pbrt, `eval` is one walk's estimate, with random numbers that are a hash of both directions, so
 /// that a pair always gets the same value, and reciprocal: the pair is put into one order first.
+/// Unlike pbrt's, the hash has the place on the surface, too: where parallel light meets a plane in
+/// an orthographic view all samples have the same directions, and would all have one walk's error.
 /// At each reflection by the metal both directions through the coat are connected: wi's refracted
 /// one, and the one in which the metal reflects, by multiple importance sampling (Veach 1997).
 ///
@@ -157,7 +159,7 @@ Rgb eval_base(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi) {
         std::swap(wo, wi);
         std::swap(hash_o, hash_i);
     }
-    Rng rng(hash_combine(hash_o, hash_i));
+    Rng rng(hash_combine(hash_o, hash_i, b.place));
     Rgb sum;
     for (int i = 0; i < b.samples; ++i) sum += walk(b, wo, wi, rng);
     return sum * (cos_i / static_cast<float>(b.samples));

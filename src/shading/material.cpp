@@ -182,6 +182,13 @@ void warn_of_gap(TextureId gap_albedo, const char* type, const SourceLocation& w
                                        "supported; the gap is rendered clear"});
 }
 
+/// Random bits that the same place always has; others for each `key`.
+uint64_t hash_of_position(const SurfaceHit& hit, uint64_t key) {
+    for (const float c : {hit.position.x, hit.position.y, hit.position.z})
+        key = hash_combine(key, std::bit_cast<uint32_t>(c));
+    return key;
+}
+
 }  // namespace
 
 Frame shading_frame(const SurfaceHit& hit) {
@@ -237,11 +244,16 @@ Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStor
                          float width) const {
     if (id < 0) return DiffuseBsdf{Rgb(kDefaultReflectance)};
     const Material& material = materials_[static_cast<size_t>(id)];
-    if (material.is_constant) return material.constant;
-    const TexturePoint at{hit.uv, hit.position, footprint_on(hit, w, width)};
-    const Values values{textures, at, material.colours, adaptation_};
-    return std::visit([&](const auto& m) { return make(m, values, material.coat); },
-                      material.description.value);
+    Bsdf found = material.constant;
+    if (!material.is_constant) {
+        const TexturePoint at{hit.uv, hit.position, footprint_on(hit, w, width)};
+        const Values values{textures, at, material.colours, adaptation_};
+        found = std::visit([&](const auto& m) { return make(m, values, material.coat); },
+                           material.description.value);
+    }
+    if (auto* coated = std::get_if<CoatedConductorBsdf>(&found))
+        coated->place = static_cast<uint32_t>(hash_of_position(hit, 0) >> 32);
+    return found;
 }
 
 MaterialId MaterialStore::at(MaterialId id, const SurfaceHit& hit,
@@ -249,9 +261,7 @@ MaterialId MaterialStore::at(MaterialId id, const SurfaceHit& hit,
     while (id >= 0 && description(id).mix) {
         const MaterialMix& mix = *description(id).mix;
         const float amount = textures.eval_float(mix.amount, {hit.uv, hit.position});
-        uint64_t h = static_cast<uint64_t>(id);
-        for (const float c : {hit.position.x, hit.position.y, hit.position.z})
-            h = hash_combine(h, std::bit_cast<uint32_t>(c));
+        const uint64_t h = hash_of_position(hit, static_cast<uint64_t>(id));
         id = mix.materials[to_unit_float(static_cast<uint32_t>(h >> 32)) < amount ? 1 : 0];
     }
     return id;

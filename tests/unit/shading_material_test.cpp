@@ -210,5 +210,44 @@ TEST(ShadingFrame, FollowsNormalAndParameterisation) {
     EXPECT_NEAR(dot(cross(g.x, g.y), g.z), 1, 1e-6f);
 }
 
+TEST_F(MaterialTest, WalksUnderACoatAreThoseOfTheirPlace) {
+    // Parallel light on a plane in an orthographic view: one pair of directions everywhere. What
+    // one walk misses must not be missed at all places, and a place keeps its walk.
+    CoatedConductorMaterial m;
+    m.samples = 1;
+    m.u_roughness = m.v_roughness = constant(0.3f);
+    m.conductor.u_roughness = m.conductor.v_roughness = constant(0.4f);
+    m.conductor.reflectance = constant(0.8f);
+    const MaterialId one = add(m);
+    m.samples = 1 << 18;
+    const MaterialId many = add(m);
+    build();
+    const Vec3 wo = normalize({0.3f, 0, 1}), wi = normalize({-0.5f, 0.2f, 1});
+    const auto value = [&](MaterialId id, float x) {
+        SurfaceHit hit;
+        hit.position = {x, 1, 0};
+        const Bsdf bsdf = materials_->bsdf(id, hit, *textures_);
+        const double v = eval(bsdf, wo, wi).r;
+        if (id == one) {
+            EXPECT_NEAR(v / wi.z, eval(bsdf, wi, wo).r / wo.z, 1e-5 * v);
+        }
+        return v;
+    };
+    EXPECT_EQ(value(one, 7), value(one, 7));
+    const double expected = value(many, 0);
+    constexpr int kPlaces = 1 << 14;
+    double sum = 0, square = 0;
+    for (int i = 0; i < kPlaces; ++i) {
+        const double v = value(one, float(i) / kPlaces);
+        sum += v;
+        square += v * v;
+    }
+    const double mean = sum / kPlaces;
+    const double deviation = std::sqrt(square / kPlaces - mean * mean);
+    EXPECT_GT(deviation, 0.05 * expected);
+    // 1e-5 that it fails by chance.
+    EXPECT_NEAR(mean, expected, 4.5 * deviation / std::sqrt(double(kPlaces)));
+}
+
 }  // namespace
 }  // namespace covtrace
