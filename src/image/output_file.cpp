@@ -35,10 +35,17 @@ std::string host_name() {
 }  // namespace
 
 std::filesystem::path OutputFile::resolved(const std::filesystem::path& target) {
+    // Link by link: a link to a file that is not there yet, or no longer, is one all the same.
+    constexpr int kMostLinks = 40;  // as the system allows
+    std::filesystem::path file = target;
     std::error_code error;
-    if (!std::filesystem::is_symlink(target, error)) return target;
-    const auto leads_to = std::filesystem::weakly_canonical(target, error);
-    return error ? target : leads_to;
+    for (int k = 0; k < kMostLinks; ++k) {
+        if (!std::filesystem::is_symlink(file, error)) return file;
+        const std::filesystem::path leads_to = std::filesystem::read_symlink(file, error);
+        if (error) return target;
+        file = directory_of(file) / leads_to;
+    }
+    return target;
 }
 
 std::string OutputFile::part_suffix() {

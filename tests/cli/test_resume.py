@@ -224,6 +224,19 @@ class Refused(FilmTest):
         self.write(elsewhere / "real.film", b"damaged")
         self.run_render("plain", "uniform", "--spp", "4", "--checkpoint", "c.film", "--resume")
 
+    def test_a_damaged_film_behind_a_link_is_set_aside_where_it_is(self):
+        """The link stays, and the next film goes where it leads to."""
+        (self.folder / "elsewhere").mkdir()
+        real = self.write("elsewhere/real.film", b"damaged")
+        (self.folder / "c.film").symlink_to(real)
+        self.run_render("plain", "uniform", "--spp", "1", "--film", "good.film")
+        (self.folder / "good.film").rename(self.folder / "elsewhere/real.film.prev")
+        self.run_render("plain", "uniform", "--spp", "2", "--checkpoint", "c.film", "--resume")
+        self.assertTrue((self.folder / "c.film").is_symlink())
+        self.assertEqual((self.folder / "elsewhere/real.film.damaged").read_bytes(), b"damaged")
+        self.assertIn("2 samples per pixel", self.assert_sound(real))
+        self.assertFalse((self.folder / "c.film.damaged").is_symlink())
+
     def test_a_damaged_film_never_takes_the_place_of_the_good_one(self):
         for spp in ("1", "2"):
             self.run_render("plain", "uniform", "--spp", spp, "--checkpoint", "c.film", *(["--resume"] if spp != "1" else []))

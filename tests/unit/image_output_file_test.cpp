@@ -33,5 +33,22 @@ TEST(OutputFile, LeavesNoThirdNameWhereTheOlderFileHasTwo) {
     fs::remove_all(folder);
 }
 
+TEST(OutputFile, FollowsLinksToFilesThatAreNotThere) {
+    const fs::path folder =
+        fs::temp_directory_path() / ("output-link-" + std::to_string(::getpid()));
+    fs::create_directories(folder / "far");
+    fs::create_symlink("b", folder / "a");
+    fs::create_symlink("far/c", folder / "b");
+    OutputFile out(folder / "a");
+    out.write("new", 3);
+    out.commit();
+    EXPECT_TRUE(fs::is_symlink(folder / "a") && fs::is_symlink(folder / "b"));
+    EXPECT_TRUE(fs::is_regular_file(folder / "far/c"));
+    // A link that leads to itself leads nowhere.
+    fs::create_symlink("loop", folder / "loop");
+    EXPECT_EQ(OutputFile::resolved(folder / "loop"), folder / "loop");
+    fs::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace covtrace
