@@ -118,7 +118,11 @@ void add_compare(CLI::App& app, Invocation& invocation) {
         ->option_text("x0,y0,x1,y1");
     c->add_option_function<std::string>(
          "--smooth",
-         [a](const std::string& text) { a->smooth = parse_positive("--smooth", text, 1000); },
+         [a](const std::string& text) {
+             // The least is no blur at all; the squares of much smaller ones are zero.
+             constexpr double kLeast = 1e-3, kMost = 1000;
+             a->smooth = parse_positive("--smooth", text, kMost, kLeast);
+         },
          "first blur the image: a Gaussian of N pixels")
         ->option_text("N");
     c->add_option("--report", a->report, "also a page for any browser with both images")

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -162,12 +163,10 @@ void add_measure(CLI::App& app, Invocation& invocation) {
     c->add_option("--pixel", a->pixel, "the pixel whose middle is looked through")
         ->required()
         ->option_text("x,y");
-    c->add_option("--samples", a->measure.samples, "radiance samples (default 262144, twice)")
-        ->check(CLI::Range(1u << 12, 1u << 28))
-        ->option_text("N");
-    c->add_option("--paths", a->paths, "covariance paths of the prediction (default 1024)")
-        ->check(CLI::Range(1u, 1u << 24))
-        ->option_text("N");
+    add_whole(c, "--samples", a->measure.samples, 1 << 12, 1 << 28,
+              "radiance samples (default 262144, twice)");
+    add_whole(c, "--paths", a->paths, 1, 1 << 24,
+              "covariance paths of the prediction (default 1024)");
     add_choice<Occlusion>(
         c, "--occlusion", a->occlusion,
         {{"query", Occlusion::query}, {"grid", Occlusion::grid}, {"none", Occlusion::none}},
@@ -176,22 +175,17 @@ void add_measure(CLI::App& app, Invocation& invocation) {
         c, "--brdf-covariance", a->brdf_covariance,
         {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}},
         "a BRDF's frequencies: at the path, or its peak's");
-    c->add_option("--voxels", a->voxels, "width of the occlusion grid (default 200)")
-        ->check(CLI::Range(1, 2048))
-        ->option_text("N");
+    add_whole(c, "--voxels", a->voxels, 1, 2048, "width of the occlusion grid (default 200)");
     c->add_option("--resolution", a->resolution, "in place of the scene's")
         ->check(not_empty())
         ->option_text("WxH");
-    c->add_option("--max-depth", a->max_depth, "most scattering events (default: the scene's)")
-        ->check(CLI::NonNegativeNumber)
-        ->option_text("N");
+    add_whole(c, "--max-depth", a->max_depth, 0, std::numeric_limits<int>::max(),
+              "most scattering events (default: the scene's)");
     c->add_option_function<std::string>(
          "--seed", [a](const std::string& text) { a->measure.seed = parse_seed("--seed", text); },
          "seed of all random numbers (default 0)")
         ->option_text("N");
-    c->add_option("--threads", a->threads, "worker threads (default: all cores)")
-        ->check(CLI::Range(1, 4096))
-        ->option_text("N");
+    add_whole(c, "--threads", a->threads, 1, 4096, "worker threads (default: all cores)");
     c->add_option("--isa", a->isa, "instruction set of the ray tracing")
         ->check(CLI::IsMember({"sse2", "avx", "avx2", "avx512"}).description(""))
         ->option_text("sse2|avx|avx2|avx512");
@@ -199,9 +193,9 @@ void add_measure(CLI::App& app, Invocation& invocation) {
         ->check(not_empty())
         ->option_text("T0,T1");
     add_positive(c, "--focus", a->overrides.focal_distance, 1e30,
-                 "focal distance in place of the scene's");
+                 "focal distance in place of the scene's", SceneOverrides::kLeastOfLens);
     add_positive(c, "--fstop", a->overrides.f_number, 1e30,
-                 "lens by f-number (full-frame sensor, metres)");
+                 "lens by f-number (full-frame sensor, metres)", SceneOverrides::kLeastOfLens);
     c->add_flag("--json", a->json, "one JSON object on standard output");
     c->add_flag("--quiet", a->quiet, "errors only");
     c->callback([a, &invocation] { invocation.action = [a] { return measure_pixel(*a); }; });

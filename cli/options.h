@@ -27,12 +27,22 @@ void add_choice(CLI::App* c, const std::string& name, T& value,
     c->add_option_function<std::string>(name, choose, help)->option_text(names);
 }
 
-/// A number above zero and up to `most`.
+/// A number above zero, not below `least` and up to `most`.
 template <typename T>
 void add_positive(CLI::App* c, const std::string& name, std::optional<T>& value, double most,
-                  const std::string& help) {
-    const auto parse = [name, &value, most](const std::string& text) {
-        value = static_cast<T>(parse_positive(name, text, most));
+                  const std::string& help, double least = 0) {
+    const auto parse = [name, &value, most, least](const std::string& text) {
+        value = static_cast<T>(parse_positive(name, text, most, least));
+    };
+    c->add_option_function<std::string>(name, parse, help)->option_text("N");
+}
+
+/// A whole number in [least, most]; T may be optional. CLI11 itself would read 010 as eight.
+template <typename T>
+void add_whole(CLI::App* c, const std::string& name, T& value, int64_t least, int64_t most,
+               const std::string& help) {
+    const auto parse = [name, &value, least, most](const std::string& text) {
+        value = T(parse_whole(name, text, least, most));
     };
     c->add_option_function<std::string>(name, parse, help)->option_text("N");
 }

@@ -1,5 +1,7 @@
 #include "cli/render_options.h"
 
+#include <limits>
+
 #include "cli/options.h"
 
 namespace covtrace::cli {
@@ -21,25 +23,21 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
         ->check(not_empty())
         ->option_text("T");
     add_positive(c, "--error", a.options.error, 1e6, "stop at this estimated sqrt(relMSE)");
-    c->add_option("--cov-spp", a.options.cov_spp,
-                  "covariance paths per pixel (default: 2, hybrid: 1)")
-        ->check(CLI::Range(1, 1 << 20))
-        ->option_text("N");
+    add_whole(c, "--cov-spp", a.options.cov_spp, 1, 1 << 20,
+              "covariance paths per pixel (default: 2, hybrid: 1)");
     add_choice<DensityRule>(c, "--density", a.options.density,
                             {{"tempered", DensityRule::tempered}, {"thesis", DensityRule::thesis}},
                             "how counts follow from the prediction");
-    c->add_option("--max-spp", a.options.max_spp, "most samples in a pixel (default: 16 x average)")
-        ->check(CLI::Range(1, 1 << 30))
-        ->option_text("N");
+    add_whole(c, "--max-spp", a.options.max_spp, 1, 1 << 30,
+              "most samples in a pixel (default: 16 x average)");
     c->add_flag("--progressive", a.options.progressive, "covariance: rounds of samples on demand");
     c->add_flag("--even-counts", a.options.even_counts, "hybrid: the same count in every pixel");
     add_choice<Occlusion>(
         c, "--occlusion", a.options.occlusion,
         {{"grid", Occlusion::grid}, {"query", Occlusion::query}, {"none", Occlusion::none}},
         "occluders beside the rays of the analysis");
-    c->add_option("--voxels", a.options.voxels, "width of the occlusion grid (default 200)")
-        ->check(CLI::Range(1, 2048))
-        ->option_text("N");
+    add_whole(c, "--voxels", a.options.voxels, 1, 2048,
+              "width of the occlusion grid (default 200)");
     add_choice<BrdfCovariance>(
         c, "--brdf-covariance", a.options.brdf_covariance,
         {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}},
@@ -57,17 +55,13 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
     c->add_option("--crop", a.crop, "only these pixels, end exclusive")
         ->check(not_empty())
         ->option_text("x0,y0,x1,y1");
-    c->add_option("--max-depth", a.options.max_depth,
-                  "most scattering events (default: the scene's)")
-        ->check(CLI::NonNegativeNumber)
-        ->option_text("N");
+    add_whole(c, "--max-depth", a.options.max_depth, 0, std::numeric_limits<int>::max(),
+              "most scattering events (default: the scene's)");
     c->add_option_function<std::string>(
          "--seed", [&a](const std::string& text) { a.options.seed = parse_seed("--seed", text); },
          "seed of all random numbers (default 0)")
         ->option_text("N");
-    c->add_option("--threads", a.threads, "worker threads (default: all cores)")
-        ->check(CLI::Range(1, 4096))
-        ->option_text("N");
+    add_whole(c, "--threads", a.threads, 1, 4096, "worker threads (default: all cores)");
     c->add_option("--isa", a.isa, "instruction set of the ray tracing")
         ->check(CLI::IsMember({"sse2", "avx", "avx2", "avx512"}).description(""))
         ->option_text("sse2|avx|avx2|avx512");
@@ -75,9 +69,9 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
         ->check(not_empty())
         ->option_text("T0,T1");
     add_positive(c, "--focus", a.overrides.focal_distance, 1e30,
-                 "focal distance in place of the scene's");
+                 "focal distance in place of the scene's", SceneOverrides::kLeastOfLens);
     add_positive(c, "--fstop", a.overrides.f_number, 1e30,
-                 "lens by f-number (full-frame sensor, metres)");
+                 "lens by f-number (full-frame sensor, metres)", SceneOverrides::kLeastOfLens);
     c->add_option("--search-path", a.search_paths,
                   "also look here for the scene's files; repeatable")
         ->check(CLI::ExistingDirectory.description(""))

@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/interrupts.h"
 #include "cli/message.h"
+#include "cli/options.h"
 #include "core/parallel.h"
 #include "reproduce/reproduce.h"
 
@@ -63,9 +64,7 @@ void add_reproduce(CLI::App& app, Invocation& invocation) {
     c->add_option("--scenes", a->scenes, "generated scenes (default: made in DIR/scenes)")
         ->check(CLI::ExistingDirectory.description(""))
         ->option_text("DIR");
-    c->add_option("--threads", a->threads, "worker threads (default: all cores)")
-        ->check(CLI::Range(1, 4096))
-        ->option_text("N");
+    add_whole(c, "--threads", a->threads, 1, 4096, "worker threads (default: all cores)");
     c->add_flag("--quiet", a->quiet, "errors only");
     c->footer(
         "Experiments: pipeline lens motion shininess snooker helicopter table voxels\n"

@@ -114,11 +114,24 @@ std::array<std::string, 2> parse_address(const std::string& option, const std::s
     return {host, port};
 }
 
-double parse_positive(const std::string& option, const std::string& text, double most) {
+double parse_positive(const std::string& option, const std::string& text, double most,
+                      double least) {
     std::string_view rest = text;
     double value = 0;
-    if (!take_number(rest, value) || !rest.empty() || !(value > 0) || !(value <= most))
-        refuse(option, text, "a number above 0 and up to " + fmt::format("{:.10g}", most));
+    if (!take_number(rest, value) || !rest.empty() || !(value > 0) || !(value >= least) ||
+        !(value <= most))
+        refuse(option, text,
+               least > 0 ? fmt::format("a number from {:.10g} to {:.10g}", least, most)
+                         : fmt::format("a number above 0 and up to {:.10g}", most));
+    return value;
+}
+
+int64_t parse_whole(const std::string& option, const std::string& text, int64_t least,
+                    int64_t most) {
+    std::string_view rest = text;
+    int64_t value = 0;
+    if (!take_number(rest, value) || !rest.empty() || value < least || value > most)
+        refuse(option, text, fmt::format("a whole number from {} to {}", least, most));
     return value;
 }
 

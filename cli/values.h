@@ -23,8 +23,12 @@ std::array<int, 2> parse_pixel(const std::string& option, const std::string& tex
 std::array<float, 2> parse_interval(const std::string& option, const std::string& text);
 /// "host:port", "host" with tev's own port 14158, or "[::1]:port".
 std::array<std::string, 2> parse_address(const std::string& option, const std::string& text);
-/// A finite number above zero and up to `most`.
-double parse_positive(const std::string& option, const std::string& text, double most);
+/// A finite number above zero and up to `most`; where `least` is given, not below it.
+double parse_positive(const std::string& option, const std::string& text, double most,
+                      double least = 0);
+/// A whole number in [least, most], in decimal digits whatever it begins with.
+int64_t parse_whole(const std::string& option, const std::string& text, int64_t least,
+                    int64_t most);
 /// Bytes: "500M", "2G", "64k", "1.5T" (powers of 1024) or a plain number.
 size_t parse_size(const std::string& option, const std::string& text);
 /// "k/n", the k-th of n shares, from 1.

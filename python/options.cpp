@@ -62,8 +62,8 @@ SceneOverrides scene_overrides(const py::dict& o) {
     }
     if (is_given(o, "shutter"))
         s.shutter = checked_shutter(value_of<std::array<float, 2>>(o, "shutter", "(begin, end)"));
-    s.focal_distance = positive<float>(o, "focus");
-    s.f_number = positive<float>(o, "fstop");
+    s.focal_distance = positive<float>(o, "focus", SceneOverrides::kLeastOfLens);
+    s.f_number = positive<float>(o, "fstop", SceneOverrides::kLeastOfLens);
     return s;
 }
 

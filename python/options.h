@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <cmath>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -51,11 +52,13 @@ inline bool is_given(const py::dict& options, const char* name) {
     return !options[name].is_none();
 }
 
+/// A finite number above zero and not below `least`.
 template <typename T>
-std::optional<T> positive(const py::dict& options, const char* name) {
+std::optional<T> positive(const py::dict& options, const char* name, double least = 0) {
     if (!is_given(options, name)) return std::nullopt;
     const T value = value_of<T>(options, name, "a number");
-    require(value > 0, std::string(name) + " must be greater than 0");
+    require(value > 0 && std::isfinite(value), std::string(name) + " must be greater than 0");
+    require(double(value) >= least, std::string(name) + " is too small to reckon with");
     return value;
 }
 

@@ -63,6 +63,8 @@ struct SceneOverrides {
     std::optional<std::array<float, 2>> shutter;
     std::optional<float> focal_distance;
     std::optional<float> f_number;
+    /// Of both: what is below asks for lenses that single precision cannot hold.
+    static constexpr double kLeastOfLens = 1e-9;
 };
 
 }  // namespace covtrace

@@ -1,7 +1,9 @@
 """Help, version, and command lines that are wrong."""
 
+import json
 import unittest
 
+import exr
 from support import DONE, USAGE, TINY, CliTest
 
 
@@ -39,6 +41,12 @@ class Help(CliTest):
 
 
 class WrongCommandLines(CliTest):
+    def test_the_least_blur_is_none(self):
+        image = self.rendered("--spp", "1")
+        self.assert_fails(self.run_program("compare", image, image, "--smooth", "1e-20"), USAGE, "--smooth", "from 0.001")
+        result = self.run_program("compare", image, image, "--smooth", "0.001")
+        self.assertIn("identical       yes", result.stdout, result)
+
     def test_only_colours_are_smoothed(self):
         self.write("grey.pgm", b"P5 2 2 255\n" + bytes(4))
         self.assert_fails(self.run_program("compare", "grey.pgm", "grey.pgm", "--smooth", "1"), USAGE, "--smooth")
@@ -61,16 +69,17 @@ class WrongCommandLines(CliTest):
             "--spp": ["0", "-1", "many", "nan", "inf", "1e300", ""],
             "--time": ["garbage", "0", "-3", "5x", "3m5", "1h30", "1m-3s", "s", "nan", "inf", "1e400", "m", ""],
             "--method": ["magic", "Uniform", "0"],
-            "--cov-spp": ["0", "-2", "x"],
+            "--cov-spp": ["0", "-2", "x", "1.5", "2 ", "9999999999999999999", ""],
             "--error": ["0", "-1", "x", "nan"],
-            "--max-spp": ["0", "x"],
+            "--max-spp": ["0", "x", "0x10", "1e3", "1073741825"],
             "--density": ["even"],
             "--filter": ["none"],
             "--resolution": ["0x5", "5x0", "-4x4", "640", "640x", "640x360x2", "axb", "640X360", " 64x64", "99999999999x1", ""],
             "--crop": ["0,0,8", "0,0,8,8,8", "a,b,c,d", "4,4,4,8", "8,0,4,8", "0,0,25,16", "-1,0,8,8", "0,0,8,17", ""],
-            "--max-depth": ["-1", "x"],
+            "--max-depth": ["-1", "x", "2147483648", ""],
             "--seed": ["-1", "x", "1.5", "18446744073709551616"],
-            "--threads": ["0", "-1", "x", "5000"],
+            "--threads": ["0", "-1", "x", "5000", ""],
+            "--voxels": ["0", "2049", "0x10", "wide"],
             "--isa": ["mmx"],
             "--texture-memory": ["", "x", "-1", "5X", "5MB", "nan", "inf", "1e30"],
             "--every": ["0", "soon"],
@@ -78,8 +87,8 @@ class WrongCommandLines(CliTest):
             "--max-memory": ["x", "-1", "5X"],
             "--debug-pixel": ["1,2", "a,b,c", "1,2,-3", "24,0,0"],
             "--shutter": ["1,0", "0,0", "0", "nan,1", "0,inf", "a,b", ""],
-            "--focus": ["0", "-1", "nan"],
-            "--fstop": ["0", "-1", "nan", "inf"],
+            "--focus": ["0", "-1", "nan", "1e-50", "1e-20"],
+            "--fstop": ["0", "-1", "nan", "inf", "1e-50", "1e-38", "1e31"],
             "--progress": ["loud"],
             "--layers": ["nope", "raw,nope", "raw,", "raw.R"],
         }
@@ -90,6 +99,17 @@ class WrongCommandLines(CliTest):
                     result = self.run_program("render", "scene.pbrt", "-o", "out.exr", f"{option}={value}")
                     self.assert_fails(result, USAGE, option)
                     self.assert_no_file()
+
+    def test_leading_zeros_are_decimal(self):
+        image = exr.read(self.rendered("--spp", "9", "--max-spp", "0010", "--cov-spp", "010", "--voxels", "08", "--threads", "01", "--layers", "samples"))
+        self.assertGreater(max(image.pixels["samples.Y"]), 8)
+        self.assertLessEqual(max(image.pixels["samples.Y"]), 10)
+        self.assertEqual(self.render(TINY, "--max-depth", "09", "--seed", "010", "--resolution", "010x09", "--crop", "00,00,010,09").code, DONE)
+        self.assertEqual(exr.read(self.folder / "out.exr").value("covtrace:seed"), "10")
+        result = self.run_program("measure", "scene.pbrt", "--pixel", "010,08", "--samples", "004096", "--paths", "010", "--json")
+        self.assertEqual(result.code, DONE, result)
+        told = json.loads(result.stdout)
+        self.assertEqual((told["samples"], told["paths"]), (4096, 10))
 
     def test_unknown_option(self):
         self.assert_fails(self.render(TINY, "--frobnicate"), USAGE, "--frobnicate")

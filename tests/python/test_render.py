@@ -235,7 +235,8 @@ class Errors(unittest.TestCase):
                       {"isa": "mmx"}, {"method": 3}, {"progressive": "now"},
                       {"texture_bandwidth": "low"}, {"resolution": (-5, 4)}, {"resolution": (0, 4)},
                       {"resolution": 5}, {"crop": (1, 2)}, {"shutter": (1, 0)},
-                      {"shutter": (0, float("nan"))}, {"shutter": "open"}):
+                      {"shutter": (0, float("nan"))}, {"shutter": "open"}, {"fstop": 1e-50},
+                      {"fstop": 1e-38}, {"focus": 1e-20}, {"spp": float("inf")}):
             with self.subTest(wrong), self.assertRaises(covtrace.UsageError):
                 covtrace.render(scene, **wrong)
         with self.assertRaises(TypeError):
