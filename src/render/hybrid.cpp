@@ -71,10 +71,23 @@ class HybridRender {
         return counts;
     }
 
+    /// Covariance paths of a half. They are samples, too: the odd one goes to the half for which
+    /// the pilot plans more.
+    std::vector<uint32_t> paths_of(size_t k) const {
+        std::vector<uint32_t> counts = share_between_halves(k, s_.covariance_spp);
+        const std::vector<uint32_t> both = job_.even_counts(s_.covariance_spp),
+                                    own = share_between_halves(k, pilot()),
+                                    other = share_between_halves(1 - k, pilot());
+        for (size_t i = 0; i < counts.size(); ++i)
+            if (both[i] % 2 == 1 && own[i] != other[i])
+                counts[i] = both[i] / 2 + (own[i] > other[i] ? 1 : 0);
+        return counts;
+    }
+
     bool plan() {
         switch (s_.stage) {
             case Stage::first_paths: {
-                std::vector<uint32_t> first = share_between_halves(0, s_.covariance_spp);
+                std::vector<uint32_t> first = paths_of(0);
                 for (uint32_t& c : first) c = std::min(c, 1u);
                 s_.plan = {std::move(first), std::vector<uint32_t>(size(), 0)};
                 s_.target = std::min(1.0, 0.5 * s_.covariance_spp);
@@ -108,9 +121,7 @@ class HybridRender {
             return;
         }
         if (s_.stage == Stage::pilot) {
-            const std::array<std::vector<uint32_t>, 2> paths{
-                share_between_halves(0, s_.covariance_spp),
-                share_between_halves(1, s_.covariance_spp)};
+            const std::array<std::vector<uint32_t>, 2> paths{paths_of(0), paths_of(1)};
             trace_covariance(0, paths[0], {});
             // The paths of a pixel count in their order: all of the first half come before.
             if (!s_.has(0, paths[0], job_.tiles())) return;

@@ -52,10 +52,14 @@ class Layers(CliTest):
 
     def test_average_of_the_samples_is_what_was_asked_for(self):
         for method in ("uniform", "covariance", "hybrid"):
-            for spp in (0.5, 1, 4, 6.25):
+            for spp in (0.5, 1, 1.25, 1.5, 3.5, 4, 6.25):
                 with self.subTest(method=method, spp=spp):
                     samples = self.layers("--method", method, "--spp", spp).pixels["samples.Y"]
                     self.assertAlmostEqual(sum(samples) / len(samples), spp, delta=1 / len(samples) + 0.01 * spp)
+        # Covariance paths are samples of the halves' shares, and no others.
+        for paths in (2, 3):
+            samples = self.layers("--spp", 3.5, "--cov-spp", paths).pixels["samples.Y"]
+            self.assertAlmostEqual(sum(samples) / len(samples), 3.5, delta=0.035)
 
     def test_image_is_as_bright_as_its_few_samples(self):
         size = ["--resolution", "49x32"]  # in odd widths every second pixel is on the same fields of a checkerboard
