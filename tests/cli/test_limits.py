@@ -17,6 +17,20 @@ Material "diffuse" "rgb reflectance" [.9 .9 .9]
 Shape "sphere" "float radius" 1
 """
 
+# A wall, and before it a lamp that shines at the camera alone: the squares of its light are no floats.
+BRIGHT_LAMP = HEADER + """\
+WorldBegin
+LightSource "point" "point3 from" [2 3 4] "rgb I" [10 10 10]
+Material "diffuse" "rgb reflectance" [.5 .4 .3]
+Shape "trianglemesh" "point3 P" [-9 -9 -1  9 -9 -1  9 9 -1  -9 9 -1] "integer indices" [0 1 2  0 2 3]
+Shape "sphere" "float radius" 0.8
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [1 1 1] "float scale" 1e25
+  Translate 1 1 1
+  Shape "disk" "float radius" 0.1
+AttributeEnd
+"""
+
 
 class Memory(FilmTest):
     def test_bytes_per_pixel(self):
@@ -82,6 +96,17 @@ class NotFinite(FilmTest):
                     self.assertEqual(shown.code, DONE, shown)
                     self.assertIn("not finite", shown.stdout)
                     self.assertIn("vertex 0", shown.stdout)
+
+    def test_light_without_a_known_error(self):
+        """The rest of the image has one: it is what --error asks for, and what the film keeps."""
+        self.write("lamp.pbrt", BRIGHT_LAMP)
+        film = ["--error", "0.0001", "--checkpoint", "c.film", "--resume"]
+        for spp in (32, 64):
+            self.run_render("lamp", "hybrid", "--spp", spp, *film)
+            image = exr.read(self.folder / "out.exr")
+            self.assertAlmostEqual(image.value("spp"), spp, delta=0.1)
+            self.assertIn(f"{spp} samples per pixel", self.assert_sound("c.film"))
+        self.assertFalse(all(map(math.isfinite, image.pixels["error.Y"])))
 
     def test_finite_samples(self):
         """The mean of a pixel's samples is the pixel."""

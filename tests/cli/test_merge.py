@@ -103,6 +103,17 @@ class Merge(FilmTest):
             self.merge([f"{film}.film"], "-o", f"{film}.exr")
         self.assert_identical("first.exr", "part-1.exr")
 
+    def test_a_shard_that_began_with_another_budget(self):
+        """Its round is the same: it keeps its samples and joins those with the new --spp."""
+        for method in ("covariance", "hybrid"):
+            with self.subTest(method=method):
+                for film in self.folder.glob("*.film*"):
+                    film.unlink()
+                self.shard(1, "plain", method, "--spp", "8", n=2)
+                self.rounds("plain", method, "--spp", "16", n=2)
+                self.run_render("plain", method, "--spp", "16", output="whole.exr")
+                self.assert_identical("whole.exr", "merged.exr")
+
     def test_shards_of_hybrid_with_any_layers(self):
         """Which layers are asked for changes nothing that `hybrid` keeps."""
         spp = ["--spp", "2"]

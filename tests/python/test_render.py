@@ -307,6 +307,20 @@ class Images(unittest.TestCase):
         with self.assertRaises(covtrace.UsageError):
             covtrace.compare(reference, numpy.zeros((4, 4, 3)))
 
+    def test_compare_where_nothing_is_finite(self):
+        reference = numpy.full((6, 8, 3), 0.5)
+        c = covtrace.compare(numpy.full((6, 8, 3), numpy.nan), reference)
+        self.assertEqual(c.nonfinite, 3 * 6 * 8)
+        for measure in (c.mse, c.relmse, c.relmse_trimmed, c.psnr, c.flip):
+            self.assertTrue(numpy.isnan(measure))
+        numpy.testing.assert_array_equal(c.flip_map, numpy.zeros((6, 8)))
+
+    def test_layers_of_a_wrong_shape(self):
+        for values in (3.0, [1.0, 2.0], numpy.zeros((2, 2, 2)), numpy.zeros((0, 2))):
+            with self.subTest(shape=numpy.shape(values)):
+                with self.assertRaisesRegex(ValueError, "'Z' must be a \\(height, width\\) array"):
+                    covtrace.Image.from_arrays(layers={"Z": values})
+
 
 class Builder(unittest.TestCase):
     def test_a_moving_mesh_is_blurred(self):

@@ -197,6 +197,37 @@ TEST(Emission, HiddenShapesLightTheSceneButAreNotSeen) {
     EXPECT_FALSE(hidden.geometry->occluded({{0.1f, 0.2f, 1}, {0, 0, -1}}));
 }
 
+TEST(Emission, LightsWhoseAlphaHangsOnPositionAreChosen) {
+    // Transparent around the origin, where textures are asked for their mean; opaque in the cell
+    // that the light is in.
+    LightScene s;
+    const auto add_texture = [&s](auto value) {
+        TextureDescription texture;
+        texture.is_spectrum = false;
+        texture.value = std::move(value);
+        s.description.textures.push_back(texture);
+        return TextureId(s.description.textures.size() - 1);
+    };
+    CheckerboardTexture cells;
+    cells.dimension = 3;
+    cells.tex1 = add_texture(ConstantTexture{Rgb(0)});
+    cells.tex2 = add_texture(ConstantTexture{Rgb(1)});
+    ShapeDescription light =
+        mesh_of(rectangle(0.5f, 0.5f), placed({Transform::translate({1.5f, 0.5f, 0.5f})}));
+    light.alpha = add_texture(cells);
+    s.add(light, Rgb(3));
+    s.add(mesh_of(rectangle(0.5f, 0.5f), placed({Transform::translate({0.5f, 0.5f, 0.5f})})),
+          Rgb(3));
+    const TextureStore textures(s.description);
+    s.geometry = std::make_unique<Geometry>(s.description);
+    s.lights = std::make_unique<Lights>(s.description, *s.geometry, &textures);
+    const Vec3 p{1, 0.5f, 2}, n{0, 0, -1};
+    // A twentieth as often as the same light without alpha.
+    const float with = s.lights->selection_probability(p, n, 0),
+                without = s.lights->selection_probability(p, n, 2);
+    EXPECT_NEAR(with / without, 0.05, 0.01);
+}
+
 TEST(Emission, OtherShapesAreDark) {
     LightScene s;
     s.description.shapes.push_back(shape_of(whole_sphere(1)));
