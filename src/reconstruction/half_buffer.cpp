@@ -42,20 +42,36 @@ void fill_holes(HalfBuffer& half) {
 }
 
 void set_variance_from_difference(Halves& halves) {
-    for (size_t c = 0; c < 3; ++c) {
-        const Plane &a = halves[0].color[c], &b = halves[1].color[c];
+    constexpr int kColorReach = 6;
+    // Two samples that see the same surface by chance do not say that there is no other.
+    constexpr int kFeatureReach = 3;
+    // A filled hole differs by edges and textures, too, and its own noise is small. 1/2 is 3 % and
+    // 1 9 % to 12 % worse in the mean over 13 scenes at 0.5 and 1 samples per pixel.
+    constexpr float kColorOfFilled = 0.25f;
+    const Plane &first = halves[0].count, &second = halves[1].count;
+    Plane known(first.width, first.height);
+    for (size_t i = 0; i < known.size(); ++i)
+        known[i] = first[i] > 0 || second[i] > 0 ? 1.0f : 0.0f;
+    const auto variance = [&](const Plane& a, const Plane& b, float of_filled, int reach) {
         Plane squares(a.width, a.height);
-        for (size_t i = 0; i < squares.size(); ++i) squares[i] = (a[i] - b[i]) * (a[i] - b[i]) / 2;
-        squares = box_blur(squares, 6);
-        for (HalfBuffer& half : halves) half.color_variance[c] = squares;
+        for (size_t i = 0; i < squares.size(); ++i) {
+            const float share = first[i] > 0 && second[i] > 0 ? 1.0f : of_filled;
+            squares[i] = known[i] * share * (a[i] - b[i]) * (a[i] - b[i]) / 2;
+        }
+        squares = box_blur(squares, reach);
+        const Plane around = box_blur(known, reach);
+        for (size_t i = 0; i < squares.size(); ++i)
+            squares[i] = around[i] > 0 ? squares[i] / around[i] : 0.0f;
+        return squares;
+    };
+    for (size_t c = 0; c < 3; ++c) {
+        const Plane v =
+            variance(halves[0].color[c], halves[1].color[c], kColorOfFilled, kColorReach);
+        for (HalfBuffer& half : halves) half.color_variance[c] = v;
     }
     for (size_t f = 0; f < kFeatures; ++f) {
-        const Plane &a = halves[0].feature[f], &b = halves[1].feature[f];
-        Plane squares(a.width, a.height);
-        for (size_t i = 0; i < squares.size(); ++i) squares[i] = (a[i] - b[i]) * (a[i] - b[i]) / 2;
-        // Two samples that see the same surface by chance do not say that there is no other.
-        squares = box_blur(squares, 3);
-        for (HalfBuffer& half : halves) half.feature_variance[f] = squares;
+        const Plane v = variance(halves[0].feature[f], halves[1].feature[f], 1, kFeatureReach);
+        for (HalfBuffer& half : halves) half.feature_variance[f] = v;
     }
 }
 

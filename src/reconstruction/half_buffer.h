@@ -31,6 +31,7 @@ void fill_holes(HalfBuffer& half);
 
 /// Where no pixel has two samples their spread is unknown: sets the variances of both halves to
 /// what the difference of the halves says, box13((A - B)^2) / 2; of the features over 7 x 7 pixels.
+/// Holes are to be filled before; pixels that neither half has seen say nothing.
 void set_variance_from_difference(Halves& halves);
 
 }  // namespace covtrace

@@ -107,7 +107,10 @@ Halves halves_of(std::span<const Film> film) {
         return std::any_of(half.pixels.begin(), half.pixels.end(),
                            [](const FilmPixel& p) { return p.count > 1; });
     };
-    if (!repeated(film[0]) || !repeated(film[1])) set_variance_from_difference(halves);
+    if (!repeated(film[0]) || !repeated(film[1])) {
+        for (HalfBuffer& half : halves) fill_holes(half);  // black would not be what is missing
+        set_variance_from_difference(halves);
+    }
     return halves;
 }
 
