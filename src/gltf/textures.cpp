@@ -122,6 +122,7 @@ TextureId TextureReader::linear(const tinygltf::TextureInfo& info, const std::st
     auto texture = image(info, place);
     if (!texture) return -1;
     texture->encoding = ImageTexture::Encoding::linear;
+    texture->is_colour = false;
     return add({{}, true, *texture, document_.place(place)});
 }
 

@@ -39,6 +39,9 @@ struct Channel {
 
 using MetadataValue = std::variant<int, float, std::string, std::vector<float>>;
 using Metadata = std::map<std::string, MetadataValue>;
+/// An entry of eight floats, as Chromaticities, that EXR files keep as an attribute of its own
+/// type.
+inline constexpr const char* kChromaticities = "chromaticities";
 
 struct Image {
     PixelBounds data;     ///< the pixels that are stored
@@ -71,7 +74,8 @@ Image cropped(const Image& image, const PixelBounds& bounds);
 Image read_image(const std::filesystem::path& file);
 
 /// 32-bit float, ZIP-compressed scan lines, one part; values are stored bit by bit. Metadata of 2
-/// and 3 floats is written as a vector, of 9 and 16 as a matrix, of any other number as a list.
+/// and 3 floats is written as a vector, of 9 and 16 as a matrix, of any other number as a list; but
+/// kChromaticities as what it is.
 /// Written beside and renamed (OutputFile). `threads` compress; the bytes do not depend on it.
 ///
 /// Throws Error(io) where the file cannot be written; Error(internal) for an image that is not well

@@ -1,5 +1,6 @@
 #include "image/raster.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "image/read_file.h"
@@ -20,6 +21,17 @@ std::vector<const Channel*> visible_channels(const Image& image) {
     return {};
 }
 
+/// OpenEXR's documentation: without the attribute the primaries are those of Rec.709.
+std::optional<ColourSpace> colour_space_of(const Image& image) {
+    const auto entry = image.metadata.find(kChromaticities);
+    if (entry == image.metadata.end()) return ColourSpace::srgb;
+    const auto* values = std::get_if<std::vector<float>>(&entry->second);
+    Chromaticities c{};
+    if (!values || values->size() != c.size()) return std::nullopt;
+    std::copy(values->begin(), values->end(), c.begin());
+    return colour_space_with(c);
+}
+
 RasterImage from_exr(const std::filesystem::path& file, const SourceLocation& where) {
     const Image image = read_exr(file, where);
     const auto channels = visible_channels(image);
@@ -27,7 +39,8 @@ RasterImage from_exr(const std::filesystem::path& file, const SourceLocation& wh
     RasterImage raster{.width = image.width(),
                        .height = image.height(),
                        .channels = int(channels.size()),
-                       .values = {}};
+                       .values = {},
+                       .colour_space = colour_space_of(image)};
     raster.values.resize(image.pixel_count() * channels.size());
     for (size_t c = 0; c < channels.size(); ++c)
         for (size_t i = 0; i < image.pixel_count(); ++i)
@@ -77,6 +90,15 @@ RasterImage decode_raster(std::string_view bytes, const std::filesystem::path& n
     RasterImage raster = from_plain(decode_plain(bytes, name, where));
     repair(raster);
     return raster;
+}
+
+ColourSpace colour_space_of(const RasterImage& raster, const std::filesystem::path& file,
+                            const SourceLocation& where, Warnings& warnings) {
+    if (!raster.colour_space && raster.channels >= 3)
+        warnings.push_back({where, "the chromaticities of \"" + file.string() +
+                                       "\" are not those of a known colour space (srgb, dci-p3, "
+                                       "rec2020, aces2065-1); its colours are taken for srgb"});
+    return raster.colour_space.value_or(ColourSpace::srgb);
 }
 
 }  // namespace covtrace

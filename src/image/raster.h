@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <vector>
 
+#include "core/colour_space.h"
 #include "core/error.h"
 
 namespace covtrace {
@@ -16,13 +18,17 @@ struct RasterImage {
     std::vector<float> values;  ///< interleaved, row by row from the top; see read_raster
     bool is_8bit = false;       ///< 8-bit integers in the file, usually sRGB-encoded
     bool is_16bit = false;      ///< 16-bit integers in the file, usually sRGB-encoded
-    int64_t repaired = 0;       ///< values that were NaN or infinite in the file
+    /// Of linear R, G, B where they are colours; empty where the file names primaries that belong
+    /// to none of the known spaces. See colour_space_of.
+    std::optional<ColourSpace> colour_space = ColourSpace::srgb;
+    int64_t repaired = 0;  ///< values that were NaN or infinite in the file
 };
 
 /// Reads the same formats as read_image. Integers are scaled to [0, 1] and left as they are
 /// encoded, palettes expanded, the alpha of grey images dropped. Of an EXR the data window's pixels
-/// are read, of its channels the root layer's R, G, B, A or Y, or else the only channel. NaN
-/// becomes 0, ±Inf the largest finite magnitude of the image with its sign.
+/// are read, of its channels the root layer's R, G, B, A or Y, or else the only channel; its
+/// chromaticities tell the colour space, the values are not converted. NaN becomes 0, ±Inf the
+/// largest finite magnitude of the image with its sign.
 ///
 /// Throws Error(scene) at `where` with one line that names the file, as read_image does.
 RasterImage read_raster(const std::filesystem::path& file, const SourceLocation& where = {});
@@ -30,5 +36,10 @@ RasterImage read_raster(const std::filesystem::path& file, const SourceLocation&
 /// EXR and Targa.
 RasterImage decode_raster(std::string_view bytes, const std::filesystem::path& name,
                           const SourceLocation& where = {});
+
+/// The colour space of a raster whose values are used as colours: sRGB where the file's is not
+/// known, with a warning at `where`, as in pbrt-v4.
+ColourSpace colour_space_of(const RasterImage& raster, const std::filesystem::path& file,
+                            const SourceLocation& where, Warnings& warnings);
 
 }  // namespace covtrace

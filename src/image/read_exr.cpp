@@ -1,4 +1,5 @@
 #include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
 #include <ImfDoubleAttribute.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFloatVectorAttribute.h>
@@ -33,6 +34,10 @@ std::vector<float> matrix_values(const Matrix& matrix, size_t count) {
     return std::vector<float>(matrix.getValue(), matrix.getValue() + count);
 }
 
+std::vector<float> chromaticities(const Imf::Chromaticities& c) {
+    return {c.red.x, c.red.y, c.green.x, c.green.y, c.blue.x, c.blue.y, c.white.x, c.white.y};
+}
+
 /// False for the types that Metadata has no place for.
 bool convert(const Imf::Attribute& attribute, MetadataValue& value) {
     if (const auto* i = dynamic_cast<const Imf::IntAttribute*>(&attribute))
@@ -53,6 +58,8 @@ bool convert(const Imf::Attribute& attribute, MetadataValue& value) {
         value = matrix_values(m3->value(), 9);
     else if (const auto* m4 = dynamic_cast<const Imf::M44fAttribute*>(&attribute))
         value = matrix_values(m4->value(), 16);
+    else if (const auto* c = dynamic_cast<const Imf::ChromaticitiesAttribute*>(&attribute))
+        value = chromaticities(c->value());
     else
         return false;
     return true;

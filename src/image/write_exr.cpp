@@ -1,4 +1,5 @@
 #include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFloatVectorAttribute.h>
 #include <ImfFrameBuffer.h>
@@ -64,6 +65,9 @@ void check_form(const Image& image, const std::filesystem::path& file) {
 
 void insert(Imf::Header& header, const std::string& name, const std::vector<float>& values) {
     const float* v = values.data();
+    if (name == kChromaticities && values.size() == 8)
+        return header.insert(name, Imf::ChromaticitiesAttribute(
+                                       {{v[0], v[1]}, {v[2], v[3]}, {v[4], v[5]}, {v[6], v[7]}}));
     switch (values.size()) {
         case 2:
             return header.insert(name, Imf::V2fAttribute({v[0], v[1]}));

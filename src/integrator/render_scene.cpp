@@ -35,8 +35,8 @@ RenderScene::RenderScene(SceneDescription scene_description, const std::string& 
     geometry.set_alpha([this](TextureId id, Vec2 uv, Vec3 position) {
         return textures.eval_float(id, {uv, position});
     });
-    const Warnings& reduced = textures.warnings();
-    description.warnings.insert(description.warnings.end(), reduced.begin(), reduced.end());
+    for (const Warnings* w : {&textures.warnings(), &lights.warnings()})
+        description.warnings.insert(description.warnings.end(), w->begin(), w->end());
     for (const MediumDescription& m : description.media)
         media.push_back({m.sigma_a, m.sigma_s, m.emission, m.g});
     has_lens_or_motion = camera.has_lens() || anything_moves(description);

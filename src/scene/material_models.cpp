@@ -250,6 +250,7 @@ Model material_model(Entity& entity, TextureBuilder& textures, BuildContext& con
     } else if (type == "coatedconductor") {
         model = b.coated_conductor();
     } else if (type == "thindielectric") {
+        image.is_colour = false;
         model = ThinDielectricMaterial{refractive_index(b.p, "eta", 1.5f, context),
                                        textures.reflectance_or_none(b.p, "transmittance")};
     } else if (type == "subsurface") {

@@ -211,8 +211,7 @@ Rgb rgb_value(const Parameter& p) {
         throw Error(ErrorKind::scene, p.where,
                     "parameter " + in_quotes(p.name) +
                         " has a negative component; expected rgb values >= 0");
-    const Rgb r = to_rec709(c, p.colour_space);
-    return {std::max(0.0f, r.r), std::max(0.0f, r.g), std::max(0.0f, r.b)};
+    return clipped_to_rec709(c, p.colour_space);
 }
 
 }  // namespace covtrace

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/colour_space.h"
 #include "core/error.h"
 #include "core/vec.h"
-#include "scene/colour_space.h"
 
 namespace covtrace {
 

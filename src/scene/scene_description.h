@@ -57,6 +57,7 @@ struct ImageTexture {
     float max_anisotropy = 8;  ///< ewa: how much longer than wide a footprint may be, >= 1
     float scale = 1;
     bool invert = false;
+    bool is_colour = true;  ///< of spectrum textures: colours, not directions as of a normal map
     TextureMapping mapping;
 };
 struct CheckerboardTexture {

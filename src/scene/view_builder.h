@@ -1,8 +1,8 @@
 /// Camera, film, filter, sampler and integrator out of their directives, with pbrt-v4's defaults.
 #pragma once
 
+#include "core/colour_space.h"
 #include "scene/build_context.h"
-#include "scene/colour_space.h"
 
 namespace covtrace {
 

@@ -30,14 +30,14 @@ bool preserves_lengths(const Transform& t) {
 }  // namespace
 
 Environment::Environment(const InfiniteLight& light, const Transform& light_to_world,
-                         const SourceLocation& where)
+                         const SourceLocation& where, Warnings& warnings)
     : light_to_world_(light_to_world),
       to_world_(linear(light_to_world)),
       to_light_(linear(light_to_world.inverse())),
       is_rigid_(preserves_lengths(light_to_world)),
       scale_(light.radiance) {
     determinant_ = std::abs(dot(cross(to_light_.x, to_light_.y), to_light_.z));
-    if (light.image) map_ = EnvironmentMap::read(*light.image, where);
+    if (light.image) map_ = EnvironmentMap::read(*light.image, where, warnings);
     if (light.illuminance) {
         const Rgb measured = scale_ * (map_ ? map_->irradiance_from_above() : Rgb(kPi));
         scale_ *= normalisation(*light.illuminance, luminance(measured));

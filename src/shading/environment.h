@@ -24,7 +24,7 @@ class Environment {
   public:
     /// Throws as EnvironmentMap::read.
     Environment(const InfiniteLight& light, const Transform& light_to_world,
-                const SourceLocation& where);
+                const SourceLocation& where, Warnings& warnings);
 
     Rgb radiance(Vec3 w) const { return map_ ? scale_ * map_->radiance(to_light(w)) : scale_; }
     /// A direction for a surface with the unit normal n, which uniform light is sampled about by

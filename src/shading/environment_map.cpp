@@ -8,9 +8,8 @@
 #include "core/fast_math.h"
 #include "core/hash.h"
 #include "core/parallel.h"
-#include "image/color_encoding.h"
-#include "image/raster.h"
 #include "shading/equal_area.h"
+#include "shading/light_texels.h"
 
 namespace covtrace {
 
@@ -46,27 +45,17 @@ int wrap_repeat(int i, int n) {
 
 }  // namespace
 
-EnvironmentMap EnvironmentMap::read(const std::filesystem::path& file,
-                                    const SourceLocation& where) {
-    const RasterImage raster = read_raster(file, where);
-    if (raster.width < 1 || (raster.width != raster.height && raster.width != 2 * raster.height))
+EnvironmentMap EnvironmentMap::read(const std::filesystem::path& file, const SourceLocation& where,
+                                    Warnings& warnings) {
+    const LightTexels image =
+        read_light_texels(file, LightChannels::colour, kBrightest, where, warnings);
+    if (image.width < 1 || (image.width != image.height && image.width != 2 * image.height))
         throw Error(ErrorKind::scene, where,
                     "environment image \"" + file.string() + "\" is " +
-                        std::to_string(raster.width) + " x " + std::to_string(raster.height) +
+                        std::to_string(image.width) + " x " + std::to_string(image.height) +
                         " pixels; expected a square (equal-area map) or twice as wide as high "
                         "(lat-long map)");
-    const bool encoded = raster.is_8bit || raster.is_16bit;
-    const auto value = [&](size_t i) {
-        const float v = encoded ? srgb_decode(raster.values[i]) : raster.values[i];
-        return v > 0 ? std::min(v, kBrightest) : 0.0f;
-    };
-    const auto channels = static_cast<size_t>(raster.channels);
-    std::vector<Rgb> texels(static_cast<size_t>(raster.width) * static_cast<size_t>(raster.height));
-    for (size_t i = 0; i < texels.size(); ++i)
-        texels[i] = channels < 3 ? Rgb(value(i * channels))
-                                 : Rgb(value(i * channels), value(i * channels + 1),
-                                       value(i * channels + 2));
-    return EnvironmentMap(texels, raster.width, raster.height);
+    return EnvironmentMap(image.values, image.width, image.height);
 }
 
 EnvironmentMap::EnvironmentMap(const std::vector<Rgb>& texels, int width, int height)

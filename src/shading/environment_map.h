@@ -26,8 +26,9 @@ class EnvironmentMap {
 
     /// Reads an image; integers are taken as sRGB-encoded, grey as all channels alike, negative and
     /// NaN texels as black. Throws Error(scene) at `where` if the file can't be read or is neither
-    /// square nor 2:1.
-    static EnvironmentMap read(const std::filesystem::path& file, const SourceLocation& where);
+    /// square nor 2:1; warns where its colour space is not known.
+    static EnvironmentMap read(const std::filesystem::path& file, const SourceLocation& where,
+                               Warnings& warnings);
     /// Texels row by row from the top, finite and not negative; height == width or width / 2.
     EnvironmentMap(const std::vector<Rgb>& texels, int width, int height);
 

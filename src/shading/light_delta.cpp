@@ -64,12 +64,12 @@ PointEmitter make_point_emitter(const SpotLight& light, const Transform& light_t
 }
 
 PointEmitter make_point_emitter(const GoniometricLight& light, const Transform& light_to_world,
-                                const SourceLocation& where) {
+                                const SourceLocation& where, Warnings& warnings) {
     PointEmitter e;
     e.position = light_to_world.point({});
     e.intensity = light.intensity;
     if (light.image) {
-        e.image = LightImage::goniometric(*light.image, light_to_world, where);
+        e.image = LightImage::goniometric(*light.image, light_to_world, where, warnings);
         e.image_integral = e.image->integral();
     }
     if (light.power) e.intensity *= normalisation(*light.power, luminance(power(e)));
@@ -77,12 +77,12 @@ PointEmitter make_point_emitter(const GoniometricLight& light, const Transform& 
 }
 
 PointEmitter make_point_emitter(const ProjectionLight& light, const Transform& light_to_world,
-                                const SourceLocation& where) {
+                                const SourceLocation& where, Warnings& warnings) {
     PointEmitter e;
     e.position = light_to_world.point({});
     e.axis = normalize(light_to_world.vector({0, 0, 1}));
     e.intensity = Rgb(light.scale);
-    e.image = LightImage::slide(light.image, light.fov, light_to_world, where);
+    e.image = LightImage::slide(light.image, light.fov, light_to_world, where, warnings);
     e.image_integral = e.image->integral();
     if (light.power) e.intensity *= normalisation(*light.power, luminance(power(e)));
     e.cos_outer = e.image->cos_corner();

@@ -24,11 +24,12 @@ struct PointEmitter {
 PointEmitter make_point_emitter(const PointLight& light, const Transform& light_to_world);
 /// The transform's scale does not change the cone.
 PointEmitter make_point_emitter(const SpotLight& light, const Transform& light_to_world);
-/// Images that are missing, broken or of the wrong shape throw Error(scene) at `where`.
+/// Images that are missing, broken or of the wrong shape throw Error(scene) at `where`; colours of
+/// an unknown space are a warning.
 PointEmitter make_point_emitter(const GoniometricLight& light, const Transform& light_to_world,
-                                const SourceLocation& where);
+                                const SourceLocation& where, Warnings& warnings);
 PointEmitter make_point_emitter(const ProjectionLight& light, const Transform& light_to_world,
-                                const SourceLocation& where);
+                                const SourceLocation& where, Warnings& warnings);
 /// Intensity towards `w` (unit, away from the light).
 Rgb intensity(const PointEmitter& light, Vec3 w);
 /// Emitted in all directions together.

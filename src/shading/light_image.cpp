@@ -2,36 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
-#include "image/color_encoding.h"
-#include "image/raster.h"
 #include "shading/equal_area.h"
 
 namespace covtrace {
 
-LightImage::LightImage(const std::filesystem::path& file, const Transform& light_to_world,
-                       const SourceLocation& where)
-    : world_to_light_(light_to_world.inverse()) {
-    const RasterImage raster = read_raster(file, where);
-    width_ = raster.width;
-    height_ = raster.height;
-    const bool encoded = raster.is_8bit || raster.is_16bit;
-    const auto value = [&](size_t i) {
-        const float v = encoded ? srgb_decode(raster.values[i]) : raster.values[i];
-        return v > 0 ? v : 0.0f;
-    };
-    const auto channels = static_cast<size_t>(raster.channels);
-    std::vector<Rgb> texels(static_cast<size_t>(width_) * static_cast<size_t>(height_));
-    for (size_t i = 0; i < texels.size(); ++i)
-        texels[i] = channels < 3 ? Rgb(value(i * channels))
-                                 : Rgb(value(i * channels), value(i * channels + 1),
-                                       value(i * channels + 2));
-    texels_ = std::make_shared<const std::vector<Rgb>>(std::move(texels));
-}
+namespace {
+
+constexpr float kBrightest = std::numeric_limits<float>::infinity();  // nothing is cut
+
+}  // namespace
+
+LightImage::LightImage(LightTexels image, const Transform& light_to_world)
+    : world_to_light_(light_to_world.inverse()),
+      width_(image.width),
+      height_(image.height),
+      texels_(std::make_shared<const std::vector<Rgb>>(std::move(image.values))) {}
 
 LightImage LightImage::goniometric(const std::filesystem::path& file,
-                                   const Transform& light_to_world, const SourceLocation& where) {
-    LightImage light(file, light_to_world, where);
+                                   const Transform& light_to_world, const SourceLocation& where,
+                                   Warnings& warnings) {
+    LightImage light(read_light_texels(file, LightChannels::factors, kBrightest, where, warnings),
+                     light_to_world);
     if (light.width_ != light.height_)
         throw Error(ErrorKind::scene, where,
                     "image \"" + file.string() + "\" of a goniometric light is " +
@@ -44,8 +38,10 @@ LightImage LightImage::goniometric(const std::filesystem::path& file,
 }
 
 LightImage LightImage::slide(const std::filesystem::path& file, float fov,
-                             const Transform& light_to_world, const SourceLocation& where) {
-    LightImage light(file, light_to_world, where);
+                             const Transform& light_to_world, const SourceLocation& where,
+                             Warnings& warnings) {
+    LightImage light(read_light_texels(file, LightChannels::colour, kBrightest, where, warnings),
+                     light_to_world);
     const float shorter = std::tan(fov * kPi / 360);
     const float aspect = static_cast<float>(light.width_) / static_cast<float>(light.height_);
     light.half_size_ =

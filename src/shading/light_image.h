@@ -9,6 +9,7 @@
 #include "core/transform.h"
 #include "scene/scene_description.h"
 #include "shading/image_spectrum.h"
+#include "shading/light_texels.h"
 
 namespace covtrace {
 
@@ -17,11 +18,13 @@ class LightImage {
     /// Square and equal-area, light space's y as the pole, as pbrt-v4 has it; grey: the mean of the
     /// channels. Throws Error(scene) at `where` for images that can't be read or aren't square.
     static LightImage goniometric(const std::filesystem::path& file,
-                                  const Transform& light_to_world, const SourceLocation& where);
+                                  const Transform& light_to_world, const SourceLocation& where,
+                                  Warnings& warnings);
     /// A slide in the plane z = 1 of light space, its first row at +y, `fov` degrees along its
     /// shorter side. Throws Error(scene) at `where` for images that can't be read.
     static LightImage slide(const std::filesystem::path& file, float fov,
-                            const Transform& light_to_world, const SourceLocation& where);
+                            const Transform& light_to_world, const SourceLocation& where,
+                            Warnings& warnings);
 
     /// Of the texel that the world direction w (unit, away from the light) falls into; black beside
     /// a slide.
@@ -40,8 +43,7 @@ class LightImage {
     SpatialCovariance2 spectrum(const Frame& frame) const;
 
   private:
-    LightImage(const std::filesystem::path& file, const Transform& light_to_world,
-               const SourceLocation& where);
+    LightImage(LightTexels image, const Transform& light_to_world);
     Rgb texel(Vec2 place) const;
     /// Where the image is looked up, in [0, 1]^2; empty beside a slide.
     std::optional<Vec2> place(Vec3 w) const;

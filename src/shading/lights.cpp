@@ -104,14 +104,16 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
         else if (const auto* spot = std::get_if<SpotLight>(&light.value))
             points.push_back(make_point_emitter(*spot, light.light_to_world));
         else if (const auto* round = std::get_if<GoniometricLight>(&light.value))
-            points.push_back(make_point_emitter(*round, light.light_to_world, light.where));
+            points.push_back(
+                make_point_emitter(*round, light.light_to_world, light.where, warnings));
         else if (const auto* slide = std::get_if<ProjectionLight>(&light.value))
-            points.push_back(make_point_emitter(*slide, light.light_to_world, light.where));
+            points.push_back(
+                make_point_emitter(*slide, light.light_to_world, light.where, warnings));
         else if (const auto* distant = std::get_if<DistantLight>(&light.value))
             distants.push_back(make_distant_emitter(*distant, light.light_to_world));
         else
             environments.emplace_back(std::get<InfiniteLight>(light.value), light.light_to_world,
-                                      light.where);
+                                      light.where, warnings);
     }
     for (const PointEmitter& point : points) finite.push_back(bounds(point));
     tree = LightTree(finite);
@@ -271,6 +273,10 @@ std::optional<LightSample> Lights::finish_draw(Vec3 p, Vec3 n, float time, float
                                                Draw draw) const {
     const InfiniteShare share = impl_->infinite_share(p, n);
     if (u_select < share.probability)
+const Warnings& Lights::warnings() const {
+    return impl_->warnings;
+}
+
         return impl_->sample_infinite(share, n, u_select / share.probability, draw);
     const float finite = 1 - share.probability;
     if (!(finite > 0)) return std::nullopt;

@@ -123,6 +123,8 @@ class Lights {
     Rgb total_power() const;
     /// Every emissive triangle, patch half, sphere and disk counts as a light of its own.
     int count() const;
+    /// That the colour space of an image is not known.
+    const Warnings& warnings() const;
     /// Probability that `sample(p, n)` chooses the light. Those of all lights sum to 1, or less
     /// where all of a group of lights look away from p: choosing the group then chooses none.
     float selection_probability(Vec3 p, Vec3 n, int light) const;

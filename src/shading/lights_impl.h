@@ -70,6 +70,7 @@ struct Lights::Impl {
     std::vector<PointEmitter> points;
     std::vector<DistantEmitter> distants;
     std::vector<Environment> environments;
+    Warnings warnings;
     LightTree tree;  ///< over the ids of area and point lights
 };
 

@@ -19,12 +19,12 @@ constexpr int kMaxNesting = 1000;
 using Encoding = ImageTexture::Encoding;
 /// Textures with equal keys share an image. The encoding is empty where the file decides.
 using ImageKey = std::tuple<std::filesystem::path, const std::string*, std::optional<Encoding>,
-                            float, ImageTexture::Wrap>;
+                            float, ImageTexture::Wrap, bool>;
 
 ImageKey key_of(const ImageTexture& t) {
     const bool uses_gamma = t.encoding == Encoding::gamma;
-    return {t.file.lexically_normal(), t.content.get(), t.encoding, uses_gamma ? t.gamma : 1.0f,
-            t.wrap};
+    return {t.file.lexically_normal(),   t.content.get(), t.encoding,
+            uses_gamma ? t.gamma : 1.0f, t.wrap,          t.is_colour};
 }
 
 /// Turns descriptions into nodes, children first, and folds what is constant.
@@ -92,6 +92,7 @@ class GraphBuilder {
     TextureNode make_node(const ImageTexture& t, const TextureDescription& d, int) {
         const auto [entry, is_new] = image_ids_.try_emplace(key_of(t), int(requests_.size()));
         if (is_new) requests_.push_back({&t, &d.where});
+        if (d.is_spectrum && t.is_colour) requests_[size_t(entry->second)].is_colour = true;
         ImageNode node;
         node.image = entry->second;
         node.is_spectrum = d.is_spectrum;

@@ -80,7 +80,7 @@ class TextureStore {
                                      float footprint_uv) const;
     /// Bytes held in memory by images, their pages and spectra.
     size_t memory() const;
-    /// That images are read from a temporary file.
+    /// That images are read from a temporary file, or that the colour space of one is not known.
     const Warnings& warnings() const;
 
   private:

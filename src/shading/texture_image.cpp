@@ -44,8 +44,9 @@ float mirrored(float v) {
     return there > 1 ? 2 - there : there;
 }
 
-TextureImage::TextureImage(const RasterImage& raster, Encoding encoding, float gamma, Wrap wrap)
-    : channels_(kept_channels(raster)), is_8bit_(raster.is_8bit), wrap_(wrap) {
+TextureImage::TextureImage(const RasterImage& raster, Encoding encoding, float gamma, Wrap wrap,
+                           ColourSpace space)
+    : channels_(kept_channels(raster)), is_8bit_(raster.is_8bit), wrap_(wrap), space_(space) {
     Level level;
     level.width = raster.width;
     level.height = raster.height;
@@ -194,7 +195,7 @@ Rgb TextureImage::color_at(const Level& level, size_t texel) const {
     TexelBuffer buffer;
     const Texel t = texel_at(level, texel, buffer);
     if (channels_ == 1) return Rgb(channel(t, 0));
-    return {channel(t, 0), channel(t, 1), channel(t, 2)};
+    return clipped_to_rec709({channel(t, 0), channel(t, 1), channel(t, 2)}, space_);
 }
 
 float TextureImage::value_at(const Level& level, size_t texel, Channel which) const {

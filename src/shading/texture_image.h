@@ -31,8 +31,9 @@ class TextureImage {
     using Filter = ImageTexture::Filter;
 
     /// Of one level. 8-bit rasters stay 8-bit. `encoding` applies to all channels, alpha included,
-    /// as in pbrt-v4.
-    TextureImage(const RasterImage& raster, Encoding encoding, float gamma, Wrap wrap);
+    /// as in pbrt-v4. Colours are taken out of `space`.
+    TextureImage(const RasterImage& raster, Encoding encoding, float gamma, Wrap wrap,
+                 ColourSpace space = ColourSpace::srgb);
 
     /// The texels that make up a value, with weights that sum to 1 less those of black
     /// surroundings.
@@ -47,11 +48,11 @@ class TextureImage {
     /// The four texels whose centres surround st.
     Taps bilinear(Vec2 st, size_t level = 0) const;
 
-    /// Decoded colour.
+    /// Decoded colour, linear Rec.709.
     Rgb color(const Taps& taps) const;
     using Channel = ImageTexture::Channel;
-    /// Decoded value of a float texture. `automatic`: alpha where there is one, else the mean of R,
-    /// G and B. The alpha of an image without is 1.
+    /// Decoded value of a float texture, whatever the colour space. `automatic`: alpha where there
+    /// is one, else the mean of R, G and B. The alpha of an image without is 1.
     float value(const Taps& taps, Channel channel = Channel::automatic) const;
     /// Of the finest level.
     Rgb color(size_t texel) const { return color_at(levels_[0], texel); }
@@ -142,6 +143,7 @@ class TextureImage {
     size_t channels_ = 1;
     bool is_8bit_ = false;
     Wrap wrap_ = Wrap::repeat;
+    ColourSpace space_ = ColourSpace::srgb;
     std::vector<Level> levels_;  ///< the finest first; at least one
     std::array<float, 256> decode_{};
     /// Of every value j / kEncodeSteps the first byte that decodes to no less.

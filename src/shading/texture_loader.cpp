@@ -14,31 +14,37 @@ namespace {
 
 using Encoding = ImageTexture::Encoding;
 
-TextureImage load(const ImageRequest& request) {
+TextureImage load(const ImageRequest& request, Warnings& warnings) {
     const ImageTexture& t = *request.texture;
     const RasterImage raster = t.content ? decode_raster(*t.content, t.file, *request.where)
                                          : read_raster(t.file, *request.where);
     // Floating-point files are linear by definition, whatever the scene says, as in pbrt-v4.
     const bool is_encoded = raster.is_8bit || raster.is_16bit;
     const Encoding encoding = is_encoded ? t.encoding.value_or(Encoding::srgb) : Encoding::linear;
-    TextureImage image(raster, encoding, t.gamma, t.wrap);
+    const ColourSpace space = request.is_colour
+                                  ? colour_space_of(raster, t.file, *request.where, warnings)
+                                  : ColourSpace::srgb;
+    TextureImage image(raster, encoding, t.gamma, t.wrap, space);
     image.build_levels();
     return image;
 }
 
-/// In parallel; of several errors the first in the order of the requests is thrown.
-std::vector<TextureImage> load_some(std::span<const ImageRequest> requests) {
+/// In parallel; of several errors the first in the order of the requests is thrown. Warnings are in
+/// that order.
+std::vector<TextureImage> load_some(std::span<const ImageRequest> requests, Warnings& warnings) {
     std::vector<std::optional<TextureImage>> loaded(requests.size());
+    std::vector<Warnings> own_warnings(requests.size());
     std::vector<std::exception_ptr> errors(requests.size());
     parallel_for(int64_t(requests.size()), [&](int64_t i) {
         try {
-            loaded[size_t(i)] = load(requests[size_t(i)]);
+            loaded[size_t(i)] = load(requests[size_t(i)], own_warnings[size_t(i)]);
         } catch (...) {
             errors[size_t(i)] = std::current_exception();
         }
     });
     for (const std::exception_ptr& e : errors)
         if (e) std::rethrow_exception(e);
+    for (const Warnings& w : own_warnings) warnings.insert(warnings.end(), w.begin(), w.end());
     std::vector<TextureImage> images;
     images.reserve(loaded.size());
     for (auto& image : loaded) images.push_back(std::move(*image));
@@ -88,7 +94,7 @@ LoadedImages load_images(std::span<const ImageRequest> requests, size_t most_byt
     size_t bytes = 0;
     for (size_t first = 0; first < requests.size(); first += kBatch) {
         const size_t count = std::min(kBatch, requests.size() - first);
-        for (TextureImage& image : load_some(requests.subspan(first, count))) {
+        for (TextureImage& image : load_some(requests.subspan(first, count), warnings)) {
             bytes += image.memory();
             loaded.images.push_back(std::move(image));
         }

@@ -12,6 +12,7 @@ namespace covtrace {
 struct ImageRequest {
     const ImageTexture* texture;
     const SourceLocation* where;  ///< in the scene file, for errors and warnings
+    bool is_colour = false;       ///< whether any texture takes colours from it
 };
 
 struct LoadedImages {
@@ -21,9 +22,9 @@ struct LoadedImages {
 
 /// Reads in parallel. Where the images with all their levels would hold more than `most_bytes`
 /// together, the largest levels are moved to pages on disk (TexelPages), with a warning; what pages
-/// and the other levels hold is within the bound, down to a page (16 KiB). Throws Error(scene) for
-/// missing and broken files, of several the first, and Error(io) where the temporary file can't
-/// be written.
+/// and the other levels hold is within the bound, down to a page (16 KiB). Primaries of colours
+/// that belong to no known space are a warning, too. Throws Error(scene) for missing and broken
+/// files, of several the first, and Error(io) where the temporary file can't be written.
 LoadedImages load_images(std::span<const ImageRequest> requests, size_t most_bytes,
                          Warnings& warnings);
 

@@ -31,6 +31,8 @@ TEST(Exr, KeepsBitsNamesWindowsAndMetadata) {
     image.metadata["v3"] = std::vector<float>{1, 2, 3};
     image.metadata["list"] = std::vector<float>{1, 2, 3, 4, 5};
     image.metadata["one"] = std::vector<float>{1};
+    image.metadata[kChromaticities] =
+        std::vector<float>{0.708f, 0.292f, 0.17f, 0.797f, 0.131f, 0.046f, 0.3127f, 0.329f};
     write_exr(image, file);
 
     const Image back = read_image(file);

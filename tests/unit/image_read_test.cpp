@@ -135,6 +135,15 @@ TEST_F(Read, RasterOfExrTakesTheRootLayerAndRepairs) {
     EXPECT_EQ(raster.values, (std::vector<float>{1, -50, 3, 50, 0, -50}));
     EXPECT_EQ(raster.repaired, 3);
     EXPECT_FALSE(raster.is_8bit);
+    EXPECT_EQ(raster.colour_space, ColourSpace::srgb);
+    image.metadata[kChromaticities] =
+        std::vector<float>{0.708f, 0.292f, 0.17f, 0.797f, 0.131f, 0.046f, 0.3127f, 0.329f};
+    write_exr(image, directory_ / "a.exr");
+    EXPECT_EQ(read_raster(directory_ / "a.exr").colour_space, ColourSpace::rec2020);
+    image.metadata[kChromaticities] = std::vector<float>(8, 0.5f);
+    write_exr(image, directory_ / "a.exr");
+    EXPECT_EQ(read_raster(directory_ / "a.exr").colour_space, std::nullopt);
+    EXPECT_EQ(read_raster(directory_ / "a.exr").values, raster.values);
     EXPECT_TRUE(std::isinf(read_image(directory_ / "a.exr").rgb(1).r));
 
     image.channels.erase(image.channels.begin() + 1);

@@ -95,13 +95,14 @@ inline AnimatedTransform placed(std::initializer_list<Transform> parts) {
 /// An image file that lives as long as this object.
 class TemporaryImage {
   public:
-    TemporaryImage(const std::vector<Rgb>& texels, int width, int height) {
+    TemporaryImage(const std::vector<Rgb>& texels, int width, int height, Metadata metadata = {}) {
         static int count = 0;
         path_ = std::filesystem::temp_directory_path() /
                 ("covtrace_lights_" + std::to_string(getpid()) + "_" + std::to_string(count++) +
                  ".exr");
         Image image;
         image.data = image.display = {0, 0, width, height};
+        image.metadata = std::move(metadata);
         for (const char* name : {"R", "G", "B"}) image.add_channel(name);
         for (size_t i = 0; i < texels.size(); ++i)
             for (size_t c = 0; c < 3; ++c)

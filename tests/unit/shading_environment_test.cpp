@@ -35,6 +35,11 @@ InfiniteLight image_light(const TemporaryImage& image) {
     return light;
 }
 
+Environment environment(const InfiniteLight& light, const Transform& light_to_world = {}) {
+    Warnings warnings;
+    return Environment(light, light_to_world, {}, warnings);
+}
+
 TEST(EqualArea, RoundTrips) {
     Rng rng(1);
     for (int i = 0; i < 100000; ++i) {
@@ -134,13 +139,15 @@ TEST(EnvironmentMap, TinyAndBlackImagesWork) {
 
 TEST(EnvironmentMap, NegativeTexelsAreBlack) {
     const TemporaryImage image({Rgb(-5), Rgb(1), Rgb(1), Rgb(1)}, 2, 2);
-    const EnvironmentMap map = EnvironmentMap::read(image.path(), {});
+    Warnings warnings;
+    const EnvironmentMap map = EnvironmentMap::read(image.path(), {}, warnings);
     EXPECT_NEAR(luminance(map.mean()), 0.75, 1e-6);
 }
 
 TEST(EnvironmentMap, TexelsBeyondMeasureDoNoHarm) {
     const TemporaryImage image({Rgb(3e38f), Rgb(1), Rgb(1), Rgb(3e38f)}, 2, 2);
-    const EnvironmentMap map = EnvironmentMap::read(image.path(), {});
+    Warnings warnings;
+    const EnvironmentMap map = EnvironmentMap::read(image.path(), {}, warnings);
     Rng rng(4);
     for (int i = 0; i < 1000; ++i) {
         const Vec3 w = map.sample(rng.next_2d());
@@ -157,8 +164,9 @@ TEST(EnvironmentMap, TexelsBeyondMeasureDoNoHarm) {
 TEST(EnvironmentMap, RefusesOtherShapesWithThePlaceInTheScene) {
     const TemporaryImage image(std::vector<Rgb>(12), 4, 3);
     const SourceLocation where{std::make_shared<const std::string>("sky.pbrt"), 7, 3};
+    Warnings warnings;
     try {
-        EnvironmentMap::read(image.path(), where);
+        EnvironmentMap::read(image.path(), where, warnings);
         FAIL() << "accepted";
     } catch (const Error& e) {
         const std::string text = e.what();
@@ -167,17 +175,17 @@ TEST(EnvironmentMap, RefusesOtherShapesWithThePlaceInTheScene) {
         EXPECT_NE(text.find("4 x 3"), std::string::npos) << text;
         EXPECT_NE(text.find("expected"), std::string::npos) << text;
     }
-    EXPECT_THROW(EnvironmentMap::read("/nonexistent.exr", where), Error);
+    EXPECT_THROW(EnvironmentMap::read("/nonexistent.exr", where, warnings), Error);
 }
 
 TEST(Environment, TheTransformTurnsTheImage) {
     // Bright around +x of light space.
     const TemporaryImage image(
         texels_of(64, 32, [](Vec3 w) { return Rgb(w.x > 0.9f ? 10.0f : 1.0f); }), 64, 32);
-    const Environment turned(image_light(image), Transform::rotate(90, {0, 0, 1}), {});
+    const Environment turned = environment(image_light(image), Transform::rotate(90, {0, 0, 1}));
     EXPECT_NEAR(turned.radiance({0, 1, 0}).r, 10, 1e-4);
     EXPECT_NEAR(turned.radiance({1, 0, 0}).r, 1, 1e-4);
-    const Environment mirrored(image_light(image), Transform::scale(-1, 1, 1), {});
+    const Environment mirrored = environment(image_light(image), Transform::scale(-1, 1, 1));
     EXPECT_NEAR(mirrored.radiance({-1, 0, 0}).r, 10, 1e-4);
 }
 
@@ -187,7 +195,7 @@ TEST(Environment, IlluminanceScalesTheImage) {
     InfiniteLight light = image_light(image);
     light.radiance = Rgb(0.5f, 1, 2);
     light.illuminance = 1000.0f;
-    const Environment e(light, {}, {});
+    const Environment e = environment(light);
     Rng rng(4);
     double sum = 0;
     constexpr int kSamples = 100000;
@@ -200,7 +208,7 @@ TEST(Environment, IlluminanceScalesTheImage) {
 // ---- spectrum
 
 TEST(EnvironmentSpectrum, UniformLightHasNone) {
-    Environment e(InfiniteLight{}, {}, {});
+    Environment e = environment(InfiniteLight{});
     e.prepare_spectrum();
     const AngularCovariance a = e.spectrum(normalize(Vec3{1, 2, 3}));
     EXPECT_EQ(a.a11, 0);
@@ -218,7 +226,7 @@ std::vector<Rgb> waves(int width, int height, float cycles) {
 TEST(EnvironmentSpectrum, WavesAroundThePole) {
     for (const int width : {512, 256}) {
         const TemporaryImage image(waves(width, 256, 16), width, 256);
-        Environment e(image_light(image), {}, {});
+        Environment e = environment(image_light(image));
         e.prepare_spectrum();
         for (const float theta : {kPi / 2, kPi / 4}) {
             // Sixteen waves around a circle of circumference 2 pi sin(theta); a structure tensor
@@ -241,7 +249,8 @@ TEST(EnvironmentSpectrum, WavesAroundThePole) {
 TEST(EnvironmentSpectrum, TurnsWithTheTransformAndStaysFiniteAtThePoles) {
     const TemporaryImage image(waves(256, 128, 12), 256, 128);
     const Transform turn = Transform::rotate(70, {1, 0.3f, -2});
-    Environment still(image_light(image), {}, {}), turned(image_light(image), turn, {});
+    Environment still = environment(image_light(image)),
+                turned = environment(image_light(image), turn);
     still.prepare_spectrum();
     turned.prepare_spectrum();
     const Vec3 w = from_angles(1.1f, 2.7f);
