@@ -15,7 +15,8 @@ struct Rgb64 {
     std::array<double, 3> c{};
 };
 
-constexpr int kFirst = 380, kLast = 780, kStep = 5;
+constexpr int kFirst = 380, kLast = 780;
+constexpr int kStep = 5;  // of the samples for smooth functions
 constexpr size_t kSamples = (kLast - kFirst) / kStep + 1;
 
 // CIE standard illuminant D65, relative power every 10 nm from 380 to 780 (CIE 15:2004, table T.1).
@@ -45,42 +46,110 @@ Rgb64 rec709(const Xyz& v) {
              0.0556300797 * v.x - 0.2039769589 * v.y + 1.0569715142 * v.z}};
 }
 
-/// What each wavelength adds to the colour, scaled so that D65 gives (1, 1, 1).
+double d65_at(double l) {
+    const double x = (l - kFirst) / 10;
+    const auto i = std::min(static_cast<size_t>(x), kD65.size() - 2);
+    const double t = x - static_cast<double>(i);
+    return (1 - t) * kD65[i] + t * kD65[i + 1];
+}
+
+/// Few samples for smooth functions, which are added up often.
 struct Observer {
-    std::array<Rgb64, kSamples> response{};
-    std::array<double, kSamples> d65{};
     std::array<ObserverSample, kSamples> samples{};
     Observer() {
         Rgb64 white;
         for (size_t i = 0; i < kSamples; ++i) {
-            d65[i] = i % 2 == 0 ? kD65[i / 2] : 0.5 * (kD65[i / 2] + kD65[i / 2 + 1]);
-            response[i] = rec709(matching(wavelength(i)));
-            for (size_t c = 0; c < 3; ++c) white.c[c] += response[i].c[c] * d65[i];
+            samples[i].wavelength = kFirst + kStep * static_cast<double>(i);
+            const Rgb64 response = rec709(matching(samples[i].wavelength));
+            for (size_t c = 0; c < 3; ++c) {
+                samples[i].weight[c] = response.c[c] * d65_at(samples[i].wavelength);
+                white.c[c] += samples[i].weight[c];
+            }
         }
-        for (Rgb64& r : response)
-            for (size_t c = 0; c < 3; ++c) r.c[c] /= white.c[c];
-        for (size_t i = 0; i < kSamples; ++i) {
-            samples[i].wavelength = wavelength(i);
-            for (size_t c = 0; c < 3; ++c) samples[i].weight[c] = response[i].c[c] * d65[i];
-        }
+        for (ObserverSample& s : samples)
+            for (size_t c = 0; c < 3; ++c) s.weight[c] /= white.c[c];
     }
-    static double wavelength(size_t i) { return kFirst + kStep * static_cast<double>(i); }
 };
 
-const Observer& observer() {
-    static const Observer o;
-    return o;
+/// What each wavelength adds to the colour of light: a table by nanometres, linear between them.
+class Response {
+  public:
+    Response() {
+        for (size_t i = 0; i < table_.size(); ++i)
+            table_[i] = rec709(matching(kFirst + static_cast<double>(i)));
+    }
+    Rgb64 at(double l) const {
+        const auto i = std::min(static_cast<size_t>(l - kFirst), table_.size() - 2);
+        const double t = l - kFirst - static_cast<double>(i);
+        Rgb64 r;
+        for (size_t c = 0; c < 3; ++c) r.c[c] = (1 - t) * table_[i].c[c] + t * table_[i + 1].c[c];
+        return r;
+    }
+
+  private:
+    std::array<Rgb64, kLast - kFirst + 1> table_{};
+};
+
+const Response& response() {
+    static const Response r;
+    return r;
+}
+
+/// Borders of the pieces on which spectra, D65 and the response are straight lines.
+std::vector<double> pieces(std::initializer_list<const Spectrum*> spectra) {
+    std::vector<double> at;
+    for (int l = kFirst; l <= kLast; ++l) at.push_back(l);
+    for (const Spectrum* s : spectra)
+        for (const float l : s->wavelengths)
+            if (l > kFirst && l < kLast) at.push_back(double(l));
+    std::sort(at.begin(), at.end());
+    return at;
+}
+
+/// Integral of `weight`, a colour of the wavelength, times `factor`, a number. Gauss' rule of two
+/// points is exact for three straight lines multiplied, and never looks at a border, where spectra
+/// that do not extend jump to zero.
+template <typename Weight, typename Factor>
+Rgb64 integral(const std::vector<double>& pieces, Weight weight, Factor factor) {
+    constexpr double kNode = 0.5773502691896257;  // 1 / sqrt(3)
+    Rgb64 sum;
+    for (size_t i = 1; i < pieces.size(); ++i) {
+        const double half = (pieces[i] - pieces[i - 1]) / 2;
+        if (!(half > 0)) continue;
+        for (const double node : {-kNode, kNode}) {
+            const double l = pieces[i - 1] + half * (1 + node), f = half * factor(l);
+            if (f == 0) continue;
+            const Rgb64 w = weight(l);
+            for (size_t c = 0; c < 3; ++c) sum.c[c] += f * w.c[c];
+        }
+    }
+    return sum;
+}
+
+Rgb64 under_d65(double l) {
+    Rgb64 r = response().at(l);
+    for (double& c : r.c) c *= d65_at(l);
+    return r;
+}
+
+double one(double) {
+    return 1;
+}
+
+const Rgb64& white() {
+    static const Rgb64 w = integral(pieces({}), under_d65, one);
+    return w;
+}
+
+Rgb64 quotient(Rgb64 a, const Rgb64& b) {
+    for (size_t c = 0; c < 3; ++c) a.c[c] /= b.c[c];
+    return a;
 }
 
 /// Colour under D65 of a factor given as a function of the wavelength.
 template <typename Factor>
-Rgb64 colour_under_d65(Factor factor) {
-    Rgb64 sum;
-    for (const ObserverSample& s : observer().samples) {
-        const double f = factor(s.wavelength);
-        for (size_t c = 0; c < 3; ++c) sum.c[c] += f * s.weight[c];
-    }
-    return sum;
+Rgb64 colour_under_d65(const std::vector<double>& pieces, Factor factor) {
+    return quotient(integral(pieces, under_d65, factor), white());
 }
 
 Rgb to_rgb(const Rgb64& v) {
@@ -103,7 +172,8 @@ double normal_reflectance(double eta, double k) {
 }  // namespace
 
 std::span<const ObserverSample> observer_samples() {
-    return observer().samples;
+    static const Observer o;
+    return o.samples;
 }
 
 double Spectrum::at(double l) const {
@@ -126,9 +196,9 @@ Spectrum blackbody_spectrum(double kelvin) {
     };
     std::vector<double> logs;
     Spectrum s;
-    for (size_t i = 0; i < kSamples; ++i) {
-        s.wavelengths.push_back(static_cast<float>(Observer::wavelength(i)));
-        logs.push_back(log_planck(Observer::wavelength(i)));
+    for (int l = kFirst; l <= kLast; ++l) {
+        s.wavelengths.push_back(static_cast<float>(l));
+        logs.push_back(log_planck(l));
     }
     const double largest = *std::max_element(logs.begin(), logs.end());
     for (const double v : logs) s.values.push_back(static_cast<float>(std::exp(v - largest)));
@@ -136,16 +206,20 @@ Spectrum blackbody_spectrum(double kelvin) {
 }
 
 Rgb reflectance_colour(const Spectrum& s) {
-    return to_rgb(colour_under_d65([&s](double l) { return s.at(l); }));
+    return to_rgb(colour_under_d65(pieces({&s}), [&s](double l) { return s.at(l); }));
 }
 
 Rgb emission_colour(const Spectrum& s) {
-    const Observer& o = observer();
-    Rgb64 sum;
-    for (size_t i = 0; i < kSamples; ++i)
-        for (size_t c = 0; c < 3; ++c)
-            sum.c[c] += s.at(Observer::wavelength(i)) * o.response[i].c[c];
-    return luminance_one(sum);
+    const auto light = [](double l) { return response().at(l); };
+    // A single wavelength is a line, whose integral over all others is nothing.
+    const bool is_line = s.wavelengths.size() == 1 && !s.extends;
+    if (is_line) {
+        const float l = s.wavelengths[0];
+        if (!(s.values[0] > 0) || l < kFirst || l > kLast) return Rgb{0};
+        return luminance_one(quotient(light(l), white()));
+    }
+    return luminance_one(
+        quotient(integral(pieces({&s}), light, [&s](double l) { return s.at(l); }), white()));
 }
 
 Rgb chromaticity_colour(double x, double y) {
@@ -153,21 +227,19 @@ Rgb chromaticity_colour(double x, double y) {
 }
 
 Rgb channel_means(const Spectrum& s) {
-    const Observer& o = observer();
-    Rgb64 sum, weight;
-    for (size_t i = 0; i < kSamples; ++i)
-        for (size_t c = 0; c < 3; ++c) {
-            const double w = std::max(0.0, o.response[i].c[c]) * o.d65[i];
-            sum.c[c] += w * s.at(Observer::wavelength(i));
-            weight.c[c] += w;
-        }
-    for (size_t c = 0; c < 3; ++c) sum.c[c] /= weight.c[c];
-    return to_rgb(sum);
+    const auto seen = [](double l) {
+        Rgb64 w = under_d65(l);
+        for (double& c : w.c) c = std::max(0.0, c);
+        return w;
+    };
+    const std::vector<double> at = pieces({&s});
+    return to_rgb(
+        quotient(integral(at, seen, [&s](double l) { return s.at(l); }), integral(at, seen, one)));
 }
 
 ConductorColours conductor_colours(const Spectrum& eta, const Spectrum& k, Rgb index) {
-    const Rgb64 reflectance =
-        colour_under_d65([&](double l) { return normal_reflectance(eta.at(l), k.at(l)); });
+    const Rgb64 reflectance = colour_under_d65(
+        pieces({&eta, &k}), [&](double l) { return normal_reflectance(eta.at(l), k.at(l)); });
     ConductorColours r{index, Rgb{0}};
     for (int c = 0; c < 3; ++c) {
         // Saturated metals lie slightly outside of the Rec.709 gamut.

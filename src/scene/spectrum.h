@@ -2,7 +2,9 @@
 ///
 /// Integrals use the CIE 1931 colour matching functions in the analytic fit of Wyman, Sloan and
 /// Shirley (JCGT 2013, single- and multi-lobe fits), from 380 to 780 nm. Every colour is divided by
-/// that of D65 through the same functions, so that a white surface is exactly (1, 1, 1).
+/// that of D65 through the same functions, so that a white surface is exactly (1, 1, 1). Spectra
+/// are integrated as what they are, straight lines between their wavelengths, however near these
+/// lie.
 #pragma once
 
 #include <array>
@@ -20,7 +22,8 @@ struct Spectrum {
     double at(double wavelength) const;
 };
 
-/// A wavelength (nanometres) and what it adds to a colour.
+/// A wavelength (nanometres) and what it adds to a colour; every 5 nm, for functions that are
+/// smooth.
 struct ObserverSample {
     double wavelength = 0;
     std::array<double, 3> weight{};  ///< red, green, blue
@@ -34,7 +37,8 @@ Spectrum blackbody_spectrum(double kelvin);
 /// Colour of a surface with this reflectance (or of any other factor) under D65.
 Rgb reflectance_colour(const Spectrum& s);
 /// Colour of light with this spectrum, scaled to luminance 1, as pbrt normalises its lights.
-/// Components outside of the Rec.709 gamut are set to 0. Empty light gives black.
+/// Components outside of the Rec.709 gamut are set to 0. A spectrum of one wavelength is a line.
+/// Empty and invisible light gives black.
 Rgb emission_colour(const Spectrum& s);
 /// The colour of luminance 1 with these CIE 1931 chromaticities.
 Rgb chromaticity_colour(double x, double y);

@@ -12,22 +12,25 @@ namespace covtrace {
 
 namespace {
 
-Spectrum from_pairs(const std::vector<float>& numbers, const SourceLocation& where) {
+Spectrum from_pairs(const std::vector<float>& numbers, const SourceLocation& where,
+                    BuildContext& context) {
     if (numbers.empty() || numbers.size() % 2 != 0)
         throw Error(ErrorKind::scene, where,
                     "a spectrum has " + std::to_string(numbers.size()) +
                         " values; expected pairs of wavelength and value");
     Spectrum s;
+    int negative = 0;
     for (size_t i = 0; i < numbers.size(); i += 2) {
         if (i > 0 && !(numbers[i] > numbers[i - 2]))
             throw Error(ErrorKind::scene, where,
                         "the wavelengths of a spectrum must increase; entry " +
                             std::to_string(i / 2 + 1) + " does not");
-        if (numbers[i + 1] < 0)
-            throw Error(ErrorKind::scene, where, "a spectrum has a negative value");
         s.wavelengths.push_back(numbers[i]);
-        s.values.push_back(numbers[i + 1]);
+        s.values.push_back(std::max(0.0f, numbers[i + 1]));
+        negative += numbers[i + 1] < 0;
     }
+    // Measured reflectances have such values where they are all but nothing.
+    if (negative > 0) context.log.add(where, "negative values of a spectrum are set to 0");
     return s;
 }
 
@@ -40,7 +43,7 @@ Spectrum from_file(const std::string& name, const SourceLocation& where, BuildCo
     std::vector<float> numbers;
     for (Token t = tokens.next(); t.kind != Token::Kind::end; t = tokens.next())
         numbers.push_back(parse_float(t));
-    return from_pairs(numbers, {shared_name, 0, 0});
+    return from_pairs(numbers, {shared_name, 0, 0}, context);
 }
 
 constexpr double kHeliumLine = 587.6;
@@ -57,7 +60,7 @@ std::optional<Spectrum> spectrum_value(const Parameter& p, BuildContext& context
                 "parameter " + in_quotes(p.name) + " expects one temperature > 0 in kelvin");
         return blackbody_spectrum(p.numbers[0]);
     }
-    if (p.strings.empty()) return from_pairs(p.numbers, p.where);
+    if (p.strings.empty()) return from_pairs(p.numbers, p.where, context);
     if (p.strings.size() != 1)
         throw Error(ErrorKind::scene, p.where,
                     "parameter " + in_quotes(p.name) + " expects one spectrum");
@@ -91,7 +94,13 @@ Rgb light_colour(ParameterList& parameters, std::string_view name, BuildContext&
     if (!p) return Rgb{1};
     if (p->type == ParameterType::rgb) return rgb_value(*p);
     const std::optional<Spectrum> s = spectrum_value(*p, context);
-    return s ? emission_colour(*s) : *illuminant_colour(p->strings[0]);
+    if (!s) return *illuminant_colour(p->strings[0]);
+    const Rgb c = emission_colour(*s);
+    if (is_black(c) &&
+        std::any_of(s->values.begin(), s->values.end(), [](float v) { return v > 0; }))
+        context.log.add(p->where, "the spectrum " + in_quotes(p->name) +
+                                      " has no visible light; the light is black");
+    return c;
 }
 
 float refractive_index(ParameterList& parameters, std::string_view name, float otherwise,

@@ -37,6 +37,28 @@ TEST(SceneLights, SpotsHaveACone) {
     EXPECT_EQ(d.cone_angle, 30);
     EXPECT_EQ(d.cone_delta_angle, 5);
     EXPECT_EQ(d.to, (Vec3{0, 0, 1}));
+    EXPECT_EQ(light_of<SpotLight>("\"spot\" \"float conedeltaangle\" 40").cone_delta_angle, 40);
+}
+
+TEST(SceneLights, NarrowLinesShineAndInvisibleOnesAreTold) {
+    const auto scene = read_world(
+        "LightSource \"point\" \"spectrum I\" [ 588 0 589 1 590 0 ]\n"
+        "LightSource \"point\" \"spectrum I\" [ 589 1 ]\n"
+        "LightSource \"point\" \"spectrum I\" [ 900 1 1000 1 ]\n"
+        "LightSource \"point\" \"spectrum I\" [ 400 0 500 0 ]\n");
+    for (size_t i = 0; i < 4; ++i)
+        EXPECT_NEAR(luminance(std::get<PointLight>(scene.lights.at(i).value).intensity),
+                    i < 2 ? 1 : 0, 1e-4f);
+    EXPECT_EQ(scene.warnings.size(), 1u);
+    EXPECT_TRUE(contains(warnings_of(scene), "4: the spectrum \"I\" has no visible light"));
+}
+
+TEST(SceneLights, NegativeValuesOfSpectraAreZero) {
+    const auto scene = read_world("LightSource \"point\" \"spectrum I\" [ 400 -1 500 1 600 0 ]");
+    EXPECT_TRUE(contains(warnings_of(scene), "2: negative values of a spectrum are set to 0"));
+    const auto cut = read_world("LightSource \"point\" \"spectrum I\" [ 400 0 500 1 600 0 ]");
+    expect_near(std::get<PointLight>(scene.lights[0].value).intensity,
+                std::get<PointLight>(cut.lights[0].value).intensity, 0);
 }
 
 TEST(SceneLights, DistantLightsPointBackToWhereTheyComeFrom) {
@@ -152,7 +174,6 @@ TEST(SceneLights, ErrorsNameThePlace) {
         {"LightSource \"point\" \"spectrum I\" \"no.spd\"", "file \"no.spd\" not found"},
         {"LightSource \"point\" \"spectrum I\" [ 400 1 500 ]", "pairs of wavelength and value"},
         {"LightSource \"point\" \"spectrum I\" [ 500 1 400 1 ]", "must increase; entry 2"},
-        {"LightSource \"point\" \"spectrum I\" [ 400 -1 500 1 ]", "negative value"},
         {"LightSource \"point\" \"blackbody I\" 0", "temperature > 0"},
         {"LightSource \"point\" \"blackbody I\" [ 5000 2 ]", "pbrt-v3"},
         {"LightSource \"point\" \"rgb I\" [ 1 1 ]", "has 2 values; expected three"},

@@ -86,6 +86,32 @@ TEST(SceneSpectrum, MonochromaticLightIsSaturated) {
     EXPECT_TRUE(is_black(emission_colour({{900, 1000}, {1, 1}, false})));
 }
 
+TEST(SceneSpectrum, LinesLieWhereTheyLie) {
+    // However narrow a line is and wherever it lies, it has the colour of its wavelength.
+    for (const float nm : {435.8f, 546.1f, 589.3f, 611.7f})
+        for (const float width : {0.01f, 0.2f, 1.0f}) {
+            const Rgb narrow = emission_colour({{nm - width, nm, nm + width}, {0, 1, 0}, false});
+            const Rgb line = emission_colour({{nm}, {1}, false});
+            EXPECT_NEAR(luminance(line), 1, 1e-4f);
+            expect_near(narrow, line, 0.01f * max_component(line));
+        }
+    // Beside each other they add up by what they hold.
+    const Spectrum two{{440, 441, 442, 599, 600, 601}, {0, 1, 0, 0, 1, 0}, false};
+    const Spectrum wide{{440, 441, 442, 598, 600, 602}, {0, 1, 0, 0, 0.5f, 0}, false};
+    expect_near(emission_colour(two), emission_colour(wide), 0.01f);
+}
+
+TEST(SceneSpectrum, NarrowBandsOfAReflectanceCountByTheirWidth) {
+    const auto band = [](float from, float to) {
+        return reflectance_colour({{from, from + 0.01f, to - 0.01f, to}, {0, 1, 1, 0}, false});
+    };
+    const Rgb whole = band(551, 561);
+    Rgb parts;
+    for (float nm = 551; nm < 561; nm += 2.5f) parts += band(nm, nm + 2.5f);
+    EXPECT_GT(whole.g, 0.05f);
+    expect_near(parts, whole, 0.01f * whole.g);
+}
+
 double normal_reflectance(double n, double k) {
     return ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k);
 }
