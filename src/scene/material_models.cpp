@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "scene/named_media.h"
 #include "scene/named_spectra.h"
 #include "scene/names.h"
 #include "scene/sigmoid_spectrum.h"
@@ -166,11 +167,30 @@ CoatedDiffuseMaterial Builder::subsurface() {
         "place");
     CoatedDiffuseMaterial m;
     roughness(m);
-    m.reflectance = textures.reflectance_or_none(p, "reflectance");
+    // What counts of several: the name, then coefficients, then the reflectance, as in pbrt.
+    const std::string name = p.text("name");
+    const bool has_coefficients = p.has("sigma_a") || p.has("sigma_s");
+    if (name.empty() && !has_coefficients)
+        m.reflectance = textures.reflectance_or_none(p, "reflectance");
     if (m.reflectance < 0) {
-        const Rgb a = textures.mean(textures.unbounded(p, "sigma_a", {0.0011f, 0.0024f, 0.014f}));
-        const Rgb s = textures.mean(textures.unbounded(p, "sigma_s", {2.55f, 3.21f, 3.77f}));
-        const float g = p.number("g", 0);
+        Rgb a, s;
+        float g = p.number("g", 0);
+        if (!name.empty()) {
+            const std::optional<NamedMedium> medium = named_medium(name);
+            if (!medium)
+                throw Error(ErrorKind::scene, p.where("name", e.where),
+                            unknown_name("medium", name, medium_names()));
+            a = medium->sigma_a;
+            s = medium->sigma_s;
+            g = 0;  // the measured scattering is the reduced one
+        } else {
+            if (has_coefficients && p.has("sigma_a") != p.has("sigma_s"))
+                throw Error(ErrorKind::scene, e.where,
+                            "material \"subsurface\" has one of \"sigma_a\" and \"sigma_s\"; "
+                            "expected both or none");
+            a = textures.mean(textures.unbounded(p, "sigma_a", {0.0011f, 0.0024f, 0.014f}));
+            s = textures.mean(textures.unbounded(p, "sigma_s", {2.55f, 3.21f, 3.77f}));
+        }
         m.reflectance = textures.constant(
             {medium_albedo(a.r, s.r, g), medium_albedo(a.g, s.g, g), medium_albedo(a.b, s.b, g)},
             true);
@@ -186,8 +206,11 @@ CoatedDiffuseMaterial Builder::subsurface() {
 DiffuseMaterial Builder::hair() {
     warn("material \"hair\" is not supported; \"diffuse\" of the same colour takes its place");
     DiffuseMaterial m;
-    m.reflectance = textures.reflectance_or_none(p, "reflectance");
-    if (m.reflectance < 0) m.reflectance = textures.reflectance_or_none(p, "color");
+    // What counts of several: absorption, then the colour, then the pigments, as in pbrt.
+    const bool has_absorption = p.has("sigma_a");
+    if (!has_absorption) m.reflectance = textures.reflectance_or_none(p, "reflectance");
+    if (!has_absorption && m.reflectance < 0)
+        m.reflectance = textures.reflectance_or_none(p, "color");
     if (m.reflectance < 0) {
         // Absorption of the pigments and its relation to the colour of dense hair: Chiang et al.,
         // "A Practical and Controllable Hair and Fur Model for Production Path Tracing" (2016), for
@@ -227,6 +250,7 @@ NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& c
         ImageTexture image;
         image.file = context.files.find(file, where);
         image.encoding = ImageTexture::Encoding::linear;
+        image.is_colour = false;
         maps.normal_map = static_cast<TextureId>(context.scene.textures.size());
         context.scene.textures.push_back({{}, true, image, where});
     }
@@ -250,7 +274,6 @@ Model material_model(Entity& entity, TextureBuilder& textures, BuildContext& con
     } else if (type == "coatedconductor") {
         model = b.coated_conductor();
     } else if (type == "thindielectric") {
-        image.is_colour = false;
         model = ThinDielectricMaterial{refractive_index(b.p, "eta", 1.5f, context),
                                        textures.reflectance_or_none(b.p, "transmittance")};
     } else if (type == "subsurface") {

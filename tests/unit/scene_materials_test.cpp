@@ -203,6 +203,42 @@ TEST(SceneMaterials, DarkHairIsDark) {
     EXPECT_GT(fair.r, 0.05f);
 }
 
+TEST(SceneMaterials, OfSeveralColoursOfHairAbsorptionCounts) {
+    const auto reflectance = [](const std::string& text) {
+        const auto made = material_of(text);
+        return constant_value(made.scene,
+                              std::get<DiffuseMaterial>(made.material.value).reflectance);
+    };
+    const std::string absorption = "\"hair\" \"rgb sigma_a\" [ .1 .2 .4 ]";
+    expect_near(reflectance(absorption + " \"rgb reflectance\" [ 0 1 0 ] \"rgb color\" [ 0 1 0 ]"),
+                reflectance(absorption), 0);
+    expect_near(reflectance("\"hair\" \"rgb color\" [ 0 1 0 ] \"float eumelanin\" 8"), {0, 1, 0},
+                0);
+}
+
+TEST(SceneMaterials, SubsurfaceTakesTheNameThenCoefficientsThenReflectance) {
+    const auto reflectance = [](const std::string& text) {
+        const auto made = material_of("\"subsurface\" " + text);
+        return constant_value(made.scene,
+                              std::get<CoatedDiffuseMaterial>(made.material.value).reflectance);
+    };
+    const std::string ketchup =
+        "\"rgb sigma_a\" [ .061 .97 1.45 ] \"rgb sigma_s\" [ .18 .07 .03 ] ";
+    const std::string green = "\"rgb reflectance\" [ 0 1 0 ] ";
+    const std::string cream = "\"string name\" \"Cream\" ";
+    const Rgb red = reflectance(ketchup);
+    expect_near(reflectance("\"string name\" \"Ketchup\" \"float g\" .8"), red, 1e-6f);
+    EXPECT_GT(red.r, 5 * red.g);
+    expect_near(reflectance(ketchup + green), red, 0);
+    expect_near(reflectance(cream + ketchup + green), reflectance(cream), 0);
+    EXPECT_GT(reflectance(cream).b, 0.5f);
+    expect_near(reflectance(green), {0, 1, 0}, 0);
+    EXPECT_TRUE(contains(world_error("Material \"subsurface\" \"string name\" \"Ketchip\""),
+                         "did you mean \"Ketchup\""));
+    EXPECT_TRUE(contains(world_error("Material \"subsurface\" \"rgb sigma_a\" [ 1 1 1 ]"),
+                         "expected both or none"));
+}
+
 TEST(SceneMaterials, MixesKeepBothParts) {
     const std::string two =
         "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n"
