@@ -18,11 +18,30 @@ void set_film(FilmDescription& film, double aspect) {
     film.height = aspect >= 1 ? shorter(1 / aspect) : kLongerSide;
 }
 
+/// Without scale and shear, which do not count for cameras (glTF 2.0, section 3.10): the axis of
+/// view stays, "up" is made orthogonal to it. As it is where nothing is left of an axis.
+Transform without_scale(const Transform& node) {
+    const Vec3 given[] = {node.vector({1, 0, 0}), node.vector({0, 1, 0}), node.vector({0, 0, 1})};
+    const Vec3 z = normalize(given[2]), x = normalize(cross(given[1], z)), y = cross(z, x);
+    const Vec3 axes[] = {x, y, z};
+    const auto distances = {length(x - given[0]), length(y - given[1]), length(z - given[2])};
+    const float largest = std::max(distances);
+    if (!std::isfinite(largest) || x == Vec3{} || z == Vec3{}) return node;
+    if (largest < 1e-6f) return node;
+    Matrix4 m = node.matrix();
+    for (size_t row = 0; row < 3; ++row)
+        for (size_t column = 0; column < 3; ++column)
+            m.m[row][column] = double(axes[column][static_cast<int>(row)]);
+    return Transform::from_matrix(m).value_or(node);
+}
+
 /// glTF's cameras look along -z, ours along +z; both have x to the right and y up.
 AnimatedTransform camera_to_world(const AnimatedTransform& node) {
-    const Transform turn = Transform::scale(1, 1, -1);
-    if (!node.is_animated()) return AnimatedTransform(node.start() * turn);
-    return {node.start() * turn, node.start_time(), node.end() * turn, node.end_time()};
+    const auto turned = [](const Transform& t) {
+        return without_scale(t) * Transform::scale(1, 1, -1);
+    };
+    if (!node.is_animated()) return AnimatedTransform(turned(node.start()));
+    return {turned(node.start()), node.start_time(), turned(node.end()), node.end_time()};
 }
 
 void read_camera(const Document& document, const PlacedNode& placed, SceneDescription& scene) {
@@ -53,6 +72,7 @@ void read_camera(const Document& document, const PlacedNode& placed, SceneDescri
         camera.kind = CameraDescription::Kind::orthographic;
         const auto w = static_cast<float>(x), h = static_cast<float>(y);
         camera.screen_window = {-w, w, -h, h};
+        camera.window_fills_film = false;  // other resolutions show more, nothing is stretched
     } else {
         document.refuse(here + ".type", "expected perspective or orthographic");
     }

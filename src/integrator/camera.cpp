@@ -17,6 +17,14 @@ Vec2 wrap_equal_area(Vec2 uv) {
     return uv;
 }
 
+/// The smallest window of this aspect around the given one, with the same centre.
+std::array<float, 4> widened(std::array<float, 4> w, float aspect) {
+    const float width = w[1] - w[0], height = w[3] - w[2];
+    const float x = std::max(0.0f, height * aspect - width) / 2;
+    const float y = std::max(0.0f, width / aspect - height) / 2;
+    return {w[0] - x, w[1] + x, w[2] - y, w[3] + y};
+}
+
 }  // namespace
 
 Camera::Camera(const CameraDescription& description, int width, int height)
@@ -34,6 +42,8 @@ Camera::Camera(const CameraDescription& description, int width, int height)
     std::array<float, 4> window = aspect > 1 ? std::array<float, 4>{-aspect, aspect, -1, 1}
                                              : std::array<float, 4>{-1, 1, -1 / aspect, 1 / aspect};
     if (description.screen_window) window = *description.screen_window;
+    if (description.screen_window && !description.window_fills_film)
+        window = widened(window, aspect);
     const float scale = description.kind == CameraDescription::Kind::perspective
                             ? std::tan(description.fov * kPi / 360)
                             : 1.0f;

@@ -282,6 +282,8 @@ struct CameraDescription {
     Mapping mapping = Mapping::equal_area;
     /// What a radiance of 1 gives in the middle of the film; pi (radius / distance)^2 of real
     /// lenses.
+    /// Whether the window is stretched over the film; else it is widened to the film's aspect.
+    bool window_fills_film = true;
     float film_irradiance = 1;
     float lens_radius = 0, focal_distance = 1e6f;
     float shutter_open = 0, shutter_close = 1;

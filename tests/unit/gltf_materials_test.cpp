@@ -210,6 +210,41 @@ TEST(GltfCamera, ReadsPerspectiveAndOrthographic) {
         with_camera({{"type", "orthographic"},
                      {"orthographic", {{"xmag", 2}, {"ymag", 1}, {"zfar", 9}, {"znear", 1}}}});
     EXPECT_EQ(*flat.camera.screen_window, (std::array<float, 4>{-2, 2, -1, 1}));
+    EXPECT_FALSE(flat.camera.window_fills_film);
+}
+
+TEST(GltfCamera, TakesNoScaleFromItsNodes) {
+    const auto with_node = [](const json& node, bool is_animated) {
+        GltfFile file = square_file();
+        file.root["cameras"] = {
+            {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+        json camera = node;
+        camera["camera"] = 0;
+        const int id = file.add_node(camera);
+        if (is_animated) {
+            const int times = file.add_floats({0, 1}, "SCALAR", 1);
+            const int scales = file.add_floats({2, 2, 2, 4, 4, 4}, "VEC3", 3);
+            file.root["animations"] = {
+                {{"samplers", {{{"input", times}, {"output", scales}}}},
+                 {"channels", {{{"sampler", 0}, {"target", {{"node", id}, {"path", "scale"}}}}}}}};
+        }
+        return (is_animated ? read(file, {{}, std::array<float, 2>{0, 1}}) : read(file)).camera;
+    };
+    // Turned by 90 degrees about y: looks along -x.
+    const json turn = {0, std::sqrt(0.5), 0, std::sqrt(0.5)};
+    for (const json& scale : {json{1, 1, 1}, json{2, 2, 2}, json{1, 3, 0.5}, json{-1, 1, 1}}) {
+        const auto camera = with_node(
+            {{"translation", {4, 0.5, 0.5}}, {"rotation", turn}, {"scale", scale}}, false);
+        const Transform& t = camera.camera_to_world.start();
+        expect_near(t.vector({0, 0, 1}), {-1, 0, 0}, 1e-6f);
+        expect_near(t.vector({0, 1, 0}), {0, 1, 0}, 1e-6f);
+        expect_near(t.vector({1, 0, 0}), {0, 0, -1}, 1e-6f);
+        expect_near(t.point({}), {4, 0.5f, 0.5f}, 1e-6f);
+        EXPECT_NEAR(camera.focal_distance, 3.5f, 1e-5f);
+    }
+    const auto moving = with_node({{"translation", {0.5, 0.5, 4}}}, true);
+    for (const Transform& t : {moving.camera_to_world.start(), moving.camera_to_world.end()})
+        EXPECT_NEAR(length(t.vector({0, 0, 1})), 1, 1e-6f);
 }
 
 TEST(GltfCamera, FramesTheSceneWithoutOne) {

@@ -32,6 +32,23 @@ TEST(Camera, FieldOfViewSpansTheShorterAxis) {
     EXPECT_NEAR(left.x / left.z, -1, 1e-5f);
 }
 
+TEST(Camera, WindowsThatDoNotFillTheFilmAreWidened) {
+    CameraDescription d;
+    d.kind = CameraDescription::Kind::orthographic;
+    d.screen_window = {-2, 2, -1, 1};
+    const auto corner = [&](int width, int height) {
+        return Camera(d, width, height).generate_ray({float(width), 0}, {}, 0).origin;
+    };
+    EXPECT_NEAR(corner(100, 100).y, 1, 1e-5f);  // pbrt stretches
+    d.window_fills_film = false;
+    EXPECT_NEAR(corner(200, 100).x, 2, 1e-5f);
+    EXPECT_NEAR(corner(200, 100).y, 1, 1e-5f);
+    EXPECT_NEAR(corner(100, 100).x, 2, 1e-5f);
+    EXPECT_NEAR(corner(100, 100).y, 2, 1e-5f);
+    EXPECT_NEAR(corner(400, 100).x, 4, 1e-5f);
+    EXPECT_NEAR(corner(400, 100).y, 1, 1e-5f);
+}
+
 TEST(Camera, LensRaysMeetInThePlaneOfFocus) {
     const Camera camera(description(0.3f), 320, 180);
     const Ray a = camera.generate_ray({37, 120}, {0.1f, 0.9f}, 0),
