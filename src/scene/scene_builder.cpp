@@ -169,6 +169,7 @@ void SceneBuilder::shape(Entity entity) {
     s.object_to_world = state_.object_to_world();
     s.reverse_orientation = state_.reverse_orientation;
     s.where = entity.where;
+    s.directive = directive_;
     s.area_light = state_.area_light;
     if (s.area_light >= 0) {
         used_area_lights_.insert(s.area_light);

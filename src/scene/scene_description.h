@@ -205,6 +205,9 @@ struct ShapeDescription {
     bool reverse_orientation = false;
     MaterialId material = -1;
     int area_light = -1;  ///< into SceneDescription::area_lights
+    /// Equal for what one directive made, which has the power of its area light together; -1:
+    /// alone.
+    int directive = -1;
     /// Constant 0 on a light that is not seen but lights the scene; other shapes never have that.
     TextureId alpha = -1;  ///< opacity, in [0, 1]
     MediumId inside = -1, outside = -1;
@@ -279,11 +282,11 @@ struct CameraDescription {
     float fov = 90;                     ///< of the shorter axis, unless the screen window is given
     float frame_aspect_ratio = 0;       ///< 0: from the resolution
     std::optional<std::array<float, 4>> screen_window;  ///< x0, x1, y0, y1
+    /// Whether the window is stretched over the film; else it is widened to the film's aspect.
+    bool window_fills_film = true;
     Mapping mapping = Mapping::equal_area;
     /// What a radiance of 1 gives in the middle of the film; pi (radius / distance)^2 of real
     /// lenses.
-    /// Whether the window is stretched over the film; else it is widened to the film's aspect.
-    bool window_fills_film = true;
     float film_irradiance = 1;
     float lens_radius = 0, focal_distance = 1e6f;
     float shutter_open = 0, shutter_close = 1;

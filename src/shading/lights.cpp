@@ -1,6 +1,9 @@
 #include "shading/lights.h"
 
 #include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
 
 #include "core/hash.h"
 #include "shading/light_weight.h"
@@ -31,6 +34,14 @@ double surface(const Emitter& emitter) {
         emitter);
 }
 
+/// Shapes of equal keys share the power of their light: what one directive made, as a mesh file's
+/// triangles and quads.
+using LightKey = std::tuple<int, int, size_t>;
+LightKey light_key(const std::vector<PlacedShape>& shapes, size_t i) {
+    const ShapeDescription& s = shapes[i].description;
+    return {s.area_light, s.directive, s.directive < 0 ? i : 0};
+}
+
 /// Emitted by one square unit of a diffuse light.
 Rgb exitance(Rgb radiance, bool two_sided) {
     return (two_sided ? 2 * kPi : kPi) * radiance;
@@ -52,9 +63,16 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
     const std::vector<PlacedShape>& shapes = geometry->shapes();
     area_light_of_shape.assign(shapes.size(), -1);
     std::vector<LightBounds> finite;
+    std::vector<std::optional<Emitter>> emitters(shapes.size());
+    std::map<LightKey, double> surfaces;
     for (size_t i = 0; i < shapes.size(); ++i) {
+        if (shapes[i].description.area_light < 0 || shapes[i].is_instanced) continue;
+        emitters[i] = make_emitter(shapes[i]);
+        surfaces[light_key(shapes, i)] += surface(*emitters[i]);
+    }
+    for (size_t i = 0; i < shapes.size(); ++i) {
+        if (!emitters[i]) continue;
         const ShapeDescription& shape = shapes[i].description;
-        if (shape.area_light < 0 || shapes[i].is_instanced) continue;
         const AreaLightDescription& light =
             scene.area_lights[static_cast<size_t>(shape.area_light)];
         AreaLight area{.shape = static_cast<uint32_t>(i),
@@ -64,14 +82,14 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
                        .alpha = -1,
                        .is_visible = !is_hidden(scene, shape.alpha),
                        .first_light = static_cast<int>(owner.size()),
-                       .emitter = make_emitter(shapes[i]),
+                       .emitter = std::move(*emitters[i]),
                        .spectrum = {}};
         // A light that is hidden altogether shines as if it had no alpha.
         if (textures && area.is_visible) area.alpha = shape.alpha;
         area.mean_factor = area.image < 0 ? Rgb(1) : textures->mean(area.image);
         if (light.power) {
             const float measured =
-                static_cast<float>(surface(area.emitter)) *
+                static_cast<float>(surfaces.at(light_key(shapes, i))) *
                 luminance(exitance(area.radiance * area.mean_factor, area.two_sided));
             area.radiance *= normalisation(*light.power, measured);
         }
@@ -255,6 +273,10 @@ Lights::Lights(const SceneDescription& scene, const Geometry& geometry,
     : impl_(std::make_unique<Impl>(scene, geometry, textures)) {}
 Lights::~Lights() = default;
 
+const Warnings& Lights::warnings() const {
+    return impl_->warnings;
+}
+
 bool Lights::draws_ahead() const {
     return impl_->infinite_count() == 1 && has_environment() && impl_->environments[0].is_map();
 }
@@ -273,10 +295,6 @@ std::optional<LightSample> Lights::finish_draw(Vec3 p, Vec3 n, float time, float
                                                Draw draw) const {
     const InfiniteShare share = impl_->infinite_share(p, n);
     if (u_select < share.probability)
-const Warnings& Lights::warnings() const {
-    return impl_->warnings;
-}
-
         return impl_->sample_infinite(share, n, u_select / share.probability, draw);
     const float finite = 1 - share.probability;
     if (!(finite > 0)) return std::nullopt;

@@ -45,6 +45,22 @@ TEST(SceneShapes, WrongCountsAreDroppedWithAWarning) {
     EXPECT_EQ(scene.warnings.size(), 3u) << warnings_of(scene);
 }
 
+TEST(SceneShapes, WhatOneDirectiveMadeIsKnownAsSuch) {
+    const TemporaryFolder folder;
+    folder.write("m.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+                 "property float z\nelement face 2\nproperty list uchar int vertex_indices\n"
+                 "end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 0\n4 0 1 2 3\n3 1 4 2\n");
+    const auto scene = read_pbrt(
+        folder.write("scene.pbrt",
+                     "WorldBegin AreaLightSource \"diffuse\" \"float power\" 10\n"
+                     "Shape \"plymesh\" \"string filename\" \"m.ply\"\nShape \"sphere\""));
+    ASSERT_EQ(scene.shapes.size(), 3u);
+    EXPECT_GE(scene.shapes[0].directive, 0);
+    EXPECT_EQ(scene.shapes[0].directive, scene.shapes[1].directive);
+    EXPECT_NE(scene.shapes[0].directive, scene.shapes[2].directive);
+}
+
 TEST(SceneShapes, QuadricsHaveTheirDefaults) {
     const auto scene = read_world(
         "Shape \"sphere\" Shape \"sphere\" \"float radius\" 2 \"float zmin\" 1 \"float zmax\" -9 "
