@@ -54,9 +54,9 @@ SpotLight spot_light(Entity& e, BuildContext& context) {
     if (!(light.cone_angle > 0 && light.cone_angle <= 180))
         throw Error(ErrorKind::scene, p.where("coneangle", e.where),
                     "parameter \"coneangle\" must be between 0 and 180 degrees");
-    if (!(light.cone_delta_angle >= 0 && light.cone_delta_angle <= light.cone_angle))
+    if (!(light.cone_delta_angle >= 0 && light.cone_delta_angle <= 2 * light.cone_angle))
         throw Error(ErrorKind::scene, p.where("conedeltaangle", e.where),
-                    "parameter \"conedeltaangle\" must be between 0 and coneangle");
+                    "parameter \"conedeltaangle\" must be between 0 and twice coneangle");
     light.power = target(e, "power", light.intensity);
     return light;
 }

@@ -76,9 +76,14 @@ Parameter* ParameterList::last(std::string_view name) {
 
 const Parameter* ParameterList::find(std::string_view name,
                                      std::initializer_list<ParameterType> types) {
-    Parameter* p = last(name);
-    if (!p) return nullptr;
-    if (std::find(types.begin(), types.end(), p->type) == types.end()) {
+    for (auto p = all_.rbegin(); p != all_.rend(); ++p) {
+        if (p->name != name) continue;
+        if (std::find(types.begin(), types.end(), p->type) != types.end()) {
+            p->looked_up = true;
+            return &*p;
+        }
+        // An `Attribute` is for all directives of its kind, of which others may take that type.
+        if (p->may_be_unused) continue;
         std::string expected;
         for (const ParameterType t : types)
             expected += (expected.empty() ? "" : " or ") + type_name(t);
@@ -86,8 +91,7 @@ const Parameter* ParameterList::find(std::string_view name,
                     "parameter " + in_quotes(p->name) + " has the type " + type_name(p->type) +
                         "; expected " + expected);
     }
-    p->looked_up = true;
-    return p;
+    return nullptr;
 }
 
 bool ParameterList::has(std::string_view name) const {

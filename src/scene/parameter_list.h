@@ -1,8 +1,8 @@
 /// The parameters of one directive: typed access by name, and a record of what was asked for.
 ///
 /// As in pbrt, the last of several parameters of one name counts, and a directive's own parameters
-/// come before those of an earlier `Attribute`. Asking for a name with the wrong type is an error;
-/// what nobody asked for becomes a warning.
+/// come before those of an earlier `Attribute`. A parameter of its own with the wrong type is an
+/// error; what nobody asked for becomes a warning.
 #pragma once
 
 #include <initializer_list>
@@ -55,7 +55,8 @@ class ParameterList {
     ParameterList(std::vector<Parameter> own, const std::vector<Parameter>& inherited);
 
     /// The one that counts, marked as looked up; null where there is none.
-    /// Errors: Error(scene) where its type is not among `types`.
+    /// Inherited ones of other types than `types` are passed over. Errors: Error(scene) where the
+    /// directive's own is of such a type.
     const Parameter* find(std::string_view name, std::initializer_list<ParameterType> types);
     bool has(std::string_view name) const;
 

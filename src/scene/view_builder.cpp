@@ -1,6 +1,7 @@
 #include "scene/view_builder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -12,6 +13,14 @@
 namespace covtrace {
 
 namespace {
+
+/// Of pbrt-v4, beside "cie1931".
+constexpr std::array<const char*, 17> kSensors{
+    "canon_eos_100d", "canon_eos_1dx_mkii", "canon_eos_200d",     "canon_eos_200d_mkii",
+    "canon_eos_5d",   "canon_eos_5d_mkii",  "canon_eos_5d_mkiii", "canon_eos_5d_mkiv",
+    "canon_eos_5ds",  "canon_eos_m",        "hasselblad_l1d_20c", "nikon_d810",
+    "nikon_d850",     "sony_ilce_6400",     "sony_ilce_7m3",      "sony_ilce_7rm3",
+    "sony_ilce_9"};
 
 [[noreturn]] void refuse(const Entity& e, std::string_view parameter, const std::string& text) {
     throw Error(ErrorKind::scene, e.parameters.where(parameter, e.where), text);
@@ -63,7 +72,10 @@ void thin_lens_camera(Entity& e, Entity& film_entity, BuildContext& context) {
                          "length, aperture and field of view takes its place"
                        : "camera \"realistic\" is not supported and its lens " + in_quotes(file) +
                              " was not found; a thin lens of 50 mm takes its place");
-    p.ignore({"aperture"});
+    if (const std::string aperture = p.text("aperture"); !aperture.empty())
+        context.log.add(p.where("aperture", e.where),
+                        "the aperture " + in_quotes(aperture) +
+                            " is not supported; a round one takes its place");
 }
 
 void spherical_camera(Entity& e, CameraDescription& camera) {
@@ -174,6 +186,8 @@ void build_film(ViewEntities& view, BuildContext& context) {
     float balance = p.number("whitebalance", 0);
     if (balance < 0) refuse(e, "whitebalance", "parameter \"whitebalance\" must not be negative");
     if (const std::string sensor = p.text("sensor", "cie1931"); sensor != "cie1931") {
+        if (std::find(kSensors.begin(), kSensors.end(), sensor) == kSensors.end())
+            refuse(e, "sensor", unknown_name("sensor", sensor, {kSensors.begin(), kSensors.end()}));
         // pbrt solves for a matrix that brings the sensor's colours to those of the standard
         // observer, under the light of the white balance.
         context.log.add(

@@ -54,7 +54,9 @@ PointEmitter make_point_emitter(const SpotLight& light, const Transform& light_t
     e.axis = normalize(light_to_world.point(light.to) - e.position);
     if (e.axis == Vec3{}) e.axis = normalize(light_to_world.vector({0, 0, 1}));
     const float outer = std::clamp(light.cone_angle, 0.0f, 180.0f);
-    const float inner = std::clamp(light.cone_angle - light.cone_delta_angle, 0.0f, outer);
+    // As in pbrt only the cosine counts, where the difference is negative, too.
+    const float inner =
+        std::clamp(std::abs(light.cone_angle - light.cone_delta_angle), 0.0f, outer);
     e.cos_outer = std::cos(radians(outer));
     e.cos_inner = std::cos(radians(inner));
     e.intensity = light.intensity;

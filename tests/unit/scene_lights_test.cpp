@@ -168,7 +168,7 @@ TEST(SceneLights, ErrorsNameThePlace) {
          "both \"L\" and \"filename\""},
         {"LightSource \"distant\" \"point3 to\" [ 0 0 0 ]", "are the same point"},
         {"LightSource \"spot\" \"float coneangle\" 0", "between 0 and 180"},
-        {"LightSource \"spot\" \"float conedeltaangle\" 40", "between 0 and coneangle"},
+        {"LightSource \"spot\" \"float conedeltaangle\" 61", "between 0 and twice coneangle"},
         {"LightSource \"point\" \"float scale\" -1", "must not be negative"},
         {"LightSource \"point\" \"spectrum I\" \"glass-BK8\"", "unknown spectrum \"glass-BK8\""},
         {"LightSource \"point\" \"spectrum I\" \"no.spd\"", "file \"no.spd\" not found"},

@@ -66,6 +66,26 @@ TEST(SceneParameters, AttributesAreDefaultsForOneTarget) {
     EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
 }
 
+TEST(SceneParameters, InheritedOnesOfAnotherTypeArePassedOver) {
+    const auto scene = read_world(
+        "Attribute \"shape\" \"float radius\" 5\n"
+        "Attribute \"shape\" \"integer radius\" 7\n"
+        "Shape \"sphere\"\n"
+        "Attribute \"material\" \"float eta\" 1.4\n"
+        "Material \"conductor\"\n"
+        "Shape \"sphere\"\n");
+    EXPECT_EQ(std::get<Sphere>(scene.shapes.at(0).geometry).radius, 5);
+    EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
+    EXPECT_TRUE(contains(world_error("Attribute \"shape\" \"float radius\" 5\n"
+                                     "Shape \"sphere\" \"integer radius\" 7"),
+                         "has the type integer; expected float"));
+}
+
+TEST(SceneParameters, NamesOfColourSpacesAreInCapitalsOrNot) {
+    for (const char* name : {"sRGB", "srgb", "DCI-P3", "Rec2020", "ACES2065-1"})
+        EXPECT_TRUE(read_world("ColorSpace \"" + std::string(name) + "\"").warnings.empty());
+}
+
 TEST(SceneParameters, ErrorsNameThePlace) {
     struct Case {
         const char* text;

@@ -139,6 +139,9 @@ WorldBegin
     // 50 mm, focused at 5.05 m: 50.5 mm behind the lens; the shorter side is 30 mm.
     EXPECT_NEAR(scene.camera.fov, 2 * std::atan(15 / 50.5f) * 180 / kPi, 0.01f);
     EXPECT_EQ(scene.warnings.size(), 1u);
+    const auto star = read_options(
+        "Camera \"realistic\" \"string lensfile\" \"x.dat\" \"string aperture\" \"star\"");
+    EXPECT_TRUE(contains(warnings_of(star), "the aperture \"star\" is not supported"));
     folder.write("two.dat", "1 2 3");
     EXPECT_TRUE(contains(failure_of([&] { read_pbrt(folder.path() / "scene.pbrt"); }).message,
                          "expected four for each element"));
@@ -179,6 +182,8 @@ TEST(SceneView, ErrorsNameThePlace) {
         {"Film \"rgb\" \"float cropwindow\" [ .5 .5 0 1 ]", "leaves no pixel"},
         {"Film \"rgb\" \"integer pixelbounds\" [ 2000 3000 0 5 ]", "leaves no pixel"},
         {"Film \"rgb\" \"float iso\" 0", "must be greater than 0"},
+        {"Film \"rgb\" \"string sensor\" \"nikon_d850x\"",
+         "test.pbrt:1:12: unknown sensor \"nikon_d850x\""},
         {"PixelFilter \"cubic\"", "unknown filter \"cubic\""},
         {"PixelFilter \"box\" \"float xradius\" 0", "must be greater than 0"},
         {"Sampler \"random\"", "pbrt-v3"},

@@ -150,6 +150,26 @@ TEST(Emission, PowerOfASpotIsItsIntensityOverAllDirections) {
     EXPECT_NEAR(sum / kSamples * 4 * M_PI, 50, 0.8);
 }
 
+TEST(Emission, SpotsWithMoreFalloffThanConeShineWithinTheDifference) {
+    LightScene s;
+    s.add_light(SpotLight{.intensity = Rgb(1),
+                          .power = {},
+                          .from = {},
+                          .to = {0, 0, 1},
+                          .cone_angle = 20,
+                          .cone_delta_angle = 30});
+    s.build();
+    const auto at = [&s](float degrees) {
+        const float a = degrees * kPi / 180;
+        const auto l = s.lights->sample({std::sin(a), 0, std::cos(a)}, {}, 0, 0.5f, {});
+        return l ? l->radiance.r / l->pdf : 0.0f;
+    };
+    EXPECT_NEAR(at(9), 1, 1e-5f);  // pbrt takes the cosine of 20 - 30 degrees
+    EXPECT_LT(at(15), 0.9f);
+    EXPECT_GT(at(15), 0.1f);
+    EXPECT_EQ(at(21), 0);
+}
+
 TEST(Emission, SpotsFallOffSmoothlyBetweenTheirCones) {
     LightScene s;
     s.add_light(SpotLight{.intensity = Rgb(1),
