@@ -5,10 +5,12 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <filesystem>
+#include <set>
 
 #include "bindings.h"
 #include "core/parallel.h"
 #include "image/compare.h"
+#include "image/exr_names.h"
 #include "image/layer_names.h"
 #include "planes.h"
 
@@ -79,7 +81,12 @@ SharedPlanes from_channels(const std::vector<std::pair<std::string, FloatArray>>
                               "' must be a (height, width) array");
     Image image;
     image.data = image.display = {0, 0, int(first.shape(1)), int(first.shape(0))};
+    std::set<std::string_view> names;
     for (const auto& [name, values] : channels) {
+        if (name.empty() || name.size() > kExrNameLimit)
+            throw py::value_error("'" + name + "' is no name for a channel");
+        if (!names.insert(name).second)
+            throw py::value_error("two channels are called '" + name + "'");
         if (values.ndim() != 2 || values.shape(0) != first.shape(0) ||
             values.shape(1) != first.shape(1) || values.size() == 0)
             throw py::value_error("channel '" + name +

@@ -52,7 +52,8 @@ def _parameter(name, value):
     raise TypeError(f"parameter {name!r}: give its type as in 'float {name}' or 'spectrum {name}'")
 
 
-_INTEGERS = {"maxdepth", "pixelsamples", "xresolution", "yresolution", "levels", "nsamples"}
+_INTEGERS = {"degree", "dimension", "levels", "maxdepth", "nsamples", "pixelsamples", "splitdepth",
+             "xresolution", "yresolution"}
 
 
 def _parameters(values):
@@ -102,6 +103,7 @@ class SceneBuilder:
         self._meshes: list[tuple[str, list[str], numpy.ndarray, numpy.ndarray]] = []
         self._textures: list[tuple[str, Image]] = []
         self._camera_given = False
+        self._shutter = (0, 1)
 
     def camera(self, eye: Sequence[float] = (0, 0, 0), target: Sequence[float] = (0, 0, 1),
                up: Sequence[float] = (0, 1, 0), kind: str = "perspective",
@@ -109,6 +111,7 @@ class SceneBuilder:
                **parameters: Any) -> None:
         """kind and parameters as pbrt's Camera: fov, lensradius, focaldistance ..."""
         self._camera_given = True
+        self._shutter = shutter
         width, height = resolution
         self._view += [
             "LookAt " + " ".join(repr(float(v)) for v in (*eye, *target, *up)),
@@ -193,7 +196,10 @@ class SceneBuilder:
         """The scene as pbrt-v4 text; meshes and textures are files beside it."""
         if not self._camera_given:
             raise ValueError("the scene has no camera; call camera()")
-        return "\n".join([*self._view, "WorldBegin", *self._world, ""])
+        start, end = (float(t) for t in self._shutter)
+        # `end_transform` holds at the shutter's end, not at the time 1 that pbrt would give it.
+        times = [f"TransformTimes {start!r} {end!r}"] if start < end else []
+        return "\n".join([*times, *self._view, "WorldBegin", *self._world, ""])
 
     def write(self, folder: str | os.PathLike[str], name: str = "scene.pbrt") -> str:
         """Writes the scene with its meshes and textures into a folder; returns the scene's path."""
