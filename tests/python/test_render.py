@@ -346,7 +346,7 @@ class Builder(unittest.TestCase):
             scene = covtrace.SceneBuilder()
             scene.camera(eye=(0, 0, -4), target=(0, 0, 0), fov=60, resolution=(64, 16),
                          shutter=shutter)
-            scene.integrator(3, 16)
+            scene.integrator(3, 256)
             start, end = numpy.eye(4), numpy.eye(4)
             start[0, 3], end[0, 3] = -1.5, 1.5
             quad = [[-.1, -.5, 0], [.1, -.5, 0], [.1, .5, 0], [-.1, .5, 0]]
@@ -355,7 +355,7 @@ class Builder(unittest.TestCase):
             row = covtrace.render(scene, method="uniform", threads=1).rgb[8, :, 0]
             return numpy.count_nonzero(row > 1e-3)
         expected = columns((0, 1))
-        self.assertGreater(expected, 12)
+        self.assertGreater(expected, 8)  # at rest it lights three
         for shutter in ((2, 3), (0, 0.25), (-1, 0)):
             self.assertLessEqual(abs(columns(shutter) - expected), 2, shutter)
 
