@@ -90,6 +90,12 @@ RenderJob::RenderJob(RenderScene& render_scene, const RenderOptions& render_opti
       context(pass_context(scene, options)),
       target_spp(covtrace::target_spp(scene.description, options)) {
     context.shard = tiles();
+    if (target_spp && std::llround(*target_spp * double(pixels())) < 1) {
+        std::ostringstream what;
+        what << *target_spp << " samples per pixel are not one sample in all of " << pixels()
+             << " pixels; expected at least one";
+        throw Error(ErrorKind::usage, what.str());
+    }
     if (keeping.ranks) require_same_start(*keeping.ranks, state);
 }
 

@@ -111,6 +111,13 @@ class WrongCommandLines(CliTest):
         told = json.loads(result.stdout)
         self.assertEqual((told["samples"], told["paths"]), (4096, 10))
 
+    def test_an_image_has_one_sample_at_least(self):
+        for method in ("uniform", "covariance", "hybrid"):
+            image = self.rendered("--resolution", "8x8", "--spp", "0.01", "--method", method)
+            self.assertAlmostEqual(exr.read(image).value("spp"), 1 / 64)
+            few = self.render(TINY, "--resolution", "8x8", "--spp", "0.001", "--method", method)
+            self.assert_fails(few, USAGE, "0.001 samples per pixel", "64 pixels")
+
     def test_unknown_option(self):
         self.assert_fails(self.render(TINY, "--frobnicate"), USAGE, "--frobnicate")
 
