@@ -32,8 +32,8 @@ TEST(FilterLobes, AreNotSeenInAUniformSky) {
 }
 
 /// A bright half before a black one, whose border lies between two columns: each column shows the
-/// part of the filter on the bright side. Columns beside it leave [0, 1] by more than half a percent.
-/// 32 columns' means at 5 standard errors, which stratified samples keep well within.
+/// part of the filter on the bright side. Columns beside it leave [0, 1] by more than half a
+/// percent. 32 columns' means at 5 standard errors, which stratified samples keep well within.
 TEST(FilterLobes, RingAtAnEdge) {
     for (const char* filter : kFilters) {
         const std::string text = view(filter) + R"(
