@@ -13,13 +13,14 @@ namespace covtrace {
 /// One way to reconstruct: each half by itself, from the samples of that half.
 using Candidate = std::array<ColorPlanes, 2>;
 
-/// The candidates beside the raw pixels. docs/decisions/0063-features-with-their-noise.md has the
-/// table of what each gives.
+/// The candidates beside the raw pixels. What each gives: docs/decisions/0063, and 0072 for the
+/// patches.
 struct CandidateSettings {
     /// Scales of the predicted Gaussians; 1: the width factor c = 2.
     std::vector<float> gaussians{0.5f, 1.0f};
     /// First-order regressions: tolerance of the colours' patches, whether the window also falls
-    /// off as the predicted Gaussian, 2.5 times as wide, and the features that explain the colours.
+    /// off as the predicted Gaussian, 2.5 times as wide, the features that explain the colours, and
+    /// what tells patches apart.
     struct Fit {
         float k;
         bool shaped = false;

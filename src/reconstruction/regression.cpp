@@ -61,6 +61,8 @@ struct PatchDistances {
         return {light, variance, kReach, kPatchRadius, kStride};
     }
 
+    /// Keep quotients finite where there is no light and where nothing reflects: the first in the
+    /// range of sqrt(kDarkSquared), below which errors are no longer relative, either.
     static constexpr float kDark = 0.05f, kLeastAlbedo = 0.01f;
 };
 

@@ -321,71 +321,12 @@ class Images(unittest.TestCase):
                 with self.assertRaisesRegex(ValueError, "'Z' must be a \\(height, width\\) array"):
                     covtrace.Image.from_arrays(layers={"Z": values})
 
-
-class Builder(unittest.TestCase):
-    def test_a_moving_mesh_is_blurred(self):
-        def centre_spread(distance):
-            scene = covtrace.SceneBuilder()
-            scene.camera(eye=(0, 0, -5), target=(0, 0, 0), fov=40, resolution=(60, 20))
-            end = numpy.eye(4)
-            end[0, 3] = distance
-            vertices = [[-0.3, -9, 0], [0.3, -9, 0], [0.3, 9, 0], [-0.3, 9, 0]]
-            scene.mesh(vertices, numpy.array([[0, 1, 2], [0, 2, 3]]), emission=(1, 1, 1),
-                       transform=numpy.eye(4), end_transform=end, two_sided=True)
-            row = covtrace.render(scene, method="uniform", spp=64).rgb[:, :, 1].mean(axis=0)
-            return (row > 0.02).sum() / 60
-
-        # 40 degrees over the 20 rows: 2 * 5 * tan(20 degrees) units high, three times as wide.
-        # The pixel filter adds up to its radius of 1.5 pixels on both sides.
-        width = 3 * 10 * numpy.tan(numpy.radians(20))
-        self.assertAlmostEqual(centre_spread(0.0), 0.6 / width + 1.5 / 60, delta=2.5 / 60)
-        self.assertAlmostEqual(centre_spread(2.0), 2.6 / width + 1.5 / 60, delta=2.5 / 60)
-
-    def test_end_transforms_hold_at_the_shutters_end(self):
-        def columns(shutter):
-            scene = covtrace.SceneBuilder()
-            scene.camera(eye=(0, 0, -4), target=(0, 0, 0), fov=60, resolution=(64, 16),
-                         shutter=shutter)
-            scene.integrator(3, 256)
-            start, end = numpy.eye(4), numpy.eye(4)
-            start[0, 3], end[0, 3] = -1.5, 1.5
-            quad = [[-.1, -.5, 0], [.1, -.5, 0], [.1, .5, 0], [-.1, .5, 0]]
-            scene.mesh(quad, [[0, 1, 2], [0, 2, 3]], emission=(1, 1, 1), two_sided=True,
-                       transform=start, end_transform=end)
-            row = covtrace.render(scene, method="uniform", threads=1).rgb[8, :, 0]
-            return numpy.count_nonzero(row > 1e-3)
-        expected = columns((0, 1))
-        self.assertGreater(expected, 8)  # at rest it lights three
-        for shutter in ((2, 3), (0, 0.25), (-1, 0)):
-            self.assertLessEqual(abs(columns(shutter) - expected), 2, shutter)
-
-    def test_integers_are_integers(self):
-        scene = covtrace.SceneBuilder()
-        scene.camera(resolution=(8, 8))
-        scene.shape("curve", degree=2, **{"point3 P": [[0, 0, 1], [0, 1, 1], [0, 2, 1]]})
-        covtrace.render(scene, spp=1, threads=1)
-
     def test_names_of_channels(self):
         values = numpy.ones((4, 4), numpy.float32)
         for arguments in ({"layers": {"": values}}, {"layers": {"x" * 300: values}},
                           {"rgb": numpy.ones((4, 4, 3)), "layers": {"R": values}}):
             with self.assertRaises(ValueError):
                 covtrace.Image.from_arrays(**arguments)
-
-    def test_wrong_arrays(self):
-        scene = covtrace.SceneBuilder()
-        good = numpy.array([[0, 1, 2]])
-        for vertices, triangles in (([[0, 0]], good), (numpy.zeros((3, 3)), good + 1),
-                                    (numpy.zeros((3, 3)), good - 1),
-                                    (numpy.zeros((3, 3)), good * 1.0)):
-            with self.assertRaises(ValueError):
-                scene.mesh(vertices, triangles)
-        with self.assertRaises(ValueError):
-            scene.mesh(numpy.zeros((3, 3)), good, uv=numpy.zeros((2, 2)))
-        with self.assertRaises(ValueError):
-            scene.material('x" "float roughness" 3', "diffuse")
-        with self.assertRaises(ValueError):
-            scene.text()  # no camera
 
 
 class Package(unittest.TestCase):

@@ -82,24 +82,26 @@ TEST(ColourSpaces, ThatAreNotKnownAreTakenForSrgbWithAWarning) {
     EXPECT_NE(store.warnings()[0].text.find("chromaticities"), std::string::npos);
 }
 
+/// A sky with this picture, built.
+void build_sky(LightScene& scene, const Picture& picture) {
+    InfiniteLight sky;
+    sky.image = picture.path();
+    scene.add_light(sky);
+    scene.build();
+}
+
 TEST(ColourSpaces, OfTheSky) {
     for (const auto& [chromaticities, space] :
          {std::pair{kRec2020, ColourSpace::rec2020}, std::pair{kAces, ColourSpace::aces2065_1}}) {
         const Picture picture(chromaticities);
         LightScene scene;
-        InfiniteLight sky;
-        sky.image = picture.path();
-        scene.add_light(sky);
-        scene.build();
+        build_sky(scene, picture);
         expect_equal(scene.lights->environment({0, 0, 1}), to_rec709(kColour, space));
         EXPECT_TRUE(scene.lights->warnings().empty());
     }
     const Picture picture(kAcesCg);
     LightScene scene;
-    InfiniteLight sky;
-    sky.image = picture.path();
-    scene.add_light(sky);
-    scene.build();
+    build_sky(scene, picture);
     expect_equal(scene.lights->environment({0, 0, 1}), kColour);
     EXPECT_EQ(scene.lights->warnings().size(), 1u);
 }
