@@ -148,11 +148,9 @@ Spectrum unbounded_spectrum(Rgb colour) {
     const SigmoidSpectrum sigmoid = sigmoid_spectrum(scale > 0 ? colour / scale : Rgb{});
     Spectrum s;
     s.extends = true;
-    // Saturated colours have steep flanks, which straight lines of 5 nm would flatten.
-    const auto visible = observer_samples();
-    for (double nm = visible.front().wavelength; nm <= visible.back().wavelength; ++nm) {
-        s.wavelengths.push_back(static_cast<float>(nm));
-        s.values.push_back(static_cast<float>(scale * sigmoid.at(nm)));
+    for (const ObserverSample& sample : observer_samples()) {
+        s.wavelengths.push_back(static_cast<float>(sample.wavelength));
+        s.values.push_back(static_cast<float>(scale * sigmoid.at(sample.wavelength)));
     }
     return s;
 }

@@ -53,24 +53,6 @@ double d65_at(double l) {
     return (1 - t) * kD65[i] + t * kD65[i + 1];
 }
 
-/// Few samples for smooth functions, which are added up often.
-struct Observer {
-    std::array<ObserverSample, kSamples> samples{};
-    Observer() {
-        Rgb64 white;
-        for (size_t i = 0; i < kSamples; ++i) {
-            samples[i].wavelength = kFirst + kStep * static_cast<double>(i);
-            const Rgb64 response = rec709(matching(samples[i].wavelength));
-            for (size_t c = 0; c < 3; ++c) {
-                samples[i].weight[c] = response.c[c] * d65_at(samples[i].wavelength);
-                white.c[c] += samples[i].weight[c];
-            }
-        }
-        for (ObserverSample& s : samples)
-            for (size_t c = 0; c < 3; ++c) s.weight[c] /= white.c[c];
-    }
-};
-
 /// What each wavelength adds to the colour of light: a table by nanometres, linear between them.
 class Response {
   public:
@@ -145,6 +127,22 @@ Rgb64 quotient(Rgb64 a, const Rgb64& b) {
     for (size_t c = 0; c < 3; ++c) a.c[c] /= b.c[c];
     return a;
 }
+
+/// Few samples for smooth functions, which are added up often. Each has the weight of the straight
+/// lines on both sides of it, so that sums are the integrals of the lines between the samples.
+struct Observer {
+    std::array<ObserverSample, kSamples> samples{};
+    Observer() {
+        for (size_t i = 0; i < kSamples; ++i) {
+            const double middle = kFirst + kStep * static_cast<double>(i);
+            std::vector<double> at;
+            for (int l = -kStep; l <= kStep; ++l)
+                if (middle + l >= kFirst && middle + l <= kLast) at.push_back(middle + l);
+            const auto share = [middle](double l) { return 1 - std::abs(l - middle) / kStep; };
+            samples[i] = {middle, quotient(integral(at, under_d65, share), white()).c};
+        }
+    }
+};
 
 /// Colour under D65 of a factor given as a function of the wavelength.
 template <typename Factor>

@@ -28,7 +28,8 @@ struct ObserverSample {
     double wavelength = 0;
     std::array<double, 3> weight{};  ///< red, green, blue
 };
-/// The colour under D65 of a factor f is the sum of f(wavelength) * weight; of 1 it is white.
+/// The colour under D65 of a factor f is the sum of f(wavelength) * weight, exact where f is
+/// straight between the wavelengths; of 1 it is white.
 std::span<const ObserverSample> observer_samples();
 
 /// Planck's law at this temperature (kelvin, > 0), largest visible value 1.
