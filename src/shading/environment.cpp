@@ -56,11 +56,16 @@ Vec3 Environment::direction(Vec3 n, const EnvironmentMap::Draw& draw) const {
 
 EnvironmentMap::Sight Environment::look(Vec3 n, Vec3 w) const {
     if (!map_) return {scale_, n == Vec3{} ? kUniformSpherePdf : cosine_hemisphere_pdf(dot(n, w))};
-    const Vec3 stretched = to_light_(w);
-    const float l = length(stretched);
-    EnvironmentMap::Sight sight = map_->look(stretched / l);
+    Vec3 local = to_light_(w);
+    float stretch = 1;
+    if (!is_rigid_) {
+        const float l = length(local);
+        local = local / l;
+        stretch = determinant_ / (l * l * l);
+    }
+    EnvironmentMap::Sight sight = map_->look(local);
     sight.radiance *= scale_;
-    if (!is_rigid_) sight.pdf *= determinant_ / (l * l * l);
+    sight.pdf *= stretch;
     return sight;
 }
 
@@ -69,7 +74,7 @@ Rgb Environment::mean_radiance() const {
 }
 
 float Environment::irradiance() const {
-    return kPi * choice_weight(mean_radiance());
+    return kPi * choice_weight(mean_radiance()) * (map_ ? map_->drawn_share() : 1.0f);
 }
 
 void Environment::prepare_spectrum() {
@@ -106,7 +111,7 @@ AngularCovariance Environment::spectrum(Vec3 w) const {
         a.tangent = Frame::from_z(-w);
         return a;
     }
-    const Vec3 local = to_light(w);
+    const Vec3 local = normalize(to_light_(w));
     const float horizontal = std::sqrt(local.x * local.x + local.y * local.y);
     const float theta = arctangent(horizontal, local.z);
     float phi = arctangent(local.y, local.x);

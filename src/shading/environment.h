@@ -26,7 +26,7 @@ class Environment {
     Environment(const InfiniteLight& light, const Transform& light_to_world,
                 const SourceLocation& where, Warnings& warnings);
 
-    Rgb radiance(Vec3 w) const { return map_ ? scale_ * map_->radiance(to_light(w)) : scale_; }
+    Rgb radiance(Vec3 w) const { return look({}, w).radiance; }
     /// A direction for a surface with the unit normal n, which uniform light is sampled about by
     /// the cosine; n zero: from all sides. In three steps as of a map.
     EnvironmentMap::Draw begin_draw(Vec2 u) const {
@@ -42,7 +42,8 @@ class Environment {
     EnvironmentMap::Sight look(Vec3 n, Vec3 w) const;
     /// Over all directions, of a rigid transform.
     Rgb mean_radiance() const;
-    /// Rough irradiance of any surface, mean of the channels: 0 where the light is black.
+    /// Rough irradiance of any surface, mean of the channels, of a map by what directions are drawn
+    /// for: 0 where the light is black.
     float irradiance() const;
 
     /// Measures the image, once; without it the light counts as uniform below.
@@ -58,7 +59,6 @@ class Environment {
         Vec3 operator()(Vec3 v) const { return x * v.x + y * v.y + z * v.z; }
     };
     static Linear linear(const Transform& t);
-    Vec3 to_light(Vec3 w) const { return normalize(to_light_(w)); }
 
     Transform light_to_world_;
     Linear to_world_, to_light_;

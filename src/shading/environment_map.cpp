@@ -70,6 +70,7 @@ EnvironmentMap::EnvironmentMap(const std::vector<Rgb>& texels, int width, int he
                 static_cast<float>(std::sin(row * double(kPi) / height_));
         }
     set_texels(texels);
+    set_means();
     build_distribution();
 }
 
@@ -78,22 +79,7 @@ void EnvironmentMap::set_texels(const std::vector<Rgb>& texels) {
     auto next = texels_.begin();
     for (int row = -1; row <= height_; ++row)
         for (int column = -1; column <= width_; ++column) {
-            int x = column, y = row;
-            if (layout_ == Layout::lat_long) {
-                x = wrap_repeat(x, width_);
-                y = std::clamp(y, 0, height_ - 1);
-            } else {
-                // Beyond an edge of the octahedral square its other half continues.
-                const int n = width_;
-                if (x < 0 || x >= n) {
-                    x = x < 0 ? -1 - x : 2 * n - 1 - x;
-                    y = n - 1 - y;
-                }
-                if (y < 0 || y >= n) {
-                    y = y < 0 ? -1 - y : 2 * n - 1 - y;
-                    x = n - 1 - x;
-                }
-            }
+            const int x = wrap_repeat(column, width_), y = std::clamp(row, 0, height_ - 1);
             *next++ = texels[static_cast<size_t>(y) * static_cast<size_t>(width_) +
                              static_cast<size_t>(x)];
         }
@@ -117,24 +103,32 @@ Position position(float s, int n) {
 
 EnvironmentMap::Sight EnvironmentMap::look(Vec3 w) const {
     const Vec2 uv = to_square(w);
+    return layout_ == Layout::equal_area ? nearest(uv)
+                                         : interpolated(uv, std::sqrt(w.x * w.x + w.y * w.y));
+}
+
+EnvironmentMap::Sight EnvironmentMap::nearest(Vec2 uv) const {
+    // Of a direction that is not a number, any texel will do: its sample is rejected later.
+    const auto index = [](float s, int n) {
+        return s > 0 ? static_cast<int>(std::min(s * float(n), float(n - 1))) : 0;
+    };
+    const Rgb& c = texel(index(uv.x, width_), index(uv.y, height_));
+    return {c, density_ * drawn(c)};
+}
+
+EnvironmentMap::Sight EnvironmentMap::interpolated(Vec2 uv, float polar_sine) const {
     const Position x = position(uv.x, width_), y = position(uv.y, height_);
-    const Rgb* texels = &texel(x.index, y.index);
-    const size_t stride = static_cast<size_t>(width_ + 2);
-    const Rgb upper = lerp(x.fraction, texels[0], texels[1]);
-    const Rgb lower = lerp(x.fraction, texels[stride], texels[stride + 1]);
-    Sight sight{lerp(y.fraction, upper, lower)};
-    if (!(mean_weight_ > 0)) return sight;
+    const Rgb* upper = &texel(x.index, y.index);
+    const Rgb* lower = upper + (width_ + 2);
     const float* sine = &row_sine_[static_cast<size_t>(y.index + 1)];
-    const float weight = choice_weight(upper) * sine[0] * (1 - y.fraction) +
-                         choice_weight(lower) * sine[1] * y.fraction;
-    const float per_square = weight / mean_weight_;
-    if (layout_ == Layout::equal_area) {
-        sight.pdf = per_square / (4 * kPi);
-    } else {
-        const float polar_sine = std::sqrt(w.x * w.x + w.y * w.y);
-        sight.pdf = polar_sine > 0 ? per_square / (2 * kPi * kPi * polar_sine) : 0.0f;
-    }
-    return sight;
+    const auto weight = [&](const Rgb* row) {
+        return std::lerp(drawn(row[0]), drawn(row[1]), x.fraction);
+    };
+    const float sum =
+        weight(upper) * sine[0] * (1 - y.fraction) + weight(lower) * sine[1] * y.fraction;
+    return {lerp(y.fraction, lerp(x.fraction, upper[0], upper[1]),
+                 lerp(x.fraction, lower[0], lower[1])),
+            polar_sine > 0 ? density_ * sum / polar_sine : 0.0f};
 }
 
 Vec2 EnvironmentMap::to_square(Vec3 w) const {
@@ -157,42 +151,58 @@ float EnvironmentMap::solid_angle(int y) const {
            row_sine_[static_cast<size_t>(y + 1)];
 }
 
+void EnvironmentMap::set_means() {
+    // Sums of rows first: each row is done by one thread, and rows are added in their order.
+    const auto mean = [&](const auto& of_texel) {
+        std::vector<std::array<double, 3>> rows(static_cast<size_t>(height_));
+        parallel_for(height_, [&](int64_t y) {
+            std::array<double, 3> sum{};
+            for (int x = 0; x < width_; ++x) {
+                const Rgb c = of_texel(texel(x, static_cast<int>(y)));
+                for (int k = 0; k < 3; ++k) sum[static_cast<size_t>(k)] += double(c[k]);
+            }
+            for (double& channel : sum) channel *= double(solid_angle(static_cast<int>(y)));
+            rows[static_cast<size_t>(y)] = sum;
+        });
+        std::array<double, 3> all{};
+        for (const auto& row : rows)
+            for (size_t k = 0; k < 3; ++k) all[k] += row[k];
+        for (double& channel : all) channel /= 4 * double(kPi);
+        return Rgb(static_cast<float>(all[0]), static_cast<float>(all[1]),
+                   static_cast<float>(all[2]));
+    };
+    mean_ = mean([](Rgb c) { return c; });
+    const float whole = choice_weight(mean_);
+    left_out_ = kLeftOut * whole;
+    if (whole > 0) drawn_share_ = mean([&](Rgb c) { return Rgb(drawn(c)); }).r / whole;
+}
+
 void EnvironmentMap::build_distribution() {
     const auto w = static_cast<size_t>(width_), h = static_cast<size_t>(height_);
     columns_ = TableCdf(h, w);
-    std::vector<double> row_sum(h);
-    std::vector<std::array<double, 3>> row_mean(h);
+    std::vector<double> rows(h);
     parallel_for(height_, [&](int64_t row) {
         const int y = static_cast<int>(row);
-        const auto r = static_cast<size_t>(row);
         // The mean over a texel of what bilinear interpolation makes of it and its neighbours.
         const auto column = [&](int x) {
             return 0.125 * weight(x, y - 1) + 0.75 * weight(x, y) + 0.125 * weight(x, y + 1);
         };
         std::vector<double> cumulated(w);
         double sum = 0;
-        std::array<double, 3> mean{};
         for (int x = 0; x < width_; ++x) {
-            sum += 0.125 * column(x - 1) + 0.75 * column(x) + 0.125 * column(x + 1);
+            sum += layout_ == Layout::equal_area
+                       ? double(weight(x, y))
+                       : 0.125 * column(x - 1) + 0.75 * column(x) + 0.125 * column(x + 1);
             cumulated[static_cast<size_t>(x)] = sum;
-            for (int c = 0; c < 3; ++c) mean[static_cast<size_t>(c)] += texel(x, y)[c];
         }
-        columns_.set_row(r, cumulated);
-        row_sum[r] = sum;
-        for (double& channel : mean) channel *= solid_angle(y);
-        row_mean[r] = mean;
+        columns_.set_row(static_cast<size_t>(row), cumulated);
+        rows[static_cast<size_t>(row)] = sum;
     });
-    double total = 0;
-    std::array<double, 3> mean{};
-    for (size_t y = 0; y < h; ++y) {
-        total += row_sum[y];
-        for (size_t c = 0; c < 3; ++c) mean[c] += row_mean[y][c];
-    }
-    mean_weight_ = static_cast<float>(total / (double(w) * double(h)));
-    for (int c = 0; c < 3; ++c)
-        mean_[c] = static_cast<float>(mean[static_cast<size_t>(c)] / (4 * double(kPi)));
-    std::partial_sum(row_sum.begin(), row_sum.end(), row_sum.begin());
-    rows_ = TableCdf(row_sum);
+    std::partial_sum(rows.begin(), rows.end(), rows.begin());
+    rows_ = TableCdf(rows);
+    const double mean = rows.back() / (double(w) * double(h));
+    const double sphere = layout_ == Layout::equal_area ? 4 * double(kPi) : 2 * sqr(double(kPi));
+    if (mean > 0) density_ = static_cast<float>(1 / (sphere * mean));
 }
 
 EnvironmentMap::Draw EnvironmentMap::begin_draw(Vec2 u) const {
@@ -204,7 +214,8 @@ EnvironmentMap::Draw EnvironmentMap::begin_draw(Vec2 u) const {
 
 void EnvironmentMap::choose_texel(Draw& draw) const {
     draw.column = columns_.finish(draw.column, draw.u.x, draw.row);
-    for (int j = -1; j <= 1; ++j)
+    const int beside = layout_ == Layout::equal_area ? 0 : 1;
+    for (int j = -beside; j <= beside; ++j)
         __builtin_prefetch(&texel(static_cast<int>(draw.column), static_cast<int>(draw.row) + j));
 }
 
@@ -217,6 +228,8 @@ Vec3 EnvironmentMap::sample(Vec2 u) const {
 Vec3 EnvironmentMap::direction(const Draw& draw) const {
     Vec2 u = draw.u;
     const size_t x = draw.column, y = draw.row;
+    if (layout_ == Layout::equal_area)
+        return to_direction({(float(x) + u.x) / float(width_), (float(y) + u.y) / float(height_)});
     // Interpolation is bilinear in each quarter of the texel: values at its corners, edges and
     // centre.
     std::array<std::array<float, 3>, 3> g;

@@ -20,6 +20,13 @@ inline float sin_of_excess(float sin_a, float cos_a, float sin_b, float cos_b) {
     return cos_a > cos_b ? 0.0f : difference;
 }
 
+/// Of a normal to what is seen in the cone of half-angle b at the angle i, where that is above the
+/// horizon: the cosine of i, and of cones that the horizon cuts about what of it is left.
+inline float mean_cosine(float cos_i, float sin_b) {
+    const float above = std::max(0.0f, cos_i + sin_b);
+    return cos_i >= sin_b ? cos_i : above * above / std::max(4 * sin_b, 1e-20f);  // of points: 0
+}
+
 float sum(const std::array<float, 4>& v) {
     return (v[0] + v[1]) + (v[2] + v[3]);
 }
@@ -27,6 +34,7 @@ float sum(const std::array<float, 4>& v) {
 }  // namespace
 
 /// Without branches, so that the loop becomes vector instructions.
+template <LightTree::Estimate kEstimate>
 LightTree::Lanes LightTree::Node::importance(Vec3 p, Vec3 n) const {
     const bool is_volume = n == Vec3{};
     Lanes result;
@@ -49,7 +57,9 @@ LightTree::Lanes LightTree::Node::importance(Vec3 p, Vec3 n) const {
 
         const float cos_i = std::max(-1.0f, std::min(-(wx * n.x + wy * n.y + wz * n.z), 1.0f));
         const float sin_i = std::sqrt(1 - cos_i * cos_i);
-        const float received = side_weight(cos_of_excess(sin_i, cos_i, sin_b, cos_b));
+        const float received = kEstimate == Estimate::mean
+                                   ? mean_cosine(cos_i, sin_b)
+                                   : side_weight(cos_of_excess(sin_i, cos_i, sin_b, cos_b));
         const float outside = cos_emission > cos_e[i]
                                   ? intensity[i] * std::max(cos_emission, 1e-3f) *
                                         (is_volume ? 1.0f : received) / at_least
@@ -63,7 +73,7 @@ LightTree::Lanes LightTree::Node::importance(Vec3 p, Vec3 n) const {
 
 float LightTree::irradiance(Vec3 p, Vec3 n) const {
     // The root's children are a much better bound than all lights at once where they are scattered.
-    return nodes_.empty() ? 0.0f : sum(nodes_.front().importance(p, n));
+    return nodes_.empty() ? 0.0f : sum(nodes_.front().importance<Estimate::mean>(p, n));
 }
 
 std::optional<LightTree::Choice> LightTree::sample(Vec3 p, Vec3 n, float u) const {
@@ -72,7 +82,7 @@ std::optional<LightTree::Choice> LightTree::sample(Vec3 p, Vec3 n, float u) cons
     uint32_t link = 0;
     while (!(link & kLeaf)) {
         const Node& node = nodes_[link];
-        const Lanes importance = node.importance(p, n);
+        const Lanes importance = node.importance<Estimate::bound>(p, n);
         const float total = sum(importance);
         if (!(total > 0)) return std::nullopt;
         // The last one of any importance takes what rounding leaves over.
@@ -98,7 +108,7 @@ float LightTree::probability(Vec3 p, Vec3 n, int light) const {
     float probability = 1;
     for (uint32_t link = 0; !(link & kLeaf); trail >>= 2) {
         const Node& node = nodes_[link];
-        const Lanes importance = node.importance(p, n);
+        const Lanes importance = node.importance<Estimate::bound>(p, n);
         const float own = importance[trail & 3];
         if (!(own > 0)) return 0;
         probability *= own / sum(importance);

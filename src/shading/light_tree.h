@@ -41,11 +41,14 @@ class LightTree {
     std::optional<Choice> sample(Vec3 p, Vec3 n, float u) const;
     /// Probability that `sample` returns this light.
     float probability(Vec3 p, Vec3 n, int light) const;
-    /// Estimated irradiance at p (of a facing surface where n is zero): an upper bound, roughly.
+    /// Estimated irradiance at p (of a facing surface where n is zero), without shadows.
     float irradiance(Vec3 p, Vec3 n) const;
 
   private:
     static constexpr size_t kWidth = 4;
+    /// How the cosine at the surface counts: for choosing among lights none that may shine is left
+    /// out; all of them together are estimated by the mean.
+    enum class Estimate { bound, mean };
     using Lanes = std::array<float, kWidth>;
     /// Up to four children, each a light or a node; those that are not there have no intensity.
     struct Node {
@@ -58,6 +61,7 @@ class LightTree {
         std::array<uint32_t, kWidth> link{};       ///< kLeaf and a light, or a node
 
         /// Estimated irradiance by each child.
+        template <Estimate kEstimate>
         Lanes importance(Vec3 p, Vec3 n) const;
     };
     static constexpr uint32_t kLeaf = 1u << 31;

@@ -137,20 +137,37 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
     tree = LightTree(finite);
 }
 
-float Lights::Impl::infinite_estimate(size_t i, Vec3 n) const {
-    if (i >= distants.size()) return environments[i - distants.size()].irradiance();
+float Lights::Impl::infinite_weight(const InfiniteShare& share, size_t i, Vec3 n) const {
+    if (i >= distants.size()) {
+        const Environment& e = environments[i - distants.size()];
+        return e.irradiance() * (e.is_map() ? 1.0f : share.even);
+    }
     const float facing = choice_weight(distants[i].irradiance);
     return n == Vec3{} ? facing : facing * side_weight(dot(distants[i].direction, n));
 }
 
 InfiniteShare Lights::Impl::infinite_share(Vec3 p, Vec3 n) const {
     InfiniteShare share;
-    for (size_t i = 0; i < infinite_count(); ++i) share.estimate += infinite_estimate(i, n);
-    if (!(share.estimate > 0)) return share;
+    if (infinite_count() == 0) return share;
+    float even = 0;
+    for (size_t i = 0; i < infinite_count(); ++i) {
+        const bool is_even = i >= distants.size() && !environments[i - distants.size()].is_map();
+        (is_even ? even : share.weight) += infinite_weight(share, i, n);
+    }
     const float finite = tree.irradiance(p, n);
-    share.probability = finite > 0 ? std::clamp(share.estimate / (share.estimate + finite),
-                                                kSmallestShare, 1 - kSmallestShare)
-                                   : 1.0f;
+    const bool has_uneven = share.weight > 0;
+    if (even > 0) {
+        // A sky that is alike everywhere is found by BSDFs, too. It is drawn for as far as it
+        // outshines everything else (docs/decisions/0074).
+        const float rest = finite + share.weight;
+        share.even = 0.5f * std::max(0.0f, 1 - rest / even);
+        share.weight += share.even * even;
+    }
+    if (!(share.weight > 0)) return share;
+    share.probability = finite > 0
+                            ? std::clamp(share.weight / (share.weight + finite),
+                                         has_uneven ? kSmallestShare : 0.0f, 1 - kSmallestShare)
+                            : 1.0f;
     return share;
 }
 
@@ -164,11 +181,11 @@ Lights::Sky Lights::Impl::sky(const InfiniteShare& share, Vec3 n, Vec3 w) const 
     Sky sky;
     for (size_t i = 0; i < environments.size(); ++i) {
         const EnvironmentMap::Sight sight = environments[i].look(n, w);
-        const float estimate = infinite_estimate(distants.size() + i, n);
+        const float weight = infinite_weight(share, distants.size() + i, n);
         sky.radiance += sight.radiance;
-        if (estimate > 0) sky.pdf += estimate * sight.pdf;
+        if (weight > 0) sky.pdf += weight * sight.pdf;
     }
-    sky.pdf *= share.probability > 0 ? share.probability / share.estimate : 0;
+    sky.pdf *= share.probability > 0 ? share.probability / share.weight : 0;
     return sky;
 }
 
@@ -224,22 +241,22 @@ std::optional<LightSample> Lights::Impl::sample_point(int light, float probabili
 std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& share, Vec3 n,
                                                          float u_select, Draw draw) const {
     // The last one with any light takes what rounding leaves over.
-    float rest = u_select * share.estimate, chosen_estimate = 0;
+    float rest = u_select * share.weight, chosen_weight = 0;
     size_t chosen = 0;
     for (size_t i = 0; i < infinite_count(); ++i) {
-        const float estimate = infinite_estimate(i, n);
-        if (!(estimate > 0)) continue;
+        const float weight = infinite_weight(share, i, n);
+        if (!(weight > 0)) continue;
         chosen = i;
-        chosen_estimate = estimate;
-        if (rest < estimate) break;
-        rest -= estimate;
+        chosen_weight = weight;
+        if (rest < weight) break;
+        rest -= weight;
     }
     LightSample s;
     s.light = first_distant() + static_cast<int>(chosen);
     if (chosen < distants.size()) {
         s.wi = distants[chosen].direction;
         s.radiance = distants[chosen].irradiance;
-        s.pdf = share.probability * chosen_estimate / share.estimate;
+        s.pdf = share.probability * chosen_weight / share.weight;
         s.is_delta = true;
         return s;
     }
@@ -331,7 +348,7 @@ float Lights::selection_probability(Vec3 p, Vec3 n, int light) const {
         return (1 - share.probability) * impl_->tree.probability(p, n, light);
     if (!(share.probability > 0)) return 0;
     const auto i = static_cast<size_t>(light - impl_->first_distant());
-    return share.probability * impl_->infinite_estimate(i, n) / share.estimate;
+    return share.probability * impl_->infinite_weight(share, i, n) / share.weight;
 }
 
 bool Lights::has_environment() const {

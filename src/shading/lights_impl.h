@@ -31,8 +31,8 @@ struct AreaLight {
 /// All infinite lights or all finite ones against each other at a point.
 struct InfiniteShare {
     float probability = 0;  ///< of choosing an infinite light
-    float estimate =
-        0;  ///< irradiance by all infinite lights, which they share that probability by
+    float weight = 0;       ///< of all infinite lights, which they share that probability by
+    float even = 1;         ///< what the irradiance by even skies counts beside that by others
 };
 
 struct Lights::Impl {
@@ -49,8 +49,8 @@ struct Lights::Impl {
     void advance(const Environment& light, Draw& draw, int steps) const;
 
     InfiniteShare infinite_share(Vec3 p, Vec3 n) const;
-    /// Estimated irradiance by infinite light i (distant ones first), for choosing among them.
-    float infinite_estimate(size_t i, Vec3 n) const;
+    /// Of infinite light i (distant ones first), for choosing among them.
+    float infinite_weight(const InfiniteShare& share, size_t i, Vec3 n) const;
     Sky sky(const InfiniteShare& share, Vec3 n, Vec3 w) const;
     Rgb environment(Vec3 w) const;
     SourceSpectrum environment_spectrum(Vec3 w) const;

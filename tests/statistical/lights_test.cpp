@@ -36,11 +36,11 @@ std::ostream& operator<<(std::ostream& out, const Case& c) {
 }
 
 const TemporaryImage& square_map() {
-    static const TemporaryImage image(sky_with_sun(32, 32, 9, 20, 5000), 32, 32);
+    static const TemporaryImage image(sky_with_sun(32, 32, 9, 20, 50), 32, 32);
     return image;
 }
 const TemporaryImage& lat_long_map() {
-    static const TemporaryImage image(sky_with_sun(64, 32, 9, 10, 5000), 64, 32);
+    static const TemporaryImage image(sky_with_sun(64, 32, 9, 10, 50), 64, 32);
     return image;
 }
 

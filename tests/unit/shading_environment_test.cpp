@@ -103,12 +103,43 @@ TEST(EnvironmentMap, LatLongAndEqualAreaShowTheSamePicture) {
         1e-3);
     Rng rng(2);
     for (int i = 0; i < 20000; ++i) {
-        const Vec3 w = square_to_sphere(rng.next_2d());
+        // At the centres of the square one's texels, within which it does not change.
+        const Vec2 uv = rng.next_2d();
+        const Vec3 w = equal_area_square_to_sphere(
+            {(std::floor(512 * uv.x) + 0.5f) / 512, (std::floor(512 * uv.y) + 0.5f) / 512});
         for (int c = 0; c < 3; ++c) {
             ASSERT_NEAR(square.radiance(w)[c], sky(w)[c], 0.01);
             ASSERT_NEAR(lat_long.radiance(w)[c], sky(w)[c], 0.01);
         }
-        ASSERT_NEAR(square.pdf(w) / lat_long.pdf(w), 1, 0.02);
+        ASSERT_NEAR(square.pdf(w) * 4 * kPi, lat_long.pdf(w) * 4 * kPi, 0.02);
+    }
+}
+
+TEST(EnvironmentMap, EqualAreaTexelsAreConstantAsInPbrt) {
+    // One texel of 10 in an even map: pbrt-v4's ImageInfiniteLight looks up the nearest texel.
+    constexpr int kSide = 8;
+    std::vector<Rgb> texels(kSide * kSide, Rgb(0.1f));
+    texels[2 * kSide + 3] = Rgb(10);
+    const EnvironmentMap map(texels, kSide, kSide);
+    const auto at = [&](float x, float y) {
+        return map.radiance(equal_area_square_to_sphere({x / kSide, y / kSide})).g;
+    };
+    for (const float inside : {3.02f, 3.5f, 3.98f}) EXPECT_EQ(at(inside, 2.5f), 10) << inside;
+    for (const float outside : {2.98f, 4.02f}) EXPECT_EQ(at(outside, 2.5f), 0.1f) << outside;
+}
+
+TEST(EnvironmentMap, DirectionsAreDrawnForWhatStandsOut) {
+    // What is darker than most of the mean is left to BSDFs; even maps are drawn from evenly.
+    for (const int width : {32, 64}) {
+        const EnvironmentMap even(std::vector<Rgb>(size_t(width) * 32, Rgb(2)), width, 32);
+        EXPECT_NEAR(even.drawn_share(), 1 - EnvironmentMap::kLeftOut, 1e-5);
+        EXPECT_NEAR(even.pdf(from_angles(1.2f, 0.3f)) * 4 * kPi, 1, 0.02);
+        const EnvironmentMap sunny(sky_with_sun(width, 32, 9, 10, 5000), width, 32);
+        EXPECT_GT(sunny.drawn_share(), 0.5f);
+        Rng rng(6);
+        for (int i = 0; i < 1000; ++i)
+            ASSERT_GT(luminance(sunny.radiance(sunny.sample(rng.next_2d()))),
+                      EnvironmentMap::kLeftOut * luminance(sunny.mean()) * 0.99f);
     }
 }
 

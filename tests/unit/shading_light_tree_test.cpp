@@ -75,6 +75,23 @@ TEST(LightTree, PrefersNearBrightAndFacedLights) {
     EXPECT_NEAR(share(bulb({0, 0, 1}), bulb({0, 0, -1}), {}, {0, 0, 1}), 1 / 1.1, 1e-5);
 }
 
+TEST(LightTree, IrradianceIsOfWhatIsAboveTheHorizon) {
+    // A ball of lights, 0.1 wide each way, at distance 2: the cone's sine is sqrt(3) 0.1 / 2.
+    const auto at = [](float degrees) {
+        const Vec3 c{2 * std::cos(degrees * kPi / 180), 0, 2 * std::sin(degrees * kPi / 180)};
+        const Vec3 half{0.1f, 0.1f, 0.1f};
+        LightBounds ball = bulb(c - half);
+        ball.box.extend(c + half);
+        return LightTree({ball}).irradiance({}, {0, 0, 1});
+    };
+    for (const float degrees : {10.0f, 30.0f, 90.0f})
+        EXPECT_NEAR(at(degrees), std::sin(degrees * kPi / 180) / 4, 1e-3f) << degrees;
+    EXPECT_EQ(at(-6), 0);
+    // A disc that the horizon halves: 2 / (3 pi) of its half-width is the mean height over all.
+    const float sine = 0.1f * std::sqrt(3.0f) / 2;
+    EXPECT_NEAR(at(0) * 4, 2 * sine / (3 * kPi), 0.25f * 2 * sine / (3 * kPi));
+}
+
 TEST(LightTree, CopesWithCoincidentLightsAndSkewedDistances) {
     std::vector<LightBounds> same(1000, bulb({1, 1, 1}));
     std::vector<LightBounds> skewed;
