@@ -127,7 +127,10 @@ bool PathTracer::survives(float u) {
     // scene may allow a million. Beyond a thousand it goes on for a hundred more in the mean.
     constexpr int kLongWalk = 1000;
     constexpr float kLeastEnd = 0.01f;
-    const float carried = max_component(beta_) * roulette_scale_;
+    // What a path that carries less than this still finds is less than the noise of the ends of
+    // paths that carry more would be (docs/decisions/0075).
+    constexpr float kWorthwhile = 0.25f;
+    const float carried = max_component(beta_) * roulette_scale_ / kWorthwhile;
     const float least = depth_ > kLongWalk ? kLeastEnd : 0.0f;
     if (depth_ <= 1 || (!(carried < 1) && least == 0)) return true;
     const float end = std::max(least, 1 - carried);
