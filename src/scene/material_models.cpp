@@ -172,6 +172,8 @@ CoatedDiffuseMaterial Builder::subsurface() {
     const bool has_coefficients = p.has("sigma_a") || p.has("sigma_s");
     if (name.empty() && !has_coefficients)
         m.reflectance = textures.reflectance_or_none(p, "reflectance");
+    // A reflectance is what gets out, reflections on the inside of the surface included.
+    m.reflects_through_coat = m.reflectance >= 0;
     if (m.reflectance < 0) {
         Rgb a, s;
         float g = p.number("g", 0);

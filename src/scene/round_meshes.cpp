@@ -72,6 +72,8 @@ TriangleMesh curve_mesh(const CurveDescription& curve) {
     const size_t segments =
         curve.is_bspline ? curve.points.size() - degree : (curve.points.size() - 1) / degree;
     const size_t rings = segments * kStepsPerSegment + 1;
+    // Seen from all sides, a tube of flat sides is as wide in the mean as a round one.
+    const float widening = kPi / (kSidesOfTube * std::sin(kPi / kSidesOfTube));
     TriangleMesh m;
     Vec3 tangent{0, 0, 1}, side;
     for (size_t r = 0; r < rings; ++r) {
@@ -84,7 +86,7 @@ TriangleMesh curve_mesh(const CurveDescription& curve) {
         if (!(length(side) > 0.5f)) side = Frame::from_z(tangent).x;
         const Vec3 other = cross(tangent, side);
         const float u = static_cast<float>(r) / static_cast<float>(rings - 1);
-        const float radius = 0.5f * ((1 - u) * curve.width0 + u * curve.width1);
+        const float radius = 0.5f * widening * ((1 - u) * curve.width0 + u * curve.width1);
         for (size_t i = 0; i <= kSidesOfTube; ++i) {
             const float v = static_cast<float>(i) / kSidesOfTube, angle = 2 * kPi * v;
             const Vec3 n = std::cos(angle) * side + std::sin(angle) * other;

@@ -117,9 +117,7 @@ std::vector<ShapeGeometry> ShapeBuilder::bilinear_mesh(Entity& e) {
     BilinearMesh mesh;
     vertices(mesh, e, context_.log);
     mesh.patches = faces<4>(e, mesh.positions.size(), context_.log);
-    if (e.parameters.has("emissionfilename"))
-        context_.log.add(e.parameters.where("emissionfilename", e.where),
-                         "images on area lights are not supported; the light is uniform");
+    // In pbrt an image of where samples of the light should go; its radiance is the light's own.
     e.parameters.ignore({"emissionfilename", "faceIndices"});
     return {std::make_shared<const BilinearMesh>(std::move(mesh))};
 }

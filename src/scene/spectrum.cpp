@@ -155,10 +155,10 @@ Rgb to_rgb(const Rgb64& v) {
 }
 
 Rgb luminance_one(Rgb64 v) {
-    for (double& c : v.c) c = std::max(0.0, c);
     const double y = 0.2126 * v.c[0] + 0.7152 * v.c[1] + 0.0722 * v.c[2];
     if (!(y > 0) || !std::isfinite(y)) return Rgb{0};
-    for (double& c : v.c) c /= y;
+    // Negative light of colours outside Rec.709 is cut off last, as a viewer of pbrt's images does.
+    for (double& c : v.c) c = std::max(0.0, c / y);
     return to_rgb(v);
 }
 

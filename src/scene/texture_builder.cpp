@@ -185,11 +185,17 @@ TextureId TextureBuilder::stand_in(Declared& d) {
     const auto two = [&](std::string_view a, float va, std::string_view b, float vb) {
         return mean_of(mean(part(d, a, va)), mean(part(d, b, vb)));
     };
-    Rgb value{0.5f};
+    Rgb value{0.5f};  // of float textures: the mean of pbrt's noise
+    if (type == "fbm" || type == "windy")
+        value = Rgb{0};
+    else if (type == "wrinkled")
+        value = Rgb{0.435f};
     if (type == "directionmix") {
         value = two("tex1", 0, "tex2", 1);
     } else if (type == "dots") {
-        value = two("inside", 1, "outside", 0);
+        // Three of four cells have a dot of radius 0.35 at most, which pbrt keeps within its cell.
+        constexpr float kDots = 0.155f;
+        value = (1 - kDots) * mean(part(d, "outside", 0)) + kDots * mean(part(d, "inside", 1));
     } else if (type == "bilerp") {
         value = mean_of(two("v00", 0, "v01", 1), two("v10", 0, "v11", 1));
     } else if (type == "marble" && d.is_spectrum) {
@@ -215,8 +221,8 @@ TextureId TextureBuilder::stand_in(Declared& d) {
 }
 
 Rgb TextureBuilder::mean(TextureId id) {
-    // The parts of a texture come before it. Each once: textures of two textures of two textures ...
-    // would take for ever otherwise.
+    // The parts of a texture come before it. Each once: textures of two textures of two textures
+    // ... would take for ever otherwise.
     while (means_.size() <= static_cast<size_t>(id)) means_.push_back(mean_of_parts(means_.size()));
     return means_[static_cast<size_t>(id)];
 }

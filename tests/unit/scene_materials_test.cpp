@@ -226,6 +226,13 @@ TEST(SceneMaterials, SubsurfaceTakesTheNameThenCoefficientsThenReflectance) {
         "\"rgb sigma_a\" [ .061 .97 1.45 ] \"rgb sigma_s\" [ .18 .07 .03 ] ";
     const std::string green = "\"rgb reflectance\" [ 0 1 0 ] ";
     const std::string cream = "\"string name\" \"Cream\" ";
+    // A reflectance holds what is reflected inside; what coefficients make of it does not.
+    for (const auto& [text, whole] : {std::pair{green, true}, {cream, false}, {ketchup, false}})
+        EXPECT_EQ(
+            std::get<CoatedDiffuseMaterial>(material_of("\"subsurface\" " + text).material.value)
+                .reflects_through_coat,
+            whole)
+            << text;
     const Rgb red = reflectance(ketchup);
     expect_near(reflectance("\"string name\" \"Ketchup\" \"float g\" .8"), red, 1e-6f);
     EXPECT_GT(red.r, 5 * red.g);

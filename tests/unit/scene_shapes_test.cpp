@@ -121,12 +121,18 @@ TEST(SceneShapes, CurvesBecomeTubesAroundThem) {
             std::string(
                 "Shape \"curve\" \"point3 P\" [ 0 0 0  0 0 1  0 0 2  0 0 3 ] \"float width\" .2 ") +
             basis);
-        for (const Vec3& p : mesh_of(scene).positions) {
-            EXPECT_NEAR(std::hypot(p.x, p.y), 0.1f, 1e-5f);
+        const TriangleMesh& m = mesh_of(scene);
+        for (const Vec3& p : m.positions) {
+            EXPECT_NEAR(std::hypot(p.x, p.y), std::hypot(m.positions[0].x, m.positions[0].y),
+                        1e-5f);
             EXPECT_GE(p.z, -1e-5f);
             EXPECT_LE(p.z, 3 + 1e-5f);
         }
-        const TriangleMesh& m = mesh_of(scene);
+        // Around the first ring: the mean width over all sides is the circumference over pi.
+        float around = 0;
+        for (size_t i = 1; m.positions[i].z < m.positions[0].z + 1e-5f; ++i)
+            around += distance(m.positions[i - 1], m.positions[i]);
+        EXPECT_NEAR(around, kPi * 0.2f, 1e-5f);
         for (const auto& t : m.triangles)
             EXPECT_GT(dot(cross(m.positions[t[1]] - m.positions[t[0]],
                                 m.positions[t[2]] - m.positions[t[0]]),

@@ -99,10 +99,16 @@ TEST(SceneTextures, OthersBecomeTheirMeanWithAWarning) {
         EXPECT_TRUE(std::holds_alternative<ConstantTexture>(texture(scene).value)) << text;
         EXPECT_EQ(scene.warnings.size(), 1u) << text << "\n" << warnings_of(scene);
     }
-    const auto scene = read_world(
-        "Texture \"t\" \"float\" \"bilerp\" \"float v00\" 2 \"float v01\" 4 \"float v10\" 6 "
-        "\"float v11\" 8");
-    EXPECT_EQ(std::get<ConstantTexture>(texture(scene).value).value, Rgb{5});
+    const auto value = [](const std::string& text) {
+        const auto scene = read_world("Texture \"t\" \"float\" " + text);
+        return std::get<ConstantTexture>(texture(scene).value).value.r;
+    };
+    EXPECT_EQ(value("\"bilerp\" \"float v00\" 2 \"float v01\" 4 \"float v10\" 6 \"float v11\" 8"),
+              5);
+    EXPECT_EQ(value("\"fbm\""), 0);
+    EXPECT_EQ(value("\"windy\""), 0);
+    EXPECT_NEAR(value("\"wrinkled\""), 0.435f, 1e-6f);
+    EXPECT_NEAR(value("\"dots\" \"float inside\" 2 \"float outside\" 1"), 1.155f, 1e-6f);
 }
 
 TEST(SceneTextures, WarningsAreInFileOrder) {
