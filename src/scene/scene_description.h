@@ -72,10 +72,30 @@ struct ScaleTexture {
 struct MixTexture {
     TextureId tex1 = -1, tex2 = -1, amount = -1;  ///< (1 - amount) tex1 + amount tex2
 };
+/// Dots here and there in the cells of (s, t).
+struct DotsTexture {
+    TextureMapping mapping;
+    TextureId inside = -1, outside = -1;
+};
+/// Values at the corners (s, t) of the unit square, bilinear between and beyond them.
+struct BilerpTexture {
+    TextureMapping mapping;
+    Rgb v00, v01, v10, v11;
+};
+/// Solid noise in texture space.
+struct NoiseTexture {
+    enum class Kind { fbm, wrinkled, windy, marble };
+    Kind kind = Kind::fbm;
+    Transform texture_from_world;
+    int octaves = 8;
+    float omega = 0.5f;                 ///< pbrt's "roughness"
+    float scale = 1, variation = 0.2f;  ///< of marble
+};
 struct TextureDescription {
     std::string name;  ///< empty for values given inline
     bool is_spectrum = true;
-    std::variant<ConstantTexture, ImageTexture, CheckerboardTexture, ScaleTexture, MixTexture>
+    std::variant<ConstantTexture, ImageTexture, CheckerboardTexture, ScaleTexture, MixTexture,
+                 DotsTexture, BilerpTexture, NoiseTexture>
         value;
     SourceLocation where;
 };

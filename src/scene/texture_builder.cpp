@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 
 #include "scene/names.h"
 #include "scene/spectrum_parameter.h"
@@ -17,6 +18,41 @@ constexpr int kDeepestChain = 256;
 
 Rgb mean_of(Rgb a, Rgb b) {
     return 0.5f * (a + b);
+}
+
+/// Empty for textures of other types: marble is a colour, the others are numbers.
+std::optional<NoiseTexture::Kind> noise_kind(std::string_view type, bool is_spectrum) {
+    using Kind = NoiseTexture::Kind;
+    if (is_spectrum) return type == "marble" ? std::optional(Kind::marble) : std::nullopt;
+    if (type == "fbm") return Kind::fbm;
+    if (type == "wrinkled") return Kind::wrinkled;
+    if (type == "windy") return Kind::windy;
+    return std::nullopt;
+}
+
+/// As measured of pbrt-v4's noise with its default parameters.
+Rgb mean_of_noise(NoiseTexture::Kind kind) {
+    if (kind == NoiseTexture::Kind::marble) return {0.80f, 0.80f, 0.84f};
+    return Rgb{kind == NoiseTexture::Kind::wrinkled ? 0.435f : 0.0f};
+}
+
+NoiseTexture noise_texture(NoiseTexture::Kind kind, ParameterList& p, const SourceLocation& where,
+                           const Transform& texture_from_world) {
+    constexpr int kMostOctaves = 64;  // the finest would be smaller than numbers can tell
+    NoiseTexture t;
+    t.kind = kind;
+    t.texture_from_world = texture_from_world;
+    if (kind == NoiseTexture::Kind::windy) return t;
+    t.octaves = p.integer("octaves", t.octaves);
+    if (t.octaves < 0 || t.octaves > kMostOctaves)
+        throw Error(ErrorKind::scene, p.where("octaves", where),
+                    "parameter \"octaves\" is " + std::to_string(t.octaves) + "; expected 0 to " +
+                        std::to_string(kMostOctaves));
+    t.omega = p.number("roughness", t.omega);
+    if (kind != NoiseTexture::Kind::marble) return t;
+    t.scale = p.number("scale", t.scale);
+    t.variation = p.number("variation", t.variation);
+    return t;
 }
 
 }  // namespace
@@ -121,6 +157,14 @@ TextureId TextureBuilder::part(Declared& d, std::string_view name, float otherwi
                          : grey(d.entity.parameters, name, otherwise);
 }
 
+Rgb TextureBuilder::corner(Declared& d, std::string_view name, float otherwise) {
+    ParameterList& p = d.entity.parameters;
+    if (!d.is_spectrum) return Rgb{p.number(name, otherwise)};
+    const Parameter* colour =
+        p.find(name, {ParameterType::rgb, ParameterType::spectrum, ParameterType::blackbody});
+    return colour ? factor_colour(*colour, context_) : Rgb{otherwise};
+}
+
 TextureId TextureBuilder::add(Declared& d, decltype(TextureDescription::value) value) {
     const auto id = static_cast<TextureId>(context_.scene.textures.size());
     context_.scene.textures.push_back({d.name, d.is_spectrum, std::move(value), d.entity.where});
@@ -168,6 +212,22 @@ TextureId TextureBuilder::build(Declared& d) {
         t.tex2 = part(d, "tex2", 1);
         t.amount = grey(p, "amount", 0.5f);
         d.id = add(d, t);
+    } else if (type == "dots") {
+        DotsTexture t;
+        t.mapping = texture_mapping(p, d.entity.where, d.texture_to_world.inverse());
+        t.inside = part(d, "inside", 1);
+        t.outside = part(d, "outside", 0);
+        d.id = add(d, t);
+    } else if (type == "bilerp") {
+        BilerpTexture t;
+        t.mapping = texture_mapping(p, d.entity.where, d.texture_to_world.inverse());
+        t.v00 = corner(d, "v00", 0);
+        t.v01 = corner(d, "v01", 1);
+        t.v10 = corner(d, "v10", 0);
+        t.v11 = corner(d, "v11", 1);
+        d.id = add(d, t);
+    } else if (const auto kind = noise_kind(type, d.is_spectrum)) {
+        d.id = add(d, noise_texture(*kind, p, d.entity.where, d.texture_to_world.inverse()));
     } else {
         d.id = stand_in(d);
     }
@@ -182,26 +242,10 @@ TextureId TextureBuilder::build(Declared& d) {
 TextureId TextureBuilder::stand_in(Declared& d) {
     ParameterList& p = d.entity.parameters;
     const std::string& type = d.entity.type;
-    const auto two = [&](std::string_view a, float va, std::string_view b, float vb) {
-        return mean_of(mean(part(d, a, va)), mean(part(d, b, vb)));
-    };
-    Rgb value{0.5f};  // of float textures: the mean of pbrt's noise
-    if (type == "fbm" || type == "windy")
-        value = Rgb{0};
-    else if (type == "wrinkled")
-        value = Rgb{0.435f};
+    Rgb value{0.5f};
     if (type == "directionmix") {
-        value = two("tex1", 0, "tex2", 1);
-    } else if (type == "dots") {
-        // Three of four cells have a dot of radius 0.35 at most, which pbrt keeps within its cell.
-        constexpr float kDots = 0.155f;
-        value = (1 - kDots) * mean(part(d, "outside", 0)) + kDots * mean(part(d, "inside", 1));
-    } else if (type == "bilerp") {
-        value = mean_of(two("v00", 0, "v01", 1), two("v10", 0, "v11", 1));
-    } else if (type == "marble" && d.is_spectrum) {
-        value = {0.80f, 0.80f, 0.84f};  // the mean of pbrt's marble colours
-    } else if (!(type == "ptex" ||
-                 (!d.is_spectrum && (type == "fbm" || type == "wrinkled" || type == "windy")))) {
+        value = mean_of(mean(part(d, "tex1", 0)), mean(part(d, "tex2", 1)));
+    } else if (type != "ptex") {
         std::vector<std::string> known{"constant", "imagemap",     "checkerboard", "scale", "mix",
                                        "dots",     "directionmix", "bilerp",       "ptex"};
         if (d.is_spectrum) {
@@ -236,6 +280,13 @@ Rgb TextureBuilder::mean_of_parts(size_t texture) const {
     if (const auto* t = std::get_if<ScaleTexture>(&value)) return mean(t->tex) * mean(t->scale);
     if (const auto* t = std::get_if<MixTexture>(&value))
         return lerp(mean(t->amount).r, mean(t->tex1), mean(t->tex2));
+    if (const auto* t = std::get_if<DotsTexture>(&value)) {
+        constexpr float kDots = 0.155f;  // four cells in ten have one
+        return lerp(kDots, mean(t->outside), mean(t->inside));
+    }
+    if (const auto* t = std::get_if<BilerpTexture>(&value))
+        return mean_of(mean_of(t->v00, t->v01), mean_of(t->v10, t->v11));
+    if (const auto* t = std::get_if<NoiseTexture>(&value)) return mean_of_noise(t->kind);
     return Rgb{0.5f * std::get<ImageTexture>(value).scale};
 }
 

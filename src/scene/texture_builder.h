@@ -53,6 +53,8 @@ class TextureBuilder {
     TextureId build(Declared& d);
     TextureId spectrum_or_none(ParameterList& p, std::string_view name, bool is_reflectance);
     TextureId part(Declared& d, std::string_view name, float otherwise);
+    /// A value of a bilerp texture.
+    Rgb corner(Declared& d, std::string_view name, float otherwise);
     TextureId stand_in(Declared& d);
     TextureId add(Declared& d, decltype(TextureDescription::value) value);
     std::vector<std::string> names(bool is_spectrum) const;

@@ -74,6 +74,11 @@ class GraphBuilder {
     double lookups_of(const CheckerboardNode& n) const {
         return 1 + std::max(lookups_of(n.tex1), lookups_of(n.tex2));
     }
+    double lookups_of(const DotsTexture& n) const {
+        return 1 + std::max(lookups_of(n.inside), lookups_of(n.outside));
+    }
+    double lookups_of(const BilerpTexture&) const { return 1; }
+    double lookups_of(const NoiseTexture&) const { return 1; }
     double lookups_of(const ScaleNode& n) const {
         return 1 + lookups_of(n.tex) + lookups_of(n.scale);
     }
@@ -117,6 +122,14 @@ class GraphBuilder {
         node.tex2 = t.tex2;
         return node;
     }
+    TextureNode make_node(const DotsTexture& t, const TextureDescription&, int depth) {
+        const TextureNode& a = build(t.inside, depth + 1);
+        const TextureNode& b = build(t.outside, depth + 1);
+        if (constant(a) && constant(b) && *constant(a) == *constant(b)) return a;
+        return t;
+    }
+    TextureNode make_node(const BilerpTexture& t, const TextureDescription&, int) { return t; }
+    TextureNode make_node(const NoiseTexture& t, const TextureDescription&, int) { return t; }
     TextureNode make_node(const ScaleTexture& t, const TextureDescription&, int depth) {
         const TextureNode& tex = build(t.tex, depth + 1);
         const TextureNode& scale = build(t.scale, depth + 1);
@@ -222,10 +235,11 @@ Rgb TextureStore::mean(TextureId id) const {
         for (size_t i = 0; i < texels; ++i) add(image_value_at(*node, image, i));
         count = double(texels);
     } else {
+        // Solid textures along a line that is long beside their cells.
         constexpr int kSide = 64;
         for (int i = 0; i < kSide * kSide; ++i)
-            add(eval(id,
-                     {{(float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide}, {}}));
+            add(eval(id, {{(float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide},
+                          float(i) * Vec3{0.131f, 0.171f, 0.113f}}));
         count = kSide * kSide;
     }
     return {float(sum[0] / count), float(sum[1] / count), float(sum[2] / count)};

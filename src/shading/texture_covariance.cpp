@@ -1,4 +1,7 @@
 /// How fast textures vary: the covariance of their amplitude spectra per unit of (u, v).
+#include <cmath>
+
+#include "shading/noise.h"
 #include "shading/texture_graph.h"
 #include "shading/texture_mapping.h"
 
@@ -129,6 +132,74 @@ struct Analyser {
                 edges = edges + edge_at(p[axis], {pu[axis], pv[axis]});
         }
         return edges + of(active_texture(node, at));
+    }
+
+    /// The nearest rim counts as a straight edge.
+    SpatialCovariance2 operator()(const DotsTexture& node) const {
+        const Vec2 st = map_to_st(node.mapping, at);
+        const StGradient gradient = st_gradient(node.mapping, at, dpdu, dpdv);
+        float nearest = kInfinity;
+        Vec2 across;  // the rim, by (u, v)
+        for (int j = -1; j <= 1; ++j)
+            for (int i = -1; i <= 1; ++i) {
+                const auto center = dot_center({st.x + float(i), st.y + float(j)});
+                if (!center) continue;
+                const Vec2 d{st.x - center->x, st.y - center->y};
+                const float r = length(d), rim = std::abs(r - kDotRadius);
+                if (!(rim < nearest) || !(r > 0)) continue;
+                nearest = rim;
+                across = {(d.x * gradient.s.x + d.y * gradient.t.x) / r,
+                          (d.x * gradient.s.y + d.y * gradient.t.y) / r};
+            }
+        const SpatialCovariance2 own = of(active_texture(node, at));
+        if (nearest == kInfinity) return own;
+        const float contrast =
+            relative_contrast(eval(graph, node.inside, at), eval(graph, node.outside, at));
+        return own +
+               edge(nearest, across, footprint_uv) * kept_weight(contrast, across, footprint_uv);
+    }
+
+    /// A ramp varies as fast as it rises, relative to its value.
+    SpatialCovariance2 operator()(const BilerpTexture& node) const {
+        const Vec2 st = map_to_st(node.mapping, at);
+        const float value =
+            std::abs(luminance((1 - st.y) * ((1 - st.x) * node.v00 + st.x * node.v10) +
+                               st.y * ((1 - st.x) * node.v01 + st.x * node.v11)));
+        const float least = 1e-3f * (std::abs(luminance(node.v00)) + std::abs(luminance(node.v01)) +
+                                     std::abs(luminance(node.v10)) + std::abs(luminance(node.v11)));
+        if (!(value + least > 0)) return {};
+        const float scale = 1 / (2 * kPi * (value + least));
+        const float s =
+            scale * luminance((1 - st.y) * (node.v10 - node.v00) + st.y * (node.v11 - node.v01));
+        const float t =
+            scale * luminance((1 - st.x) * (node.v01 - node.v00) + st.x * (node.v11 - node.v10));
+        return to_uv({s * s, s * t, t * t}, st_gradient(node.mapping, at, dpdu, dpdv));
+    }
+
+    /// Along each axis of texture space the mean square frequency of the octaves that a pixel
+    /// shows, by their energy: noise is alike everywhere and in all directions.
+    SpatialCovariance2 operator()(const NoiseTexture& node) const {
+        using Kind = NoiseTexture::Kind;
+        const Vec3 pu = node.texture_from_world.vector(dpdu),
+                   pv = node.texture_from_world.vector(dpdv);
+        const float stretch = node.kind == Kind::marble ? std::abs(node.scale) : 1.0f;
+        const float pixel = 2 * footprint_uv * std::max(length(pu), length(pv)) * stretch;
+        const Octaves octaves =
+            node.kind == Kind::windy ? Octaves{6, 0.5f} : Octaves{node.octaves, node.omega};
+        const NoiseEnergy energy = noise_energy(pixel, octaves);
+        const SpatialCovariance2 all = {dot(pu, pu), dot(pu, pv), dot(pv, pv)};
+        if (node.kind == Kind::marble) {
+            // What the colours make of a phase that runs along y and is bent by the noise. Three
+            // periods of a cosine fit the dark vein in one of the colours.
+            constexpr float kHarmonic = 3;
+            const float square = sqr(kHarmonic * node.scale / (2 * kPi));
+            const SpatialCovariance2 along{pu.y * pu.y, pu.y * pv.y, pv.y * pv.y};
+            return along * square + all * (square * sqr(2 * kPi * node.variation) * energy.slope);
+        }
+        if (!(energy.all > 0)) return {};
+        // Of the absolute value, as much slope is left, but 1 - 2 / pi of the variance.
+        const float folded = node.kind == Kind::wrinkled ? 1 / (1 - 2 * kInvPi) : 1.0f;
+        return all * (folded * energy.slope / energy.all);
     }
 
     /// A product of signals: their spectra are convolved, their covariances add.

@@ -1,5 +1,10 @@
 #include "shading/texture_graph.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "shading/noise.h"
 #include "shading/texture_mapping.h"
 
 namespace covtrace {
@@ -9,6 +14,22 @@ namespace {
 int odd(float v) {
     const float cell = std::floor(v);
     return cell - 2 * std::floor(0.5f * cell) == 1 ? 1 : 0;
+}
+
+/// pbrt-v4's colours of marble along its veins, a period of 2 pi.
+Rgb marble_colour(float along) {
+    constexpr std::array<Rgb, 9> kColours{
+        Rgb(0.58f, 0.58f, 0.6f), Rgb(0.58f, 0.58f, 0.6f), Rgb(0.58f, 0.58f, 0.6f),
+        Rgb(0.5f, 0.5f, 0.5f),   Rgb(0.6f, 0.59f, 0.58f), Rgb(0.58f, 0.58f, 0.6f),
+        Rgb(0.58f, 0.58f, 0.6f), Rgb(0.2f, 0.2f, 0.33f),  Rgb(0.58f, 0.58f, 0.6f)};
+    constexpr int kSegments = static_cast<int>(kColours.size()) - 3;
+    const float t = (0.5f + 0.5f * std::sin(along)) * kSegments;
+    const int first = std::clamp(static_cast<int>(t), 0, kSegments - 1);
+    // A cubic Bezier curve of four colours in a row: neighbours don't meet, as in pbrt-v4.
+    const float b = t - static_cast<float>(first), a = 1 - b;
+    const Rgb* c = &kColours[static_cast<size_t>(first)];
+    return 1.5f *
+           (a * a * a * c[0] + 3 * a * a * b * c[1] + 3 * a * b * b * c[2] + b * b * b * c[3]);
 }
 
 struct Evaluator {
@@ -28,6 +49,33 @@ struct Evaluator {
     }
     Rgb operator()(const CheckerboardNode& node) const {
         return eval(graph, active_texture(node, at), at);
+    }
+    Rgb operator()(const DotsTexture& node) const {
+        return eval(graph, active_texture(node, at), at);
+    }
+    Rgb operator()(const BilerpTexture& node) const {
+        const Vec2 st = map_to_st(node.mapping, at);
+        return (1 - st.y) * ((1 - st.x) * node.v00 + st.x * node.v10) +
+               st.y * ((1 - st.x) * node.v01 + st.x * node.v11);
+    }
+    Rgb operator()(const NoiseTexture& node) const {
+        const Vec3 p = node.texture_from_world.point(at.position);
+        const float pixel = std::max(length(node.texture_from_world.vector(at.footprint.dp[0])),
+                                     length(node.texture_from_world.vector(at.footprint.dp[1])));
+        const Octaves octaves{node.octaves, node.omega};
+        switch (node.kind) {
+            case NoiseTexture::Kind::fbm:
+                return Rgb(fractal_noise(p, pixel, octaves));
+            case NoiseTexture::Kind::wrinkled:
+                return Rgb(turbulence(p, pixel, octaves));
+            case NoiseTexture::Kind::windy:
+                return Rgb(std::abs(fractal_noise(0.1f * p, 0.1f * pixel, {3, 0.5f})) *
+                           fractal_noise(p, pixel, {6, 0.5f}));
+            default:
+                return marble_colour(
+                    node.scale * p.y +
+                    node.variation * fractal_noise(node.scale * p, node.scale * pixel, octaves));
+        }
     }
     Rgb operator()(const ScaleNode& node) const {
         const Rgb scale = eval(graph, node.scale, at);
@@ -53,6 +101,14 @@ TextureId active_texture(const CheckerboardNode& node, const TexturePoint& at) {
         sum = odd(p.x) + odd(p.y) + odd(p.z);
     }
     return sum % 2 == 0 ? node.tex1 : node.tex2;
+}
+
+TextureId active_texture(const DotsTexture& node, const TexturePoint& at) {
+    const Vec2 st = map_to_st(node.mapping, at);
+    const std::optional<Vec2> center = dot_center(st);
+    const bool is_inside =
+        center && sqr(st.x - center->x) + sqr(st.y - center->y) < sqr(kDotRadius);
+    return is_inside ? node.inside : node.outside;
 }
 
 Rgb eval(const TextureGraph& graph, TextureId id, const TexturePoint& at) {

@@ -40,7 +40,8 @@ struct MixNode {
     /// Of the mixture of both textures' means by an image as the amount; -1 for other amounts.
     int mixture_spectrum = -1;
 };
-using TextureNode = std::variant<ConstantNode, ImageNode, CheckerboardNode, ScaleNode, MixNode>;
+using TextureNode = std::variant<ConstantNode, ImageNode, CheckerboardNode, ScaleNode, MixNode,
+                                 DotsTexture, BilerpTexture, NoiseTexture>;
 
 struct TextureGraph {
     std::vector<TextureNode> nodes;  ///< one per TextureId
@@ -68,6 +69,8 @@ Rgb image_value_at(const ImageNode& node, const TextureImage& image, const Texel
 }
 /// The checkerboard's texture at this point: tex1 where the sum of the cell's coordinates is even.
 TextureId active_texture(const CheckerboardNode& node, const TexturePoint& at);
+/// The texture in the dot, or around the dots.
+TextureId active_texture(const DotsTexture& node, const TexturePoint& at);
 
 Rgb eval(const TextureGraph& graph, TextureId id, const TexturePoint& at);
 

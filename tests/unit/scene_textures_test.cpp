@@ -90,32 +90,72 @@ TEST(SceneTextures, FloatAndSpectrumNamesAreApart) {
 }
 
 TEST(SceneTextures, OthersBecomeTheirMeanWithAWarning) {
-    for (const char* text :
-         {"\"float\" \"fbm\" \"integer octaves\" 3", "\"float\" \"wrinkled\"",
-          "\"float\" \"windy\"", "\"spectrum\" \"marble\"", "\"spectrum\" \"dots\"",
-          "\"spectrum\" \"bilerp\"", "\"spectrum\" \"directionmix\"",
-          "\"spectrum\" \"ptex\" \"string filename\" \"x\""}) {
+    for (const char* text : {"\"spectrum\" \"directionmix\"", "\"float\" \"directionmix\"",
+                             "\"spectrum\" \"ptex\" \"string filename\" \"x\""}) {
         const auto scene = read_world(std::string("Texture \"t\" ") + text);
         EXPECT_TRUE(std::holds_alternative<ConstantTexture>(texture(scene).value)) << text;
         EXPECT_EQ(scene.warnings.size(), 1u) << text << "\n" << warnings_of(scene);
     }
-    const auto value = [](const std::string& text) {
-        const auto scene = read_world("Texture \"t\" \"float\" " + text);
-        return std::get<ConstantTexture>(texture(scene).value).value.r;
+    const auto scene =
+        read_world("Texture \"t\" \"float\" \"directionmix\" \"float tex1\" 2 \"float tex2\" 4");
+    EXPECT_EQ(std::get<ConstantTexture>(texture(scene).value).value, Rgb{3});
+}
+
+TEST(SceneTextures, NoiseTakesItsParameters) {
+    const auto noise = [](const std::string& text) {
+        const auto scene = read_world("Scale 2 2 2\nTexture \"t\" " + text);
+        EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
+        return std::get<NoiseTexture>(texture(scene).value);
     };
-    EXPECT_EQ(value("\"bilerp\" \"float v00\" 2 \"float v01\" 4 \"float v10\" 6 \"float v11\" 8"),
-              5);
-    EXPECT_EQ(value("\"fbm\""), 0);
-    EXPECT_EQ(value("\"windy\""), 0);
-    EXPECT_NEAR(value("\"wrinkled\""), 0.435f, 1e-6f);
-    EXPECT_NEAR(value("\"dots\" \"float inside\" 2 \"float outside\" 1"), 1.155f, 1e-6f);
+    const NoiseTexture fbm =
+        noise("\"float\" \"fbm\" \"integer octaves\" 3 \"float roughness\" 0.7");
+    EXPECT_EQ(fbm.kind, NoiseTexture::Kind::fbm);
+    EXPECT_EQ(fbm.octaves, 3);
+    EXPECT_EQ(fbm.omega, 0.7f);
+    expect_near(fbm.texture_from_world.point({2, 4, 6}), {1, 2, 3}, 1e-6f);
+    EXPECT_EQ(noise("\"float\" \"wrinkled\"").octaves, 8);
+    EXPECT_EQ(noise("\"float\" \"windy\"").kind, NoiseTexture::Kind::windy);
+    const NoiseTexture marble =
+        noise("\"spectrum\" \"marble\" \"float scale\" 3 \"float variation\" 0.4");
+    EXPECT_EQ(marble.scale, 3);
+    EXPECT_EQ(marble.variation, 0.4f);
+    for (const char* octaves : {"-1", "65"})
+        EXPECT_TRUE(contains(
+            world_error(std::string("Texture \"t\" \"float\" \"fbm\" \"integer octaves\" ") +
+                        octaves),
+            "expected 0 to 64"));
+    // Kinds of the other type are not known.
+    EXPECT_TRUE(contains(world_error("Texture \"t\" \"spectrum\" \"fbm\""), "unknown"));
+    EXPECT_TRUE(contains(world_error("Texture \"t\" \"float\" \"marble\""), "unknown"));
+}
+
+TEST(SceneTextures, DotsAndBilerpTakeTheirParameters) {
+    const auto dots = read_world(
+        "Texture \"red\" \"spectrum\" \"constant\" \"rgb value\" [ 1 0 0 ]\n"
+        "Texture \"t\" \"spectrum\" \"dots\" \"texture inside\" \"red\" \"float uscale\" 4");
+    const auto& d = std::get<DotsTexture>(texture(dots).value);
+    EXPECT_EQ(d.mapping.scale_u, 4);
+    const auto value = [&](TextureId id) {
+        return std::get<ConstantTexture>(dots.textures.at(size_t(id)).value).value;
+    };
+    EXPECT_EQ(value(d.inside), Rgb(1, 0, 0));
+    EXPECT_EQ(value(d.outside), Rgb(0));
+    const auto bilerp = read_world(
+        "Texture \"t\" \"spectrum\" \"bilerp\" \"rgb v01\" [ 0.1 0.2 0.3 ] \"float vscale\" 2");
+    const auto& b = std::get<BilerpTexture>(texture(bilerp).value);
+    EXPECT_EQ(b.mapping.scale_v, 2);
+    EXPECT_EQ(b.v00, Rgb(0));
+    EXPECT_EQ(b.v01, Rgb(0.1f, 0.2f, 0.3f));
+    EXPECT_EQ(b.v11, Rgb(1));
+    const auto grey = read_world("Texture \"t\" \"float\" \"bilerp\" \"float v10\" 0.25");
+    EXPECT_EQ(std::get<BilerpTexture>(texture(grey).value).v10, Rgb(0.25f));
 }
 
 TEST(SceneTextures, WarningsAreInFileOrder) {
     const auto scene = read_world(
         "MakeNamedMaterial \"m\" \"string type\" \"measured\"\n"
         "Shape \"sphere\" \"float x\" 1\n"
-        "Texture \"t\" \"float\" \"fbm\"\n"
+        "Texture \"t\" \"float\" \"directionmix\"\n"
         "Shape \"disk\" \"float x\" 1\n");
     ASSERT_EQ(scene.warnings.size(), 4u);
     for (int i = 0; i < 4; ++i) EXPECT_EQ(scene.warnings[static_cast<size_t>(i)].where.line, i + 2);
