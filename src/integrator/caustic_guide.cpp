@@ -280,9 +280,11 @@ float CausticGuide::measure(const RenderScene& scene, Region& region, uint64_t k
             scene.lights.sample(at.position, at.normal, at.time, u_select, rng.next_2d());
         if (light && light->pdf > 0) {
             const Ray shadow{at.position, light->wi, at.time, light->distance * (1 - 1e-3f)};
+            // What the cosine finds as well is counted below.
+            const float cosine = std::max(0.0f, dot(at.normal, light->wi));
+            const float density = light->pdf + (light->is_delta ? 0.0f : cosine * kInvPi);
             if (!scene.geometry.occluded(shadow))
-                lamps += luminance(light->radiance) * std::max(0.0f, dot(at.normal, light->wi)) /
-                         light->pdf / kProbes;
+                lamps += luminance(light->radiance) * cosine / density / kProbes;
         }
         const Vec3 w =
             Frame::from_z(at.normal).to_world(square_to_cosine_hemisphere(rng.next_2d()));

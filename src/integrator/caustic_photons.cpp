@@ -3,6 +3,7 @@
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "core/rng.h"
+#include "core/warp.h"
 #include "integrator/caustic_guide.h"
 #include "integrator/render_scene.h"
 
@@ -77,7 +78,9 @@ class Pilot {
         if (scene_.geometry.occluded(shadow)) return;
 
         float travelled = light->distance;
-        Rgb weight = light->radiance / light->pdf;
+        // Skies that are seldom drawn, as BSDFs find them, would make photons of any weight.
+        const bool is_sky = !light->is_delta && !std::isfinite(light->distance);
+        Rgb weight = light->radiance / (light->pdf + (is_sky ? kUniformSpherePdf : 0.0f));
         SurfaceHit hit = start;
         Bsdf bsdf = start_bsdf;
         Frame frame = start_frame;

@@ -72,7 +72,8 @@ LightTree::Lanes LightTree::Node::importance(Vec3 p, Vec3 n) const {
 }
 
 float LightTree::irradiance(Vec3 p, Vec3 n) const {
-    // The root's children are a much better bound than all lights at once where they are scattered.
+    // The root's children are a much better estimate than all lights at once where they are
+    // scattered.
     return nodes_.empty() ? 0.0f : sum(nodes_.front().importance<Estimate::mean>(p, n));
 }
 

@@ -98,7 +98,8 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
             // Where position decides, the mean over the parameters may miss all that shines; a
             // twentieth takes little from the other lights.
             constexpr float kLeast = 0.05f;
-            const float alpha = textures->mean(area.alpha).r;
+            // What is not a number becomes 0.
+            const float alpha = std::min(1.0f, std::max(0.0f, textures->mean(area.alpha).r));
             area.mean_factor *= alpha;
             choice_factor *= std::max(alpha, kLeast);
         }

@@ -62,10 +62,10 @@ class Lights {
     /// Chooses a light for the point p, then a point on it. Empty where the chosen light can't
     /// light p. `u_select` chooses the light. `n` is the unit normal on the side that light is
     /// wanted for: for opaque surfaces the side of the viewer; the zero vector for volumes and
-    /// where light counts from both sides. Light from behind n is still found, but seldom; uniform
-    /// infinite light only above n. Not all light is found: what comes from all directions alike
-    /// is left to BSDFs and phase functions where other lights outshine it, and so is the dark part
-    /// of environment maps.
+    /// where light counts from both sides. Light from behind n is found seldom, beside
+    /// infinite light not at all, and uniform infinite light only above n. Not all light is found:
+    /// what comes from all directions alike is left to BSDFs and phase functions where other lights
+    /// outshine it, and so is the dark part of environment maps.
     ///
     /// All infinite lights with extent count as one here: `radiance` and `pdf` are of all of them
     /// together.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <tuple>
@@ -235,11 +236,16 @@ Rgb TextureStore::mean(TextureId id) const {
         for (size_t i = 0; i < texels; ++i) add(image_value_at(*node, image, i));
         count = double(texels);
     } else {
-        // Solid textures along a line that is long beside their cells.
+        // Solid textures are looked up here and there in a box that is large beside their cells.
         constexpr int kSide = 64;
+        const auto scattered = [](int i, float step) {
+            const float x = float(i) * step;
+            return 500 * (x - std::floor(x)) - 250;
+        };
         for (int i = 0; i < kSide * kSide; ++i)
             add(eval(id, {{(float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide},
-                          float(i) * Vec3{0.131f, 0.171f, 0.113f}}));
+                          {scattered(i, 0.8191725f), scattered(i, 0.6710436f),
+                           scattered(i, 0.5497005f)}}));
         count = kSide * kSide;
     }
     return {float(sum[0] / count), float(sum[1] / count), float(sum[2] / count)};

@@ -23,6 +23,11 @@ SpatialCovariance2 operator*(SpatialCovariance2 a, float w) {
     return {a.ss * w, a.st * w, a.tt * w};
 }
 
+/// Of textures whose parameters are near the largest numbers there are, none.
+SpatialCovariance2 finite(SpatialCovariance2 c) {
+    return std::isfinite(c.ss + c.st + c.tt) ? c : SpatialCovariance2{};
+}
+
 /// J^T T J with J = d(s, t)/d(u, v).
 SpatialCovariance2 to_uv(SpatialCovariance2 c, const StGradient& g) {
     const auto form = [&](Vec2 a, Vec2 b) {
@@ -54,7 +59,10 @@ float distance_to_integer(float v) {
 float relative_contrast(Rgb a, Rgb b) {
     const Rgb difference(std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b));
     const float d = luminance(difference);
-    return d > 0 ? d / (kFullContrast * luminance(a + b)) : 0;
+    const auto size = [](Rgb c) {
+        return luminance({std::abs(c.r), std::abs(c.g), std::abs(c.b)});
+    };
+    return d > 0 ? d / (kFullContrast * (size(a) + size(b))) : 0;
 }
 float contrast_weight(Rgb a, Rgb b) {
     return std::min(1.0f, relative_contrast(a, b));
@@ -194,12 +202,13 @@ struct Analyser {
             constexpr float kHarmonic = 3;
             const float square = sqr(kHarmonic * node.scale / (2 * kPi));
             const SpatialCovariance2 along{pu.y * pu.y, pu.y * pv.y, pv.y * pv.y};
-            return along * square + all * (square * sqr(2 * kPi * node.variation) * energy.slope);
+            return finite(along * square +
+                          all * (square * sqr(2 * kPi * node.variation) * energy.slope));
         }
         if (!(energy.all > 0)) return {};
         // Of the absolute value, as much slope is left, but 1 - 2 / pi of the variance.
         const float folded = node.kind == Kind::wrinkled ? 1 / (1 - 2 * kInvPi) : 1.0f;
-        return all * (folded * energy.slope / energy.all);
+        return finite(all * (folded * energy.slope / energy.all));
     }
 
     /// A product of signals: their spectra are convolved, their covariances add.

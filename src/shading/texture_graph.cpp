@@ -23,7 +23,7 @@ Rgb marble_colour(float along) {
         Rgb(0.5f, 0.5f, 0.5f),   Rgb(0.6f, 0.59f, 0.58f), Rgb(0.58f, 0.58f, 0.6f),
         Rgb(0.58f, 0.58f, 0.6f), Rgb(0.2f, 0.2f, 0.33f),  Rgb(0.58f, 0.58f, 0.6f)};
     constexpr int kSegments = static_cast<int>(kColours.size()) - 3;
-    const float t = (0.5f + 0.5f * std::sin(along)) * kSegments;
+    const float t = std::isfinite(along) ? (0.5f + 0.5f * std::sin(along)) * kSegments : 0.0f;
     const int first = std::clamp(static_cast<int>(t), 0, kSegments - 1);
     // A cubic Bezier curve of four colours in a row: neighbours don't meet, as in pbrt-v4.
     const float b = t - static_cast<float>(first), a = 1 - b;
@@ -65,18 +65,21 @@ struct Evaluator {
         const Octaves octaves{node.octaves, node.omega};
         switch (node.kind) {
             case NoiseTexture::Kind::fbm:
-                return Rgb(fractal_noise(p, pixel, octaves));
+                return grey(fractal_noise(p, pixel, octaves));
             case NoiseTexture::Kind::wrinkled:
-                return Rgb(turbulence(p, pixel, octaves));
+                return grey(turbulence(p, pixel, octaves));
             case NoiseTexture::Kind::windy:
-                return Rgb(std::abs(fractal_noise(0.1f * p, 0.1f * pixel, {3, 0.5f})) *
-                           fractal_noise(p, pixel, {6, 0.5f}));
-            default:
-                return marble_colour(
-                    node.scale * p.y +
-                    node.variation * fractal_noise(node.scale * p, node.scale * pixel, octaves));
+                return grey(std::abs(fractal_noise(0.1f * p, 0.1f * pixel, {3, 0.5f})) *
+                            fractal_noise(p, pixel, {6, 0.5f}));
+            default: {
+                const float bent =
+                    fractal_noise(node.scale * p, std::abs(node.scale) * pixel, octaves);
+                return marble_colour(node.scale * p.y + node.variation * bent);
+            }
         }
     }
+    /// Parameters near the largest numbers there are make values that are none.
+    static Rgb grey(float value) { return Rgb(std::isfinite(value) ? value : 0.0f); }
     Rgb operator()(const ScaleNode& node) const {
         const Rgb scale = eval(graph, node.scale, at);
         return is_black(scale) ? Rgb{} : scale * eval(graph, node.tex, at);

@@ -218,8 +218,8 @@ TEST(Emission, HiddenShapesLightTheSceneButAreNotSeen) {
 }
 
 TEST(Emission, LightsWhoseAlphaHangsOnPositionAreChosen) {
-    // Transparent around the origin, where textures are asked for their mean; opaque in the cell
-    // that the light is in.
+    // Transparent as far around the origin as textures are asked for their mean; opaque in the
+    // cell beyond, which the light is in.
     LightScene s;
     const auto add_texture = [&s](auto value) {
         TextureDescription texture;
@@ -230,18 +230,20 @@ TEST(Emission, LightsWhoseAlphaHangsOnPositionAreChosen) {
     };
     CheckerboardTexture cells;
     cells.dimension = 3;
+    cells.texture_from_world =
+        Transform::scale(1e-3, 1e-3, 1e-3) * Transform::translate({500, 500, 500});
     cells.tex1 = add_texture(ConstantTexture{Rgb(0)});
     cells.tex2 = add_texture(ConstantTexture{Rgb(1)});
     ShapeDescription light =
-        mesh_of(rectangle(0.5f, 0.5f), placed({Transform::translate({1.5f, 0.5f, 0.5f})}));
+        mesh_of(rectangle(0.5f, 0.5f), placed({Transform::translate({601, 0.5f, 0.5f})}));
     light.alpha = add_texture(cells);
     s.add(light, Rgb(3));
-    s.add(mesh_of(rectangle(0.5f, 0.5f), placed({Transform::translate({0.5f, 0.5f, 0.5f})})),
+    s.add(mesh_of(rectangle(0.5f, 0.5f), placed({Transform::translate({600, 0.5f, 0.5f})})),
           Rgb(3));
     const TextureStore textures(s.description);
     s.geometry = std::make_unique<Geometry>(s.description);
     s.lights = std::make_unique<Lights>(s.description, *s.geometry, &textures);
-    const Vec3 p{1, 0.5f, 2}, n{0, 0, -1};
+    const Vec3 p{600.5f, 0.5f, 2}, n{0, 0, -1};
     // A twentieth as often as the same light without alpha.
     const float with = s.lights->selection_probability(p, n, 0),
                 without = s.lights->selection_probability(p, n, 2);

@@ -120,6 +120,36 @@ TEST(NoiseTextures, MarbleRunsThroughItsColours) {
     EXPECT_NEAR(bent.store->mean(0).b, 0.84f, 0.02f);
 }
 
+TEST(NoiseTextures, MarbleIsFilteredWhicheverWayItRuns) {
+    // A pixel of a cell leaves no octave: the veins are straight.
+    for (const float scale : {-1.0f, 1.0f}) {
+        NoiseTexture marble = noise_of(NoiseTexture::Kind::marble), straight = marble;
+        marble.scale = straight.scale = scale;
+        marble.variation = 5;
+        straight.variation = 0;
+        TexturePoint at{{}, {1.3f, 2.7f, -3.2f}};
+        at.footprint.dp = {Vec3{1, 0, 0}, Vec3{0, 1, 0}};
+        EXPECT_EQ(OneTexture(marble).store->eval(0, at), OneTexture(straight).store->eval(0, at));
+    }
+}
+
+TEST(NoiseTextures, AbsurdParametersMakeFiniteValues) {
+    using Kind = NoiseTexture::Kind;
+    constexpr float kHuge = 3e38f;
+    for (const Kind kind : {Kind::fbm, Kind::wrinkled, Kind::windy, Kind::marble}) {
+        NoiseTexture t = noise_of(kind);
+        t.omega = t.scale = t.variation = kHuge;
+        t.octaves = 64;
+        for (const Vec3 p : {Vec3{1.3f, 2.7f, -3.2f}, Vec3{kHuge, 0, -kHuge}}) {
+            const OneTexture one(t);
+            EXPECT_TRUE(is_finite(one.at(p)));
+            const SpatialCovariance2 c =
+                one.store->uv_covariance(0, {{}, p}, {1, 0, 0}, {0, kHuge, 0}, 0.1f);
+            EXPECT_TRUE(std::isfinite(c.ss + c.st + c.tt));
+        }
+    }
+}
+
 TEST(Dots, LieWithinTheirCells) {
     DotsTexture dots;
     dots.inside = 1;
