@@ -38,9 +38,8 @@ Spectrum blackbody_spectrum(double kelvin);
 /// Colour of a surface with this reflectance (or of any other factor) under D65.
 Rgb reflectance_colour(const Spectrum& s);
 /// Colour of light with this spectrum, scaled to luminance 1, as pbrt normalises its lights; then
-/// cut at 0, which makes colours outside Rec.709 brighter.
-/// Components outside of the Rec.709 gamut are set to 0. A spectrum of one wavelength is a line.
-/// Empty and invisible light gives black.
+/// negative components, of colours outside Rec.709, are set to 0, which brightens them. A spectrum
+/// of one wavelength is a line. Empty and invisible light gives black.
 Rgb emission_colour(const Spectrum& s);
 /// The colour of luminance 1 with these CIE 1931 chromaticities.
 Rgb chromaticity_colour(double x, double y);

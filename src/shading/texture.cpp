@@ -236,7 +236,8 @@ Rgb TextureStore::mean(TextureId id) const {
         for (size_t i = 0; i < texels; ++i) add(image_value_at(*node, image, i));
         count = double(texels);
     } else {
-        // Solid textures are looked up here and there in a box that is large beside their cells.
+        // Solid textures are looked up here and there in a box that is large beside their cells: at
+        // Roberts' sequence R3 (2018, "The unreasonable effectiveness of quasirandom sequences").
         constexpr int kSide = 64;
         const auto scattered = [](int i, float step) {
             const float x = float(i) * step;

@@ -170,9 +170,8 @@ struct Analyser {
     /// A ramp varies as fast as it rises, relative to its value.
     SpatialCovariance2 operator()(const BilerpTexture& node) const {
         const Vec2 st = map_to_st(node.mapping, at);
-        const float value =
-            std::abs(luminance((1 - st.y) * ((1 - st.x) * node.v00 + st.x * node.v10) +
-                               st.y * ((1 - st.x) * node.v01 + st.x * node.v11)));
+        const float value = std::abs(luminance(bilerp(node, st)));
+        // A thousandth of the corners keeps the quotient finite where a ramp goes through black.
         const float least = 1e-3f * (std::abs(luminance(node.v00)) + std::abs(luminance(node.v01)) +
                                      std::abs(luminance(node.v10)) + std::abs(luminance(node.v11)));
         if (!(value + least > 0)) return {};
@@ -197,9 +196,9 @@ struct Analyser {
         const NoiseEnergy energy = noise_energy(pixel, octaves);
         const SpatialCovariance2 all = {dot(pu, pu), dot(pu, pv), dot(pv, pv)};
         if (node.kind == Kind::marble) {
-            // What the colours make of a phase that runs along y and is bent by the noise. Three
-            // periods of a cosine fit the dark vein in one of the colours.
-            constexpr float kHarmonic = 3;
+            // What the colours make of a phase that runs along y and is bent by the noise: the
+            // root mean square slope of marble's luminance, but for its jumps, over its deviation.
+            constexpr float kHarmonic = 8.4f;
             const float square = sqr(kHarmonic * node.scale / (2 * kPi));
             const SpatialCovariance2 along{pu.y * pu.y, pu.y * pv.y, pv.y * pv.y};
             return finite(along * square +

@@ -54,9 +54,7 @@ struct Evaluator {
         return eval(graph, active_texture(node, at), at);
     }
     Rgb operator()(const BilerpTexture& node) const {
-        const Vec2 st = map_to_st(node.mapping, at);
-        return (1 - st.y) * ((1 - st.x) * node.v00 + st.x * node.v10) +
-               st.y * ((1 - st.x) * node.v01 + st.x * node.v11);
+        return bilerp(node, map_to_st(node.mapping, at));
     }
     Rgb operator()(const NoiseTexture& node) const {
         const Vec3 p = node.texture_from_world.point(at.position);
@@ -104,6 +102,11 @@ TextureId active_texture(const CheckerboardNode& node, const TexturePoint& at) {
         sum = odd(p.x) + odd(p.y) + odd(p.z);
     }
     return sum % 2 == 0 ? node.tex1 : node.tex2;
+}
+
+Rgb bilerp(const BilerpTexture& node, Vec2 st) {
+    return (1 - st.y) * ((1 - st.x) * node.v00 + st.x * node.v10) +
+           st.y * ((1 - st.x) * node.v01 + st.x * node.v11);
 }
 
 TextureId active_texture(const DotsTexture& node, const TexturePoint& at) {

@@ -69,6 +69,8 @@ Rgb image_value_at(const ImageNode& node, const TextureImage& image, const Texel
 }
 /// The checkerboard's texture at this point: tex1 where the sum of the cell's coordinates is even.
 TextureId active_texture(const CheckerboardNode& node, const TexturePoint& at);
+/// The texture's value at (s, t).
+Rgb bilerp(const BilerpTexture& node, Vec2 st);
 /// The texture in the dot, or around the dots.
 TextureId active_texture(const DotsTexture& node, const TexturePoint& at);
 

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "light_fixtures.h"
-#include "shading/light_weight.h"
 
 namespace covtrace {
 namespace {
