@@ -64,9 +64,9 @@ Prediction preintegrate(const CovarianceBuffer& buffer) {
         for (int x = 0; x < buffer.width; ++x) {
             const size_t i = size_t(row) * size_t(buffer.width) + size_t(x);
             const auto s = covariance::cast<double>(buffer.covariance[i]);
-            const auto windowed = covariance::preintegrate(s);
-            p.spectrum[i] = {float(windowed.xx), float(windowed.xy), float(windowed.yy)};
-            p.interior_count[i] = float(covariance::integration_count(s));
+            const auto [spectrum, count] = covariance::integrate_over_sensor(s);
+            p.spectrum[i] = {float(spectrum.xx), float(spectrum.xy), float(spectrum.yy)};
+            p.interior_count[i] = float(count);
         }
     });
     return p;

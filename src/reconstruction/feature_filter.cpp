@@ -10,16 +10,16 @@ namespace covtrace {
 
 namespace {
 
-constexpr int kReach = 5, kPatchRadius = 3, kBlock = PatchDistance::kBlock;
+using Patches = PatchDistance<3, 1, 32>;
+constexpr int kReach = 5, kBlock = Patches::kBlock;
 
 /// Sets the features [first, first + n) of `out` to those of one half, filtered with weights from
 /// `guide`.
 void filter(const HalfBuffer& half, const HalfBuffer& guide, size_t first, size_t n,
             FeaturePlanes& out) {
     const int w = half.count.width, h = half.count.height;
-    const PatchDistance distance(std::span(guide.feature).subspan(first, n),
-                                 std::span(guide.feature_variance).subspan(first, n), kReach,
-                                 kPatchRadius);
+    const Patches distance(std::span(guide.feature).subspan(first, n),
+                           std::span(guide.feature_variance).subspan(first, n), kReach);
     std::vector<PaddedPlane> source;
     for (size_t f = first; f < first + n; ++f) source.emplace_back(half.feature[f], kReach);
     const Plane ones(w, h, 1);
@@ -27,6 +27,14 @@ void filter(const HalfBuffer& half, const HalfBuffer& guide, size_t first, size_
     const int blocks_x = (w + kBlock - 1) / kBlock, blocks_y = (h + kBlock - 1) / kBlock;
     parallel_for(int64_t(blocks_x) * blocks_y, [&](int64_t block) {
         const int x0 = int(block % blocks_x) * kBlock, y0 = int(block / blocks_x) * kBlock;
+        const int x1 = std::min(x0 + kBlock, w), y1 = std::min(y0 + kBlock, h);
+        if (distance.is_without_noise(x0, y0)) {
+            // Only equal pixels are alike.
+            for (size_t f = first; f < first + n; ++f)
+                for (int y = y0; y < y1; ++y)
+                    for (int x = x0; x < x1; ++x) out[f](x, y) = half.feature[f](x, y);
+            return;
+        }
         std::array<float, kBlock * kBlock> d;
         std::array<std::array<float, kBlock * kBlock>, 4> total{};
         for (int dy = -kReach; dy <= kReach; ++dy)
@@ -46,8 +54,8 @@ void filter(const HalfBuffer& half, const HalfBuffer& guide, size_t first, size_
                     }
                 }
             }
-        for (int y = y0; y < std::min(y0 + kBlock, h); ++y)
-            for (int x = x0; x < std::min(x0 + kBlock, w); ++x) {
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) {
                 const size_t i = size_t(y - y0) * kBlock + size_t(x - x0);
                 // The pixel itself always has the weight 1.
                 for (size_t f = 0; f < n; ++f) out[first + f](x, y) = total[f][i] / total[3][i];

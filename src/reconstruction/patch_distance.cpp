@@ -9,10 +9,10 @@ namespace covtrace {
 
 PaddedPlane::PaddedPlane(const Plane& plane, int width_of_border)
     : border(width_of_border),
-      stride(plane.width + 2 * border + PatchDistance::kRow),
-      values(size_t(stride) * size_t(plane.height + 2 * border + PatchDistance::kBlock)) {
+      stride(plane.width + 2 * border + kLongestPatchRow),
+      values(size_t(stride) * size_t(plane.height + 2 * border + kLargestPatchBlock)) {
     // Beyond the border one more block, so that the last block of a row may be a whole one.
-    for (int y = -border; y < plane.height + border + PatchDistance::kBlock; ++y) {
+    for (int y = -border; y < plane.height + border + kLargestPatchBlock; ++y) {
         const float* source =
             &plane.values[size_t(std::clamp(y, 0, plane.height - 1)) * size_t(plane.width)];
         float* row = &values[size_t(y + border) * size_t(stride)];
@@ -30,10 +30,11 @@ PaddedPlane::PaddedPlane(const Plane& plane, int width_of_border, float outside)
                 values[size_t(y) * size_t(stride) + size_t(x)] = outside;
 }
 
-PatchDistance::PatchDistance(std::span<const Plane> values, std::span<const Plane> variances,
-                             int reach, int patch_radius, int row_step)
-    : patch_radius_(patch_radius), row_step_(row_step) {
-    const int border = reach + patch_radius + 1;
+template <int Radius, int Step, int Side>
+PatchDistance<Radius, Step, Side>::PatchDistance(std::span<const Plane> values,
+                                                 std::span<const Plane> variances, int reach)
+    : reach_(reach) {
+    const int border = reach + Radius + 1;
     Plane noise(values[0].width, values[0].height);
     for (const Plane& p : values) values_.emplace_back(p, border);
     for (const Plane& p : variances)
@@ -41,15 +42,17 @@ PatchDistance::PatchDistance(std::span<const Plane> values, std::span<const Plan
     noise_ = PaddedPlane(noise, border);
 }
 
-/// The distances of the single pixels of a block and of what its patches reach, kRow in a row.
+/// The distances of the single pixels that the patches of a block cover, kRow in a row.
+template <int Radius, int Step, int Side>
 template <size_t Planes>
-void PatchDistance::differences(int x0, int y0, int dx, int dy, float* out) const {
+void PatchDistance<Radius, Step, Side>::differences(int x0, int y0, int dx, int dy,
+                                                    float* out) const {
     // Differences beyond this say "not alike" however much larger they are; without the limit one
     // of them would drown the rounding of the sums.
     constexpr float kMost = 1e4f;
-    const int rows = kBlock + 2 * patch_radius_, px = x0 - patch_radius_;
-    for (int y = 0; y < rows; ++y, out += kRow) {
-        const int py = y0 - patch_radius_ + y;
+    const int px = x0 - Radius;
+    for (int y = 0; y < kCovered; ++y, out += kRow) {
+        const int py = y0 - Radius + y;
         std::array<const float*, Planes> u_p, u_q;
         for (size_t c = 0; c < Planes; ++c) {
             u_p[c] = values_[c].at(px, py);
@@ -69,39 +72,43 @@ void PatchDistance::differences(int x0, int y0, int dx, int dy, float* out) cons
     }
 }
 
-namespace {
-
-/// Means over the patches around the pixels of a block, of every `row_step`-th row.
-template <int Radius>
-void average_patches(const float* d, int row_step, float* out) {
-    constexpr int kBlock = PatchDistance::kBlock, kRow = PatchDistance::kRow;
-    constexpr int kPatch = 2 * Radius + 1;
-    static_assert(Radius <= PatchDistance::kLargestPatch && kRow % kLanes == 0 &&
-                  kBlock % kLanes == 0);
-    const float scale = 1 / float(kPatch * kPatch);
-    for (int y = 0; y < kBlock; y += row_step) {
-        std::array<float, kRow> column;
+template <int Radius, int Step, int Side>
+void PatchDistance<Radius, Step, Side>::block(int x0, int y0, int dx, int dy, float* out,
+                                              size_t stride) const {
+    std::array<float, size_t(kCovered) * kRow> d;
+    values_.size() == 1 ? differences<1>(x0, y0, dx, dy, d.data())
+                        : differences<3>(x0, y0, dx, dy, d.data());
+    constexpr int kSide = 2 * Radius + 1;
+    constexpr float kScale = 1 / float(kSide * kSide);
+    // Vectors of the last means reach beyond the row.
+    std::array<float, size_t(kRow) + kLanes> column{};
+    std::array<float, kBlock> mean;
+    for (int y = 0; y < kBlock; y += Step) {
         for (int x = 0; x < kRow; x += int(kLanes)) {
             Lanes sum{};
-            for (int k = 0; k < kPatch; ++k) sum += load(d + (y + k) * kRow + x);
+            for (int k = 0; k < kSide; ++k) sum += load(&d[size_t(y + k) * kRow + size_t(x)]);
             store(sum, &column[size_t(x)]);
         }
         for (int x = 0; x < kBlock; x += int(kLanes)) {
             Lanes sum{};
-            for (int k = 0; k < kPatch; ++k) sum += load(&column[size_t(x + k)]);
-            store(sum * scale, out + y * kBlock + x);
+            for (int k = 0; k < kSide; ++k) sum += load(&column[size_t(x + k)]);
+            store(sum * kScale, &mean[size_t(x)]);
         }
+        for (int x = 0; x < kBlock; x += Step, out += stride) *out = mean[size_t(x)];
     }
 }
 
-}  // namespace
-
-void PatchDistance::block(int x0, int y0, int dx, int dy, float* out) const {
-    std::array<float, size_t(kBlock + 2 * kLargestPatch) * kRow> d;
-    values_.size() == 1 ? differences<1>(x0, y0, dx, dy, d.data())
-                        : differences<3>(x0, y0, dx, dy, d.data());
-    patch_radius_ == 1 ? average_patches<1>(d.data(), row_step_, out)
-                       : average_patches<kLargestPatch>(d.data(), row_step_, out);
+template <int Radius, int Step, int Side>
+bool PatchDistance<Radius, Step, Side>::is_without_noise(int x0, int y0) const {
+    const int margin = reach_ + Radius, covered = kBlock + 2 * margin;
+    for (int y = y0 - margin; y < y0 - margin + covered; ++y) {
+        const float* row = noise_.at(x0 - margin, y);
+        if (std::any_of(row, row + covered, [](float v) { return v != 0; })) return false;
+    }
+    return true;
 }
+
+template class PatchDistance<3, 1, 32>;
+template class PatchDistance<1, 3, 48>;
 
 }  // namespace covtrace

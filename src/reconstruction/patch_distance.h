@@ -8,6 +8,10 @@
 
 namespace covtrace {
 
+/// The most pixels along a side of the blocks that patches are compared in, and of a row that such
+/// a block's patches cover.
+constexpr int kLargestPatchBlock = 48, kLongestPatchRow = 56;
+
 /// A plane with a border on all sides that repeats its outermost pixels (or holds `outside`), so
 /// that windows need no bounds.
 struct PaddedPlane {
@@ -26,31 +30,38 @@ struct PaddedPlane {
 /// 2012):  d(p, q) = mean over the patch of
 ///     (sum_c (u_p - u_q)^2 - (v_p + min(v_p, v_q))) / (v_p + v_q)
 /// with u_p the values of the channels c and v_p the sum of their variances. About -1/2..0 for
-/// pixels that differ by noise.
+/// pixels that differ by noise. Patches reach `Radius` pixels, of every `Step`-th pixel along rows
+/// and columns of blocks of `Side` x `Side`: <3, 1, 32> and <1, 3, 48>, where none overlap.
+template <int Radius, int Step, int Side>
 class PatchDistance {
   public:
-    /// The side of the blocks of pixels that are worked on at once.
-    static constexpr int kBlock = 32;
-    static constexpr int kLargestPatch = 3;
-    /// Pixels of a row that are worked on for a block, patches included.
-    static constexpr int kRow = (kBlock + 2 * kLargestPatch + 7) / 8 * 8;
+    static constexpr int kBlock = Side;
+    /// Patches of a block along a row.
+    static constexpr int kPatches = kBlock / Step;
 
-    /// One plane, or three of one size. `reach`: largest offset along an axis;
-    /// `patch_radius`: 1 or 3; of a block every `row_step`-th row is asked for.
-    PatchDistance(std::span<const Plane> values, std::span<const Plane> variances, int reach,
-                  int patch_radius, int row_step = 1);
+    /// One plane, or three of one size. `reach`: largest offset along an axis.
+    PatchDistance(std::span<const Plane> values, std::span<const Plane> variances, int reach);
 
-    /// d(p, p + (dx, dy)) for the kBlock x kBlock pixels from (x0, y0), row by row, of which every
-    /// row_step-th is set. Pixels outside the image get some value.
-    void block(int x0, int y0, int dx, int dy, float* out) const;
+    /// Sets out[k stride] to d(p, p + (dx, dy)) of the k-th patch, row by row, of the block from
+    /// (x0, y0). Pixels outside the image get some value.
+    void block(int x0, int y0, int dx, int dy, float* out, size_t stride = 1) const;
+
+    /// Whether nothing has noise in the patches of a block and in those that it is compared with.
+    bool is_without_noise(int x0, int y0) const;
 
   private:
+    /// Pixels of a row, and rows, that the block's patches cover; rows in whole vectors.
+    static constexpr int kCovered = kBlock - Step + 1 + 2 * Radius;
+    static constexpr int kRow = (kCovered + 7) / 8 * 8;
+    static_assert(kBlock % Step == 0 && kBlock % 8 == 0 && kBlock <= kLargestPatchBlock &&
+                  kRow <= kLongestPatchRow);
+
     template <size_t Planes>
     void differences(int x0, int y0, int dx, int dy, float* out) const;
 
+    int reach_;
     std::vector<PaddedPlane> values_;
     PaddedPlane noise_;  // the sum of the variances
-    int patch_radius_, row_step_;
 };
 
 /// 1 at d <= 0, falls as exp(-d), 0 from d = 4 on: (1 - d/4)^4. Numbers or Lanes.

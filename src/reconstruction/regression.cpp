@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/parallel.h"
 #include "reconstruction/patch_distance.h"
@@ -13,9 +14,10 @@ namespace covtrace {
 namespace {
 
 constexpr int kReach = FitWindow::kReach, kSide = FitWindow::kSide;
-constexpr int kBlock = PatchDistance::kBlock, kStride = 3, kPatchRadius = 1;
-constexpr size_t kCells = FitWindow::kCells;
-constexpr size_t kCentresPerSide = (kBlock + kStride - 1) / kStride;
+constexpr int kStride = 3;  // from centre to centre
+using Patches = PatchDistance<1, kStride, 48>;
+constexpr int kBlock = Patches::kBlock;
+constexpr size_t kCells = FitWindow::kCells, kCentresPerSide = Patches::kPatches;
 constexpr size_t kCentres = kCentresPerSide * kCentresPerSide;
 constexpr int kHaloSide = kBlock + 2 * kReach;
 
@@ -27,9 +29,12 @@ using Contribution = std::array<std::vector<float>, 4>;
 /// The patches of the half that guides, by their colours and by their light.
 struct PatchDistances {
     explicit PatchDistances(const HalfBuffer& guide)
-        : color(guide.color, guide.color_variance, kReach, kPatchRadius, kStride),
-          light(light_of(guide)) {}
-    PatchDistance color, light;
+        : color(guide.color, guide.color_variance, kReach) {
+        const float noise = relative_noise(guide);
+        if (noise < kTellingNoise) light = light_of(guide, noise);
+    }
+    Patches color;
+    std::optional<Patches> light;  ///< where it tells more than the colours do
 
   private:
     /// Median of the colours' noise over their brightness.
@@ -48,9 +53,9 @@ struct PatchDistances {
         return *middle;
     }
 
-    static PatchDistance light_of(const HalfBuffer& guide) {
+    static Patches light_of(const HalfBuffer& guide, float noise) {
         // What reflects less than the noise is, shows other light: highlights, what lies behind.
-        const float least = std::max(kLeastAlbedo, relative_noise(guide));
+        const float least = std::max(kLeastAlbedo, noise);
         ColorPlanes light = guide.color, variance = guide.color_variance;
         for (size_t c = 0; c < 3; ++c)
             for (size_t i = 0; i < light[c].size(); ++i) {
@@ -58,12 +63,15 @@ struct PatchDistances {
                 light[c][i] *= scale;
                 variance[c][i] *= scale * scale;
             }
-        return {light, variance, kReach, kPatchRadius, kStride};
+        return {light, variance, kReach};
     }
 
     /// Keep quotients finite where there is no light and where nothing reflects: the first in the
     /// range of sqrt(kDarkSquared), below which errors are no longer relative, either.
     static constexpr float kDark = 0.05f, kLeastAlbedo = 0.01f;
+    /// With more noise textures are hardly told apart, and light by patches of its own gains less
+    /// than its time is worth (docs/decisions/0076).
+    static constexpr float kTellingNoise = 0.1f;
 };
 
 /// All centres of one block, for every window.
@@ -82,16 +90,20 @@ class Block {
             for (auto& plane : c) plane.assign(size_t(kHaloSide) * kHaloSide + kLanes, 0.0f);
         collect_distances(distance_.color, x0, y0, distances_[size_t(PatchesOf::colors)]);
         std::vector<float>& either = distances_[size_t(PatchesOf::colors_or_light)];
-        collect_distances(distance_.light, x0, y0, either);
         const std::vector<float>& color = distances_[size_t(PatchesOf::colors)];
-        for (size_t i = 0; i < either.size(); ++i) either[i] = std::min(either[i], color[i]);
+        if (distance_.light) {
+            collect_distances(*distance_.light, x0, y0, either);
+            for (size_t i = 0; i < either.size(); ++i) either[i] = std::min(either[i], color[i]);
+        }
         for (int y = 0; y < kBlock && y0 + y < height_; y += kStride)
             for (int x = 0; x < kBlock && x0 + x < width_; x += kStride) {
                 window_.move_to(in_, x0 + x, y0 + y);
                 const size_t first =
                     (size_t(y / kStride) * kCentresPerSide + size_t(x / kStride)) * kCells;
                 for (size_t k = 0; k < windows_.size(); ++k) {
-                    const float* d = &distances_[size_t(windows_[k].patches)][first];
+                    const PatchesOf patches =
+                        distance_.light ? windows_[k].patches : PatchesOf::colors;
+                    const float* d = &distances_[size_t(patches)][first];
                     window_.set_weights(windows_[k], d, x0 + x, y0 + y, weight_);
                     if (window_.fit(windows_[k].noise, weight_, fitted_)) add(x, y, out[k]);
                 }
@@ -99,19 +111,13 @@ class Block {
     }
 
   private:
-    static void collect_distances(const PatchDistance& distance, int x0, int y0,
+    static void collect_distances(const Patches& distance, int x0, int y0,
                                   std::vector<float>& distances) {
         distances.resize(kCentres * kCells);
-        std::array<float, size_t(kBlock) * kBlock> d;
-        size_t o = 0;
+        float* out = distances.data();
         for (int dy = -kReach; dy <= kReach; ++dy)
-            for (int dx = -kReach; dx <= kReach; ++dx, ++o) {
-                distance.block(x0, y0, dx, dy, d.data());
-                size_t centre = 0;
-                for (size_t y = 0; y < kBlock; y += kStride)
-                    for (size_t x = 0; x < kBlock; x += kStride, ++centre)
-                        distances[centre * kCells + o] = d[y * kBlock + x];
-            }
+            for (int dx = -kReach; dx <= kReach; ++dx, ++out)
+                distance.block(x0, y0, dx, dy, out, kCells);
     }
 
     void add(int x, int y, Contribution& out) const {

@@ -102,19 +102,21 @@ Image gathered_image(const RenderState& state) {
                                         emitters_found ? &in_view_field : nullptr});
 }
 
-Image mixed_image(const RenderState& state, const HybridImage& mixed) {
+Image mixed_image(const RenderState& state, const CovarianceBuffer& all,
+                  const Reconstructed& reconstructed) {
+    const auto& [mixed, prediction] = reconstructed;
     GatheredImage delivered{std::vector<Rgb>(state.pixels()), mixed.variance.values};
     for (size_t i = 0; i < state.pixels(); ++i)
         delivered.color[i] = {mixed.color[0][i], mixed.color[1][i], mixed.color[2][i]};
-    const CovarianceBuffer all = state.covariance();
     const Prediction raw = preintegrate(all);
     const FilterField field =
-        predicted_filters(FilterRule::verified, all, filter_settings(state.mean_count()));
+        filter_field(prediction.spectrum, prediction.width, prediction.height, FilterRule::verified,
+                     filter_settings(state.mean_count()));
     return make_layers(whole_film(state), state.display, state.has_holes,
                        CovarianceLayers{all, raw, density_layer(state), field, delivered});
 }
 
-Image layers_of(const RenderState& state, const HybridImage* reconstructed) {
+Image layers_of(const RenderState& state, const Reconstructed* reconstructed) {
     switch (state.method) {
         case Method::uniform:
             return make_layers(state.films[0], state.display, state.has_holes, std::nullopt);
@@ -123,9 +125,11 @@ Image layers_of(const RenderState& state, const HybridImage* reconstructed) {
         case Method::hybrid:
             break;
     }
-    if (reconstructed) return mixed_image(state, *reconstructed);
-    const Prediction prediction = preintegrate(smooth(state.covariance()));
-    return mixed_image(state, reconstruct(halves_of(state.films), prediction.spectrum));
+    const CovarianceBuffer all = state.covariance();
+    if (reconstructed) return mixed_image(state, all, *reconstructed);
+    const Prediction prediction = preintegrate(smooth(all));
+    const HybridImage image = reconstruct(halves_of(state.films), prediction.spectrum);
+    return mixed_image(state, all, {image, prediction});
 }
 
 }  // namespace
@@ -134,7 +138,7 @@ Film whole_film(const RenderState& state) {
     return state.films.size() == 1 ? state.films[0] : merged(state.films);
 }
 
-Image develop(const RenderState& state, const HybridImage* reconstructed) {
+Image develop(const RenderState& state, const Reconstructed* reconstructed) {
     Image image = layers_of(state, reconstructed);
     image.metadata = state.metadata;
     image.metadata["spp"] = static_cast<float>(state.mean_count());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "image/image.h"
+#include "planner/covariance_buffer.h"
 #include "reconstruction/hybrid.h"
 #include "render/render_state.h"
 
@@ -10,8 +11,14 @@ namespace covtrace {
 /// All samples as one film.
 Film whole_film(const RenderState& state);
 
+/// What the halves and covariances of a `hybrid` render give.
+struct Reconstructed {
+    const HybridImage& image;
+    const Prediction& prediction;  ///< of the smoothed covariances
+};
+
 /// The image with all layers of the method, also of an unfinished render, and the metadata that the
-/// state knows. `reconstructed`: what the halves of `hybrid` give, where it is known already.
-Image develop(const RenderState& state, const HybridImage* reconstructed = nullptr);
+/// state knows. `reconstructed`: where it is known already.
+Image develop(const RenderState& state, const Reconstructed* reconstructed = nullptr);
 
 }  // namespace covtrace

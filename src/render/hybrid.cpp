@@ -38,7 +38,8 @@ class HybridRender {
         if (!job_.delivers()) return;
         reconstruct_image(true);
         const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
-        job_.result.image = develop(s_, &*image_);
+        const Reconstructed known{*image_, *prediction_};
+        job_.result.image = develop(s_, &known);
     }
 
     HybridSamples samples() && {

@@ -9,7 +9,7 @@
 namespace covtrace {
 namespace {
 
-constexpr int kWidth = 45, kHeight = 38;  // more than a block each way
+constexpr int kWidth = 61, kHeight = 54;  // more than a block each way
 
 Plane random_plane(unsigned seed, float least, float most) {
     std::mt19937 random(seed);
@@ -40,32 +40,36 @@ double expected(const std::vector<Plane>& values, const std::vector<Plane>& vari
     return sum / ((2 * radius + 1) * (2 * radius + 1));
 }
 
-void expect_as_defined(size_t channels, int radius, int row_step) {
+template <int Radius, int Step, int Side>
+void expect_as_defined(size_t channels) {
     std::vector<Plane> values, variances;
     for (unsigned c = 0; c < channels; ++c) {
         values.push_back(random_plane(c, 0, 1));
         variances.push_back(random_plane(10 + c, 0.05f, 0.5f));
     }
-    constexpr int kReach = 5, kBlock = PatchDistance::kBlock;
-    const PatchDistance distance(values, variances, kReach, radius, row_step);
-    std::vector<float> d(size_t(kBlock) * kBlock);
-    for (const auto& [dx, dy] : {std::pair{0, 0}, {3, -5}, {-5, 2}})
-        for (const auto& [x0, y0] : {std::pair{0, 0}, {kBlock, 0}, {0, kBlock}}) {
-            distance.block(x0, y0, dx, dy, d.data());
-            for (int y = 0; y < kBlock && y0 + y < kHeight; y += row_step)
-                for (int x = 0; x < kBlock && x0 + x < kWidth; ++x) {
-                    const int px = x0 + x, py = y0 + y;
-                    ASSERT_NEAR(d[size_t(y) * kBlock + size_t(x)],
-                                expected(values, variances, radius, px, py, px + dx, py + dy), 1e-4)
-                        << px << " " << py << " " << dx << " " << dy;
-                }
-        }
+    using Patches = PatchDistance<Radius, Step, Side>;
+    constexpr int kReach = 5, kBlock = Patches::kBlock, kPatches = Patches::kPatches;
+    const Patches distance(values, variances, kReach);
+    for (const size_t stride : {1, 3})
+        for (const auto& [dx, dy] : {std::pair{0, 0}, {3, -5}, {-5, 2}})
+            for (const auto& [x0, y0] : {std::pair{0, 0}, {kBlock, 0}, {0, kBlock}}) {
+                std::vector<float> d(size_t(kPatches) * kPatches * stride);
+                distance.block(x0, y0, dx, dy, d.data(), stride);
+                for (int y = 0; y < kPatches && y0 + y * Step < kHeight; ++y)
+                    for (int x = 0; x < kPatches && x0 + x * Step < kWidth; ++x) {
+                        const int px = x0 + x * Step, py = y0 + y * Step;
+                        ASSERT_NEAR(d[size_t(y * kPatches + x) * stride],
+                                    expected(values, variances, Radius, px, py, px + dx, py + dy),
+                                    1e-4)
+                            << px << " " << py << " " << dx << " " << dy;
+                    }
+            }
 }
 
 TEST(PatchDistance, IsAsDefined) {
-    expect_as_defined(1, 3, 1);
-    expect_as_defined(3, 3, 1);
-    expect_as_defined(3, 1, 3);
+    expect_as_defined<3, 1, 32>(1);
+    expect_as_defined<3, 1, 32>(3);
+    expect_as_defined<1, 3, 48>(3);
 }
 
 }  // namespace

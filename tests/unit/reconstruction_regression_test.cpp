@@ -120,6 +120,30 @@ TEST(Regression, TexturesUnderEvenLightShareTheirSamples) {
     EXPECT_LT(squares[1] / n, 0.1);
 }
 
+TEST(Regression, LightTellsPatchesApartOnlyWhereNoiseDoesNot) {
+    // Stripes under even light: told apart by colours, and alike by light, with little noise.
+    FeaturePlanes features;
+    features.fill(Plane(kWidth, kHeight));
+    const auto albedo = [](int x, int) { return x % 4 < 2 ? 0.3f : 0.8f; };
+    for (size_t c = 0; c < 3; ++c)
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) features[c](x, y) = albedo(x, y);
+    const std::array windows{RegressionWindow{},
+                             RegressionWindow{.patches = PatchesOf::colors_or_light}};
+    for (const float sigma : {0.02f, 0.2f}) {
+        Halves halves = test::noisy_halves(kWidth, kHeight, albedo, sigma, 2);
+        for (HalfBuffer& half : halves) half.feature = features;
+        const auto fitted = regress(halves[0], halves[1], features, windows);
+        float difference = 0;
+        for (size_t i = 0; i < fitted[0][0].size(); ++i)
+            difference = std::max(difference, std::abs(fitted[0][0][i] - fitted[1][0][i]));
+        if (sigma < 0.1f)
+            EXPECT_GT(difference, 1e-3f);
+        else
+            EXPECT_EQ(difference, 0);
+    }
+}
+
 TEST(Regression, ExponentialIsExact) {
     for (int i = 0; i < 1000; ++i) {
         const float x = -0.09f * float(i);

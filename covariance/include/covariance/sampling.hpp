@@ -14,6 +14,22 @@
 
 namespace covariance {
 
+/// What one elimination of lens and shutter gives.
+template <std::floating_point T = double>
+struct SensorIntegral {
+    Sym2<T> spectrum;   ///< `preintegrate()`
+    T integration = 1;  ///< `integration_count()`
+};
+
+/// Both at the cost of one.
+template <std::floating_point T>
+[[nodiscard]] SensorIntegral<T> integrate_over_sensor(
+    const SymmetricMatrix5<T>& s,
+    const SymmetricMatrix5<NonDeduced<T>>& window = sensor_window<T>()) noexcept {
+    const detail::Elimination<T> e = detail::eliminate_uvt(s, window);
+    return {e.schur, e.windowed ? std::sqrt(e.ratio) : T(1)};
+}
+
 /// N_int: samples needed for the integral over lens and shutter at one point of the image.
 ///
 /// kappa N_int samples give a relative standard deviation of at most 1/sqrt(kappa), for Gaussians.
@@ -23,8 +39,7 @@ template <std::floating_point T>
 [[nodiscard]] T integration_count(
     const SymmetricMatrix5<T>& s,
     const SymmetricMatrix5<NonDeduced<T>>& window = sensor_window<T>()) noexcept {
-    const detail::Elimination<T> e = detail::eliminate_uvt(s, window);
-    return e.windowed ? std::sqrt(e.ratio) : T(1);
+    return integrate_over_sensor(s, window).integration;
 }
 
 /// sqrt det of a 2x2 spectrum: samples per pixel of its image, up to the factor k_img.
@@ -69,8 +84,8 @@ template <std::floating_point T>
 [[nodiscard]] SampleCount<T> sample_count(const SymmetricMatrix5<T>& s,
                                           const SymmetricMatrix5<NonDeduced<T>>& window,
                                           NonDeduced<T> k_img) noexcept {
-    const T image = k_img * image_density(preintegrate(s, window));
-    const T integration = integration_count(s, window);
+    const auto [spectrum, integration] = integrate_over_sensor(s, window);
+    const T image = k_img * image_density(spectrum);
     return {image * integration, image, integration};
 }
 
