@@ -72,6 +72,11 @@ struct ScaleTexture {
 struct MixTexture {
     TextureId tex1 = -1, tex2 = -1, amount = -1;  ///< (1 - amount) tex1 + amount tex2
 };
+/// 1 where the surface stands along the direction, 0 where it faces it or turns its back: 1 -
+/// |n.direction| of its unit normal. The amount of pbrt's "directionmix".
+struct AsideTexture {
+    Vec3 direction;  ///< unit, world space
+};
 /// Dots here and there in the cells of (s, t).
 struct DotsTexture {
     TextureMapping mapping;
@@ -95,7 +100,7 @@ struct TextureDescription {
     std::string name;  ///< empty for values given inline
     bool is_spectrum = true;
     std::variant<ConstantTexture, ImageTexture, CheckerboardTexture, ScaleTexture, MixTexture,
-                 DotsTexture, BilerpTexture, NoiseTexture>
+                 AsideTexture, DotsTexture, BilerpTexture, NoiseTexture>
         value;
     SourceLocation where;
 };

@@ -212,6 +212,18 @@ TextureId TextureBuilder::build(Declared& d) {
         t.tex2 = part(d, "tex2", 1);
         t.amount = grey(p, "amount", 0.5f);
         d.id = add(d, t);
+    } else if (type == "directionmix") {
+        const Vec3 direction = d.texture_to_world.vector(p.triple("dir", {0, 1, 0}));
+        if (!(length(direction) > 0))
+            throw Error(ErrorKind::scene, p.where("dir", d.entity.where),
+                        "parameter \"dir\" must not be zero");
+        MixTexture t;
+        t.tex1 = part(d, "tex1", 0);
+        t.tex2 = part(d, "tex2", 1);
+        t.amount = static_cast<TextureId>(context_.scene.textures.size());
+        context_.scene.textures.push_back(
+            {{}, false, AsideTexture{normalize(direction)}, d.entity.where});
+        d.id = add(d, t);
     } else if (type == "dots") {
         DotsTexture t;
         t.mapping = texture_mapping(p, d.entity.where, d.texture_to_world.inverse());
@@ -242,10 +254,7 @@ TextureId TextureBuilder::build(Declared& d) {
 TextureId TextureBuilder::stand_in(Declared& d) {
     ParameterList& p = d.entity.parameters;
     const std::string& type = d.entity.type;
-    Rgb value{0.5f};
-    if (type == "directionmix") {
-        value = mean_of(mean(part(d, "tex1", 0)), mean(part(d, "tex2", 1)));
-    } else if (type != "ptex") {
+    if (type != "ptex") {
         std::vector<std::string> known{"constant", "imagemap",     "checkerboard", "scale", "mix",
                                        "dots",     "directionmix", "bilerp",       "ptex"};
         if (d.is_spectrum) {
@@ -261,7 +270,7 @@ TextureId TextureBuilder::stand_in(Declared& d) {
     context_.log.add(d.entity.where, "textures of type " + in_quotes(type) +
                                          " are not supported; a constant takes their place");
     p.ignore_all();
-    return add(d, ConstantTexture{value});
+    return add(d, ConstantTexture{Rgb{0.5f}});
 }
 
 Rgb TextureBuilder::mean(TextureId id) {
@@ -280,6 +289,7 @@ Rgb TextureBuilder::mean_of_parts(size_t texture) const {
     if (const auto* t = std::get_if<ScaleTexture>(&value)) return mean(t->tex) * mean(t->scale);
     if (const auto* t = std::get_if<MixTexture>(&value))
         return lerp(mean(t->amount).r, mean(t->tex1), mean(t->tex2));
+    if (std::holds_alternative<AsideTexture>(value)) return Rgb{0.5f};  // over all directions
     if (const auto* t = std::get_if<DotsTexture>(&value)) {
         constexpr float kDots = 0.151f;  // measured: four cells in ten have one
         return lerp(kDots, mean(t->outside), mean(t->inside));

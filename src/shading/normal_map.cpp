@@ -71,13 +71,14 @@ NormalMap::NormalMap(const MaterialDescription& material, const TextureStore& te
 float NormalMap::height(Vec2 shift) const {
     return textures_.eval_float(
         material_.displacement,
-        {hit_.uv + shift, hit_.position + dpdu_ * shift.x + dpdv_ * shift.y});
+        {hit_.uv + shift, hit_.position + dpdu_ * shift.x + dpdv_ * shift.y, {}, hit_.ng});
 }
 
 Frame NormalMap::frame_at(Vec2 shift) const {
     Vec3 normal, tangent = dpdu_;
     if (material_.normal_map >= 0) {
-        const Rgb texel = textures_.eval(material_.normal_map, {hit_.uv + shift, hit_.position});
+        const Rgb texel =
+            textures_.eval(material_.normal_map, {hit_.uv + shift, hit_.position, {}, hit_.ng});
         Vec3 local{2 * texel.r - 1, 2 * texel.g - 1, 2 * texel.b - 1};
         local.x *= material_.normal_scale;
         local.y *= material_.normal_scale * y_sign_;

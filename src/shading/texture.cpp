@@ -78,6 +78,7 @@ class GraphBuilder {
     double lookups_of(const DotsTexture& n) const {
         return 1 + std::max(lookups_of(n.inside), lookups_of(n.outside));
     }
+    double lookups_of(const AsideTexture&) const { return 1; }
     double lookups_of(const BilerpTexture&) const { return 1; }
     double lookups_of(const NoiseTexture&) const { return 1; }
     double lookups_of(const ScaleNode& n) const {
@@ -129,6 +130,7 @@ class GraphBuilder {
         if (constant(a) && constant(b) && *constant(a) == *constant(b)) return a;
         return t;
     }
+    TextureNode make_node(const AsideTexture& t, const TextureDescription&, int) { return t; }
     TextureNode make_node(const BilerpTexture& t, const TextureDescription&, int) { return t; }
     TextureNode make_node(const NoiseTexture& t, const TextureDescription&, int) { return t; }
     TextureNode make_node(const ScaleTexture& t, const TextureDescription&, int depth) {

@@ -28,6 +28,7 @@ struct TexturePoint {
     Vec2 uv;
     Vec3 position;  ///< world space
     PointFootprint footprint = {};
+    Vec3 normal = {};  ///< unit, of the geometry; zero where it isn't known
 };
 
 /// What the frequency analysis takes textures for.

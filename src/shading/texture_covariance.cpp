@@ -142,6 +142,9 @@ struct Analyser {
         return edges + of(active_texture(node, at));
     }
 
+    /// Varies as slowly as the surface bends.
+    SpatialCovariance2 operator()(const AsideTexture&) const { return {}; }
+
     /// The nearest rim counts as a straight edge.
     SpatialCovariance2 operator()(const DotsTexture& node) const {
         const Vec2 st = map_to_st(node.mapping, at);

@@ -50,6 +50,11 @@ struct Evaluator {
     Rgb operator()(const CheckerboardNode& node) const {
         return eval(graph, active_texture(node, at), at);
     }
+    Rgb operator()(const AsideTexture& node) const {
+        // Without a normal half, as the mean over all directions.
+        if (at.normal == Vec3{}) return Rgb(0.5f);
+        return Rgb(1 - std::min(1.0f, std::abs(dot(at.normal, node.direction))));
+    }
     Rgb operator()(const DotsTexture& node) const {
         return eval(graph, active_texture(node, at), at);
     }

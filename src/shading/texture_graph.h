@@ -41,7 +41,7 @@ struct MixNode {
     int mixture_spectrum = -1;
 };
 using TextureNode = std::variant<ConstantNode, ImageNode, CheckerboardNode, ScaleNode, MixNode,
-                                 DotsTexture, BilerpTexture, NoiseTexture>;
+                                 AsideTexture, DotsTexture, BilerpTexture, NoiseTexture>;
 
 struct TextureGraph {
     std::vector<TextureNode> nodes;  ///< one per TextureId

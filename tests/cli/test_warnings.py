@@ -29,7 +29,7 @@ class Warnings(CliTest):
             (f'Shape "curve" {points}', "curve"),
             ('Shape "cylinder"', "cylinder"),
             ('LightSource "goniometric" "spectrum I" "stdillum-D65"', "goniometric"),
-            ('Texture "t" "spectrum" "directionmix"\nMaterial "diffuse" "texture reflectance" "t"' + sphere, "directionmix"),
+            ('Texture "t" "spectrum" "ptex"\nMaterial "diffuse" "texture reflectance" "t"' + sphere, "ptex"),
             ('MakeNamedMedium "m" "string type" "cloud"', "cloud"),
             ('AttributeBegin\nAreaLightSource "diffuse" "rgb L" [1 1 1]\nAttributeEnd', "no shape"),
             ('Shape "sphere" "float raduis" 2', "raduis"),

@@ -90,15 +90,32 @@ TEST(SceneTextures, FloatAndSpectrumNamesAreApart) {
 }
 
 TEST(SceneTextures, OthersBecomeTheirMeanWithAWarning) {
-    for (const char* text : {"\"spectrum\" \"directionmix\"", "\"float\" \"directionmix\"",
+    for (const char* text : {"\"float\" \"ptex\" \"string filename\" \"x\"",
                              "\"spectrum\" \"ptex\" \"string filename\" \"x\""}) {
         const auto scene = read_world(std::string("Texture \"t\" ") + text);
         EXPECT_TRUE(std::holds_alternative<ConstantTexture>(texture(scene).value)) << text;
         EXPECT_EQ(scene.warnings.size(), 1u) << text << "\n" << warnings_of(scene);
     }
-    const auto scene =
-        read_world("Texture \"t\" \"float\" \"directionmix\" \"float tex1\" 2 \"float tex2\" 4");
-    EXPECT_EQ(std::get<ConstantTexture>(texture(scene).value).value, Rgb{3});
+}
+
+TEST(SceneTextures, DirectionmixIsAMixByTheNormal) {
+    const auto scene = read_world(
+        "Rotate 90 0 0 1\n"
+        "Texture \"t\" \"float\" \"directionmix\" \"float tex1\" 2 \"float tex2\" 4 \"vector3 "
+        "dir\" [ 3 0 0 ]");
+    EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
+    const auto& mix = std::get<MixTexture>(texture(scene).value);
+    const auto part = [&](TextureId id) { return scene.textures.at(size_t(id)).value; };
+    EXPECT_EQ(std::get<ConstantTexture>(part(mix.tex1)).value, Rgb{2});
+    EXPECT_EQ(std::get<ConstantTexture>(part(mix.tex2)).value, Rgb{4});
+    expect_near(std::get<AsideTexture>(part(mix.amount)).direction, {0, 1, 0}, 1e-6f);
+    const auto usual = read_world("Texture \"t\" \"spectrum\" \"directionmix\"");
+    const auto& amount =
+        usual.textures.at(size_t(std::get<MixTexture>(texture(usual).value).amount));
+    expect_near(std::get<AsideTexture>(amount.value).direction, {0, 1, 0}, 1e-6f);
+    EXPECT_TRUE(
+        contains(world_error("Texture \"t\" \"float\" \"directionmix\" \"vector3 dir\" [ 0 0 0 ]"),
+                 "must not be zero"));
 }
 
 TEST(SceneTextures, NoiseTakesItsParameters) {
@@ -155,7 +172,7 @@ TEST(SceneTextures, WarningsAreInFileOrder) {
     const auto scene = read_world(
         "MakeNamedMaterial \"m\" \"string type\" \"measured\"\n"
         "Shape \"sphere\" \"float x\" 1\n"
-        "Texture \"t\" \"float\" \"directionmix\"\n"
+        "Texture \"t\" \"float\" \"ptex\"\n"
         "Shape \"disk\" \"float x\" 1\n");
     ASSERT_EQ(scene.warnings.size(), 4u);
     for (int i = 0; i < 4; ++i) EXPECT_EQ(scene.warnings[static_cast<size_t>(i)].where.line, i + 2);

@@ -32,6 +32,20 @@ TEST(TextureStore, ScalesAndMixesAtAnyDepth) {
                 (Rgb(0.8f, 0.1f, 0.1f) * 0.75f + Rgb(0.1f, 0.2f, 0.9f) * 0.25f) * (1.0f / 32));
 }
 
+TEST(TextureStore, MixesByTheNormal) {
+    // pbrt-v4's directionmix: tex1 where the normal is along the direction, either way.
+    TextureScene scene;
+    const TextureId aside = scene.add(AsideTexture{{0, 0.6f, 0.8f}});
+    const TextureId mixed = scene.add(MixTexture{scene.add_float(2), scene.add_float(4), aside});
+    const TextureStore store(scene.description);
+    const auto value = [&](Vec3 normal) { return store.eval_float(mixed, {{}, {}, {}, normal}); };
+    EXPECT_FLOAT_EQ(value({0, 0.6f, 0.8f}), 2);
+    EXPECT_FLOAT_EQ(value({0, -0.6f, -0.8f}), 2);
+    EXPECT_FLOAT_EQ(value({1, 0, 0}), 4);
+    EXPECT_FLOAT_EQ(value({0, 0, -1}), 0.8f * 2 + 0.2f * 4);
+    EXPECT_FLOAT_EQ(value({}), 3);  // not known: half of each
+}
+
 TEST(TextureStore, KnowsWhatIsConstant) {
     TextureScene scene;
     const TextureId half = scene.add_float(0.5f), zero = scene.add_float(0),
