@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/parallel.h"
 #include "core/vec.h"
@@ -47,23 +48,42 @@ Plane log_brightness(const Plane& bright) {
     return result;
 }
 
+/// 1 where both halves have samples; nothing if that is nowhere, as with one sample per pixel.
+std::optional<Plane> known_by_both(const Halves& halves) {
+    const Plane &a = halves[0].count, &b = halves[1].count;
+    Plane known(a.width, a.height);
+    bool any = false;
+    for (size_t i = 0; i < known.size(); ++i) {
+        known[i] = a[i] > 0 && b[i] > 0 ? 1.0f : 0.0f;
+        any = any || known[i] > 0;
+    }
+    return any ? std::optional(known) : std::nullopt;
+}
+
+/// A squared error over I^2 + 0.01.
+float relative(float square, float brightness) {
+    return square / (sqr(std::max(0.0f, brightness)) + kDarkSquared);
+}
+
 }  // namespace
 
 ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> candidates,
                              const Selection& selection, const ColorPlanes& image,
-                             const ColorPlanes& raw, const Plane& near,
+                             const ColorPlanes& raw, const ReturnedShares& returned,
                              const ColorPlanes& brightness, const ErrorFactors& factors) {
     const int w = image[0].width, h = image[0].height;
-    const float noise =
-        factors.noise + factors.noise_of_few / std::max(1.0f, samples_per_pixel(halves));
-    const ColorPlanes g = error_weights(halves, brightness);
     const Plane bright = luminance(brightness);
-    const Plane g_luminance = error_weights(halves, {bright, bright, bright})[0];
+    const std::optional<Plane> by_both = known_by_both(halves);
+    // Where no pixel is known to both, no half has chosen by the other one's noise.
+    const float of_few =
+        by_both ? factors.noise_of_few / std::max(1.0f, samples_per_pixel(halves)) : 0;
+    const float noise = factors.noise + of_few;
+    // Holes are filled, and the halves still differ.
+    const Plane known = by_both.value_or(Plane(w, h, 1));
     ErrorEstimate error{Plane(w, h), Plane(w, h)};
-    Plane known(w, h);
+    ErrorEstimate own = error;  // not averaged
     parallel_for(h, [&](int64_t row) {
         for (size_t i = size_t(row) * size_t(w), end = i + size_t(w); i < end; ++i) {
-            known[i] = g[0][i] > 0 ? 1.0f : 0.0f;
             const Signals ma = signals(selection.half[0], i), mb = signals(selection.half[1], i),
                           m = signals(selection.half, i), delivered = signals(image, i),
                           all = signals(raw, i), a = signals(halves[0].color, i),
@@ -75,18 +95,30 @@ ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> ca
                 for (size_t k = 0; k < kSignals; ++k)
                     spread[k] += selection.share[c][i] * std::abs(mean[k] - m[k]);
             }
-            const float cut = factors.cut * (sqr(near[i]) + sqr((1 - near[i]) / kWidening));
+            const float far = 1 - returned.near[i] - returned.own[i];
+            const float cut = factors.cut * (sqr(returned.near[i]) + sqr(far / kWidening));
             Signals square;
             for (size_t k = 0; k < kSignals; ++k)
                 square[k] = noise * sqr(ma[k] - mb[k]) / 4 + factors.spread * sqr(spread[k]) +
-                            factors.returned * sqr(delivered[k] - m[k]) +
+                            factors.returned *
+                                sqr(delivered[k] - m[k] - returned.own[i] * (all[k] - m[k])) +
                             cut * sqr(all[k] - 0.5f * (a[k] + b[k]));
-            for (size_t k = 0; k < 3; ++k) error.color[i] += g[k][i] / 3 * square[k];
-            error.luminance[i] = g_luminance[i] * square[3];
+            for (size_t k = 0; k < 3; ++k)
+                error.color[i] += relative(square[k], brightness[k][i]) / 3;
+            error.luminance[i] = relative(square[3], bright[i]);
+            for (size_t k = 0; k < kSignals; ++k)
+                square[k] =
+                    relative(sqr(returned.own[i] * (all[k] - 0.5f * (a[k] + b[k]))), delivered[k]);
+            own.color[i] = (square[0] + square[1] + square[2]) / 3;
+            own.luminance[i] = square[3];
         }
     });
     bilateral_blur(std::array{&error.color, &error.luminance}, known, log_brightness(bright),
                    kSmoothing, kAlike);
+    for (size_t i = 0; i < known.size(); ++i) {
+        error.color[i] += own.color[i];
+        error.luminance[i] += own.luminance[i];
+    }
     return error;
 }
 

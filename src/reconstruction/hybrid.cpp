@@ -91,9 +91,9 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     // A fit may leave the range of its colours: light is never negative.
     for (Plane& channel : image.color)
         for (float& v : channel.values) v = std::max(0.0f, v);
-    const Plane near = return_energy(all, image.color);
+    const ReturnedShares returned = return_energy(all, image.color);
     ErrorEstimate error =
-        estimate_error(halves, candidates, s, image.color, all, near, guess, settings.error);
+        estimate_error(halves, candidates, s, image.color, all, returned, guess, settings.error);
     image.share = std::move(s.share);
     image.relative_error = std::move(error.color);
     image.variance = std::move(error.luminance);

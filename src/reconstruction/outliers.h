@@ -8,6 +8,12 @@ namespace covtrace {
 /// How many times as far as other light that of one path goes.
 constexpr float kWidening = 4;
 
+/// Of what is given back of every pixel, the shares that stay around it and in it; the rest goes
+/// far.
+struct ReturnedShares {
+    Plane near, own;
+};
+
 /// Limits every pixel of each half to a multiple of the brightest pixel of the *other* half within
 /// 3 x 3 pixels. What both halves see is never cut, so nothing is in the limit of many samples.
 /// Colours keep their hue.
@@ -18,8 +24,9 @@ void limit_outliers(Halves& halves);
 /// G(q - p) Y(q) / (G * Y)(p), in proportion to the light Y that is there, G a wide Gaussian: the
 /// sum over the image is that of `raw`, but for pixels that would become negative. What one pixel
 /// has of e beyond a tenth of all others around it goes further away: one path's light, were it
-/// rare enough, would be a blotch. Returns the share of every pixel's e that stays near.
-Plane return_energy(const ColorPlanes& raw, ColorPlanes& color);
+/// rare enough, would be a blotch; of what has m times that, 1/m^2 stays near. Where so much of
+/// that meets that it would glow, the rest stays in its own pixel.
+ReturnedShares return_energy(const ColorPlanes& raw, ColorPlanes& color);
 
 /// Luminance of every pixel.
 Plane luminance(const ColorPlanes& color);

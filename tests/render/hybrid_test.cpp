@@ -105,5 +105,23 @@ TEST(Hybrid, EvenCountsAreEven) {
     for (float n : image.find("samples.Y")->values) EXPECT_FLOAT_EQ(n, 8);
 }
 
+TEST(Hybrid, ALampInViewDoesNotLightTheSky) {
+    // The sky has no noise; the lamp covers a few pixels. From far away a place becomes a tenth
+    // brighter at most, and some light comes from near; before, it was a hundred times.
+    RenderScene scene(
+        read_pbrt(std::filesystem::path(COVTRACE_SCENES_FOLDER) / "hard" / "lamp-in-view.pbrt"));
+    const Rgb sky(0.02f, 0.03f, 0.05f);
+    for (const uint64_t seed : {1, 2, 4}) {
+        Monitor monitor;
+        const Image image = render(scene, hybrid(2, seed), monitor).image;
+        for (int y = 0; y < 10; ++y)
+            for (int x = 0; x < image.width(); ++x)
+                for (int c = 0; c < 3; ++c)
+                    ASSERT_NEAR(image.rgb(size_t(y) * size_t(image.width()) + size_t(x))[c], sky[c],
+                                0.15f * sky[c])
+                        << seed << " " << x << " " << y;
+    }
+}
+
 }  // namespace
 }  // namespace covtrace

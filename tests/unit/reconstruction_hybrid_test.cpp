@@ -19,6 +19,8 @@ constexpr int kSize = 64;
 const std::vector<covariance::Sym2<float>> kSpectrum(size_t(kSize) * kSize,
                                                      covariance::Sym2<float>{0.01f, 0, 0.01f});
 
+const ReturnedShares kAllNear{Plane(kSize, kSize, 1), Plane(kSize, kSize)};
+
 float smooth_truth(int x, int y) {
     return 1 + 0.3f * std::sin(0.1f * float(x)) * std::cos(0.07f * float(y));
 }
@@ -146,7 +148,7 @@ TEST(ErrorEstimate, CountsNoiseSpreadAndLightThatWasMoved) {
     const ErrorFactors factors{1, 16, 2, 3, 5};
     const ErrorEstimate error =
         estimate_error(halves, candidates, s, constant(1.05f), constant(1.3f),
-                       Plane(kSize, kSize, 0.5f), constant(1), factors);
+                       {Plane(kSize, kSize, 0.5f), Plane(kSize, kSize)}, constant(1), factors);
     // N = 0.1^2 with 8 samples, S = 0.2^2, E = 0.05^2, C = 0.3^2 of which half went further away.
     const float cut = 0.09f * (0.25f + 0.25f / 16);
     const float expected = (3 * 0.01f + 2 * 0.04f + 3 * 0.0025f + 5 * cut) / 1.01f;
@@ -170,9 +172,47 @@ TEST(ErrorEstimate, TellsLuminanceApartFromColours) {
     const Selection s{{a, constant(1)}, {Plane(kSize, kSize, 1)}};
     const ErrorEstimate error =
         estimate_error(halves, std::vector<Candidate>{{a, constant(1)}}, s, mean_of_both(s.half),
-                       constant(1), Plane(kSize, kSize, 1), constant(1), {});
+                       constant(1), kAllNear, constant(1), {});
     EXPECT_GT(error.color[100], 0.01f);
     EXPECT_LT(error.luminance[100], 1e-6f);
+}
+
+TEST(ErrorEstimate, OfWhatStaysInItsPixelIsThatPixels) {
+    // One half saw 400 and the other one nothing of it: the pixel is as uncertain as bright.
+    Halves halves{HalfBuffer(kSize, kSize), HalfBuffer(kSize, kSize)};
+    for (HalfBuffer& half : halves) {
+        half.count = Plane(kSize, kSize, 4);
+        half.color = constant(1);
+    }
+    ColorPlanes raw = constant(1);
+    ReturnedShares returned = kAllNear;
+    for (Plane& p : raw) p(30, 30) = 201;
+    returned.near(30, 30) = 0;
+    returned.own(30, 30) = 1;
+    const Selection s{{constant(1), constant(1)}, {Plane(kSize, kSize, 1)}};
+    const ErrorEstimate error =
+        estimate_error(halves, std::vector<Candidate>{{constant(1), constant(1)}}, s, raw, raw,
+                       returned, constant(1), {});
+    EXPECT_NEAR(error.luminance(30, 30), sqr(200.0f / 201), 1e-3f);
+    EXPECT_NEAR(error.color(30, 30), sqr(200.0f / 201), 1e-3f);
+    EXPECT_EQ(error.luminance(31, 30), 0);
+}
+
+TEST(ErrorEstimate, IsToldOfOneSamplePerPixel) {
+    // Each pixel is known to one half only, like a checkerboard.
+    Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.2f, 9);
+    for (size_t k = 0; k < 2; ++k)
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x)
+                halves[k].count(x, y) = size_t(x + y) % 2 == k ? 1.0f : 0.0f;
+    const HybridImage image = reconstruct(halves, kSpectrum);
+    double told = 0, squares = 0;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            told += double(image.variance(x, y));
+            squares += sqr(double(image.color[1](x, y)) - double(smooth_truth(x, y)));
+        }
+    EXPECT_GT(told, 0.2 * squares);
 }
 
 TEST(ErrorEstimate, OfADarkPixelIsNotThatOfALightBesideIt) {
@@ -191,9 +231,9 @@ TEST(ErrorEstimate, OfADarkPixelIsNotThatOfALightBesideIt) {
                 s.half[1][c](x, y) = x < kSize / 2 ? 0.95f * bright : 1.05f * bright;
                 for (HalfBuffer& half : halves) half.color[c](x, y) = bright;
             }
-    const ErrorEstimate error = estimate_error(
-        halves, std::vector<Candidate>{{s.half[0], s.half[1]}}, s, mean_of_both(s.half), guess,
-        Plane(kSize, kSize, 1), guess, ErrorFactors{1, 0, 0, 0, 0});
+    const ErrorEstimate error =
+        estimate_error(halves, std::vector<Candidate>{{s.half[0], s.half[1]}}, s,
+                       mean_of_both(s.half), guess, kAllNear, guess, ErrorFactors{1, 0, 0, 0, 0});
     for (int y = 0; y < kSize; ++y) {
         ASSERT_NEAR(error.luminance(kSize / 2 - 1, y), 0.0025f / 1.01f, 1e-6f);
         ASSERT_EQ(error.luminance(kSize / 2, y), 0);
@@ -295,6 +335,29 @@ TEST(Outliers, OnePathsLightMakesNoBlotch) {
     const auto [least, most] = std::minmax_element(color[0].values.begin(), color[0].values.end());
     EXPECT_LT(*most - *least, 0.06f);
     EXPECT_GT(*least, 1.02f);
+}
+
+TEST(Outliers, ASmallLampDoesNotLightTheImage) {
+    // One half saw a lamp 100000 times as bright as all else, in one pixel or in a few: spread over
+    // 48 pixels it would drown the image.
+    for (const int side : {1, 3}) {
+        const ColorPlanes color = after_return(side, 1, 1e5f);
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x)
+                if (std::max(std::abs(2 * x - kSize), std::abs(2 * y - kSize)) > 2 * side + 2) {
+                    ASSERT_NEAR(color[0](x, y), 1, 0.5f) << side << " " << x << " " << y;
+                }
+        EXPECT_GT(color[0](kSize / 2 - 1, kSize / 2 - 1) + color[0](kSize / 2, kSize / 2), 9e4f);
+    }
+}
+
+TEST(Outliers, RareNegativeLightIsLimited) {
+    // As a pixel filter with negative lobes makes it beside a rare path.
+    Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.1f, 5);
+    for (Plane& p : halves[0].color) p(30, 30) = -500;
+    limit_outliers(halves);
+    EXPECT_GT(halves[0].color[0](30, 30), -5);
+    EXPECT_LT(halves[0].color[0](30, 30), 0);
 }
 
 TEST(Outliers, LightThatManyPathsBringStaysNear) {
