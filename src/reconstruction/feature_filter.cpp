@@ -29,7 +29,8 @@ void filter(const HalfBuffer& half, const HalfBuffer& guide, size_t first, size_
         const int x0 = int(block % blocks_x) * kBlock, y0 = int(block / blocks_x) * kBlock;
         const int x1 = std::min(x0 + kBlock, w), y1 = std::min(y0 + kBlock, h);
         if (distance.is_without_noise(x0, y0)) {
-            // Only equal pixels are alike.
+            // Only equal pixels are alike, whose mean is the pixel but for what the guide has not
+            // seen at all.
             for (size_t f = first; f < first + n; ++f)
                 for (int y = y0; y < y1; ++y)
                     for (int x = x0; x < x1; ++x) out[f](x, y) = half.feature[f](x, y);
