@@ -27,6 +27,13 @@ RC_GTEST_PROP(Preintegration, LiesBetweenZeroAndTheInstantPinhole, ()) {
     RC_ASSERT(is_psd(narrow - integrated, size));
 }
 
+RC_GTEST_PROP(Preintegration, TheSpectrumComesWithTheCount, ()) {
+    const Matrix s = draw_psd(), w = draw_window();
+    const SensorIntegral<double> both = integrate_over_sensor(s, w);
+    RC_ASSERT(distance(both.spectrum, preintegrate(s, w)) == 0);
+    RC_ASSERT(both.integration == integration_count(s, w));
+}
+
 RC_GTEST_PROP(Preintegration, LimitsOfTheWindow, ()) {
     const Matrix s = draw_pd();
     RC_ASSERT(distance(preintegrate(s, sensor_window(1e14, 1e14)), project2(s)) < 1e-10);

@@ -91,7 +91,7 @@ void insert(Imf::Header& header, const std::string& name, const std::vector<floa
 Imf::Header make_header(const Image& image) {
     Imf::Header header(to_imath(image.display), to_imath(image.data), 1, {0, 0}, 1,
                        Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
-    // Most layers hold noise: higher levels make files 1 % smaller in a third more time.
+    // Most layers hold noise: OpenEXR's own level makes files 1 % smaller in 6 to 18 % more time.
     header.zipCompressionLevel() = 1;
     for (const Channel& channel : image.channels)
         header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));

@@ -32,7 +32,8 @@ struct ErrorEstimate {
 /// about as bright of
 ///     N = (M_A - M_B)^2 / 4, the noise that the mixtures M of the halves do not share,
 ///     S = (sum over c of share_c |m_c - m|)^2, how far the candidates c are from their mixture m,
-///     E = (image - m)^2, what light of the neighbourhood was added,
+///     E = (image - m)^2 without what stays in its own pixel, what light of the neighbourhood was
+///         added,
 ///     C = (raw - limited)^2 (near^2 + far^2 / 16), what light was cut off: it is somewhere around
 ///         only, and errs the less the larger the area that it is spread over,
 /// as (noise + noise_of_few / n) N + spread S + returned E + cut C, n the samples per pixel. The

@@ -14,7 +14,7 @@
 
 namespace covariance {
 
-/// What one elimination of lens and shutter gives.
+/// What one elimination of lens and shutter from S + W gives.
 template <std::floating_point T = double>
 struct SensorIntegral {
     Sym2<T> spectrum;   ///< `preintegrate()`
@@ -22,6 +22,9 @@ struct SensorIntegral {
 };
 
 /// Both at the cost of one.
+///
+/// Shapes   s, window: sensor coordinates, `sensor_window()`.
+/// Errors   none; as of the two functions.
 template <std::floating_point T>
 [[nodiscard]] SensorIntegral<T> integrate_over_sensor(
     const SymmetricMatrix5<T>& s,
