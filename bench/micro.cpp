@@ -155,7 +155,7 @@ Bsdf model(int64_t which) {
         case 2:
             return DielectricBsdf{1.5f, 0.2f, 0.2f};
         case 3:
-            return make_coated_diffuse(coat, Rgb(0.5f), 0.2f, 0.2f, 5);
+            return make_coated_diffuse(coat, reflectance_powers(Rgb(0.5f)), 0.2f, 0.2f, 5);
         default:
             return CoatedConductorBsdf{{1.5f, 0.1f, 0.1f}, metal, 0.01f, 5, 1};
     }

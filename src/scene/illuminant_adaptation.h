@@ -12,10 +12,11 @@
 /// docs/decisions/0001-reflectance-under-coloured-light.md.
 #pragma once
 
-#include <array>
+#include <span>
 #include <vector>
 
 #include "core/vec.h"
+#include "scene/spectrum.h"
 
 namespace covtrace {
 
@@ -29,7 +30,12 @@ class IlluminantAdaptation {
     /// what a fainter channel should be multiplied by is ill-defined and hardly seen.
     explicit IlluminantAdaptation(Rgb illuminant);
 
-    bool is_identity() const { return weights_.empty(); }
+    bool is_identity() const { return observer_.empty(); }
+    /// As observer_samples(), but under the light: what a factor at a wavelength adds to the colour
+    /// over the light's own.
+    std::span<const ObserverSample> observer() const {
+        return is_identity() ? observer_samples() : observer_;
+    }
     /// The reflectance (or transmittance) to render with, in [0, 1]; greys stay as they are. Fits a
     /// spectrum, some 10 microseconds: for load time.
     Rgb operator()(Rgb reflectance) const;
@@ -37,11 +43,7 @@ class IlluminantAdaptation {
     Rgb change(Rgb reflectance) const;
 
   private:
-    struct Weight {
-        double wavelength = 0;
-        std::array<double, 3> change{};  ///< of the colour, by a reflectance of 1 there
-    };
-    std::vector<Weight> weights_;
+    std::vector<ObserverSample> observer_;
 };
 
 /// The same by interpolation in a table, for textures: no allocation, some 10 nanoseconds. Within
@@ -56,8 +58,7 @@ class AdaptationTable {
     Rgb operator()(Rgb reflectance) const;
 
   private:
-    const Rgb& at(int r, int g, int b) const;
-    std::vector<Rgb> changes_;  ///< blue fastest; empty for the identity
+    std::vector<Rgb> changes_;  ///< at the nodes of scene/colour_grid.h; empty for the identity
 };
 
 }  // namespace covtrace

@@ -153,6 +153,10 @@ class Parser {
                                                     "seed",
                                                     "wavefront"};
         const std::string n = name();
+        if (const size_t space = n.find(' '); space != std::string::npos)
+            throw Error(ErrorKind::scene, where_,
+                        "option " + in_quotes(n) + " has a type; expected its name alone, " +
+                            in_quotes(n.substr(space + 1)));
         const Token value = tokens_.next();
         if (value.kind != Token::Kind::word && value.kind != Token::Kind::string)
             throw Error(ErrorKind::scene, value.where(),

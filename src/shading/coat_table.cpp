@@ -156,14 +156,12 @@ CoatedDiffuseBsdf coat_alone(const CoatTable& table, float alpha_x, float alpha_
 
 }  // namespace
 
-CoatedDiffuseBsdf make_coated_diffuse(const CoatTable& table, Rgb reflectance, float alpha_x,
-                                      float alpha_y, int bounces) {
+CoatedDiffuseBsdf make_coated_diffuse(const CoatTable& table, const ReflectancePowers& base,
+                                      float alpha_x, float alpha_y, int bounces) {
     CoatedDiffuseBsdf b = coat_alone(table, alpha_x, alpha_y);
-    b.reflectance = reflectance;
-    const Rgb again = reflectance * table.internal_reflectance(b.table_row);
-    Rgb series;
-    for (int i = 0; i < bounces; ++i) series = Rgb(1) + again * series;
-    b.base = reflectance * series * (kInvPi / sqr(table.eta()));
+    b.reflectance = base[0];
+    b.base = sum_of_bounces(base, table.internal_reflectance(b.table_row), bounces) *
+             (kInvPi / sqr(table.eta()));
     return b;
 }
 

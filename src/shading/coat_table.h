@@ -29,6 +29,7 @@
 #include <memory>
 #include <vector>
 
+#include "scene/reflectance_powers.h"
 #include "shading/bsdf.h"
 
 namespace covtrace {
@@ -94,9 +95,10 @@ class CoatTables {
     std::vector<std::unique_ptr<const CoatTable>> tables_;
 };
 
-/// `bounces`: most reflections at the base. The alphas are both 0 (a smooth coat) or both > 0.
-CoatedDiffuseBsdf make_coated_diffuse(const CoatTable& table, Rgb reflectance, float alpha_x,
-                                      float alpha_y, int bounces);
+/// `base`: rho and its powers, each the colour of its spectrum. `bounces`: most reflections at the
+/// base. The alphas are both 0 (a smooth coat) or both > 0.
+CoatedDiffuseBsdf make_coated_diffuse(const CoatTable& table, const ReflectancePowers& base,
+                                      float alpha_x, float alpha_y, int bounces);
 
 inline float CoatTable::lookup(const PerRow& values, float row) {
     const int i = std::min(static_cast<int>(row), kRows - 2);

@@ -19,7 +19,13 @@ struct Values {
     TexturePoint at;
     const MaterialColours& colours;
     const AdaptationTable& adaptation;
+    const ReflectancePowersTable& powers;
     Rgb reflectance() const { return colour(colours.reflectance); }
+    ReflectancePowers powers_of_reflectance() const {
+        const MaterialColour& c = colours.reflectance;
+        return c.texture < 0 ? colours.fixed_powers
+                             : powers(c.scale * textures.eval(c.texture, at));
+    }
     Rgb transmittance() const { return colour(colours.transmittance); }
     /// In [0, 1]; what is not a number is 0, so that a broken texel can't spread.
     Rgb colour(const MaterialColour& c) const {
@@ -71,7 +77,8 @@ Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const CoatTable* coat
     const Vec2 alpha = v.alphas(m);
     if (m.reflects_through_coat) return make_coated_total(*coat, v.reflectance(), alpha.x, alpha.y);
     // pbrt's walk meets the base at every second of its steps.
-    return make_coated_diffuse(*coat, v.reflectance(), alpha.x, alpha.y, (m.max_depth + 1) / 2);
+    return make_coated_diffuse(*coat, v.powers_of_reflectance(), alpha.x, alpha.y,
+                               (m.max_depth + 1) / 2);
 }
 
 Bsdf make(const DiffuseTransmissionMaterial&, const Values& v, const CoatTable*) {
@@ -164,13 +171,11 @@ MaterialColours colours(const InterfaceMaterial&) {
 /// The middle of the texture, for parameters that may not vary.
 constexpr TexturePoint kMiddle{{0.5f, 0.5f}, {}, {}};
 
-/// Adapts the colour once and for all where no texture varies.
-void settle(MaterialColour& c, const TextureStore& textures,
-            const IlluminantAdaptation& adaptation) {
+/// Fixes a colour that no texture varies.
+void settle(MaterialColour& c, const TextureStore& textures) {
     if (c.texture >= 0 && !textures.is_constant(c.texture)) return;
     if (c.texture >= 0) c.fixed = c.scale * textures.eval(c.texture, kMiddle);
     c.texture = -1;
-    c.fixed = adaptation(c.fixed);
 }
 
 void warn_of_gap(TextureId gap_albedo, const char* type, const SourceLocation& where,
@@ -206,16 +211,26 @@ Vec2 ggx_alphas(float u_roughness, float v_roughness, bool remap) {
 MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& textures,
                              const IlluminantAdaptation& adaptation) {
     materials_.reserve(scene.materials.size());
-    bool any_varies = false;
+    bool any_varies = false, any_varies_below_coat = false;
     for (const MaterialDescription& description : scene.materials) {
         Material& material = materials_.emplace_back();
         material.description = description;
         material.colours = std::visit([](const auto& m) { return colours(m); }, description.value);
         for (MaterialColour* c : {&material.colours.reflectance, &material.colours.transmittance}) {
-            settle(*c, textures, adaptation);
+            settle(*c, textures);
             any_varies = any_varies || c->texture >= 0;
         }
-        const Values at_middle{textures, kMiddle, material.colours, adaptation_};
+        if (const auto* m = std::get_if<CoatedDiffuseMaterial>(&description.value);
+            m && !m->reflects_through_coat) {
+            if (material.colours.reflectance.texture >= 0)
+                any_varies_below_coat = true;
+            else
+                material.colours.fixed_powers =
+                    reflectance_powers(material.colours.reflectance.fixed, adaptation);
+        }
+        for (MaterialColour* c : {&material.colours.reflectance, &material.colours.transmittance})
+            c->fixed = adaptation(c->fixed);
+        const Values at_middle{textures, kMiddle, material.colours, adaptation_, powers_};
         if (const auto* m = std::get_if<CoatedDiffuseMaterial>(&description.value)) {
             const float thickness =
                 m->reflects_through_coat
@@ -238,6 +253,7 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
             description.value);
     }
     if (any_varies) adaptation_ = AdaptationTable(adaptation);
+    if (any_varies_below_coat) powers_ = ReflectancePowersTable(adaptation);
 }
 
 Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStore& textures, Vec3 w,
@@ -247,7 +263,7 @@ Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStor
     Bsdf found = material.constant;
     if (!material.is_constant) {
         const TexturePoint at{hit.uv, hit.position, footprint_on(hit, w, width), hit.ng};
-        const Values values{textures, at, material.colours, adaptation_};
+        const Values values{textures, at, material.colours, adaptation_, powers_};
         found = std::visit([&](const auto& m) { return make(m, values, material.coat); },
                            material.description.value);
     }

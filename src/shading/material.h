@@ -7,6 +7,7 @@
 #include "core/frame.h"
 #include "geometry/hit.h"
 #include "scene/illuminant_adaptation.h"
+#include "scene/reflectance_powers.h"
 #include "scene/scene_description.h"
 #include "shading/bsdf.h"
 #include "shading/coat_table.h"
@@ -30,6 +31,7 @@ struct MaterialColour {
 };
 struct MaterialColours {
     MaterialColour reflectance, transmittance;
+    ReflectancePowers fixed_powers{};  ///< of a reflectance below a coat that does not vary
 };
 
 /// The textures that modulate what a material's lobes reflect and transmit; -1 where nothing
@@ -76,7 +78,8 @@ class MaterialStore {
         Bsdf constant;  ///< where no texture varies
     };
     std::vector<Material> materials_;
-    AdaptationTable adaptation_;  ///< of textures that vary
+    AdaptationTable adaptation_;     ///< of textures that vary
+    ReflectancePowersTable powers_;  ///< of those below a coat
     CoatTables coats_;
     Warnings warnings_;
 };

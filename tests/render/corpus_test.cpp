@@ -67,7 +67,7 @@ TEST_P(Corpus, ShowsItsValue) {
             << "channel " << c;
 }
 
-constexpr Rgb kLit{0.5f * 2 * kInvPi};
+constexpr Rgb kLit{0.5f * 2 * kInvPi}, kCoatedRed{0.5530f, 0.0963f, 0.0454f};
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, Corpus,
@@ -112,6 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Known{"furnace-thindielectric", Where::everywhere, Rgb(1)},
                     Known{"furnace-interface", Where::everywhere, Rgb(1)},
                     Known{"material-thindielectric", Where::everywhere, Rgb(0.923077f)},
+                    Known{"material-coat-coloured", Where::everywhere, kCoatedRed, 0.02},
                     Known{"material-mix-texture", Where::everywhere, Rgb(0.5f)},
                     Known{"material-conductor-spectrum", Where::everywhere,
                           Rgb(0.97f, 0.96f, 0.92f), 0.02},

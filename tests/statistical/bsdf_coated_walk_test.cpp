@@ -154,7 +154,10 @@ TEST_P(CoatedWalk, DirectionalAlbedoAgrees) {
         for (float rho : {0.2f, 0.8f}) {
             const double expected = reference.albedo(rho);
             const double closed =
-                albedo(Bsdf(make_coated_diffuse(coat(), Rgb(rho), alpha, alpha, 5)), wo).g;
+                albedo(Bsdf(make_coated_diffuse(coat(), reflectance_powers(Rgb(rho)), alpha, alpha,
+                                                5)),
+                       wo)
+                    .g;
             std::printf(
                 "alpha %.3f, %2.0f degrees, rho %.1f: walk %.4f, closed form %.4f (%+.2f %%)\n",
                 static_cast<double>(alpha), degrees, static_cast<double>(rho), expected, closed,
@@ -170,7 +173,7 @@ TEST_P(CoatedWalk, ExitDirectionsAgree) {
     const float alpha = GetParam();
     const Vec3 wo = at_degrees(45);
     const WalkResult reference = walk({1.5, alpha, alpha, 0.01}, {wo.x, wo.y, wo.z}, 800000, 78);
-    const Bsdf coated = make_coated_diffuse(coat(), Rgb(0.8f), alpha, alpha, 5);
+    const Bsdf coated = make_coated_diffuse(coat(), reflectance_powers(Rgb(0.8f)), alpha, alpha, 5);
     for (int bin = 0; bin < kBins; ++bin) {
         constexpr int kSteps = 400;
         double sum = 0;
@@ -195,7 +198,8 @@ TEST(CoatedWalkAnisotropic, AlbedoAgreesWithinFivePercent) {
                 const Vec3 wo = at_degrees(degrees, phi);
                 const WalkResult reference =
                     walk({1.5, alpha_x, alpha_y, 0.01}, {wo.x, wo.y, wo.z}, 200000, 79);
-                const Bsdf coated = make_coated_diffuse(coat(), Rgb(0.5f), alpha_x, alpha_y, 5);
+                const Bsdf coated =
+                    make_coated_diffuse(coat(), reflectance_powers(Rgb(0.5f)), alpha_x, alpha_y, 5);
                 const double closed = albedo(coated, wo).g;
                 std::printf(
                     "alpha %.2f x %.2f, %2.0f degrees, azimuth %.2f: walk %.4f, closed form %.4f\n",

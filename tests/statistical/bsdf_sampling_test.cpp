@@ -43,18 +43,20 @@ std::vector<Case> all_cases() {
     std::vector<Model> models = {
         {"diffuse", DiffuseBsdf{tan}, 0, 1},
         {"transmitting", DiffuseTransmissionBsdf{{0.5f, 0.3f, 0.1f}, {0.1f, 0.2f, 0.2f}}, 0, 1},
-        {"varnish", make_coated_diffuse(coat, tan, 0, 0, 5), 0, 1},
+        {"varnish", make_coated_diffuse(coat, reflectance_powers(tan), 0, 0, 5), 0, 1},
         {"conductor_brushed", ConductorBsdf{eta, k, 0.1f, 0.4f}, 0.4f, 1},
         {"dielectric_brushed", DielectricBsdf{1.5f, 0.3f, 0.1f}, 0.3f, 1.5f},
         {"dielectric_thin", DielectricBsdf{1 / 1.33f, 0.2f, 0.2f}, 0.2f, 1 / 1.33f},
-        {"coated_brushed", make_coated_diffuse(coat, tan, 0.1f, 0.3f, 5), 0.3f, 1},
+        {"coated_brushed", make_coated_diffuse(coat, reflectance_powers(tan), 0.1f, 0.3f, 5), 0.3f,
+         1},
     };
     for (float alpha : {0.02f, 0.1f, 0.3f, 1.0f}) {
         const std::string suffix = std::to_string(static_cast<int>(alpha * 100));
         models.push_back({"conductor_" + suffix, ConductorBsdf{eta, k, alpha, alpha}, alpha, 1});
         models.push_back({"dielectric_" + suffix, DielectricBsdf{1.5f, alpha, alpha}, alpha, 1.5f});
-        models.push_back(
-            {"coated_" + suffix, make_coated_diffuse(coat, tan, alpha, alpha, 5), alpha, 1});
+        models.push_back({"coated_" + suffix,
+                          make_coated_diffuse(coat, reflectance_powers(tan), alpha, alpha, 5),
+                          alpha, 1});
     }
     std::vector<Case> cases;
     for (const Model& m : models)

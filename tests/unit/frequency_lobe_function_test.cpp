@@ -34,7 +34,8 @@ std::vector<Model> models() {
             {"brushed conductor", ConductorBsdf{Rgb(1.2f), Rgb(7.0f), 0.05f, 0.4f}},
             {"dielectric", DielectricBsdf{1.5f, 0.3f, 0.3f}},
             {"brushed dielectric", DielectricBsdf{1.3f, 0.1f, 0.5f}},
-            {"coat", make_coated_diffuse(coat_table(), Rgb(0.4f), 0.3f, 0.15f, 10)}};
+            {"coat",
+             make_coated_diffuse(coat_table(), reflectance_powers(Rgb(0.4f)), 0.3f, 0.15f, 10)}};
 }
 
 /// A vector of doubles, to difference in.
@@ -74,7 +75,7 @@ TEST(LobeFunction, IsProportionalToWhatThePathTracerEvaluates) {
 }
 
 TEST(LobeFunction, BaseBelowASmoothCoatIsSeenThroughItTwice) {
-    const Bsdf coat = make_coated_diffuse(coat_table(), Rgb(0.4f), 0, 0, 10);
+    const Bsdf coat = make_coated_diffuse(coat_table(), reflectance_powers(Rgb(0.4f)), 0, 0, 10);
     double first = 0;
     for (const float z : {0.9f, 0.5f, 0.3f}) {
         const Vec3 wo{std::sqrt(1 - z * z), 0, z}, wi{0.6f, 0, 0.8f};

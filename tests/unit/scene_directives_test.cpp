@@ -244,6 +244,9 @@ TEST(SceneDirectives, OptionsAreAcceptedOrRefused) {
     EXPECT_EQ(scene.warnings[0].text, "option \"seed\" is ignored");
     EXPECT_TRUE(
         contains(options_error("Option \"speed\" 7"), "test.pbrt:1:1: unknown option \"speed\""));
+    EXPECT_TRUE(contains(options_error("Option \"integer seed\" 7"),
+                         "test.pbrt:1:1: option \"integer seed\" has a type; expected its name "
+                         "alone, \"seed\""));
 }
 
 TEST(SceneDirectives, TheHashFollowsEveryByteRead) {

@@ -132,6 +132,27 @@ TEST_F(AdaptedMaterials, ConductorsAreWhereTheyAreGivenByReflectance) {
     EXPECT_EQ(adapted<ConductorBsdf>(metal).k, Rgb(3.9f, 2.5f, 2.1f));
 }
 
+TEST_F(AdaptedMaterials, CoatsTakeTheBaseAgainByItsSpectrum) {
+    CoatedDiffuseMaterial coated;
+    coated.reflectance = constant(wall_);
+    const auto fixed = adapted<CoatedDiffuseBsdf>(coated);
+    CoatTables tables;
+    const CoatTable& coat = tables.get(coated.eta, 0.01f);
+    const Rgb expected =
+        sum_of_bounces(reflectance_powers(wall_, light_),
+                       coat.internal_reflectance(fixed.table_row), (coated.max_depth + 1) / 2) *
+        (kInvPi / sqr(coated.eta));
+    EXPECT_EQ(fixed.base, expected);
+    // A lookup of everything at each hit, of the colour or of the roughness only.
+    CoatedDiffuseMaterial textured = coated, rough = coated;
+    textured.reflectance = varying(wall_);
+    rough.u_roughness = rough.v_roughness = varying(Rgb(0));
+    EXPECT_EQ(adapted<CoatedDiffuseBsdf>(rough).base, expected);
+    const Rgb looked_up = adapted<CoatedDiffuseBsdf>(textured).base;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(looked_up[c], expected[c], 2e-3);
+    EXPECT_NE(looked_up, expected);
+}
+
 TEST_F(AdaptedMaterials, DefaultsAreGreyAndStay) {
     EXPECT_EQ(adapted<DiffuseBsdf>(DiffuseMaterial{}).reflectance, Rgb(0.5f));
     const auto leaf = adapted<DiffuseTransmissionBsdf>(DiffuseTransmissionMaterial{});

@@ -111,7 +111,7 @@ TEST(BsdfLimits, RoughModelsApproachSmoothOnes) {
 
 TEST(BsdfLimits, CoatWithoutIndexIsTheBase) {
     const CoatTable nothing(1, 0);
-    const Bsdf coated = make_coated_diffuse(nothing, Rgb(0.6f), 0.2f, 0.2f, 5);
+    const Bsdf coated = make_coated_diffuse(nothing, reflectance_powers(Rgb(0.6f)), 0.2f, 0.2f, 5);
     const Bsdf bare = DiffuseBsdf{Rgb(0.6f)};
     for (float cos_i : {0.1f, 0.5f, 0.9f}) {
         const Vec3 wo = at_cos(0.7f), wi = at_cos(cos_i);
@@ -124,7 +124,7 @@ TEST(BsdfLimits, CoatWithoutIndexIsTheBase) {
 TEST(BsdfLimits, WhiteBaseUnderSmoothCoatKeepsAllEnergy) {
     for (float eta : {1.2f, 1.5f, 2.0f, 0.8f}) {
         const CoatTable table(eta, 0);
-        const Bsdf coated = make_coated_diffuse(table, Rgb(1), 0, 0, 200);
+        const Bsdf coated = make_coated_diffuse(table, reflectance_powers(Rgb(1)), 0, 0, 200);
         for (float cos_o : {1.0f, 0.6f, 0.2f, 0.05f, -0.5f})
             EXPECT_NEAR(albedo(coated, at_cos(cos_o)).g, 1, 1.5e-3f)
                 << "eta " << eta << " cos " << cos_o;
@@ -134,7 +134,8 @@ TEST(BsdfLimits, WhiteBaseUnderSmoothCoatKeepsAllEnergy) {
 TEST(BsdfLimits, CoatedAlbedoIsTheIntegralOfEval) {
     const CoatTable table(1.5f, 0.01f);
     for (float alpha : {0.1f, 0.3f, 0.8f}) {
-        const Bsdf coated = make_coated_diffuse(table, Rgb(0.6f), alpha, alpha, 5);
+        const Bsdf coated =
+            make_coated_diffuse(table, reflectance_powers(Rgb(0.6f)), alpha, alpha, 5);
         for (float cos_o : {0.99f, 0.6f, 0.2f}) {
             const Vec3 wo = at_cos(cos_o);
             constexpr int n = 500;

@@ -123,7 +123,8 @@ TEST(CoatedTotal, IsTheLayeredBodyUnderASmoothCoat) {
     const CoatTable table(1.5f, 0);
     const float r = 0.4f, inside = table.internal_reflectance(0);
     const Bsdf total = make_coated_total(table, Rgb(r), 0, 0);
-    const Bsdf layered = make_coated_diffuse(table, Rgb(r / (1 - inside + inside * r)), 0, 0, 200);
+    const Bsdf layered = make_coated_diffuse(
+        table, reflectance_powers(Rgb(r / (1 - inside + inside * r))), 0, 0, 200);
     const Vec3 wo = normalize(Vec3{0.3f, 0.2f, 0.8f}), wi = normalize(Vec3{-0.5f, 0.4f, 0.5f});
     EXPECT_NEAR(eval(total, wo, wi).g / eval(layered, wo, wi).g, 1, 0.005f);
 }
