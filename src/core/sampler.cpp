@@ -87,6 +87,33 @@ constexpr uint32_t reversed_sobol_1(uint32_t index) {
     return index ^ ((index >> 1) & 0x55555555u);
 }
 
+/// log2 of a tile's width.
+constexpr uint32_t kTileBits = 4;
+
+constexpr uint32_t reversed_morton_code(int x, int y) {
+    uint32_t code = 0;
+    for (uint32_t bit = 0; bit < kTileBits; ++bit)
+        code = code << 2 | ((static_cast<uint32_t>(x) >> bit) & 1u) << 1 |
+               ((static_cast<uint32_t>(y) >> bit) & 1u);
+    return code;
+}
+
+/// What each pixel adds to the index, by its reversed Morton code: a sum of one pattern for each
+/// bit of the code, lowest first. With them, samples 0 to 2^a - 1 of the 2^c pixels of an aligned
+/// block are nearly a net of 2^(a + c) points for all a and c; found by bench/pixel_shifts.cpp.
+using Patterns = std::array<uint32_t, 2 * kTileBits>;
+constexpr std::array<uint32_t, 1u << 2 * kTileBits> pixel_shifts(const Patterns& patterns) {
+    std::array<uint32_t, 1u << 2 * kTileBits> shifts{};
+    for (uint32_t code = 0; code < shifts.size(); ++code)
+        for (uint32_t bit = 0; bit < 2 * kTileBits; ++bit)
+            if ((code >> (2 * kTileBits - 1 - bit)) & 1u) shifts[code] ^= patterns[bit];
+    return shifts;
+}
+constexpr auto kPairShifts =
+    pixel_shifts({0x7efe, 0x5191, 0x583b, 0x5323, 0x03eb, 0x1d86, 0x535e, 0x65da});
+constexpr auto kCameraShifts =
+    pixel_shifts({0x1c57, 0x0ae9, 0x0124, 0x0cdf, 0x1f7d, 0x0d81, 0x01d8, 0x0dcb});
+
 /// Keys of the camera's numbers.
 constexpr uint64_t kCameraIndex = 0x63616d, kCameraScramble = 0x100;
 
@@ -98,20 +125,28 @@ constexpr float scrambled(uint32_t reversed, uint32_t seed) {
 }  // namespace
 
 Sampler::Sampler(uint64_t seed, int pixel_x, int pixel_y, uint32_t sample_index)
-    : key_(hash_combine(seed, static_cast<uint32_t>(pixel_x), static_cast<uint32_t>(pixel_y))),
-      reversed_index_(reverse_bits(sample_index)) {}
+    : key_(hash_combine(seed, static_cast<uint32_t>(pixel_x >> kTileBits),
+                        static_cast<uint32_t>(pixel_y >> kTileBits))),
+      reversed_index_(reverse_bits(sample_index)),
+      pixel_(reversed_morton_code(pixel_x, pixel_y)) {}
 
-uint32_t Sampler::shuffled_index(uint64_t key) const {
-    return reverse_bits(laine_karras(reversed_index_, static_cast<uint32_t>(key)));
+/// The place in the sequence. Each pixel takes the numbers of each key in an order of its own, so
+/// that no two keys go together throughout a tile; but the first 2^a samples of all pixels stay
+/// the first 2^a indices. Pixels change places with each other, block by block, likewise.
+uint32_t Sampler::index(uint64_t key, const PixelShifts& shifts) const {
+    const uint32_t order = static_cast<uint32_t>(key) + pixel_ * 0x9e3779b1u;
+    const uint32_t place = laine_karras(pixel_, static_cast<uint32_t>(key >> 32)) % shifts.size();
+    return reverse_bits(laine_karras(reversed_index_, order) ^ laine_karras(0, order)) ^
+           shifts[place];
 }
 
 Sampler::CameraSample Sampler::camera() {
     constexpr size_t kLanes = 8;  // five are used
-    const uint32_t index = shuffled_index(hash_combine(key_, kCameraIndex));
+    const uint32_t at = index(hash_combine(key_, kCameraIndex), kCameraShifts);
     std::array<uint32_t, kLanes> number{}, scramble{};
     for (size_t d = 0; d < 5; ++d) {
         scramble[d] = static_cast<uint32_t>(hash_combine(key_, kCameraScramble + d));
-        number[d] = reversed_sobol(index, d);
+        number[d] = reversed_sobol(at, d);
     }
     std::array<float, kLanes> x;
     for (size_t d = 0; d < kLanes; ++d) x[d] = scrambled(number[d], scramble[d]);
@@ -119,37 +154,37 @@ Sampler::CameraSample Sampler::camera() {
 }
 
 Vec2 Sampler::film() const {
-    const uint32_t index = shuffled_index(hash_combine(key_, kCameraIndex));
+    const uint32_t at = index(hash_combine(key_, kCameraIndex), kCameraShifts);
     const auto scramble = [this](uint64_t d) {
         return static_cast<uint32_t>(hash_combine(key_, kCameraScramble + d));
     };
-    return {scrambled(index, scramble(0)), scrambled(reversed_sobol_1(index), scramble(1))};
+    return {scrambled(at, scramble(0)), scrambled(reversed_sobol_1(at), scramble(1))};
 }
 
 Vec2 Sampler::next_2d() {
     return pair(pair_++);
 }
 
-Vec2 Sampler::pair(uint32_t at) const {
-    const uint64_t key = hash_combine(key_, kFirstPair + at);
-    const uint32_t index = shuffled_index(key);
+Vec2 Sampler::pair(uint32_t number) const {
+    const uint64_t key = hash_combine(key_, kFirstPair + number);
+    const uint32_t at = index(key, kPairShifts);
     const uint64_t scrambles = mix_bits(key);
-    return {scrambled(index, static_cast<uint32_t>(scrambles)),
-            scrambled(reversed_sobol_1(index), static_cast<uint32_t>(scrambles >> 32))};
+    return {scrambled(at, static_cast<uint32_t>(scrambles)),
+            scrambled(reversed_sobol_1(at), static_cast<uint32_t>(scrambles >> 32))};
 }
 
 std::array<Vec2, 4> Sampler::next_four_2d() {
-    std::array<uint32_t, 4> shuffle;
+    std::array<uint64_t, 4> keys;
     std::array<uint32_t, 8> number, scramble;  // all first coordinates, then all second ones
     for (size_t i = 0; i < 4; ++i) {
         const uint64_t key = hash_combine(key_, kFirstPair + pair_++);
         const uint64_t scrambles = mix_bits(key);
-        shuffle[i] = static_cast<uint32_t>(key);
+        keys[i] = key;
         scramble[i] = static_cast<uint32_t>(scrambles);
         scramble[i + 4] = static_cast<uint32_t>(scrambles >> 32);
     }
     for (size_t i = 0; i < 4; ++i) {
-        number[i] = shuffled_index(shuffle[i]);
+        number[i] = index(keys[i], kPairShifts);
         number[i + 4] = reversed_sobol_1(number[i]);
     }
     std::array<float, 8> x;

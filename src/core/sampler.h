@@ -15,6 +15,11 @@ namespace covtrace {
 ///
 /// Scrambling by hashing: Burley 2020, "Practical hash-based Owen scrambling" (JCGT 9(4)), with the
 /// hash of Laine and Karras 2011. Every prefix of the sample indices is a usable point set.
+///
+/// Pixels of a tile of 16x16 share their scrambles and shift the sequence by index bits of their
+/// own, so that the points of neighbours fill each other's gaps at any number of samples, and what
+/// a filter makes of several pixels has less noise than theirs would tell
+/// (docs/decisions/0079-neighbours-fill-each-others-gaps.md).
 class Sampler {
   public:
     Sampler(uint64_t seed, int pixel_x, int pixel_y, uint32_t sample_index);
@@ -28,7 +33,7 @@ class Sampler {
     /// The position on the film alone, at less than half the price.
     Vec2 film() const;
 
-    Vec2 pair(uint32_t index) const;  ///< of a fixed index, wherever the stream stands
+    Vec2 pair(uint32_t number) const;  ///< a fixed one, wherever the stream stands
     float next_1d();                  ///< the first number of a fresh pair
     Vec2 next_2d();                   ///< a fresh pair
     /// Four fresh pairs, the same as from next_2d, at less than the price of two.
@@ -38,10 +43,12 @@ class Sampler {
 
   private:
     static constexpr uint64_t kFirstPair = 0x1000;  ///< below, keys of the camera's dimensions
-    uint32_t shuffled_index(uint64_t key) const;
+    using PixelShifts = std::array<uint32_t, 256>;
+    uint32_t index(uint64_t key, const PixelShifts& shifts) const;
 
     uint64_t key_;
     uint32_t reversed_index_;
+    uint32_t pixel_;  ///< of the tile: bits of its Morton code, reversed
     uint32_t pair_ = 0;
 };
 

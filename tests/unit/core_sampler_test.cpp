@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -81,6 +82,87 @@ TEST(Sampler, MeanOverSeedsIsUniform) {
         sum += s.next_1d();
     }
     EXPECT_NEAR(sum / n, 0.5, 4 / std::sqrt(12.0 * n));
+}
+
+/// Over 100 tiles, the mean squared error of the mean of `f` over the first `samples` samples of
+/// blocks of `width` by `width` pixels, over what it would be if the pixels had nothing to do with
+/// each other: the error of single pixels over their number.
+template <typename F>
+double error_of_blocks(int width, uint32_t samples, double truth, F f) {
+    double blocks = 0, pixels = 0;
+    for (int tile = 0; tile < 100; ++tile)
+        for (int y = 0; y < 16; y += width)
+            for (int x = 0; x < 16; x += width) {
+                double block = 0;
+                for (int i = 0; i < width * width; ++i) {
+                    double pixel = 0;
+                    for (uint32_t k = 0; k < samples; ++k)
+                        pixel += f(Sampler(5, 16 * tile + x + i % width, y + i / width, k));
+                    const double error = pixel / samples - truth;
+                    pixels += error * error;
+                    block += error;
+                }
+                blocks += block * block;
+            }
+    return blocks / pixels;
+}
+
+// By chance a ratio of 1 becomes 1.14: of at least 1600 blocks, whose squared means vary by twice
+// themselves, 4 standard errors (false alarm 6e-5 each).
+constexpr double kByChance = 1.14;
+
+TEST(Sampler, NeighboursFillEachOthersGaps) {
+    const auto lens = [](Sampler s) {
+        const Vec2 u = s.camera().lens;
+        return u.x + u.y < 0.7f ? 1.0 : 0.0;
+    };
+    const auto time = [](Sampler s) { return s.camera().time < 0.3f ? 1.0 : 0.0; };
+    const auto later = [](Sampler s) {
+        const Vec2 u = s.pair(6);
+        return double(u.x) * u.y;
+    };
+    for (const uint32_t samples : {1u, 2u, 4u, 8u, 16u}) {
+        EXPECT_LT(error_of_blocks(4, samples, 0.245, lens), 0.6) << samples;
+        EXPECT_LT(error_of_blocks(4, samples, 0.3, time), 0.1) << samples;
+        EXPECT_LT(error_of_blocks(4, samples, 0.25, later), 0.1) << samples;
+        // No patterns are good at everything: these have their hole at 2x2 pixels of 4 samples.
+        EXPECT_LT(error_of_blocks(2, samples, 0.25, later), samples == 4 ? kByChance : 0.5)
+            << samples;
+    }
+}
+
+TEST(Sampler, NumbersOfDifferentKeysDoNotGoTogetherInATile) {
+    const auto both = [](Sampler s) {
+        return s.pair(2).x < 0.5f && s.pair(3).x < 0.5f && s.pair(4).y < 0.5f ? 1.0 : 0.0;
+    };
+    const auto with_lens = [](Sampler s) {
+        return s.camera().lens.x < 0.5f && s.pair(0).x < 0.5f && s.pair(1).y < 0.5f ? 1.0 : 0.0;
+    };
+    for (const uint32_t samples : {1u, 2u, 3u, 8u}) {
+        // Two samples lie on opposite sides in every pair: where one has all three the other has
+        // none, in a pixel and in its neighbours.
+        const double most = samples == 2 || samples == 3 ? 1.5 : kByChance;
+        EXPECT_LT(error_of_blocks(4, samples, 0.125, both), most) << samples;
+        EXPECT_LT(error_of_blocks(4, samples, 0.125, with_lens), most) << samples;
+    }
+}
+
+TEST(Sampler, EveryPixelOfATileIsUniform) {
+    // Means over seeds of each pixel's first number, within 4.7 standard errors (false alarm of all
+    // 1280 comparisons 3e-3).
+    constexpr int kSeeds = 2000;
+    for (int pixel = 0; pixel < 256; ++pixel) {
+        std::array<double, 5> sums{};
+        for (int seed = 0; seed < kSeeds; ++seed) {
+            Sampler s(uint64_t(seed), 32 + pixel % 16, 48 + pixel / 16, 0);
+            const auto c = s.camera();
+            const Vec2 u = s.pair(4);
+            const std::array<float, 5> numbers{c.film.x, c.lens.y, c.time, u.x, u.y};
+            for (size_t i = 0; i < 5; ++i) sums[i] += numbers[i];
+        }
+        for (const double sum : sums)
+            EXPECT_NEAR(sum / kSeeds, 0.5, 4.7 / std::sqrt(12.0 * kSeeds)) << pixel;
+    }
 }
 
 TEST(Sampler, PixelsSeedsAndPairsDiffer) {
