@@ -34,8 +34,8 @@ class Sampler {
     Vec2 film() const;
 
     Vec2 pair(uint32_t number) const;  ///< a fixed one, wherever the stream stands
-    float next_1d();                  ///< the first number of a fresh pair
-    Vec2 next_2d();                   ///< a fresh pair
+    float next_1d();                   ///< the first number of a fresh pair
+    Vec2 next_2d();                    ///< a fresh pair
     /// Four fresh pairs, the same as from next_2d, at less than the price of two.
     std::array<Vec2, 4> next_four_2d();
     /// Skips to a fixed dimension, so that later events see the same numbers whatever came before.
