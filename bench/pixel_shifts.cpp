@@ -8,6 +8,7 @@
 /// cut to those rows, are independent. In base 2 no patterns do that for all a, c, r1 at once
 /// (there are no (0, m, 4)-nets); those with the fewest dependent columns are searched one after
 /// the other at random, from several beginnings.
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -16,6 +17,10 @@
 #include <random>
 #include <span>
 #include <vector>
+
+#include "core/sobol.h"
+
+using covtrace::kSobolDirections;
 
 namespace {
 
@@ -27,39 +32,10 @@ constexpr std::array<double, kPatterns + 1> kBlockWeights{0, 2, 2.5, 2, 2, 1.5, 
 /// Of the worst r1 beside the mean over all.
 constexpr double kWorstWeight = 0.2;
 
-using Columns = std::array<std::array<uint32_t, 32>, 5>;  // of five Sobol dimensions
-
-/// Joe and Kuo 2008, as in core/sampler.cpp; the first dimension is the radical inverse.
-Columns sobol_columns() {
-    struct Polynomial {
-        uint32_t s, a;
-        std::array<uint32_t, 3> m;
-    };
-    constexpr std::array<Polynomial, 4> kPolynomials{
-        {{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}, {3, 2, {1, 1, 1}}}};
-    Columns columns{};
-    for (uint32_t i = 0; i < 32; ++i) columns[0][i] = 1u << (31 - i);
-    for (size_t d = 0; d < 4; ++d) {
-        const Polynomial& p = kPolynomials[d];
-        auto& v = columns[d + 1];
-        for (uint32_t i = 0; i < 32; ++i) {
-            if (i < p.s) {
-                v[i] = p.m[i] << (31 - i);
-                continue;
-            }
-            v[i] = v[i - p.s] ^ (v[i - p.s] >> p.s);
-            for (uint32_t k = 1; k < p.s; ++k)
-                if ((p.a >> (p.s - 1 - k)) & 1u) v[i] ^= v[i - k];
-        }
-    }
-    return columns;
-}
-
 uint32_t sobol(size_t dimension, uint32_t index) {
-    static const Columns columns = sobol_columns();
     uint32_t x = 0;
     for (size_t bit = 0; index != 0; ++bit, index >>= 1)
-        if (index & 1u) x ^= columns[dimension][bit];
+        if (index & 1u) x ^= kSobolDirections[dimension][bit];
     return x;
 }
 

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "core/hash.h"
+#include "core/sobol.h"
 
 namespace covtrace {
 
@@ -28,32 +29,6 @@ constexpr uint32_t laine_karras(uint32_t v, uint32_t seed) {
     return v;
 }
 
-/// Generator matrices of Sobol dimensions 2 to 5 (Joe and Kuo 2008, new-joe-kuo-6.21201): primitive
-/// polynomial degree s, coefficients a, initial direction numbers m. Dimension 1 is bit reversal.
-struct Polynomial {
-    uint32_t s, a;
-    std::array<uint32_t, 3> m;
-};
-constexpr std::array<Polynomial, 4> kPolynomials{
-    {{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}, {3, 2, {1, 1, 1}}}};
-
-constexpr std::array<uint32_t, 32> direction_numbers(const Polynomial& p) {
-    std::array<uint32_t, 32> v{};
-    for (uint32_t i = 0; i < 32; ++i) {
-        if (i < p.s) {
-            v[i] = p.m[i] << (31 - i);
-            continue;
-        }
-        v[i] = v[i - p.s] ^ (v[i - p.s] >> p.s);
-        for (uint32_t k = 1; k < p.s; ++k)
-            if ((p.a >> (p.s - 1 - k)) & 1u) v[i] ^= v[i - k];
-    }
-    return v;
-}
-constexpr std::array<std::array<uint32_t, 32>, 4> kDirections{
-    direction_numbers(kPolynomials[0]), direction_numbers(kPolynomials[1]),
-    direction_numbers(kPolynomials[2]), direction_numbers(kPolynomials[3])};
-
 /// The products of each matrix with every byte of the index, bits reversed: 4 look-ups a number.
 constexpr auto kByteTables = [] {
     std::array<std::array<std::array<uint32_t, 256>, 4>, 4> t{};
@@ -62,7 +37,7 @@ constexpr auto kByteTables = [] {
             for (uint32_t value = 0; value < 256; ++value) {
                 uint32_t x = 0;
                 for (uint32_t bit = 0; bit < 8; ++bit)
-                    if ((value >> bit) & 1u) x ^= kDirections[d][byte * 8 + bit];
+                    if ((value >> bit) & 1u) x ^= kSobolDirections[d + 1][byte * 8 + bit];
                 t[d][byte][value] = reverse_bits(x);
             }
     return t;
