@@ -73,13 +73,10 @@ ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> ca
                              const ColorPlanes& brightness, const ErrorFactors& factors) {
     const int w = image[0].width, h = image[0].height;
     const Plane bright = luminance(brightness);
-    const std::optional<Plane> by_both = known_by_both(halves);
-    // Where no pixel is known to both, no half has chosen by the other one's noise.
-    const float of_few =
-        by_both ? factors.noise_of_few / std::max(1.0f, samples_per_pixel(halves)) : 0;
-    const float noise = factors.noise + of_few;
+    const float noise =
+        factors.noise + factors.noise_of_few / std::max(1.0f, samples_per_pixel(halves));
     // Holes are filled, and the halves still differ.
-    const Plane known = by_both.value_or(Plane(w, h, 1));
+    const Plane known = known_by_both(halves).value_or(Plane(w, h, 1));
     ErrorEstimate error{Plane(w, h), Plane(w, h)};
     ErrorEstimate own = error;  // not averaged
     parallel_for(h, [&](int64_t row) {

@@ -10,10 +10,10 @@ namespace covtrace {
 
 /// What the terms of the estimate count. The defaults fit the true errors of a set of scenes best:
 /// `bench/error_fit` makes them, `bench/error_calibration` measures how well they do
-/// (docs/decisions/0071).
+/// (docs/decisions/0080).
 struct ErrorFactors {
-    float noise = 1.35f, noise_of_few = 4.4f;
-    float spread = 1.15f, returned = 0.45f, cut = 0.0055f;
+    float noise = 1.45f, noise_of_few = 1;
+    float spread = 1.1f, returned = 0.7f, cut = 0.015f;
 };
 
 /// Estimated squared errors over I^2 + 0.01, I the brightness.

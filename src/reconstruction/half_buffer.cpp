@@ -9,6 +9,11 @@ HalfBuffer::HalfBuffer(int w, int h) : count(w, h) {
     for (auto* planes : {&feature, &feature_variance}) planes->fill(Plane(w, h));
 }
 
+bool is_empty(const HalfBuffer& half) {
+    return std::none_of(half.count.values.begin(), half.count.values.end(),
+                        [](float count) { return count > 0; });
+}
+
 void fill_holes(HalfBuffer& half) {
     const int w = half.count.width, h = half.count.height;
     Plane filled(w, h);  // 1 where a pixel has values

@@ -25,6 +25,9 @@ struct HalfBuffer {
 
 using Halves = std::array<HalfBuffer, 2>;
 
+/// No pixel has samples.
+bool is_empty(const HalfBuffer& half);
+
 /// Gives every pixel without samples the mean of what is around it, colours and features alike; its
 /// count stays 0.
 void fill_holes(HalfBuffer& half);

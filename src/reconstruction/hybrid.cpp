@@ -24,11 +24,6 @@ ColorPlanes mean_of(const Halves& halves) {
     return mean;
 }
 
-bool is_empty(const HalfBuffer& half) {
-    return std::none_of(half.count.values.begin(), half.count.values.end(),
-                        [](float count) { return count > 0; });
-}
-
 /// What a render that was interrupted at its start leaves: a half without samples is not black.
 void replace_empty_half(Halves& halves) {
     for (size_t k = 0; k < 2; ++k)

@@ -137,9 +137,10 @@ Selection mixed(std::span<const Candidate> candidates, int w, int h, bool mix, c
 ColorPlanes error_weights(const Halves& halves, const ColorPlanes& brightness) {
     ColorPlanes g;
     g.fill(Plane(brightness[0].width, brightness[0].height));
+    if (is_empty(halves[0]) || is_empty(halves[1])) return g;
     for (size_t k = 0; k < 3; ++k)
         for (size_t i = 0; i < g[k].size(); ++i)
-            if (halves[0].count[i] > 0 && halves[1].count[i] > 0)
+            if (halves[0].count[i] > 0 || halves[1].count[i] > 0)
                 g[k][i] = 1 / (sqr(std::max(0.0f, brightness[k][i])) + kDarkSquared);
     return g;
 }

@@ -40,9 +40,33 @@ TEST(Selector, MixesOppositeBiases) {
     EXPECT_LT(mean_squared_error(s.half[0], one), 0.004);
 }
 
+/// Halves that have seen every second pixel each, like the squares of a checkerboard: one sample
+/// per pixel.
+Halves checkerboard(const Halves& all) {
+    Halves halves = all;
+    for (size_t k = 0; k < 2; ++k) {
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x) halves[k].count(x, y) = (x + y) % 2 == int(k) ? 1 : 0;
+        fill_holes(halves[k]);
+    }
+    return halves;
+}
+
+TEST(Selector, JudgesHalvesThatHaveNoPixelInCommon) {
+    const auto one = [](int, int) { return 1.0f; };
+    const Halves halves = checkerboard(noisy_halves(kSize, kSize, one, 0.5f, 3));
+    const std::vector<Candidate> candidates{{halves[0].color, halves[1].color},
+                                            {constant(1), constant(1)},
+                                            {constant(1.4f), constant(1.4f)}};
+    const Selection s = select(halves, candidates, weights_at_one(halves), 3);
+    double truth = 0;
+    for (float v : s.share[1].values) truth += double(v);
+    EXPECT_GT(truth / (kSize * kSize), 0.8);
+}
+
 TEST(ErrorWeights, CountEachChannelByItsOwnBrightness) {
     Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.1f, 1);
-    halves[1].count[5] = 0;
+    for (HalfBuffer& half : halves) half.count[5] = 0;
     const ColorPlanes g = error_weights(
         halves, {Plane(kSize, kSize, 2), Plane(kSize, kSize), Plane(kSize, kSize, -1)});
     EXPECT_FLOAT_EQ(g[0][0], 1 / 4.01f);
