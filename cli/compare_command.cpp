@@ -10,6 +10,7 @@
 #include "cli/options.h"
 #include "cli/pixel_description.h"
 #include "cli/report_file.h"
+#include "cli/same_file.h"
 #include "cli/values.h"
 #include "image/compare.h"
 #include "image/layer_names.h"
@@ -70,11 +71,12 @@ void write_comparison(const CompareArguments& a, const Image& image, const Image
 }
 
 int compare_images(const CompareArguments& a) {
+    require_distinct({{"--report", a.report}}, {a.image, a.reference});
     std::optional<PixelBounds> crop;
     if (!a.crop.empty()) crop = parse_crop("--crop", a.crop);
     const auto read = [](const std::string& file) {
         Image i = read_image(file);
-        if (!i.find("R")) restore_layer_names(i);
+        restore_layer_names(i);
         return i;
     };
     Image image = read(a.image);
@@ -126,6 +128,7 @@ void add_compare(CLI::App& app, Invocation& invocation) {
          "first blur the image: a Gaussian of N pixels")
         ->option_text("N");
     c->add_option("--report", a->report, "also a page for any browser with both images")
+        ->check(not_empty())
         ->option_text("FILE.html");
     c->add_flag("--json", a->json, "one JSON object on standard output");
     c->callback([a, &invocation] { invocation.action = [a] { return compare_images(*a); }; });

@@ -1,5 +1,7 @@
 #include "cli/film_options.h"
 
+#include "cli/options.h"
+#include "cli/same_file.h"
 #include "cli/values.h"
 #include "core/error.h"
 
@@ -7,8 +9,10 @@ namespace covtrace::cli {
 
 void add_film_options(CLI::App* c, FilmArguments& a) {
     c->add_option("--film", a.film, "keep the final film, for merge and --resume")
+        ->check(not_empty())
         ->option_text("FILE");
     c->add_option("--checkpoint", a.checkpoint, "keep the film now and then, and at the end")
+        ->check(not_empty())
         ->option_text("FILE");
     c->add_option_function<std::string>(
          "--every", [&a](const std::string& text) { a.every = parse_duration("--every", text); },
@@ -24,7 +28,7 @@ void add_film_options(CLI::App* c, FilmArguments& a) {
 void check(const FilmArguments& a) {
     if (a.shard && a.film.empty())
         throw Error(ErrorKind::usage, "--shard: expected --film FILE for the shard's pixels");
-    if (a.shard && a.film == a.checkpoint)
+    if (a.shard && is_same_file(a.film, a.checkpoint))
         throw Error(
             ErrorKind::usage,
             "--shard: --film and --checkpoint must differ: the checkpoint is the merged film "

@@ -10,6 +10,7 @@
 #include "cli/options.h"
 #include "cli/pixel_description.h"
 #include "cli/report_file.h"
+#include "cli/same_file.h"
 #include "cli/values.h"
 #include "image/layer_names.h"
 
@@ -42,6 +43,7 @@ std::vector<viewer::Fact> facts_of(const ImageSummary& summary) {
 }
 
 int inspect_image(const InspectArguments& a) {
+    require_distinct({{"--report", a.report}}, {a.image});
     std::optional<std::array<int, 2>> pixel;
     if (!a.pixel.empty()) pixel = parse_pixel("--pixel", a.pixel);
     Image image = read_image(a.image);
@@ -81,11 +83,13 @@ void add_inspect(CLI::App& app, Invocation& invocation) {
         ->required()
         ->option_text(" ");
     c->add_option("--pixel", a->pixel, "all about one pixel: covariance, filter, samples")
+        ->check(not_empty())
         ->option_text("x,y");
     c->add_option("--crop", a->crop, "only these pixels, end exclusive")
         ->check(not_empty())
         ->option_text("x0,y0,x1,y1");
     c->add_option("--report", a->report, "a page for any browser instead of text")
+        ->check(not_empty())
         ->option_text("FILE.html");
     c->add_flag("--json", a->json, "one JSON object on standard output");
     c->callback([a, &invocation] { invocation.action = [a] { return inspect_image(*a); }; });

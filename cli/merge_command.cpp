@@ -6,6 +6,8 @@
 #include "cli/commands.h"
 #include "cli/layer_selection.h"
 #include "cli/message.h"
+#include "cli/options.h"
+#include "cli/same_file.h"
 #include "core/parallel.h"
 #include "image/image.h"
 #include "render/develop.h"
@@ -27,6 +29,9 @@ int merge_films(const MergeArguments& a) {
     const ThreadLimit threads(0);
     if (a.output.empty() && a.film.empty() && a.png.empty())
         throw Error(ErrorKind::usage, "merge: expected --output OUT.exr or --film FILE");
+    // The joined film may take the place of one of its parts.
+    require_distinct({{"--output", a.output}, {"--png", a.png}}, {a.films.begin(), a.films.end()});
+    require_distinct({{"--output", a.output}, {"--film", a.film}, {"--png", a.png}}, {});
     FilmMerge merge;
     for (const std::string& file : a.films) merge.add(file, read_film(file));
     const RenderState state = std::move(merge).result();
@@ -52,9 +57,13 @@ void add_merge(CLI::App& app, Invocation& invocation) {
     auto a = std::make_shared<MergeArguments>();
     CLI::App* c = app.add_subcommand("merge", "Join the films of shards, and make their image");
     c->add_option("FILM", a->films, "the films, in any order")->required()->option_text(" ");
-    c->add_option("-o,--output", a->output, "the image")->option_text("FILE");
-    c->add_option("--film", a->film, "the joined film, to go on from")->option_text("FILE");
-    c->add_option("--png", a->png, "also an 8-bit sRGB picture, cut at white")->option_text("FILE");
+    c->add_option("-o,--output", a->output, "the image")->check(not_empty())->option_text("FILE");
+    c->add_option("--film", a->film, "the joined film, to go on from")
+        ->check(not_empty())
+        ->option_text("FILE");
+    c->add_option("--png", a->png, "also an 8-bit sRGB picture, cut at white")
+        ->check(not_empty())
+        ->option_text("FILE");
     add_layers(c, "--layers", a->layers, "all, or name,name…: layers beside the image");
     c->add_flag("--quiet", a->quiet, "errors only");
     c->callback([a, &invocation] { invocation.action = [a] { return merge_films(*a); }; });

@@ -127,11 +127,12 @@ void ProgressLine::clear() {
     open_ = false;
 }
 
-void ProgressLine::done(double samples_per_pixel, double elapsed) {
+void ProgressLine::done(double samples_per_pixel, double elapsed, double error) {
     if (style_ == ProgressStyle::percent) say("100%\n");
     if (style_ == ProgressStyle::json) {
         Progress p{"done", 1, samples_per_pixel, elapsed};
         p.remaining = 0;
+        p.error = error;
         report(p);
     }
 }

@@ -33,8 +33,8 @@ class ProgressLine {
     double interval() const;
     /// Removes the bar, if there is one, so that messages can be written.
     void clear();
-    /// All files are there: the only 100 %.
-    void done(double samples_per_pixel, double elapsed);
+    /// All files are there: the only 100 %. `error`: as told last.
+    void done(double samples_per_pixel, double elapsed, double error);
 
   private:
     void report(const Progress& p);

@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/failure.h"
@@ -19,6 +21,7 @@
 #include "cli/mpi_module.h"
 #include "cli/render_options.h"
 #include "cli/render_statistics.h"
+#include "cli/same_file.h"
 #include "cli/sample_description.h"
 #include "core/parallel.h"
 #include "image/image.h"
@@ -40,6 +43,23 @@ fs::path output_path(const RenderArguments& a, const SceneDescription& scene) {
     // Every output is an EXR: a film that asks for another format keeps its name.
     if (name.extension() != ".exr") name.replace_extension(".exr");
     return name;
+}
+
+/// The scene and the images that it shows: what an output with a name of the scene's own may be.
+std::vector<fs::path> inputs_of(const fs::path& scene, const SceneDescription& description) {
+    std::vector<fs::path> inputs{scene};
+    for (const TextureDescription& texture : description.textures)
+        if (const auto* image = std::get_if<ImageTexture>(&texture.value); image && !image->content)
+            inputs.push_back(image->file);
+    for (const LightDescription& light : description.lights) {
+        if (const auto* sky = std::get_if<InfiniteLight>(&light.value); sky && sky->image)
+            inputs.push_back(*sky->image);
+        if (const auto* lamp = std::get_if<GoniometricLight>(&light.value); lamp && lamp->image)
+            inputs.push_back(*lamp->image);
+        if (const auto* slide = std::get_if<ProjectionLight>(&light.value))
+            inputs.push_back(slide->image);
+    }
+    return inputs;
 }
 
 /// Before hours of rendering, not after them.
@@ -141,12 +161,17 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     apply(a.overrides, description);
     const bool is_shard = a.film.shard.has_value();
     const fs::path output = is_shard ? fs::path() : output_path(a, description);
+    std::vector<NamedOutput> outputs{
+        {"--output", output}, {"--png", a.png}, {"--stats", a.stats}, {"--film", a.film.film}};
+    require_distinct(outputs, inputs_of(a.scene, description));
+    // The final film may be that of the checkpoint.
+    outputs.back() = {"--checkpoint", a.film.checkpoint};
+    require_distinct(outputs, {a.scene});
     for (const fs::path& file : {output, fs::path(a.png), fs::path(a.stats), fs::path(a.film.film),
                                  is_shard ? fs::path() : fs::path(a.film.checkpoint)})
         if (!file.empty()) require_writable(file);
-    if (a.film.resume)
-        for (const fs::path& file : {output, fs::path(a.png), fs::path(a.stats)})
-            if (!file.empty()) remove_leftovers(file);
+    for (const fs::path& file : {output, fs::path(a.png), fs::path(a.stats)})
+        if (!file.empty()) remove_leftovers(file);
     FilmFiles films(a.film, [&progress] { progress.clear(); });
     FilmKeeping keeping = films.keeping(is_first);
     keeping.ranks = ranks;
@@ -190,7 +215,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     if (!a.stats.empty())
         write_text(statistics_json(scene, result, monitor).dump(2) + "\n", a.stats);
     if (result.complete || (is_shard && !monitor.cancelled()))
-        progress.done(result.statistics.samples_per_pixel, monitor.elapsed());
+        progress.done(result.statistics.samples_per_pixel, monitor.elapsed(), monitor.error());
     warn_of_rejected(result.statistics);
     if (!a.quiet)
         say("{}: {:.4g} samples per pixel in {:.1f} s\n", is_shard ? a.film.film : output.string(),

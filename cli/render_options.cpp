@@ -11,6 +11,7 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
         ->required()
         ->option_text(" ");
     c->add_option("-o,--output", a.output, "the image (default: the film's name or SCENE.exr)")
+        ->check(not_empty())
         ->option_text("FILE");
     add_choice<Method>(c, "--method", a.options.method,
                        {{"uniform", Method::uniform},
@@ -77,7 +78,9 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
         ->check(CLI::ExistingDirectory.description(""))
         ->allow_extra_args(false)
         ->option_text("DIR");
-    c->add_option("--png", a.png, "also an 8-bit sRGB picture, cut at white")->option_text("FILE");
+    c->add_option("--png", a.png, "also an 8-bit sRGB picture, cut at white")
+        ->check(not_empty())
+        ->option_text("FILE");
     add_layers(c, "--layers", a.layers, "all, or name,name…: layers beside the image");
     add_choice<LayerNames>(c, "--layer-names", a.layer_names,
                            {{"default", LayerNames::standard},
@@ -85,6 +88,7 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
                             {"blender", LayerNames::blender}},
                            "whose names the layers get in the EXR");
     c->add_option("--tev", a.tev, "show the image in the viewer tev while it renders")
+        ->check(not_empty())
         ->option_text("HOST:PORT");
     add_layers(c, "--tev-layers", a.tev_layers, "layers that tev shows, too (default: none)");
     add_choice<ProgressStyle>(c, "--progress", a.progress,
@@ -112,6 +116,7 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
          "trace this one sample and tell its path")
         ->option_text("x,y,sample");
     c->add_option("--stats", a.stats, "counters, phase times and memory as JSON")
+        ->check(not_empty())
         ->option_text("FILE");
     c->add_flag("--reproducible", a.reproducible, "write no command, seconds and date");
     c->add_flag("--quiet", a.quiet, "errors only");

@@ -79,6 +79,15 @@ void fill_hit(const SurfacePoint& point, SurfaceHit& hit) {
     hit.position_error = static_cast<float>(point.error + rounding);
 }
 
+/// Whether a surface holds a point for all that floats can tell: the distance of the point to the
+/// plane of the hit is within the roundings of both. The point's own count four times: it was
+/// written down with so many digits and has gone through the camera's matrix.
+bool lies_in(Vec3 point, const SurfaceHit& hit) {
+    const Vec3d ng(hit.ng), origin(point);
+    const double rounding = double(hit.position_error) + 4 * kHalfUlp * dot(abs(ng), abs(origin));
+    return std::abs(dot(ng, origin - Vec3d(hit.position))) <= rounding;
+}
+
 }  // namespace
 
 Geometry::Geometry(const SceneDescription& scene, const std::string& isa)
@@ -91,6 +100,22 @@ void Geometry::set_alpha(AlphaLookup lookup) {
 
 bool Geometry::intersect(const Ray& ray, SurfaceHit& hit) const {
     return impl_->nearest_opaque(ray, kEveryMask, hit);
+}
+
+bool Geometry::intersect_seen(Ray ray, SurfaceHit& hit) const {
+    float passed = 0;
+    for (int layer = 0; layer < kMostLayers; ++layer) {
+        if (!intersect(ray, hit)) return false;
+        if (!lies_in(ray.origin, hit)) {
+            hit.t += passed;
+            return true;
+        }
+        passed += hit.t;
+        ray.t_max -= hit.t;
+        ray.origin = offset_origin(hit, ray.direction);
+        if (!(ray.t_max > 0)) return false;
+    }
+    return false;
 }
 
 bool Geometry::Impl::nearest_opaque(Ray ray, unsigned mask, SurfaceHit& hit) const {

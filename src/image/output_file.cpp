@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <system_error>
 #include <utility>
 
@@ -32,9 +33,32 @@ std::string host_name() {
     return host;
 }
 
+/// A device, a pipe, a socket.
+bool is_special(const std::filesystem::path& file) {
+    struct stat status {};
+    return ::stat(file.c_str(), &status) == 0 && !S_ISREG(status.st_mode) &&
+           !S_ISDIR(status.st_mode);
+}
+
+/// What /dev/stdout, /dev/stderr and /dev/fd/N name; -1 for other files. A shell that sends
+/// standard output to a file goes on writing there: that file is no name to be replaced.
+int open_descriptor(const std::filesystem::path& file) {
+    std::filesystem::path name = file;
+    std::error_code error;
+    if (name == "/dev/stdout" || name == "/dev/stderr")
+        name = std::filesystem::read_symlink(name, error);
+    const std::string number = name.filename().string();
+    if (error || number.empty() || number.find_first_not_of("0123456789") != std::string::npos ||
+        !std::filesystem::equivalent(directory_of(name), "/proc/self/fd", error))
+        return -1;
+    return int(std::strtol(number.c_str(), nullptr, 10));
+}
+
 }  // namespace
 
 std::filesystem::path OutputFile::resolved(const std::filesystem::path& target) {
+    // What is no file of its own keeps its name: links of /proc lead nowhere that has one.
+    if (open_descriptor(target) >= 0 || is_special(target)) return target;
     // Link by link: a link to a file that is not there yet, or no longer, is one all the same.
     constexpr int kMostLinks = 40;  // as the system allows
     std::filesystem::path file = target;
@@ -67,13 +91,15 @@ OutputFile::OutputFile(std::filesystem::path target)
     if (exists && S_ISDIR(status.st_mode)) fail(EISDIR);
     std::filesystem::path opened = final_;
     int flags = O_WRONLY | O_CLOEXEC;
-    if (!exists || S_ISREG(status.st_mode)) {
+    const int open_already = open_descriptor(final_);
+    if (open_already < 0 && (!exists || S_ISREG(status.st_mode))) {
         temporary_ = final_;
         temporary_ += part_suffix();
         opened = temporary_;
         flags |= O_CREAT | O_TRUNC;
     }
-    descriptor_ = ::open(opened.c_str(), flags, 0666);
+    descriptor_ = open_already >= 0 ? ::fcntl(open_already, F_DUPFD_CLOEXEC, 0)
+                                    : ::open(opened.c_str(), flags, 0666);
     if (descriptor_ < 0) {
         const int error_number = errno;
         temporary_.clear();
@@ -96,6 +122,12 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(const void* bytes, size_t count) {
+    if (is_stream()) {
+        buffer_.resize(std::max(buffer_.size(), size_t(position_) + count));
+        std::memcpy(buffer_.data() + position_, bytes, count);
+        position_ += count;
+        return;
+    }
     buffer_.append(static_cast<const char*>(bytes), count);
     position_ += count;
     if (buffer_.size() >= kBufferSize) flush();
@@ -103,6 +135,10 @@ void OutputFile::write(const void* bytes, size_t count) {
 
 void OutputFile::seek(uint64_t position) {
     if (position == position_) return;
+    if (is_stream()) {
+        position_ = position;
+        return;
+    }
     flush();
     if (::lseek(descriptor_, off_t(position), SEEK_SET) < 0) fail(errno);
     position_ = position;

@@ -10,7 +10,8 @@ namespace covtrace {
 
 /// Until commit() returns, an older file of the target's name stays as it was; without commit() the
 /// destructor removes what was written. A symbolic link is followed, so that it still is one
-/// afterwards. A target that exists and is no regular file (/dev/null, a pipe) is written directly.
+/// afterwards. A target that exists and is no regular file (/dev/null, a pipe) and what /dev/stdout
+/// or /dev/fd/N is open on are streams: they get all of it in commit(), after what is there.
 ///
 /// All functions throw Error(io) that names the target and the reason of the system.
 class OutputFile {
@@ -43,6 +44,8 @@ class OutputFile {
   private:
     [[noreturn]] void fail(int error_number);
     void flush();
+    /// Streams can't be sought in: `buffer_` holds all of them.
+    bool is_stream() const { return temporary_.empty(); }
     void keep_older(const std::filesystem::path& earlier);
 
     std::filesystem::path target_;     ///< as the caller named it

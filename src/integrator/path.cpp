@@ -34,7 +34,9 @@ bool PathTracer::step() {
     if (draws_ahead_)
         light_draw_ = scene_.lights.begin_draw(
             sampler_.pair(static_cast<uint32_t>(depth_ + 1) * kPairsPerBounce + 1));
-    const bool found = scene_.geometry.intersect(ray_, hit);
+    const bool found = depth_ == 0 && passed_interfaces_ == 0
+                           ? scene_.geometry.intersect_seen(ray_, hit)
+                           : scene_.geometry.intersect(ray_, hit);
     if (medium_ >= 0) {
         const float length = found ? hit.t : scene_.unbounded_distance;
         const MediumEvent event = cross_medium(length);

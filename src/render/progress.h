@@ -46,6 +46,7 @@ class Monitor {
     void update(std::string_view phase, double fraction, double samples_per_pixel);
     /// What the following reports say of the error.
     void set_error(double error) { error_ = error; }
+    double error() const { return error_; }
 
     /// To be set before the render: called between rounds, by one thread, with the image so far. It
     /// must not take long.

@@ -291,8 +291,7 @@ void build_view(ViewEntities& view, BuildContext& context) {
     at(view.integrator), build_integrator(view.integrator, context);
     at(view.accelerator);
     if (const std::string& type = view.accelerator.type; type != "bvh" && type != "kdtree")
-        context.log.add(view.accelerator.where,
-                        "accelerator " + in_quotes(type) + " is not known; ignored");
+        throw unknown_type_error(view.accelerator.where, "accelerator", type, {"bvh", "kdtree"});
 }
 
 }  // namespace covtrace

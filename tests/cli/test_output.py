@@ -53,6 +53,33 @@ class Names(CliTest):
         self.assertEqual(names, ["out.exr", "out.png", "scene.pbrt", "stats.json"])
 
 
+class TakenNames(CliTest):
+    """What one command reads or writes under two names would be lost."""
+
+    def test_the_scene(self):
+        for option in ("-o", "--png", "--stats", "--film", "--checkpoint"):
+            with self.subTest(option=option):
+                result = self.render(TINY, *LONG, option, "./scene.pbrt", output=None, timeout=10)
+                self.assert_fails(result, USAGE, "scene.pbrt")
+                self.assertEqual((self.folder / "scene.pbrt").read_text(), TINY)
+
+    def test_an_image_that_the_scene_shows(self):
+        self.rendered("--resolution", "8x8", output="film.exr")
+        before = (self.folder / "film.exr").read_bytes()
+        sky = TINY.replace("WorldBegin", 'WorldBegin LightSource "infinite" "string filename" "film.exr"', 1)
+        self.assertNotEqual(sky, TINY)
+        self.assert_fails(self.render(sky, output=None), USAGE, "film.exr")
+        self.assertEqual((self.folder / "film.exr").read_bytes(), before)
+
+    def test_two_outputs(self):
+        for option in ("--png", "--stats", "--film", "--checkpoint"):
+            with self.subTest(option=option):
+                result = self.render(TINY, *LONG, option, "out.exr", timeout=10)
+                self.assert_fails(result, USAGE, "out.exr")
+        self.assertEqual(self.render(TINY, "--film", "a.film", "--checkpoint", "a.film").code, DONE)
+        self.assertEqual(self.render(TINY, "--stats", "/dev/null", output="/dev/null").code, DONE)
+
+
 class CannotBeWritten(CliTest):
     """Found before the render, since LONG would not end."""
 
@@ -69,6 +96,31 @@ class CannotBeWritten(CliTest):
             self.rendered("--stats", "stats")
             self.assertEqual(reader.wait(timeout=30), 0)
         self.assertIn("seconds_total", json.loads((self.folder / "read").read_text()))
+
+    def test_pipes_get_image_and_statistics(self):
+        self.write("scene.pbrt", TINY)
+        for options, name in (("-o", "image.exr"), ("--stats", "stats.json")):
+            command = [PROGRAM, "render", "scene.pbrt", "--quiet", "--spp", "1", "-o", "/dev/null"]
+            if options == "-o":
+                command = command[:-2]
+            with open(self.folder / name, "wb") as file:
+                renderer = subprocess.Popen([*command, options, "/dev/stdout"], cwd=self.folder,
+                                            stdout=subprocess.PIPE)
+                file.write(renderer.communicate(timeout=60)[0])
+            self.assertEqual(renderer.returncode, DONE)
+        exr.read(self.folder / "image.exr")
+        self.assertIn("seconds_total", json.loads((self.folder / "stats.json").read_text()))
+
+    def test_a_log_that_standard_output_goes_to_stays(self):
+        self.write("scene.pbrt", TINY)
+        with open(self.folder / "log", "w", encoding="utf-8") as log:
+            log.write("before\n")
+            log.flush()
+            subprocess.run([PROGRAM, "render", "scene.pbrt", "--quiet", "--spp", "1", "--stats", "/dev/stdout"],
+                           cwd=self.folder, stdout=log, check=True, timeout=60)
+            log.write("after\n")
+        lines = (self.folder / "log").read_text().splitlines()
+        self.assertEqual((lines[0], lines[1], lines[-1]), ("before", "{", "after"))
 
     def test_folder_in_place_of_the_file(self):
         (self.folder / "taken").mkdir()

@@ -55,6 +55,33 @@ TEST(GeometryHits, TrianglePositionUvAndTangents) {
     EXPECT_TRUE(near_vec(hit.dpdv, {0, 1.25f, 0}, 1e-5f));
 }
 
+TEST(GeometryHits, CamerasDoNotSeeThePlaneThatTheyStandOn) {
+    // Two slopes one behind the other; the first holds the eye but for roundings.
+    const Transform slope = Transform::rotate(17, {1, 0, 0});
+    const auto slanted = [&](float height) {
+        TriangleMesh m;
+        for (const Vec3 p :
+             {Vec3{-3, -3, height}, {3, -3, height}, {3, 3, height}, {-3, 3, height}})
+            m.positions.push_back(slope.point(p));
+        m.triangles = {{0, 1, 2}, {0, 2, 3}};
+        return m;
+    };
+    const Geometry g{scene_of({mesh(slanted(0.7f)), mesh(slanted(-1))})};
+    const Vec3 down = slope.vector({0, 0, -1});
+    for (const Vec3 at : {Vec3{0.37f, 0.61f, 0.7f}, {1.3f, -2.1f, 0.7f}, {0, 0, 0.7f}}) {
+        const Ray ray{slope.point(at), down};
+        SurfaceHit hit;
+        ASSERT_TRUE(g.intersect_seen(ray, hit));
+        EXPECT_EQ(hit.shape, 1u);
+        EXPECT_NEAR(hit.t, 1.7f, 1e-5f);
+        const Ray up{ray.origin, -down};
+        EXPECT_FALSE(g.intersect_seen(up, hit));
+        // From a thousandth above it is seen.
+        ASSERT_TRUE(g.intersect_seen({ray.origin - 1e-3f * down, down}, hit));
+        EXPECT_EQ(hit.shape, 0u);
+    }
+}
+
 TEST(GeometryHits, TriangleDefaultUvsAreThoseOfPbrt) {
     const Geometry g{scene_of({mesh(unit_triangle())})};
     const SurfaceHit hit = must_hit(g, {0.25f, 0.5f, 3}, {0, 0, -1});

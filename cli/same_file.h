@@ -1,0 +1,25 @@
+/// Files that a command would lose because two of its names are one.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace covtrace::cli {
+
+/// Whether both names, links resolved, are one regular file, there already or not. Devices, pipes
+/// and empty names are none.
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// What an output is for ("--png") and its name; empty: not asked for.
+struct NamedOutput {
+    std::string option;
+    std::filesystem::path file;
+};
+
+/// Throws Error(usage) where two outputs are one file, or where an output would take the place of
+/// an input.
+void require_distinct(const std::vector<NamedOutput>& outputs,
+                      const std::vector<std::filesystem::path>& inputs);
+
+}  // namespace covtrace::cli
