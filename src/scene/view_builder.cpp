@@ -291,7 +291,8 @@ void build_view(ViewEntities& view, BuildContext& context) {
     at(view.integrator), build_integrator(view.integrator, context);
     at(view.accelerator);
     if (const std::string& type = view.accelerator.type; type != "bvh" && type != "kdtree")
-        throw unknown_type_error(view.accelerator.where, "accelerator", type, {"bvh", "kdtree"});
+        context.log.add(view.accelerator.where,
+                        "accelerator " + in_quotes(type) + " is not known; ignored");
 }
 
 }  // namespace covtrace
