@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "cli/commands.h"
@@ -28,6 +27,7 @@
 #include "image/output_file.h"
 #include "preview/tev_client.h"
 #include "render/film_file.h"
+#include "render/image_hash.h"
 #include "render/scene_file.h"
 #include "render/session.h"
 
@@ -43,23 +43,6 @@ fs::path output_path(const RenderArguments& a, const SceneDescription& scene) {
     // Every output is an EXR: a film that asks for another format keeps its name.
     if (name.extension() != ".exr") name.replace_extension(".exr");
     return name;
-}
-
-/// The scene and the images that it shows: what an output with a name of the scene's own may be.
-std::vector<fs::path> inputs_of(const fs::path& scene, const SceneDescription& description) {
-    std::vector<fs::path> inputs{scene};
-    for (const TextureDescription& texture : description.textures)
-        if (const auto* image = std::get_if<ImageTexture>(&texture.value); image && !image->content)
-            inputs.push_back(image->file);
-    for (const LightDescription& light : description.lights) {
-        if (const auto* sky = std::get_if<InfiniteLight>(&light.value); sky && sky->image)
-            inputs.push_back(*sky->image);
-        if (const auto* lamp = std::get_if<GoniometricLight>(&light.value); lamp && lamp->image)
-            inputs.push_back(*lamp->image);
-        if (const auto* slide = std::get_if<ProjectionLight>(&light.value))
-            inputs.push_back(slide->image);
-    }
-    return inputs;
 }
 
 /// Before hours of rendering, not after them.
@@ -163,10 +146,12 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     const fs::path output = is_shard ? fs::path() : output_path(a, description);
     std::vector<NamedOutput> outputs{
         {"--output", output}, {"--png", a.png}, {"--stats", a.stats}, {"--film", a.film.film}};
-    require_distinct(outputs, inputs_of(a.scene, description));
+    std::vector<fs::path> inputs = image_files(description);
+    inputs.push_back(a.scene);
+    require_distinct(outputs, inputs);
     // The final film may be that of the checkpoint.
     outputs.back() = {"--checkpoint", a.film.checkpoint};
-    require_distinct(outputs, {a.scene});
+    require_distinct(outputs, inputs);
     for (const fs::path& file : {output, fs::path(a.png), fs::path(a.stats), fs::path(a.film.film),
                                  is_shard ? fs::path() : fs::path(a.film.checkpoint)})
         if (!file.empty()) require_writable(file);

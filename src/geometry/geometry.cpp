@@ -13,7 +13,7 @@ namespace covtrace {
 
 namespace {
 
-/// A ray caught between coincident holes must end.
+/// A ray caught between coincident surfaces that it passes must end.
 constexpr int kMostLayers = 1000;
 
 /// In [0, 1), of all bits of origin, direction and time.
@@ -88,6 +88,25 @@ bool lies_in(Vec3 point, const SurfaceHit& hit) {
     return std::abs(dot(ng, origin - Vec3d(hit.position))) <= rounding;
 }
 
+/// Nearest hit, as `find(ray, hit)` tells it, at which `stops(ray, hit)` says that the ray ends; it
+/// goes on behind all others.
+template <typename Find, typename Stops>
+bool first_that_stops(Ray ray, SurfaceHit& hit, const Find& find, const Stops& stops) {
+    float passed = 0;
+    for (int layer = 0; layer < kMostLayers; ++layer) {
+        if (!find(ray, hit)) return false;
+        if (stops(ray, hit)) {
+            hit.t += passed;
+            return true;
+        }
+        passed += hit.t;
+        ray.t_max -= hit.t;
+        ray.origin = Geometry::offset_origin(hit, ray.direction);
+        if (!(ray.t_max > 0)) return false;
+    }
+    return false;
+}
+
 }  // namespace
 
 Geometry::Geometry(const SceneDescription& scene, const std::string& isa)
@@ -102,40 +121,20 @@ bool Geometry::intersect(const Ray& ray, SurfaceHit& hit) const {
     return impl_->nearest_opaque(ray, kEveryMask, hit);
 }
 
-bool Geometry::intersect_seen(Ray ray, SurfaceHit& hit) const {
-    float passed = 0;
-    for (int layer = 0; layer < kMostLayers; ++layer) {
-        if (!intersect(ray, hit)) return false;
-        if (!lies_in(ray.origin, hit)) {
-            hit.t += passed;
-            return true;
-        }
-        passed += hit.t;
-        ray.t_max -= hit.t;
-        ray.origin = offset_origin(hit, ray.direction);
-        if (!(ray.t_max > 0)) return false;
-    }
-    return false;
+bool Geometry::intersect_seen(const Ray& ray, SurfaceHit& hit) const {
+    return first_that_stops(
+        ray, hit, [this](const Ray& r, SurfaceHit& h) { return intersect(r, h); },
+        [&](const Ray&, const SurfaceHit& h) { return !lies_in(ray.origin, h); });
 }
 
-bool Geometry::Impl::nearest_opaque(Ray ray, unsigned mask, SurfaceHit& hit) const {
-    if (!any_alpha) return nearest(ray, mask, hit);
-    float passed = 0;
-    for (int layer = 0; layer < kMostLayers; ++layer) {
-        if (!nearest(ray, mask, hit)) return false;
-        const TextureId texture = placed[hit.shape].description.alpha;
-        const float opacity = texture >= 0 && alpha ? alpha(texture, hit.uv, hit.position) : 1.0f;
-        const bool stops = opacity >= 1 || (opacity > 0 && ray_hash(ray) < opacity);
-        if (stops) {
-            hit.t += passed;
-            return true;
-        }
-        passed += hit.t;
-        ray.t_max -= hit.t;
-        ray.origin = offset_origin(hit, ray.direction);
-        if (!(ray.t_max > 0)) return false;
-    }
-    return false;
+bool Geometry::Impl::nearest_opaque(const Ray& ray, unsigned mask, SurfaceHit& hit) const {
+    const auto find = [this, mask](const Ray& r, SurfaceHit& h) { return nearest(r, mask, h); };
+    if (!any_alpha) return find(ray, hit);
+    return first_that_stops(ray, hit, find, [this](const Ray& r, const SurfaceHit& h) {
+        const TextureId texture = placed[h.shape].description.alpha;
+        const float opacity = texture >= 0 && alpha ? alpha(texture, h.uv, h.position) : 1.0f;
+        return opacity >= 1 || (opacity > 0 && ray_hash(r) < opacity);
+    });
 }
 
 bool Geometry::Impl::nearest(const Ray& ray, unsigned mask, SurfaceHit& hit) const {

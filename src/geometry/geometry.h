@@ -49,7 +49,7 @@ class Geometry {
     bool intersect(const Ray& ray, SurfaceHit& hit) const;
     /// The same for a camera ray: surfaces that hold its origin are seen edge on, which is not at
     /// all. A camera may stand on the plane of a floor or of a wall.
-    bool intersect_seen(Ray ray, SurfaceHit& hit) const;
+    bool intersect_seen(const Ray& ray, SurfaceHit& hit) const;
     /// Whether anything but interface surfaces lies in (0, ray.t_max). Thread-safe.
     bool occluded(const Ray& ray) const;
     /// `origin` moved off the surface of `hit` to the side of `direction`, so that a ray from there

@@ -63,7 +63,7 @@ struct Geometry::Impl {
     /// Nearest hit of the shapes in `mask`, whatever alpha says there.
     bool nearest(const Ray& ray, unsigned mask, SurfaceHit& hit) const;
     /// Nearest hit of the shapes in `mask` that alpha does not let through.
-    bool nearest_opaque(Ray ray, unsigned mask, SurfaceHit& hit) const;
+    bool nearest_opaque(const Ray& ray, unsigned mask, SurfaceHit& hit) const;
 
     /// The world from the local space of an instance, as Embree has it at `time`.
     Affine world_from_local(const EmbreeInstance& instance, float time) const {

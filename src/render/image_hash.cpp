@@ -16,12 +16,8 @@
 
 namespace covtrace {
 
-namespace {
-
 namespace fs = std::filesystem;
 
-/// Every file once, in the order of the names. An image that lies within a scene's file has none:
-/// the hash of that file covers it.
 std::vector<fs::path> image_files(const SceneDescription& scene) {
     std::set<fs::path> files;
     for (const TextureDescription& texture : scene.textures)
@@ -36,6 +32,8 @@ std::vector<fs::path> image_files(const SceneDescription& scene) {
     }
     return {files.begin(), files.end()};
 }
+
+namespace {
 
 uint64_t hash_of(const fs::path& file) {
     const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),

@@ -1,11 +1,17 @@
 /// What the image files of a scene hold, as one number.
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "scene/scene_description.h"
 
 namespace covtrace {
+
+/// All textures' and lights' image files, every file once, in the order of the names. An image that
+/// lies within a scene's file has none: the hash of that file covers it.
+std::vector<std::filesystem::path> image_files(const SceneDescription& scene);
 
 /// Hash of the contents of all textures' and lights' image files, read in parallel: 16 hexadecimal
 /// digits. The content hash of the description does not know them, but those that are embedded.

@@ -87,6 +87,19 @@ Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indi
         1 / 3.14159265, 1e-4);
 }
 
+TEST(Analytic, ACameraOnTheFloorDoesNotSeeTheFloor) {
+    // All that it sees is the sky, above and below; the floor is black.
+    const std::string text = R"(
+Film "rgb" "integer xresolution" 16 "integer yresolution" 16
+LookAt 0.3 0 0.7  0 0 5  0 1 0
+Camera "perspective"
+WorldBegin
+LightSource "infinite" "rgb L" [ 1 1 1 ]
+Material "diffuse" "rgb reflectance" [ 0 0 0 ]
+Shape "trianglemesh" "point3 P" [ -9 0 -9  9 0 -9  9 0 9  -9 0 9 ] "integer indices" [ 0 1 2 0 2 3 ])";
+    expect_mean(render_text(text, uniform(4)), 1, 1e-5);
+}
+
 TEST(Analytic, DefocusAndMotionKeepTheMeanOfAUniformPlane) {
     const std::string text = R"(
 Integrator "path" "integer maxdepth" 1

@@ -127,14 +127,14 @@ TEST(Hybrid, OneSamplePerPixelLeavesALampItsSize) {
     // With seeds 1 and 8 both halves see the lamp, and its 11 pixels became a square of 85.
     RenderScene scene(
         read_pbrt(std::filesystem::path(COVTRACE_SCENES_FOLDER) / "hard" / "lamp-in-view.pbrt"));
-    constexpr int kSky = 35;  // rows
+    constexpr int kSky = 35;  // rows above the horizon
     for (const uint64_t seed : {1, 2, 8}) {
         Monitor monitor;
         const Image image = render(scene, hybrid(1, seed), monitor).image;
         int lamp = 0;
         for (size_t i = 0; i < size_t(kSky) * size_t(image.width()); ++i)
             lamp += image.rgb(i).g > 10;
-        EXPECT_LE(lamp, 33) << seed;
+        EXPECT_LE(lamp, 3 * 11) << seed;  // a pixel more to all sides
     }
 }
 

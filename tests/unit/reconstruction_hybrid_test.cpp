@@ -17,16 +17,25 @@ ColorPlanes weights_at_one(const Halves& halves) {
     return error_weights(halves, constant(1));
 }
 
-TEST(Selector, TakesTheTruthAndLeavesTheBias) {
-    const auto one = [](int, int) { return 1.0f; };
-    const Halves halves = noisy_halves(kSize, kSize, one, 0.5f, 1);
+/// Where the truth is 1: the raw pixels, the truth, and what is biased.
+Selection of_raw_truth_and_bias(const Halves& halves) {
     const std::vector<Candidate> candidates{{halves[0].color, halves[1].color},
                                             {constant(1), constant(1)},
                                             {constant(1.4f), constant(1.4f)}};
-    const Selection s = select(halves, candidates, weights_at_one(halves), 3);
-    double truth = 0;
-    for (float v : s.share[1].values) truth += double(v);
-    EXPECT_GT(truth / (kSize * kSize), 0.8);
+    return select(halves, candidates, weights_at_one(halves), 3);
+}
+
+double share_of_truth(const Selection& s) {
+    double sum = 0;
+    for (float v : s.share[1].values) sum += double(v);
+    return sum / (kSize * kSize);
+}
+
+TEST(Selector, TakesTheTruthAndLeavesTheBias) {
+    const auto one = [](int, int) { return 1.0f; };
+    const Halves halves = noisy_halves(kSize, kSize, one, 0.5f, 1);
+    const Selection s = of_raw_truth_and_bias(halves);
+    EXPECT_GT(share_of_truth(s), 0.8);
     EXPECT_LT(mean_squared_error(s.half[0], one), 0.25 * 0.25 * 0.1);
 }
 
@@ -55,13 +64,7 @@ Halves checkerboard(const Halves& all) {
 TEST(Selector, JudgesHalvesThatHaveNoPixelInCommon) {
     const auto one = [](int, int) { return 1.0f; };
     const Halves halves = checkerboard(noisy_halves(kSize, kSize, one, 0.5f, 3));
-    const std::vector<Candidate> candidates{{halves[0].color, halves[1].color},
-                                            {constant(1), constant(1)},
-                                            {constant(1.4f), constant(1.4f)}};
-    const Selection s = select(halves, candidates, weights_at_one(halves), 3);
-    double truth = 0;
-    for (float v : s.share[1].values) truth += double(v);
-    EXPECT_GT(truth / (kSize * kSize), 0.8);
+    EXPECT_GT(share_of_truth(of_raw_truth_and_bias(halves)), 0.8);
 }
 
 TEST(ErrorWeights, CountEachChannelByItsOwnBrightness) {
