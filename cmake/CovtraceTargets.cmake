@@ -16,6 +16,16 @@ set(COVTRACE_MARCH "" CACHE STRING "Value of -march; empty leaves the compiler's
 if(COVTRACE_MARCH)
     target_compile_options(covtrace_flags INTERFACE "-march=${COVTRACE_MARCH}")
 endif()
+option(COVTRACE_THIN_LTO "Optimise across files at link time (clang and lld)" OFF)
+if(COVTRACE_THIN_LTO)
+    # Programs that link the same libraries share what was generated for them.
+    target_compile_options(covtrace_flags INTERFACE -flto=thin)
+    target_link_options(covtrace_flags INTERFACE -flto=thin -fuse-ld=lld
+                        "-Wl,--thinlto-cache-dir=${PROJECT_BINARY_DIR}/thin-lto")
+    # GNU's ar does not know what is in them.
+    set(CMAKE_AR "${CMAKE_CXX_COMPILER_AR}")
+    set(CMAKE_RANLIB "${CMAKE_CXX_COMPILER_RANLIB}")
+endif()
 option(COVTRACE_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
 if(COVTRACE_SANITIZE)
     target_compile_options(covtrace_flags INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer)

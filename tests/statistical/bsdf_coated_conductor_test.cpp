@@ -114,7 +114,7 @@ TEST(CoatedConductorLimits, SmoothBordersSumTheSeries) {
         const auto s = sample(Bsdf(b), wo, 0.3f, {0.1f, 0.7f});
         ASSERT_TRUE(s);
         EXPECT_NEAR(s->weight.g, 1, 2e-3f);
-        EXPECT_EQ(s->wi, Vec3(-wo.x, -wo.y, wo.z));
+        EXPECT_EQ(s->wi, (Vec3{-wo.x, -wo.y, wo.z}));
     }
 }
 
@@ -161,7 +161,7 @@ TEST(ThinDielectric, SumsTheSeriesOfBothFaces) {
     const auto passed = sample(Bsdf(ThinDielectricBsdf{1.5f}), wo, 1.01f * both, {});
     ASSERT_TRUE(mirrored && passed);
     EXPECT_NEAR(mirrored->pdf, both, 1e-5f);
-    EXPECT_EQ(mirrored->wi, Vec3(-wo.x, -wo.y, wo.z));
+    EXPECT_EQ(mirrored->wi, (Vec3{-wo.x, -wo.y, wo.z}));
     EXPECT_NEAR(passed->pdf, 1 - both, 1e-5f);
     EXPECT_EQ(passed->wi, -wo);
 }

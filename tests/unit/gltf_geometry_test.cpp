@@ -107,9 +107,9 @@ TEST(GltfGeometry, KeepsTheVerticesThatTrianglesUse) {
         ASSERT_EQ(mesh.positions.size(), 4u);
         ASSERT_EQ(mesh.uvs.size(), 4u);
         const auto& t = mesh.triangles.at(0);
-        EXPECT_EQ(mesh.positions[t[0]], Vec3(float(i), 1, 0));
-        EXPECT_EQ(mesh.positions[t[1]], Vec3(float(i), 0, 0));
-        EXPECT_EQ(mesh.positions[t[2]], Vec3(float(i) + 1, 0, 0));
+        EXPECT_EQ(mesh.positions[t[0]], (Vec3{float(i), 1, 0}));
+        EXPECT_EQ(mesh.positions[t[1]], (Vec3{float(i), 0, 0}));
+        EXPECT_EQ(mesh.positions[t[2]], (Vec3{float(i) + 1, 0, 0}));
         EXPECT_EQ(mesh.uvs[t[2]].x, float(i));
     }
 }

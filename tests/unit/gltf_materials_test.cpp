@@ -11,7 +11,7 @@ SceneDescription with_material(const json& material, const std::string& image = 
         file.root["images"] = {{{"bufferView", file.add_view(image)}, {"mimeType", "image/png"}}};
         file.root["textures"] = {{{"source", 0}}};
     }
-    file.root["materials"] = {material};
+    file.root["materials"] = json::array({material});
     file.add_node({{"mesh", file.add_square({{"material", 0}})}});
     return read(file);
 }
@@ -151,7 +151,7 @@ TEST(GltfMaterials, TurnsTexturesAsTheExtensionSays) {
 
 GltfFile lit_by(const json& light) {
     GltfFile file = square_file();
-    file.root["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+    file.root["extensions"]["KHR_lights_punctual"]["lights"] = json::array({light});
     const double h = std::sqrt(0.5);
     // From above: -z becomes -y.
     file.add_node({{"translation", {0, 3, 0}},
@@ -186,7 +186,7 @@ TEST(GltfLights, TakesManyLuxForPhysicalUnits) {
 TEST(GltfCamera, ReadsPerspectiveAndOrthographic) {
     const auto with_camera = [](const json& camera) {
         GltfFile file = square_file();
-        file.root["cameras"] = {camera};
+        file.root["cameras"] = json::array({camera});
         file.add_node({{"camera", 0}, {"translation", {0.5, 0.5, 4}}});
         return read(file);
     };
