@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 namespace covtrace {
 
@@ -19,6 +20,26 @@ bool anything_moves(const SceneDescription& d) {
            std::any_of(d.objects.begin(), d.objects.end(), [&](const ObjectDescription& o) {
                return std::any_of(o.shapes.begin(), o.shapes.end(), shape_moves);
            });
+}
+
+/// Of a sphere around the shapes that holds a camera in a medium, too, and what lights it from a
+/// place: their rays must reach each other before the medium ends.
+float radius_of_media(const SceneDescription& d, const Bounds3& shapes) {
+    float radius = shapes.radius();
+    if (d.camera.medium < 0 || shapes.empty()) return radius;
+    const auto hold = [&](Vec3 p) { radius = std::max(radius, length(p - shapes.center())); };
+    hold(d.camera.camera_to_world.start().point({}));
+    hold(d.camera.camera_to_world.end().point({}));
+    for (const LightDescription& light : d.lights) {
+        if (const auto* point = std::get_if<PointLight>(&light.value))
+            hold(light.light_to_world.point(point->from));
+        else if (const auto* spot = std::get_if<SpotLight>(&light.value))
+            hold(light.light_to_world.point(spot->from));
+        else if (std::holds_alternative<GoniometricLight>(light.value) ||
+                 std::holds_alternative<ProjectionLight>(light.value))
+            hold(light.light_to_world.point({}));
+    }
+    return radius;
 }
 
 }  // namespace
@@ -41,7 +62,7 @@ RenderScene::RenderScene(SceneDescription scene_description, const std::string& 
         media.push_back({m.sigma_a, m.sigma_s, m.emission, m.g});
     has_lens_or_motion = camera.has_lens() || anything_moves(description);
     has_interfaces = geometry.has_interfaces();
-    unbounded_distance = 2 * geometry.bounds().radius();
+    unbounded_distance = 2 * radius_of_media(description, geometry.bounds());
     guide = CausticGuide(*this);
 }
 

@@ -43,7 +43,8 @@ struct RenderScene {
     bool has_lens_or_motion = true;
     bool has_interfaces = false;  ///< surfaces that only separate media
     /// What a ray crosses of a medium without an end, in scene units: twice the radius of the
-    /// scene's bounds, as far away as pbrt-v4 puts its infinite lights.
+    /// scene's bounds, as far away as pbrt-v4 puts its infinite lights; for a camera in the medium
+    /// of a sphere that holds camera and lights as well.
     float unbounded_distance = 0;
     CausticGuide guide;  ///< made last: it is learnt from all the rest
 };

@@ -62,7 +62,7 @@ std::optional<Plane> known_by_both(const Halves& halves) {
 
 /// A squared error over I^2 + 0.01.
 float relative(float square, float brightness) {
-    return square / (sqr(std::max(0.0f, brightness)) + kDarkSquared);
+    return square / (sqr(brightness) + kDarkSquared);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ void add_light_and_noise(const Halves& halves, const ColorPlanes& guess, Likenes
         noise[i] = 0.5f * std::log(noise[i] / (sqr(light[i]) + kDarkSquared) + kClean) / kLogNoise;
     likeness.add(noise);
     Plane logarithm = gaussian_blur(light, kSmoothing);
-    for (float& v : logarithm.values) v = std::log(std::max(0.0f, v) + kDark) / kLogLight;
+    for (float& v : logarithm.values) v = std::log(std::abs(v) + kDark) / kLogLight;
     likeness.add(logarithm);
 }
 

@@ -48,6 +48,18 @@ ColorPlanes common_brightness(std::span<const Candidate> candidates) {
     return {sum, sum, sum};
 }
 
+/// A fit may leave the range of its colours: light is never negative, but beside lamps under a
+/// pixel filter with negative lobes, which the samples tell of.
+ColorPlanes without_undershoot(ColorPlanes color, const ColorPlanes& samples) {
+    const auto negative = [](const Plane& p) {
+        return std::any_of(p.values.begin(), p.values.end(), [](float v) { return v < 0; });
+    };
+    if (std::none_of(samples.begin(), samples.end(), negative))
+        for (Plane& channel : color)
+            for (float& v : channel.values) v = std::max(0.0f, v);
+    return color;
+}
+
 ColorPlanes mean_of(const Selection& s) {
     ColorPlanes mean = s.half[0];
     for (size_t c = 0; c < 3; ++c)
@@ -75,17 +87,19 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     for (HalfBuffer& half : halves) half.feature = half.feature_variance = {};  // large, not needed
     // Twice, as candidates that spread highlights also lift the first guess of what is dark, which
     // hides their errors there; and as the guess tells which pixels are alike.
+    const ColorPlanes first_guess = without_undershoot(common_brightness(candidates), all);
     const ColorPlanes guess =
-        mean_of(select(halves, candidates, error_weights(halves, common_brightness(candidates)),
-                       settings.sigma, settings.mix));
+        without_undershoot(mean_of(select(halves, candidates, error_weights(halves, first_guess),
+                                          settings.sigma, settings.mix)),
+                           all);
     add_light_and_noise(halves, guess, likeness);
     Selection s = select(halves, candidates, error_weights(halves, guess), likeness, settings.mix);
 
     HybridImage image;
     image.color = mean_of(s);
-    // A fit may leave the range of its colours: light is never negative.
-    for (Plane& channel : image.color)
-        for (float& v : channel.values) v = std::max(0.0f, v);
+    for (size_t k = 0; k < 3; ++k)
+        for (size_t i = 0; i < all[k].size(); ++i)
+            image.color[k][i] = std::max(std::min(0.0f, all[k][i]), image.color[k][i]);
     const ReturnedShares returned = return_energy(all, image.color);
     ErrorEstimate error =
         estimate_error(halves, candidates, s, image.color, all, returned, guess, settings.error);

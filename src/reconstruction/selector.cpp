@@ -141,7 +141,7 @@ ColorPlanes error_weights(const Halves& halves, const ColorPlanes& brightness) {
     for (size_t k = 0; k < 3; ++k)
         for (size_t i = 0; i < g[k].size(); ++i)
             if (halves[0].count[i] > 0 || halves[1].count[i] > 0)
-                g[k][i] = 1 / (sqr(std::max(0.0f, brightness[k][i])) + kDarkSquared);
+                g[k][i] = 1 / (sqr(brightness[k][i]) + kDarkSquared);
     return g;
 }
 

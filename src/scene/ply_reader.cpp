@@ -206,8 +206,15 @@ class BodyReader {
             const auto triple = [&](const std::array<int, 3>& k) {
                 return Vec3{at(k[0]), at(k[1]), at(k[2])};
             };
+            // As pbrt-v4: where a normal is not a number, as exporters write it at vertices
+            // without area, the face's own takes its place, as for one of zeros.
+            const auto normal = [&](const std::array<int, 3>& k) {
+                for (const int i : k)
+                    if (std::isnan(values[static_cast<size_t>(i)])) return Vec3{};
+                return triple(k);
+            };
             positions_.push_back(triple(layout.position));
-            if (layout.has_normal()) normals_.push_back(triple(layout.normal));
+            if (layout.has_normal()) normals_.push_back(normal(layout.normal));
             if (layout.has_uv()) uvs_.push_back({at(layout.uv[0]), at(layout.uv[1])});
         }
     }

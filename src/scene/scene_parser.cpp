@@ -48,7 +48,9 @@ class Parser {
         }
         if (it->second.place == Place::before_world && builder_.in_world())
             throw Error(ErrorKind::scene, where_,
-                        std::string(token.text) + " must stand before WorldBegin");
+                        token.text == "WorldBegin"
+                            ? "a second WorldBegin; a scene has one"
+                            : std::string(token.text) + " must stand before WorldBegin");
         if (it->second.place == Place::in_world && !builder_.in_world())
             throw Error(ErrorKind::scene, where_,
                         std::string(token.text) + " must stand after WorldBegin");

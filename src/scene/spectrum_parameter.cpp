@@ -6,7 +6,6 @@
 #include "scene/names.h"
 #include "scene/token_stream.h"
 #include "scene/tokenizer.h"
-#include "scene/version_three.h"
 
 namespace covtrace {
 
@@ -52,9 +51,11 @@ constexpr double kHeliumLine = 587.6;
 
 std::optional<Spectrum> spectrum_value(const Parameter& p, BuildContext& context) {
     if (p.type == ParameterType::blackbody) {
+        // Exporters write the scale of version 3, which pbrt-v4 passes over.
         if (p.numbers.size() == 2)
-            throw version_three_error(p.where, "a blackbody with temperature and scale");
-        if (p.numbers.size() != 1 || !(p.numbers[0] > 0))
+            context.log.add(p.where, "the second number of blackbody " + in_quotes(p.name) +
+                                         ", a scale in pbrt-v3, is ignored");
+        if (p.numbers.empty() || p.numbers.size() > 2 || !(p.numbers[0] > 0))
             throw Error(
                 ErrorKind::scene, p.where,
                 "parameter " + in_quotes(p.name) + " expects one temperature > 0 in kelvin");

@@ -138,5 +138,28 @@ TEST(Hybrid, OneSamplePerPixelLeavesALampItsSize) {
     }
 }
 
+TEST(Hybrid, NegativeLightBesideALampDoesNotDarkenTheSky) {
+    // The filter's lobes leave a ring of down to -400 around the lamp, in a sky without noise.
+    const Image image = render_text(R"(
+Film "rgb" "integer xresolution" 80 "integer yresolution" 60
+PixelFilter "mitchell"
+LookAt 0 -6 2  0 0 1.4  0 0 1
+Camera "perspective" "float fov" 30
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.4 0.5 0.7 ]
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [ 20000 18000 12000 ]
+  Translate 0 2 1.5
+  Shape "sphere" "float radius" 0.06
+AttributeEnd
+Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
+Shape "trianglemesh" "point3 P" [ -20 -20 0  20 -20 0  20 20 0  -20 20 0 ] "integer indices" [ 0 1 2  0 2 3 ])",
+                                    hybrid(16))
+                            .image;
+    constexpr size_t kRowsAbove = 20;
+    for (size_t i = 0; i < kRowsAbove * size_t(image.width()); ++i)
+        ASSERT_NEAR(image.rgb(i).g, 0.5f, 0.01f) << i;
+}
+
 }  // namespace
 }  // namespace covtrace

@@ -124,14 +124,17 @@ TEST(Media, APointLightInFogAroundTheCamera) {
                                    (across * across);
             }
         }
-    const std::string text = looking_along_z(1, "fog") + R"(
+    // A scene that holds the camera, and one that the camera is far from.
+    for (const char* shape :
+         {"Shape \"sphere\" \"float radius\" 86", "Translate 0 50 0 Shape \"sphere\""}) {
+        const std::string text = looking_along_z(1, "fog") + R"(
 LightSource "point" "rgb I" [ 20 20 20 ] "point3 from" [ 0 3 2 ]
 AttributeBegin
 MediumInterface "fog" "fog"
 Material "diffuse" "rgb reflectance" [ 0 0 0 ]
-Shape "sphere" "float radius" 86
-AttributeEnd)";
-    expect_channels(render_text(text, uniform(2048, 5)), expected, 1e-3);
+)" + shape + "\nAttributeEnd";
+        expect_channels(render_text(text, uniform(2048, 5)), expected, 1e-3);
+    }
 }
 
 /// A scene in which every point sees radiance 1 in all directions.

@@ -74,8 +74,8 @@ TEST(ErrorWeights, CountEachChannelByItsOwnBrightness) {
         halves, {Plane(kSize, kSize, 2), Plane(kSize, kSize), Plane(kSize, kSize, -1)});
     EXPECT_FLOAT_EQ(g[0][0], 1 / 4.01f);
     EXPECT_FLOAT_EQ(g[1][0], 100);
-    EXPECT_FLOAT_EQ(g[2][0], 100);  // light is never negative
-    EXPECT_FLOAT_EQ(g[0][5], 0);    // nobody judges there
+    EXPECT_FLOAT_EQ(g[2][0], 1 / 1.01f);  // negative light, as beside lamps, counts as much
+    EXPECT_FLOAT_EQ(g[0][5], 0);          // nobody judges there
 }
 
 TEST(Hybrid, AHalfWithoutSamplesIsNotBlack) {

@@ -20,7 +20,7 @@ TEST(SceneErrors, NameFileLineAndColumn) {
          "\"WorldEnd\" belongs to pbrt-v3; this reader expects version 4: convert the scene with "
          "\"pbrt --upgrade"},
         {"SurfaceIntegrator \"path\"", "pbrt-v3"},
-        {"WorldBegin", "WorldBegin must stand before WorldBegin"},
+        {"WorldBegin", "a second WorldBegin"},
         {"Camera \"perspective\"", "Camera must stand before WorldBegin"},
         {"Shape", "test.pbrt:2:6: expected a type in quotes, found the end of the file"},
         {"Shape sphere", "test.pbrt:2:7: expected a type in quotes, found \"sphere\""},

@@ -178,7 +178,7 @@ TEST(SceneLights, ErrorsNameThePlace) {
         {"LightSource \"point\" \"spectrum I\" [ 400 1 500 ]", "pairs of wavelength and value"},
         {"LightSource \"point\" \"spectrum I\" [ 500 1 400 1 ]", "must increase; entry 2"},
         {"LightSource \"point\" \"blackbody I\" 0", "temperature > 0"},
-        {"LightSource \"point\" \"blackbody I\" [ 5000 2 ]", "pbrt-v3"},
+        {"LightSource \"point\" \"blackbody I\" [ 5000 2 1 ]", "temperature > 0"},
         {"LightSource \"point\" \"rgb I\" [ 1 1 ]", "has 2 values; expected three"},
         {"AreaLightSource \"area\"", "pbrt-v3"},
         {"AreaLightSource \"glow\"", "unknown area light \"glow\""},

@@ -51,6 +51,15 @@ TEST(ScenePly, ReadsAsciiWithNormalsAndUv) {
     EXPECT_EQ(mesh.quads, nullptr);
 }
 
+TEST(ScenePly, ANormalThatIsNoNumberIsNone) {
+    const std::string layout =
+        std::string(kVertex) + "property float nx\nproperty float ny\nproperty float nz\n";
+    const auto mesh =
+        read(header("ascii", 3, layout, 1) + "0 0 0 nan nan nan 1 0 0 0 0 1 0 1 0 0 0 1 3 0 1 2");
+    EXPECT_EQ(mesh.triangles->normals[0], Vec3{});
+    EXPECT_EQ(mesh.triangles->normals[1], (Vec3{0, 0, 1}));
+}
+
 TEST(ScenePly, ReadsBothByteOrdersAndEveryNumberType) {
     for (const bool big : {false, true}) {
         std::string text =

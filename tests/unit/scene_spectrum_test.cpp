@@ -207,5 +207,19 @@ TEST(Spectrum, AbsorptionByChannelsIsNotThatOfASpectrum) {
     for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(grey.channels[c], grey.spectral[c], 1e-6);
 }
 
+TEST(SceneSpectrum, ABlackbodysScaleOfVersionThreeIsTold) {
+    const auto colour = [](const std::string& numbers) {
+        const auto scene =
+            read_world("LightSource \"infinite\" \"blackbody L\" [ " + numbers + " ]");
+        return std::pair(std::get<InfiniteLight>(scene.lights.at(0).value).radiance,
+                         warnings_of(scene));
+    };
+    const auto [one, silent] = colour("6000");
+    const auto [both, told] = colour("6000 3");
+    EXPECT_EQ(one, both);
+    EXPECT_EQ(silent, "");
+    EXPECT_NE(told.find("a scale in pbrt-v3, is ignored"), std::string::npos) << told;
+}
+
 }  // namespace
 }  // namespace covtrace::test
