@@ -97,6 +97,7 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
 
     HybridImage image;
     image.color = mean_of(s);
+    // The image itself is negative only where the samples are, and no darker than they.
     for (size_t k = 0; k < 3; ++k)
         for (size_t i = 0; i < all[k].size(); ++i)
             image.color[k][i] = std::max(std::min(0.0f, all[k][i]), image.color[k][i]);
