@@ -8,6 +8,22 @@
 
 namespace covtrace {
 
+namespace {
+
+/// Whether the outside of a shape of this type faces its inside. A mirror turns spheres, disks and
+/// cylinders inside out, as in pbrt-v4, and ReverseOrientation turns them back: exporters write
+/// both. Lamps go by ReverseOrientation alone, as they do for pbrt-v4's samples of lights, though
+/// not for its rays.
+bool is_inside_out(const std::string& type, const ShapeDescription& shape, bool is_reversed) {
+    const bool is_quadric = type == "sphere" || type == "disk" || type == "cylinder";
+    const bool is_mirrored = is_quadric && shape.area_light < 0 &&
+                             !shape.object_to_world.is_animated() &&
+                             shape.object_to_world.start().swaps_handedness();
+    return is_reversed != is_mirrored;
+}
+
+}  // namespace
+
 SceneBuilder::SceneBuilder(SceneDescription& scene, SceneFiles& files, WarningLog& log)
     : scene_(scene),
       context_{scene, files, log},
@@ -167,7 +183,6 @@ void SceneBuilder::shape(Entity entity) {
         pending.alpha = *alpha;
     ShapeDescription& s = pending.shape;
     s.object_to_world = state_.object_to_world();
-    s.reverse_orientation = state_.reverse_orientation;
     s.where = entity.where;
     s.directive = directive_;
     s.area_light = state_.area_light;
@@ -178,6 +193,7 @@ void SceneBuilder::shape(Entity entity) {
             s.area_light = -1;
         }
     }
+    s.reverse_orientation = is_inside_out(entity.type, s, state_.reverse_orientation);
     BuiltShape built = shapes_.build(entity);
     pending.mesh_file = built.mesh_file;
     if (built.mesh_file) pending_.push_back(pending);

@@ -79,10 +79,26 @@ TEST(SceneTraps, T08MirroredCameraFlipsHandedness) {
     EXPECT_TRUE(mirrored.camera.camera_to_world.start().swaps_handedness());
 }
 
-TEST(SceneTraps, T08MirroredShapesKeepTheirOrientationFlag) {
-    const auto scene = read_world("Scale -1 1 1\nReverseOrientation\nShape \"sphere\"");
-    EXPECT_TRUE(scene.shapes.at(0).reverse_orientation);
-    EXPECT_TRUE(scene.shapes.at(0).object_to_world.start().swaps_handedness());
+TEST(SceneTraps, T08MirrorsTurnQuadricsInsideOutAndReverseOrientationTurnsThemBack) {
+    const auto is_inside_out = [](const std::string& text) {
+        const auto scene = read_world(text);
+        return scene.shapes.at(0).reverse_orientation;
+    };
+    for (const std::string shape : {"sphere", "disk", "cylinder"}) {
+        const std::string made = "Shape \"" + shape + "\"";
+        EXPECT_TRUE(is_inside_out("Scale 1 1 -1\n" + made)) << shape;
+        EXPECT_TRUE(is_inside_out("ReverseOrientation\n" + made)) << shape;
+        EXPECT_FALSE(is_inside_out("ReverseOrientation Scale 1 1 -1\n" + made)) << shape;
+        EXPECT_FALSE(is_inside_out("Scale -1 1 -1\n" + made)) << shape;
+        const std::string lamp = "AreaLightSource \"diffuse\"\n" + made;
+        EXPECT_FALSE(is_inside_out("Scale 1 1 -1\n" + lamp)) << shape;
+        EXPECT_TRUE(is_inside_out("ReverseOrientation Scale 1 1 -1\n" + lamp)) << shape;
+    }
+    // Meshes carry their winding through the mirror.
+    const std::string mesh =
+        "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] "
+        "\"integer indices\" [ 0 1 2 ]";
+    EXPECT_FALSE(is_inside_out("Scale 1 1 -1\n" + mesh));
 }
 
 TEST(SceneTraps, T09AreaLightWithoutAShape) {
