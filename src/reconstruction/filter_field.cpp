@@ -44,39 +44,59 @@ FilterField filter_field(std::span<const covariance::Sym2<float>> spectrum, int 
     return f;
 }
 
+namespace {
+
+/// What is left of sizes of `width` columns that may grow by `slope` a pixel from a smaller one.
+/// Chamfer distance transform with steps 1 and sqrt 2: one pass down, one pass up.
+void limit_growth(std::vector<float>& sizes, int width, int height, float slope) {
+    const float diagonal = slope * std::sqrt(2.0f);
+    const auto relax = [&](int x, int y, int dx, int dy, float step) {
+        const int px = x + dx, py = y + dy;
+        if (px < 0 || py < 0 || px >= width || py >= height) return;
+        float& here = sizes[size_t(y) * size_t(width) + size_t(x)];
+        here = std::min(here, sizes[size_t(py) * size_t(width) + size_t(px)] + step);
+    };
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            relax(x, y, -1, 0, slope);
+            relax(x, y, 0, -1, slope);
+            relax(x, y, -1, -1, diagonal);
+            relax(x, y, 1, -1, diagonal);
+        }
+    for (int y = height - 1; y >= 0; --y)
+        for (int x = width - 1; x >= 0; --x) {
+            relax(x, y, 1, 0, slope);
+            relax(x, y, 0, 1, slope);
+            relax(x, y, 1, 1, diagonal);
+            relax(x, y, -1, 1, diagonal);
+        }
+}
+
+}  // namespace
+
 void limit_by_neighbours(FilterField& field, const FilterSettings& settings,
                          std::span<const float> others) {
-    const int w = field.width, h = field.height;
     std::vector<float> s(field.covariance.size());
     for (size_t i = 0; i < s.size(); ++i) s[i] = covariance::filter_size(field.covariance[i]);
     std::vector<float> limit = s;
     for (size_t i = 0; i < others.size(); ++i) limit[i] = std::min(limit[i], others[i]);
-    // Chamfer distance transform with steps 1 and sqrt 2: one pass down, one pass up.
-    const float straight = settings.slope, diagonal = settings.slope * std::sqrt(2.0f);
-    const auto relax = [&](int x, int y, int dx, int dy, float step) {
-        const int px = x + dx, py = y + dy;
-        if (px < 0 || py < 0 || px >= w || py >= h) return;
-        float& here = limit[size_t(y) * size_t(w) + size_t(x)];
-        here = std::min(here, limit[size_t(py) * size_t(w) + size_t(px)] + step);
-    };
-    for (int y = 0; y < h; ++y)
-        for (int x = 0; x < w; ++x) {
-            relax(x, y, -1, 0, straight);
-            relax(x, y, 0, -1, straight);
-            relax(x, y, -1, -1, diagonal);
-            relax(x, y, 1, -1, diagonal);
-        }
-    for (int y = h - 1; y >= 0; --y)
-        for (int x = w - 1; x >= 0; --x) {
-            relax(x, y, 1, 0, straight);
-            relax(x, y, 0, 1, straight);
-            relax(x, y, 1, 1, diagonal);
-            relax(x, y, -1, 1, diagonal);
-        }
+    limit_growth(limit, field.width, field.height, settings.slope);
     for (size_t i = 0; i < s.size(); ++i)
         if (limit[i] < s[i])
             field.covariance[i] =
                 covariance::resize_filter(field.covariance[i], limit[i], settings.limits);
+}
+
+void limit_lengths_by_neighbours(FilterField& field, const FilterSettings& settings) {
+    std::vector<float> length(field.covariance.size());
+    for (size_t i = 0; i < length.size(); ++i)
+        length[i] = std::sqrt(std::max(0.0f, covariance::eigen(field.covariance[i]).high));
+    std::vector<float> limit = length;
+    limit_growth(limit, field.width, field.height, settings.slope);
+    for (size_t i = 0; i < length.size(); ++i)
+        if (limit[i] < length[i])
+            field.covariance[i] =
+                covariance::clamp_eigenvalues(field.covariance[i], 0.0f, limit[i] * limit[i]);
 }
 
 }  // namespace covtrace

@@ -47,4 +47,8 @@ FilterField filter_field(std::span<const covariance::Sym2<float>> spectrum, int 
 void limit_by_neighbours(FilterField& field, const FilterSettings& settings,
                          std::span<const float> others = {});
 
+/// The same for each filter's longer deviation alone, which the size s of a thin filter hides: along
+/// a straight border it would reach as far as a lamp that stands at the border.
+void limit_lengths_by_neighbours(FilterField& field, const FilterSettings& settings);
+
 }  // namespace covtrace

@@ -88,6 +88,7 @@ Image gathered_image(const RenderState& state) {
         limit_by_neighbours(field, settings, beside_scattered);
         limit_by_neighbours(in_view_field, settings_in_view,
                             known_sizes(field, parts.scattered, 0));
+        limit_lengths_by_neighbours(in_view_field, settings_in_view);
         make_round_where_unknown(field, parts.scattered);
         make_round_where_unknown(in_view_field, parts.in_view);
     }

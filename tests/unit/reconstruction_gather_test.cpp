@@ -175,6 +175,23 @@ TEST(FilterField, FiltersOfOtherLightLimitToo) {
             << x;
 }
 
+TEST(FilterField, ThinFiltersAreAsShortAsTheirNeighboursAllow) {
+    // Along a straight border; the lamp at its end is narrow in both directions.
+    FilterField f = uniform_field(41, 1, {225, 0, 0.01f});
+    f.covariance[0] = {0.01f, 0, 0.01f};
+    const FilterSettings settings = filter_settings(16);
+    FilterField sizes_only = f;
+    limit_by_neighbours(sizes_only, settings);
+    EXPECT_GT(sizes_only.covariance[20].xx, 100);
+    limit_lengths_by_neighbours(f, settings);
+    for (int x = 0; x < 41; ++x) {
+        EXPECT_NEAR(std::sqrt(f.covariance[size_t(x)].xx),
+                    std::min(15.0f, 0.1f + settings.slope * float(x)), 1e-3f)
+            << x;
+        EXPECT_NEAR(f.covariance[size_t(x)].yy, 0.01f, 1e-5f) << x;
+    }
+}
+
 /// As damaged films have them.
 TEST(FilterField, SpectraBeyondFloatsGiveTheNarrowestFilter) {
     constexpr float kMost = std::numeric_limits<float>::max(),
