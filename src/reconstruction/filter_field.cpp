@@ -99,4 +99,17 @@ void limit_lengths_by_neighbours(FilterField& field, const FilterSettings& setti
                 covariance::clamp_eigenvalues(field.covariance[i], 0.0f, limit[i] * limit[i]);
 }
 
+void make_round_where_unknown(FilterField& field, const std::vector<bool>& known,
+                              const FilterSettings& settings) {
+    std::vector<float> sizes(field.covariance.size());
+    for (size_t i = 0; i < sizes.size(); ++i)
+        sizes[i] = known[i] ? std::sqrt(std::max(0.0f, covariance::eigen(field.covariance[i]).low))
+                            : covariance::filter_size(field.covariance[i]);
+    limit_growth(sizes, field.width, field.height, settings.slope);
+    for (size_t i = 0; i < sizes.size(); ++i)
+        if (!known[i])
+            field.covariance[i] =
+                covariance::Sym2<float>::diagonal(sizes[i] * sizes[i], sizes[i] * sizes[i]);
+}
+
 }  // namespace covtrace

@@ -47,8 +47,15 @@ FilterField filter_field(std::span<const covariance::Sym2<float>> spectrum, int 
 void limit_by_neighbours(FilterField& field, const FilterSettings& settings,
                          std::span<const float> others = {});
 
-/// The same for each filter's longer deviation alone, which the size s of a thin filter hides: along
-/// a straight border it would reach as far as a lamp that stands at the border.
+/// The same for each filter's longer deviation alone, which the size s of a thin filter hides:
+/// along a straight border it would reach as far as a lamp that stands at the border.
 void limit_lengths_by_neighbours(FilterField& field, const FilterSettings& settings);
+
+/// Where no path met the light (`known` is false; one per pixel), its directions are those of light
+/// from afar, and a long filter that has them would reach beyond all that its size was limited by.
+/// Such filters become round, as narrow as neighbours that know their light are across: their short
+/// side is the border that a round filter would reach over (docs/decisions/0083).
+void make_round_where_unknown(FilterField& field, const std::vector<bool>& known,
+                              const FilterSettings& settings);
 
 }  // namespace covtrace

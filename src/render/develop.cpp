@@ -28,15 +28,10 @@ std::vector<float> known_sizes(const FilterField& field,
     return sizes;
 }
 
-/// Where no path met the light, its directions are those of light from afar. A long filter that has
-/// them would reach beyond all that its size was limited by.
-void make_round_where_unknown(FilterField& field,
-                              const std::vector<PackedCovariance>& covariances) {
-    for (size_t i = 0; i < field.covariance.size(); ++i) {
-        if (covariances[i].weight > 0) continue;
-        const float size = covariance::filter_size(field.covariance[i]);
-        field.covariance[i] = covariance::Sym2<float>::diagonal(size * size, size * size);
-    }
+std::vector<bool> light_known(const std::vector<PackedCovariance>& covariances) {
+    std::vector<bool> known(covariances.size());
+    for (size_t i = 0; i < known.size(); ++i) known[i] = covariances[i].weight > 0;
+    return known;
 }
 
 /// What the last plan wanted; before the first one what all pixels have.
@@ -89,8 +84,8 @@ Image gathered_image(const RenderState& state) {
         limit_by_neighbours(in_view_field, settings_in_view,
                             known_sizes(field, parts.scattered, 0));
         limit_lengths_by_neighbours(in_view_field, settings_in_view);
-        make_round_where_unknown(field, parts.scattered);
-        make_round_where_unknown(in_view_field, parts.in_view);
+        make_round_where_unknown(field, light_known(parts.scattered), settings);
+        make_round_where_unknown(in_view_field, light_known(parts.in_view), settings_in_view);
     }
     const bool emitters_found = std::any_of(parts.in_view.begin(), parts.in_view.end(),
                                             [](const PackedCovariance& c) { return c.weight > 0; });

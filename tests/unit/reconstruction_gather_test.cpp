@@ -192,6 +192,31 @@ TEST(FilterField, ThinFiltersAreAsShortAsTheirNeighboursAllow) {
     }
 }
 
+TEST(FilterField, UnknownLightKeepsToItsSideOfABorder) {
+    // A bright floor, thin towards its horizon at x = 20; beyond it no path met surfaces.
+    FilterField f = uniform_field(41, 1, {0.25f, 0, 100});
+    std::vector<bool> known(41, true);
+    for (size_t x = 21; x < 41; ++x) {
+        f.covariance[x] = {100, 0, 4};
+        known[x] = false;
+    }
+    const FilterSettings settings = filter_settings(16);
+    make_round_where_unknown(f, known, settings);
+    for (int x = 0; x < 41; ++x) {
+        const Sym2<float> filter = f.covariance[size_t(x)];
+        if (x > 20) {
+            EXPECT_NEAR(std::sqrt(filter.xx),
+                        std::min(std::sqrt(20.0f), 0.5f + settings.slope * float(x - 20)), 1e-3f)
+                << x;
+            EXPECT_EQ(filter.xx, filter.yy) << x;
+            EXPECT_EQ(filter.xy, 0) << x;
+        } else {
+            EXPECT_EQ(filter.xx, 0.25f) << x;
+            EXPECT_EQ(filter.yy, 100) << x;
+        }
+    }
+}
+
 /// As damaged films have them.
 TEST(FilterField, SpectraBeyondFloatsGiveTheNarrowestFilter) {
     constexpr float kMost = std::numeric_limits<float>::max(),
