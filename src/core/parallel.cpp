@@ -43,6 +43,10 @@ ThreadLimit::~ThreadLimit() = default;
 int ThreadLimit::threads() const {
     return impl_->count;
 }
+int ThreadLimit::current() {
+    return static_cast<int>(
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
 
 void parallel_for(int64_t count, const std::function<void(int64_t)>& body) {
     // Without a context of its own a loop would run with the floating-point mode in which the

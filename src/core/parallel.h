@@ -15,6 +15,8 @@ class ThreadLimit {
     ThreadLimit(const ThreadLimit&) = delete;
     ThreadLimit& operator=(const ThreadLimit&) = delete;
     int threads() const;
+    /// What limits the loops now.
+    static int current();
 
   private:
     struct Impl;

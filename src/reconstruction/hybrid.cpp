@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.h"
 #include "core/vec.h"
 #include "reconstruction/guides.h"
 #include "reconstruction/outliers.h"
@@ -60,6 +61,35 @@ ColorPlanes without_undershoot(ColorPlanes color, const ColorPlanes& samples) {
     return color;
 }
 
+/// What the denoiser gets of a half, or of the mean of both.
+NoisyImage noisy_image(const ColorPlanes& color, const HalfBuffer& a, const HalfBuffer& b) {
+    NoisyImage image{color, {}, {}};
+    const auto mean = [&](size_t f) {
+        Plane p = a.feature[f];
+        for (size_t i = 0; i < p.size(); ++i) p[i] = 0.5f * (p[i] + b.feature[f][i]);
+        return p;
+    };
+    for (size_t k = 0; k < 3; ++k) {
+        image.albedo[k] = mean(k);
+        image.normal[k] = mean(3 + k);
+    }
+    return image;
+}
+
+/// Both halves and their mean, denoised; none where the denoiser fails, `failure` says why.
+std::vector<ColorPlanes> denoised(const Denoiser* denoiser, const Halves& halves,
+                                  const ColorPlanes& all, std::string& failure) {
+    if (!denoiser) return {};
+    try {
+        return denoiser->denoise({noisy_image(halves[0].color, halves[0], halves[0]),
+                                  noisy_image(halves[1].color, halves[1], halves[1]),
+                                  noisy_image(all, halves[0], halves[1])});
+    } catch (const Error& e) {
+        failure = e.what();
+        return {};
+    }
+}
+
 ColorPlanes mean_of(const Selection& s) {
     ColorPlanes mean = s.half[0];
     for (size_t c = 0; c < 3; ++c)
@@ -75,13 +105,16 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     for (HalfBuffer& half : halves) fill_holes(half);
     replace_empty_half(halves);
     const ColorPlanes all = mean_of(halves);
+    HybridImage image;
+    const std::vector<ColorPlanes> clean =
+        denoised(settings.denoiser, halves, all, image.denoiser_failure);
     limit_outliers(halves);
     // Variances that know of their own pixel's mean would let bright pixels accept dark ones and
     // not the other way round.
     for (HalfBuffer& half : halves)
         for (Plane& v : half.color_variance) v = box_blur(v, 1);
-    const std::vector<Candidate> candidates =
-        make_candidates(halves, spectrum, settings.candidates);
+    std::vector<Candidate> candidates = make_candidates(halves, spectrum, settings.candidates);
+    if (!clean.empty()) candidates.push_back({clean[0], clean[1]});
     Likeness likeness(settings.likeness);
     add_features(halves, likeness);
     for (HalfBuffer& half : halves) half.feature = half.feature_variance = {};  // large, not needed
@@ -95,8 +128,13 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     add_light_and_noise(halves, guess, likeness);
     Selection s = select(halves, candidates, error_weights(halves, guess), likeness, settings.mix);
 
-    HybridImage image;
     image.color = mean_of(s);
+    // All samples denoised together are cleaner than the mean of the denoised halves.
+    if (!clean.empty())
+        for (size_t k = 0; k < 3; ++k)
+            for (size_t i = 0; i < all[k].size(); ++i)
+                image.color[k][i] +=
+                    s.share.back()[i] * (clean[2][k][i] - 0.5f * (clean[0][k][i] + clean[1][k][i]));
     // The image itself is negative only where the samples are, and no darker than they.
     for (size_t k = 0; k < 3; ++k)
         for (size_t i = 0; i < all[k].size(); ++i)

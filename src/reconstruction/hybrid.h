@@ -2,9 +2,11 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "reconstruction/candidates.h"
+#include "reconstruction/denoiser.h"
 #include "reconstruction/error_estimate.h"
 #include "reconstruction/half_buffer.h"
 #include "reconstruction/likeness.h"
@@ -17,6 +19,7 @@ struct HybridSettings {
     float sigma = 4;            ///< of the neighbourhood by which a first mixture is judged, pixels
     LikenessSettings likeness;  ///< of the pixels by which the final one is
     bool mix = true;            ///< false: the best single candidate, for comparisons
+    const Denoiser* denoiser = nullptr;  ///< one more candidate; null: none
 };
 
 struct HybridImage {
@@ -25,7 +28,9 @@ struct HybridImage {
     /// estimates the relMSE.
     Plane relative_error;
     Plane variance;            ///< estimated absolute squared error of the luminance
-    std::vector<Plane> share;  ///< of each candidate: raw, Gaussians, fits
+    std::vector<Plane> share;  ///< of each candidate: raw, Gaussians, fits, the denoiser's
+    /// Why the denoiser's candidate is missing; empty where it is not, or where there is none.
+    std::string denoiser_failure;
 };
 
 /// `halves`: with the variances that their samples have; `spectrum`: the predicted ones after the

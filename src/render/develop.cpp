@@ -112,20 +112,11 @@ Image mixed_image(const RenderState& state, const CovarianceBuffer& all,
                        CovarianceLayers{all, raw, density_layer(state), field, delivered});
 }
 
-Image layers_of(const RenderState& state, const Reconstructed* reconstructed) {
-    switch (state.method) {
-        case Method::uniform:
-            return make_layers(state.films[0], state.display, state.has_holes, std::nullopt);
-        case Method::covariance:
-            return gathered_image(state);
-        case Method::hybrid:
-            break;
-    }
-    const CovarianceBuffer all = state.covariance();
-    if (reconstructed) return mixed_image(state, all, *reconstructed);
-    const Prediction prediction = preintegrate(smooth(all));
-    const HybridImage image = reconstruct(halves_of(state.films), prediction.spectrum);
-    return mixed_image(state, all, {image, prediction});
+Image with_metadata(Image image, const RenderState& state) {
+    image.metadata.insert(state.metadata.begin(), state.metadata.end());
+    image.metadata["spp"] = static_cast<float>(state.mean_count());
+    image.metadata["complete"] = state.complete ? 1 : 0;
+    return image;
 }
 
 }  // namespace
@@ -134,12 +125,32 @@ Film whole_film(const RenderState& state) {
     return state.films.size() == 1 ? state.films[0] : merged(state.films);
 }
 
-Image develop(const RenderState& state, const Reconstructed* reconstructed) {
-    Image image = layers_of(state, reconstructed);
-    image.metadata = state.metadata;
-    image.metadata["spp"] = static_cast<float>(state.mean_count());
-    image.metadata["complete"] = state.complete ? 1 : 0;
-    return image;
+Image develop(const RenderState& state, const Denoiser* denoiser) {
+    switch (state.method) {
+        case Method::uniform:
+            return with_metadata(
+                make_layers(state.films[0], state.display, state.has_holes, std::nullopt), state);
+        case Method::covariance:
+            return with_metadata(gathered_image(state), state);
+        case Method::hybrid:
+            break;
+    }
+    const Prediction prediction = preintegrate(smooth(state.covariance()));
+    HybridSettings settings;
+    settings.denoiser = denoiser;
+    const HybridImage image = reconstruct(halves_of(state.films), prediction.spectrum, settings);
+    return develop(state, denoiser, {image, prediction});
+}
+
+Image develop(const RenderState& state, const Denoiser* denoiser,
+              const Reconstructed& reconstructed) {
+    Image image = mixed_image(state, state.covariance(), reconstructed);
+    const std::string& failure = reconstructed.image.denoiser_failure;
+    if (!failure.empty())
+        image.metadata["covtrace:denoiserFailure"] = failure;
+    else if (denoiser)
+        image.metadata["covtrace:denoiser"] = denoiser->name();
+    return with_metadata(std::move(image), state);
 }
 
 }  // namespace covtrace

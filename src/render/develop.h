@@ -18,7 +18,10 @@ struct Reconstructed {
 };
 
 /// The image with all layers of the method, also of an unfinished render, and the metadata that the
-/// state knows. `reconstructed`: where it is known already.
-Image develop(const RenderState& state, const Reconstructed* reconstructed = nullptr);
+/// state knows. `denoiser`: of `hybrid`, null: none; the metadata name it, or say why it failed.
+Image develop(const RenderState& state, const Denoiser* denoiser = nullptr);
+/// The same of a `hybrid` render where the reconstruction is known already.
+Image develop(const RenderState& state, const Denoiser* denoiser,
+              const Reconstructed& reconstructed);
 
 }  // namespace covtrace

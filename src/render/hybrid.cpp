@@ -39,7 +39,7 @@ class HybridRender {
         reconstruct_image(true);
         const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
         const Reconstructed known{*image_, *prediction_};
-        job_.result.image = develop(s_, &known);
+        job_.result.image = develop(s_, job_.options.denoiser.get(), known);
     }
 
     HybridSamples samples() && {
@@ -49,6 +49,11 @@ class HybridRender {
 
   private:
     size_t size() const { return s_.pixels(); }
+    HybridSettings settings() const {
+        HybridSettings settings;
+        settings.denoiser = job_.options.denoiser.get();
+        return settings;
+    }
     double pilot() const {
         const double most = job_.options.max_spp ? double(*job_.options.max_spp) : kPilot;
         return std::min({kPilot, most, job_.target_spp.value_or(kPilot)});
@@ -196,7 +201,7 @@ class HybridRender {
                 film.feature_squares = std::vector<FeatureSquares>();
                 film.rays = std::vector<uint32_t>();
             }
-        image_ = reconstruct(std::move(halves), prediction_->spectrum);
+        image_ = reconstruct(std::move(halves), prediction_->spectrum, settings());
     }
 
     /// The average count at which the image will be as good as was asked for; what is taken where
@@ -239,7 +244,7 @@ class HybridRender {
                 }
                 spectrum.push_back(prediction_->spectrum[from]);
             }
-        reconstruct(halves_of(films), spectrum);
+        reconstruct(halves_of(films), spectrum, settings());
         return (job_.monitor.elapsed() - start) * double(size()) / double(spectrum.size());
     }
 

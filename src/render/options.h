@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "frequency/brdf_covariance.h"
 #include "image/image.h"
 #include "planner/density.h"
+#include "reconstruction/denoiser.h"
 #include "reconstruction/filter_field.h"
 #include "shading/texture.h"
 
@@ -51,6 +53,9 @@ struct RenderOptions {
     /// covariance: each round samples on demand, where the noise of the samples so far asks for it,
     /// and `max_spp` limits what a pixel gets in one round, not in all.
     bool progressive = false;
+    /// hybrid: one more candidate; null: none. Has no influence on the samples but on when `error`
+    /// and `seconds` end them.
+    std::shared_ptr<const Denoiser> denoiser;
     bool even_counts = false;     ///< hybrid: every pixel the same count, for comparisons
     bool emitters_apart = false;  ///< uniform: keeps the light of emitters in view apart
     uint64_t seed = 0;

@@ -1,0 +1,35 @@
+/// Open Image Denoise (github.com/RenderKit/oidn) as a `Denoiser`.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reconstruction/denoiser.h"
+
+namespace covtrace {
+
+/// Open Image Denoise 2 where its library is found while the program runs: the filter for ray
+/// tracing, HDR, at high quality, with albedo and normal that it has freed of noise before.
+class OidnDenoiser : public Denoiser {
+  public:
+    /// Loads the library `file`. Throws Error(usage) where it cannot be loaded, is no version 2 or
+    /// finds no CPU that it supports; the message says what and why.
+    explicit OidnDenoiser(const std::filesystem::path& file);
+    ~OidnDenoiser() override;
+
+    std::vector<ColorPlanes> denoise(std::vector<NoisyImage> images) const override;
+
+    /// "Open Image Denoise 2.5.1".
+    std::string name() const override;
+    /// Where the dynamic linker found it.
+    const std::filesystem::path& file() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace covtrace
