@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 #include "image/color_encoding.h"
 #include "image/flip.h"
@@ -84,6 +85,58 @@ bool same_bits(const Image& a, const Image& b) {
     });
 }
 
+/// Of every compared pixel: the mean over its channels of (I - R)² / (R² + eps²).
+std::vector<double> relative_errors(const std::vector<Rgb>& image,
+                                    const std::vector<Rgb>& reference,
+                                    const std::vector<bool>& compared, double eps_squared) {
+    std::vector<double> errors;
+    errors.reserve(image.size());
+    for (size_t i = 0; i < image.size(); ++i) {
+        if (!compared[i]) continue;
+        double error = 0;
+        for (int c = 0; c < 3; ++c) {
+            const double v = image[i][c], r = reference[i][c];
+            error += (v - r) * (v - r) / (r * r + eps_squared) / 3;
+        }
+        errors.push_back(error);
+    }
+    return errors;
+}
+
+/// What relmse_median adds to the squares of the reference.
+double squared_tenth_of_median(const std::vector<Rgb>& reference,
+                               const std::vector<bool>& compared) {
+    std::vector<double> values;
+    values.reserve(reference.size());
+    for (size_t i = 0; i < reference.size(); ++i)
+        if (compared[i]) values.push_back(double(luminance(reference[i])));
+    const auto middle = values.begin() + ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    double typical = *middle;
+    if (!(typical > 0))
+        typical = std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+    if (!(typical > 0)) typical = 1;
+    return 0.01 * typical * typical;
+}
+
+std::array<double, kDeciles> decile_ratio(const std::vector<Rgb>& image,
+                                          const std::vector<Rgb>& reference,
+                                          const std::vector<bool>& compared,
+                                          const PixelBounds& bounds) {
+    Plane brightness(bounds.width(), bounds.height(), std::numeric_limits<float>::quiet_NaN());
+    for (size_t i = 0; i < reference.size(); ++i)
+        if (compared[i]) brightness[i] = luminance(reference[i]);
+    const std::vector<uint8_t> deciles = brightness_deciles(brightness);
+    std::array<double, kDeciles> sum{}, reference_sum{}, ratio{};
+    for (size_t i = 0; i < deciles.size(); ++i) {
+        if (deciles[i] == kNoDecile) continue;
+        sum[deciles[i]] += double(luminance(image[i]));
+        reference_sum[deciles[i]] += double(brightness[i]);
+    }
+    for (size_t k = 0; k < kDeciles; ++k) ratio[k] = sum[k] / reference_sum[k];
+    return ratio;
+}
+
 /// Without the floor(n / 1000) largest.
 double trimmed_mean(std::vector<double> errors) {
     const size_t kept = errors.size() - errors.size() / 1000;
@@ -123,40 +176,38 @@ Comparison compare(const Image& image, const Image& reference, std::optional<Pix
     result.bounds = bounds;
 
     std::vector<bool> compared(colors.size());
-    std::vector<double> relative_errors;
-    relative_errors.reserve(colors.size());
-    double sum = 0, relative_sum = 0, encoded_sum = 0;
+    double sum = 0, encoded_sum = 0;
     std::array<double, 3> image_sum{}, reference_sum{};
     for (size_t i = 0; i < colors.size(); ++i) {
         compared[i] = is_finite(colors[i]) && is_finite(references[i]);
         if (!compared[i]) continue;
-        double relative = 0;
+        ++result.pixels;
         for (int c = 0; c < 3; ++c) {
             const double v = colors[i][c], r = references[i][c];
-            const double error = (v - r) * (v - r);
             const double encoded = double(srgb_encode(clamp01(colors[i][c]))) -
                                    double(srgb_encode(clamp01(references[i][c])));
-            sum += error;
-            relative += error / (r * r + 0.01) / 3;
+            sum += (v - r) * (v - r);
             encoded_sum += encoded * encoded;
             image_sum[size_t(c)] += v;
             reference_sum[size_t(c)] += r;
         }
-        relative_sum += relative;
-        relative_errors.push_back(relative);
     }
-    result.pixels = int64_t(relative_errors.size());
     const double values = 3.0 * double(result.pixels);
     for (size_t c = 0; c < 3; ++c) result.mean_ratio[c] = image_sum[c] / reference_sum[c];
+    result.decile_ratio = decile_ratio(colors, references, compared, bounds);
     if (result.pixels == 0) {
         constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-        result.mse = result.relmse = result.relmse_trimmed = result.psnr = result.flip = kNan;
+        result.mse = result.relmse = result.relmse_trimmed = result.relmse_median = result.psnr =
+            result.flip = kNan;
         result.flip_map.assign(colors.size(), 0.0f);
         return result;
     }
     result.mse = sum / values;
-    result.relmse = relative_sum / double(result.pixels);
-    result.relmse_trimmed = trimmed_mean(std::move(relative_errors));
+    std::vector<double> errors = relative_errors(colors, references, compared, 0.01);
+    result.relmse = std::accumulate(errors.begin(), errors.end(), 0.0) / double(result.pixels);
+    result.relmse_trimmed = trimmed_mean(std::move(errors));
+    result.relmse_median = trimmed_mean(relative_errors(
+        colors, references, compared, squared_tenth_of_median(references, compared)));
     result.psnr = -10 * std::log10(encoded_sum / values);
     result.flip_map = flip_map(colors, references, compared, bounds);
     double flip_sum = 0;

@@ -25,6 +25,7 @@ TEST(Compare, EqualImages) {
     EXPECT_EQ(c.mse, 0);
     EXPECT_EQ(c.relmse, 0);
     EXPECT_EQ(c.relmse_trimmed, 0);
+    EXPECT_EQ(c.relmse_median, 0);
     EXPECT_EQ(c.psnr, kInf);
     EXPECT_EQ(c.flip, 0);
     EXPECT_EQ(c.mean_ratio, (std::array<double, 3>{1, 1, 1}));
@@ -79,7 +80,124 @@ TEST(Compare, LeavesOutWhatIsNotFinite) {
     EXPECT_EQ(c.pixels, 3);
     c = compare(uniform(2, 2, Rgb(kNan)), uniform(2, 2, Rgb(1)));
     EXPECT_EQ(c.nonfinite, 12);
-    EXPECT_TRUE(std::isnan(c.mse) && std::isnan(c.flip) && std::isnan(c.relmse_trimmed));
+    EXPECT_TRUE(std::isnan(c.mse) && std::isnan(c.flip) && std::isnan(c.relmse_trimmed) &&
+                std::isnan(c.relmse_median));
+}
+
+/// Ten columns of blocks, 80 x 16 pixels: the first is dark, the others lie between 1 and 1.8.
+Image dark_wall_beside_windows() {
+    Image image = uniform(80, 16, Rgb(1));
+    for (Channel& channel : image.channels)
+        for (size_t i = 0; i < channel.values.size(); ++i) {
+            const size_t block = i % 80 / 8;
+            channel.values[i] = block == 0 ? 0.01f : 0.9f + 0.1f * float(block);
+        }
+    return image;
+}
+
+void scale(Image& image, float factor) {
+    for (Channel& channel : image.channels)
+        for (float& v : channel.values) v *= factor;
+}
+
+TEST(Compare, DecilesSeeWhatIsDark) {
+    const Image reference = dark_wall_beside_windows();
+    Image image = reference;
+    // The wall keeps 0.4 of its light; what it lost lies on the brightest windows.
+    for (Channel& channel : image.channels)
+        for (size_t i = 0; i < channel.values.size(); ++i) {
+            if (i % 80 / 8 == 0) channel.values[i] *= 0.4f;
+            if (i % 80 / 8 == 9) channel.values[i] += 0.006f;
+        }
+    const Comparison c = compare(image, reference);
+    for (double ratio : c.mean_ratio) EXPECT_NEAR(ratio, 1, 1e-6);
+    EXPECT_NEAR(c.decile_ratio[0], 0.4, 1e-6);
+    for (size_t k = 1; k < 9; ++k) EXPECT_DOUBLE_EQ(c.decile_ratio[k], 1);
+    EXPECT_NEAR(c.decile_ratio[9], 1.806 / 1.8, 1e-6);
+}
+
+TEST(Compare, DecilesAreOfTheLuminance) {
+    const Image reference = dark_wall_beside_windows();
+    Image image = reference;
+    for (float& v : image.channels[1].values) v *= 2;  // G
+    for (double ratio : compare(image, reference).decile_ratio) EXPECT_NEAR(ratio, 1.7152, 1e-6);
+}
+
+TEST(Compare, DecilesOfACropAndOfPixelsThatAreFinite) {
+    const Image reference = dark_wall_beside_windows();
+    Image image = reference;
+    scale(image, 3);
+    image.channels[0].values[0] = kInf;
+    image.channels[2].values[79] = kNan;
+    for (double ratio : compare(image, reference).decile_ratio) EXPECT_NEAR(ratio, 3, 1e-6);
+    // Two blocks, counted from the crop's corner, and then one: the other deciles are empty.
+    Comparison c = compare(image, reference, PixelBounds{4, 3, 20, 11});
+    for (size_t k = 0; k < kDeciles; ++k)
+        if (k == 4 || k == 9)
+            EXPECT_NEAR(c.decile_ratio[k], 3, 1e-6);
+        else
+            EXPECT_TRUE(std::isnan(c.decile_ratio[k])) << k;
+    c = compare(image, reference, PixelBounds{0, 0, 1, 1});
+    for (double ratio : c.decile_ratio) EXPECT_TRUE(std::isnan(ratio));
+}
+
+TEST(Compare, DecilesOfBlack) {
+    Image reference = dark_wall_beside_windows();
+    for (Channel& channel : reference.channels)
+        for (size_t i = 0; i < channel.values.size(); i += 80)
+            std::fill_n(channel.values.begin() + ptrdiff_t(i), 8, 0.0f);
+    Image image = reference;
+    EXPECT_TRUE(std::isnan(compare(image, reference).decile_ratio[0]));
+    EXPECT_EQ(compare(image, reference).decile_ratio[1], 1);
+    image.channels[0].values[0] = 1;
+    EXPECT_EQ(compare(image, reference).decile_ratio[0], kInf);
+}
+
+TEST(Compare, RelmseOfTheMedianKnowsNoExposure) {
+    Image reference = dark_wall_beside_windows(), image = reference;
+    for (size_t i = 0; i < image.pixel_count(); ++i)
+        image.channels[i % 3].values[i] *= 1 + 0.01f * float(i % 17);
+    const double expected = compare(image, reference).relmse_median;
+    EXPECT_GT(expected, 0);
+    for (float factor : {1000.0f, 0.001f}) {
+        Image scaled = image, scaled_reference = reference;
+        scale(scaled, factor);
+        scale(scaled_reference, factor);
+        const Comparison c = compare(scaled, scaled_reference);
+        EXPECT_NEAR(c.relmse_median, expected, 1e-5 * expected) << factor;
+    }
+    // Where the median is 1, it is relmse_trimmed.
+    scale(image, 1 / 1.4f);
+    scale(reference, 1 / 1.4f);
+    const Comparison c = compare(image, reference);
+    EXPECT_NEAR(c.relmse_median, c.relmse_trimmed, 1e-5 * expected);
+    EXPECT_NEAR(c.relmse_median, expected, 1e-5 * expected);
+}
+
+TEST(Compare, RelmseOfTheMedianByHand) {
+    Image reference = uniform(4, 1, Rgb(0)), image = reference;
+    const auto set = [](Image& i, std::array<float, 4> values) {
+        for (Channel& channel : i.channels) channel.values.assign(values.begin(), values.end());
+    };
+    // The median, the upper of two; then the mean, where most is black; then 1.
+    set(image, {0.5f, 0, 0, 0});
+    set(reference, {0, 4, 0, 2});
+    const double tenth = 0.2 * 0.2;
+    EXPECT_NEAR(compare(image, reference).relmse_median,
+                (0.25 / tenth + 16 / (16 + tenth) + 4 / (4 + tenth)) / 4, 1e-6);
+    set(reference, {0, 0, 0, 4});
+    EXPECT_NEAR(compare(image, reference).relmse_median, (0.25 / 0.01 + 16 / 16.01) / 4, 1e-6);
+    set(reference, {0, 0, 0, 8});
+    EXPECT_NEAR(compare(image, reference).relmse_median, (0.25 / 0.04 + 64 / 64.04) / 4, 1e-6);
+    set(reference, {0, 0, 0, 0});
+    EXPECT_NEAR(compare(image, reference).relmse_median, 0.25 / 0.01 / 4, 1e-6);
+}
+
+TEST(Compare, RelmseOfTheMedianIsTrimmed) {
+    const Image reference = uniform(1000, 1, Rgb(1));
+    Image image = reference;
+    image.channels[1].values[7] = 1e6f;
+    EXPECT_EQ(compare(image, reference).relmse_median, 0);
 }
 
 TEST(Compare, IdenticalMeansBitsOfAllLayers) {
