@@ -55,18 +55,23 @@ void write_comparison(const CompareArguments& a, const Image& image, const Image
         return whole.data == c.bounds ? whole : cropped(whole, c.bounds);
     };
     const Image shown_image = part(image), shown_reference = part(reference);
+    std::vector<std::string> deciles;
+    for (double ratio : c.decile_ratio) deciles.push_back(format_number(ratio));
     viewer::Report report;
     report.title = name(a.image) + " against " + name(a.reference);
     report.images = {{name(a.image), &shown_image, {}, {{1, c.flip_map}}},
                      {name(a.reference), &shown_reference, {}, {}}};
     report.facts = {{"relMSE", format_number(c.relmse)},
                     {"relMSE, trimmed", format_number(c.relmse_trimmed)},
+                    {"relMSE at the median's exposure", format_number(c.relmse_median)},
                     {"MSE", format_number(c.mse)},
                     {"PSNR", format_number(c.psnr) + " dB"},
                     {"FLIP", format_number(c.flip)},
                     {"mean A / mean B",
                      fmt::format("{} {} {}", format_number(c.mean_ratio[0]),
-                                 format_number(c.mean_ratio[1]), format_number(c.mean_ratio[2]))}};
+                                 format_number(c.mean_ratio[1]), format_number(c.mean_ratio[2]))},
+                    {"mean A / mean B by brightness, darkest first",
+                     fmt::format("{}", fmt::join(deciles, " "))}};
     write_report_file(report, a.report);
 }
 
@@ -85,26 +90,29 @@ int compare_images(const CompareArguments& a) {
     const Comparison c = compare(image, reference, crop);
     if (!a.report.empty()) write_comparison(a, image, reference, c);
     if (a.json) {
-        // JSON has no infinity: the psnr of equal images is null.
+        // JSON has no infinity: the psnr of equal images is null, and so is 0 / 0.
         nlohmann::json j = {
             {"mse", c.mse},
             {"relmse", c.relmse},
             {"relmse_trimmed", c.relmse_trimmed},
+            {"relmse_median", c.relmse_median},
             {"psnr", std::isfinite(c.psnr) ? nlohmann::json(c.psnr) : nlohmann::json()},
             {"flip", c.flip},
             {"mean_ratio", c.mean_ratio},
+            {"decile_ratio", c.decile_ratio},
             {"nonfinite", c.nonfinite},
             {"identical", c.identical}};
         fmt::print("{}\n", j.dump());
         return 0;
     }
     fmt::print(
-        "mse             {:.6g}\nrelmse          {:.6g}\nrelmse_trimmed  {:.6g}\npsnr            "
-        "{:.3f} dB\n"
-        "flip            {:.5f}\nmean_ratio      {:.5f} {:.5f} {:.5f}\nnonfinite       "
-        "{}\nidentical       {}\n",
-        c.mse, c.relmse, c.relmse_trimmed, c.psnr, c.flip, c.mean_ratio[0], c.mean_ratio[1],
-        c.mean_ratio[2], c.nonfinite, c.identical ? "yes" : "no");
+        "mse             {:.6g}\nrelmse          {:.6g}\nrelmse_trimmed  {:.6g}\n"
+        "relmse_median   {:.6g}\npsnr            {:.3f} dB\nflip            {:.5f}\n"
+        "mean_ratio      {:.5f}\ndecile_ratio    {:.5f}\nnonfinite       {}\n"
+        "identical       {}\n",
+        c.mse, c.relmse, c.relmse_trimmed, c.relmse_median, c.psnr, c.flip,
+        fmt::join(c.mean_ratio, " "), fmt::join(c.decile_ratio, " "), c.nonfinite,
+        c.identical ? "yes" : "no");
     return 0;
 }
 

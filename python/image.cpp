@@ -109,9 +109,11 @@ py::dict comparison(const SharedPlanes& image, const SharedPlanes& reference) {
     result["mse"] = c.mse;
     result["relmse"] = c.relmse;
     result["relmse_trimmed"] = c.relmse_trimmed;
+    result["relmse_median"] = c.relmse_median;
     result["psnr"] = c.psnr;
     result["flip"] = c.flip;
     result["mean_ratio"] = py::make_tuple(c.mean_ratio[0], c.mean_ratio[1], c.mean_ratio[2]);
+    result["decile_ratio"] = py::tuple(py::cast(c.decile_ratio));
     result["nonfinite"] = c.nonfinite;
     result["identical"] = c.identical;
     result["flip_map"] = flip_map;

@@ -145,14 +145,17 @@ class Image:
 
 @dataclass(frozen=True)
 class Comparison:
-    """The measures of `covtrace compare`; flip_map is (height, width)."""
+    """The measures of `covtrace compare`; decile_ratio has ten numbers, the darkest decile's first,
+    NaN where one is empty or black; flip_map is (height, width)."""
 
     mse: float
     relmse: float
     relmse_trimmed: float
+    relmse_median: float
     psnr: float
     flip: float
     mean_ratio: tuple[float, float, float]
+    decile_ratio: tuple[float, ...]
     nonfinite: int
     identical: bool
     flip_map: Array

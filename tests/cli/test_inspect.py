@@ -119,6 +119,13 @@ class Pages(CliTest):
         result = self.run_program("compare", "a.exr", "b.exr", "--json", "--report", "page.html")
         self.assertIn("relmse", json.loads(result.stdout))
 
+    def test_measures_of_the_dark(self):
+        result = self.run_program("compare", "a.exr", "a.exr", "--report", "page.html")
+        self.assertEqual(result.code, DONE, result)
+        page = (self.folder / "page.html").read_text()
+        self.assertIn('["relMSE at the median\'s exposure","0"]', page)
+        self.assertRegex(page, r'\["mean A / mean B by brightness, darkest first","(1|NaN)( (1|NaN)){9}"\]')
+
     def test_a_part(self):
         result = self.run_program("compare", "a.exr", "b.exr", "--crop", "4,2,12,10", "--report", "page.html")
         self.assertEqual(result.code, DONE, result)

@@ -15,7 +15,10 @@ import unittest
 import exr
 from support import DONE, PROGRAM, SCENE, TINY, USAGE, CliTest
 
-KEYS = {"mse", "relmse", "relmse_trimmed", "psnr", "flip", "mean_ratio", "nonfinite", "identical"}
+KEYS = {
+    "mse", "relmse", "relmse_trimmed", "relmse_median", "psnr", "flip", "mean_ratio", "decile_ratio", "nonfinite",
+    "identical",
+}
 
 
 def srgb(v):
@@ -23,29 +26,56 @@ def srgb(v):
     return 12.92 * v if v <= 0.0031308 else 1.055 * v ** (1 / 2.4) - 0.055
 
 
-def measures(image, reference, pixels=None):
-    """The definitions of the measures, once more."""
-    pixels = range(image.width * image.height) if pixels is None else pixels
-    squares, relative, encoded = 0.0, [], 0.0
+def luminance(image, i):
+    return sum(w * image.pixels[c][i] for w, c in zip((0.2126, 0.7152, 0.0722), "RGB"))
+
+
+def decile_ratio(image, reference, pixels):
+    """Sums of luminance over those of the reference, in ten groups of 8x8 blocks by its brightness."""
+    top, left = divmod(pixels[0], image.width)
+    blocks = {}
     for i in pixels:
-        error = 0.0
+        y, x = divmod(i, image.width)
+        blocks.setdefault(((y - top) // 8, (x - left) // 8), []).append(i)
+    by_brightness = sorted(blocks.values(), key=lambda b: sum(luminance(reference, i) for i in b) / len(b))
+    ratios = []
+    for k in range(10):
+        group = by_brightness[k * len(blocks) // 10 : (k + 1) * len(blocks) // 10]
+        inside = [i for block in group for i in block]
+        light = sum(luminance(reference, i) for i in inside)
+        ratios.append(sum(luminance(image, i) for i in inside) / light if light else None)
+    return ratios
+
+
+def measures(image, reference, pixels=None):
+    """The definitions of the measures, once more; `pixels` are a rectangle's, row by row."""
+    pixels = range(image.width * image.height) if pixels is None else pixels
+    n = len(pixels)
+    squares, encoded = 0.0, 0.0
+    for i in pixels:
         for c in "RGB":
             v, r = image.pixels[c][i], reference.pixels[c][i]
             squares += (v - r) ** 2
-            error += (v - r) ** 2 / (r * r + 0.01) / 3
             encoded += (srgb(v) - srgb(r)) ** 2
-        relative.append(error)
-    relative.sort()
-    kept = relative[: len(relative) - len(relative) // 1000]
-    n = len(relative)
+
+    def relative(eps):
+        def error(v, r):
+            return (v - r) ** 2 / (r * r + eps * eps)
+
+        return sorted(sum(error(image.pixels[c][i], reference.pixels[c][i]) for c in "RGB") / 3 for i in pixels)
+
+    kept = n - n // 1000
+    median = sorted(luminance(reference, i) for i in pixels)[n // 2]
     return {
         "mse": squares / (3 * n),
-        "relmse": sum(relative) / n,
-        "relmse_trimmed": sum(kept) / len(kept),
+        "relmse": sum(relative(0.1)) / n,
+        "relmse_trimmed": sum(relative(0.1)[:kept]) / kept,
+        "relmse_median": sum(relative(0.1 * median)[:kept]) / kept,
         "psnr": -10 * math.log10(encoded / (3 * n)),
         "mean_ratio": [
             sum(image.pixels[c][i] for i in pixels) / sum(reference.pixels[c][i] for i in pixels) for c in "RGB"
         ],
+        "decile_ratio": decile_ratio(image, reference, pixels),
     }
 
 
@@ -63,11 +93,16 @@ class Compare(CliTest):
 
     def assert_measures(self, found, expected):
         self.assertEqual(set(found), KEYS)
-        for key in ("mse", "relmse", "relmse_trimmed"):
+        for key in ("mse", "relmse", "relmse_trimmed", "relmse_median"):
             self.assertAlmostEqual(found[key], expected[key], delta=1e-5 * expected[key], msg=key)
         self.assertAlmostEqual(found["psnr"], expected["psnr"], delta=1e-3)
-        for f, e in zip(found["mean_ratio"], expected["mean_ratio"]):
-            self.assertAlmostEqual(f, e, delta=1e-5)
+        for key in ("mean_ratio", "decile_ratio"):
+            self.assertEqual(len(found[key]), len(expected[key]))
+            for f, e in zip(found[key], expected[key]):
+                if e is None:
+                    self.assertIsNone(f, key)
+                else:
+                    self.assertAlmostEqual(f, e, delta=1e-5, msg=key)
 
     def test_measures(self):
         found = self.compare(self.image, self.reference)
@@ -87,10 +122,11 @@ class Compare(CliTest):
     def test_equal_images(self):
         found = self.compare(self.image, self.image)
         self.assertEqual(set(found), KEYS)
-        for key in ("mse", "relmse", "relmse_trimmed", "flip"):
+        for key in ("mse", "relmse", "relmse_trimmed", "relmse_median", "flip"):
             self.assertEqual(found[key], 0)
         self.assertIsNone(found["psnr"])  # JSON has no infinity
         self.assertEqual(found["mean_ratio"], [1, 1, 1])
+        self.assertEqual(found["decile_ratio"], [None] * 3 + [1] * 7)  # the sky is black
         self.assertIs(found["identical"], True)
 
     def test_more_samples_are_closer(self):
@@ -98,7 +134,7 @@ class Compare(CliTest):
             "--resolution", "60x40", "--method", "uniform", "--spp", "16", "--seed", "3", output="better.exr"
         )
         near, far = self.compare(better, self.reference), self.compare(self.image, self.reference)
-        for key in ("mse", "relmse", "relmse_trimmed", "flip"):
+        for key in ("mse", "relmse", "relmse_trimmed", "relmse_median", "flip"):
             self.assertLess(near[key], far[key], key)
         self.assertGreater(near["psnr"], far["psnr"])
 
@@ -109,6 +145,7 @@ class Compare(CliTest):
         found = self.compare(path, path)
         self.assertEqual(found["nonfinite"], 2)
         self.assertEqual(found["mse"], 0)
+        self.assertEqual(found["decile_ratio"], [None] * 9 + [1])  # a single block
 
     def test_text_has_the_same_names(self):
         result = self.run_program("compare", self.image, self.reference)

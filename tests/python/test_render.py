@@ -301,17 +301,29 @@ class Images(unittest.TestCase):
         c = covtrace.compare(1.1 * reference, reference)
         self.assertAlmostEqual(c.mse, 0.0025, places=6)
         self.assertAlmostEqual(c.relmse, 0.0025 / 0.26, places=6)
+        self.assertAlmostEqual(c.relmse_median, 0.0025 / 0.2525, places=6)
         numpy.testing.assert_allclose(c.mean_ratio, 1.1, rtol=1e-6)
+        numpy.testing.assert_allclose(c.decile_ratio, [numpy.nan] * 9 + [1.1], rtol=1e-6)
         self.assertEqual(c.flip_map.shape, (8, 8))
         self.assertFalse(c.identical)
         with self.assertRaises(covtrace.UsageError):
             covtrace.compare(reference, numpy.zeros((4, 4, 3)))
 
+    def test_compare_sees_what_is_dark(self):
+        reference = numpy.ones((16, 80, 3)) * numpy.repeat(numpy.geomspace(0.001, 1, 10), 8)[None, :, None]
+        image = reference.copy()
+        image[:, :8] *= 0.4
+        c = covtrace.compare(image, reference)
+        numpy.testing.assert_allclose(c.mean_ratio, 1, atol=1e-3)
+        numpy.testing.assert_allclose(c.decile_ratio, [0.4] + [1] * 9, rtol=1e-5)
+        dim = covtrace.compare(0.001 * image, 0.001 * reference)
+        self.assertAlmostEqual(dim.relmse_median / c.relmse_median, 1, places=4)
+
     def test_compare_where_nothing_is_finite(self):
         reference = numpy.full((6, 8, 3), 0.5)
         c = covtrace.compare(numpy.full((6, 8, 3), numpy.nan), reference)
         self.assertEqual(c.nonfinite, 3 * 6 * 8)
-        for measure in (c.mse, c.relmse, c.relmse_trimmed, c.psnr, c.flip):
+        for measure in (c.mse, c.relmse, c.relmse_trimmed, c.relmse_median, c.psnr, c.flip, *c.decile_ratio):
             self.assertTrue(numpy.isnan(measure))
         numpy.testing.assert_array_equal(c.flip_map, numpy.zeros((6, 8)))
 
