@@ -112,6 +112,7 @@ std::string origin(const Image& image) {
     for (const auto& [key, before, after] : {std::array{"covtrace:method", ", method ", ""},
                                              {"spp", ", ", " samples per pixel"},
                                              {"covtrace:seed", ", seed ", ""},
+                                             {"covtrace:denoiser", ", ", ""},
                                              {"covtrace:seconds", ", ", " s"}})
         if (const std::string value = metadata_text(image, key); !value.empty())
             text += before + value + after;

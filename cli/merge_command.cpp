@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/denoiser_options.h"
 #include "cli/layer_selection.h"
 #include "cli/message.h"
 #include "cli/options.h"
@@ -22,6 +23,7 @@ struct MergeArguments {
     std::vector<std::string> films;
     std::string output, film, png;
     LayerSelection layers{true, {}};
+    DenoiserArguments denoiser;
     bool quiet = false;
 };
 
@@ -37,7 +39,13 @@ int merge_films(const MergeArguments& a) {
     const RenderState state = std::move(merge).result();
     if (!a.film.empty()) write_film(state, a.film);
     if (!a.output.empty() || !a.png.empty()) {
-        Image image = develop(state);
+        const FoundDenoiser denoiser =
+            state.method == Method::hybrid ? find(a.denoiser) : FoundDenoiser{};
+        Image image = develop(state, denoiser.denoiser.get());
+        if (!a.quiet) {
+            warn_of_unusable(denoiser);
+            warn_of_failed_denoiser(image);
+        }
         keep_layers(image, a.layers);
         if (!a.output.empty()) write_exr(image, a.output, threads.threads());
         if (!a.png.empty()) write_png(image, a.png);
@@ -65,6 +73,7 @@ void add_merge(CLI::App& app, Invocation& invocation) {
         ->check(not_empty())
         ->option_text("FILE");
     add_layers(c, "--layers", a->layers, "all, or name,name…: layers beside the image");
+    add_denoiser_options(c, a->denoiser);
     c->add_flag("--quiet", a->quiet, "errors only");
     c->callback([a, &invocation] { invocation.action = [a] { return merge_films(*a); }; });
 }

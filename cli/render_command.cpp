@@ -123,6 +123,12 @@ void be_silent(RenderArguments& a) {
     a.tev.clear();
 }
 
+/// None where no image is made, or by a method that has none.
+FoundDenoiser denoiser_of(const RenderArguments& a, bool is_first) {
+    if (a.options.method != Method::hybrid || a.film.shard || a.debug_pixel || !is_first) return {};
+    return find(a.denoiser);
+}
+
 /// `ranks`: the processes that share the work; may be null.
 int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLimit& threads,
                  const Ranks* ranks) {
@@ -157,6 +163,8 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
         if (!file.empty()) require_writable(file);
     for (const fs::path& file : {output, fs::path(a.png), fs::path(a.stats)})
         if (!file.empty()) remove_leftovers(file);
+    const FoundDenoiser denoiser = denoiser_of(a, is_first);
+    a.options.denoiser = denoiser.denoiser;
     FilmFiles films(a.film, [&progress] { progress.clear(); });
     FilmKeeping keeping = films.keeping(is_first);
     keeping.ranks = ranks;
@@ -166,6 +174,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     const double built = monitor.elapsed();
     progress.clear();
     if (!a.quiet) {
+        warn_of_unusable(denoiser);
         print_warnings(scene.description.warnings);
         print_warnings(scene.materials.warnings());
     }
@@ -198,10 +207,11 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
         deliver(result, a, output, monitor, invocation.command_line, threads.threads());
     result.statistics.seconds["write"] = monitor.elapsed() - rendered;
     if (!a.stats.empty())
-        write_text(statistics_json(scene, result, monitor).dump(2) + "\n", a.stats);
+        write_text(statistics_json(scene, result, denoiser, monitor).dump(2) + "\n", a.stats);
     if (result.complete || (is_shard && !monitor.cancelled()))
         progress.done(result.statistics.samples_per_pixel, monitor.elapsed(), monitor.error());
     warn_of_rejected(result.statistics);
+    if (!a.quiet) warn_of_failed_denoiser(result.image);
     if (!a.quiet)
         say("{}: {:.4g} samples per pixel in {:.1f} s\n", is_shard ? a.film.film : output.string(),
             result.statistics.samples_per_pixel, monitor.elapsed());

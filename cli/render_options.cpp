@@ -33,6 +33,7 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
               "most samples in a pixel (default: 16 x average)");
     c->add_flag("--progressive", a.options.progressive, "covariance: rounds of samples on demand");
     c->add_flag("--even-counts", a.options.even_counts, "hybrid: the same count in every pixel");
+    add_denoiser_options(c, a.denoiser);
     add_choice<Occlusion>(
         c, "--occlusion", a.options.occlusion,
         {{"grid", Occlusion::grid}, {"query", Occlusion::query}, {"none", Occlusion::none}},

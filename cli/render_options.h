@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/denoiser_options.h"
 #include "cli/film_options.h"
 #include "cli/layer_selection.h"
 #include "cli/progress_line.h"
@@ -23,6 +24,7 @@ struct RenderArguments {
     std::string scene, output, png, stats, isa;
     std::string seconds, resolution, crop, shutter, tev;
     FilmArguments film;
+    DenoiserArguments denoiser;
     std::optional<DebugPixel> debug_pixel;
     LayerSelection layers{true, {}}, tev_layers;
     LayerNames layer_names = LayerNames::standard;

@@ -19,10 +19,21 @@ nlohmann::json memory_json(const RenderScene& scene, const RenderResult& result)
     return memory;
 }
 
+/// Name and file of the one that was used, or why there is none; null where none is needed.
+nlohmann::json denoiser_json(const FoundDenoiser& found, const Metadata& image) {
+    const auto failure = image.find("covtrace:denoiserFailure");
+    if (failure != image.end())
+        return {{"why_none", std::get<std::string>(failure->second)},
+                {"file", found.library.string()}};
+    if (found.denoiser) return {{"name", found.denoiser->name()}, {"file", found.library.string()}};
+    if (!found.why_none.empty()) return {{"why_none", found.why_none}};
+    return nullptr;
+}
+
 }  // namespace
 
 nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& result,
-                               const Monitor& monitor) {
+                               const FoundDenoiser& denoiser, const Monitor& monitor) {
     const auto pass = [](const PassStatistics& s) {
         nlohmann::json rejected = nlohmann::json::array();
         for (const RejectedSample& r : s.first_rejected) rejected.push_back({r.x, r.y, r.sample});
@@ -50,6 +61,7 @@ nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& res
     };
     return {{"seconds_total", monitor.elapsed()},
             {"seconds", result.statistics.seconds},
+            {"denoiser", denoiser_json(denoiser, result.image.metadata)},
             {"memory", memory_json(scene, result)},
             {"spp", result.statistics.samples_per_pixel},
             {"covariance", pass(result.statistics.covariance)},

@@ -3,11 +3,12 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "denoiser/find_denoiser.h"
 #include "render/session.h"
 
 namespace covtrace::cli {
 
 nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& result,
-                               const Monitor& monitor);
+                               const FoundDenoiser& denoiser, const Monitor& monitor);
 
 }  // namespace covtrace::cli

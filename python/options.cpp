@@ -1,6 +1,10 @@
 #include "options.h"
 
+#include <dlfcn.h>
+#include <pybind11/stl/filesystem.h>
+
 #include <cmath>
+#include <filesystem>
 
 namespace covtrace::python {
 
@@ -41,6 +45,27 @@ RenderOptions render_options(const py::dict& o) {
     r.even_counts = value_of<bool>(o, "even_counts", "True or False");
     r.seed = value_of<uint64_t>(o, "seed", "a whole number from 0 to 2^64 - 1");
     return r;
+}
+
+DenoiserSearch denoiser_search(const py::dict& o) {
+    namespace fs = std::filesystem;
+    DenoiserSearch search;
+    search.choice =
+        choice<DenoiserChoice>("denoiser", value_of<std::string>(o, "denoiser", "a text"),
+                               {{"auto", DenoiserChoice::automatic},
+                                {"oidn", DenoiserChoice::oidn},
+                                {"none", DenoiserChoice::none}});
+    if (is_given(o, "denoiser_library"))
+        search.library = value_of<fs::path>(o, "denoiser_library", "a file's path");
+    Dl_info module{};
+    std::error_code ignored;
+    if (::dladdr(reinterpret_cast<const void*>(&denoiser_search), &module) && module.dli_fname) {
+        const fs::path folder = fs::absolute(module.dli_fname, ignored).parent_path();
+        // Beside it, in the build folder, and where the program is installed.
+        search.folders = {folder / "denoiser", folder / "../../denoiser",
+                          folder / "../../../denoiser", folder / "../../../covtrace/denoiser"};
+    }
+    return search;
 }
 
 std::array<float, 2> checked_shutter(const std::array<float, 2>& shutter) {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "denoiser/find_denoiser.h"
 #include "render/options.h"
 
 namespace covtrace::python {
@@ -63,6 +64,8 @@ std::optional<T> positive(const py::dict& options, const char* name, double leas
 }
 
 RenderOptions render_options(const py::dict& o);
+/// Folders: those around the module's own file.
+DenoiserSearch denoiser_search(const py::dict& o);
 SceneOverrides scene_overrides(const py::dict& o);
 
 /// Refuses what is no begin and a later end.

@@ -79,6 +79,8 @@ struct Rendered {
     bool complete = false;
     std::string isa;
     Warnings warnings;
+    FoundDenoiser denoiser;
+    std::string denoiser_failure;  ///< while the image was made
 };
 
 std::string text_of(const Warning& w) {
@@ -93,15 +95,32 @@ std::vector<std::string> texts_of(const Warnings& warnings) {
 }
 
 /// All that happens without Python: builds the scene and renders it.
-Rendered render_description(SceneDescription description, const RenderOptions& options,
-                            const SceneOverrides& overrides, int threads, const std::string& isa,
-                            size_t texture_bytes, Monitor& monitor) {
+Rendered render_description(SceneDescription description, RenderOptions options,
+                            const DenoiserSearch& search, const SceneOverrides& overrides,
+                            int threads, const std::string& isa, size_t texture_bytes,
+                            Monitor& monitor) {
     const ThreadLimit limit(threads);
+    FoundDenoiser denoiser;
+    if (options.method == Method::hybrid) denoiser = find_denoiser(search);
+    options.denoiser = denoiser.denoiser;
     apply(overrides, description);
     RenderScene scene(std::move(description), isa, texture_bytes);
     RenderResult result = render(scene, options, monitor);
-    return {std::make_shared<Planes>(std::move(result.image)), std::move(result.statistics),
-            result.complete, scene.geometry.isa(), scene.materials.warnings()};
+    Warnings warnings = scene.materials.warnings();
+    if (denoiser.is_unusable) warnings.push_back({{}, "no denoiser is used: " + denoiser.why_none});
+    std::string failure;
+    if (const auto it = result.image.metadata.find("covtrace:denoiserFailure");
+        it != result.image.metadata.end()) {
+        failure = std::get<std::string>(it->second);
+        warnings.push_back({{}, "the denoiser failed, the image is without it: " + failure});
+    }
+    return {std::make_shared<Planes>(std::move(result.image)),
+            std::move(result.statistics),
+            result.complete,
+            scene.geometry.isa(),
+            std::move(warnings),
+            std::move(denoiser),
+            std::move(failure)};
 }
 
 py::dict pass_dict(const PassStatistics& s) {
@@ -116,10 +135,22 @@ py::dict pass_dict(const PassStatistics& s) {
     return d;
 }
 
+/// As in the program's statistics.
+py::object denoiser_object(const Rendered& r) {
+    py::dict d;
+    if (!r.denoiser_failure.empty() || !r.denoiser.denoiser)
+        d["why_none"] = r.denoiser_failure.empty() ? r.denoiser.why_none : r.denoiser_failure;
+    else
+        d["name"] = r.denoiser.denoiser->name();
+    if (!r.denoiser.library.empty()) d["file"] = r.denoiser.library.string();
+    return r.denoiser.denoiser || !r.denoiser.why_none.empty() ? py::object(d) : py::none();
+}
+
 py::dict statistics_dict(const Rendered& r, double elapsed) {
     py::dict d;
     d["seconds_total"] = elapsed;
     d["seconds"] = r.statistics.seconds;
+    d["denoiser"] = denoiser_object(r);
     d["memory"] = r.statistics.memory;
     d["spp"] = r.statistics.samples_per_pixel;
     d["covariance"] = pass_dict(r.statistics.covariance);
@@ -130,6 +161,7 @@ py::dict statistics_dict(const Rendered& r, double elapsed) {
 
 py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
     const RenderOptions options = render_options(o);
+    const DenoiserSearch search = denoiser_search(o);
     const SceneOverrides overrides = scene_overrides(o);
     const int threads = value_of<int>(o, "threads", "a whole number");
     require(threads >= 0 && threads <= 4096, "threads must be from 0 to 4096");
@@ -157,8 +189,8 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
     std::exception_ptr failure;
     std::thread worker([&, description = scene]() mutable {
         try {
-            rendered = render_description(std::move(description), options, overrides, threads, isa,
-                                          texture_bytes, monitor);
+            rendered = render_description(std::move(description), options, search, overrides,
+                                          threads, isa, texture_bytes, monitor);
         } catch (...) {
             failure = std::current_exception();
         }

@@ -45,6 +45,8 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            texture_bandwidth: Literal["own", "highest"] = "own",
            filter: Literal["verified", "thesis"] = "verified", progressive: bool = False,
            even_counts: bool = False,
+           denoiser: Literal["auto", "oidn", "none"] = "auto",
+           denoiser_library: str | os.PathLike[str] | None = None,
            resolution: tuple[int, int] | None = None,
            crop: tuple[int, int, int, int] | None = None,
            shutter: tuple[float, float] | None = None, focus: float | None = None,
@@ -60,6 +62,8 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     method: "uniform" (the plain path tracer), "covariance" (the thesis' method) or "hybrid".
     spp, time, error: budgets: average samples per pixel (default: the scene's), seconds, estimated
         sqrt(relMSE); of several the first one stops.
+    denoiser, denoiser_library: whether "hybrid" has Open Image Denoise as one more filter, "auto" where
+        it is found; `image.statistics["denoiser"]` tells. A warning where it is there but unusable.
     resolution (w, h), crop (x0, y0, x1, y1), shutter (t0, t1), focus, fstop: in place of the scene's.
         The nodes of a glTF file are placed when it is read: give `shutter` with the file's path, or
         to `Scene`.
@@ -76,7 +80,9 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
                "max_spp": max_spp, "max_depth": max_depth, "density": density,
                "occlusion": occlusion, "voxels": voxels, "brdf_covariance": brdf_covariance,
                "texture_bandwidth": texture_bandwidth, "filter": filter,
-               "progressive": progressive, "even_counts": even_counts, "resolution": resolution,
+               "progressive": progressive, "even_counts": even_counts, "denoiser": denoiser,
+               "denoiser_library": None if denoiser_library is None else os.fspath(denoiser_library),
+               "resolution": resolution,
                "crop": crop, "shutter": shutter, "focus": focus, "fstop": fstop, "seed": seed,
                "threads": threads, "isa": isa, "texture_memory": _bytes(texture_memory),
                "progress": progress, "cancel": cancel}

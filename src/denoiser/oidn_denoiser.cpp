@@ -1,92 +1,61 @@
 #include "denoiser/oidn_denoiser.h"
 
-#include <dlfcn.h>
-
-#include <algorithm>
+#include <cmath>
+#include <new>
 #include <utility>
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "denoiser/oidn_api.h"
+#include "denoiser/input_range.h"
+#include "denoiser/oidn_library.h"
 
 namespace covtrace {
 
 namespace {
 
-using oidn::Api;
-
-/// dlopen()'s handle; never closed: the library's own threads may outlive every use of it.
-void* load(const std::filesystem::path& file) {
-    void* library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (library) return library;
-    const char* why = ::dlerror();
-    throw Error(ErrorKind::usage, why ? why : file.string() + ": cannot be loaded");
-}
-
-template <typename Function>
-void find(void* library, const std::filesystem::path& file, const char* name, Function& function) {
-    void* symbol = ::dlsym(library, name);
-    if (!symbol)
-        throw Error(ErrorKind::usage, file.string() + ": has no function " + name +
-                                          "; expected Open Image Denoise 2");
-    function = reinterpret_cast<Function>(symbol);
-}
-
-Api functions_of(void* library, const std::filesystem::path& file) {
-    Api api{};
-    find(library, file, "oidnNewDevice", api.new_device);
-    find(library, file, "oidnReleaseDevice", api.release_device);
-    find(library, file, "oidnSetDeviceBool", api.set_device_bool);
-    find(library, file, "oidnSetDeviceInt", api.set_device_int);
-    find(library, file, "oidnGetDeviceInt", api.get_device_int);
-    find(library, file, "oidnCommitDevice", api.commit_device);
-    find(library, file, "oidnGetDeviceError", api.get_device_error);
-    find(library, file, "oidnNewFilter", api.new_filter);
-    find(library, file, "oidnReleaseFilter", api.release_filter);
-    find(library, file, "oidnSetSharedFilterImage", api.set_image);
-    find(library, file, "oidnSetFilterBool", api.set_filter_bool);
-    find(library, file, "oidnSetFilterInt", api.set_filter_int);
-    find(library, file, "oidnCommitFilter", api.commit_filter);
-    find(library, file, "oidnExecuteFilter", api.execute_filter);
-    return api;
-}
-
-std::filesystem::path place_of(const void* symbol, const std::filesystem::path& otherwise) {
-    Dl_info info{};
-    return ::dladdr(symbol, &info) && info.dli_fname ? info.dli_fname : otherwise;
-}
+/// For the network's own values. More is needed from about three million pixels on, which are then
+/// denoised in tiles that overlap, to the same bits.
+constexpr int kMostMegabytes = 2000;
 
 /// Three planes as the library has pixels.
 class Pixels {
   public:
-    Pixels(const std::array<Plane, 3>& planes)
-        : width_(size_t(planes[0].width)),
-          height_(size_t(planes[0].height)),
-          values_(3 * planes[0].size()) {
-        for (size_t c = 0; c < 3; ++c)
-            for (size_t i = 0; i < planes[c].size(); ++i) values_[3 * i + c] = planes[c][i];
+    Pixels(const std::array<Plane, 3>& planes, const InputRange& range)
+        : planes_(planes), range_(range), values_(3 * planes[0].size()) {
+        for (size_t i = 0; i < planes[0].size(); ++i) read(i);
     }
-    size_t width() const { return width_; }
-    size_t height() const { return height_; }
+    size_t width() const { return size_t(planes_[0].width); }
+    size_t height() const { return size_t(planes_[0].height); }
     float* data() { return values_.data(); }
-    void write_to(std::array<Plane, 3>& planes) const {
+    /// Where the library left what is no number, the pixel is again what it was before.
+    void repair() {
+        for (size_t i = 0; i < planes_[0].size(); ++i) {
+            const float* v = &values_[3 * i];
+            if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2])) read(i);
+        }
+    }
+    std::array<Plane, 3> planes() const {
+        std::array<Plane, 3> result = planes_;
         for (size_t c = 0; c < 3; ++c)
-            for (size_t i = 0; i < planes[c].size(); ++i) planes[c][i] = values_[3 * i + c];
+            for (size_t i = 0; i < result[c].size(); ++i)
+                result[c][i] = range_.from_network(values_[3 * i + c]);
+        return result;
     }
 
   private:
-    size_t width_, height_;
+    void read(size_t i) {
+        for (size_t c = 0; c < 3; ++c) values_[3 * i + c] = range_.to_network(planes_[c][i]);
+    }
+    const std::array<Plane, 3>& planes_;
+    const InputRange range_;
     std::vector<float> values_;
 };
 
 }  // namespace
 
 struct OidnDenoiser::Impl {
-    explicit Impl(const std::filesystem::path& path) {
-        void* library = load(path);
-        api = functions_of(library, path);
-        file = place_of(reinterpret_cast<const void*>(api.new_device), path);
-        device = api.new_device(oidn::kCpu);
+    explicit Impl(oidn::Library library)
+        : api(library.api), file(std::move(library.file)), device(api.new_device(oidn::kCpu)) {
         if (!device) throw Error(ErrorKind::usage, file.string() + ": " + error());
         const int number = api.get_device_int(device, "version");
         version = std::to_string(number / 10000) + "." + std::to_string(number / 100 % 100) + "." +
@@ -99,7 +68,8 @@ struct OidnDenoiser::Impl {
             api.set_device_bool(device, "setAffinity", false);
             api.set_device_int(device, "numThreads", ThreadLimit::current());
             api.commit_device(device);
-            check(ErrorKind::usage);
+            if (const std::string message = error(); !message.empty())
+                throw Error(ErrorKind::usage, file.string() + ": " + message);
         } catch (...) {
             api.release_device(device);
             throw;
@@ -115,9 +85,10 @@ struct OidnDenoiser::Impl {
         if (api.get_device_error(device, &message) == 0) return {};
         return message && *message ? message : "unknown error";
     }
-    void check(ErrorKind kind) const {
+    std::string name() const { return "Open Image Denoise " + version; }
+    void check() const {
         const std::string message = error();
-        if (!message.empty()) throw Error(kind, file.string() + ": " + message);
+        if (!message.empty()) throw Error(ErrorKind::limit, name() + ": " + message);
     }
 
     struct Input {
@@ -129,7 +100,7 @@ struct OidnDenoiser::Impl {
         const auto release = [this](oidn::Filter f) { api.release_filter(f); };
         const std::unique_ptr<oidn::OIDNFilterImpl, decltype(release)> f(
             api.new_filter(device, "RT"), release);
-        check(ErrorKind::limit);
+        check();
         const auto set = [&](const char* name, Pixels& p) {
             api.set_image(f.get(), name, p.data(), oidn::kFloat3, p.width(), p.height(), 0, 0, 0);
         };
@@ -140,37 +111,48 @@ struct OidnDenoiser::Impl {
             api.set_filter_bool(f.get(), "cleanAux", true);
         }
         api.set_filter_int(f.get(), "quality", oidn::kHigh);
+        api.set_filter_int(f.get(), "maxMemoryMB", kMostMegabytes);
         api.commit_filter(f.get());
         api.execute_filter(f.get());
-        check(ErrorKind::limit);
+        check();
+        inputs.begin()->pixels.repair();
     }
 
-    Api api;
-    std::filesystem::path file;
+    const oidn::Api api;
+    const std::filesystem::path file;
+    const oidn::Device device;
     std::string version;
-    oidn::Device device = nullptr;
 };
 
 OidnDenoiser::OidnDenoiser(const std::filesystem::path& file)
-    : impl_(std::make_unique<Impl>(file)) {}
+    : impl_(std::make_unique<Impl>(oidn::load_library(file))) {}
 
 OidnDenoiser::~OidnDenoiser() = default;
 
-std::vector<ColorPlanes> OidnDenoiser::denoise(std::vector<NoisyImage> images) const {
+std::vector<ColorPlanes> OidnDenoiser::denoise(std::vector<NoisyImage> images) const try {
     std::vector<ColorPlanes> results;
     for (NoisyImage& image : images) {
-        Pixels color(image.color), albedo(image.albedo), normal(image.normal);
+        const InputRange light(image.color);
+        if (light.is_dark()) {  // where networks see light that is none
+            const Plane black(image.color[0].width, image.color[0].height);
+            results.push_back({black, black, black});
+            continue;
+        }
+        Pixels color(image.color, light), albedo(image.albedo, InputRange()),
+            normal(image.normal, InputRange());
         impl_->filter({{"albedo", albedo}}, false);
         impl_->filter({{"normal", normal}}, false);
         impl_->filter({{"color", color}, {"albedo", albedo}, {"normal", normal}}, true);
-        color.write_to(image.color);
-        results.push_back(std::move(image.color));
+        results.push_back(color.planes());
+        image = {};
     }
     return results;
+} catch (const std::bad_alloc&) {
+    throw Error(ErrorKind::limit, name() + ": not enough memory");
 }
 
 std::string OidnDenoiser::name() const {
-    return "Open Image Denoise " + impl_->version;
+    return impl_->name();
 }
 
 const std::filesystem::path& OidnDenoiser::file() const {

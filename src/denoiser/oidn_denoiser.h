@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +14,13 @@ namespace covtrace {
 /// tracing, HDR, at high quality, with albedo and normal that it has freed of noise before.
 class OidnDenoiser : public Denoiser {
   public:
-    /// Loads the library `file`. Throws Error(usage) where it cannot be loaded, is no version 2 or
-    /// finds no CPU that it supports; the message says what and why.
+    /// Loads the library `file`: a path, or a bare name that the dynamic linker looks for. It uses
+    /// as many threads as ThreadLimit allows now. Throws Error(usage) where it cannot be loaded, is
+    /// no version 2 or finds no CPU that it supports; the message says what and why.
     explicit OidnDenoiser(const std::filesystem::path& file);
     ~OidnDenoiser() override;
 
+    /// Finite whatever the images hold; all-black images stay black.
     std::vector<ColorPlanes> denoise(std::vector<NoisyImage> images) const override;
 
     /// "Open Image Denoise 2.5.1".

@@ -9,6 +9,7 @@
 #include "render/hybrid.h"
 #include "render/job.h"
 #include "render/sample_knowledge.h"
+#include "render/timed_denoiser.h"
 
 namespace covtrace {
 
@@ -21,6 +22,8 @@ class HybridRender {
   public:
     explicit HybridRender(RenderJob& job) : job_(job), s_(job.state) {
         for (uint32_t k = 0; k < 2; ++k) contexts_.push_back(half_context(job.context, k));
+        if (job.options.denoiser)
+            denoiser_.emplace(*job.options.denoiser, job.monitor, job.phase("denoise"));
         if (s_.stage == Stage::rounds) return;
         {
             const PhaseTimer timer(job_.monitor, job_.phase("spectra"));
@@ -39,7 +42,7 @@ class HybridRender {
         reconstruct_image(true);
         const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
         const Reconstructed known{*image_, *prediction_};
-        job_.result.image = develop(s_, job_.options.denoiser.get(), known);
+        job_.result.image = develop(s_, denoiser(), known);
     }
 
     HybridSamples samples() && {
@@ -49,9 +52,10 @@ class HybridRender {
 
   private:
     size_t size() const { return s_.pixels(); }
+    const Denoiser* denoiser() const { return denoiser_ ? &*denoiser_ : nullptr; }
     HybridSettings settings() const {
         HybridSettings settings;
-        settings.denoiser = job_.options.denoiser.get();
+        settings.denoiser = denoiser();
         return settings;
     }
     double pilot() const {
@@ -251,6 +255,7 @@ class HybridRender {
     RenderJob& job_;
     RenderState& s_;
     std::vector<PassContext> contexts_;
+    std::optional<TimedDenoiser> denoiser_;
     std::optional<SceneOccluders> occluders_;  // while covariance paths are traced
     std::optional<Prediction> prediction_;     // smoothed, from their end on
     std::optional<HybridImage> image_;         // of the film as it is

@@ -75,6 +75,7 @@ std::string render_command(const LoadedScene& scene, const RenderOptions& o) {
     std::string s = fmt::format("covtrace render {} --resolution {}x{} --method {}",
                                 quoted(scene.file.string()), scene.resolution[0],
                                 scene.resolution[1], name_of(o.method));
+    if (o.method == Method::hybrid && !o.denoiser) s += " --denoiser none";
     if (o.spp) s += fmt::format(" --spp {}", *o.spp);  // as few digits as give the same number
     if (o.cov_spp) s += fmt::format(" --cov-spp {}", *o.cov_spp);
     if (o.max_spp) s += fmt::format(" --max-spp {}", *o.max_spp);

@@ -1,0 +1,43 @@
+#include "cli/denoiser_options.h"
+
+#include <filesystem>
+#include <system_error>
+
+#include "cli/message.h"
+#include "cli/options.h"
+
+namespace covtrace::cli {
+
+void add_denoiser_options(CLI::App* c, DenoiserArguments& a) {
+    add_choice<DenoiserChoice>(c, "--denoiser", a.choice,
+                               {{"auto", DenoiserChoice::automatic},
+                                {"oidn", DenoiserChoice::oidn},
+                                {"none", DenoiserChoice::none}},
+                               "hybrid: Open Image Denoise, too");
+    c->add_option("--denoiser-library", a.library, "its file: libOpenImageDenoise.so.2")
+        ->check(not_empty())
+        ->option_text("FILE");
+}
+
+FoundDenoiser find(const DenoiserArguments& a) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    const fs::path folder = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+    return find_denoiser(
+        {a.choice,
+         a.library,
+         {folder / "denoiser", folder / "../denoiser", folder / "../lib/covtrace/denoiser"}});
+}
+
+void warn_of_unusable(const FoundDenoiser& found) {
+    if (found.is_unusable) say("warning: no denoiser is used: {}\n", found.why_none);
+}
+
+void warn_of_failed_denoiser(const Image& image) {
+    const auto failure = image.metadata.find("covtrace:denoiserFailure");
+    if (failure != image.metadata.end())
+        say("warning: the denoiser failed, the image is without it: {}\n",
+            std::get<std::string>(failure->second));
+}
+
+}  // namespace covtrace::cli

@@ -1,0 +1,28 @@
+/// The options that choose a denoiser, and what is said of it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "denoiser/find_denoiser.h"
+#include "image/image.h"
+
+namespace covtrace::cli {
+
+struct DenoiserArguments {
+    DenoiserChoice choice = DenoiserChoice::automatic;
+    std::string library;  ///< empty: looked for
+};
+
+/// Adds them to the command; `arguments` must outlive the parser.
+void add_denoiser_options(CLI::App* command, DenoiserArguments& arguments);
+
+/// Looks where the program is, too. Throws Error(usage) where it was asked for and cannot be used.
+FoundDenoiser find(const DenoiserArguments& arguments);
+
+/// Warns of a denoiser that was found and cannot be used.
+void warn_of_unusable(const FoundDenoiser& found);
+/// Warns of a denoiser that failed while the image was made.
+void warn_of_failed_denoiser(const Image& image);
+
+}  // namespace covtrace::cli

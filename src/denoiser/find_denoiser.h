@@ -1,0 +1,38 @@
+/// Which denoiser a render has, by what is asked for and what is found on this machine.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "reconstruction/denoiser.h"
+
+namespace covtrace {
+
+enum class DenoiserChoice {
+    automatic,  ///< Open Image Denoise where it is found and works
+    oidn,       ///< Open Image Denoise, or an error
+    none
+};
+
+struct DenoiserSearch {
+    DenoiserChoice choice = DenoiserChoice::automatic;
+    /// This file and no other. Empty: that of the environment's COVTRACE_OIDN_LIBRARY, else
+    /// libOpenImageDenoise.so.2 in the first of the folders that has it, else the system's.
+    std::filesystem::path library;
+    std::vector<std::filesystem::path> folders;
+};
+
+struct FoundDenoiser {
+    std::shared_ptr<const Denoiser> denoiser;  ///< null: none
+    std::filesystem::path library;             ///< its file
+    std::string why_none;                      ///< of a null denoiser
+    bool is_unusable = false;                  ///< one was found, `why_none` is a warning's text
+};
+
+/// Loads it, with as many threads as ThreadLimit allows now. Throws Error(usage) where the choice
+/// is `oidn` and it cannot be used; the message names the option --denoiser.
+FoundDenoiser find_denoiser(const DenoiserSearch& search);
+
+}  // namespace covtrace

@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "denoiser/oidn_denoiser.h"
+#include "tests/denoiser/noisy_images.h"
+
+namespace covtrace {
+namespace {
+
+OidnDenoiser fake(const char* name) {
+    return OidnDenoiser(std::filesystem::path(COVTRACE_FAKE_DENOISERS) / name /
+                        "libOpenImageDenoise.so.2");
+}
+
+TEST(OidnDenoiser, GivesWhatTheLibraryMakesOfTheLight) {
+    const OidnDenoiser denoiser = fake("good");
+    const NoisyImage image = noisy_image(9, 7);
+    const std::vector<ColorPlanes> clean = denoiser.denoise({image, noisy_image(4, 3, 2)});
+    ASSERT_EQ(clean.size(), 2u);
+    EXPECT_EQ(clean[1][2].width, 4);
+    for (size_t c = 0; c < 3; ++c) {
+        const Plane expected = box_blur(image.color[c], 1);
+        for (int y = 1; y < 6; ++y)
+            for (int x = 1; x < 8; ++x)
+                EXPECT_NEAR(clean[0][c](x, y), expected(x, y), 1e-5f * expected(x, y));
+    }
+}
+
+TEST(OidnDenoiser, WhatIsNoNumberIsThePixelOfBefore) {
+    const NoisyImage image = noisy_image(9, 7);
+    const ColorPlanes good = fake("good").denoise({image})[0],
+                      damaged = fake("not-a-number").denoise({image})[0];
+    for (size_t i = 0; i < image.color[0].size(); ++i) {
+        const bool hit = 3 * i % 7 == 0 || (3 * i + 1) % 7 == 0 || (3 * i + 2) % 7 == 0;
+        for (size_t c = 0; c < 3; ++c)
+            EXPECT_EQ(damaged[c][i], hit ? image.color[c][i] : good[c][i]) << i;
+    }
+}
+
+TEST(OidnDenoiser, ALibraryThatFailsIsAnErrorWithoutAPath) {
+    try {
+        fake("execute-fails").denoise({noisy_image(4, 4)});
+        FAIL() << "no error";
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::limit);
+        EXPECT_STREQ(e.what(), "Open Image Denoise 2.3.99: the filter is out of order");
+    }
+}
+
+}  // namespace
+}  // namespace covtrace
