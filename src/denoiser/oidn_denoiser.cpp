@@ -1,5 +1,6 @@
 #include "denoiser/oidn_denoiser.h"
 
+#include <algorithm>
 #include <cmath>
 #include <new>
 #include <utility>
@@ -13,9 +14,12 @@ namespace covtrace {
 
 namespace {
 
-/// For the network's own values. More is needed from about three million pixels on, which are then
-/// denoised in tiles that overlap, to the same bits.
+/// For the network's own values, kBytes of them per pixel. Larger images are denoised in tiles that
+/// overlap, to the same bits.
 constexpr int kMostMegabytes = 2000;
+constexpr size_t kBytes = 700;
+/// The library and its weights.
+constexpr size_t kLibraryBytes = size_t(64) << 20;
 
 /// Three planes as the library has pixels.
 class Pixels {
@@ -149,6 +153,12 @@ std::vector<ColorPlanes> OidnDenoiser::denoise(std::vector<NoisyImage> images) c
     return results;
 } catch (const std::bad_alloc&) {
     throw Error(ErrorKind::limit, name() + ": not enough memory");
+}
+
+size_t OidnDenoiser::memory(size_t pixels) const {
+    constexpr size_t kPixels = 9 * sizeof(float);
+    return kLibraryBytes + kPixels * pixels +
+           std::min(kBytes * pixels, size_t(kMostMegabytes) << 20);
 }
 
 std::string OidnDenoiser::name() const {

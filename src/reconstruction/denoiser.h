@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ class Denoiser {
     virtual ~Denoiser() = default;
     /// With its version.
     virtual std::string name() const = 0;
+    /// Bytes that it has at once for images of so many pixels, beside what it gets and gives.
+    virtual size_t memory(size_t pixels) const = 0;
     /// `images`, denoised one by one. Depends on nothing else, and on no number of threads. Throws
     /// Error(limit) where it fails.
     virtual std::vector<ColorPlanes> denoise(std::vector<NoisyImage> images) const = 0;

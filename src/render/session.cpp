@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <new>
 #include <utility>
 
@@ -14,16 +15,34 @@ std::optional<double> target_spp(const SceneDescription& scene, const RenderOpti
     return options.spp.value_or(scene.samples_per_pixel);
 }
 
+namespace {
+
+/// Layers and the buffers of the reconstruction, bytes per pixel: `bench/film_cost memory`.
+size_t image_bytes(Method method) {
+    return method == Method::uniform ? 68 : method == Method::covariance ? 396 : 472;
+}
+
+/// What a denoiser adds to that. While it works the candidates are not there, of which only its own
+/// stays.
+size_t denoiser_bytes(const Denoiser& denoiser, size_t pixels) {
+    constexpr size_t kMeanwhile = 310, kCandidate = 36;
+    const size_t peak = denoiser.memory(pixels) + kMeanwhile * pixels,
+                 otherwise = image_bytes(Method::hybrid) * pixels;
+    return std::max(peak, otherwise + kCandidate * pixels) - otherwise;
+}
+
+}  // namespace
+
 std::map<std::string, size_t> render_memory(const FilmDescription& film,
                                             const RenderOptions& options) {
-    // Layers and the buffers of the reconstruction: `bench/film_cost memory`.
-    const size_t image = options.method == Method::uniform      ? 68
-                         : options.method == Method::covariance ? 396
-                                                                : 472;
     const size_t kept = film_bytes_per_pixel(options.method, options.emitters_apart);
     const PixelBounds region = render_region(film);
     const size_t pixels = size_t(region.width()) * size_t(region.height());
-    return {{"film", kept * pixels}, {"image", image * pixels}};
+    std::map<std::string, size_t> bytes{{"film", kept * pixels},
+                                        {"image", image_bytes(options.method) * pixels}};
+    if (options.method == Method::hybrid && options.denoiser)
+        bytes["denoiser"] = denoiser_bytes(*options.denoiser, pixels);
+    return bytes;
 }
 
 RenderResult render(RenderScene& scene, const RenderOptions& options, Monitor& monitor,

@@ -43,7 +43,7 @@ PixelBounds render_region(const FilmDescription& film);
 std::optional<double> target_spp(const SceneDescription& scene, const RenderOptions& options);
 
 /// Bytes that a render takes beside its scene: "film", with plan and prediction, and "image": the
-/// layers and the buffers of the reconstruction, as measured.
+/// layers and the buffers of the reconstruction, as measured; "denoiser" where there is one.
 std::map<std::string, size_t> render_memory(const FilmDescription& film,
                                             const RenderOptions& options);
 

@@ -16,6 +16,7 @@ class TimedDenoiser : public Denoiser {
     TimedDenoiser(const Denoiser& denoiser, const Monitor& monitor, double& seconds)
         : denoiser_(denoiser), monitor_(monitor), seconds_(seconds) {}
     std::string name() const override { return denoiser_.name(); }
+    size_t memory(size_t pixels) const override { return denoiser_.memory(pixels); }
     std::vector<ColorPlanes> denoise(std::vector<NoisyImage> images) const override {
         const PhaseTimer timer(monitor_, seconds_);
         return denoiser_.denoise(std::move(images));
