@@ -71,6 +71,8 @@ class CovtraceEngine(bpy.types.RenderEngine):
             command += ["--time", f"{chosen.seconds:.3f}"]
         if chosen.error > 0 and chosen.method != "covariance":
             command += ["--error", repr(chosen.error)]
+        if not chosen.denoise:
+            command += ["--denoiser", "none"]
         if chosen.threads > 0:
             command += ["--threads", str(chosen.threads)]
         code = self._run(command)

@@ -36,6 +36,9 @@ class CovtraceSettings(bpy.types.PropertyGroup):
     error: bpy.props.FloatProperty(
         name="Error", default=0, min=0, precision=3,
         description="Stop at this estimated relative error of the image; 0: never")
+    denoise: bpy.props.BoolProperty(
+        name="Denoise", default=True,
+        description="Hybrid: Open Image Denoise among the filters, where it is found beside the program")
     max_depth: bpy.props.IntProperty(
         name="Bounces", default=12, min=0, max=1024, description="Most scattering events of a path")
     seed: bpy.props.IntProperty(name="Seed", default=0, min=0)
@@ -58,7 +61,7 @@ class RENDER_PT_covtrace(bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        for name in ("method", "samples", "seconds", "error", "max_depth", "seed", "threads"):
+        for name in ("method", "samples", "seconds", "error", "denoise", "max_depth", "seed", "threads"):
             layout.prop(context.scene.covtrace, name)
         layout.prop(context.scene.render, "use_motion_blur")
         layout.prop(context.scene.render, "motion_blur_shutter")

@@ -40,6 +40,8 @@ class HybridRender {
     void deliver() {
         if (!job_.delivers()) return;
         reconstruct_image(true);
+        if (is_denoiser_too_slow_)
+            image_->denoiser_failure = "it takes longer than the time that was left";
         const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
         const Reconstructed known{*image_, *prediction_};
         job_.result.image = develop(s_, denoiser(), known);
@@ -112,7 +114,7 @@ class HybridRender {
         }
         const bool first_here = !prediction_;
         predict();
-        if (first_here && job_.options.seconds) job_.reserve(reconstruction_time());
+        if (first_here && job_.options.seconds) reserve_time();
         const double target = job_.plan_round(std::min(round_end(s_.taken), enough_samples()));
         return target > s_.taken && plan_samples(target);
     }
@@ -227,6 +229,18 @@ class HybridRender {
         return *job_.enough_for_error;
     }
 
+    /// Keeps time for the reconstruction, without the denoiser where there is too little time for
+    /// one with it.
+    void reserve_time() {
+        double seconds = reconstruction_time();
+        if (denoiser_ && seconds > job_.tracing_end() - job_.monitor.elapsed()) {
+            denoiser_.reset();
+            is_denoiser_too_slow_ = true;
+            seconds = reconstruction_time();
+        }
+        job_.reserve(seconds);
+    }
+
     /// Seconds that the reconstruction of this image will take, by that of a part of it. It decides
     /// when to stop and nothing else.
     double reconstruction_time() {
@@ -256,6 +270,7 @@ class HybridRender {
     RenderState& s_;
     std::vector<PassContext> contexts_;
     std::optional<TimedDenoiser> denoiser_;
+    bool is_denoiser_too_slow_ = false;
     std::optional<SceneOccluders> occluders_;  // while covariance paths are traced
     std::optional<Prediction> prediction_;     // smoothed, from their end on
     std::optional<HybridImage> image_;         // of the film as it is

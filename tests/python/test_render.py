@@ -69,6 +69,31 @@ class Rendering(unittest.TestCase):
                                     texture_bandwidth="highest")
             self.assertTrue(covtrace.compare(image, out).identical)
 
+    def test_denoiser(self):
+        def fake(name):
+            return pathlib.Path(os.environ["COVTRACE_FAKE_DENOISERS"], name, "libOpenImageDenoise.so.2")
+
+        scene = scenes.builder()
+        plain = covtrace.render(scene, spp=4, denoiser="none")
+        self.assertEqual(plain.statistics["denoiser"], {"why_none": "not asked for"})
+        image = covtrace.render(scene, spp=4, denoiser="oidn", denoiser_library=fake("good"))
+        self.assertEqual(image.statistics["denoiser"],
+                         {"name": "Open Image Denoise 2.3.99", "file": str(fake("good"))})
+        self.assertEqual(image.metadata["covtrace:denoiser"], "Open Image Denoise 2.3.99")
+        self.assertGreater(image.statistics["seconds"]["denoise"], 0)
+        self.assertFalse(numpy.array_equal(image.rgb, plain.rgb))
+        for name, fragment in (("version-one", "version 1.4.3"), ("execute-fails", "out of order")):
+            with self.assertWarnsRegex(covtrace.SceneWarning, fragment):
+                image = covtrace.render(scene, spp=4, denoiser_library=str(fake(name)))
+            self.assertIn(fragment, image.statistics["denoiser"]["why_none"])
+            self.assertTrue(numpy.array_equal(image.rgb, plain.rgb))
+        with self.assertRaisesRegex(covtrace.UsageError, "version 1.4.3"):
+            covtrace.render(scene, denoiser="oidn", denoiser_library=fake("version-one"))
+        with self.assertRaisesRegex(covtrace.UsageError, "denoiser is 'optix'"):
+            covtrace.render(scene, denoiser="optix")
+        uniform = covtrace.render(scene, spp=1, method="uniform", denoiser_library=fake("version-one"))
+        self.assertIsNone(uniform.statistics["denoiser"])
+
     def test_progress_and_exceptions_in_it(self):
         seen = []
         covtrace.render(scenes.builder((160, 90)), spp=64, progress=seen.append)
