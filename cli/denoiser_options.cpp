@@ -36,7 +36,7 @@ void warn_of_unusable(const FoundDenoiser& found) {
 void warn_of_failed_denoiser(const Image& image) {
     const auto failure = image.metadata.find("covtrace:denoiserFailure");
     if (failure != image.metadata.end())
-        say("warning: the denoiser failed, the image is without it: {}\n",
+        say("warning: the image is without the denoiser: {}\n",
             std::get<std::string>(failure->second));
 }
 

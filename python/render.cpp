@@ -112,7 +112,7 @@ Rendered render_description(SceneDescription description, RenderOptions options,
     if (const auto it = result.image.metadata.find("covtrace:denoiserFailure");
         it != result.image.metadata.end()) {
         failure = std::get<std::string>(it->second);
-        warnings.push_back({{}, "the denoiser failed, the image is without it: " + failure});
+        warnings.push_back({{}, "the image is without the denoiser: " + failure});
     }
     return {std::make_shared<Planes>(std::move(result.image)),
             std::move(result.statistics),

@@ -23,7 +23,8 @@ class HybridRender {
     explicit HybridRender(RenderJob& job) : job_(job), s_(job.state) {
         for (uint32_t k = 0; k < 2; ++k) contexts_.push_back(half_context(job.context, k));
         if (job.options.denoiser)
-            denoiser_.emplace(*job.options.denoiser, job.monitor, job.phase("denoise"));
+            denoiser_.emplace(*job.options.denoiser, job.monitor, job.phase("denoise"),
+                              job.phase("reconstruction"));
         if (s_.stage == Stage::rounds) return;
         {
             const PhaseTimer timer(job_.monitor, job_.phase("spectra"));

@@ -16,8 +16,8 @@ namespace covtrace {
 struct RenderStatistics {
     PassStatistics covariance, radiance;
     std::map<std::string, double> seconds;  ///< per phase: "grid" or "outlines", "covariance",
-                                            ///< "plan", "radiance", "reconstruction"; "denoise":
-                                            ///< the denoiser's part of the last one
+                                            ///< "plan", "radiance", "reconstruction", and apart
+                                            ///< from that "denoise"
     /// Bytes: "film" and "plan"; "prediction" and "occluders" with covariance tracing.
     std::map<std::string, size_t> memory;
     double samples_per_pixel = 0;  ///< average taken

@@ -10,22 +10,27 @@
 
 namespace covtrace {
 
-/// Another denoiser, whose seconds are added up. All of its arguments must outlive it.
+/// Another denoiser, whose seconds are added up, and taken from those of the phase around it. All
+/// of its arguments must outlive it.
 class TimedDenoiser : public Denoiser {
   public:
-    TimedDenoiser(const Denoiser& denoiser, const Monitor& monitor, double& seconds)
-        : denoiser_(denoiser), monitor_(monitor), seconds_(seconds) {}
+    TimedDenoiser(const Denoiser& denoiser, const Monitor& monitor, double& seconds, double& around)
+        : denoiser_(denoiser), monitor_(monitor), seconds_(seconds), around_(around) {}
     std::string name() const override { return denoiser_.name(); }
     size_t memory(size_t pixels) const override { return denoiser_.memory(pixels); }
     std::vector<ColorPlanes> denoise(std::vector<NoisyImage> images) const override {
-        const PhaseTimer timer(monitor_, seconds_);
-        return denoiser_.denoise(std::move(images));
+        const double start = monitor_.elapsed();
+        std::vector<ColorPlanes> results = denoiser_.denoise(std::move(images));
+        const double taken = monitor_.elapsed() - start;
+        seconds_ += taken;
+        around_ -= taken;
+        return results;
     }
 
   private:
     const Denoiser& denoiser_;
     const Monitor& monitor_;
-    double& seconds_;
+    double &seconds_, &around_;
 };
 
 }  // namespace covtrace

@@ -56,7 +56,8 @@ class Choice(DenoiserTest):
                 self.assertEqual(warnings_of(result), [])
                 self.assertEqual(stats["denoiser"], {"name": FAKE_NAME, "file": str(fake("good"))})
                 self.assertGreater(stats["seconds"]["denoise"], 0)
-                self.assertLessEqual(stats["seconds"]["denoise"], stats["seconds"]["reconstruction"])
+                self.assertGreater(stats["seconds"]["reconstruction"], 0)
+                self.assertLessEqual(sum(stats["seconds"].values()), stats["seconds_total"])
                 self.assertEqual(self.image().value("covtrace:denoiser"), FAKE_NAME)
         self.assertNotIn(str(FAKES).encode(), (self.folder / "out.exr").read_bytes())
         self.assertIn(FAKE_NAME, self.run_program("info", "out.exr").stdout)
@@ -123,6 +124,14 @@ class Choice(DenoiserTest):
             self.assertIn("the filter is out of order", self.image().value("covtrace:denoiserFailure"))
             self.assertNotIn(str(FAKES).encode(), (self.folder / "out.exr").read_bytes())
             self.assertEqual(self.image().pixels["R"], plain.pixels["R"])
+
+    def test_too_little_time(self):
+        """What one with the denoiser would take is told by a part."""
+        result, stats = self.hybrid("--denoiser-library", fake("slow"), "--time", "1", spp="64")
+        self.assertLess(stats["seconds_total"], 5)
+        self.assertIn("longer than the time that was left", stats["denoiser"]["why_none"])
+        self.assertEqual(len(warnings_of(result)), 1, result)
+        self.assertIn("longer than the time that was left", warnings_of(result)[0][1])
 
     def test_wrong_values(self):
         self.assert_fails(self.run_program("render", "plain.pbrt", "--denoiser", "optix"), USAGE, "--denoiser", "auto|none|oidn")

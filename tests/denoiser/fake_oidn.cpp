@@ -1,11 +1,13 @@
 // The part of Open Image Denoise's interface that covtrace uses, around a box of 3 x 3 pixels. One
 // of the definitions FAKE_… says what is wrong with it. Where the environment has
 // FAKE_OIDN_THREADS, no other number of threads is accepted.
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -124,6 +126,9 @@ void oidnExecuteFilter(Filter* filter) {
     filter->device->error = "the filter is out of order";
 #else
     blur(*filter);
+#endif
+#ifdef FAKE_SLOW
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
 #endif
 #ifdef FAKE_NOT_A_NUMBER
     for (size_t i = 0; i < 3 * filter->width * filter->height; i += 7)
