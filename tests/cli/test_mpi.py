@@ -38,6 +38,15 @@ class Ranks(FilmTest):
                     self.run_ranks(ranks, "sky", method, "--spp", "16")
                     self.assert_identical("whole.exr", "out.exr")
 
+    def test_a_denoiser(self):
+        good = pathlib.Path(os.environ["COVTRACE_FAKE_DENOISERS"], "good", "libOpenImageDenoise.so.2")
+        options = ["--spp", "8", "--denoiser", "oidn", "--denoiser-library", good]
+        self.run_render("sky", "hybrid", *options, output="whole.exr")
+        self.run_ranks(2, "sky", "hybrid", *map(str, options))
+        self.assert_identical("whole.exr", "out.exr")
+        error = ["--error", "0.05", "--denoiser", "oidn", "--denoiser-library", str(good)]
+        self.run_ranks(2, "sky", "hybrid", *error)
+
     def test_an_error_of_one_rank_ends_all(self):
         for arguments, code in ((["-o", "none/x.exr"], USAGE), (["--tev", "not an address:x"], USAGE), (["--stats", "none/s.json"], USAGE)):
             with self.subTest(arguments=arguments):
