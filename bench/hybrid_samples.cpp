@@ -1,5 +1,6 @@
 #include "hybrid_samples.h"
 
+#include "denoiser/find_denoiser.h"
 #include "planner/covariance_buffer.h"
 #include "render/hybrid_film.h"
 
@@ -11,6 +12,13 @@ HybridSamples read_hybrid_samples(const std::filesystem::path& film) {
         throw Error(ErrorKind::usage, film.string() + ": not of --method hybrid");
     return {state.region, state.mean_count(), halves_of(state.films),
             preintegrate(smooth(state.covariance())).spectrum};
+}
+
+std::shared_ptr<const Denoiser> required_denoiser() {
+    // Tools are in a folder beside the program, whose folder is beside the library's.
+    const std::filesystem::path folder =
+        std::filesystem::read_symlink("/proc/self/exe").parent_path();
+    return find_denoiser({DenoiserChoice::oidn, {}, {folder / "../../denoiser"}}).denoiser;
 }
 
 HybridSettings plain_regression() {

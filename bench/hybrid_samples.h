@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <vector>
 
 #include "reconstruction/hybrid.h"
@@ -19,6 +20,9 @@ struct HybridSamples {
 
 /// Of `covtrace render --method hybrid --checkpoint FILM`. Throws Error for other films.
 HybridSamples read_hybrid_samples(const std::filesystem::path& film);
+
+/// The denoiser that the built program finds. Throws Error(usage) where there is none.
+std::shared_ptr<const Denoiser> required_denoiser();
 
 /// First-order regression alone, as NFOR (Bitterli et al. 2016) has it: plain windows of two
 /// tolerances, explained by filtered features, of each pixel the better one (or the raw pixel) by

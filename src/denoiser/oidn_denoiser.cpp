@@ -31,10 +31,18 @@ class Pixels {
     size_t width() const { return size_t(planes_[0].width); }
     size_t height() const { return size_t(planes_[0].height); }
     float* data() { return values_.data(); }
+    /// Half a turn of what the library gets or left.
+    void turn() {
+        for (size_t i = 0, j = values_.size(); i + 3 < j; i += 3) {
+            j -= 3;
+            std::swap_ranges(&values_[i], &values_[i] + 3, &values_[j]);
+        }
+        turned_ = !turned_;
+    }
     /// Where the library left what is no number, the pixel is again what it was before.
     void repair() {
         for (size_t i = 0; i < planes_[0].size(); ++i) {
-            const float* v = &values_[3 * i];
+            const float* v = &values_[3 * place(i)];
             if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2])) read(i);
         }
     }
@@ -42,17 +50,19 @@ class Pixels {
         std::array<Plane, 3> result = planes_;
         for (size_t c = 0; c < 3; ++c)
             for (size_t i = 0; i < result[c].size(); ++i)
-                result[c][i] = range_.from_network(values_[3 * i + c]);
+                result[c][i] = range_.from_network(values_[3 * place(i) + c]);
         return result;
     }
 
   private:
     void read(size_t i) {
-        for (size_t c = 0; c < 3; ++c) values_[3 * i + c] = range_.to_network(planes_[c][i]);
+        for (size_t c = 0; c < 3; ++c) values_[3 * place(i) + c] = range_.to_network(planes_[c][i]);
     }
+    size_t place(size_t i) const { return turned_ ? planes_[0].size() - 1 - i : i; }
     const std::array<Plane, 3>& planes_;
     const InputRange range_;
     std::vector<float> values_;
+    bool turned_ = false;
 };
 
 }  // namespace
@@ -100,7 +110,7 @@ struct OidnDenoiser::Impl {
         Pixels& pixels;
     };
     /// Denoises the first input in place, guided by the others.
-    void filter(std::initializer_list<Input> inputs, bool hdr) const {
+    void filter(std::initializer_list<Input> inputs, bool hdr, oidn::Quality quality) const {
         const auto release = [this](oidn::Filter f) { api.release_filter(f); };
         const std::unique_ptr<oidn::OIDNFilterImpl, decltype(release)> f(
             api.new_filter(device, "RT"), release);
@@ -114,7 +124,7 @@ struct OidnDenoiser::Impl {
             api.set_filter_bool(f.get(), "hdr", true);
             api.set_filter_bool(f.get(), "cleanAux", true);
         }
-        api.set_filter_int(f.get(), "quality", oidn::kHigh);
+        api.set_filter_int(f.get(), "quality", quality);
         api.set_filter_int(f.get(), "maxMemoryMB", kMostMegabytes);
         api.commit_filter(f.get());
         api.execute_filter(f.get());
@@ -133,7 +143,12 @@ OidnDenoiser::OidnDenoiser(const std::filesystem::path& file)
 
 OidnDenoiser::~OidnDenoiser() = default;
 
-std::vector<ColorPlanes> OidnDenoiser::denoise(std::vector<NoisyImage> images) const try {
+std::vector<ColorPlanes> OidnDenoiser::denoise(const NoisyFeatures& features,
+                                               std::vector<NoisyImage> images) const try {
+    Pixels albedo(features.albedo, InputRange()), normal(features.normal, InputRange());
+    impl_->filter({{"albedo", albedo}}, false, oidn::kHigh);
+    impl_->filter({{"normal", normal}}, false, oidn::kHigh);
+    bool turned = false;
     std::vector<ColorPlanes> results;
     for (NoisyImage& image : images) {
         const InputRange light(image.color);
@@ -142,11 +157,15 @@ std::vector<ColorPlanes> OidnDenoiser::denoise(std::vector<NoisyImage> images) c
             results.push_back({black, black, black});
             continue;
         }
-        Pixels color(image.color, light), albedo(image.albedo, InputRange()),
-            normal(image.normal, InputRange());
-        impl_->filter({{"albedo", albedo}}, false);
-        impl_->filter({{"normal", normal}}, false);
-        impl_->filter({{"color", color}, {"albedo", albedo}, {"normal", normal}}, true);
+        Pixels color(image.color, light);
+        if (image.turned != turned) {
+            albedo.turn();
+            normal.turn();
+            turned = image.turned;
+        }
+        if (turned) color.turn();
+        impl_->filter({{"color", color}, {"albedo", albedo}, {"normal", normal}}, true,
+                      image.draft ? oidn::kBalanced : oidn::kHigh);
         results.push_back(color.planes());
         image = {};
     }

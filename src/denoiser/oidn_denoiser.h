@@ -21,7 +21,8 @@ class OidnDenoiser : public Denoiser {
     ~OidnDenoiser() override;
 
     /// Finite whatever the images hold; all-black images stay black.
-    std::vector<ColorPlanes> denoise(std::vector<NoisyImage> images) const override;
+    std::vector<ColorPlanes> denoise(const NoisyFeatures& features,
+                                     std::vector<NoisyImage> images) const override;
 
     /// As measured with version 2.5.1.
     size_t memory(size_t pixels) const override;

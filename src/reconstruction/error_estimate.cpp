@@ -7,7 +7,8 @@
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "reconstruction/bilateral.h"
-#include "reconstruction/outliers.h"
+#include "reconstruction/luminance.h"
+#include "reconstruction/selector.h"
 
 namespace covtrace {
 
@@ -69,8 +70,8 @@ float relative(float square, float brightness) {
 
 ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> candidates,
                              const Selection& selection, const ColorPlanes& image,
-                             const ColorPlanes& raw, const ReturnedShares& returned,
-                             const ColorPlanes& brightness, const ErrorFactors& factors) {
+                             const ColorPlanes& raw, const ColorPlanes& brightness,
+                             const ErrorFactors& factors) {
     const int w = image[0].width, h = image[0].height;
     const Plane bright = luminance(brightness);
     const float noise =
@@ -78,7 +79,6 @@ ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> ca
     // Holes are filled, and the halves still differ.
     const Plane known = known_by_both(halves).value_or(Plane(w, h, 1));
     ErrorEstimate error{Plane(w, h), Plane(w, h)};
-    ErrorEstimate own = error;  // not averaged
     parallel_for(h, [&](int64_t row) {
         for (size_t i = size_t(row) * size_t(w), end = i + size_t(w); i < end; ++i) {
             const Signals ma = signals(selection.half[0], i), mb = signals(selection.half[1], i),
@@ -92,30 +92,18 @@ ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> ca
                 for (size_t k = 0; k < kSignals; ++k)
                     spread[k] += selection.share[c][i] * std::abs(mean[k] - m[k]);
             }
-            const float far = 1 - returned.near[i] - returned.own[i];
-            const float cut = factors.cut * (sqr(returned.near[i]) + sqr(far / kWidening));
             Signals square;
             for (size_t k = 0; k < kSignals; ++k)
                 square[k] = noise * sqr(ma[k] - mb[k]) / 4 + factors.spread * sqr(spread[k]) +
-                            factors.returned *
-                                sqr(delivered[k] - m[k] - returned.own[i] * (all[k] - m[k])) +
-                            cut * sqr(all[k] - 0.5f * (a[k] + b[k]));
+                            factors.returned * sqr(delivered[k] - m[k]) +
+                            factors.cut * sqr(all[k] - 0.5f * (a[k] + b[k]));
             for (size_t k = 0; k < 3; ++k)
                 error.color[i] += relative(square[k], brightness[k][i]) / 3;
             error.luminance[i] = relative(square[3], bright[i]);
-            for (size_t k = 0; k < kSignals; ++k)
-                square[k] =
-                    relative(sqr(returned.own[i] * (all[k] - 0.5f * (a[k] + b[k]))), delivered[k]);
-            own.color[i] = (square[0] + square[1] + square[2]) / 3;
-            own.luminance[i] = square[3];
         }
     });
     bilateral_blur(std::array{&error.color, &error.luminance}, known, log_brightness(bright),
                    kSmoothing, kAlike);
-    for (size_t i = 0; i < known.size(); ++i) {
-        error.color[i] += own.color[i];
-        error.luminance[i] += own.luminance[i];
-    }
     return error;
 }
 

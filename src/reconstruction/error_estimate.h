@@ -3,7 +3,6 @@
 
 #include <span>
 
-#include "reconstruction/outliers.h"
 #include "reconstruction/selector.h"
 
 namespace covtrace {
@@ -23,8 +22,7 @@ struct ErrorEstimate {
 };
 
 /// Estimated error of `image`, the mean of the mixed halves and what was added to it to keep the
-/// energy. `raw`: the mean of the halves before rare bright paths were limited; `returned`: where
-/// what was cut off went; `brightness`: I.
+/// light. `raw`: the mean of the halves before rare bright paths were limited; `brightness`: I.
 ///
 /// What a pixel's halves measure of it is no estimate: raw pixels are ten times as noisy as the
 /// image, and the halves that judge have chosen shares and weights before (docs/decisions/0041).
@@ -32,17 +30,14 @@ struct ErrorEstimate {
 /// about as bright of
 ///     N = (M_A - M_B)^2 / 4, the noise that the mixtures M of the halves do not share,
 ///     S = (sum over c of share_c |m_c - m|)^2, how far the candidates c are from their mixture m,
-///     E = (image - m)^2 without what stays in its own pixel, what light of the neighbourhood was
-///         added,
-///     C = (raw - limited)^2 (near^2 + far^2 / 16), what light was cut off: it is somewhere around
-///         only, and errs the less the larger the area that it is spread over,
+///     E = (image - m)^2, what light of the neighbourhood was added,
+///     C = (raw - limited)^2, what light was cut off: it is somewhere around only,
 /// as (noise + noise_of_few / n) N + spread S + returned E + cut C, n the samples per pixel. The
 /// part of N that grows with few samples stands for what the halves share: each takes its weights
-/// from the other one's noise. What was cut off and stays in its own pixel, own^2 (raw -
-/// limited)^2, is that pixel's alone: one half saw it and the other one did not.
+/// from the other one's noise.
 ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> candidates,
                              const Selection& selection, const ColorPlanes& image,
-                             const ColorPlanes& raw, const ReturnedShares& returned,
-                             const ColorPlanes& brightness, const ErrorFactors& factors);
+                             const ColorPlanes& raw, const ColorPlanes& brightness,
+                             const ErrorFactors& factors);
 
 }  // namespace covtrace

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/vec.h"
-#include "reconstruction/outliers.h"
+#include "reconstruction/luminance.h"
 #include "reconstruction/selector.h"
 
 namespace covtrace {
@@ -23,15 +23,23 @@ constexpr float kDark = 0.03f, kClean = 1e-5f;
 
 }  // namespace
 
-void add_features(const Halves& halves, Likeness& likeness) {
+Plane feature_guide(const Halves& halves, size_t f) {
     constexpr std::array<float, kFeatures> kUnit{kAlbedo, kAlbedo, kAlbedo,  kNormal,
                                                  kNormal, kNormal, kLogDepth};
-    for (size_t f = 0; f < kFeatures; ++f) {
-        Plane mean = halves[0].feature[f];
-        for (size_t i = 0; i < mean.size(); ++i)
-            mean[i] = 0.5f * (mean[i] + halves[1].feature[f][i]) / kUnit[f];
-        likeness.add(gaussian_blur(mean, kSmoothing));
-    }
+    Plane mean = halves[0].feature[f];
+    for (size_t i = 0; i < mean.size(); ++i)
+        mean[i] = 0.5f * (mean[i] + halves[1].feature[f][i]) / kUnit[f];
+    return gaussian_blur(mean, kSmoothing);
+}
+
+Plane light_guide(const Plane& luminance) {
+    Plane logarithm = gaussian_blur(luminance, kSmoothing);
+    for (float& v : logarithm.values) v = std::log(std::abs(v) + kDark) / kLogLight;
+    return logarithm;
+}
+
+void add_features(const Halves& halves, Likeness& likeness) {
+    for (size_t f = 0; f < kFeatures; ++f) likeness.add(feature_guide(halves, f));
 }
 
 void add_light_and_noise(const Halves& halves, const ColorPlanes& guess, Likeness& likeness) {
@@ -44,9 +52,7 @@ void add_light_and_noise(const Halves& halves, const ColorPlanes& guess, Likenes
     for (size_t i = 0; i < noise.size(); ++i)
         noise[i] = 0.5f * std::log(noise[i] / (sqr(light[i]) + kDarkSquared) + kClean) / kLogNoise;
     likeness.add(noise);
-    Plane logarithm = gaussian_blur(light, kSmoothing);
-    for (float& v : logarithm.values) v = std::log(std::abs(v) + kDark) / kLogLight;
-    likeness.add(logarithm);
+    likeness.add(light_guide(light));
 }
 
 }  // namespace covtrace

@@ -6,6 +6,13 @@
 
 namespace covtrace {
 
+/// Feature `f` of both halves, its noise smoothed, in units in which pixels that differ by 1 are
+/// not alike.
+Plane feature_guide(const Halves& halves, size_t f);
+
+/// The same of light: the logarithm of luminances.
+Plane light_guide(const Plane& luminance);
+
 /// Albedo, normal and depth.
 void add_features(const Halves& halves, Likeness& likeness);
 

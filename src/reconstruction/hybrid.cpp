@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "core/vec.h"
+#include "reconstruction/denoiser_blend.h"
 #include "reconstruction/guides.h"
+#include "reconstruction/light_return.h"
+#include "reconstruction/luminance.h"
 #include "reconstruction/outliers.h"
 #include "reconstruction/selector.h"
 
@@ -61,41 +66,57 @@ ColorPlanes without_undershoot(ColorPlanes color, const ColorPlanes& samples) {
     return color;
 }
 
-/// What the denoiser gets of a half, or of the mean of both.
-NoisyImage noisy_image(const ColorPlanes& color, const HalfBuffer& a, const HalfBuffer& b) {
-    NoisyImage image{color, {}, {}};
-    const auto mean = [&](size_t f) {
-        Plane p = a.feature[f];
-        for (size_t i = 0; i < p.size(); ++i) p[i] = 0.5f * (p[i] + b.feature[f][i]);
-        return p;
-    };
-    for (size_t k = 0; k < 3; ++k) {
-        image.albedo[k] = mean(k);
-        image.normal[k] = mean(3 + k);
-    }
-    return image;
-}
-
-/// Both halves and their mean, denoised; none where the denoiser fails, `failure` says why.
-std::vector<ColorPlanes> denoised(const Denoiser* denoiser, const Halves& halves,
-                                  const ColorPlanes& all, std::string& failure) {
-    if (!denoiser) return {};
-    try {
-        return denoiser->denoise({noisy_image(halves[0].color, halves[0], halves[0]),
-                                  noisy_image(halves[1].color, halves[1], halves[1]),
-                                  noisy_image(all, halves[0], halves[1])});
-    } catch (const Error& e) {
-        failure = e.what();
-        return {};
-    }
+Plane mean_of(Plane a, const Plane& b) {
+    for (size_t i = 0; i < a.size(); ++i) a[i] = 0.5f * (a[i] + b[i]);
+    return a;
 }
 
 ColorPlanes mean_of(const Selection& s) {
-    ColorPlanes mean = s.half[0];
-    for (size_t c = 0; c < 3; ++c)
-        for (size_t i = 0; i < mean[c].size(); ++i)
-            mean[c][i] = 0.5f * (mean[c][i] + s.half[1][c][i]);
+    ColorPlanes mean;
+    for (size_t c = 0; c < 3; ++c) mean[c] = mean_of(s.half[0][c], s.half[1][c]);
     return mean;
+}
+
+/// Gives our own mixture the share `own` of every pixel and the denoiser the rest, as one more
+/// candidate of the selection. In the image it is all samples denoised together, which are cleaner
+/// than the mean of the denoised halves.
+void blend(const Plane& own, const Denoised& clean, Selection& s, ColorPlanes& image) {
+    const auto mix = [&](Plane& ours, const Plane& theirs) {
+        for (size_t i = 0; i < own.size(); ++i)
+            ours[i] = own[i] * ours[i] + (1 - own[i]) * theirs[i];
+    };
+    for (Plane& share : s.share)
+        for (size_t i = 0; i < own.size(); ++i) share[i] *= own[i];
+    s.share.emplace_back(own);
+    for (float& v : s.share.back().values) v = 1 - v;
+    for (size_t k = 0; k < 3; ++k) {
+        for (size_t half = 0; half < 2; ++half) mix(s.half[half][k], clean.half[half][k]);
+        mix(image[k], clean.whole[k]);
+    }
+}
+
+/// Both halves and all samples, denoised; nothing where the denoiser fails, `failure` says why.
+std::optional<Denoised> denoised(const Denoiser* denoiser, const Halves& halves,
+                                 const ColorPlanes& all, std::string& failure) {
+    if (!denoiser) return std::nullopt;
+    NoisyFeatures features;
+    for (size_t k = 0; k < 3; ++k) {
+        features.albedo[k] = mean_of(halves[0].feature[k], halves[1].feature[k]);
+        features.normal[k] = mean_of(halves[0].feature[3 + k], halves[1].feature[3 + k]);
+    }
+    try {
+        std::vector<ColorPlanes> images =
+            denoiser->denoise(features, {{.color = halves[0].color, .draft = true},
+                                         {.color = halves[1].color, .draft = true},
+                                         {.color = all},
+                                         {.color = all, .turned = true}});
+        Denoised clean{{std::move(images[0]), std::move(images[1])}, std::move(images[2])};
+        for (size_t k = 0; k < 3; ++k) clean.whole[k] = mean_of(clean.whole[k], images[3][k]);
+        return clean;
+    } catch (const Error& e) {
+        failure = e.what();
+        return std::nullopt;
+    }
 }
 
 }  // namespace
@@ -106,15 +127,21 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     replace_empty_half(halves);
     const ColorPlanes all = mean_of(halves);
     HybridImage image;
-    const std::vector<ColorPlanes> clean =
+    const std::optional<Denoised> clean =
         denoised(settings.denoiser, halves, all, image.denoiser_failure);
+    std::array<ColorPlanes, 2> samples, variance;  // before anything is cut off
+    if (clean)
+        for (size_t k = 0; k < 2; ++k) {
+            samples[k] = halves[k].color;
+            variance[k] = halves[k].color_variance;
+        }
+    const LightReturn light_return(halves);
     limit_outliers(halves);
     // Variances that know of their own pixel's mean would let bright pixels accept dark ones and
     // not the other way round.
     for (HalfBuffer& half : halves)
         for (Plane& v : half.color_variance) v = box_blur(v, 1);
     std::vector<Candidate> candidates = make_candidates(halves, spectrum, settings.candidates);
-    if (!clean.empty()) candidates.push_back({clean[0], clean[1]});
     Likeness likeness(settings.likeness);
     add_features(halves, likeness);
     for (HalfBuffer& half : halves) half.feature = half.feature_variance = {};  // large, not needed
@@ -126,22 +153,26 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
                                           settings.sigma, settings.mix)),
                            all);
     add_light_and_noise(halves, guess, likeness);
-    Selection s = select(halves, candidates, error_weights(halves, guess), likeness, settings.mix);
-
+    const ColorPlanes g = error_weights(halves, guess);
+    Selection s = select(halves, candidates, g, likeness, settings.mix);
     image.color = mean_of(s);
-    // All samples denoised together are cleaner than the mean of the denoised halves.
-    if (!clean.empty())
+    if (clean) {
+        ColorPlanes lost = all;
         for (size_t k = 0; k < 3; ++k)
-            for (size_t i = 0; i < all[k].size(); ++i)
-                image.color[k][i] +=
-                    s.share.back()[i] * (clean[2][k][i] - 0.5f * (clean[0][k][i] + clean[1][k][i]));
+            for (size_t i = 0; i < lost[k].size(); ++i)
+                lost[k][i] -= 0.5f * (halves[0].color[k][i] + halves[1].color[k][i]);
+        blend(own_share({samples, variance, s.half, lost, g}, *clean, likeness), *clean, s,
+              image.color);
+        candidates.push_back(clean->half);
+    }
+
     // The image itself is negative only where the samples are, and no darker than they.
     for (size_t k = 0; k < 3; ++k)
         for (size_t i = 0; i < all[k].size(); ++i)
             image.color[k][i] = std::max(std::min(0.0f, all[k][i]), image.color[k][i]);
-    const ReturnedShares returned = return_energy(all, image.color);
+    light_return.give_back(all, image.color);
     ErrorEstimate error =
-        estimate_error(halves, candidates, s, image.color, all, returned, guess, settings.error);
+        estimate_error(halves, candidates, s, image.color, all, guess, settings.error);
     image.share = std::move(s.share);
     image.relative_error = std::move(error.color);
     image.variance = std::move(error.luminance);

@@ -28,7 +28,7 @@ PassContext pass_context(const RenderScene& scene, const RenderOptions& options)
 
 PassContext half_context(const PassContext& whole, uint32_t k) {
     PassContext half = whole;
-    half.seed = half_seed(whole.seed, int(k));
+    half.seed = half_seed(whole.seed, 0);
     half.half = k;
     half.halves = 2;
     return half;

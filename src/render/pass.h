@@ -56,6 +56,8 @@ struct PassContext {
 
     /// How people name a sample: the halves take turns, so that one number finds it again.
     uint64_t sample_name(uint32_t index) const { return uint64_t(index) * halves + half; }
+    /// Where a sample stands in the sequence of its pixel.
+    uint32_t sequence_index(uint32_t index) const;
 };
 
 /// Called from worker threads with the share of the pass that is done.

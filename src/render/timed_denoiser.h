@@ -18,9 +18,10 @@ class TimedDenoiser : public Denoiser {
         : denoiser_(denoiser), monitor_(monitor), seconds_(seconds), around_(around) {}
     std::string name() const override { return denoiser_.name(); }
     size_t memory(size_t pixels) const override { return denoiser_.memory(pixels); }
-    std::vector<ColorPlanes> denoise(std::vector<NoisyImage> images) const override {
+    std::vector<ColorPlanes> denoise(const NoisyFeatures& features,
+                                     std::vector<NoisyImage> images) const override {
         const double start = monitor_.elapsed();
-        std::vector<ColorPlanes> results = denoiser_.denoise(std::move(images));
+        std::vector<ColorPlanes> results = denoiser_.denoise(features, std::move(images));
         const double taken = monitor_.elapsed() - start;
         seconds_ += taken;
         around_ -= taken;

@@ -22,7 +22,7 @@ SCENES = {
     "helicopter": 0.09,
     "mirror-motion": 0.05,
     "glossy-lens": 0.06,
-    "bulbs": 0.05,
+    "bulbs": 0.02,
     "motion": 0.06,
     "defocus-checker": 0.13,
     "foliage": 0.22,

@@ -14,8 +14,8 @@ class Oidn : public testing::Test {
         found_ = find_denoiser({DenoiserChoice::automatic, {}, {COVTRACE_DENOISER_FOLDER}});
         if (!found_.denoiser) GTEST_SKIP() << found_.why_none;
     }
-    ColorPlanes denoised(const NoisyImage& image) const {
-        return found_.denoiser->denoise({image})[0];
+    ColorPlanes denoised(const NoisyView& image) const {
+        return covtrace::denoised(*found_.denoiser, image);
     }
     static float mean(const Plane& p) {
         double sum = 0;
@@ -27,7 +27,7 @@ class Oidn : public testing::Test {
 };
 
 TEST_F(Oidn, TakesNoiseAway) {
-    const NoisyImage image = noisy_image(96, 64);
+    const NoisyView image = noisy_view(96, 64);
     const ColorPlanes clean = denoised(image);
     for (int x = 8; x < 88; ++x) {
         const float truth = 0.1f + 1.9f * float(x) / 96;
@@ -38,7 +38,7 @@ TEST_F(Oidn, TakesNoiseAway) {
 
 TEST_F(Oidn, SizesOfAllKinds) {
     for (auto [width, height] : {std::pair(1, 1), {3, 2}, {400, 1}, {1, 400}, {17, 15}}) {
-        const ColorPlanes clean = denoised(noisy_image(width, height));
+        const ColorPlanes clean = denoised(noisy_view(width, height));
         EXPECT_EQ(clean[0].width, width);
         EXPECT_EQ(clean[0].height, height);
         EXPECT_TRUE(is_finite(clean)) << width << "x" << height;
@@ -46,17 +46,30 @@ TEST_F(Oidn, SizesOfAllKinds) {
     }
 }
 
+TEST_F(Oidn, ATurnedImageIsTurnedBack) {
+    const NoisyView view = noisy_view(97, 64);
+    const ColorPlanes clean = denoised(view),
+                      turned = covtrace::denoised(*found_.denoiser, view, true);
+    double difference = 0, sum = 0;
+    for (size_t i = 0; i < clean[0].size(); ++i) {
+        difference += double(std::abs(turned[0][i] - clean[0][i]));
+        sum += double(clean[0][i]);
+    }
+    EXPECT_GT(difference, 0);
+    EXPECT_LT(difference, 0.05 * sum);
+}
+
 TEST_F(Oidn, BlackStaysBlack) {
-    NoisyImage image = noisy_image(64, 48);
+    NoisyView image = noisy_view(64, 48);
     for (Plane& channel : image.color) channel = Plane(64, 48);
     EXPECT_EQ(largest(denoised(image)), 0);
 }
 
 TEST_F(Oidn, DarkAndBrightImagesAreAlike) {
-    const NoisyImage image = noisy_image(64, 48);
+    const NoisyView image = noisy_view(64, 48);
     const ColorPlanes clean = denoised(image);
     for (float scale : {1e-30f, 1e-12f, 1e-3f, 1e6f, 1e30f}) {
-        NoisyImage other = image;
+        NoisyView other = image;
         for (Plane& channel : other.color)
             for (float& v : channel.values) v *= scale;
         const ColorPlanes its = denoised(other);
@@ -66,11 +79,11 @@ TEST_F(Oidn, DarkAndBrightImagesAreAlike) {
 }
 
 TEST_F(Oidn, OnePixelDoesNotSpread) {
-    const NoisyImage image = noisy_image(96, 64);
+    const NoisyView image = noisy_view(96, 64);
     const ColorPlanes clean = denoised(image);
     constexpr float kInfinite = std::numeric_limits<float>::infinity();
     for (float value : {1e5f, 1e30f, kInfinite, -kInfinite, std::nanf("")}) {
-        NoisyImage other = image;
+        NoisyView other = image;
         set_pixel(other.color, 40, 30, value);
         const ColorPlanes its = denoised(other);
         ASSERT_TRUE(is_finite(its)) << value;
@@ -83,21 +96,24 @@ TEST_F(Oidn, OnePixelDoesNotSpread) {
 }
 
 TEST_F(Oidn, FeaturesThatAreNoNumbers) {
-    NoisyImage image = noisy_image(48, 32);
-    image.albedo[0](5, 5) = std::nanf("");
-    image.normal[2](20, 5) = std::numeric_limits<float>::infinity();
-    image.normal[1](30, 5) = 1e30f;
+    NoisyView image = noisy_view(48, 32);
+    image.features.albedo[0](5, 5) = std::nanf("");
+    image.features.normal[2](20, 5) = std::numeric_limits<float>::infinity();
+    image.features.normal[1](30, 5) = 1e30f;
     EXPECT_TRUE(is_finite(denoised(image)));
 }
 
 TEST_F(Oidn, ThreadsAndOtherImagesDoNotMatter) {
-    const NoisyImage image = noisy_image(150, 130);
+    const NoisyView image = noisy_view(150, 130);
     std::vector<ColorPlanes> results;
     for (int threads : {1, 2, 3, 8}) {
         const ThreadLimit limit(threads);
         const FoundDenoiser found = find_denoiser({DenoiserChoice::oidn, found_.library, {}});
-        results.push_back(found.denoiser->denoise({image})[0]);
-        results.push_back(found.denoiser->denoise({noisy_image(31, 200, 2), image})[1]);
+        results.push_back(covtrace::denoised(*found.denoiser, image));
+        results.push_back(found.denoiser->denoise(
+            image.features,
+            {{.color = noisy_view(150, 130, 2).color, .turned = true, .draft = true},
+             {.color = image.color}})[1]);
     }
     for (const ColorPlanes& result : results)
         for (size_t c = 0; c < 3; ++c) EXPECT_EQ(result[c].values, results[0][c].values);

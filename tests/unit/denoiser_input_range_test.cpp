@@ -11,7 +11,7 @@ constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 TEST(InputRange, LightComesBackBitByBit) {
     for (float scale : {1e-30f, 1.0f, 1e30f}) {
-        NoisyImage image = noisy_image(20, 10);
+        NoisyView image = noisy_view(20, 10);
         for (Plane& channel : image.color)
             for (float& v : channel.values) v *= scale;
         const InputRange range(image.color);
@@ -23,7 +23,7 @@ TEST(InputRange, LightComesBackBitByBit) {
 }
 
 TEST(InputRange, ValuesFarBeyondTheOthersAreLimited) {
-    NoisyImage image = noisy_image(20, 10);
+    NoisyView image = noisy_view(20, 10);
     set_pixel(image.color, 3, 4, 1e30f);
     const InputRange range(image.color);
     EXPECT_EQ(range.to_network(1e30f), 1e4f);
@@ -35,7 +35,7 @@ TEST(InputRange, ValuesFarBeyondTheOthersAreLimited) {
 }
 
 TEST(InputRange, NothingComesBackInfinite) {
-    NoisyImage image = noisy_image(20, 10);
+    NoisyView image = noisy_view(20, 10);
     for (Plane& channel : image.color)
         for (float& v : channel.values) v = std::numeric_limits<float>::max();
     EXPECT_TRUE(std::isfinite(InputRange(image.color).from_network(1e4f)));
@@ -45,7 +45,7 @@ TEST(InputRange, BlackImages) {
     const Plane black(4, 4);
     const InputRange range({black, black, black});
     EXPECT_TRUE(range.is_dark());
-    EXPECT_FALSE(InputRange(noisy_image(4, 4).color).is_dark());
+    EXPECT_FALSE(InputRange(noisy_view(4, 4).color).is_dark());
 }
 
 TEST(InputRange, Features) {

@@ -14,22 +14,26 @@ OidnDenoiser fake(const char* name) {
 
 TEST(OidnDenoiser, GivesWhatTheLibraryMakesOfTheLight) {
     const OidnDenoiser denoiser = fake("good");
-    const NoisyImage image = noisy_image(9, 7);
-    const std::vector<ColorPlanes> clean = denoiser.denoise({image, noisy_image(4, 3, 2)});
-    ASSERT_EQ(clean.size(), 2u);
-    EXPECT_EQ(clean[1][2].width, 4);
+    const NoisyView image = noisy_view(9, 7);
+    const std::vector<ColorPlanes> clean =
+        denoiser.denoise(image.features, {{.color = image.color},
+                                          {.color = noisy_view(9, 7, 2).color, .draft = true},
+                                          {.color = image.color, .turned = true}});
+    ASSERT_EQ(clean.size(), 3u);
+    EXPECT_NE(clean[1][2].values, clean[0][2].values);
     for (size_t c = 0; c < 3; ++c) {
         const Plane expected = box_blur(image.color[c], 1);
         for (int y = 1; y < 6; ++y)
             for (int x = 1; x < 8; ++x)
-                EXPECT_NEAR(clean[0][c](x, y), expected(x, y), 1e-5f * expected(x, y));
+                for (size_t k : {0, 2})  // a box has no upside
+                    EXPECT_NEAR(clean[k][c](x, y), expected(x, y), 1e-5f * expected(x, y));
     }
 }
 
 TEST(OidnDenoiser, WhatIsNoNumberIsThePixelOfBefore) {
-    const NoisyImage image = noisy_image(9, 7);
-    const ColorPlanes good = fake("good").denoise({image})[0],
-                      damaged = fake("not-a-number").denoise({image})[0];
+    const NoisyView image = noisy_view(9, 7);
+    const ColorPlanes good = denoised(fake("good"), image),
+                      damaged = denoised(fake("not-a-number"), image);
     for (size_t i = 0; i < image.color[0].size(); ++i) {
         const bool hit = 3 * i % 7 == 0 || (3 * i + 1) % 7 == 0 || (3 * i + 2) % 7 == 0;
         for (size_t c = 0; c < 3; ++c)
@@ -39,7 +43,7 @@ TEST(OidnDenoiser, WhatIsNoNumberIsThePixelOfBefore) {
 
 TEST(OidnDenoiser, ALibraryThatFailsIsAnErrorWithoutAPath) {
     try {
-        fake("execute-fails").denoise({noisy_image(4, 4)});
+        denoised(fake("execute-fails"), noisy_view(4, 4));
         FAIL() << "no error";
     } catch (const Error& e) {
         EXPECT_EQ(e.kind(), ErrorKind::limit);

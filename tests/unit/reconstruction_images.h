@@ -1,6 +1,7 @@
 // Square images of kSize x kSize pixels, and what is known of them.
 #pragma once
 
+#include "covariance/covariance.hpp"
 #include "reconstruction_fixtures.h"
 
 namespace covtrace::test {

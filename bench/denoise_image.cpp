@@ -1,0 +1,63 @@
+// What people do today: the root colours of an image through Open Image Denoise at high quality,
+// with the image's own albedo and normal, freed of their noise before (`cleanAux`):
+//
+//     denoise_image IMAGE.exr DENOISED.exr
+//
+// IMAGE.exr is any image of `covtrace render` with its layers; for those of `--method hybrid` the
+// layer `raw` is denoised. Prints the seconds that the denoiser took. The library is looked for as
+// by the program.
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "core/error.h"
+#include "hybrid_samples.h"
+#include "image/image.h"
+
+using namespace covtrace;
+
+namespace {
+
+std::array<Plane, 3> planes(const Image& image, const std::array<std::string, 3>& names) {
+    std::array<Plane, 3> result;
+    for (size_t k = 0; k < 3; ++k) {
+        const Channel* channel = image.find(names[k]);
+        if (!channel) throw Error(ErrorKind::usage, "the image has no channel " + names[k]);
+        result[k] = Plane(image.width(), image.height());
+        result[k].values = channel->values;
+    }
+    return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 3) {
+        fmt::print(stderr, "usage: denoise_image IMAGE.exr DENOISED.exr\n");
+        return 2;
+    }
+    try {
+        const auto denoiser = required_denoiser();
+        const Image image = read_image(argv[1]);
+        const bool has_raw = image.find("raw.R") != nullptr;
+        const auto color =
+            planes(image, has_raw ? std::array<std::string, 3>{"raw.R", "raw.G", "raw.B"}
+                                  : std::array<std::string, 3>{"R", "G", "B"});
+        const NoisyFeatures features{planes(image, {"albedo.R", "albedo.G", "albedo.B"}),
+                                     planes(image, {"N.X", "N.Y", "N.Z"})};
+        const auto start = std::chrono::steady_clock::now();
+        const ColorPlanes clean = denoiser->denoise(features, {{.color = color}})[0];
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        Image result;
+        result.data = image.data;
+        result.display = image.display;
+        for (size_t k = 0; k < 3; ++k)
+            result.add_channel(std::string(1, "RGB"[k])).values = clean[k].values;
+        write_exr(result, argv[2], 2);
+        fmt::print("{:.3f}\n", seconds);
+    } catch (const std::exception& e) {
+        fmt::print(stderr, "denoise_image: {}\n", e.what());
+        return 1;
+    }
+}

@@ -1,0 +1,53 @@
+#include "reconstruction/denoiser_blend.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/parallel.h"
+#include "core/vec.h"
+
+namespace covtrace {
+
+namespace {
+
+constexpr float kPriorShare = 0.2f, kPriorWeight = 0.1f, kLostWeight = 100;
+constexpr float kSmoothing = 4;  ///< of what was cut off, pixels
+
+}  // namespace
+
+Plane own_share(const BlendInput& input, const Denoised& denoised, const Likeness& likeness) {
+    const int w = input.g[0].width, h = input.g[0].height;
+    // The minimum is the ratio of two sums.
+    std::vector<MarginPlane> sums(2, MarginPlane(w, h));
+    for (size_t k = 0; k < 3; ++k) {
+        const Plane lost = gaussian_blur(input.lost[k], kSmoothing);
+        for (int y = 0; y < h; ++y)
+            for (int x = 0; x < w; ++x) {
+                const size_t i = size_t(y) * size_t(w) + size_t(x);
+                float product = 0, square = 0, noise = 0;
+                for (size_t half = 0; half < 2; ++half) {
+                    const float d = denoised.half[half][k][i], step = input.own[half][k][i] - d;
+                    product += 0.5f * step * (input.samples[1 - half][k][i] - d);
+                    square += 0.5f * sqr(step);
+                    noise += 0.5f * input.variance[half][k][i];
+                }
+                const float prior = 2 * kPriorWeight * noise;
+                sums[0](x, y) += input.g[k][i] * (product + kPriorShare * prior);
+                sums[1](x, y) += input.g[k][i] * (square + prior + kLostWeight * sqr(lost[i]));
+            }
+    }
+    Plane share(w, h, kPriorShare);
+    parallel_for(h, [&](int64_t row) {
+        const int y = int(row);
+        for (int x = 0; x < w; ++x) {
+            Likeness::Window weights;
+            likeness.weigh(x, y, weights);
+            float sum[2];
+            weighted_sums(sums, weights, x, y, sum);
+            if (sum[1] > 0) share(x, y) = std::clamp(sum[0] / sum[1], 0.0f, 1.0f);
+        }
+    });
+    return share;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,198 @@
+#include "reconstruction/light_return.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/vec.h"
+#include "reconstruction/guides.h"
+#include "reconstruction/luminance.h"
+
+namespace covtrace {
+
+namespace {
+
+/// A level has one value for so many pixels in x and in y; each the factor times the one before.
+constexpr int kFinest = 2, kFactor = 4, kLevels = 3;
+/// Blocks of the finest level in one of another, in x and in y.
+constexpr int blocks(int level) {
+    int n = 1;
+    for (int k = 0; k < level; ++k) n *= kFactor;
+    return n;
+}
+/// Pixels in a block.
+constexpr int side(int level) {
+    return kFinest * blocks(level);
+}
+/// k, from the finest level to the coarsest.
+constexpr std::array<float, kLevels> kNoise{1, 1, 0};
+/// A place may become so many times as bright, but no darker than a tenth.
+constexpr float kMostTimes = 10;
+
+/// The means of blocks of `size` x `size` pixels; those at the border are smaller.
+Plane block_means(const Plane& p, int size) {
+    Plane mean((p.width + size - 1) / size, (p.height + size - 1) / size);
+    for (int y = 0; y < mean.height; ++y)
+        for (int x = 0; x < mean.width; ++x) {
+            const int x1 = std::min(p.width, (x + 1) * size),
+                      y1 = std::min(p.height, (y + 1) * size);
+            float sum = 0;
+            for (int v = y * size; v < y1; ++v)
+                for (int u = x * size; u < x1; ++u) sum += p(u, v);
+            mean(x, y) = sum / float((x1 - x * size) * (y1 - y * size));
+        }
+    return mean;
+}
+
+/// What covers a few pixels of the image, within this reach, is one thing: a small lamp in view.
+constexpr int kTogether = 3;
+/// How much brighter than all light around one thing may make it. What is more would be seen as a
+/// glow over the whole image, and stays where it is.
+constexpr float kMostOfOneThing = 0.065f;
+
+/// Between the middles of the blocks linear, beyond the outermost constant.
+float interpolated(const Plane& p, int x, int y, int size) {
+    const auto place = [size](int pixel, int count) {
+        return std::clamp((float(pixel) + 0.5f) / float(size) - 0.5f, 0.0f, float(count - 1));
+    };
+    const float fx = place(x, p.width), fy = place(y, p.height);
+    const int x0 = int(fx), y0 = int(fy), x1 = std::min(x0 + 1, p.width - 1),
+              y1 = std::min(y0 + 1, p.height - 1);
+    const float u = fx - float(x0), v = fy - float(y0);
+    return (1 - v) * ((1 - u) * p(x0, y0) + u * p(x1, y0)) +
+           v * ((1 - u) * p(x0, y1) + u * p(x1, y1));
+}
+
+/// How many times its luminance every block lacks of each channel.
+ColorPlanes lacking(const Likeness& likeness, const ColorPlanes& e, const Plane& light,
+                    const Plane& variance, float noise) {
+    const int w = light.width, h = light.height;
+    const std::vector<MarginPlane> means{MarginPlane(e[0]), MarginPlane(e[1]), MarginPlane(e[2]),
+                                         MarginPlane(light)},
+        variances{MarginPlane(variance)};
+    ColorPlanes times;
+    times.fill(Plane(w, h));
+    parallel_for(h, [&](int64_t row) {
+        const int y = int(row);
+        for (int x = 0; x < w; ++x) {
+            Likeness::Window weights;
+            likeness.weigh(x, y, weights);
+            float sum[4], square;
+            weighted_sums(means, weights, x, y, sum);
+            for (float& weight : weights) weight *= weight;
+            weighted_sums(variances, weights, x, y, &square);
+            if (!(sum[3] > 0)) continue;
+            const float lack = sqr(luminance(Rgb(sum[0], sum[1], sum[2])));
+            const float certain = noise > 0 ? std::max(0.0f, 1 - noise * square / lack) : 1.0f;
+            if (!(certain > 0)) continue;  // also what is no number
+            for (size_t c = 0; c < 3; ++c)
+                times[c](x, y) =
+                    std::clamp(certain * sum[c] / sum[3], 1 / kMostTimes - 1, kMostTimes - 1);
+        }
+    });
+    return times;
+}
+
+/// The sums of the pixels' light around every pixel, as a level of such blocks sees it.
+Plane light_around(const Likeness& likeness, const Plane& light, int size) {
+    const Plane means = block_means(light, size);
+    const std::vector<MarginPlane> planes{MarginPlane(means)};
+    Plane sum(means.width, means.height), around(light.width, light.height);
+    parallel_for(sum.height, [&](int64_t row) {
+        const int y = int(row);
+        for (int x = 0; x < sum.width; ++x) {
+            Likeness::Window weights;
+            likeness.weigh(x, y, weights);
+            weighted_sums(planes, weights, x, y, &sum(x, y));
+        }
+    });
+    for (int y = 0; y < light.height; ++y)
+        for (int x = 0; x < light.width; ++x)
+            around(x, y) = sqr(float(size)) * interpolated(sum, x, y, size);
+    return around;
+}
+
+/// Adds to `color` the part of e of things that are too bright for their surroundings.
+void keep_in_place(const Plane& around, const ColorPlanes& e, ColorPlanes& color) {
+    Plane together = luminance(e);
+    for (float& v : together.values) v = std::abs(v);
+    together = box_blur(together, kTogether);
+    for (size_t i = 0; i < around.size(); ++i) {
+        const float most = kMostOfOneThing * around[i],
+                    thing = sqr(2 * kTogether + 1.0f) * together[i];
+        if (!(thing > most)) continue;
+        for (size_t c = 0; c < 3; ++c) color[c][i] += (1 - most / thing) * e[c][i];
+    }
+}
+
+}  // namespace
+
+LightReturn::LightReturn(const Halves& halves) {
+    for (size_t f = 0; f < kFeatures; ++f)
+        features_.push_back(block_means(feature_guide(halves, f), kFinest));
+    Plane variance(halves[0].count.width, halves[0].count.height);
+    for (size_t i = 0; i < variance.size(); ++i) {
+        Rgb deviation;
+        for (int c = 0; c < 3; ++c)
+            deviation[c] = 0.5f * std::sqrt(halves[0].color_variance[size_t(c)][i] +
+                                            halves[1].color_variance[size_t(c)][i]);
+        variance[i] = sqr(luminance(deviation));
+    }
+    variance_ = block_means(variance, kFinest);
+    for (float& v : variance_.values) v /= sqr(float(kFinest));
+}
+
+Likeness LightReturn::likeness_of(int level, const Plane& light) const {
+    // A window that counted in a wall's sums for a twentieth would outshine the wall.
+    Likeness likeness({.any = 0});
+    for (const Plane& feature : features_) likeness.add(block_means(feature, blocks(level)));
+    likeness.add(block_means(light_guide(light), side(level)));
+    return likeness;
+}
+
+void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
+    const int w = color[0].width, h = color[0].height;
+    const auto difference = [&raw, &color] {
+        ColorPlanes e = raw;
+        for (size_t c = 0; c < 3; ++c)
+            for (size_t i = 0; i < e[c].size(); ++i) e[c][i] -= color[c][i];
+        return e;
+    };
+    // What stays in its pixels beside what is given to all.
+    ColorPlanes in_place = color;
+    {
+        constexpr int kCoarsest = kLevels - 1;
+        const Plane light = luminance(color);
+        keep_in_place(light_around(likeness_of(kCoarsest, light), light, side(kCoarsest)),
+                      difference(), in_place);
+        for (size_t c = 0; c < 3; ++c)
+            for (size_t i = 0; i < light.size(); ++i) in_place[c][i] -= color[c][i];
+    }
+    for (int level = 0; level < kLevels; ++level) {
+        const Plane light = luminance(color);
+        ColorPlanes e = difference();
+        for (size_t c = 0; c < 3; ++c) {
+            for (size_t i = 0; i < light.size(); ++i) e[c][i] -= in_place[c][i];
+            e[c] = block_means(e[c], side(level));
+        }
+        Plane variance = block_means(variance_, blocks(level));
+        for (float& v : variance.values) v /= sqr(float(blocks(level)));
+        const ColorPlanes times =
+            lacking(likeness_of(level, light), e, block_means(light, side(level)), variance,
+                    kNoise[size_t(level)]);
+        parallel_for(h, [&](int64_t row) {
+            const int y = int(row);
+            for (int x = 0; x < w; ++x)
+                for (size_t c = 0; c < 3; ++c) {
+                    float& v = color[c](x, y);
+                    const float given = light(x, y) * interpolated(times[c], x, y, side(level));
+                    v = std::max(std::min(v, 0.0f), v + given);
+                }
+        });
+    }
+    for (size_t c = 0; c < 3; ++c)
+        for (size_t i = 0; i < color[c].size(); ++i) color[c][i] += in_place[c][i];
+}
+
+}  // namespace covtrace

@@ -1,0 +1,16 @@
+/// The luminance of planes of colours.
+#pragma once
+
+#include "core/vec.h"
+#include "reconstruction/half_buffer.h"
+
+namespace covtrace {
+
+inline Plane luminance(const ColorPlanes& color) {
+    Plane y(color[0].width, color[0].height);
+    for (size_t i = 0; i < y.size(); ++i)
+        y[i] = luminance(Rgb(color[0][i], color[1][i], color[2][i]));
+    return y;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,108 @@
+// Light that filters lost: how much of it comes back, and where.
+#include "reconstruction/light_return.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "reconstruction/luminance.h"
+#include "reconstruction_images.h"
+
+namespace covtrace {
+namespace {
+
+using namespace test;
+
+/// Halves without features whose mean has the variance `variance`.
+Halves halves_with(float variance) {
+    Halves halves{HalfBuffer(kSize, kSize), HalfBuffer(kSize, kSize)};
+    for (HalfBuffer& half : halves) {
+        half.count = Plane(kSize, kSize, 4);
+        half.color_variance.fill(Plane(kSize, kSize, 2 * variance));
+    }
+    return halves;
+}
+
+double mean_of_columns(const ColorPlanes& color, int x0, int x1) {
+    double sum = 0;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = x0; x < x1; ++x) sum += double(color[1](x, y));
+    return sum / ((x1 - x0) * kSize);
+}
+
+TEST(LightReturn, LightStaysOnItsWall) {
+    // The filters left half of a dark wall's light, and all of that of a bright window beside it.
+    ColorPlanes raw, color;
+    raw.fill(Plane(kSize, kSize));
+    color = raw;
+    for (size_t c = 0; c < 3; ++c)
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x) {
+                const bool dark = x < kSize / 2;
+                raw[c](x, y) = dark ? ((x + y) % 4 == 0 ? 0.4f : 0.0f) : 10.0f;
+                color[c](x, y) = dark ? 0.05f : 10.0f;
+            }
+    LightReturn(halves_with(0.03f)).give_back(raw, color);
+    EXPECT_NEAR(mean_of_columns(color, 0, kSize / 2 - 2), 0.1, 0.01);
+    EXPECT_NEAR(mean_of_columns(color, kSize / 2 + 2, kSize), 10, 0.05);
+}
+
+TEST(LightReturn, TheWholeImageHasTheLightOfItsSamples) {
+    const Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.5f, 3);
+    const ColorPlanes raw = mean_of_both({halves[0].color, halves[1].color});
+    ColorPlanes color = constant(0.7f);
+    LightReturn(halves).give_back(raw, color);
+    EXPECT_NEAR(mean_of_columns(color, 0, kSize) / mean_of_columns(raw, 0, kSize), 1, 0.01);
+}
+
+TEST(LightReturn, NoiseIsNotGivenBack) {
+    // What the samples say beside the truth is their noise: an image that is the truth hardly
+    // changes.
+    const Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.5f, 4);
+    const ColorPlanes raw = mean_of_both({halves[0].color, halves[1].color});
+    ColorPlanes color = constant(0);
+    for (Plane& p : color)
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x) p(x, y) = smooth_truth(x, y);
+    LightReturn(halves).give_back(raw, color);
+    EXPECT_LT(mean_squared_error(color, smooth_truth),
+              0.005 * mean_squared_error(raw, smooth_truth));
+}
+
+TEST(LightReturn, ASmallLampDoesNotLightTheImage) {
+    // One half saw a lamp 100000 times as bright as all else, in one pixel or in a few.
+    for (const int side : {1, 3}) {
+        ColorPlanes raw = constant(1), color = constant(1);
+        const int first = (kSize - side) / 2;
+        for (Plane& p : raw)
+            for (int y = first; y < first + side; ++y)
+                for (int x = first; x < first + side; ++x) p(x, y) = 1e5f;
+        Halves halves = halves_with(1);
+        for (size_t c = 0; c < 3; ++c)
+            for (size_t i = 0; i < raw[c].size(); ++i)
+                if (raw[c][i] > 1) halves[0].color_variance[c][i] = 4 * sqr(raw[c][i]);
+        LightReturn(halves).give_back(raw, color);
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x)
+                if (std::max(std::abs(2 * x - kSize), std::abs(2 * y - kSize)) > 2 * side + 2)
+                    ASSERT_NEAR(color[0](x, y), 1, 0.25f) << side << " " << x << " " << y;
+        EXPECT_GT(color[0](kSize / 2 - 1, kSize / 2 - 1) + color[0](kSize / 2, kSize / 2), 9e4f);
+    }
+}
+
+TEST(LightReturn, OnePathsLightMakesNoBlotch) {
+    ColorPlanes raw = constant(1), color = constant(1);
+    Halves halves = halves_with(1e-4f);
+    for (size_t c = 0; c < 3; ++c) {
+        raw[c](kSize / 2, kSize / 2) = 200;
+        // The half that saw it knows by its spread that it is rare.
+        halves[0].color_variance[c](kSize / 2, kSize / 2) = 4 * sqr(199.0f);
+    }
+    LightReturn(halves).give_back(raw, color);
+    const auto [least, most] = std::minmax_element(color[0].values.begin(), color[0].values.end());
+    EXPECT_LT(*most - *least, 0.06f);
+    EXPECT_GT(*least, 1.02f);
+}
+
+}  // namespace
+}  // namespace covtrace
