@@ -146,8 +146,9 @@ OidnDenoiser::~OidnDenoiser() = default;
 std::vector<ColorPlanes> OidnDenoiser::denoise(const NoisyFeatures& features,
                                                std::vector<NoisyImage> images) const try {
     Pixels albedo(features.albedo, InputRange()), normal(features.normal, InputRange());
-    impl_->filter({{"albedo", albedo}}, false, oidn::kHigh);
-    impl_->filter({{"normal", normal}}, false, oidn::kHigh);
+    const oidn::Quality quality = features.draft ? oidn::kBalanced : oidn::kHigh;
+    impl_->filter({{"albedo", albedo}}, false, quality);
+    impl_->filter({{"normal", normal}}, false, quality);
     bool turned = false;
     std::vector<ColorPlanes> results;
     for (NoisyImage& image : images) {

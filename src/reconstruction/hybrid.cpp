@@ -100,6 +100,7 @@ std::optional<Denoised> denoised(const Denoiser* denoiser, const Halves& halves,
                                  const ColorPlanes& all, std::string& failure) {
     if (!denoiser) return std::nullopt;
     NoisyFeatures features;
+    features.draft = true;  // the image errs 0.7 % more, in a third less time (decision 0085)
     for (size_t k = 0; k < 3; ++k) {
         features.albedo[k] = mean_of(halves[0].feature[k], halves[1].feature[k]);
         features.normal[k] = mean_of(halves[0].feature[3 + k], halves[1].feature[3 + k]);

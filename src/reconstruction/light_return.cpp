@@ -25,8 +25,8 @@ constexpr int blocks(int level) {
 constexpr int side(int level) {
     return kFinest * blocks(level);
 }
-/// k, from the finest level to the coarsest, where samples are far more even than their spread tells
-/// and what they lack is mostly real: with 0 the error is 1 % larger at 4 samples per pixel.
+/// k, from the finest level to the coarsest, where samples are far more even than their spread
+/// tells and what they lack is mostly real: with 0 the error is 1 % larger at 4 samples per pixel.
 constexpr std::array<float, kLevels> kNoise{1, 1, 0.1f};
 /// A place may become so many times as bright, but no darker than a tenth.
 constexpr float kMostTimes = 10;

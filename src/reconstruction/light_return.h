@@ -17,9 +17,9 @@ namespace covtrace {
 /// Y its luminance and V the variance of raw: as many times as bright, as the samples around say,
 /// where they say more than their noise could (James and Stein's factor). First with w of a
 /// deviation of 12 pixels, then 48, then 192, where nearly everything counts (k = 0.1), so that the
-/// whole image has the light of the samples. Light goes to what is alike, so none leaves a dark wall for
-/// a bright window beside it. What alone would make all around it a fifteenth brighter, as a small lamp
-/// that one half saw, stays in its pixels. docs/decisions/0085.
+/// whole image has the light of the samples. Light goes to what is alike, so none leaves a dark
+/// wall for a bright window beside it. What alone would make all around it a fifteenth brighter, as
+/// a small lamp that one half saw, stays in its pixels. docs/decisions/0085.
 class LightReturn {
   public:
     /// Keeps what it needs of the halves, with their holes filled, before outliers are limited.
