@@ -1,7 +1,9 @@
 // The factors of the error estimate (ErrorFactors) that fit the true errors of a set of images
 // best:
 //
-//     error_fit REFERENCE.exr REFERENCE2.exr FILM [REFERENCE REFERENCE2 FILM ...]
+//     error_fit none|denoiser REFERENCE.exr REFERENCE2.exr FILM [REFERENCE REFERENCE2 FILM ...]
+//
+// The first argument says whether the images are made with the denoiser that the program finds.
 //
 // The films are those of `covtrace render --method hybrid --checkpoint FILM`; the references are
 // two independent converged images of the same scene and size with other seeds. Minimises over the
@@ -26,9 +28,9 @@ using namespace covtrace;
 
 namespace {
 
-constexpr size_t kFactors = 5;
-constexpr std::array<const char*, kFactors> kNames{"noise", "noise_of_few", "spread", "returned",
-                                                   "cut"};
+constexpr size_t kFactors = 6;
+constexpr std::array<const char*, kFactors> kNames{"noise",    "noise_of_few", "spread",
+                                                   "returned", "cut",          "sights"};
 using Factors = std::array<double, kFactors>;
 
 /// One image as sums over tiles: the terms of the estimate, the truth and its variance.
@@ -72,7 +74,7 @@ void set_truth(const Truth& truth, int side, Tiles& tiles) {
         tiles.variance.push_back(noise[i] * (noise[i] + 2 * std::max(0.0, tiles.real[i])) / n[i]);
 }
 
-Case load(const char* const* files) {
+Case load(const char* const* files, const Denoiser* denoiser) {
     Case c{files[2], files[0], {}, {}, {}};
     const std::array<Image, 2> reference{read_image(files[0]), read_image(files[1])};
     const HybridSamples samples = read_hybrid_samples(files[2]);
@@ -82,16 +84,19 @@ Case load(const char* const* files) {
         if (r.pixel_count() != pixels)
             throw Error(ErrorKind::usage, c.film + ": has other pixels than the references");
     float ErrorFactors::*const each[] = {&ErrorFactors::noise, &ErrorFactors::spread,
-                                         &ErrorFactors::returned, &ErrorFactors::cut};
-    constexpr size_t kTo[] = {0, 2, 3, 4};
+                                         &ErrorFactors::returned, &ErrorFactors::cut,
+                                         &ErrorFactors::sights};
+    constexpr size_t kTo[] = {0, 2, 3, 4, 5};
     Plane relative(w, h);  // relative errors of absolute ones
     for (size_t i = 0; i < pixels; ++i)
         relative[i] = error_scale(luminance(reference[0].rgb(i)), luminance(reference[1].rgb(i)));
     HybridImage image;
-    for (size_t k = 0; k < 4; ++k) {
+    for (size_t k = 0; k < 5; ++k) {
         HybridSettings settings;
-        settings.error = {0, 0, 0, 0, 0};
+        settings.denoiser = denoiser;
+        settings.error = {0, 0, 0, 0, 0, 0};
         settings.error.*each[k] = 1;
+        settings.error_denoised = settings.error;
         image = reconstruct(samples.halves, samples.spectrum, settings);
         c.color.term[kTo[k]] = tile_sums(image.relative_error, side);
         c.absolute.term[kTo[k]] = tile_sums(image.variance, side);
@@ -141,7 +146,7 @@ Factors solve(const double (&a)[kFactors][kFactors], const Factors& b) {
 
 /// Over all cases but those of the reference `without`.
 Factors fit(const std::vector<Case>& cases, const std::string& without) {
-    Factors f{1, 10, 1, 0.5, 0.005};
+    Factors f{1, 10, 1, 0.5, 0.005, 1};
     // The weights follow the estimate, so it is done again until nothing changes.
     for (int step = 0; step < 30; ++step) {
         double a[kFactors][kFactors] = {};
@@ -212,13 +217,15 @@ void print(const Case& c, const Factors& f) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc < 4 || argc % 3 != 1) {
-        fmt::print(stderr, "usage: error_fit REFERENCE REFERENCE2 FILM [...]\n");
+    const std::string with = argc > 1 ? argv[1] : "";
+    if (argc < 5 || argc % 3 != 2 || (with != "none" && with != "denoiser")) {
+        fmt::print(stderr, "usage: error_fit none|denoiser REFERENCE REFERENCE2 FILM [...]\n");
         return 2;
     }
     try {
         std::vector<Case> cases;
-        for (int i = 1; i < argc; i += 3) cases.push_back(load(argv + i));
+        const auto denoiser = with == "denoiser" ? required_denoiser() : nullptr;
+        for (int i = 2; i < argc; i += 3) cases.push_back(load(argv + i, denoiser.get()));
         const Factors all = fit(cases, "");
         for (size_t k = 0; k < kFactors; ++k) fmt::print("{} {:.4f}\n", kNames[k], all[k]);
         fmt::print("{:<40} {:>5} {:>16} {:>16}\n", "told by the other scenes' fit", "RGB",

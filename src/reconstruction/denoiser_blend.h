@@ -9,7 +9,8 @@ namespace covtrace {
 /// What a denoiser made of each half, and of all samples.
 struct Denoised {
     std::array<ColorPlanes, 2> half;
-    ColorPlanes whole;
+    ColorPlanes whole;       ///< the mean of what it makes of both sights, upright and turned
+    ColorPlanes difference;  ///< of the two sights
 };
 
 /// What judges the denoiser against our own mixture.

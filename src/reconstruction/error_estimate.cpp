@@ -71,7 +71,7 @@ float relative(float square, float brightness) {
 ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> candidates,
                              const Selection& selection, const ColorPlanes& image,
                              const ColorPlanes& raw, const ColorPlanes& brightness,
-                             const ErrorFactors& factors) {
+                             const ColorPlanes* difference_of_sights, const ErrorFactors& factors) {
     const int w = image[0].width, h = image[0].height;
     const Plane bright = luminance(brightness);
     const float noise =
@@ -92,11 +92,17 @@ ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> ca
                 for (size_t k = 0; k < kSignals; ++k)
                     spread[k] += selection.share[c][i] * std::abs(mean[k] - m[k]);
             }
+            Signals sights{};
+            if (difference_of_sights) {
+                sights = signals(*difference_of_sights, i);
+                for (float& v : sights) v *= selection.share.back()[i];
+            }
             Signals square;
             for (size_t k = 0; k < kSignals; ++k)
                 square[k] = noise * sqr(ma[k] - mb[k]) / 4 + factors.spread * sqr(spread[k]) +
                             factors.returned * sqr(delivered[k] - m[k]) +
-                            factors.cut * sqr(all[k] - 0.5f * (a[k] + b[k]));
+                            factors.cut * sqr(all[k] - 0.5f * (a[k] + b[k])) +
+                            factors.sights * sqr(sights[k]) / 4;
             for (size_t k = 0; k < 3; ++k)
                 error.color[i] += relative(square[k], brightness[k][i]) / 3;
             error.luminance[i] = relative(square[3], bright[i]);

@@ -11,9 +11,12 @@ namespace covtrace {
 /// `bench/error_fit` makes them, `bench/error_calibration` measures how well they do
 /// (docs/decisions/0080).
 struct ErrorFactors {
-    float noise = 1.45f, noise_of_few = 1;
-    float spread = 1.1f, returned = 0.7f, cut = 0.015f;
+    float noise = 1.31f, noise_of_few = 3.1f;
+    float spread = 1.39f, returned = 0.37f, cut = 0.002f, sights = 0;
 };
+
+/// The same where a denoiser's image is among the candidates.
+constexpr ErrorFactors kDenoisedError{1.03f, 5, 0.56f, 0.63f, 0.001f, 2.05f};
 
 /// Estimated squared errors over I^2 + 0.01, I the brightness.
 struct ErrorEstimate {
@@ -22,7 +25,8 @@ struct ErrorEstimate {
 };
 
 /// Estimated error of `image`, the mean of the mixed halves and what was added to it to keep the
-/// light. `raw`: the mean of the halves before rare bright paths were limited; `brightness`: I.
+/// light. `difference_of_sights`: of the denoiser, whose share is the last one; null: none.
+/// `raw`: the mean of the halves before rare bright paths were limited; `brightness`: I.
 ///
 /// What a pixel's halves measure of it is no estimate: raw pixels are ten times as noisy as the
 /// image, and the halves that judge have chosen shares and weights before (docs/decisions/0041).
@@ -32,12 +36,14 @@ struct ErrorEstimate {
 ///     S = (sum over c of share_c |m_c - m|)^2, how far the candidates c are from their mixture m,
 ///     E = (image - m)^2, what light of the neighbourhood was added,
 ///     C = (raw - limited)^2, what light was cut off: it is somewhere around only,
-/// as (noise + noise_of_few / n) N + spread S + returned E + cut C, n the samples per pixel. The
+///     D = (share (upright - turned))^2 / 4, how far the denoiser's two sights are apart,
+/// as (noise + noise_of_few / n) N + spread S + returned E + cut C + sights D, n the samples per
+/// pixel. The
 /// part of N that grows with few samples stands for what the halves share: each takes its weights
 /// from the other one's noise.
 ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> candidates,
                              const Selection& selection, const ColorPlanes& image,
                              const ColorPlanes& raw, const ColorPlanes& brightness,
-                             const ErrorFactors& factors);
+                             const ColorPlanes* difference_of_sights, const ErrorFactors& factors);
 
 }  // namespace covtrace

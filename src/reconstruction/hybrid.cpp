@@ -111,8 +111,15 @@ std::optional<Denoised> denoised(const Denoiser* denoiser, const Halves& halves,
                                          {.color = halves[1].color, .draft = true},
                                          {.color = all},
                                          {.color = all, .turned = true}});
-        Denoised clean{{std::move(images[0]), std::move(images[1])}, std::move(images[2])};
-        for (size_t k = 0; k < 3; ++k) clean.whole[k] = mean_of(clean.whole[k], images[3][k]);
+        Denoised clean{{std::move(images[0]), std::move(images[1])},
+                       std::move(images[2]),
+                       std::move(images[3])};
+        for (size_t k = 0; k < 3; ++k)
+            for (size_t i = 0; i < all[k].size(); ++i) {
+                const float upright = clean.whole[k][i], turned = clean.difference[k][i];
+                clean.whole[k][i] = 0.5f * (upright + turned);
+                clean.difference[k][i] = upright - turned;
+            }
         return clean;
     } catch (const Error& e) {
         failure = e.what();
@@ -172,8 +179,9 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
         for (size_t i = 0; i < all[k].size(); ++i)
             image.color[k][i] = std::max(std::min(0.0f, all[k][i]), image.color[k][i]);
     light_return.give_back(all, image.color);
-    ErrorEstimate error =
-        estimate_error(halves, candidates, s, image.color, all, guess, settings.error);
+    ErrorEstimate error = estimate_error(halves, candidates, s, image.color, all, guess,
+                                         clean ? &clean->difference : nullptr,
+                                         clean ? settings.error_denoised : settings.error);
     image.share = std::move(s.share);
     image.relative_error = std::move(error.color);
     image.variance = std::move(error.luminance);

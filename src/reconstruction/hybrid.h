@@ -15,7 +15,7 @@ namespace covtrace {
 
 struct HybridSettings {
     CandidateSettings candidates;
-    ErrorFactors error;
+    ErrorFactors error, error_denoised = kDenoisedError;  ///< without and with a denoiser
     float sigma = 4;            ///< of the neighbourhood by which a first mixture is judged, pixels
     LikenessSettings likeness;  ///< of the pixels by which the final one is
     bool mix = true;            ///< false: the best single candidate, for comparisons

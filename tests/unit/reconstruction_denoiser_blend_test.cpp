@@ -1,0 +1,102 @@
+// Who gets a pixel: our own mixture or the denoiser.
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "reconstruction/hybrid.h"
+#include "reconstruction_images.h"
+
+namespace covtrace {
+namespace {
+
+using namespace test;
+
+/// Makes the same of every image, whatever it is.
+class FixedDenoiser : public Denoiser {
+  public:
+    explicit FixedDenoiser(ColorPlanes result) : result_(std::move(result)) {}
+    std::string name() const override { return "fixed"; }
+    size_t memory(size_t) const override { return 0; }
+    std::vector<ColorPlanes> denoise(const NoisyFeatures&,
+                                     std::vector<NoisyImage> images) const override {
+        return std::vector<ColorPlanes>(images.size(), result_);
+    }
+
+  private:
+    ColorPlanes result_;
+};
+
+class FailingDenoiser : public FixedDenoiser {
+  public:
+    FailingDenoiser() : FixedDenoiser(constant(0)) {}
+    std::vector<ColorPlanes> denoise(const NoisyFeatures&, std::vector<NoisyImage>) const override {
+        throw Error(ErrorKind::limit, "out of order");
+    }
+};
+
+ColorPlanes grey(const auto& truth) {
+    ColorPlanes color = constant(0);
+    for (Plane& p : color)
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x) p(x, y) = truth(x, y);
+    return color;
+}
+
+HybridImage with(const Denoiser& denoiser, const Halves& halves) {
+    HybridSettings settings;
+    settings.denoiser = &denoiser;
+    return reconstruct(halves, kSpectrum, settings);
+}
+
+double mean_share(const HybridImage& image) {
+    double sum = 0;
+    for (float v : image.share.back().values) sum += double(v);
+    return sum / (kSize * kSize);
+}
+
+TEST(DenoiserBlend, ADenoiserThatIsRightGetsMost) {
+    const Halves halves = noisy_halves(kSize, kSize, checks, 0.3f, 31);
+    const HybridImage image = with(FixedDenoiser(grey(checks)), halves);
+    EXPECT_GT(mean_share(image), 0.75);
+    EXPECT_LT(mean_squared_error(image.color, checks),
+              0.1 * mean_squared_error(reconstruct(halves, kSpectrum).color, checks));
+}
+
+TEST(DenoiserBlend, ADenoiserThatIsWrongGetsNothingWhereSamplesCanTell) {
+    const Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.02f, 32);
+    const HybridImage image = with(FixedDenoiser(constant(0.5f)), halves);
+    EXPECT_LT(mean_share(image), 0.02);
+    EXPECT_LT(mean_squared_error(image.color, smooth_truth),
+              2 * mean_squared_error(reconstruct(halves, kSpectrum).color, smooth_truth));
+}
+
+TEST(DenoiserBlend, NoiseThatTellsNothingLeavesThePriorShare) {
+    // The denoiser is off by a hundredth, the noise of the samples a hundred times as much.
+    const auto one = [](int, int) { return 1.0f; };
+    const Halves halves = noisy_halves(kSize, kSize, one, 1, 33);
+    const double share = mean_share(with(FixedDenoiser(constant(1.01f)), halves));
+    EXPECT_GT(share, 0.6);
+    EXPECT_LT(share, 1);
+}
+
+TEST(DenoiserBlend, RareLightIsTheDenoisers) {
+    // One pixel in 200 has all of the light that our own limit takes away.
+    Halves halves = noisy_halves(
+        kSize, kSize, [](int, int) { return 0.5f; }, 0.05f, 34);
+    for (HalfBuffer& half : halves)
+        for (size_t c = 0; c < 3; ++c)
+            for (size_t i = &half == &halves[0] ? 0u : 100u; i < half.color[c].size(); i += 200) {
+                half.color[c][i] += 100;
+                half.color_variance[c][i] = 2500;
+            }
+    EXPECT_GT(mean_share(with(FixedDenoiser(constant(1)), halves)), 0.95);
+}
+
+TEST(DenoiserBlend, OneThatFailsIsLeftOut) {
+    const Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.2f, 35);
+    const HybridImage image = with(FailingDenoiser(), halves);
+    EXPECT_EQ(image.denoiser_failure, "out of order");
+    EXPECT_EQ(image.color[1].values, reconstruct(halves, kSpectrum).color[1].values);
+}
+
+}  // namespace
+}  // namespace covtrace
