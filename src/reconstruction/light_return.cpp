@@ -25,9 +25,9 @@ constexpr int blocks(int level) {
 constexpr int side(int level) {
     return kFinest * blocks(level);
 }
-/// k, from the finest level to the coarsest, where samples are far more even than their spread
-/// tells and what they lack is mostly real: with 0 the error is 1 % larger at 4 samples per pixel.
-constexpr std::array<float, kLevels> kNoise{1, 1, 0.1f};
+/// k, and that of the whole image, whose samples are far more even than their spread tells: what it
+/// lacks is mostly real. With 0 the error is 1 % larger at 4 samples per pixel.
+constexpr float kNoise = 1, kNoiseOfAll = 0.1f;
 /// A place may become so many times as bright, but no darker than a tenth.
 constexpr float kMostTimes = 10;
 
@@ -65,9 +65,20 @@ float interpolated(const Plane& p, int x, int y, int size) {
            v * ((1 - u) * p(x0, y1) + u * p(x1, y1));
 }
 
-/// How many times its luminance every block lacks of each channel.
+/// How many times its luminance a place lacks of each channel, by sums over what is alike: of what
+/// is lacking, of luminance and of the variance of the former.
+Rgb times_lacking(Rgb lacking, float light, float variance, float noise) {
+    const float certain = 1 - noise * variance / sqr(luminance(lacking));
+    if (!(light > 0) || !(certain > 0)) return Rgb(0);  // also what is no number
+    Rgb times;
+    for (int c = 0; c < 3; ++c)
+        times[c] = std::clamp(certain * lacking[c] / light, 1 / kMostTimes - 1, kMostTimes - 1);
+    return times;
+}
+
+/// The same of every block.
 ColorPlanes lacking(const Likeness& likeness, const ColorPlanes& e, const Plane& light,
-                    const Plane& variance, float noise) {
+                    const Plane& variance) {
     const int w = light.width, h = light.height;
     const std::vector<MarginPlane> means{MarginPlane(e[0]), MarginPlane(e[1]), MarginPlane(e[2]),
                                          MarginPlane(light)},
@@ -83,20 +94,17 @@ ColorPlanes lacking(const Likeness& likeness, const ColorPlanes& e, const Plane&
             weighted_sums(means, weights, x, y, sum);
             for (float& weight : weights) weight *= weight;
             weighted_sums(variances, weights, x, y, &square);
-            if (!(sum[3] > 0)) continue;
-            const float lack = sqr(luminance(Rgb(sum[0], sum[1], sum[2])));
-            const float certain = noise > 0 ? std::max(0.0f, 1 - noise * square / lack) : 1.0f;
-            if (!(certain > 0)) continue;  // also what is no number
-            for (size_t c = 0; c < 3; ++c)
-                times[c](x, y) =
-                    std::clamp(certain * sum[c] / sum[3], 1 / kMostTimes - 1, kMostTimes - 1);
+            const Rgb lack = times_lacking({sum[0], sum[1], sum[2]}, sum[3], square, kNoise);
+            for (int c = 0; c < 3; ++c) times[size_t(c)](x, y) = lack[c];
         }
     });
     return times;
 }
 
-/// The sums of the pixels' light around every pixel, as a level of such blocks sees it.
-Plane light_around(const Likeness& likeness, const Plane& light, int size) {
+/// The sums of all light within some hundred pixels around every pixel.
+Plane light_around(const Plane& light) {
+    constexpr int size = side(kLevels - 1);
+    const Likeness everything({.any = 1});
     const Plane means = block_means(light, size);
     const std::vector<MarginPlane> planes{MarginPlane(means)};
     Plane sum(means.width, means.height), around(light.width, light.height);
@@ -104,7 +112,7 @@ Plane light_around(const Likeness& likeness, const Plane& light, int size) {
         const int y = int(row);
         for (int x = 0; x < sum.width; ++x) {
             Likeness::Window weights;
-            likeness.weigh(x, y, weights);
+            everything.weigh(x, y, weights);
             weighted_sums(planes, weights, x, y, &sum(x, y));
         }
     });
@@ -152,6 +160,25 @@ Likeness LightReturn::likeness_of(int level, const Plane& light) const {
     return likeness;
 }
 
+void LightReturn::give_to_all(const ColorPlanes& e, const ColorPlanes& in_place,
+                              ColorPlanes& color) const {
+    const Plane light = luminance(color);
+    std::array<double, 3> lack{};
+    double all = 0, variance = 0;
+    for (size_t i = 0; i < light.size(); ++i) {
+        for (size_t c = 0; c < 3; ++c) lack[c] += double(e[c][i] - in_place[c][i]);
+        all += double(light[i]);
+    }
+    for (float v : variance_.values) variance += sqr(sqr(double(kFinest))) * double(v);
+    const Rgb times = times_lacking({float(lack[0]), float(lack[1]), float(lack[2])}, float(all),
+                                    float(variance), kNoiseOfAll);
+    for (size_t c = 0; c < 3; ++c)
+        for (size_t i = 0; i < light.size(); ++i) {
+            float& v = color[c][i];
+            v = std::max(std::min(v, 0.0f), v + light[i] * times[int(c)]);
+        }
+}
+
 void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
     const int w = color[0].width, h = color[0].height;
     const auto difference = [&raw, &color] {
@@ -162,14 +189,9 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
     };
     // What stays in its pixels beside what is given to all.
     ColorPlanes in_place = color;
-    {
-        constexpr int kCoarsest = kLevels - 1;
-        const Plane light = luminance(color);
-        keep_in_place(light_around(likeness_of(kCoarsest, light), light, side(kCoarsest)),
-                      difference(), in_place);
-        for (size_t c = 0; c < 3; ++c)
-            for (size_t i = 0; i < light.size(); ++i) in_place[c][i] -= color[c][i];
-    }
+    keep_in_place(light_around(luminance(color)), difference(), in_place);
+    for (size_t c = 0; c < 3; ++c)
+        for (size_t i = 0; i < color[c].size(); ++i) in_place[c][i] -= color[c][i];
     for (int level = 0; level < kLevels; ++level) {
         const Plane light = luminance(color);
         ColorPlanes e = difference();
@@ -180,8 +202,7 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
         Plane variance = block_means(variance_, blocks(level));
         for (float& v : variance.values) v /= sqr(float(blocks(level)));
         const ColorPlanes times =
-            lacking(likeness_of(level, light), e, block_means(light, side(level)), variance,
-                    kNoise[size_t(level)]);
+            lacking(likeness_of(level, light), e, block_means(light, side(level)), variance);
         parallel_for(h, [&](int64_t row) {
             const int y = int(row);
             for (int x = 0; x < w; ++x)
@@ -192,6 +213,7 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
                 }
         });
     }
+    give_to_all(difference(), in_place, color);
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < color[c].size(); ++i) color[c][i] += in_place[c][i];
 }

@@ -16,10 +16,11 @@ namespace covtrace {
 ///     color + (1 - k s^2 / ((sum w e)^2 + s^2))_+ (sum w e / sum w Y) Y,   s^2 = sum w^2 V,
 /// Y its luminance and V the variance of raw: as many times as bright, as the samples around say,
 /// where they say more than their noise could (James and Stein's factor). First with w of a
-/// deviation of 12 pixels, then 48, then 192, where nearly everything counts (k = 0.1), so that the
-/// whole image has the light of the samples. Light goes to what is alike, so none leaves a dark
-/// wall for a bright window beside it. What alone would make all around it a fifteenth brighter, as
-/// a small lamp that one half saw, stays in its pixels. docs/decisions/0085.
+/// deviation of 12 pixels, then 48, then 192 (k = 1), then once over the whole image, where nearly
+/// everything counts (k = 0.1), so that it has the light of the samples. Light goes to what is
+/// alike, so none leaves a dark wall for a bright window beside it. What alone would make all
+/// around it a fifteenth brighter, as a small lamp that one half saw, stays in its pixels.
+/// docs/decisions/0085.
 class LightReturn {
   public:
     /// Keeps what it needs of the halves, with their holes filled, before outliers are limited.
@@ -31,6 +32,9 @@ class LightReturn {
   private:
     /// How alike the blocks of a level are, `light`: of the image.
     Likeness likeness_of(int level, const Plane& light) const;
+    /// The last step. `e`: what is lacking, with `in_place`, what stays in its pixels.
+    void give_to_all(const ColorPlanes& e, const ColorPlanes& in_place, ColorPlanes& color) const;
+
     std::vector<Plane> features_;  ///< of the finest level, in units that tell pixels apart
     Plane variance_;               ///< of raw's luminance, of the finest level
 };

@@ -1,6 +1,7 @@
 #include "render/hybrid_film.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/hash.h"
@@ -8,8 +9,15 @@
 
 namespace covtrace {
 
-uint64_t half_seed(uint64_t seed, int k) {
-    return hash_combine(seed, 0x68616c66, uint64_t(k));
+uint64_t hybrid_seed(uint64_t seed) {
+    return hash_combine(seed, 0x68616c66, 0);
+}
+
+uint32_t place_in_sequence(uint32_t half, uint32_t index) {
+    // The first two samples, then as many as there are.
+    const uint32_t size = std::max(2u, std::bit_floor(index));
+    const uint32_t within = index < 2 ? index : index - size, begin = index < 2 ? 0 : 2 * size;
+    return half == 0 ? begin + within : begin + 2 * size - 1 - within;
 }
 
 Film merged(std::span<const Film> half) {

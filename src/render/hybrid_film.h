@@ -1,4 +1,4 @@
-/// The film of `--method hybrid`: two halves of the samples, each from a scramble of its own.
+/// The film of `--method hybrid`: two halves of the samples.
 #pragma once
 
 #include <span>
@@ -13,8 +13,16 @@ namespace covtrace {
 /// favour the half that happened to be dark.
 Film merged(std::span<const Film> halves);
 
-/// The seed of half `k` in a render with `seed`.
-uint64_t half_seed(uint64_t seed, int k);
+/// The seed of the samples in a render with `seed`, of both halves.
+uint64_t hybrid_seed(uint64_t seed);
+
+/// Where sample `index` of a half (0 or 1) stands in the sequence of its pixel. The halves take
+/// blocks of 2, 2, 4, 8 ... samples of one sequence in turn, so that both together are as evenly
+/// spread as the samples of `uniform` wherever they have 2^k samples each. The points of each half
+/// are uniform, but not independent of the other one's: where one has samples, the other has gaps
+/// (docs/decisions/0085). The second half takes its blocks from their ends, so that the two are far
+/// apart at other counts, too.
+uint32_t place_in_sequence(uint32_t half, uint32_t index);
 
 /// The halves as the reconstruction reads them. Where no pixel of a half has two samples the
 /// variances come from the difference of the halves.

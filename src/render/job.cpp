@@ -28,7 +28,7 @@ PassContext pass_context(const RenderScene& scene, const RenderOptions& options)
 
 PassContext half_context(const PassContext& whole, uint32_t k) {
     PassContext half = whole;
-    half.seed = half_seed(whole.seed, 0);
+    half.seed = hybrid_seed(whole.seed);
     half.half = k;
     half.halves = 2;
     return half;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <chrono>
 #include <cmath>
 
@@ -105,14 +104,6 @@ void sample_pixel(const PassContext& context, Film& film, size_t pixel, int x, i
 }
 
 }  // namespace
-
-uint32_t PassContext::sequence_index(uint32_t index) const {
-    if (halves == 1) return index;
-    // Blocks of 2, 2, 4, 8 ... indices each: the first two samples, then as many as there are.
-    const uint32_t size = std::max(2u, std::bit_floor(index));
-    const uint32_t within = index < 2 ? index : index - size, begin = index < 2 ? 0 : 2 * size;
-    return half == 0 ? begin + within : begin + 2 * size - 1 - within;
-}
 
 void PassStatistics::add(const PassStatistics& other) {
     samples += other.samples;

@@ -15,6 +15,7 @@
 #include "integrator/render_scene.h"
 #include "planner/covariance_buffer.h"
 #include "render/film.h"
+#include "render/hybrid_film.h"
 #include "render/progress.h"
 #include "render/shard.h"
 
@@ -57,7 +58,9 @@ struct PassContext {
     /// How people name a sample: the halves take turns, so that one number finds it again.
     uint64_t sample_name(uint32_t index) const { return uint64_t(index) * halves + half; }
     /// Where a sample stands in the sequence of its pixel.
-    uint32_t sequence_index(uint32_t index) const;
+    uint32_t sequence_index(uint32_t index) const {
+        return halves == 1 ? index : place_in_sequence(half, index);
+    }
 };
 
 /// Called from worker threads with the share of the pass that is done.

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
+#include "core/sampler.h"
+
 #include "render/render_state.h"
 
 namespace covtrace {
@@ -26,6 +30,35 @@ TEST(HybridFilm, OneSamplePerPixelOfWhatIsEvenHasNoNoise) {
         for (const Plane& variance : half.feature_variance)
             for (float v : variance.values) ASSERT_NEAR(v, 0, 1e-9);
     }
+}
+
+TEST(PlaceInSequence, BothHalvesTogetherHaveTheFirstSamples) {
+    for (uint32_t each = 2; each <= 1024; each *= 2) {
+        std::set<uint32_t> places;
+        for (uint32_t half = 0; half < 2; ++half)
+            for (uint32_t i = 0; i < each; ++i) places.insert(place_in_sequence(half, i));
+        EXPECT_EQ(places.size(), 2 * each);
+        EXPECT_EQ(*places.rbegin(), 2 * each - 1);
+    }
+}
+
+TEST(PlaceInSequence, TheMeanOfBothHalvesIsAsEvenAsOneSequence) {
+    // Squared error of the mean of x + y over the film, of 1000 pixels: of both halves, and of
+    // halves with seeds of their own.
+    double together = 0, apart = 0;
+    for (int pixel = 0; pixel < 1000; ++pixel) {
+        double sum = 0, own = 0;
+        for (uint32_t half = 0; half < 2; ++half)
+            for (uint32_t i = 0; i < 8; ++i) {
+                const Vec2 a = Sampler(5, pixel, 7, place_in_sequence(half, i)).film(),
+                           b = Sampler(5 + half, pixel, 7, i).film();
+                sum += double(a.x + a.y) - 1;
+                own += double(b.x + b.y) - 1;
+            }
+        together += sum * sum;
+        apart += own * own;
+    }
+    EXPECT_LT(together, 0.5 * apart);
 }
 
 }  // namespace
