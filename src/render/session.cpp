@@ -19,7 +19,7 @@ namespace {
 
 /// Layers and the buffers of the reconstruction, bytes per pixel: `bench/film_cost memory`.
 size_t image_bytes(Method method) {
-    return method == Method::uniform ? 68 : method == Method::covariance ? 396 : 472;
+    return method == Method::uniform ? 68 : method == Method::covariance ? 396 : 488;
 }
 
 /// What a denoiser adds to that. While it works the candidates are not there, of which only its own
