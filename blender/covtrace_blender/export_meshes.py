@@ -57,7 +57,8 @@ def parts(mesh, uv_of_slot, piece_of_triangle=None):
     smooth = smooth_polygons[_triangles(mesh, "polygon_index", 1)]
     normals = None
     if smooth.any():
-        mesh.calc_normals_split()
+        if hasattr(mesh, "calc_normals_split"):  # from Blender 4.1 on they are there
+            mesh.calc_normals_split()
         normals = np.empty(3 * len(mesh.loops), dtype=np.float32)
         mesh.loops.foreach_get("normal", normals)
         normals = normals.reshape(-1, 3)
