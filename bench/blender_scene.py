@@ -60,12 +60,10 @@ def move(moved, path, by):
     for frame, share in ((0, -0.5), (2, 1.5)):  # the shutter is from frame 0.5 to 1.5
         setattr(moved, path, [a + share * b for a, b in zip(at, by)])
         moved.keyframe_insert(path, frame=frame)
-    for curve in moved.animation_data.action.fcurves:
-        for key in curve.keyframe_points:
-            key.interpolation = "LINEAR"
 
 
 def build():
+    bpy.context.preferences.edit.keyframe_new_interpolation_type = "LINEAR"
     grey, red, blue = (matt("grey", (0.7, 0.7, 0.7)), matt("red", (0.6, 0.1, 0.1)), matt("blue", (0.1, 0.2, 0.6)))
     for name, material, location, size in (
             ("floor", grey, (0, 0, -0.05), (6, 6, 0.1)), ("back", grey, (0, 3, 2), (6, 0.1, 4)),
