@@ -1,16 +1,20 @@
-"""A scene with motion blur, made in Blender for both sides of bench/peers. Inside Blender:
+"""A scene with motion blur, made in Blender for both sides of bench/peers. By a Python that has `bpy`, or inside Blender
+(`blender --background --factory-startup -noaudio --python` instead of `python`):
 
-    blender --background --factory-startup -noaudio --python bench/blender_scene.py -- make FOLDER WxH
-    blender --background -noaudio FOLDER/scene.blend --threads N --python bench/blender_scene.py -- render SPP SEED IMAGE.exr
+    python bench/blender_scene.py -- make FOLDER WxH
+    python bench/blender_scene.py -- render FOLDER/scene.blend SPP SEED THREADS IMAGE.exr [THRESHOLD]
 
 `make` writes FOLDER/scene.blend and, by the add-on's exporter, FOLDER/scene.pbrt with the same meshes, materials, lights,
-camera, motion and most bounces. `render` is Cycles' render of the .blend, without adaptive sampling and denoiser.
+camera, motion and most bounces; it prints Blender's version. `render` is Cycles' render of the .blend: with a noise THRESHOLD
+by adaptive sampling and Open Image Denoise at high quality with prefiltered albedo and normal, else without both. It prints
+the CPU seconds of Blender's operator, which are without Blender's own start.
 
 A room open to a grey sky and to the camera, a lamp under its ceiling, a ball and a block that cross it, a block that
 turns, a smooth and a rough metal ball that rest: matt and metal are what both engines compute alike."""
 import math
 import pathlib
 import sys
+import time
 
 import bpy
 
@@ -101,7 +105,6 @@ def make(folder, resolution):
     scene.covtrace.max_depth = MOST_BOUNCES + 1  # of scatterings, the first of which Cycles does not count
     settings = scene.cycles
     render.engine = "CYCLES"
-    settings.use_adaptive_sampling = settings.use_denoising = False
     settings.max_bounces = MOST_BOUNCES
     for kind in ("diffuse_bounces", "glossy_bounces", "transmission_bounces", "transparent_max_bounces"):
         setattr(settings, kind, MOST_BOUNCES)
@@ -118,21 +121,42 @@ def make(folder, resolution):
         sys.exit("\n".join(exporter.warnings))
 
 
-def render(samples, seed, image):
+def denoise(settings):
+    settings.use_denoising, settings.denoiser = True, "OPENIMAGEDENOISE"
+    settings.denoising_input_passes, settings.denoising_prefilter = "RGB_ALBEDO_NORMAL", "ACCURATE"
+    if bpy.app.version >= (4, 2, 0):  # before, it is always high
+        settings.denoising_quality = "HIGH"
+
+
+def render(blend, samples, seed, threads, image, threshold):
+    bpy.ops.wm.open_mainfile(filepath=blend)
     scene = bpy.context.scene
-    scene.cycles.samples, scene.cycles.seed = samples, seed
-    settings = scene.render.image_settings
-    settings.file_format, settings.color_depth, settings.color_mode = "OPEN_EXR", "32", "RGB"
-    scene.render.filepath = str(image)
+    settings = scene.cycles
+    settings.samples, settings.seed = samples, seed
+    if bpy.app.version >= (4, 2, 0):  # what new files have
+        settings.sampling_pattern = "AUTOMATIC"
+    settings.use_adaptive_sampling = settings.use_denoising = False
+    if threshold is not None:
+        settings.use_adaptive_sampling, settings.adaptive_threshold = True, threshold
+        denoise(settings)
+    scene.render.threads_mode, scene.render.threads = "FIXED", threads
+    written = scene.render.image_settings
+    written.file_format, written.color_depth, written.color_mode = "OPEN_EXR", "32", "RGB"
+    scene.render.filepath = image
+    start = time.process_time()
     bpy.ops.render.render(write_still=True)
+    print(f"CPU seconds: {time.process_time() - start:.6f}")
 
 
 def main():
     command, *arguments = sys.argv[sys.argv.index("--") + 1:]
     if command == "make":
-        make(pathlib.Path(arguments[0]), arguments[1])
+        folder, resolution = arguments
+        make(pathlib.Path(folder), resolution)
+        print(f"Blender: {bpy.app.version_string}")
     else:
-        render(int(arguments[0]), int(arguments[1]), arguments[2])
+        blend, samples, seed, threads, image, *threshold = arguments
+        render(blend, int(samples), int(seed), int(threads), image, float(threshold[0]) if threshold else None)
 
 
 main()
