@@ -3,6 +3,7 @@
 import math
 import os
 
+import bpy
 import numpy as np
 from mathutils import Euler, Matrix
 
@@ -67,7 +68,7 @@ def _shader_colour(lamp, warn):
 
 
 def _write_area(out, lamp, colour):
-    """Shines along -z of its object, from one side, with the radiance W / (4 area), as Cycles has it (measured)."""
+    """Shines along -z of its object, from one side, with the radiance W / (pi area); in Cycles 3.4 W / (4 area) (measured)."""
     width = lamp.size
     height = lamp.size if lamp.shape in ("SQUARE", "DISK") else lamp.size_y
     round_shape = lamp.shape in ("DISK", "ELLIPSE")
@@ -78,7 +79,8 @@ def _write_area(out, lamp, colour):
         corners = [(-0.5 * width, -0.5 * height), (0.5 * width, -0.5 * height),
                    (0.5 * width, 0.5 * height), (-0.5 * width, 0.5 * height)]
     area = 0.5 * sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(corners, corners[1:] + corners[:1]))
-    radiance = [c / (4 * area) for c in colour]
+    solid_angle = math.pi if bpy.app.version >= (4, 2, 0) else 4  # of those between 3.4 and 4.2 none was measured
+    radiance = [c / (solid_angle * area) for c in colour]
     points = numbers(v for x, y in corners for v in (x, y, 0))
     # Clockwise seen from +z, so that the front looks along -z.
     indices = " ".join(f"0 {k + 1} {k}" for k in range(1, len(corners) - 1))
