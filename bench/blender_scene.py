@@ -1,7 +1,7 @@
-"""A scene with motion blur, made in Blender for both sides of bench/peers. By a Python that has `bpy`, or inside Blender
+"""Scenes that are made in Blender for both sides of bench/peers. By a Python that has `bpy`, or inside Blender
 (`blender --background --factory-startup -noaudio --python` instead of `python`):
 
-    python bench/blender_scene.py -- make FOLDER WxH
+    python bench/blender_scene.py -- make SCENE FOLDER WxH
     python bench/blender_scene.py -- render FOLDER/scene.blend SPP SEED THREADS IMAGE.exr [THRESHOLD]
 
 `make` writes FOLDER/scene.blend and, by the add-on's exporter, FOLDER/scene.pbrt with the same meshes, materials, lights,
@@ -9,8 +9,8 @@ camera, motion and most bounces; it prints Blender's version. `render` is Cycles
 by adaptive sampling and Open Image Denoise at high quality with prefiltered albedo and normal, else without both. It prints
 the CPU seconds of Blender's operator, which are without Blender's own start.
 
-A room open to a grey sky and to the camera, a lamp under its ceiling, a ball and a block that cross it, a block that
-turns, a smooth and a rough metal ball that rest: matt and metal are what both engines compute alike."""
+`moving-box`, `many-lamps` and `wide-lens` are one room with other things, lamps and lens: motion blur, shadows and depth of
+field. All is matt or metal, smooth or rough: what both engines compute alike."""
 import math
 import pathlib
 import sys
@@ -66,37 +66,90 @@ def move(moved, path, by):
         moved.keyframe_insert(path, frame=frame)
 
 
-def build():
-    bpy.context.preferences.edit.keyframe_new_interpolation_type = "LINEAR"
+def room():
+    """Open to the camera and to the sky, whose colour and strength are returned."""
     grey, red, blue = (matt("grey", (0.7, 0.7, 0.7)), matt("red", (0.6, 0.1, 0.1)), matt("blue", (0.1, 0.2, 0.6)))
     for name, material, location, size in (
             ("floor", grey, (0, 0, -0.05), (6, 6, 0.1)), ("back", grey, (0, 3, 2), (6, 0.1, 4)),
             ("left", red, (-3, 0, 2), (0.1, 6, 4)), ("right", blue, (3, 0, 2), (0.1, 6, 4))):
         block(material, location, size).name = name
-    move(ball(matt("yellow", (0.8, 0.6, 0.1)), (-1.6, -0.5, 0.6), 0.6), "location", (1.2, 0, 0))
-    move(block(matt("green", (0.2, 0.6, 0.2)), (1.2, 0.5, 1.6), (0.8, 0.8, 0.8)), "location", (0, 0, 0.6))
-    move(block(matt("white", (0.8, 0.8, 0.8)), (-0.3, 1.2, 0.5), (1, 1, 1)), "rotation_euler", (0, 0, math.radians(30)))
+    bpy.ops.object.camera_add(location=(0, -9, 2), rotation=(math.radians(88.5), 0, 0))
+    bpy.context.scene.camera = bpy.context.object
+    world = bpy.context.scene.world = bpy.data.worlds.new("sky")
+    world.use_nodes = True
+    background = world.node_tree.nodes["Background"].inputs
+    background["Color"].default_value = (0.3, 0.35, 0.4, 1)
+    return background
+
+
+def metal_balls():
     ball(metal("mirror", (0.9, 0.9, 0.9), 0.05), (1.4, -1.2, 0.5), 0.5)
     ball(metal("rough", (0.9, 0.6, 0.3), 0.4), (0.2, -1.4, 0.4), 0.4)
 
+
+def ceiling_lamp():
     bpy.ops.object.light_add(type="AREA", location=(0, 0, 3.9))
     lamp = bpy.context.object.data
     lamp.energy, lamp.size = 150, 1
-    world = bpy.context.scene.world = bpy.data.worlds.new("sky")
-    world.use_nodes = True
-    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.3, 0.35, 0.4, 1)
-    bpy.ops.object.camera_add(location=(0, -9, 2), rotation=(math.radians(88.5), 0, 0))
-    bpy.context.scene.camera = bpy.context.object
 
 
-def make(folder, resolution):
+def moving_box():
+    """A ball and a block that cross the room, a block that turns."""
+    room()
+    move(ball(matt("yellow", (0.8, 0.6, 0.1)), (-1.6, -0.5, 0.6), 0.6), "location", (1.2, 0, 0))
+    move(block(matt("green", (0.2, 0.6, 0.2)), (1.2, 0.5, 1.6), (0.8, 0.8, 0.8)), "location", (0, 0, 0.6))
+    move(block(matt("white", (0.8, 0.8, 0.8)), (-0.3, 1.2, 0.5), (1, 1, 1)), "rotation_euler", (0, 0, math.radians(30)))
+    metal_balls()
+    ceiling_lamp()
+
+
+def many_lamps():
+    """By night: small lamps, some of them behind pillars."""
+    room()["Strength"].default_value = 0.02
+    for k in range(5):
+        block(matt(f"pillar {k}", (0.7, 0.7 - 0.1 * k, 0.3 + 0.1 * k)), (-2.4 + 1.2 * k, 0.6, 1), (0.25, 0.25, 2))
+    metal_balls()
+    for k in range(24):
+        bpy.ops.object.light_add(type="POINT", location=(-2.5 + k % 6, -2 + 1.3 * (k // 6), 1.2 + 0.35 * (k * 5 % 7)))
+        lamp = bpy.context.object.data
+        lamp.energy, lamp.shadow_soft_size = 4 + 2 * (k % 5), 0.04
+        lamp.color = [(1, 0.8, 0.5), (0.5, 0.7, 1), (1, 0.4, 0.4)][k % 3]
+
+
+def wide_lens():
+    """A patterned floor and balls in depth, the nearest in focus."""
+    room()
+    cells = 8  # an image of squares, each of its own brightness
+    image = bpy.data.images.new("squares", cells, cells, float_buffer=True)
+    image.pixels = [v for k in range(cells * cells) for v in (*[0.1 + 0.7 * (k * 29 % 64) / 63] * 3, 1)]
+    image.pack()
+    pattern = matt("pattern", (1, 1, 1))
+    nodes = pattern.node_tree.nodes
+    texture = nodes.new("ShaderNodeTexImage")
+    texture.image, texture.interpolation = image, "Closest"
+    pattern.node_tree.links.new(texture.outputs["Color"], next(n for n in nodes if n.type == "BSDF_DIFFUSE").inputs["Color"])
+    bpy.ops.mesh.primitive_plane_add(size=5.8, location=(0, 0, 0.01))
+    with_material(pattern)
+    for k in range(5):
+        ball(matt(f"ball {k}", (0.8 - 0.15 * k, 0.4, 0.1 + 0.15 * k)), (-2.2 + 0.9 * k, -1.8 + 0.9 * k, 0.4), 0.4)
+    metal_balls()
+    ceiling_lamp()
+    lens = bpy.context.scene.camera.data.dof
+    lens.use_dof, lens.focus_distance, lens.aperture_fstop = True, 7.4, 0.2
+
+
+SCENES = {"moving-box": moving_box, "many-lamps": many_lamps, "wide-lens": wide_lens}
+
+
+def make(name, folder, resolution):
     sys.dont_write_bytecode = True
     sys.path.insert(0, str(ROOT / "blender"))
     import covtrace_blender
     from covtrace_blender import export_scene
     bpy.ops.wm.read_factory_settings(use_empty=True)
     covtrace_blender.register()
-    build()
+    bpy.context.preferences.edit.keyframe_new_interpolation_type = "LINEAR"
+    SCENES[name]()
     scene = bpy.context.scene
     scene.frame_set(1)
     render = scene.render
@@ -122,6 +175,9 @@ def make(folder, resolution):
 
 
 def denoise(settings):
+    import _cycles  # of the add-on cycles
+    if not _cycles.with_openimagedenoise:
+        sys.exit("this Blender is built without Open Image Denoise")
     settings.use_denoising, settings.denoiser = True, "OPENIMAGEDENOISE"
     settings.denoising_input_passes, settings.denoising_prefilter = "RGB_ALBEDO_NORMAL", "ACCURATE"
     if bpy.app.version >= (4, 2, 0):  # before, it is always high
@@ -151,8 +207,8 @@ def render(blend, samples, seed, threads, image, threshold):
 def main():
     command, *arguments = sys.argv[sys.argv.index("--") + 1:]
     if command == "make":
-        folder, resolution = arguments
-        make(pathlib.Path(folder), resolution)
+        name, folder, resolution = arguments
+        make(name, pathlib.Path(folder), resolution)
         print(f"Blender: {bpy.app.version_string}")
     else:
         blend, samples, seed, threads, image, *threshold = arguments
