@@ -335,7 +335,7 @@ class Progress(CliTest):
     def test_bar_fits_the_terminal(self):
         for columns in (100, 40, 12):
             with self.subTest(columns=columns):
-                text = self.on_terminal(columns, "--spp", "100", "--resolution", "64x48")
+                text = self.on_terminal(columns, "--spp", "600", "--resolution", "64x48")
                 drawn = [part.replace("\x1b[K", "") for part in text.split("\r")]
                 bars = [part for part in drawn if "%" in part]
                 self.assertGreater(len(bars), 1)
@@ -346,7 +346,7 @@ class Progress(CliTest):
                     for text in ("elapsed", "spp", "#", "."):
                         self.assertIn(text, bars[-1])
                 # The bar is gone before the line that stays.
-                self.assertRegex(drawn[-1] if drawn[-1].strip() else drawn[-2], r"^out\.exr: 100 samples per pixel")
+                self.assertRegex(drawn[-1] if drawn[-1].strip() else drawn[-2], r"^out\.exr: 600 samples per pixel")
 
     def on_terminal(self, columns, *arguments):
         """Standard error of a render, as a terminal gets it."""
