@@ -1,5 +1,6 @@
 // What people do today: the root colours of an image through Open Image Denoise at high quality,
-// with the image's own albedo and normal, freed of their noise before (`cleanAux`):
+// with the image's own albedo and normal, freed of their noise before (`cleanAux`): the layers
+// featurealbedo and featureN, or albedo and N where it has none:
 //
 //     denoise_image IMAGE.exr DENOISED.exr
 //
@@ -43,8 +44,13 @@ int main(int argc, char** argv) {
         const auto color =
             planes(image, has_raw ? std::array<std::string, 3>{"raw.R", "raw.G", "raw.B"}
                                   : std::array<std::string, 3>{"R", "G", "B"});
-        const NoisyFeatures features{planes(image, {"albedo.R", "albedo.G", "albedo.B"}),
-                                     planes(image, {"N.X", "N.Y", "N.Z"})};
+        const std::string prefix = image.find("featureN.X") ? "feature" : "";
+        const auto named = [&](const std::string& layer, const char* channels) {
+            std::array<std::string, 3> names;
+            for (size_t k = 0; k < 3; ++k) names[k] = prefix + layer + "." + channels[k];
+            return planes(image, names);
+        };
+        const NoisyFeatures features{named("albedo", "RGB"), named("N", "XYZ")};
         const auto start = std::chrono::steady_clock::now();
         const ColorPlanes clean = denoiser->denoise(features, {{.color = color}})[0];
         const double seconds =

@@ -13,9 +13,10 @@ namespace {
 constexpr std::array<std::string_view, 13> kStandard{
     "A",       "Z",       "raw",    "albedo",   "N",   "variance", "error",
     "samples", "density", "filter", "spectrum", "cov", "covweight"};
-/// What tells emitters in view apart from scattered light must be asked for by name.
-constexpr std::array<std::string_view, 4> kParts{"inview", "inviewfilter", "scatteredcov",
-                                                 "scatteredcovweight"};
+/// What tells emitters in view apart from scattered light, and what is for denoisers alone, must be
+/// asked for by name.
+constexpr std::array<std::string_view, 6> kParts{
+    "inview", "inviewfilter", "scatteredcov", "scatteredcovweight", "featurealbedo", "featureN"};
 
 template <typename Names>
 bool contains(const Names& names, std::string_view name) {

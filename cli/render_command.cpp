@@ -95,6 +95,9 @@ void parse_texts(RenderArguments& a) {
     if (!a.shutter.empty()) a.overrides.shutter = parse_interval("--shutter", a.shutter);
     if (a.quiet && a.progress == ProgressStyle::automatic) a.progress = ProgressStyle::none;
     a.options.emitters_apart = names(a.layers, "inview") || names(a.tev_layers, "inview");
+    for (const char* layer : {"featurealbedo", "featureN"})
+        a.options.features =
+            a.options.features || names(a.layers, layer) || names(a.tev_layers, layer);
     check(a.film);
     if (a.film.shard && !(a.output.empty() && a.png.empty() && a.tev.empty()))
         throw Error(

@@ -73,8 +73,8 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, M
     add_emission(hit, wo, vertex);
     const Frame frame = frame_at(hit, shape, material);
     const Surface surface{hit, shape, bsdf, frame, frame.to_local(wo)};
-    if (depth_ == 0)
-        describe_first_vertex(hit.position, albedo(bsdf, surface.wo), face_forward(frame.z, wo));
+    if (seen_clearly_)
+        describe_vertex(hit.position, albedo(bsdf, surface.wo), face_forward(frame.z, wo));
     if (vertex) vertex->shading = frame;
     if (depth_++ == max_depth_) return false;
     sampler_.set_dimension(static_cast<uint32_t>(depth_) * kPairsPerBounce);
@@ -117,11 +117,16 @@ PathVertex* PathTracer::begin_vertex(const SurfaceHit& hit, MediumId medium, Vec
     return v;
 }
 
-void PathTracer::describe_first_vertex(Vec3 position, Rgb albedo, Vec3 normal) {
-    result_.hit = true;
-    result_.albedo = albedo;
-    result_.normal = normal;
-    result_.depth = distance(camera_origin_, position);
+void PathTracer::describe_vertex(Vec3 position, Rgb albedo, Vec3 normal) {
+    if (depth_ == 0) {
+        result_.hit = true;
+        result_.albedo = albedo;
+        result_.normal = normal;
+        result_.depth = travelled_ = distance(camera_origin_, position);
+    } else {
+        travelled_ += distance(previous_position_, position);
+    }
+    result_.features = {albedo * beta_, normal, travelled_};
 }
 
 bool PathTracer::survives(float u) {

@@ -23,6 +23,16 @@ struct RayCounts {
     }
 };
 
+/// What leads filters and denoisers: of the vertex where the path first leaves by a wide lobe, or
+/// ends. What is seen in mirrors, through glass and in glossy coats has edges of its own there,
+/// which their surfaces know nothing of. A path that leaves the scene behind a mirror tells of the
+/// mirror.
+struct PathFeatures {
+    Rgb albedo;       ///< as the viewer sees it: times what the mirrors and panes let through
+    Vec3 normal;      ///< shading normal there, towards where the path comes from; 0 in a medium
+    float depth = 0;  ///< length of the path from the camera to there
+};
+
 /// Everything one path says about its pixel. Its first vertex is the first surface, or the first
 /// place in a medium, where it scatters.
 struct PathResult {
@@ -32,6 +42,7 @@ struct PathResult {
     Vec3 normal;      ///< shading normal of the first vertex towards the viewer; 0 in a medium
     float depth = 0;  ///< distance of the first vertex from the camera, 0 where there is none
     bool hit = false;
+    PathFeatures features;
     RayCounts rays;
     uint32_t vertices = 0;
 };

@@ -30,7 +30,7 @@ bool PathTracer::scatter_in_medium(float distance) {
     place.position = ray_.origin + ray_.direction * distance;
     place.time = ray_.time;
     PathVertex* vertex = begin_vertex(place, medium_, wo);
-    if (depth_ == 0) describe_first_vertex(place.position, medium.albedo(), {});
+    if (seen_clearly_) describe_vertex(place.position, medium.albedo(), {});
     ++depth_;
     sampler_.set_dimension(static_cast<uint32_t>(depth_) * kPairsPerBounce);
     const auto [u_choice, u_light, u_phase, u_roulette] = sampler_.next_four_2d();
@@ -45,7 +45,7 @@ bool PathTracer::scatter_in_medium(float distance) {
     }
     const Vec3 wi = sample_phase(medium.g, wo, u_phase);
     pdf_ = henyey_greenstein(medium.g, -dot(wo, wi));
-    specular_ = sharp_so_far_ = false;
+    specular_ = sharp_so_far_ = seen_clearly_ = false;
     if (vertex) {
         vertex->scatters = true;
         vertex->next_event = {wi, {}};

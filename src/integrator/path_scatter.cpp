@@ -4,6 +4,15 @@
 
 namespace covtrace {
 
+namespace {
+
+/// GGX alpha below which what lies behind a lobe is told to filters: Cycles' denoising features
+/// draw the line there, too, and a sweep over thirteen scenes found nothing better
+/// (docs/decisions/0086).
+constexpr float kSeenThrough = 0.075f;
+
+}  // namespace
+
 float PathTracer::mixed_pdf(float own, Vec3 wi) const {
     const float share = guide_.share();
     return share > 0 ? (1 - share) * own + share * guide_.pdf(wi) : own;
@@ -55,6 +64,8 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, PathVerte
     pdf_ = s->pdf;
     specular_ = is_specular(s->lobe);
     sharp_so_far_ = sharp_so_far_ && specular_;
+    seen_clearly_ =
+        seen_clearly_ && !is_diffuse(s->lobe) && sharp_lobe_roughness(surface.bsdf) < kSeenThrough;
     sharp_probability_ *= s->pdf;
     if (is_transmission(s->lobe)) roulette_scale_ *= s->eta * s->eta;
     if (vertex) {

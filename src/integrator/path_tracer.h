@@ -63,7 +63,8 @@ class PathTracer {
     /// The frame of the BSDF, with the material's bump or normal map.
     Frame frame_at(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material) const;
     PathVertex* begin_vertex(const SurfaceHit& hit, MediumId medium, Vec3 wo);
-    void describe_first_vertex(Vec3 position, Rgb albedo, Vec3 normal);
+    /// The current vertex, if it is the first one or is seen through mirrors and the like.
+    void describe_vertex(Vec3 position, Rgb albedo, Vec3 normal);
     /// Russian roulette by the throughput without the factors that refraction and the guide put on
     /// it.
     bool survives(float u);
@@ -106,6 +107,8 @@ class PathTracer {
     bool specular_ =
         true;  // the last lobe (the camera counts as one): no light sampling could find it
     bool sharp_so_far_ = true;
+    bool seen_clearly_ = true;     // every lobe so far was sharp enough to see through
+    float travelled_ = 0;          // from the camera to the last vertex
     float sharp_probability_ = 1;  // of the specular lobes that were chosen, while sharp so far
     float roulette_scale_ = 1;
     MediumId medium_ = -1;

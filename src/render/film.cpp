@@ -31,20 +31,24 @@ Rgb FilmPixel::variance_of_mean() const {
 
 void Film::add(size_t i, const FilmSample& s) {
     FilmPixel& p = pixels[i];
-    const Rgb albedo = s.albedo - p.albedo;
-    const Vec3 normal = s.normal - p.normal;
-    const float depth = s.depth - p.depth;
     p.add(s);
     if (!in_view.empty())
         in_view[i] +=
             (s.in_view - in_view[i]) * (weight_in(s, p.count) / static_cast<float>(p.count));
     if (!rays.empty()) rays[i] += s.rays;
-    if (feature_squares.empty()) return;
+    if (features.empty()) return;
+    const float n = static_cast<float>(p.count);
+    PathFeatures& f = features[i];
     FeatureSquares& q = feature_squares[i];
-    q.albedo += albedo * (s.albedo - p.albedo);
-    const Vec3 rest = s.normal - p.normal;
-    q.normal += Vec3{normal.x * rest.x, normal.y * rest.y, normal.z * rest.z};
-    if (s.hit) q.depth += depth * (s.depth - p.depth);
+    const auto update = [](auto value, auto& mean, auto& squares, float count, auto product) {
+        const auto step = value - mean;
+        mean += step * (1 / count);
+        squares += product(step, value - mean);
+    };
+    const auto plain = [](auto a, auto b) { return a * b; };
+    update(s.features.albedo, f.albedo, q.albedo, n, plain);
+    update(s.features.normal, f.normal, q.normal, n, [](Vec3 a, Vec3 b) { return dot(a, b); });
+    if (s.hit) update(s.features.depth, f.depth, q.depth, p.coverage * n, plain);
 }
 
 double Film::mean_count() const {

@@ -7,6 +7,7 @@
 
 #include "core/vec.h"
 #include "image/image.h"
+#include "integrator/path.h"
 
 namespace covtrace {
 
@@ -20,6 +21,7 @@ struct FilmSample {
     Vec3 normal;
     float depth = 0;
     bool hit = false;
+    PathFeatures features;
 };
 
 /// Running means over a pixel's samples in index order (Welford 1962). 60 bytes.
@@ -43,17 +45,17 @@ struct FilmPixel {
     Rgb variance_of_mean() const;
 };
 
-/// Sums of squared deviations of the features from their means. 28 bytes.
+/// Sums of squared deviations of the features from their means. 20 bytes.
 struct FeatureSquares {
     Rgb albedo;
-    Vec3 normal;
+    float normal = 0;  ///< of all three components together
     float depth = 0;
 };
 
 /// What a film keeps beside its pixels.
 struct FilmParts {
     bool in_view = false;   ///< the light of emitters in view
-    bool features = false;  ///< deviations of the features, and rays
+    bool features = false;  ///< their means and deviations, and rays
     bool operator==(const FilmParts&) const = default;
 };
 
@@ -62,6 +64,7 @@ struct Film {
         : bounds(region), pixels(size_t(region.width()) * size_t(region.height())) {
         if (parts.in_view) in_view.resize(pixels.size());
         if (parts.features) {
+            features.resize(pixels.size());
             feature_squares.resize(pixels.size());
             rays.resize(pixels.size());
         }
@@ -69,9 +72,10 @@ struct Film {
     PixelBounds bounds;
     std::vector<FilmPixel> pixels;
     // As `pixels`, or empty:
-    std::vector<Rgb> in_view;                     ///< mean of FilmSample::in_view
-    std::vector<FeatureSquares> feature_squares;  ///< of the features in `pixels`
-    std::vector<uint32_t> rays;                   ///< of all samples of a pixel
+    std::vector<Rgb> in_view;            ///< mean of FilmSample::in_view
+    std::vector<PathFeatures> features;  ///< means, that of the depth over the samples that hit
+    std::vector<FeatureSquares> feature_squares;
+    std::vector<uint32_t> rays;  ///< of all samples of a pixel
 
     /// Where x, y in [bounds.x0, bounds.x1) x [bounds.y0, bounds.y1) stands in `pixels`.
     size_t index(int x, int y) const {
@@ -82,6 +86,7 @@ struct Film {
     double mean_count() const;
     size_t memory() const {  ///< bytes
         return pixels.size() * sizeof(FilmPixel) + in_view.size() * sizeof(Rgb) +
+               features.size() * sizeof(PathFeatures) +
                feature_squares.size() * sizeof(FeatureSquares) + rays.size() * sizeof(uint32_t);
     }
 };

@@ -29,6 +29,7 @@ inline std::vector<FilmArray> film_arrays(RenderState& state) {
         const std::string film = "film" + std::to_string(k);
         add(film + ".pixels", state.films[k].pixels);
         add(film + ".in_view", state.films[k].in_view);
+        add(film + ".features", state.films[k].features);
         add(film + ".feature_squares", state.films[k].feature_squares);
         add(film + ".rays", state.films[k].rays);
         if (state.in_round()) add(film + ".plan", state.plan[k]);

@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "image/output_file.h"
 #include "render/film_arrays.h"
+#include "render/film_format3.h"
 #include "render/film_header.h"
 
 namespace covtrace {
@@ -25,7 +26,6 @@ namespace fs = std::filesystem;
 
 constexpr std::array<char, 8> kMagic{'\x89', 'C', 'V', 'F', '\r', '\n', '\x1a', '\n'};
 constexpr std::array<char, 8> kEnd{'c', 'v', 'f', ' ', 'e', 'n', 'd', '\n'};
-constexpr uint32_t kFormat = 3;
 constexpr uint32_t kMostHeader = 1 << 20;  // bytes
 constexpr size_t kBlockRecords = 1 << 16;  // pixels in a block
 constexpr size_t kBlocksAtOnce = 32;       // in memory, compressed or being so
@@ -101,9 +101,9 @@ class FilmReader {
         get(magic.data(), magic.size());
         if (magic != kMagic) fail("this is no film file");
         get(&format, sizeof format);
-        if (format != kFormat)
+        if (format < kOldestFilmFormat || format > kFilmFormat)
             fail("a film of format " + std::to_string(format) + "; expected " +
-                 std::to_string(kFormat));
+                 std::to_string(kOldestFilmFormat) + " or " + std::to_string(kFilmFormat));
         get(&header_size, sizeof header_size);
         get(&header_hash, sizeof header_hash);
         if (header_size > kMostHeader) fail("the header is damaged");
@@ -111,8 +111,14 @@ class FilmReader {
         get(header.data(), header.size());
         if (kChecksums && XXH3_64bits(header.data(), header.size()) != header_hash)
             fail("the header is damaged");
-        RenderState state = parsed(header);
-        read_blocks(blocks_of(film_arrays(state)));
+        RenderState state = parsed(header, format);
+        if (format == 3) {
+            FilmFormat3 old(state);
+            read_blocks(blocks_of(old.arrays()));
+            old.make_features();
+        } else {
+            read_blocks(blocks_of(film_arrays(state)));
+        }
         return state;
     }
 
@@ -128,13 +134,13 @@ class FilmReader {
         left_ -= count;
     }
 
-    RenderState parsed(const std::string& header) const {
+    RenderState parsed(const std::string& header, uint32_t format) const {
         const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
         // Of a block nothing but zeros may be left, yet its head is there.
         const double plausible = double(left_) / double(sizeof(BlockHead)) * double(kBlockRecords) *
-                                 double(sizeof(FeatureSquares) + 2 * sizeof(FilmPixel));
+                                 double(sizeof(PathFeatures) + 2 * sizeof(FilmPixel));
         try {
-            return parse_film_header(header, size_t(std::min(memory, plausible)));
+            return parse_film_header(header, size_t(std::min(memory, plausible)), format);
         } catch (const Error& e) {
             throw Error(e.kind(), name_ + ": " + e.what());
         }
@@ -199,7 +205,7 @@ void write_film(const RenderState& state, const fs::path& file) {
     const auto put = [&out](const auto& value) { out.write(&value, sizeof value); };
     const std::string header = film_header(state);
     put(kMagic);
-    put(kFormat);
+    put(kFilmFormat);
     put(uint32_t(header.size()));
     put(uint64_t(XXH3_64bits(header.data(), header.size())));
     out.write(header.data(), header.size());

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "render/film_arrays.h"
+#include "render/film_format3.h"
 
 namespace covtrace {
 
@@ -89,15 +90,19 @@ Method method(const json& j) {
 }
 
 /// Gives a state all arrays that the header names.
-void add_arrays(RenderState& s, const json& arrays) {
+void add_arrays(RenderState& s, const json& arrays, uint32_t format) {
     const auto has = [&](const std::string& name) {
         return std::any_of(arrays.begin(), arrays.end(),
                            [&](const json& a) { return a.at("name") == name; });
     };
     FilmParts kept = film_parts(s.method);
-    if (s.method == Method::uniform) kept.in_view = has("film0.in_view");
+    if (s.method == Method::uniform) {
+        kept.in_view = has("film0.in_view");
+        kept.features = has("film0.features");
+    }
     for (size_t k = 0; k < (s.method == Method::hybrid ? 2 : 1); ++k) {
         s.films.emplace_back(s.region, kept);
+        if (format == 3) s.films.back().features = {};
         if (has("film0.plan")) s.plan.emplace_back(s.pixels());
     }
     if (s.method == Method::hybrid && s.stage == Stage::rounds)
@@ -108,10 +113,10 @@ void add_arrays(RenderState& s, const json& arrays) {
 }
 
 /// Bytes that every pixel needs. Refuses arrays that are not those of the method.
-size_t bytes_per_pixel(RenderState s, const json& arrays) {
+size_t bytes_per_pixel(RenderState s, const json& arrays, uint32_t format) {
     s.region = {0, 0, 1, 1};
-    add_arrays(s, arrays);
-    const std::vector<FilmArray> expected = film_arrays(s);
+    add_arrays(s, arrays, format);
+    const std::vector<FilmArray> expected = format == 3 ? FilmFormat3(s).arrays() : film_arrays(s);
     bool agree = expected.size() == arrays.size();
     size_t sum = 0;
     for (size_t i = 0; agree && i < expected.size(); ++i) {
@@ -134,7 +139,7 @@ void check_shards(const RenderState& s) {
     }
 }
 
-RenderState parse(const json& j, size_t most_bytes) {
+RenderState parse(const json& j, size_t most_bytes, uint32_t format) {
     RenderState s;
     s.identity = j.at("identity").get<RenderIdentity>();
     s.method = method(j.at("method"));
@@ -164,11 +169,11 @@ RenderState parse(const json& j, size_t most_bytes) {
     check_shards(s);
 
     const json& arrays = j.at("arrays");
-    if (bytes_per_pixel(s, arrays) > most_bytes / s.pixels())
+    if (bytes_per_pixel(s, arrays, format) > most_bytes / s.pixels())
         throw Error(ErrorKind::limit, "not enough memory for a film of " +
                                           std::to_string(s.region.width()) + "x" +
                                           std::to_string(s.region.height()) + " pixels");
-    add_arrays(s, arrays);
+    add_arrays(s, arrays, format);
     return s;
 }
 
@@ -204,9 +209,9 @@ std::string film_header(const RenderState& s) {
     return j.dump(1);
 }
 
-RenderState parse_film_header(const std::string& text, size_t most_bytes) {
+RenderState parse_film_header(const std::string& text, size_t most_bytes, uint32_t format) {
     try {
-        return parse(json::parse(text), most_bytes);
+        return parse(json::parse(text), most_bytes, format);
     } catch (const json::exception& e) {
         refuse(e.what());
     }

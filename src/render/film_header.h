@@ -9,8 +9,12 @@ namespace covtrace {
 
 std::string film_header(const RenderState& state);
 
-/// A state with arrays of the right size, filled with zeros. `most_bytes` limits them. Throws
-/// Error(scene) for text that is no header, Error(limit) beyond the limit.
-RenderState parse_film_header(const std::string& text, size_t most_bytes);
+/// Of film files: the one that is written, and the first one that is still read.
+constexpr uint32_t kFilmFormat = 4, kOldestFilmFormat = 3;
+
+/// A state with arrays of the right size, filled with zeros. `most_bytes` limits them; `format`:
+/// of the file. Throws Error(scene) for text that is no header, Error(limit) beyond the limit.
+RenderState parse_film_header(const std::string& text, size_t most_bytes,
+                              uint32_t format = kFilmFormat);
 
 }  // namespace covtrace

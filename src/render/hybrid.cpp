@@ -205,6 +205,7 @@ class HybridRender {
         // The layers of the image have no need of what only weights and plans are made of.
         if (last)
             for (Film& film : s_.films) {
+                if (!job_.options.features) film.features = std::vector<PathFeatures>();
                 film.feature_squares = std::vector<FeatureSquares>();
                 film.rays = std::vector<uint32_t>();
             }
@@ -259,6 +260,7 @@ class HybridRender {
                 const size_t from = size_t(y - all.y0) * size_t(all.width()) + size_t(x - all.x0);
                 for (size_t k = 0; k < 2; ++k) {
                     films[k].pixels[to] = s_.films[k].pixels[from];
+                    films[k].features[to] = s_.films[k].features[from];
                     films[k].feature_squares[to] = s_.films[k].feature_squares[from];
                 }
                 spectrum.push_back(prediction_->spectrum[from]);

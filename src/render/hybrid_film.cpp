@@ -22,11 +22,13 @@ uint32_t place_in_sequence(uint32_t half, uint32_t index) {
 
 Film merged(std::span<const Film> half) {
     Film film(half[0].bounds);
+    if (!half[0].features.empty()) film.features.resize(film.pixels.size());
     for (size_t i = 0; i < film.pixels.size(); ++i) {
         const FilmPixel &a = half[0].pixels[i], &b = half[1].pixels[i];
         FilmPixel& p = film.pixels[i];
         if (a.count == 0 || b.count == 0) {
             p = a.count == 0 ? b : a;
+            if (!film.features.empty()) film.features[i] = half[a.count == 0 ? 1 : 0].features[i];
             continue;
         }
         p.count = a.count + b.count;
@@ -38,7 +40,14 @@ Film merged(std::span<const Film> half) {
         p.normal = 0.5f * (a.normal + b.normal);
         p.coverage = 0.5f * (a.coverage + b.coverage);
         const float hit = a.coverage + b.coverage;
-        p.depth = hit > 0 ? (a.coverage * a.depth + b.coverage * b.depth) / hit : 0.0f;
+        const auto depth = [&](float of_a, float of_b) {
+            return hit > 0 ? (a.coverage * of_a + b.coverage * of_b) / hit : 0.0f;
+        };
+        p.depth = depth(a.depth, b.depth);
+        if (film.features.empty()) continue;
+        const PathFeatures &fa = half[0].features[i], &fb = half[1].features[i];
+        film.features[i] = {0.5f * (fa.albedo + fb.albedo), 0.5f * (fa.normal + fb.normal),
+                            depth(fa.depth, fb.depth)};
     }
     return film;
 }
@@ -79,28 +88,29 @@ class PooledVariance {
 void fill(HalfBuffer& out, const Film& film) {
     const PooledVariance variance(film);
     const auto& pixels = film.pixels;
-    const auto& squares = film.feature_squares;
+    const std::vector<PathFeatures>& features = film.features;
+    const std::vector<FeatureSquares>& squares = film.feature_squares;
     for (size_t i = 0; i < pixels.size(); ++i) {
         const FilmPixel& p = pixels[i];
+        const PathFeatures& f = features[i];
         out.count[i] = float(p.count);
         for (int c = 0; c < 3; ++c) {
             out.color[size_t(c)][i] = p.mean[c];
-            out.feature[size_t(c)][i] = p.albedo[c];
+            out.feature[size_t(c)][i] = f.albedo[c];
         }
-        out.feature[3][i] = p.normal.x;
-        out.feature[4][i] = p.normal.y;
-        out.feature[5][i] = p.normal.z;
-        out.feature[6][i] = p.depth > 0 ? std::log(p.depth) : 0.0f;
+        out.feature[3][i] = f.normal.x;
+        out.feature[4][i] = f.normal.y;
+        out.feature[5][i] = f.normal.z;
+        out.feature[6][i] = f.depth > 0 ? std::log(f.depth) : 0.0f;
     }
     for (int c = 0; c < 3; ++c) {
         out.color_variance[size_t(c)] = variance([&](size_t i) { return pixels[i].squares[c]; });
         out.feature_variance[size_t(c)] = variance([&](size_t i) { return squares[i].albedo[c]; });
     }
-    out.feature_variance[3] = variance([&](size_t i) { return squares[i].normal.x; });
-    out.feature_variance[4] = variance([&](size_t i) { return squares[i].normal.y; });
-    out.feature_variance[5] = variance([&](size_t i) { return squares[i].normal.z; });
+    out.feature_variance[3] = variance([&](size_t i) { return squares[i].normal / 3; });
+    out.feature_variance[4] = out.feature_variance[5] = out.feature_variance[3];
     out.feature_variance[6] = variance([&](size_t i) {
-        const float z = pixels[i].depth;
+        const float z = features[i].depth;
         return z > 0 ? squares[i].depth / (z * z) : 0.0f;  // of the logarithm
     });
 }

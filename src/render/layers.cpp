@@ -59,6 +59,15 @@ Image make_layers(const Film& film, PixelBounds display, bool has_holes,
         return std::array{pixels[i].normal.x, pixels[i].normal.y, pixels[i].normal.z};
     });
     add_layer(image, "", std::array{"Z"}, [&](size_t i) { return std::array{pixels[i].depth}; });
+    if (!film.features.empty()) {
+        const auto& features = film.features;
+        add_layer(image, "featurealbedo.", kRgb,
+                  [&](size_t i) { return array(features[i].albedo); });
+        add_layer(image, "featureN.", std::array{"X", "Y", "Z"}, [&](size_t i) {
+            const Vec3 n = features[i].normal;
+            return std::array{n.x, n.y, n.z};
+        });
+    }
     add_layer(image, "variance.", kRgb,
               [&](size_t i) { return array(pixels[i].variance_of_mean()); });
     add_layer(image, "error.", std::array{"Y"}, [&](size_t i) {

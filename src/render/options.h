@@ -58,6 +58,7 @@ struct RenderOptions {
     std::shared_ptr<const Denoiser> denoiser;
     bool even_counts = false;     ///< hybrid: every pixel the same count, for comparisons
     bool emitters_apart = false;  ///< uniform: keeps the light of emitters in view apart
+    bool features = false;        ///< keeps what denoisers are told of each pixel for the layers
     uint64_t seed = 0;
 };
 

@@ -97,9 +97,11 @@ void sample_pixel(const PassContext& context, Film& film, size_t pixel, int x, i
         s.radiance = s.in_view = Rgb(0);
     }
     // Filters that are led by features would spread what is no number.
-    if (!is_finite(s.albedo)) s.albedo = Rgb(0);
-    if (!is_finite(s.normal)) s.normal = {};
-    if (!std::isfinite(s.depth)) s.hit = false;
+    for (Rgb* albedo : {&s.albedo, &s.features.albedo})
+        if (!is_finite(*albedo)) *albedo = Rgb(0);
+    for (Vec3* normal : {&s.normal, &s.features.normal})
+        if (!is_finite(*normal)) *normal = {};
+    if (!std::isfinite(s.depth) || !std::isfinite(s.features.depth)) s.hit = false;
     film.add(pixel, s);
 }
 
@@ -149,6 +151,7 @@ FilmSample take_sample(const PassContext& context, int x, int y, uint32_t index,
     s.normal = path.normal;
     s.depth = path.depth;
     s.hit = path.hit;
+    s.features = path.features;
     return s;
 }
 

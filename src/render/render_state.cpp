@@ -87,18 +87,20 @@ void clear_at(std::vector<T>& values, size_t i) {
 
 }  // namespace
 
-size_t film_bytes_per_pixel(Method method, bool emitters_apart) {
+size_t film_bytes_per_pixel(Method method, FilmParts uniform_parts) {
     constexpr size_t kPlan = sizeof(uint32_t), kDensity = sizeof(float),
-                     kCovariance = sizeof(PackedCovariance);
+                     kCovariance = sizeof(PackedCovariance),
+                     kFeatureRecords = sizeof(PathFeatures) + sizeof(FeatureSquares) + sizeof(uint32_t);
     switch (method) {
         case Method::uniform:
-            return sizeof(FilmPixel) + (emitters_apart ? sizeof(Rgb) : 0) + kPlan;
+            return sizeof(FilmPixel) + (uniform_parts.in_view ? sizeof(Rgb) : 0) +
+                   (uniform_parts.features ? kFeatureRecords : 0) + kPlan;
         case Method::covariance:
             return sizeof(FilmPixel) + sizeof(Rgb) + kPlan + kDensity + 2 * kCovariance;
         case Method::hybrid:
             break;
     }
-    const size_t half = sizeof(FilmPixel) + sizeof(FeatureSquares) + sizeof(uint32_t) + kPlan;
+    const size_t half = sizeof(FilmPixel) + kFeatureRecords + kPlan;
     // Up to the end of the pilot both parts of the light; then their sum, and densities.
     return 2 * half + std::max(2 * kCovariance, kCovariance + kDensity);
 }
@@ -119,7 +121,7 @@ RenderState::RenderState(const RenderScene& scene, const RenderOptions& options)
       spp(target_spp(scene.description, options)) {
     covariance_spp = covariance_paths(options, spp);
     FilmParts kept = film_parts(method);
-    if (method == Method::uniform) kept.in_view = options.emitters_apart;
+    if (method == Method::uniform) kept = {options.emitters_apart, options.features};
     for (int k = 0; k < (method == Method::hybrid ? 2 : 1); ++k) films.emplace_back(region, kept);
     if (method != Method::uniform) parts.emplace(region.width(), region.height());
 }
@@ -158,6 +160,7 @@ void RenderState::keep_only(const Shard& shard) {
         for (Film& film : films) {
             clear_at(film.pixels, i);
             clear_at(film.in_view, i);
+            clear_at(film.features, i);
             clear_at(film.feature_squares, i);
             clear_at(film.rays, i);
         }
@@ -204,6 +207,7 @@ RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& op
     id["--max-spp"] = text(options.max_spp);
     if (options.method == Method::uniform) {
         id["light of emitters (--layers)"] = options.emitters_apart ? "apart" : "not apart";
+        id["features (--layers)"] = options.features ? "kept" : "not kept";
         return id;
     }
     id["--cov-spp"] = text(options.cov_spp);

@@ -87,7 +87,8 @@ struct RenderState {
 };
 
 /// Bytes that a render keeps for each pixel, plan and prediction included, where they are most.
-size_t film_bytes_per_pixel(Method method, bool emitters_apart);
+/// `uniform_parts`: what `uniform` keeps beside its pixels.
+size_t film_bytes_per_pixel(Method method, FilmParts uniform_parts = {});
 
 /// What the films of one method keep.
 FilmParts film_parts(Method method);

@@ -35,7 +35,8 @@ size_t denoiser_bytes(const Denoiser& denoiser, size_t pixels) {
 
 std::map<std::string, size_t> render_memory(const FilmDescription& film,
                                             const RenderOptions& options) {
-    const size_t kept = film_bytes_per_pixel(options.method, options.emitters_apart);
+    const size_t kept =
+        film_bytes_per_pixel(options.method, {options.emitters_apart, options.features});
     const PixelBounds region = render_region(film);
     const size_t pixels = size_t(region.width()) * size_t(region.height());
     std::map<std::string, size_t> bytes{{"film", kept * pixels},

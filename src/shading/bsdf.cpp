@@ -117,6 +117,20 @@ bool has_sharp_lobe(const Bsdf& bsdf) {
            std::holds_alternative<CoatedDiffuseBsdf>(bsdf);
 }
 
+float sharp_lobe_roughness(const Bsdf& bsdf) {
+    const auto larger = [](const auto& b) { return std::max(b.alpha_x, b.alpha_y); };
+    if (const auto* coated = std::get_if<CoatedConductorBsdf>(&bsdf))
+        return std::max(larger(coated->coat), larger(coated->metal));
+    return std::visit(
+        [&](const auto& b) {
+            if constexpr (requires { b.alpha_x; }) return larger(b);
+            constexpr bool passes = std::is_same_v<std::decay_t<decltype(b)>, ThinDielectricBsdf> ||
+                                    std::is_same_v<std::decay_t<decltype(b)>, InterfaceBsdf>;
+            return passes ? 0.0f : std::numeric_limits<float>::infinity();
+        },
+        bsdf);
+}
+
 LobeShares lobe_shares(const Bsdf& bsdf, Vec3 wo, Vec3 wi, Rgb value) {
     return std::visit([&](const auto& b) { return lobe_shares(b, wo, wi, value); }, bsdf);
 }

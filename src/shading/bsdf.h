@@ -125,6 +125,9 @@ bool is_specular(const Bsdf& bsdf);
 bool has_diffuse_lobe(const Bsdf& bsdf);
 /// True for models with a lobe that reflects or refracts light about one direction.
 bool has_sharp_lobe(const Bsdf& bsdf);
+/// The larger GGX alpha of that lobe, of both where there are two; 0 where it is specular, infinite
+/// where there is none.
+float sharp_lobe_roughness(const Bsdf& bsdf);
 /// The parts of `value` = eval(wo, wi), lobe by lobe; their values sum to it. Specular lobes have
 /// no part. Whoever asks has evaluated the pair before, so that nothing is computed twice.
 LobeShares lobe_shares(const Bsdf& bsdf, Vec3 wo, Vec3 wi, Rgb value);

@@ -76,6 +76,30 @@ TEST_F(FilmFile, KeepsEveryBit) {
             }
 }
 
+/// A film that covtrace 0.1.0 of commit 6aca4960848e wrote: 12x8 pixels, `hybrid`, 8 samples, of a
+/// mirror ball above a diffuse one.
+TEST_F(FilmFile, ReadsThatOfFormat3) {
+    const RenderState film =
+        read_film(std::filesystem::path(COVTRACE_TEST_FILES) / "hybrid-format-3.film");
+    ASSERT_EQ(film.films.size(), 2u);
+    EXPECT_EQ(film.mean_count(), 8);
+    float most = 0, coloured = 0;
+    for (const Film& half : film.films) {
+        ASSERT_EQ(half.features.size(), 96u);
+        ASSERT_EQ(half.feature_squares.size(), 96u);
+        for (size_t i = 0; i < 96; ++i) {
+            EXPECT_EQ(half.features[i].albedo, half.pixels[i].albedo);
+            EXPECT_EQ(half.features[i].normal, half.pixels[i].normal);
+            EXPECT_EQ(half.features[i].depth, half.pixels[i].depth);
+            EXPECT_GE(half.feature_squares[i].normal, 0);
+            most = std::max(most, half.feature_squares[i].normal);
+            coloured = std::max(coloured, half.features[i].albedo.r - half.features[i].albedo.b);
+        }
+    }
+    EXPECT_GT(most, 0.1f);  // at the borders of the balls
+    EXPECT_NEAR(coloured, 0.7f, 0.01f);
+}
+
 TEST_F(FilmFile, KeepsTheEarlierOne) {
     RenderState first = random_state(Method::uniform, Stage::rounds, true, {0, 0, 20, 10});
     RenderState second = first;

@@ -124,12 +124,13 @@ TEST(FilmMerge, OtherArraysAreNotMerged) {
 /// Issue 6: at most 64 for `uniform`, 160 for `covariance`; issue 9: 320 for `hybrid`.
 TEST(BytesPerPixel, AreAsTheRecordsSay) {
     EXPECT_EQ(sizeof(FilmPixel), 60u);
-    EXPECT_EQ(sizeof(FeatureSquares), 28u);
+    EXPECT_EQ(sizeof(PathFeatures), 28u);
+    EXPECT_EQ(sizeof(FeatureSquares), 20u);
     EXPECT_EQ(sizeof(PackedCovariance), 40u);
     const std::pair<Method, size_t> expected[] = {
-        {Method::uniform, 64}, {Method::covariance, 160}, {Method::hybrid, 272}};
+        {Method::uniform, 64}, {Method::covariance, 160}, {Method::hybrid, 312}};
     for (const auto& [method, most] : expected) {
-        EXPECT_EQ(film_bytes_per_pixel(method, false), most);
+        EXPECT_EQ(film_bytes_per_pixel(method), most);
         size_t largest = 0;
         for (Stage stage : {Stage::first_paths, Stage::pilot, Stage::rounds}) {
             if (method == Method::uniform && stage != Stage::rounds) continue;
@@ -140,7 +141,8 @@ TEST(BytesPerPixel, AreAsTheRecordsSay) {
         }
         EXPECT_EQ(largest, most) << name_of(method);
     }
-    EXPECT_EQ(film_bytes_per_pixel(Method::uniform, true), 76u);
+    EXPECT_EQ(film_bytes_per_pixel(Method::uniform, {.in_view = true}), 76u);
+    EXPECT_EQ(film_bytes_per_pixel(Method::uniform, {.features = true}), 116u);
 }
 
 }  // namespace

@@ -17,10 +17,10 @@ TEST(HybridFilm, OneSamplePerPixelOfWhatIsEvenHasNoNoise) {
     constexpr int kSize = 24;
     std::vector<Film> films(2, Film({0, 0, kSize, kSize}, film_parts(Method::hybrid)));
     FilmSample sample;
-    sample.radiance = sample.albedo = Rgb(0.8f, 0.5f, 0.2f);
-    sample.normal = {0, 0.6f, 0.8f};
+    sample.radiance = sample.features.albedo = Rgb(0.8f, 0.5f, 0.2f);
+    sample.features.normal = {0, 0.6f, 0.8f};
     sample.hit = true;
-    sample.depth = 7;
+    sample.depth = sample.features.depth = 7;
     for (int y = 0; y < kSize; ++y)
         for (int x = 0; x < kSize; ++x)
             films[size_t(x + y) % 2].add(size_t(y) * kSize + size_t(x), sample);
