@@ -5,11 +5,13 @@
 
 #include "planner/error_goal.h"
 #include "reconstruction/hybrid.h"
+#include "reconstruction/luminance.h"
 #include "render/develop.h"
 #include "render/hybrid.h"
 #include "render/job.h"
 #include "render/sample_knowledge.h"
 #include "render/timed_denoiser.h"
+#include "render/unmet_emitters.h"
 
 namespace covtrace {
 
@@ -17,6 +19,9 @@ namespace {
 
 /// Samples per pixel of the pilot, both halves together.
 constexpr double kPilot = 4;
+/// Fewer cannot tell that an error is small: paths that carry much light and are rare have not been
+/// met yet.
+constexpr double kLeastForError = 16;
 
 class HybridRender {
   public:
@@ -25,6 +30,7 @@ class HybridRender {
         if (job.options.denoiser)
             denoiser_.emplace(*job.options.denoiser, job.monitor, job.phase("denoise"),
                               job.phase("reconstruction"));
+        if (job.options.error) unmet_ = UnmetEmitters(job.context, job.region);
         if (s_.stage == Stage::rounds) return;
         {
             const PhaseTimer timer(job_.monitor, job_.phase("spectra"));
@@ -168,7 +174,11 @@ class HybridRender {
 
     /// What the planner may know for one half: the samples of the other one.
     std::vector<float> density_from(const Film& film) const {
-        return adaptive_density(knowledge_from(film, prediction_->spectrum), kHalvesPlan);
+        SampleKnowledge known = knowledge_from(film, prediction_->spectrum);
+        for (size_t i = 0; i < size(); ++i)
+            known.variance[i] =
+                std::max(known.variance[i], unmet_.variance(i, 2.0 * film.pixels[i].count));
+        return adaptive_density(known, kHalvesPlan);
     }
 
     bool plan_samples(double target) {
@@ -219,15 +229,19 @@ class HybridRender {
         reconstruct_image();
         // Light beyond what squares can hold has no error that could be told.
         double sum = 0, known = 0;
-        for (float e : image_->relative_error.values) {
+        const Plane brightness = luminance(image_->color);
+        for (size_t i = 0; i < size(); ++i) {
+            const float e = image_->relative_error[i];
             if (!std::isfinite(e)) continue;
-            sum += double(e);
+            const double count = double(s_.films[0].pixels[i].count) + s_.films[1].pixels[i].count;
+            sum += double(e) + unmet_.squared_error(i, count, brightness[i]);
             ++known;
         }
         if (known == 0) return kInfinity;
         const double error = std::sqrt(sum / known);
         job_.monitor.set_error(error);
-        job_.enough_for_error = s_.goal.samples(s_.taken, error, *job_.options.error);
+        job_.enough_for_error =
+            std::max(kLeastForError, s_.goal.samples(s_.taken, error, *job_.options.error));
         return *job_.enough_for_error;
     }
 
@@ -277,6 +291,7 @@ class HybridRender {
     std::optional<SceneOccluders> occluders_;  // while covariance paths are traced
     std::optional<Prediction> prediction_;     // smoothed, from their end on
     std::optional<HybridImage> image_;         // of the film as it is
+    UnmetEmitters unmet_;                      // where an error is asked for
 };
 
 }  // namespace

@@ -361,6 +361,27 @@ Rgb Lights::environment(Vec3 w) const {
 Lights::Sky Lights::sky(Vec3 p, Vec3 n, Vec3 w) const {
     return impl_->sky(impl_->infinite_share(p, n), n, w);
 }
+std::vector<DistantView> Lights::distant_views() const {
+    std::vector<DistantView> views;
+    for (const AreaLight& area : impl_->area_lights) {
+        if (!area.is_visible) continue;
+        DistantView view;
+        view.radiance = luminance(area.radiance * area.mean_factor);
+        std::visit(
+            [&](const auto& emitter) {
+                for (int k = 0; k < emitter.light_count(); ++k) {
+                    const LightBounds bounds = emitter.bounds(k);
+                    view.box.extend(bounds.box.lo);
+                    view.box.extend(bounds.box.hi);
+                    view.intensity += bounds.intensity * view.radiance;
+                }
+            },
+            area.emitter);
+        views.push_back(view);
+    }
+    return views;
+}
+
 Rgb Lights::total_power() const {
     Rgb sum;
     for (const AreaLight& area : impl_->area_lights)

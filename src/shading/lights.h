@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "geometry/geometry.h"
 #include "scene/scene_description.h"
@@ -46,6 +47,13 @@ struct SourceSpectrum {
     /// angular covariance in (tangent.x, tangent.y), (cycles per radian)^2
     float a11 = 0, a12 = 0, a22 = 0;
     float cone_variance = 0;  ///< point: angular variance of a spot's cone, 0 for none
+};
+
+/// An emissive shape as a whole, at a distance.
+struct DistantView {
+    Bounds3 box;          ///< over the shutter
+    float intensity = 0;  ///< bound on the luminance of its radiant intensity in any direction
+    float radiance = 0;   ///< luminance, mean over the shape
 };
 
 class Lights {
@@ -120,6 +128,9 @@ class Lights {
     bool has_even_sky() const;
     /// Of all infinite lights together around the direction `w`, weighted by radiance.
     SourceSpectrum environment_spectrum(Vec3 w) const;
+
+    /// The emissive shapes that rays can meet.
+    std::vector<DistantView> distant_views() const;
 
     /// Power that all lights emit, of infinite ones that which enters the sphere around the scene.
     Rgb total_power() const;

@@ -1,0 +1,122 @@
+#include "render/unmet_emitters.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/parallel.h"
+
+namespace covtrace {
+
+namespace {
+
+/// After so many expected hits the samples themselves tell how much they differ.
+constexpr double kKnownAfter = 16;
+/// An emitter that covers more of a pixel is met by any sensible number of samples.
+constexpr float kSmallest = 0.25f;
+
+/// A ray's way between two vertices of a path, or out of the scene.
+struct Segment {
+    Vec3 origin, direction;
+    float length = 0;     ///< infinite where the path leaves the scene
+    float travelled = 0;  ///< from the camera to the origin
+    float carried = 1;    ///< luminance of what the mirrors before let through
+};
+
+/// The ways from the camera to the first vertex that scatters by another than a specular lobe.
+template <typename Visit>
+void for_each_segment_in_view(const PathRecord& path, const Visit& visit) {
+    Segment s{path.camera_ray.origin, path.camera_ray.direction, kInfinity, 0, 1};
+    for (int k = 0; k < path.count; ++k) {
+        const PathVertex& v = path.vertices[size_t(k)];
+        s.length = distance(s.origin, v.hit.position);
+        visit(s);
+        const LobeShares& lobes = v.next_event.lobes;
+        if (!v.scatters || v.medium >= 0 || lobes.count != 1 || !is_specular(lobes.lobes[0].kind))
+            return;
+        s = {v.hit.position, v.next_event.wi, kInfinity, s.travelled + s.length,
+             s.carried * luminance(lobes.lobes[0].value)};
+    }
+    if (path.count < PathRecord::kCapacity) visit(s);
+}
+
+struct Moments {
+    float mean = 0, square = 0;
+};
+
+/// The light of `emitter` in one path, widened to the pixel that it is seen in.
+Moments widened(const Segment& s, const DistantView& emitter, const Camera& camera) {
+    const Vec3 centre = emitter.box.center();
+    const float along = dot(centre - s.origin, s.direction);
+    const float radius = emitter.box.radius();
+    if (!(along > 0) || along - radius > s.length) return {};
+    // A disk as large as the pixel there.
+    const float half = camera.half_pixel(s.travelled + along);
+    const float pixel_area = 4 * half * half;
+    const Vec3 beside = centre - s.origin - along * s.direction;
+    if (kPi * dot(beside, beside) > pixel_area) return {};
+    const float mean = emitter.intensity / pixel_area;
+    const float covered = mean / emitter.radiance;
+    if (!(covered < kSmallest)) return {};
+    return {s.carried * mean, s.carried * s.carried * mean * emitter.radiance};
+}
+
+/// Emitters that may be small in view; their distance along mirrors is not known, but at least that
+/// from the camera.
+std::vector<DistantView> small_emitters(const RenderScene& scene) {
+    std::vector<DistantView> emitters = scene.lights.distant_views();
+    const Vec3 eye = scene.camera.generate_ray({}, {}, 0).origin;
+    const Bounds3 bounds = scene.geometry.bounds();
+    const float farthest = 4 * bounds.radius() + distance(eye, bounds.center());
+    const float half = scene.camera.half_pixel(farthest);
+    std::erase_if(emitters, [&](const DistantView& e) {
+        return !(e.radiance > 0) || e.intensity / e.radiance > kSmallest * 4 * half * half;
+    });
+    return emitters;
+}
+
+}  // namespace
+
+UnmetEmitters::UnmetEmitters(const PassContext& context, PixelBounds region) {
+    const std::vector<DistantView> emitters = small_emitters(context.scene);
+    if (emitters.empty()) return;
+    PassContext own = context;
+    own.seed =
+        context.seed ^ 0x756e6d6574ull;  // paths of their own, so that samples stay as they are
+    own.half = 0;
+    own.halves = 1;
+    mean_ = square_ = Plane(region.width(), region.height());
+    parallel_for(region.height(), [&](int64_t row) {
+        PathRecord record;
+        PathResult path;
+        for (int x = region.x0; x < region.x1; ++x) {
+            record.clear();
+            take_sample(own, x, region.y0 + int(row), 0, &record, path);
+            Moments sum;
+            for_each_segment_in_view(record, [&](const Segment& s) {
+                for (const DistantView& e : emitters) {
+                    const Moments m = widened(s, e, own.scene.camera);
+                    sum.mean += m.mean;
+                    sum.square += m.square;
+                }
+            });
+            mean_(x - region.x0, int(row)) = sum.mean * own.imaging_scale;
+            square_(x - region.x0, int(row)) = sum.square * sqr(own.imaging_scale);
+        }
+    });
+}
+
+float UnmetEmitters::variance(size_t i, double count) const {
+    if (empty() || !(square_[i] > 0)) return 0;
+    const double hits = count * double(mean_[i]) * double(mean_[i]) / double(square_[i]);
+    return hits < kKnownAfter ? square_[i] : 0.0f;
+}
+
+float UnmetEmitters::squared_error(size_t i, double count, float brightness) const {
+    const float of_one = variance(i, count);
+    if (!(of_one > 0)) return 0;
+    // Unseen it is missing altogether, and by chance it counts too much.
+    const double square = std::min(double(sqr(mean_[i])), double(of_one) / std::max(count, 1.0));
+    return float(square / (double(sqr(brightness)) + 0.01));
+}
+
+}  // namespace covtrace
