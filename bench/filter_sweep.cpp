@@ -75,8 +75,9 @@ double error(const Case& c, const FilterSettings& settings, float in_view, const
     narrow(field, r, settings, own);
     FilterField emitters = r.in_view_filters;
     for (auto& s : emitters.covariance)
-        s = covariance::clamp_eigenvalues(
-            in_view * in_view * s, sqr(filter_settings_in_view(16).limits.s_min), sqr(15.0f));
+        s = covariance::clamp_eigenvalues(in_view * in_view * s,
+                                          sqr(covariance::filter_settings_in_view(16).limits.s_min),
+                                          sqr(15.0f));
     const std::vector<float> no_variance(r.count.size(), 0.0f);
     const auto scattered = gather(r.scattered, no_variance, r.count, field).color;
     const auto seen = gather(r.in_view, no_variance, r.count, emitters).color;
@@ -124,7 +125,7 @@ int main(int argc, char** argv) {
             for (const OwnWidth& own : {OwnWidth{0, 0}, OwnWidth{1.0f / 12, 0},
                                         OwnWidth{1.0f / 6, 0}, OwnWidth{0, -1.0f / 12},
                                         OwnWidth{1.0f / 6, -1.0f / 12}, OwnWidth{0, -1.0f / 6}}) {
-                const FilterSettings rule = filter_settings(samples);
+                const FilterSettings rule = covariance::filter_settings(samples);
                 const float c = factor * rule.c;
                 print({c, {1 / c, rule.limits.s_max}, covariance::edge_beta<float> / c}, 1, own);
             }

@@ -11,7 +11,7 @@ HybridSamples read_hybrid_samples(const std::filesystem::path& film) {
     if (state.films.size() != 2)
         throw Error(ErrorKind::usage, film.string() + ": not of --method hybrid");
     return {state.region, state.mean_count(), halves_of(state.films),
-            preintegrate(smooth(state.covariance())).spectrum};
+            preintegrated(smoothed(state.covariance())).spectrum};
 }
 
 std::shared_ptr<const Denoiser> required_denoiser() {

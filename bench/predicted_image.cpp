@@ -27,12 +27,12 @@ PredictedImage read_predicted_image(const std::filesystem::path& file) {
                 buffer.covariance[i](row, column) = values[i];
         }
     buffer.weight = channel(scattered + "covweight.Y");
-    p.prediction = preintegrate(smooth(buffer));
+    p.prediction = preintegrated(smoothed(buffer));
 
     channel("raw.R");
     channel("inview.R");
     const auto &samples = channel("samples.Y"), &weight = channel("covweight.Y");
-    const float narrowest = sqr(filter_settings_in_view(16).limits.s_min);
+    const float narrowest = sqr(covariance::filter_settings_in_view(16).limits.s_min);
     p.filters = p.in_view_filters = {p.image.width(), p.image.height(), {}};
     for (size_t i = 0; i < samples.size(); ++i) {
         p.in_view.push_back(p.image.rgb(i, "inview."));

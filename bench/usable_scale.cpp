@@ -275,7 +275,7 @@ void report(std::span<const char* const> files, bool by_neighbours, const char* 
     const PredictedImage predicted = read_predicted_image(files[0]);
     const std::vector<MeasuredPixel> pixels = read_pixels(files[1], predicted.image);
     const Converged image = read_converged(files.subspan(2), predicted.image);
-    const FilterSettings settings = filter_settings(16);
+    const FilterSettings settings = covariance::filter_settings(16);
     const Prediction& p = predicted.prediction;
     const FilterField field =
         by_neighbours ? predicted.filters

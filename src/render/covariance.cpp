@@ -48,14 +48,14 @@ class CovarianceRender {
         if (!prediction_) {
             const PhaseTimer timer(job_.monitor, job_.phase("plan"));
             const double start = job_.monitor.elapsed();
-            prediction_ = preintegrate(smooth(merge(*s_.parts)));
+            prediction_ = preintegrated(smoothed(merge(*s_.parts)));
             job_.reserve(6 * (job_.monitor.elapsed() - start));
         }
         const double end = round_end(s_.taken), target = job_.plan_round(end);
         if (!(target > s_.taken)) return false;
         const PhaseTimer timer(job_.monitor, job_.phase("plan"));
         // The filters that the whole round leads to: a budget must not change what it begins with.
-        const FilterSettings settings = filter_settings(end);
+        const FilterSettings settings = covariance::filter_settings(end);
         std::vector<float> density = relative_counts(settings);
         std::vector<uint32_t> have(s_.pixels());
         for (size_t i = 0; i < have.size(); ++i) have[i] = s_.films[0].pixels[i].count;

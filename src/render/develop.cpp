@@ -14,18 +14,8 @@ namespace {
 
 FilterField predicted_filters(FilterRule rule, const CovarianceBuffer& buffer,
                               const FilterSettings& settings) {
-    const Prediction p = preintegrate(smooth(buffer));
+    const Prediction p = preintegrated(smoothed(buffer));
     return filter_field(p.spectrum, p.width, p.height, rule, settings);
-}
-
-/// The sizes of filters where covariances know light, at least `smallest`; infinite elsewhere.
-std::vector<float> known_sizes(const FilterField& field,
-                               const std::vector<PackedCovariance>& covariances, float smallest) {
-    std::vector<float> sizes(field.covariance.size(), kInfinity);
-    for (size_t i = 0; i < sizes.size(); ++i)
-        if (covariances[i].weight > 0)
-            sizes[i] = std::max(smallest, covariance::filter_size(field.covariance[i]));
-    return sizes;
 }
 
 std::vector<bool> light_known(const std::vector<PackedCovariance>& covariances) {
@@ -66,8 +56,8 @@ Image gathered_image(const RenderState& state) {
     const Film& film = state.films[0];
     const CovarianceBuffers& parts = *state.parts;
     const double taken = film.mean_count();
-    const FilterSettings settings = filter_settings(taken),
-                         settings_in_view = filter_settings_in_view(taken);
+    const FilterSettings settings = covariance::filter_settings(taken),
+                         settings_in_view = covariance::filter_settings_in_view(taken);
     const auto filters_of = [&](const std::vector<PackedCovariance>& part,
                                 const FilterSettings& its_settings) {
         return predicted_filters(
@@ -76,22 +66,14 @@ Image gathered_image(const RenderState& state) {
     FilterField field = filters_of(parts.scattered, settings);
     FilterField in_view_field = filters_of(parts.in_view, settings_in_view);
     if (state.filter == FilterRule::verified) {
-        // The border between a surface and the sky behind it is known to the light that passes
-        // beside it: the surface where the sky has no detail, the sky where the surface has none.
-        const auto beside_scattered =
-            known_sizes(in_view_field, parts.in_view, settings.limits.s_min);
-        limit_by_neighbours(field, settings, beside_scattered);
-        limit_by_neighbours(in_view_field, settings_in_view,
-                            known_sizes(field, parts.scattered, 0));
-        limit_lengths_by_neighbours(in_view_field, settings_in_view);
-        make_round_where_unknown(field, light_known(parts.scattered), settings);
-        make_round_where_unknown(in_view_field, light_known(parts.in_view), settings_in_view);
+        covariance::limit_parts(field, in_view_field, light_known(parts.scattered),
+                                light_known(parts.in_view), settings, settings_in_view);
     }
     const bool emitters_found = std::any_of(parts.in_view.begin(), parts.in_view.end(),
                                             [](const PackedCovariance& c) { return c.weight > 0; });
     const GatheredImage image = gathered(film, field, emitters_found ? &in_view_field : nullptr);
     const CovarianceBuffer all = merge(parts);
-    const Prediction raw = preintegrate(all);
+    const Prediction raw = preintegrated(all);
     return make_layers(film, state.display, state.has_holes,
                        CovarianceLayers{all, raw, density_layer(state), field, image,
                                         emitters_found ? &parts.scattered : nullptr,
@@ -104,10 +86,10 @@ Image mixed_image(const RenderState& state, const CovarianceBuffer& all,
     GatheredImage delivered{std::vector<Rgb>(state.pixels()), mixed.variance.values};
     for (size_t i = 0; i < state.pixels(); ++i)
         delivered.color[i] = {mixed.color[0][i], mixed.color[1][i], mixed.color[2][i]};
-    const Prediction raw = preintegrate(all);
+    const Prediction raw = preintegrated(all);
     const FilterField field =
         filter_field(prediction.spectrum, prediction.width, prediction.height, FilterRule::verified,
-                     filter_settings(state.mean_count()));
+                     covariance::filter_settings(state.mean_count()));
     return make_layers(whole_film(state), state.display, state.has_holes,
                        CovarianceLayers{all, raw, density_layer(state), field, delivered});
 }
@@ -135,7 +117,7 @@ Image develop(const RenderState& state, const Denoiser* denoiser) {
         case Method::hybrid:
             break;
     }
-    const Prediction prediction = preintegrate(smooth(state.covariance()));
+    const Prediction prediction = preintegrated(smoothed(state.covariance()));
     HybridSettings settings;
     settings.denoiser = denoiser;
     const HybridImage image = reconstruct(halves_of(state.films), prediction.spectrum, settings);

@@ -130,7 +130,7 @@ class HybridRender {
     void predict() {
         if (prediction_) return;
         const PhaseTimer timer(job_.monitor, job_.phase("plan"));
-        prediction_ = preintegrate(smooth(s_.covariance()));
+        prediction_ = preintegrated(smoothed(s_.covariance()));
     }
 
     void trace_round() {

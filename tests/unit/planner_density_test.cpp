@@ -126,11 +126,11 @@ TEST(CovarianceBuffer, SmoothingFillsDarkPixelsFromTheNearestLitOnes) {
     CovarianceBuffer b(9, 1);
     b.weight[0] = 2;
     b.covariance[0](0, 0) = 4;
-    const CovarianceBuffer s = smooth(b);
+    const CovarianceBuffer s = smoothed(b);
     for (int x = 0; x < 9; ++x) EXPECT_FLOAT_EQ(s.covariance[size_t(x)](0, 0), 4) << x;
     EXPECT_EQ(s.weight[8], 0);
     const CovarianceBuffer dark(3, 3);
-    EXPECT_EQ(smooth(dark).covariance[4](0, 0), 0);
+    EXPECT_EQ(smoothed(dark).covariance[4](0, 0), 0);
 }
 
 TEST(CovarianceBuffer, MergingWeighsThePartsByRadiance) {
@@ -154,7 +154,7 @@ TEST(CovarianceBuffer, SmoothingWeighsByRadiance) {
     b.weight = {1, 3, 0};
     b.covariance[0](1, 1) = 8;
     b.covariance[1](1, 1) = 4;
-    EXPECT_FLOAT_EQ(smooth(b).covariance[1](1, 1), 5);
+    EXPECT_FLOAT_EQ(smoothed(b).covariance[1](1, 1), 5);
 }
 
 }  // namespace

@@ -141,17 +141,17 @@ TEST(Gather, KeepsTheTotalAndSpreadsIt) {
 }
 
 TEST(FilterField, SettingsFollowTheCount) {
-    EXPECT_FLOAT_EQ(filter_settings(16).c, 2);
-    EXPECT_FLOAT_EQ(filter_settings(16).slope, 0.25f);
-    EXPECT_FLOAT_EQ(filter_settings(1024).slope, 0.125f);
-    EXPECT_GT(filter_settings(256).c, 3);
-    EXPECT_LT(filter_settings(256).limits.s_min, 0.35f);
+    EXPECT_FLOAT_EQ(covariance::filter_settings(16).c, 2);
+    EXPECT_FLOAT_EQ(covariance::filter_settings(16).slope, 0.25f);
+    EXPECT_FLOAT_EQ(covariance::filter_settings(1024).slope, 0.125f);
+    EXPECT_GT(covariance::filter_settings(256).c, 3);
+    EXPECT_LT(covariance::filter_settings(256).limits.s_min, 0.35f);
 }
 
 TEST(FilterField, NeighboursLimitTheWidth) {
     FilterField f = uniform_field(21, 1, {100, 0, 25});
     f.covariance[0] = {0.25f, 0, 0.25f};
-    FilterSettings settings = filter_settings(16);
+    FilterSettings settings = covariance::filter_settings(16);
     settings.limits.s_min = 0.2f;  // narrow enough not to act here
     limit_by_neighbours(f, settings);
     for (int x = 0; x < 21; ++x) {
@@ -167,7 +167,7 @@ TEST(FilterField, FiltersOfOtherLightLimitToo) {
     FilterField f{21, 1, std::vector<Sym2<float>>(21, {25, 0, 25})};
     std::vector<float> others(21, std::numeric_limits<float>::infinity());
     others[4] = 0.5f;
-    const FilterSettings settings = filter_settings(16);
+    const FilterSettings settings = covariance::filter_settings(16);
     limit_by_neighbours(f, settings, others);
     for (int x = 0; x < 21; ++x)
         EXPECT_NEAR(covariance::filter_size(f.covariance[size_t(x)]),
@@ -179,7 +179,7 @@ TEST(FilterField, ThinFiltersAreAsShortAsTheirNeighboursAllow) {
     // Along a straight border; the lamp at its end is narrow in both directions.
     FilterField f = uniform_field(41, 1, {225, 0, 0.01f});
     f.covariance[0] = {0.01f, 0, 0.01f};
-    const FilterSettings settings = filter_settings(16);
+    const FilterSettings settings = covariance::filter_settings(16);
     FilterField sizes_only = f;
     limit_by_neighbours(sizes_only, settings);
     EXPECT_GT(sizes_only.covariance[20].xx, 100);
@@ -200,7 +200,7 @@ TEST(FilterField, UnknownLightKeepsToItsSideOfABorder) {
         f.covariance[x] = {100, 0, 4};
         known[x] = false;
     }
-    const FilterSettings settings = filter_settings(16);
+    const FilterSettings settings = covariance::filter_settings(16);
     make_round_where_unknown(f, known, settings);
     for (int x = 0; x < 41; ++x) {
         const Sym2<float> filter = f.covariance[size_t(x)];
@@ -224,7 +224,7 @@ TEST(FilterField, SpectraBeyondFloatsGiveTheNarrowestFilter) {
                     kNan = std::numeric_limits<float>::quiet_NaN();
     const std::vector<Sym2<float>> spectrum{
         {kMost, 0, 1}, {kInf, 0, kInf}, {kInf, kInf, kInf}, {kNan, 0, 1}, {1, kNan, 1}};
-    const FilterSettings settings = filter_settings(16);
+    const FilterSettings settings = covariance::filter_settings(16);
     for (const FilterRule rule : {FilterRule::verified, FilterRule::thesis})
         for (const auto& filter : filter_field(spectrum, 5, 1, rule, settings).covariance) {
             EXPECT_NEAR(filter.xx, settings.limits.s_min * settings.limits.s_min, 1e-6f);
@@ -234,7 +234,7 @@ TEST(FilterField, SpectraBeyondFloatsGiveTheNarrowestFilter) {
 
 TEST(FilterField, ThesisRuleIsWiderByItsConstant) {
     const std::vector<Sym2<float>> spectrum{{0.01f, 0, 0.01f}};
-    const FilterSettings settings = filter_settings(16);
+    const FilterSettings settings = covariance::filter_settings(16);
     const auto verified = filter_field(spectrum, 1, 1, FilterRule::verified, settings);
     const auto thesis = filter_field(spectrum, 1, 1, FilterRule::thesis, settings);
     // 4 pi^2 c^2 against 2 pi, with c = 2.

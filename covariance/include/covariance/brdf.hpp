@@ -36,6 +36,18 @@ template <std::floating_point T>
     return micro_blinn(exponent);
 }
 
+/// Lobe of a fuzzy mirror, which adds to the unit mirror direction a vector drawn evenly from the
+/// ball of radius `fuzz`: (4 pi^2 fuzz^2/5)^-1 I, in outgoing slopes, from the lobe's second
+/// moments (a ball has no spectrum without negative parts). Vectors drawn on the sphere instead of
+/// in the ball have the variance fuzz^2/3: give fuzz * sqrt(5/3).
+///
+/// Units    fuzz without unit, small beside 1; 0 gives infinity, use `reflect_specular`.
+template <std::floating_point T>
+[[nodiscard]] constexpr Sym2<T> fuzz_cov(T fuzz) noexcept {
+    const T c = 5 / (four_pi_sq<T> * fuzz * fuzz);
+    return Sym2<T>::diagonal(c, c);
+}
+
 /// Lobe of a microfacet reflection in outgoing slopes: C = P Cm P^T / (4 (h.Zo)^2).
 ///
 /// Shapes   micro: slope covariance in the tangent basis; p_out = [Xo.T1 Xo.T2; Yo.T1 Yo.T2].

@@ -105,6 +105,19 @@ template <std::floating_point T>
     return scatter(field, reflection_pair(field.frame, surface, outgoing, micro));
 }
 
+/// A fuzzy mirror (brushed metal as in small path tracers): the mirror direction plus a random
+/// vector from the ball of radius `fuzz`; see `fuzz_cov`. For microfacets use `reflect_glossy`.
+///
+/// Errors   none; without fuzz it is `reflect_specular`.
+template <std::floating_point T>
+[[nodiscard]] LightField<T> reflect_fuzzy(const LightField<T>& field,
+                                          const Surface<NonDeduced<T>>& surface,
+                                          const Vec3<NonDeduced<T>>& outgoing,
+                                          NonDeduced<T> fuzz) noexcept {
+    if (!(fuzz > 0)) return reflect_specular(field, surface, outgoing);
+    return reflect_lobe(field, surface, outgoing, fuzz_cov<T>(fuzz));
+}
+
 /// Multiplies the arriving light by the cosine of its angle with the normal (see `cosine_window`).
 ///
 /// Part of `reflect_diffuse`; call it yourself before a glossy lobe so wide (alpha above about 0.4)

@@ -1,6 +1,12 @@
 // Constants and the one tolerance that the other headers share.
 #pragma once
 
+#if __cplusplus < 202002L && (!defined(_MSVC_LANG) || _MSVC_LANG < 202002L)
+#error "covariance needs C++20: compile with -std=c++20 (MSVC: /std:c++20) or newer"
+// A file that is not there ends the compilation; thousands of errors would follow the one above.
+#include "covariance_needs_cxx20"
+#endif
+
 #include <algorithm>
 #include <cmath>
 #include <concepts>

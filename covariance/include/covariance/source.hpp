@@ -1,7 +1,9 @@
 // Where the light starts. Area lights are replaced by the Gaussian emitter with the same second
 // moments, Sigma_xy = (4 pi^2 S_e)^-1: what later integrates over the light (a soft shadow, a
-// glossy reflection) then converges to the exact frequency. An emitter that is seen directly has an
-// image edge instead: add `edge_variance` of the distance to its border on top.
+// glossy reflection) then converges to the exact frequency. An emitter that is seen sharply, which
+// is directly or through any number of mirrors and clear glass, shows its outline:
+// `area_source_in_view` adds the distance to its border. An outline that `OccluderGrid` finds needs
+// no second time here.
 //
 // Everything is in the rest frame of the emitter; follow with `motion_exit` if it moves.
 #pragma once
@@ -10,6 +12,7 @@
 
 #include "covariance/light_field.hpp"
 #include "covariance/surface.hpp"
+#include "covariance/texture.hpp"
 
 namespace covariance {
 
@@ -81,6 +84,42 @@ template <std::floating_point T>
     LightField<T> field{{}, frame};
     field.sigma.set_spatial(spectrum_of_moments(moments, cap));
     return field;
+}
+
+/// What the border of a rectangle with sides a along t1 and b along t2 adds where its light is seen
+/// at (s1, s2) from the centre: per axis `edge_variance` of the distance to the nearer side.
+///
+/// Units    scene units; distances below distance_min (above 0) count as distance_min.
+template <std::floating_point T>
+[[nodiscard]] constexpr Sym2<T> rectangle_border(T a, NonDeduced<T> b, NonDeduced<T> s1,
+                                                 NonDeduced<T> s2,
+                                                 NonDeduced<T> distance_min) noexcept {
+    const T to_1 = a / 2 - (s1 < 0 ? -s1 : s1), to_2 = b / 2 - (s2 < 0 ? -s2 : s2);
+    return Sym2<T>::diagonal(edge_variance<T>(std::max(to_1, distance_min)),
+                             edge_variance<T>(std::max(to_2, distance_min)));
+}
+
+/// The same for a disc: along the radius through (s1, s2); in the centre in all directions.
+template <std::floating_point T>
+[[nodiscard]] Sym2<T> disc_border(T radius, NonDeduced<T> s1, NonDeduced<T> s2,
+                                  NonDeduced<T> distance_min) noexcept {
+    const T r = std::hypot(s1, s2);
+    const T q = edge_variance<T>(std::max(radius - r, distance_min));
+    if (!(r > 0)) return Sym2<T>::diagonal(q / 2, q / 2);
+    const T c = s1 / r, s = s2 / r;
+    return {q * c * c, q * c * s, q * s * s};
+}
+
+/// An area light that is seen sharply: by the camera, or through mirrors and clear glass alone.
+/// Without its border a lamp's image, and that of its reflection, is smeared.
+///
+/// Shapes   border: in surface.t1, t2, from `rectangle_border`, `disc_border`, or your own with
+///          `edge_variance`. For a sphere none is needed: `end_at_contour` after `surface_exit`.
+template <std::floating_point T>
+[[nodiscard]] LightField<T> area_source_in_view(
+    const Sym2<T>& moments, const Sym2<NonDeduced<T>>& border, const Frame<NonDeduced<T>>& frame,
+    NonDeduced<T> cap = max_source_variance<T>) noexcept {
+    return add_texture(area_source(moments, frame, cap), border);
 }
 
 /// A point or spot light, in ray coordinates: Sxx = Syy = 1/(2 pi r_min)^2, a cap.

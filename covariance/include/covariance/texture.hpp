@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "covariance/light_field.hpp"
+#include "covariance/surface.hpp"
 
 namespace covariance {
 
@@ -72,6 +73,44 @@ template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> image_texture(const Sym2<T>& structure,
                                               NonDeduced<T> contrast) noexcept {
     return (std::min(T(1), contrast / T(0.1)) / (2 * pi<T> * pi<T>)) * structure;
+}
+
+/// A solid (three-dimensional) texture on a surface that cuts through it: B^T T B, B = [t1 t2].
+///
+/// Restricting a signal to a plane projects its spectrum onto that plane, so its second moments are
+/// the block of the two tangents; frequencies along the normal are not seen. Exact for any
+/// positive spectrum.
+/// Shapes   solid: world axes, 1/scene unit^2, e.g. `solid_checkerboard` or `solid_noise`.
+template <std::floating_point T>
+[[nodiscard]] constexpr Sym2<T> solid_texture(const Sym3<T>& solid,
+                                              const Surface<NonDeduced<T>>& surface) noexcept {
+    return restrict_to(solid, surface.t1, surface.t2);
+}
+
+/// A solid checkerboard of axes x, y, z: per axis `edge_variance` of the distance to the nearest
+/// face of its cells along that axis.
+///
+/// Units    scene units; e_min about half a pixel's footprint, above 0.
+template <std::floating_point T>
+[[nodiscard]] constexpr Sym3<T> solid_checkerboard(const Vec3<T>& edges, NonDeduced<T> e_min,
+                                                   NonDeduced<T> beta = edge_beta<T>) noexcept {
+    return {edge_variance(std::max(edges.x, e_min), beta),
+            0,
+            0,
+            edge_variance(std::max(edges.y, e_min), beta),
+            0,
+            edge_variance(std::max(edges.z, e_min), beta)};
+}
+
+/// Solid noise without preferred direction whose frequencies have the mean square f^2 in all, as a
+/// sum of waves in random directions: f^2/3 along every axis. Octaves: their mean, weighted by
+/// amplitude. Perlin noise of one cell per unit has f of about 0.7 cycles per unit.
+///
+/// Units    frequency in cycles/scene unit.
+template <std::floating_point T>
+[[nodiscard]] constexpr Sym3<T> solid_noise(T frequency) noexcept {
+    const T along = frequency * frequency / 3;
+    return {along, 0, 0, along, 0, along};
 }
 
 /// Of two textures (levels of a pyramid of windows) the one with the greater trace.

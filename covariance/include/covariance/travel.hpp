@@ -15,12 +15,19 @@ template <std::floating_point T>
     return a;
 }
 
+/// Whether nothing varies with the position across the ray: such light is the same after any way.
+template <std::floating_point T>
+[[nodiscard]] constexpr bool is_even_in_space(const SymmetricMatrix5<T>& s) noexcept {
+    return s.spatial() == Sym2<T>{} && s.cross() == Mat2<T>{} && s(0, 4) == 0 && s(1, 4) == 0;
+}
+
 /// Carries the light over a distance of free space.
 ///
 ///     Sxu' = Sxu - d Sxx      Suu' = Suu - 2 d Sxu + d^2 Sxx      Sut' = Sut - d Sxt, and so on
 ///
 /// Composes: travel(a) then travel(b) is travel(a + b); travel(-a) undoes travel(a).
-/// Units    distance in scene units, any sign.
+/// Units    distance in scene units, any sign; infinite for light from infinity that meets nothing
+///          on its way: without variation in space (Sxx = Sxu = 0) it stays as it is.
 /// Frame    unchanged.
 /// Post     det unchanged, positive semi-definite where the input is.
 /// Errors   none; NaN in gives NaN out.
@@ -29,6 +36,9 @@ template <std::floating_point T>
                                                    NonDeduced<T> distance) noexcept {
     SymmetricMatrix5<T> s = old;
     const T d = distance;
+    const bool is_infinite =
+        d > std::numeric_limits<T>::max() || d < -std::numeric_limits<T>::max();
+    if (is_infinite && is_even_in_space(s)) return s;
     const auto subtract = [&](std::size_t i, std::size_t j, T a) {
         s(i, j) = multiply_add(-d, a, s(i, j));
     };

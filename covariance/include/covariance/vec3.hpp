@@ -39,6 +39,14 @@ struct Vec3 {
     friend constexpr Vec3 operator*(T s, const Vec3& a) noexcept {
         return {s * a.x, s * a.y, s * a.z};
     }
+    friend constexpr Vec3 operator*(const Vec3& a, T s) noexcept { return s * a; }
+    friend constexpr Vec3 operator/(const Vec3& a, T s) noexcept {
+        return {a.x / s, a.y / s, a.z / s};
+    }
+    constexpr Vec3& operator+=(const Vec3& b) noexcept { return *this = *this + b; }
+    constexpr Vec3& operator-=(const Vec3& b) noexcept { return *this = *this - b; }
+    constexpr Vec3& operator*=(T s) noexcept { return *this = s * *this; }
+    constexpr Vec3& operator/=(T s) noexcept { return *this = *this / s; }
     friend constexpr bool operator==(const Vec3&, const Vec3&) noexcept = default;
 };
 
@@ -65,6 +73,12 @@ template <std::floating_point T>
 template <std::floating_point T>
 [[nodiscard]] T length(const Vec3<T>& a) noexcept {
     return std::sqrt(dot(a, a));
+}
+
+/// The unit vector along `a`; NaN where `a` is zero (`normalized_or` has an answer there, too).
+template <std::floating_point T>
+[[nodiscard]] Vec3<T> normalize(const Vec3<T>& a) noexcept {
+    return a / length(a);
 }
 
 /// The unit vector along `a`, or `fallback` where `a` is too short to have a direction.

@@ -1,0 +1,150 @@
+// Samples for every pixel out of one budget, in proportion to a density such as that of the
+// thesis, N = k sqrt|Sigma|. Allocates: one of the headers for whole images, see renderer.hpp.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "covariance/covariance_image.hpp"
+#include "covariance/filter.hpp"
+
+namespace covariance {
+
+/// What a pixel gets samples for.
+enum class DensityRule {
+    tempered,  ///< n ~ sqrt( sqrt(det S2D) min(N_int, 4) ), a tenth of it shared out evenly
+    thesis     ///< n ~ sqrt(det S2D) N_int, equation 5.3 of the thesis read as a Schur complement
+};
+
+/// Densities by a rule, without a norm; 0 where they are not finite. The spectra are first limited
+/// to what filters of width factor `c` and the given limits can use (`limit_spectrum`), so that no
+/// pixel asks for detail that the narrowest filter would remove.
+template <std::floating_point T>
+[[nodiscard]] std::vector<T> densities(const Prediction<T>& prediction, DensityRule rule,
+                                       NonDeduced<T> c, const FilterLimits<NonDeduced<T>>& limits) {
+    std::vector<T> g(prediction.spectrum.size());
+    for (std::size_t i = 0; i < g.size(); ++i) {
+        const Sym2<T> usable =
+            limit_spectrum(prediction.spectrum[i], c, limits.s_min, limits.s_max);
+        const T interior = prediction.interior_count[i];
+        g[i] = rule == DensityRule::thesis ? thesis_density(usable, interior)
+                                           : tempered_density(usable, interior);
+        if (!std::isfinite(g[i])) g[i] = 0;
+    }
+    return g;
+}
+
+/// The same with mean 1; the tempered rule shares a tenth out evenly.
+template <std::floating_point T>
+[[nodiscard]] std::vector<T> relative_density(const Prediction<T>& prediction, DensityRule rule,
+                                              NonDeduced<T> c,
+                                              const FilterLimits<NonDeduced<T>>& limits) {
+    std::vector<T> g = densities(prediction, rule, c, limits);
+    double sum = 0;
+    for (const T v : g) sum += v;
+    const T mean = g.empty() ? T(0) : T(sum / double(g.size()));
+    const T even = rule == DensityRule::tempered ? T(0.1) : T(0);
+    for (T& v : g) v = share_of_budget(v, mean, T(1), even);
+    return g;
+}
+
+namespace detail {
+
+/// The level in [lo, hi] at which the sum of `wanted(i, level)`, which grows with it, is `total`:
+/// by regula falsi whose kept end counts half (the Illinois method: Dowell and Jarratt, BIT 11,
+/// 1971), and every third time by halves. The end that comes nearest where no level does.
+template <typename Wanted>
+double level_of(std::size_t n, std::int64_t total, const Wanted& wanted, double lo, double hi) {
+    const auto excess = [&](double level) {
+        double sum = 0;
+        for (std::size_t i = 0; i < n; ++i) sum += wanted(i, level);
+        return sum - double(total);
+    };
+    double at_lo = excess(lo), at_hi = excess(hi);
+    if (at_hi <= 0) return hi;
+    if (at_lo >= 0) return lo;
+    // Far below what a pixel's fraction resolves.
+    const double tolerance = 1e-12 * double(total);
+    int side = 0;
+    for (int k = 0; k < 100; ++k) {
+        const double middle = 0.5 * (lo + hi), secant = lo - at_lo * (hi - lo) / (at_hi - at_lo);
+        const double level = k % 3 < 2 && secant > lo && secant < hi ? secant : middle;
+        const double found = excess(level);
+        if (std::abs(found) <= tolerance || !(lo < middle && middle < hi)) return level;
+        if (found < 0) {
+            lo = level, at_lo = found;
+            if (side < 0) at_hi *= 0.5;
+            side = -1;
+        } else {
+            hi = level, at_hi = found;
+            if (side > 0) at_lo *= 0.5;
+            side = 1;
+        }
+    }
+    return hi;
+}
+
+/// Whole counts with the sum `total`, or as near to it as `wanted` can come in [lo, hi]; fractions
+/// are carried along.
+template <typename Wanted>
+std::vector<std::uint32_t> counts_of(std::size_t n, std::int64_t total, const Wanted& wanted,
+                                     double lo, double hi) {
+    const double level = level_of(n, total, wanted, lo, hi);
+    constexpr int fraction_bits = 20;
+    constexpr std::int64_t one = std::int64_t{1} << fraction_bits;
+    std::vector<std::uint32_t> counts(n);
+    std::int64_t carried = one / 2, given = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        carried += std::llround(wanted(i, level) * double(one));
+        const std::int64_t count = (carried >> fraction_bits) - given;
+        counts[i] = static_cast<std::uint32_t>(count);
+        given += count;
+    }
+    return counts;
+}
+
+}  // namespace detail
+
+/// Counts as near to one multiple of the density as `most(i)`, never below `at_least`, allows.
+template <std::floating_point T, typename Most>
+[[nodiscard]] std::vector<std::uint32_t> counts_by_density(std::span<const T> density,
+                                                           std::int64_t total,
+                                                           std::span<const std::uint32_t> at_least,
+                                                           const Most& most) {
+    const std::size_t n = density.size();
+    const auto wanted = [&](std::size_t i, double scale) {
+        const double lo = at_least[i];
+        return std::clamp(scale * double(density[i]), lo, std::max(lo, most(i)));
+    };
+    const auto sum = [&](double scale) {
+        double s = 0;
+        for (std::size_t i = 0; i < n; ++i) s += wanted(i, scale);
+        return s;
+    };
+    double hi = 1;
+    while (sum(hi) < double(total) && hi < 1e12) hi *= 2;
+    return detail::counts_of(n, total, wanted, 0, hi);
+}
+
+/// Sample counts with the given total, as near to a multiple of `density` as `at_least` (per
+/// pixel, what has been taken already) and `at_most` (one number) allow. The sum is exactly `total`
+/// where the limits allow it, else as near to it as they do. Fractions are carried along the rows.
+[[nodiscard]] inline std::vector<std::uint32_t> allocate(std::span<const float> density,
+                                                         std::int64_t total,
+                                                         std::span<const std::uint32_t> at_least,
+                                                         std::uint32_t at_most) {
+    return counts_by_density(density, total, at_least,
+                             [at_most](std::size_t) { return double(at_most); });
+}
+
+/// The same with densities in double.
+[[nodiscard]] inline std::vector<std::uint32_t> allocate(std::span<const double> density,
+                                                         std::int64_t total,
+                                                         std::span<const std::uint32_t> at_least,
+                                                         std::uint32_t at_most) {
+    return counts_by_density(density, total, at_least,
+                             [at_most](std::size_t) { return double(at_most); });
+}
+
+}  // namespace covariance

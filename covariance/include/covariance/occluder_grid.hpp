@@ -1,0 +1,281 @@
+// Who stands beside a ray: a grid of cells that a renderer fills with its triangles and spheres,
+// and that is asked for the outlines near a segment. Cells only tell what to look at; where an
+// outline is follows from the shapes themselves, so that no result has the grid's resolution but
+// the reach: one cell on either side of the ray.
+//
+//   OccluderGrid grid;
+//   grid.add_triangle(a, b, c);  grid.add_sphere(center, radius, velocity);  ...
+//   grid.build(-shutter / 2, shutter / 2);
+//   field = travel_past(grid, field, from, to);                          (travel_past.hpp)
+//
+// The edge between two triangles that share both corners (to the last bit) is an outline only where
+// both lie on the same side of it as the light sees them; the border of an open mesh always is.
+//
+// The renderer beside this library has its own search (src/geometry/occluder_query.h): a hierarchy
+// of boxes with cones of blind directions, for millions of edges, instances and holes of alpha
+// textures, which needs its scene; and voxels (voxel_grid.h) as the thesis has them, with another
+// answer than outlines. Sharing would mean to take either of them along.
+// Allocates while it is built: one of the headers for whole scenes, see renderer.hpp.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "covariance/frame.hpp"
+
+namespace covariance {
+
+/// An outline beside a segment.
+template <std::floating_point T = double>
+struct Outline {
+    T ahead = 0;          ///< along the ray, from where the segment begins; below 0 a little behind
+    Vec3<T> direction{};  ///< unit, across the ray, towards the outline
+    T distance = 0;       ///< scene units, from the ray along `direction`
+    Vec3<T> velocity{};   ///< scene units per second
+};
+
+/// Shapes that may stand beside light, in cells.
+template <std::floating_point T = double>
+class OccluderGrid {
+  public:
+    /// `cells`: along the longest side of the scene. More of them look less far and cost less.
+    explicit OccluderGrid(int cells = 24) : cells_(std::max(1, cells)) {}
+
+    /// Adds a triangle that moves with `velocity` (of its middle: turning is not followed). Call
+    /// `build` after the last shape.
+    void add_triangle(const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& c,
+                      const Vec3<T>& velocity = {}) {
+        add_edge(a, b, c, velocity);
+        add_edge(b, c, a, velocity);
+        add_edge(c, a, b, velocity);
+    }
+
+    /// Adds a sphere.
+    void add_sphere(const Vec3<T>& center, T radius, const Vec3<T>& velocity = {}) {
+        spheres_.push_back({center, velocity, radius});
+    }
+
+    /// Sorts the shapes into cells. They stand where they were added at the time 0, and are
+    /// found at times from `earliest` to `latest`, seconds.
+    void build(T earliest = 0, T latest = 0) {
+        find_bounds(earliest, latest);
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> entries;  // cell, shape
+        for (std::uint32_t shape = 0; shape < edges_.size() + spheres_.size(); ++shape)
+            enter(shape, earliest, latest, entries);
+        std::sort(entries.begin(), entries.end());
+        entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+        first_.assign(std::size_t(n_[0]) * std::size_t(n_[1]) * std::size_t(n_[2]) + 1, 0);
+        shapes_.clear();
+        for (const auto& [cell, shape] : entries) {
+            ++first_[cell + 1];
+            shapes_.push_back(shape);
+        }
+        for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+        index_.clear();
+    }
+
+    /// Extent that stands for a point: 1e-4 of the scene's radius, scene units.
+    [[nodiscard]] T smallest() const noexcept { return T(0.5e-4) * length(high_ - low_); }
+
+    /// Where light from infinity that arrives at `point` comes into the scene: the segment from
+    /// there on has the occluders that matter. `towards`: unit, from the point to the light.
+    [[nodiscard]] Vec3<T> entry(const Vec3<T>& point, const Vec3<T>& towards) const noexcept {
+        T leave = std::numeric_limits<T>::infinity();
+        for (int k = 0; k < 3; ++k) {
+            const T w = component(towards, k);
+            if (w == 0) continue;
+            const T plane = component(w > 0 ? high_ : low_, k);
+            leave = std::min(leave, (plane - component(point, k)) / w);
+        }
+        return leave > 0 && leave < std::numeric_limits<T>::infinity() ? point + leave * towards
+                                                                       : point;
+    }
+
+    /// Calls `visit(const Outline&)` for the outlines within a cell of the segment, some of them
+    /// more than once.
+    template <typename Visit>
+    void for_each_outline(const Vec3<T>& from, const Vec3<T>& to, T time,
+                          const Visit& visit) const {
+        const T whole = length(to - from);
+        if (first_.empty() || !(whole > 0) || !std::isfinite(whole)) return;
+        const Vec3<T> d = (to - from) / whole;
+        std::size_t last = first_.size();
+        const auto steps = static_cast<std::int64_t>(std::min(whole / size_ * 2, T(1e6))) + 1;
+        for (std::int64_t k = 0; k <= steps; ++k) {
+            const std::size_t cell = cell_of(from + (whole * T(k) / T(steps)) * d);
+            if (cell == last || cell + 1 >= first_.size()) continue;
+            last = cell;
+            for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) {
+                const std::uint32_t shape = shapes_[i];
+                if (shape < edges_.size())
+                    visit_edge(edges_[shape], from, d, whole, time, visit);
+                else
+                    visit_sphere(spheres_[shape - edges_.size()], from, d, whole, time, visit);
+            }
+        }
+    }
+
+  private:
+    struct Edge {
+        Vec3<T> a, b, velocity;
+        std::array<Vec3<T>, 2> opposite;  ///< third corners of the triangles that share it
+        int faces = 0;
+    };
+    struct Sphere {
+        Vec3<T> center, velocity;
+        T radius;
+    };
+
+    static T component(const Vec3<T>& v, int k) noexcept {
+        return k == 0 ? v.x : k == 1 ? v.y : v.z;
+    }
+
+    void add_edge(const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& opposite,
+                  const Vec3<T>& velocity) {
+        std::array<T, 3> p{a.x, a.y, a.z}, q{b.x, b.y, b.z};
+        if (q < p) std::swap(p, q);
+        const auto [found, is_new] =
+            index_.try_emplace({p, q}, static_cast<std::uint32_t>(edges_.size()));
+        if (is_new) edges_.push_back({a, b, velocity, {}, 0});
+        Edge& edge = edges_[found->second];
+        if (edge.faces < 2) edge.opposite[std::size_t(edge.faces)] = opposite;
+        ++edge.faces;
+    }
+
+    void find_bounds(T earliest, T latest) {
+        const T far = std::numeric_limits<T>::max();
+        low_ = {far, far, far}, high_ = {-far, -far, -far};
+        const auto cover = [&](const Vec3<T>& p, T r) {
+            low_ = {std::min(low_.x, p.x - r), std::min(low_.y, p.y - r),
+                    std::min(low_.z, p.z - r)};
+            high_ = {std::max(high_.x, p.x + r), std::max(high_.y, p.y + r),
+                     std::max(high_.z, p.z + r)};
+        };
+        for (const T t : {earliest, latest}) {
+            for (const Edge& e : edges_)
+                for (const Vec3<T>& p : {e.a, e.b}) cover(p + t * e.velocity, 0);
+            for (const Sphere& s : spheres_) cover(s.center + t * s.velocity, s.radius);
+        }
+        if (!(low_.x <= high_.x)) low_ = high_ = {};
+        const Vec3<T> extent = high_ - low_;
+        const T longest = std::max({extent.x, extent.y, extent.z});
+        size_ = longest > 0 ? longest / T(cells_) : T(1);
+        corner_ = low_ - Vec3<T>{size_, size_, size_};  // one more cell around all
+        for (int k = 0; k < 3; ++k)
+            n_[std::size_t(k)] = static_cast<int>(component(extent, k) / size_) + 3;
+    }
+
+    /// The number of a point's cell; what is outside of all gets a number beyond the last.
+    [[nodiscard]] std::size_t cell_of(const Vec3<T>& p) const noexcept {
+        std::size_t cell = 0;
+        for (int k = 2; k >= 0; --k) {
+            const T at = (component(p, k) - component(corner_, k)) / size_;
+            if (!(at >= 0 && at < T(n_[std::size_t(k)]))) return ~std::size_t{0} - 1;
+            cell = cell * std::size_t(n_[std::size_t(k)]) + static_cast<std::size_t>(at);
+        }
+        return cell;
+    }
+
+    /// Enters a shape into all cells whose middle its outline may pass within a cell's half
+    /// diagonal and the reach of one cell.
+    void enter(std::uint32_t shape, T earliest, T latest,
+               std::vector<std::pair<std::uint32_t, std::uint32_t>>& entries) const {
+        const bool is_edge = shape < edges_.size();
+        const Sphere ball = is_edge ? Sphere{} : spheres_[shape - edges_.size()];
+        const Edge edge = is_edge ? edges_[shape] : Edge{};
+        const Vec3<T> velocity = is_edge ? edge.velocity : ball.velocity;
+        const T way = length(velocity) * (latest - earliest);
+        const int times = way > 0 ? static_cast<int>(std::min(way / size_, T(1e4))) + 2 : 1;
+        const T reach = T(1.87) * size_;
+        for (int i = 0; i < times; ++i) {
+            const T t = times > 1 ? earliest + (latest - earliest) * T(i) / T(times - 1) : earliest;
+            const Vec3<T> a = (is_edge ? edge.a : ball.center) + t * velocity;
+            const Vec3<T> b = (is_edge ? edge.b : ball.center) + t * velocity;
+            std::array<int, 3> lo{}, hi{};
+            for (int k = 0; k < 3; ++k) {
+                const T p = component(a, k) - component(corner_, k),
+                        q = component(b, k) - component(corner_, k), more = reach + ball.radius;
+                const T most = T(n_[std::size_t(k)] - 1);
+                lo[std::size_t(k)] =
+                    static_cast<int>(std::clamp((std::min(p, q) - more) / size_, T(0), most));
+                hi[std::size_t(k)] =
+                    static_cast<int>(std::clamp((std::max(p, q) + more) / size_, T(0), most));
+            }
+            for (int z = lo[2]; z <= hi[2]; ++z)
+                for (int y = lo[1]; y <= hi[1]; ++y)
+                    for (int x = lo[0]; x <= hi[0]; ++x) {
+                        const Vec3<T> middle =
+                            corner_ + size_ * Vec3<T>{T(x) + T(0.5), T(y) + T(0.5), T(z) + T(0.5)};
+                        const Vec3<T> ab = b - a;
+                        const T squared = dot(ab, ab);
+                        const T along = squared > 0
+                                            ? std::clamp(dot(middle - a, ab) / squared, T(0), T(1))
+                                            : T(0);
+                        if (std::abs(length(middle - a - along * ab) - ball.radius) > reach)
+                            continue;
+                        entries.emplace_back(
+                            static_cast<std::uint32_t>((z * n_[1] + y) * n_[0] + x), shape);
+                    }
+        }
+    }
+
+    template <typename Visit>
+    static void visit_edge(const Edge& edge, const Vec3<T>& from, const Vec3<T>& d, T whole, T time,
+                           const Visit& visit) {
+        const Vec3<T> ab = edge.b - edge.a;
+        if (edge.faces == 2) {
+            const Vec3<T> across = cross(ab, d);
+            const bool is_outline =
+                dot(edge.opposite[0] - edge.a, across) * dot(edge.opposite[1] - edge.a, across) > 0;
+            if (!is_outline) return;
+        }
+        // As the ray sees it: without the parts along the ray, cut where the segment ends.
+        const Vec3<T> a = edge.a + time * edge.velocity - from;
+        const T at_a = dot(a, d), slope = dot(ab, d);
+        const Vec3<T> flat_a = a - at_a * d, flat = ab - slope * d;
+        const T squared = dot(flat, flat);
+        T low = 0, high = 1;
+        if (slope > 0) high = std::min(high, (whole - at_a) / slope);
+        if (slope < 0) low = std::max(low, (whole - at_a) / slope);
+        if (!(low <= high) || (slope == 0 && at_a > whole)) return;
+        const T k = squared > 0 ? std::clamp(-dot(flat_a, flat) / squared, low, high) : low;
+        const Vec3<T> offset = flat_a + k * flat;
+        const T r = length(offset), ahead = at_a + k * slope;
+        // The border of what the light has just left lies beside its start, on one side behind it.
+        if (!(r > 0) || !(ahead > -2 * r)) return;
+        visit(Outline<T>{ahead, offset / r, r, edge.velocity});
+    }
+
+    template <typename Visit>
+    static void visit_sphere(const Sphere& ball, const Vec3<T>& from, const Vec3<T>& d, T whole,
+                             T time, const Visit& visit) {
+        const Vec3<T> to_center = ball.center + time * ball.velocity - from;
+        const T ahead = dot(to_center, d);
+        const Vec3<T> offset = to_center - ahead * d;
+        const T r = length(offset), touches = T(1e-3) * ball.radius;
+        const bool starts_on_it = std::abs(length(to_center) - ball.radius) < touches;
+        const bool ends_on_it = std::abs(length(to_center - whole * d) - ball.radius) < touches;
+        if (!(r > 0)) return;
+        if (starts_on_it) {  // its own contour, behind the start; none from inside
+            if (ahead < 0)
+                visit(
+                    Outline<T>{ahead, -offset / r, std::max(ball.radius - r, T(0)), ball.velocity});
+            return;
+        }
+        if (ends_on_it || !(ahead > 0 && ahead < whole) || r < ball.radius) return;
+        visit(Outline<T>{ahead, offset / r, r - ball.radius, ball.velocity});
+    }
+
+    int cells_;
+    std::vector<Edge> edges_;
+    std::vector<Sphere> spheres_;
+    std::map<std::array<std::array<T, 3>, 2>, std::uint32_t> index_;  ///< of edges, by corners
+    Vec3<T> low_, high_, corner_;
+    T size_ = 1;
+    std::array<int, 3> n_{};
+    std::vector<std::uint32_t> first_, shapes_;  ///< of every cell the first of its shapes
+};
+
+}  // namespace covariance

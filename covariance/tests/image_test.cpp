@@ -1,0 +1,131 @@
+// Covariances of whole images, their filters, the gather and budgets.
+#include <covariance/renderer.hpp>
+
+#include "support.h"
+
+namespace support {
+namespace {
+
+using namespace covariance;
+
+TEST(CovarianceImage, HoldsWeightedMeansAndRefusesWhatIsNotFinite) {
+    CovarianceImage<double> image(2, 2);
+    EXPECT_TRUE(image.add(1, 0, Matrix::diagonal(1, 2, 3, 4, 5), 1.0));
+    EXPECT_TRUE(image.add(1, 0, Matrix::diagonal(5, 2, 3, 4, 5), 3.0));
+    EXPECT_FALSE(image.add(1, 0, Matrix::diagonal(5, NAN, 3, 4, 5), 3.0));
+    EXPECT_FALSE(image.add(1, 0, Matrix{}, 0.0));
+    EXPECT_FALSE(image.add(1, 0, Matrix{}, NAN));
+    EXPECT_DOUBLE_EQ(image.covariance[1](0, 0), 4);
+    EXPECT_DOUBLE_EQ(image.weight[1], 4);
+    const auto both = merge(image, image);
+    EXPECT_DOUBLE_EQ(both.covariance[1](0, 0), 4);
+    EXPECT_DOUBLE_EQ(both.weight[1], 8);
+    EXPECT_DOUBLE_EQ(both.weight[0], 0);
+}
+
+TEST(CovarianceImage, HolesTakeTheNearestCovariance) {
+    CovarianceImage<float> image(9, 1);
+    image.add(0, 0, Matrix::diagonal(1, 1, 0, 0, 0), 1.0);
+    image.add(8, 0, Matrix::diagonal(9, 9, 0, 0, 0), 1.0);
+    const auto s = smooth(image);
+    EXPECT_FLOAT_EQ(s.covariance[3](0, 0), 1);
+    EXPECT_FLOAT_EQ(s.covariance[6](0, 0), 9);
+    EXPECT_EQ(smooth(CovarianceImage<float>(3, 1)).covariance[1](0, 0), 0);
+}
+
+TEST(CovarianceImage, IntegratesEveryPixelOverLensAndShutter) {
+    CovarianceImage<double> image(1, 2);
+    Matrix s = Matrix::diagonal(3, 2, 4, 5, 1);
+    s(0, 2) = 1, s(1, 4) = 0.5;
+    image.add(0, 1, s, 2.0);
+    const Prediction<double> p = preintegrate(image);
+    EXPECT_NEAR(distance(p.spectrum[1], preintegrate(s)), 0, 1e-12);
+    EXPECT_NEAR(p.interior_count[1], integration_count(s), 1e-12);
+    EXPECT_EQ(p.interior_count[0], 1);
+}
+
+/// Noise of a known Gaussian spectrum: the gather with its filter keeps the Gaussian blob that the
+/// spectrum belongs to, up to the blur that c says: variance S + S/c^2.
+TEST(Gather, WidensABlobByItsOwnFilterAndNoMore) {
+    constexpr int n = 61;
+    const Sym2 blob{9, 2, 6};
+    Prediction<double> p{n, n, std::vector<Sym2>(n * n, inverse(four_pi_sq<double> * blob)), {}};
+    FilterSettings<double> settings;
+    settings.c = 2;
+    const auto field = filter_field(p, settings);
+    std::vector<Vec3> image(n * n);
+    const Sym2 q = inverse(blob);
+    for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x)
+            image[std::size_t(y * n + x)] = {filter_weight(q, x - n / 2, y - n / 2), 1, 0};
+    const auto out = gather(image, std::vector<std::uint32_t>(n * n, 1), field);
+    // As the filters are cut at three deviations, within 2 %.
+    const double peak = std::sqrt(det(blob) / det((1 + 1 / 4.0) * blob));
+    EXPECT_NEAR(out[(n / 2) * n + n / 2].x, peak, 0.02 * peak);
+    EXPECT_NEAR(out[(n / 2) * n + n / 2].y, 1, 1e-12);
+}
+
+TEST(Gather, LeavesOutEmptyPixelsAndWhatIsNotFinite) {
+    FilterField<float> field{5, 1, std::vector<covariance::Sym2<float>>(5, {0.04F, 0, 0.04F})};
+    std::vector<covariance::Vec3<float>> image(5, {1, 2, 3});
+    image[1] = {NAN, 0, 0};
+    image[2] = {1000, 0, 0};
+    const std::vector<std::uint32_t> count{4, 4, 0, 0, 4};
+    const auto out = gather(image, count, field);
+    for (const auto& c : out) {
+        EXPECT_FLOAT_EQ(c.x, 1);
+        EXPECT_FLOAT_EQ(c.z, 3);
+    }
+}
+
+TEST(FilterField, GrowsFromANarrowNeighbourByTheSlope) {
+    CovarianceImage<float> image(41, 1);
+    for (int x = 0; x < 41; ++x)
+        image.add(x, 0, Matrix::diagonal(x == 20 ? 100 : 1e-9, x == 20 ? 100 : 1e-9, 0, 0, 0), 1.0);
+    const auto settings = filter_settings(16);
+    auto field = filter_field(preintegrate(image), settings);
+    limit_by_neighbours(field, settings);
+    EXPECT_NEAR(filter_size(field.covariance[20]), 0.5, 1e-5);
+    EXPECT_NEAR(filter_size(field.covariance[24]), 0.5 + 4 * 0.25, 1e-4);
+    EXPECT_NEAR(filter_size(field.covariance[0]), 0.5 + 20 * 0.25, 1e-3);
+}
+
+TEST(FilterField, PartsLimitEachOther) {
+    CovarianceImage<float> scattered(21, 1), in_view(21, 1);
+    for (int x = 0; x < 21; ++x) scattered.add(x, 0, Matrix::diagonal(1e-9, 1e-9, 0, 0, 0), 1.0);
+    in_view.add(10, 0, Matrix::diagonal(1e6, 1e6, 0, 0, 0), 1.0);
+    const auto filters = filters_of_parts(scattered, in_view, 16);
+    EXPECT_NEAR(filter_size(filters.scattered.covariance[10]), 0.5, 1e-4);
+    EXPECT_LT(filter_size(filters.scattered.covariance[12]), 1.01);
+    EXPECT_GT(filter_size(filters.scattered.covariance[0]), 2);
+    const auto alone = filters_of_parts(scattered, CovarianceImage<float>(21, 1), 16);
+    EXPECT_NEAR(filter_size(alone.scattered.covariance[10]), 15, 1e-3);
+}
+
+RC_GTEST_PROP(Budget, IsSpentToTheLastSampleInProportion, ()) {
+    std::vector<double> density;
+    for (int i = 0; i < 50; ++i) density.push_back(draw(0.2, 4));
+    const std::vector<std::uint32_t> none(50, 0);
+    const auto counts = allocate(density, 5000, none, 100000);
+    double sum = 0;
+    std::int64_t given = 0;
+    for (std::size_t i = 0; i < 50; ++i) sum += density[i], given += counts[i];
+    RC_ASSERT(given == 5000);
+    for (std::size_t i = 0; i < 50; ++i)
+        RC_ASSERT(std::abs(counts[i] - 5000 * density[i] / sum) < 1.001);
+    const std::vector<std::uint32_t> taken(50, 4);
+    for (const std::uint32_t c : allocate(density, 300, taken, 8)) RC_ASSERT(c >= 4 && c <= 8);
+}
+
+TEST(Budget, ThesisDensityIsTheRootOfTheDeterminant) {
+    CovarianceImage<double> image(2, 1);
+    image.add(0, 0, Matrix::diagonal(0.01, 0.01, 0, 0, 0), 1.0);
+    image.add(1, 0, Matrix::diagonal(0.04, 0.01, 0, 0, 3), 1.0);
+    const auto g = densities(preintegrate(image), DensityRule::thesis, 2, {0.1, 15});
+    EXPECT_NEAR(g[1] / g[0], 2 * integration_count(Matrix::diagonal(0, 0, 0, 0, 3)), 1e-9);
+    const auto even = relative_density(preintegrate(image), DensityRule::tempered, 2, {0.1, 15});
+    EXPECT_NEAR(even[0] + even[1], 2, 1e-12);
+}
+
+}  // namespace
+}  // namespace support
