@@ -87,6 +87,19 @@ TEST(OccluderGrid, NoOutlineWithinAWall) {
     for (const auto& o : all) EXPECT_GT(o.distance, 1);
 }
 
+TEST(OccluderGrid, ACornerOfARoomEndsTheLightOfItsWalls) {
+    OccluderGrid<double> grid(4);
+    grid.add_triangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0});  // a floor
+    grid.add_triangle({0, 0, 0}, {4, 0, 0}, {0, 0, 4});  // and a wall, on the x axis
+    grid.build();
+    const auto leaving = nearest(outlines(grid, {1.5, 0.3, 0}, {1.5, 1.3, 2}));
+    ASSERT_TRUE(leaving);
+    EXPECT_LT(*leaving, 0.3);
+    // Light that only passes the corner on its way does not end there.
+    for (const auto& o : outlines(grid, {1.5, 0.3, 2}, {1.5, 0.3, 0}))
+        EXPECT_GT(std::abs(o.direction.x) * o.distance, 0.3);
+}
+
 TEST(OccluderGrid, TheSphereThatLightLeavesEndsAtItsContour) {
     OccluderGrid<double> grid;
     grid.add_sphere({0, 0, 0}, 1);

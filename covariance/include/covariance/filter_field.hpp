@@ -183,8 +183,15 @@ template <std::floating_point T>
     const FilterSettings<T> settings = filter_settings<T>(samples_per_pixel),
                             bright = filter_settings_in_view<T>(samples_per_pixel);
     const auto known = [](const CovarianceImage<T>& part) {
+        // By the pixel or one beside it, whose covariances `smooth` takes: where lights are found
+        // by chance, lone pixels without any are many.
         std::vector<bool> result(part.weight.size());
-        for (std::size_t i = 0; i < result.size(); ++i) result[i] = part.weight[i] > 0;
+        for (int y = 0; y < part.height; ++y)
+            for (int x = 0; x < part.width; ++x)
+                for (int py = std::max(0, y - 1); py <= std::min(part.height - 1, y + 1); ++py)
+                    for (int px = std::max(0, x - 1); px <= std::min(part.width - 1, x + 1); ++px)
+                        if (part.weight[std::size_t(py * part.width + px)] > 0)
+                            result[std::size_t(y * part.width + x)] = true;
         return result;
     };
     PartFilters<T> filters{filter_field(preintegrate(smooth(scattered)), settings),

@@ -9,7 +9,9 @@
 //   field = travel_past(grid, field, from, to);                          (travel_past.hpp)
 //
 // The edge between two triangles that share both corners (to the last bit) is an outline only where
-// both lie on the same side of it as the light sees them; the border of an open mesh always is.
+// both lie on the same side of it as the light sees them; the border of an open mesh always is. A
+// crease, as where two walls meet, is one for the light that leaves a wall beside it, which ends
+// there and goes on with another brightness.
 //
 // The renderer beside this library has its own search (src/geometry/occluder_query.h): a hierarchy
 // of boxes with cones of blind directions, for millions of edges, instances and holes of alpha
@@ -221,15 +223,21 @@ class OccluderGrid {
         }
     }
 
+    /// Whether two faces of these normals (of any length) meet at more than 25 degrees.
+    static bool is_crease(const Vec3<T>& n0, const Vec3<T>& n1) noexcept {
+        return dot(n0, n1) < T(0.9) * length(n0) * length(n1);
+    }
+
     template <typename Visit>
     static void visit_edge(const Edge& edge, const Vec3<T>& from, const Vec3<T>& d, T whole, T time,
                            const Visit& visit) {
         const Vec3<T> ab = edge.b - edge.a;
+        bool is_outline = true;
         if (edge.faces == 2) {
-            const Vec3<T> across = cross(ab, d);
-            const bool is_outline =
-                dot(edge.opposite[0] - edge.a, across) * dot(edge.opposite[1] - edge.a, across) > 0;
-            if (!is_outline) return;
+            const Vec3<T> across = cross(ab, d), to_0 = edge.opposite[0] - edge.a,
+                          to_1 = edge.opposite[1] - edge.a;
+            is_outline = dot(to_0, across) * dot(to_1, across) > 0;
+            if (!is_outline && !is_crease(cross(ab, to_0), cross(to_1, ab))) return;
         }
         // As the ray sees it: without the parts along the ray, cut where the segment ends.
         const Vec3<T> a = edge.a + time * edge.velocity - from;
@@ -244,7 +252,7 @@ class OccluderGrid {
         const Vec3<T> offset = flat_a + k * flat;
         const T r = length(offset), ahead = at_a + k * slope;
         // The border of what the light has just left lies beside its start, on one side behind it.
-        if (!(r > 0) || !(ahead > -2 * r)) return;
+        if (!(r > 0) || !(ahead > -2 * r) || (!is_outline && ahead > 2 * r)) return;
         visit(Outline<T>{ahead, offset / r, r, edge.velocity});
     }
 
