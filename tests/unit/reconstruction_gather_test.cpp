@@ -8,6 +8,8 @@
 #include <limits>
 #include <random>
 
+#include "covariance/gather.hpp"
+
 namespace covtrace {
 namespace {
 
@@ -126,6 +128,28 @@ TEST(Gather, VarianceFallsByTheEffectiveNumberOfPixels) {
     // A Gaussian of deviation s averages 4 pi s^2 pixels.
     const auto g = run(std::vector<Rgb>(101 * 101, Rgb(1)), uniform_field(101, 101, {9, 0, 9}));
     EXPECT_NEAR(g.variance[50 * 101 + 50] * 4 * 3.14159f * 9, 1, 0.05f);
+}
+
+TEST(Gather, AgreesWithTheLibrarysWhereFiltersAreNarrow) {
+    constexpr int kSize = 24;
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> value(0, 1);
+    std::vector<Rgb> mean;
+    std::vector<covariance::Vec3<float>> same;
+    std::vector<uint32_t> count;
+    for (int i = 0; i < kSize * kSize; ++i) {
+        same.emplace_back(value(random), value(random), value(random));
+        mean.emplace_back(same.back().x, same.back().y, same.back().z);
+        count.push_back(i % 7 == 0 ? 0 : 3);
+    }
+    FilterField field = uniform_field(kSize, kSize, {1, 0.3f, 0.5f});
+    field.covariance[100] = {3, -1, 2};
+    const auto ours = run(mean, field, count).color;
+    const auto plain = covariance::gather(same, count, field);
+    for (size_t i = 0; i < ours.size(); ++i) {
+        ASSERT_NEAR(ours[i].r, plain[i].x, 1e-4f) << i;
+        ASSERT_NEAR(ours[i].b, plain[i].z, 1e-4f) << i;
+    }
 }
 
 TEST(Gather, KeepsTheTotalAndSpreadsIt) {
