@@ -35,6 +35,14 @@ struct RendererVec {
 
 static_assert(Vec3Like<RendererVec>);
 static_assert(!Vec3Like<int>);
+
+/// One that asks by functions.
+struct PrivateVec {
+    constexpr double x() const { return 1; }
+    constexpr double y() const { return 2; }
+    constexpr double z() const { return 3; }
+};
+static_assert(Vec3<float>(PrivateVec{}) == Vec3<float>{1, 2, 3});
 static_assert(std::is_trivially_copyable_v<LightField<float>>);
 static_assert(sizeof(SymmetricMatrix5<float>) == 15 * sizeof(float));
 static_assert(sizeof(LightField<float>) == 24 * sizeof(float));

@@ -90,7 +90,7 @@ TEST(OccluderGrid, NoOutlineWithinAWall) {
 TEST(OccluderGrid, ACornerOfARoomEndsTheLightOfItsWalls) {
     OccluderGrid<double> grid(4);
     grid.add_triangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0});  // a floor
-    grid.add_triangle({0, 0, 0}, {4, 0, 0}, {0, 0, 4});  // and a wall, on the x axis
+    grid.add_triangle({0, 0, 0}, {4, 0, 0}, {0, 0, 8});  // and a wall, on the x axis
     grid.build();
     const auto leaving = nearest(outlines(grid, {1.5, 0.3, 0}, {1.5, 1.3, 2}));
     ASSERT_TRUE(leaving);
@@ -133,6 +133,25 @@ TEST(OccluderGrid, LightFromInfinityEntersAtTheScenesBorder) {
     OccluderGrid<double> empty;
     empty.build();
     EXPECT_EQ(arrive_from_infinity(empty, sky, Vec3{2.1, 0, -2}), sky);
+}
+
+TEST(OccluderGrid, AHugeGroundHasItsHorizon) {
+    OccluderGrid<double> grid;
+    grid.add_sphere({0, 1, 0}, 1);
+    grid.add_huge_sphere({0, -1000, 0}, 1000);
+    grid.build();
+    EXPECT_LT(grid.smallest(), 1e-3);  // of the small scene
+    // A ray to the sky from 2 above the ground, at the angle a above the horizon's.
+    const Vec3 eye{0, 2, 10};
+    const double a = 0.01, horizon = std::acos(1000 / length(eye - Vec3{0, -1000, 0}));
+    const Vec3 up = normalize(eye - Vec3{0, -1000, 0});
+    const Vec3 level = normalize(cross(Vec3{1, 0, 0}, up));
+    const Vec3 w = std::cos(a - horizon) * level + std::sin(a - horizon) * up;
+    const auto found = nearest(outlines(grid, grid.entry(eye, w), eye));
+    ASSERT_TRUE(found);
+    const double expected = length(eye - Vec3{0, -1000, 0}) * std::cos(a - horizon) - 1000;
+    EXPECT_NEAR(*found, expected, 1e-6);
+    EXPECT_GT(expected, 0);
 }
 
 /// The penumbra of a lamp of deviation s behind an edge that the ray grazes, for a receiver that

@@ -56,8 +56,9 @@ std::pair<Vec3<double>, double> gaussian_mean(std::span<const Color> mean,
 /// Gathers an image by its filters.
 ///
 /// Shapes   mean, count: width * height, row by row; colours of any type with members x, y, z.
-///          Pixels without samples (count 0) and means that are not finite take no part; a pixel
-///          with nothing to gather from gets wider filters until it has.
+///          (`Vec3<float>` or your own). Pixels without samples (count 0) and means that are not
+///          finite take no part; a pixel with nothing to gather from gets wider filters until it
+///          has.
 template <Vec3Like Color, std::floating_point T>
 [[nodiscard]] std::vector<Vec3<T>> gather(std::span<const Color> mean,
                                           std::span<const std::uint32_t> count,

@@ -59,6 +59,10 @@ class OccluderGrid {
         spheres_.push_back({center, velocity, radius});
     }
 
+    /// Adds a sphere far larger than the rest of the scene, which stands for a ground or a wall:
+    /// every segment looks at it, and it does not widen the cells.
+    void add_huge_sphere(const Vec3<T>& center, T radius) { huge_.push_back({center, {}, radius}); }
+
     /// Sorts the shapes into cells. They stand where they were added at the time 0, and are
     /// found at times from `earliest` to `latest`, seconds.
     void build(T earliest = 0, T latest = 0) {
@@ -91,8 +95,10 @@ class OccluderGrid {
             const T plane = component(w > 0 ? high_ : low_, k);
             leave = std::min(leave, (plane - component(point, k)) / w);
         }
-        return leave > 0 && leave < std::numeric_limits<T>::infinity() ? point + leave * towards
-                                                                       : point;
+        if (!(leave > 0) || !(leave < std::numeric_limits<T>::infinity())) leave = 0;
+        for (const Sphere& s : huge_)  // a little behind its horizon
+            leave = std::max(leave, dot(s.center - point, towards) + size_);
+        return point + leave * towards;
     }
 
     /// Calls `visit(const Outline&)` for the outlines within a cell of the segment, some of them
@@ -103,6 +109,7 @@ class OccluderGrid {
         const T whole = length(to - from);
         if (first_.empty() || !(whole > 0) || !std::isfinite(whole)) return;
         const Vec3<T> d = (to - from) / whole;
+        for (const Sphere& s : huge_) visit_sphere(s, from, d, whole, time, visit);
         std::size_t last = first_.size();
         const auto steps = static_cast<std::int64_t>(std::min(whole / size_ * 2, T(1e6))) + 1;
         for (std::int64_t k = 0; k <= steps; ++k) {
@@ -262,7 +269,7 @@ class OccluderGrid {
         const Vec3<T> to_center = ball.center + time * ball.velocity - from;
         const T ahead = dot(to_center, d);
         const Vec3<T> offset = to_center - ahead * d;
-        const T r = length(offset), touches = T(1e-3) * ball.radius;
+        const T r = length(offset), touches = T(1e-5) * ball.radius;
         const bool starts_on_it = std::abs(length(to_center) - ball.radius) < touches;
         const bool ends_on_it = std::abs(length(to_center - whole * d) - ball.radius) < touches;
         if (!(r > 0)) return;
@@ -278,7 +285,7 @@ class OccluderGrid {
 
     int cells_;
     std::vector<Edge> edges_;
-    std::vector<Sphere> spheres_;
+    std::vector<Sphere> spheres_, huge_;
     std::map<std::array<std::array<T, 3>, 2>, std::uint32_t> index_;  ///< of edges, by corners
     Vec3<T> low_, high_, corner_;
     T size_ = 1;

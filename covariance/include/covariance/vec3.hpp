@@ -1,5 +1,6 @@
 // Three-vectors: a minimal type of our own, and the concept through which any vector type of the
-// caller with members x, y, z is accepted wherever a Vec3 is asked for.
+// caller with members x, y, z, or functions of these names, is accepted wherever a Vec3 is asked
+// for.
 #pragma once
 
 #include <cmath>
@@ -16,6 +17,14 @@ concept Vec3Like = requires(const V& v) {
     { v.z } -> std::convertible_to<double>;
 };
 
+/// Any type with numeric member functions `x()`, `y()`, `z()`; converts as well.
+template <typename V>
+concept Vec3LikeByFunctions = requires(const V& v) {
+    { v.x() } -> std::convertible_to<double>;
+    { v.y() } -> std::convertible_to<double>;
+    { v.z() } -> std::convertible_to<double>;
+};
+
 /// A vector in world space (scene units, or unit length for directions).
 template <std::floating_point T = double>
 struct Vec3 {
@@ -28,6 +37,10 @@ struct Vec3 {
     template <Vec3Like V>
     constexpr Vec3(const V& v) noexcept  // NOLINT(google-explicit-constructor)
         : x(static_cast<T>(v.x)), y(static_cast<T>(v.y)), z(static_cast<T>(v.z)) {}
+
+    template <Vec3LikeByFunctions V>
+    constexpr Vec3(const V& v) noexcept  // NOLINT(google-explicit-constructor)
+        : x(static_cast<T>(v.x())), y(static_cast<T>(v.y())), z(static_cast<T>(v.z())) {}
 
     friend constexpr Vec3 operator+(const Vec3& a, const Vec3& b) noexcept {
         return {a.x + b.x, a.y + b.y, a.z + b.z};
