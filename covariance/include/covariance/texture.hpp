@@ -103,8 +103,8 @@ template <std::floating_point T>
 }
 
 /// Solid noise without preferred direction whose frequencies have the mean square f^2 in all, as a
-/// sum of waves in random directions: f^2/3 along every axis. Octaves: the mean of their squares, by
-/// amplitude.
+/// sum of waves in random directions: f^2/3 along every axis. Octaves: the mean of their squares,
+/// by amplitude.
 ///
 /// Units    frequency in cycles/scene unit.
 template <std::floating_point T>
