@@ -1,91 +1,23 @@
 #include "scene/graphics_state.h"
 
-#include <cmath>
-
 namespace covtrace {
 
-namespace {
-
-/// Determinant over the product of the columns' lengths: 1 for orthogonal axes, 0 for a flattened
-/// space.
-double relative_determinant(const Matrix4& a) {
-    const auto& m = a.m;
-    const double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                       m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                       m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-    double lengths = 1;
-    for (size_t c = 0; c < 3; ++c) lengths *= std::hypot(m[0][c], m[1][c], m[2][c]);
-    return lengths > 0 ? std::abs(det) / lengths : 0;
+AnimatedTransform GraphicsState::object_to_world(const SourceLocation& user) const {
+    return {ctm[0].get(user), start_time, ctm[1].get(user), end_time};
 }
 
-bool fits_float(const Matrix4& a) {
-    constexpr double largest = 1e30;
-    for (const auto& row : a.m)
-        for (const double v : row)
-            if (!(std::abs(v) <= largest)) return false;
-    return true;
+AnimatedTransform GraphicsState::world_to_object(const SourceLocation& user) const {
+    return {ctm[0].get(user).inverse(), start_time, ctm[1].get(user).inverse(), end_time};
 }
 
-}  // namespace
-
-void GraphicsState::concatenate(const Transform& t, const SourceLocation& where) {
-    for (size_t i = 0; i < 2; ++i) {
-        if (!active[i]) continue;
-        ctm[i] = ctm[i] * t;
-        if (!fits_float(ctm[i].matrix()) || !fits_float(ctm[i].inverse_matrix()))
-            throw Error(ErrorKind::scene, where,
-                        "the numbers of the current transformation get too large");
-    }
+void GraphicsState::concatenate(const CurrentTransform& t, const SourceLocation& where) {
+    for (size_t i = 0; i < 2; ++i)
+        if (active[i]) ctm[i] = ctm[i].times(t, where);
 }
 
-void GraphicsState::replace(const Transform& t) {
+void GraphicsState::replace(const CurrentTransform& t) {
     for (size_t i = 0; i < 2; ++i)
         if (active[i]) ctm[i] = t;
-}
-
-Transform checked_matrix(const std::array<double, 16>& columns, const SourceLocation& where) {
-    Matrix4 m;
-    for (size_t i = 0; i < 16; ++i) m.m[i % 4][i / 4] = columns[i];
-    auto& last = m.m[3];
-    constexpr double tolerance = 1e-6;
-    for (size_t i = 0; i < 3; ++i)
-        if (std::abs(last[i]) > tolerance)
-            throw Error(ErrorKind::scene, where,
-                        "the matrix is projective; expected 0 0 0 1 in its last row");
-    if (!(std::abs(last[3]) > tolerance))
-        throw Error(ErrorKind::scene, where, "the matrix is singular");
-    for (auto& row : m.m)
-        for (double& v : row) v /= columns[15];
-    last = {0, 0, 0, 1};
-    constexpr double flat = 1e-10;
-    const auto t = Transform::from_matrix(m);
-    if (!t || !(relative_determinant(m) > flat) || !fits_float(m) ||
-        !fits_float(t->inverse_matrix()))
-        throw Error(ErrorKind::scene, where,
-                    "the matrix is singular; expected one that can be inverted");
-    return *t;
-}
-
-Transform checked_scale(double x, double y, double z, const SourceLocation& where) {
-    if (x == 0 || y == 0 || z == 0)
-        throw Error(ErrorKind::scene, where, "Scale by zero is a singular transformation");
-    return Transform::scale(x, y, z);
-}
-
-Transform checked_rotation(double degrees, Vec3 axis, const SourceLocation& where) {
-    if (!(length_squared(axis) > 0) || !is_finite(length_squared(axis) * Vec3{1, 1, 1}))
-        throw Error(ErrorKind::scene, where, "the axis of Rotate has no length");
-    return Transform::rotate(degrees, axis);
-}
-
-Transform checked_look_at(Vec3 eye, Vec3 look, Vec3 up, const SourceLocation& where) {
-    const auto t = Transform::look_at(eye, look, up);
-    if (!t)
-        throw Error(ErrorKind::scene, where,
-                    "LookAt is degenerate: expected an eye apart from the point looked at, and an "
-                    "up vector "
-                    "that is not along the view");
-    return *t;
 }
 
 }  // namespace covtrace

@@ -33,9 +33,10 @@ SceneBuilder::SceneBuilder(SceneDescription& scene, SceneFiles& files, WarningLo
 
 void SceneBuilder::camera(Entity entity) {
     view_.camera_medium = state_.outside_medium;
+    view_.camera_to_world = state_.world_to_object(entity.where);
+    coordinate_systems_["camera"] = {state_.ctm[0].get(entity.where).inverse(),
+                                     state_.ctm[1].get(entity.where).inverse()};
     view_.camera = std::move(entity);
-    view_.camera_to_world = state_.world_to_object();
-    coordinate_systems_["camera"] = {state_.ctm[0].inverse(), state_.ctm[1].inverse()};
 }
 
 void SceneBuilder::film(Entity entity) {
@@ -154,7 +155,7 @@ void SceneBuilder::object_instance(const std::string& name, const SourceLocation
     if (object_ >= 0)
         throw Error(ErrorKind::scene, where,
                     "ObjectInstance inside of an object; objects can't hold instances");
-    scene_.instances.push_back({-1, state_.object_to_world(), where});
+    scene_.instances.push_back({-1, state_.object_to_world(where), where});
     instance_names_.push_back(name);
 }
 
@@ -162,7 +163,7 @@ void SceneBuilder::light(Entity entity) {
     if (!(state_.ctm[0] == state_.ctm[1]))
         context_.log.add(entity.where,
                          "moving lights are not supported; the light stays where it starts");
-    scene_.lights.push_back(build_light(entity, state_.ctm[0], context_));
+    scene_.lights.push_back(build_light(entity, state_.ctm[0].get(entity.where), context_));
 }
 
 void SceneBuilder::area_light(Entity entity) {
@@ -182,7 +183,7 @@ void SceneBuilder::shape(Entity entity) {
             entity.parameters.find("alpha", {ParameterType::floats, ParameterType::texture}))
         pending.alpha = *alpha;
     ShapeDescription& s = pending.shape;
-    s.object_to_world = state_.object_to_world();
+    s.object_to_world = state_.object_to_world(entity.where);
     s.where = entity.where;
     s.directive = directive_;
     s.area_light = state_.area_light;

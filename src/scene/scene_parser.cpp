@@ -80,11 +80,11 @@ class Parser {
         for (double& x : v) x = tokens_.expect_number("a number");
         return v;
     }
-    Transform matrix() {
+    CurrentTransform matrix() {
         tokens_.expect(Token::Kind::open_bracket, "[ before the 16 numbers of a matrix");
         const auto v = numbers<16>();
         tokens_.expect(Token::Kind::close_bracket, "] after the 16 numbers of a matrix");
-        return checked_matrix(v, where_);
+        return transform_of_matrix(v, where_);
     }
     static Vec3 vector(double x, double y, double z) {
         return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
@@ -96,18 +96,18 @@ class Parser {
     }
     void rotate() {
         const auto v = numbers<4>();
-        builder_.state().concatenate(checked_rotation(v[0], vector(v[1], v[2], v[3]), where_),
+        builder_.state().concatenate(transform_of_rotation(v[0], vector(v[1], v[2], v[3]), where_),
                                      where_);
     }
     void scale() {
         const auto v = numbers<3>();
-        builder_.state().concatenate(checked_scale(v[0], v[1], v[2], where_), where_);
+        builder_.state().concatenate(transform_of_scale(v[0], v[1], v[2], where_), where_);
     }
     void look_at() {
         const auto v = numbers<9>();
         builder_.state().concatenate(
-            checked_look_at(vector(v[0], v[1], v[2]), vector(v[3], v[4], v[5]),
-                            vector(v[6], v[7], v[8]), where_),
+            transform_of_look_at(vector(v[0], v[1], v[2]), vector(v[3], v[4], v[5]),
+                                 vector(v[6], v[7], v[8]), where_),
             where_);
     }
 

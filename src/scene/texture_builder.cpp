@@ -58,7 +58,7 @@ NoiseTexture noise_texture(NoiseTexture::Kind kind, ParameterList& p, const Sour
 }  // namespace
 
 void TextureBuilder::declare(std::string name, bool is_spectrum, Entity entity,
-                             const Transform& texture_to_world) {
+                             const CurrentTransform& texture_to_world) {
     const auto [it, is_new] = by_name_.try_emplace({is_spectrum, name}, declared_.size());
     if (!is_new)
         throw Error(ErrorKind::scene, entity.where,
@@ -189,15 +189,17 @@ TextureId TextureBuilder::build(Declared& d) {
                    {ParameterType::rgb, ParameterType::spectrum, ParameterType::blackbody});
         d.id = add(d, context_.scene.textures[static_cast<size_t>(part(d, "value", 1))].value);
     } else if (type == "imagemap") {
-        d.id = add(d, image_texture(p, d.entity.where, d.texture_to_world.inverse(), context_));
+        d.id = add(d, image_texture(p, d.entity.where, d.texture_to_world, context_));
     } else if (type == "checkerboard") {
         CheckerboardTexture t;
         t.dimension = p.integer("dimension", 2);
         if (t.dimension != 2 && t.dimension != 3)
             throw Error(ErrorKind::scene, p.where("dimension", d.entity.where),
                         "parameter \"dimension\" of a checkerboard must be 2 or 3");
-        t.texture_from_world = d.texture_to_world.inverse();
-        if (t.dimension == 2) t.mapping = texture_mapping(p, d.entity.where, t.texture_from_world);
+        if (t.dimension == 2)
+            t.mapping = texture_mapping(p, d.entity.where, d.texture_to_world);
+        else
+            t.texture_from_world = d.texture_to_world.get(d.entity.where).inverse();
         t.tex1 = part(d, "tex1", 1);
         t.tex2 = part(d, "tex2", 0);
         d.id = add(d, t);
@@ -213,7 +215,8 @@ TextureId TextureBuilder::build(Declared& d) {
         t.amount = grey(p, "amount", 0.5f);
         d.id = add(d, t);
     } else if (type == "directionmix") {
-        const Vec3 direction = d.texture_to_world.vector(p.triple("dir", {0, 1, 0}));
+        const Vec3 direction =
+            d.texture_to_world.get(d.entity.where).vector(p.triple("dir", {0, 1, 0}));
         if (!(length(direction) > 0))
             throw Error(ErrorKind::scene, p.where("dir", d.entity.where),
                         "parameter \"dir\" must not be zero");
@@ -226,20 +229,21 @@ TextureId TextureBuilder::build(Declared& d) {
         d.id = add(d, t);
     } else if (type == "dots") {
         DotsTexture t;
-        t.mapping = texture_mapping(p, d.entity.where, d.texture_to_world.inverse());
+        t.mapping = texture_mapping(p, d.entity.where, d.texture_to_world);
         t.inside = part(d, "inside", 1);
         t.outside = part(d, "outside", 0);
         d.id = add(d, t);
     } else if (type == "bilerp") {
         BilerpTexture t;
-        t.mapping = texture_mapping(p, d.entity.where, d.texture_to_world.inverse());
+        t.mapping = texture_mapping(p, d.entity.where, d.texture_to_world);
         t.v00 = corner(d, "v00", 0);
         t.v01 = corner(d, "v01", 1);
         t.v10 = corner(d, "v10", 0);
         t.v11 = corner(d, "v11", 1);
         d.id = add(d, t);
     } else if (const auto kind = noise_kind(type, d.is_spectrum)) {
-        d.id = add(d, noise_texture(*kind, p, d.entity.where, d.texture_to_world.inverse()));
+        d.id = add(d, noise_texture(*kind, p, d.entity.where,
+                                    d.texture_to_world.get(d.entity.where).inverse()));
     } else {
         d.id = stand_in(d);
     }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scene/build_context.h"
+#include "scene/current_transform.h"
 
 namespace covtrace {
 
@@ -19,7 +20,7 @@ class TextureBuilder {
 
     /// Errors: Error(scene) where the name is taken.
     void declare(std::string name, bool is_spectrum, Entity entity,
-                 const Transform& texture_to_world);
+                 const CurrentTransform& texture_to_world);
     /// Builds all that was declared, used or not. Errors: Error(scene).
     void build_all();
 
@@ -44,7 +45,7 @@ class TextureBuilder {
         std::string name;
         bool is_spectrum = true;
         Entity entity;
-        Transform texture_to_world;
+        CurrentTransform texture_to_world;
         TextureId id = -1;
         bool in_progress = false;
     };

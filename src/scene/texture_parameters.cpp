@@ -52,7 +52,7 @@ void set_encoding(ImageTexture& t, ParameterList& p, const SourceLocation& where
 }  // namespace
 
 TextureMapping texture_mapping(ParameterList& p, const SourceLocation& where,
-                               const Transform& texture_from_world) {
+                               const CurrentTransform& texture_to_world) {
     using Kind = TextureMapping::Kind;
     TextureMapping m;
     m.kind = choice<Kind, 4>(p, where, "mapping",
@@ -61,7 +61,7 @@ TextureMapping texture_mapping(ParameterList& p, const SourceLocation& where,
                                {"cylindrical", Kind::cylindrical},
                                {"planar", Kind::planar}}},
                              Kind::uv);
-    m.texture_from_world = texture_from_world;
+    if (m.kind != Kind::uv) m.texture_from_world = texture_to_world.get(where).inverse();
     if (m.kind == Kind::uv) {
         m.scale_u = p.number("uscale", 1);
         m.scale_v = p.number("vscale", 1);
@@ -78,7 +78,7 @@ TextureMapping texture_mapping(ParameterList& p, const SourceLocation& where,
 }
 
 ImageTexture image_texture(ParameterList& p, const SourceLocation& where,
-                           const Transform& texture_from_world, BuildContext& context) {
+                           const CurrentTransform& texture_to_world, BuildContext& context) {
     using Wrap = ImageTexture::Wrap;
     using Filter = ImageTexture::Filter;
     ImageTexture t;
@@ -87,7 +87,7 @@ ImageTexture image_texture(ParameterList& p, const SourceLocation& where,
         throw Error(ErrorKind::scene, where,
                     "an imagemap has no image; expected \"string filename\"");
     t.file = context.files.find(file, p.where("filename", where));
-    t.mapping = texture_mapping(p, where, texture_from_world);
+    t.mapping = texture_mapping(p, where, texture_to_world);
     t.wrap = choice<Wrap, 4>(p, where, "wrap",
                              {{{"repeat", Wrap::repeat},
                                {"black", Wrap::black},

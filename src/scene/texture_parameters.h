@@ -2,14 +2,15 @@
 #pragma once
 
 #include "scene/build_context.h"
+#include "scene/current_transform.h"
 
 namespace covtrace {
 
-/// Errors: Error(scene) for unknown mappings.
+/// Errors: Error(scene) for unknown mappings, and for those of a space that a matrix flattens.
 TextureMapping texture_mapping(ParameterList& p, const SourceLocation& where,
-                               const Transform& texture_from_world);
+                               const CurrentTransform& texture_to_world);
 /// Errors: Error(scene) for missing files and unknown wrap modes, filters and encodings.
 ImageTexture image_texture(ParameterList& p, const SourceLocation& where,
-                           const Transform& texture_from_world, BuildContext& context);
+                           const CurrentTransform& texture_to_world, BuildContext& context);
 
 }  // namespace covtrace

@@ -146,7 +146,7 @@ class Text(SceneErrorTest):
             "ConcatTransform [1 2 3 0  2 4 6 0  0 0 1 0  0 0 0 1]",
         ):
             with self.subTest(line=line):
-                self.assert_scene_fails_at(line + "\nWorldBegin\n", line)
+                self.assert_scene_fails_at(line + '\nCamera "perspective"\nWorldBegin\n', line)
 
     def test_resolution_without_pixels(self):
         for film in ('"integer xresolution" 0', '"integer yresolution" 0', '"integer xresolution" -5'):
