@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/failure.h"
+#include "cli/main_stack.h"
 #include "cli/message.h"
 #include "core/error.h"
 #include "render/version.h"
@@ -83,7 +84,7 @@ int main(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
     try {
-        return run(argc, argv);
+        return covtrace::cli::with_large_stack([&] { return run(argc, argv); });
     } catch (...) {
         return covtrace::cli::report_failure(std::current_exception());
     }
