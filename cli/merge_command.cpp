@@ -8,6 +8,7 @@
 #include "cli/layer_selection.h"
 #include "cli/message.h"
 #include "cli/options.h"
+#include "cli/pixel_warnings.h"
 #include "cli/same_file.h"
 #include "core/parallel.h"
 #include "image/image.h"
@@ -46,6 +47,7 @@ int merge_films(const MergeArguments& a) {
             warn_of_unusable(denoiser);
             warn_of_failed_denoiser(image);
         }
+        warn_of_replaced(image);
         keep_layers(image, a.layers);
         if (!a.output.empty()) write_exr(image, a.output, threads.threads());
         if (!a.png.empty()) write_png(image, a.png);

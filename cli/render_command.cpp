@@ -18,6 +18,7 @@
 #include "cli/memory_limit.h"
 #include "cli/message.h"
 #include "cli/mpi_module.h"
+#include "cli/pixel_warnings.h"
 #include "cli/render_options.h"
 #include "cli/render_statistics.h"
 #include "cli/same_file.h"
@@ -75,16 +76,6 @@ void write_text(const std::string& text, const fs::path& path) {
     OutputFile file(path);
     file.write(text.data(), text.size());
     file.commit();
-}
-
-void warn_of_rejected(const RenderStatistics& statistics) {
-    if (statistics.rejected == 0) return;
-    say("warning: {} samples were not finite and count as black", statistics.rejected);
-    if (!statistics.first_rejected.empty()) {
-        const RejectedSample& r = statistics.first_rejected[0];
-        say("; --debug-pixel {},{},{} shows one", r.x, r.y, r.sample);
-    }
-    say("\n");
 }
 
 void parse_texts(RenderArguments& a) {
@@ -214,6 +205,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     if (result.complete || (is_shard && !monitor.cancelled()))
         progress.done(result.statistics.samples_per_pixel, monitor.elapsed(), monitor.error());
     warn_of_rejected(result.statistics);
+    warn_of_replaced(result.image);
     if (!a.quiet) warn_of_failed_denoiser(result.image);
     if (!a.quiet)
         say("{}: {:.4g} samples per pixel in {:.1f} s\n", is_shard ? a.film.film : output.string(),

@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "image/finite_pixels.h"
+
 namespace covtrace::cli {
 
 namespace {
@@ -28,6 +30,13 @@ nlohmann::json denoiser_json(const FoundDenoiser& found, const Metadata& image) 
     if (found.denoiser) return {{"name", found.denoiser->name()}, {"file", found.library.string()}};
     if (!found.why_none.empty()) return {{"why_none", found.why_none}};
     return nullptr;
+}
+
+/// How many pixels are not what was rendered, the first of them, and in which layers.
+nlohmann::json replaced_json(const Metadata& image) {
+    const auto r = replaced_pixels(image);
+    if (!r) return {{"count", 0}};
+    return {{"count", r->pixels}, {"first", {r->x, r->y}}, {"layers", r->layers}};
 }
 
 }  // namespace
@@ -66,6 +75,7 @@ nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& res
             {"spp", result.statistics.samples_per_pixel},
             {"covariance", pass(result.statistics.covariance)},
             {"radiance", pass(result.statistics.radiance)},
+            {"replaced_pixels", replaced_json(result.image.metadata)},
             {"complete", result.complete}};
 }
 

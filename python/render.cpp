@@ -12,6 +12,7 @@
 #include "bindings.h"
 #include "core/parallel.h"
 #include "gltf/read_gltf.h"
+#include "image/finite_pixels.h"
 #include "options.h"
 #include "planes.h"
 #include "render/scene_file.h"
@@ -81,6 +82,7 @@ struct Rendered {
     Warnings warnings;
     FoundDenoiser denoiser;
     std::string denoiser_failure;  ///< while the image was made
+    std::optional<ReplacedPixels> replaced;
 };
 
 std::string text_of(const Warning& w) {
@@ -114,13 +116,16 @@ Rendered render_description(SceneDescription description, RenderOptions options,
         failure = std::get<std::string>(it->second);
         warnings.push_back({{}, "the image is without the denoiser: " + failure});
     }
+    const std::optional<ReplacedPixels> replaced = replaced_pixels(result.image.metadata);
+    if (replaced) warnings.push_back({{}, describe(*replaced)});
     return {std::make_shared<Planes>(std::move(result.image)),
             std::move(result.statistics),
             result.complete,
             scene.geometry.isa(),
             std::move(warnings),
             std::move(denoiser),
-            std::move(failure)};
+            std::move(failure),
+            replaced};
 }
 
 py::dict pass_dict(const PassStatistics& s) {
@@ -146,6 +151,16 @@ py::object denoiser_object(const Rendered& r) {
     return r.denoiser.denoiser || !r.denoiser.why_none.empty() ? py::object(d) : py::none();
 }
 
+/// As in the program's statistics.
+py::dict replaced_dict(const std::optional<ReplacedPixels>& r) {
+    py::dict d;
+    d["count"] = r ? r->pixels : 0;
+    if (!r) return d;
+    d["first"] = py::make_tuple(r->x, r->y);
+    d["layers"] = r->layers;
+    return d;
+}
+
 py::dict statistics_dict(const Rendered& r, double elapsed) {
     py::dict d;
     d["seconds_total"] = elapsed;
@@ -155,6 +170,7 @@ py::dict statistics_dict(const Rendered& r, double elapsed) {
     d["spp"] = r.statistics.samples_per_pixel;
     d["covariance"] = pass_dict(r.statistics.covariance);
     d["radiance"] = pass_dict(r.statistics.radiance);
+    d["replaced_pixels"] = replaced_dict(r.replaced);
     d["complete"] = r.complete;
     return d;
 }

@@ -6,13 +6,23 @@ namespace covtrace {
 
 namespace {
 
-float sinc(float x) {
+double sinc(double x) {
     x *= kPi;
-    return std::abs(x) < 1e-4f ? 1.0f : std::sin(x) / x;
+    return std::abs(x) < 1e-4 ? 1.0 : std::sin(x) / x;
 }
 
-/// The one-dimensional factor of the filter at `x` pixels from the centre; scale is free.
-float evaluate(const FilterDescription& d, float x, float radius) {
+/// How far from the centre the filter is told from nothing: cells beyond would make the others
+/// coarse.
+double support(const FilterDescription& d, double radius) {
+    constexpr double kGaussianEnd = 6;  // deviations, where it is 1.5e-8 of its peak
+    const bool is_gaussian = d.kind == FilterDescription::Kind::gaussian;
+    return is_gaussian ? std::min(radius, kGaussianEnd * d.sigma) : radius;
+}
+
+/// The one-dimensional factor of the filter at `x` pixels from the centre; scale is free. In
+/// double, since filters much narrower than a pixel are differences of numbers that are all but
+/// the same.
+double evaluate(const FilterDescription& d, double x, double radius) {
     x = std::abs(x);
     if (x > radius) return 0;
     switch (d.kind) {
@@ -21,12 +31,13 @@ float evaluate(const FilterDescription& d, float x, float radius) {
         case FilterDescription::Kind::triangle:
             return radius - x;
         case FilterDescription::Kind::gaussian: {
-            const auto g = [&d](float v) { return std::exp(-v * v / (2 * d.sigma * d.sigma)); };
-            return std::max(0.0f, g(x) - g(radius));
+            // exp(a) - exp(b), for a and b near each other, too.
+            const double s = 1 / (2 * double(d.sigma) * d.sigma);
+            return -std::exp(-x * x * s) * std::expm1((x - radius) * (x + radius) * s);
         }
         case FilterDescription::Kind::mitchell: {
             // Mitchell and Netravali 1988, stretched from its support of 2 to the radius.
-            const float v = 2 * x / radius, b = d.b, c = d.c;
+            const double v = 2 * x / radius, b = d.b, c = d.c;
             if (v <= 1)
                 return ((12 - 9 * b - 6 * c) * v * v * v + (-18 + 12 * b + 6 * c) * v * v +
                         (6 - 2 * b)) /
@@ -46,19 +57,22 @@ float evaluate(const FilterDescription& d, float x, float radius) {
 PixelFilter::PixelFilter(const FilterDescription& description) {
     for (int axis = 0; axis < 2; ++axis) {
         Axis& a = axis == 0 ? x_ : y_;
-        a.radius = axis == 0 ? description.x_radius : description.y_radius;
+        const double radius = axis == 0 ? description.x_radius : description.y_radius;
+        const double end = support(description, radius);
+        a.radius = static_cast<float>(end);
         double absolute = 0, sum = 0, second = 0;
-        const float width = 2 * a.radius / Axis::kCells;
+        std::array<double, Axis::kCells + 1> cumulative{};
         for (int i = 0; i < Axis::kCells; ++i) {
-            const float x = -a.radius + (static_cast<float>(i) + 0.5f) * width;
-            const float f = evaluate(description, x, a.radius);
+            const double x = end * ((i + 0.5) * 2 / Axis::kCells - 1);
+            const double f = evaluate(description, x, radius);
             a.negative[size_t(i)] = f < 0;
             absolute += std::abs(f);
             sum += f;
             second += f * x * x;
-            a.cdf[size_t(i) + 1] = static_cast<float>(absolute);
+            cumulative[size_t(i) + 1] = absolute;
         }
-        for (float& c : a.cdf) c = static_cast<float>(c / absolute);
+        for (size_t i = 0; i < cumulative.size(); ++i)
+            a.cdf[i] = static_cast<float>(cumulative[i] / absolute);
         a.cdf.back() = 1;
         for (size_t k = 0, cell = 0; k < Axis::kCells; ++k) {
             while (a.cdf[cell + 1] <= static_cast<float>(k) / Axis::kCells) ++cell;

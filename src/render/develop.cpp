@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "image/finite_pixels.h"
 #include "reconstruction/gather.h"
 #include "render/hybrid_film.h"
 #include "render/layers.h"
@@ -94,10 +95,12 @@ Image mixed_image(const RenderState& state, const CovarianceBuffer& all,
                        CovarianceLayers{all, raw, density_layer(state), field, delivered});
 }
 
-Image with_metadata(Image image, const RenderState& state) {
+/// Every image of a render comes from here: what leaves is finite.
+Image completed(Image image, const RenderState& state) {
     image.metadata.insert(state.metadata.begin(), state.metadata.end());
     image.metadata["spp"] = static_cast<float>(state.mean_count());
     image.metadata["complete"] = state.complete ? 1 : 0;
+    replace_nonfinite(image);
     return image;
 }
 
@@ -110,10 +113,10 @@ Film whole_film(const RenderState& state) {
 Image develop(const RenderState& state, const Denoiser* denoiser) {
     switch (state.method) {
         case Method::uniform:
-            return with_metadata(
+            return completed(
                 make_layers(state.films[0], state.display, state.has_holes, std::nullopt), state);
         case Method::covariance:
-            return with_metadata(gathered_image(state), state);
+            return completed(gathered_image(state), state);
         case Method::hybrid:
             break;
     }
@@ -132,7 +135,7 @@ Image develop(const RenderState& state, const Denoiser* denoiser,
         image.metadata["covtrace:denoiserFailure"] = failure;
     else if (denoiser)
         image.metadata["covtrace:denoiser"] = denoiser->name();
-    return with_metadata(std::move(image), state);
+    return completed(std::move(image), state);
 }
 
 }  // namespace covtrace

@@ -16,7 +16,8 @@ void FilmPixel::add(const FilmSample& s) {
     const float share = 1.0f / static_cast<float>(count);
     const Rgb step = (s.radiance - mean) * weight_in(s, count);
     mean += step * share;
-    squares += step * step * (1 - share);
+    // The first deviation counts nothing; where its square is no float that would not be 0.
+    if (count > 1) squares += step * step * (1 - share);
     albedo += (s.albedo - albedo) * share;
     normal += (s.normal - normal) * share;
     coverage += ((s.hit ? 1.0f : 0.0f) - coverage) * share;

@@ -11,6 +11,7 @@
 #include "render/hybrid_film.h"
 #include "render/image_hash.h"
 #include "render/ranks.h"
+#include "scene/imaging_scale.h"
 
 namespace covtrace {
 
@@ -19,8 +20,7 @@ PassContext pass_context(const RenderScene& scene, const RenderOptions& options)
     return {scene,
             options.seed,
             options.max_depth.value_or(d.max_depth),
-            (d.camera.shutter_close - d.camera.shutter_open) * d.film.iso / 100 *
-                d.camera.film_irradiance,
+            imaging_scale(d),
             d.film.max_component_value,
             d.film.white_balance,
             {}};

@@ -16,13 +16,21 @@ float light_scale(Entity& e) {
     return scale;
 }
 
+/// The light's colour times its scale.
+Rgb light_of(Entity& e, std::string_view name, BuildContext& context) {
+    const Rgb colour = light_colour(e.parameters, name, context);
+    return scaled_light(colour, light_scale(e), e.where, context);
+}
+
 /// Power or illuminance that the light as a whole is to have. pbrt scales light of luminance 1 to
 /// the given number and then applies the colour and "scale". Empty where it isn't a positive
 /// number, as in pbrt.
-std::optional<float> target(Entity& e, std::string_view name, Rgb colour_and_scale) {
+std::optional<float> target(Entity& e, std::string_view name, Rgb colour_and_scale,
+                            const BuildContext& context) {
     const auto v = e.parameters.number(name);
     if (!v || !(*v > 0)) return std::nullopt;
-    return *v * luminance(colour_and_scale);
+    const SourceLocation where = e.parameters.where(name, e.where);
+    return luminance(scaled_light(colour_and_scale, *v, where, context));
 }
 
 /// Unit vector between two points of the light; they must differ.
@@ -36,16 +44,16 @@ Vec3 direction(Vec3 from, Vec3 to, const Entity& e) {
 
 PointLight point_light(Entity& e, BuildContext& context) {
     PointLight light;
-    light.intensity = light_colour(e.parameters, "I", context) * light_scale(e);
+    light.intensity = light_of(e, "I", context);
     light.from = e.parameters.triple("from", {});
-    light.power = target(e, "power", light.intensity);
+    light.power = target(e, "power", light.intensity, context);
     return light;
 }
 
 SpotLight spot_light(Entity& e, BuildContext& context) {
     ParameterList& p = e.parameters;
     SpotLight light;
-    light.intensity = light_colour(p, "I", context) * light_scale(e);
+    light.intensity = light_of(e, "I", context);
     light.from = p.triple("from", {});
     light.to = p.triple("to", {0, 0, 1});
     direction(light.from, light.to, e);
@@ -57,17 +65,19 @@ SpotLight spot_light(Entity& e, BuildContext& context) {
     if (!(light.cone_delta_angle >= 0 && light.cone_delta_angle <= 2 * light.cone_angle))
         throw Error(ErrorKind::scene, p.where("conedeltaangle", e.where),
                     "parameter \"conedeltaangle\" must be between 0 and twice coneangle");
-    light.power = target(e, "power", light.intensity);
+    light.power = target(e, "power", light.intensity, context);
     return light;
 }
 
 DistantLight distant_light(Entity& e, BuildContext& context) {
     DistantLight light;
-    light.radiance = light_colour(e.parameters, "L", context) * light_scale(e);
+    light.radiance = light_of(e, "L", context);
     const Vec3 from = e.parameters.triple("from", {}), to = e.parameters.triple("to", {0, 0, 1});
     light.direction = direction(to, from, e);
     // Light of luminance 1 already has illuminance 1 on a surface that faces it.
-    if (const auto v = e.parameters.number("illuminance"); v && *v > 0) light.radiance *= *v;
+    if (const auto v = e.parameters.number("illuminance"); v && *v > 0)
+        light.radiance =
+            scaled_light(light.radiance, *v, e.parameters.where("illuminance", e.where), context);
     return light;
 }
 
@@ -77,9 +87,9 @@ InfiniteLight infinite_light(Entity& e, BuildContext& context) {
         throw version_three_error(p.where("mapname", e.where), "parameter \"mapname\"");
     InfiniteLight light;
     const bool has_colour = p.has("L");
-    light.radiance = light_colour(p, "L", context) * light_scale(e);
+    light.radiance = light_of(e, "L", context);
     const std::string file = p.text("filename");
-    light.illuminance = target(e, "illuminance", light.radiance);
+    light.illuminance = target(e, "illuminance", light.radiance, context);
     if (!file.empty()) {
         if (has_colour)
             throw Error(ErrorKind::scene, e.where,
@@ -95,8 +105,8 @@ InfiniteLight infinite_light(Entity& e, BuildContext& context) {
 
 GoniometricLight goniometric_light(Entity& e, BuildContext& context) {
     GoniometricLight light;
-    light.intensity = light_colour(e.parameters, "I", context) * light_scale(e);
-    light.power = target(e, "power", light.intensity);
+    light.intensity = light_of(e, "I", context);
+    light.power = target(e, "power", light.intensity, context);
     if (const std::string file = e.parameters.text("filename"); file.empty())
         context.log.add(e.where, "a goniometric light has no image; it shines alike to all sides");
     else
@@ -107,8 +117,8 @@ GoniometricLight goniometric_light(Entity& e, BuildContext& context) {
 ProjectionLight projection_light(Entity& e, BuildContext& context) {
     ParameterList& p = e.parameters;
     ProjectionLight light;
-    light.scale = light_scale(e);
-    light.power = target(e, "power", Rgb(light.scale));
+    light.scale = scaled_light(Rgb(1), light_scale(e), e.where, context).r;
+    light.power = target(e, "power", Rgb(light.scale), context);
     light.fov = p.number("fov", 90);
     if (!(light.fov > 0 && light.fov < 180))
         throw Error(ErrorKind::scene, p.where("fov", e.where),
@@ -154,9 +164,9 @@ AreaLightDescription build_area_light(Entity& e, BuildContext& context) {
     AreaLightDescription light;
     light.where = e.where;
     const bool has_colour = p.has("L");
-    light.radiance = light_colour(p, "L", context) * light_scale(e);
+    light.radiance = light_of(e, "L", context);
     light.two_sided = p.flag("twosided", false);
-    light.power = target(e, "power", light.radiance);
+    light.power = target(e, "power", light.radiance, context);
     if (const std::string file = p.text("filename"); !file.empty()) {
         const SourceLocation where = p.where("filename", e.where);
         if (has_colour)

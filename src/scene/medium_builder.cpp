@@ -50,7 +50,9 @@ void homogeneous(MediumDescription& medium, Entity& e, BuildContext& context) {
     medium.sigma_a = (preset ? preset->sigma_a : coefficient(p, "sigma_a", context)) * scale;
     medium.sigma_s = (preset ? preset->sigma_s : coefficient(p, "sigma_s", context)) * scale;
     const float emission = not_negative(e, "Lescale");
-    if (p.has("Le")) medium.emission = light_colour(p, "Le", context) * emission;
+    if (p.has("Le"))
+        medium.emission =
+            scaled_light(light_colour(p, "Le", context), emission, p.where("Le", e.where), context);
     p.warn_unused(context.log, "media of type \"homogeneous\"");
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scene/imaging_scale.h"
 #include "scene/named_spectra.h"
 #include "scene/names.h"
 #include "scene/token_stream.h"
@@ -104,6 +105,20 @@ Rgb light_colour(ParameterList& parameters, std::string_view name, BuildContext&
     return c;
 }
 
+Rgb scaled_light(Rgb light, float factor, const SourceLocation& where,
+                 const BuildContext& context) {
+    const Rgb scaled = light * factor;
+    if (!is_finite(scaled))
+        throw Error(ErrorKind::scene, where,
+                    "the light is too bright; expected a product of its colour and factors that "
+                    "single precision holds, less than 3.4e38");
+    if (!is_finite(scaled * imaging_scale(context.scene)))
+        throw Error(ErrorKind::scene, where,
+                    "the light is too bright for the film; expected a product with the film's iso "
+                    "and the shutter's time that single precision holds, less than 3.4e38");
+    return scaled;
+}
+
 float refractive_index(ParameterList& parameters, std::string_view name, float otherwise,
                        BuildContext& context) {
     const Parameter* p =
@@ -134,6 +149,10 @@ float refractive_index(ParameterList& parameters, std::string_view name, float o
     if (!(eta > 0))
         throw Error(ErrorKind::scene, p->where,
                     "parameter " + in_quotes(p->name) + " must be greater than 0");
+    constexpr float kLargest = 1e6f;  // the squares of its squares must be numbers
+    if (eta > kLargest)
+        throw Error(ErrorKind::scene, p->where,
+                    "parameter " + in_quotes(p->name) + " is too large; expected at most 1e6");
     return eta;
 }
 

@@ -21,6 +21,9 @@ Rgb factor_colour(const Parameter& p, BuildContext& context);
 /// The colour of a light: rgb as it is, anything else at luminance 1 (pbrt's photometric
 /// normalisation); white where the parameter is missing.
 Rgb light_colour(ParameterList& parameters, std::string_view name, BuildContext& context);
+/// `light` times `factor`. Errors: Error(scene) at `where` in case single precision can't hold that
+/// or what the film makes of it.
+Rgb scaled_light(Rgb light, float factor, const SourceLocation& where, const BuildContext& context);
 
 /// An index of refraction: a number, or a spectrum's value at 587.6 nm with a warning where it
 /// varies. Errors: Error(scene) where it isn't positive.

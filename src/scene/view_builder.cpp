@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <sstream>
+#include <utility>
 
+#include "scene/imaging_scale.h"
 #include "scene/lens_file.h"
 #include "scene/names.h"
 #include "scene/version_three.h"
@@ -31,6 +34,27 @@ float positive(Entity& e, std::string_view name, float otherwise) {
     if (!(v > 0)) refuse(e, name, "parameter " + in_quotes(name) + " must be greater than 0");
     return v;
 }
+
+/// `v`, the value of a parameter or its negative.
+float at_most(const Entity& e, std::string_view name, float v, float most) {
+    if (v <= most) return v;
+    std::ostringstream limit;
+    limit << "parameter " << in_quotes(name) << " is out of range; expected at most " << most
+          << " in size";
+    refuse(e, name, limit.str());
+}
+
+/// `v`, the value of a parameter or a difference of values.
+float within(const Entity& e, std::string_view name, float v, float least, float most) {
+    if (v >= least && v <= most) return v;
+    std::ostringstream limit;
+    limit << "parameter " << in_quotes(name) << " is out of range; expected a size from " << least
+          << " to " << most;
+    refuse(e, name, limit.str());
+}
+
+/// A film of such sides still has a size, and its pixels have one.
+constexpr float kFlattest = 1e-6f;
 
 std::string owner(std::string_view kind, const Entity& e) {
     return std::string(kind) + " " + in_quotes(e.type);
@@ -107,15 +131,24 @@ void build_camera(ViewEntities& view, BuildContext& context) {
         if (e.type == "perspective") camera.fov = p.number("fov", 90);
         if (!(camera.fov > 0 && camera.fov < 180))
             refuse(e, "fov", "parameter \"fov\" must be between 0 and 180 degrees");
+        // Single precision tells no directions apart that are nearer to each other.
+        constexpr float kNarrowest = 1e-6f;
+        if (camera.fov < kNarrowest)
+            refuse(e, "fov", "parameter \"fov\" is too small; expected at least 1e-6 degrees");
         camera.lens_radius = p.number("lensradius", 0);
         if (camera.lens_radius < 0)
             refuse(e, "lensradius", "parameter \"lensradius\" must not be negative");
         camera.focal_distance = positive(e, "focaldistance", 1e6f);
         if (p.has("frameaspectratio"))
-            camera.frame_aspect_ratio = positive(e, "frameaspectratio", 0);
+            camera.frame_aspect_ratio =
+                within(e, "frameaspectratio", positive(e, "frameaspectratio", 0), kFlattest,
+                       1 / kFlattest);
         if (const std::vector<float> window = p.numbers("screenwindow"); !window.empty()) {
             if (window.size() != 4 || !(window[0] < window[1] && window[2] < window[3]))
                 refuse(e, "screenwindow", "parameter \"screenwindow\" expects x0 < x1 and y0 < y1");
+            for (const size_t side : {0, 2})
+                within(e, "screenwindow", window[side + 1] - window[side], kFlattest,
+                       1 / kFlattest);
             camera.screen_window = {window[0], window[1], window[2], window[3]};
         }
     } else if (e.type == "realistic") {
@@ -223,14 +256,26 @@ void build_filter(Entity& e, BuildContext& context) {
                                  {"box", "triangle", "gaussian", "mitchell", "sinc"});
     FilterDescription& filter = context.scene.filter;
     filter.kind = it->kind;
-    filter.x_radius = positive(e, "xradius", it->radius);
-    filter.y_radius = positive(e, "yradius", it->radius);
+    const bool is_sinc = filter.kind == Kind::lanczos_sinc;
+    // Wider than the widest image says nothing; a sinc has to be sampled finer than it swings.
+    constexpr float kWidest = 65536, kSwings = 128;
+    const float widest = is_sinc ? kSwings : kWidest;
+    filter.x_radius = at_most(e, "xradius", positive(e, "xradius", it->radius), widest);
+    filter.y_radius = at_most(e, "yradius", positive(e, "yradius", it->radius), widest);
     if (filter.kind == Kind::gaussian) filter.sigma = positive(e, "sigma", 0.5f);
     if (filter.kind == Kind::mitchell) {
-        filter.b = e.parameters.number("B", 1.0f / 3);
-        filter.c = e.parameters.number("C", 1.0f / 3);
+        // Beyond, a pixel is the difference of numbers ten times as large and more: noise alone.
+        constexpr float kLargest = 10;
+        for (const auto& [name, value] : {std::pair("B", &filter.b), std::pair("C", &filter.c)}) {
+            *value = at_most(e, name, e.parameters.number(name, 1.0f / 3), kLargest);
+            at_most(e, name, -*value, kLargest);
+        }
     }
-    if (filter.kind == Kind::lanczos_sinc) filter.tau = positive(e, "tau", 3);
+    if (is_sinc) {
+        filter.tau = positive(e, "tau", 3);
+        if (filter.tau * kSwings < std::max(filter.x_radius, filter.y_radius))
+            refuse(e, "tau", "parameter \"tau\" is too small; expected at least the radius / 128");
+    }
     e.parameters.warn_unused(context.log, owner("filter", e));
 }
 
@@ -286,6 +331,9 @@ void build_view(ViewEntities& view, BuildContext& context) {
     const auto at = [&](const Entity& e) { context.log.set_order(e.directive); };
     at(view.film), build_film(view, context);
     at(view.camera), build_camera(view, context);
+    if (!std::isfinite(imaging_scale(context.scene)))
+        refuse(view.camera, "shutterclose",
+               "the film's iso times the shutter's time is too large for single precision");
     at(view.filter), build_filter(view.filter, context);
     at(view.sampler), build_sampler(view.sampler, context);
     at(view.integrator), build_integrator(view.integrator, context);

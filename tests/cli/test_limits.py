@@ -106,7 +106,7 @@ class NotFinite(FilmTest):
             image = exr.read(self.folder / "out.exr")
             self.assertAlmostEqual(image.value("spp"), spp, delta=0.1)
             self.assertIn(f"{spp} samples per pixel", self.assert_sound("c.film"))
-        self.assertFalse(all(map(math.isfinite, image.pixels["error.Y"])))
+        self.assertGreater(max(image.pixels["error.Y"]), 1e38)
 
     def test_finite_samples(self):
         """The mean of a pixel's samples is the pixel."""

@@ -148,6 +148,23 @@ class Rendering(unittest.TestCase):
         with self.assertRaises(AttributeError):
             covtrace.render(scenes.builder(), method="uniform", spp=1 << 20, cancel=object())
 
+    def test_values_that_are_no_numbers(self):
+        scene = covtrace.Scene.from_string('''
+            Film "rgb" "integer xresolution" 24 "integer yresolution" 16
+            LookAt 0 1 6  0 0 0  0 1 0
+            Camera "perspective" "float fov" 40
+            WorldBegin LightSource "infinite" "float scale" 1e25 Shape "sphere"''')
+        for method in ("uniform", "covariance", "hybrid"):
+            with self.assertWarnsRegex(covtrace.SceneWarning, "pixels have values that single precision cannot hold"):
+                image = covtrace.render(scene, method=method, spp=4)
+            for name in ("variance", "error"):
+                self.assertTrue(numpy.isfinite(image[name]).all(), name)
+            told = image.statistics["replaced_pixels"]
+            self.assertGreater(told["count"], 0)
+            self.assertIn("variance", told["layers"])
+            x, y = told["first"]
+            self.assertGreater(max(image["variance"][y, x].max(), image["error"][y, x].max()), 1e38)
+
     def test_interrupt(self):
         signal.signal(signal.SIGALRM, signal.default_int_handler)
         signal.setitimer(signal.ITIMER_REAL, 0.3)

@@ -69,5 +69,36 @@ TEST(PixelFilter, OffsetsStayInsideTheRadius) {
     }
 }
 
+TEST(PixelFilter, GaussiansKeepTheirShapeHoweverWideTheRadius) {
+    using Kind = FilterDescription::Kind;
+    for (const float radius : {5.0f, 5000.0f, 65536.0f}) {
+        const PixelFilter f({.kind = Kind::gaussian, .x_radius = radius, .y_radius = radius});
+        const Moments m = moments(f);
+        EXPECT_NEAR(m.mean_weight, 1, 1e-5) << radius;
+        EXPECT_NEAR(m.second, 0.25, 1e-3) << radius;
+        EXPECT_NEAR(f.variance().x, 0.25f, 1e-4f) << radius;
+    }
+}
+
+TEST(PixelFilter, NarrowFiltersAreNumbers) {
+    using Kind = FilterDescription::Kind;
+    for (const Kind kind :
+         {Kind::box, Kind::triangle, Kind::gaussian, Kind::mitchell, Kind::lanczos_sinc})
+        for (const float radius : {1e-3f, 1e-6f, 1e-30f, 1e-38f})
+            for (const float sigma : {0.5f, 1e-30f, 1e-38f, 1e38f}) {
+                const PixelFilter f(
+                    {.kind = kind, .x_radius = radius, .y_radius = radius, .sigma = sigma});
+                for (const float u : {0.0f, 0.3f, 0.5f, 0x1.fffffep-1f}) {
+                    const auto s = f.sample({u, u});
+                    EXPECT_LE(std::abs(s.offset.x), radius * 1.00001f);
+                    EXPECT_TRUE(s.weight > 0.5f && s.weight < 2) << radius;
+                }
+            }
+    // Much narrower than its sigma, a Gaussian less its value at the radius is a parabola.
+    const PixelFilter parabola({.kind = Kind::gaussian, .x_radius = 1e-6f, .y_radius = 1e-3f});
+    EXPECT_NEAR(parabola.variance().x / 1e-12, 0.2, 1e-3);
+    EXPECT_NEAR(parabola.variance().y / 1e-6, 0.2, 1e-3);
+}
+
 }  // namespace
 }  // namespace covtrace

@@ -1,0 +1,23 @@
+#include "cli/pixel_warnings.h"
+
+#include "cli/message.h"
+#include "image/finite_pixels.h"
+
+namespace covtrace::cli {
+
+void warn_of_rejected(const RenderStatistics& statistics) {
+    if (statistics.rejected == 0) return;
+    say("warning: {} samples were not finite and count as black", statistics.rejected);
+    if (!statistics.first_rejected.empty()) {
+        const RejectedSample& r = statistics.first_rejected[0];
+        say("; --debug-pixel {},{},{} shows one", r.x, r.y, r.sample);
+    }
+    say("\n");
+}
+
+void warn_of_replaced(const Image& image) {
+    if (const auto replaced = replaced_pixels(image.metadata))
+        say("warning: {}\n", describe(*replaced));
+}
+
+}  // namespace covtrace::cli

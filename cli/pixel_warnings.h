@@ -1,0 +1,14 @@
+/// Warnings of samples and pixels that are no finite numbers.
+#pragma once
+
+#include "image/image.h"
+#include "render/session.h"
+
+namespace covtrace::cli {
+
+/// Warns of samples that count as black, and how to look at one.
+void warn_of_rejected(const RenderStatistics& statistics);
+/// Warns of pixels that were replaced when the image was made.
+void warn_of_replaced(const Image& image);
+
+}  // namespace covtrace::cli
