@@ -13,6 +13,7 @@
 #include "image/exr_names.h"
 #include "image/layer_names.h"
 #include "planes.h"
+#include "python_lock.h"
 
 namespace covtrace::python {
 
@@ -99,7 +100,7 @@ SharedPlanes from_channels(const std::vector<std::pair<std::string, FloatArray>>
 py::dict comparison(const SharedPlanes& image, const SharedPlanes& reference) {
     Comparison c;
     {
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         c = compare(image->image(), reference->image());
     }
     const py::ssize_t w = c.bounds.width(), h = c.bounds.height();
@@ -128,19 +129,19 @@ void bind_image(py::module_& module) {
         .def_static("from_channels", &from_channels)
         .def_static("read",
                     [](const std::filesystem::path& file) {
-                        const py::gil_scoped_release release;
+                        const Unlocked unlocked;
                         Image image = read_image(file);
                         restore_layer_names(image);
                         return std::make_shared<Planes>(std::move(image));
                     })
         .def("write_exr",
              [](const Planes& p, const std::filesystem::path& file) {
-                 const py::gil_scoped_release release;
+                 const Unlocked unlocked;
                  write_exr(p.image(), file, ThreadLimit(0).threads());
              })
         .def("write_png",
              [](const Planes& p, const std::filesystem::path& file) {
-                 const py::gil_scoped_release release;
+                 const Unlocked unlocked;
                  write_png(p.image(), file);
              })
         .def("channels", &channel_views)

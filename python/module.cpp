@@ -1,4 +1,5 @@
 #include "bindings.h"
+#include "python_lock.h"
 #include "render/version.h"
 
 PYBIND11_MODULE(_covtrace, module) {
@@ -9,4 +10,5 @@ PYBIND11_MODULE(_covtrace, module) {
     python::bind_image(module);
     python::bind_render(module);
     python::bind_covariance(module);
+    python::bind_interpreter_end(module);
 }

@@ -15,6 +15,7 @@
 #include "image/finite_pixels.h"
 #include "options.h"
 #include "planes.h"
+#include "python_lock.h"
 #include "render/scene_file.h"
 #include "render/session.h"
 #include "scene/summary.h"
@@ -47,12 +48,13 @@ py::object progress_object(const Progress& p, const std::string& phase) {
 /// Returns once the render has ended: what the caller's functions threw, which cancels it, or null.
 std::exception_ptr wait(Exchange& exchange, Monitor& monitor, const py::object& progress,
                         const py::object& cancel) {
+    const Calls calls;
     std::exception_ptr thrown;
     for (;;) {
         std::optional<Progress> latest;
         std::string phase;
         {
-            const py::gil_scoped_release release;
+            const Unlocked unlocked(&calls);
             std::unique_lock lock(exchange.mutex);
             exchange.changed.wait_for(lock, std::chrono::milliseconds(50),
                                       [&] { return exchange.finished; });
@@ -203,6 +205,7 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
         0.1);
     std::optional<Rendered> rendered;
     std::exception_ptr failure;
+    auto work = std::make_unique<Work>(monitor);
     std::thread worker([&, description = scene]() mutable {
         try {
             rendered = render_description(std::move(description), options, search, overrides,
@@ -210,6 +213,8 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
         } catch (...) {
             failure = std::current_exception();
         }
+        // The caller may be gone, or wait for ever, from the moment the work is known to be done.
+        work.reset();
         const std::lock_guard lock(exchange.mutex);
         exchange.finished = true;
         exchange.changed.notify_all();
@@ -227,7 +232,7 @@ std::shared_ptr<SceneDescription> read_file(const fs::path& file,
                                             const std::vector<fs::path>& search_paths,
                                             const std::optional<std::array<float, 2>>& shutter) {
     if (shutter) checked_shutter(*shutter);
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     auto scene = std::make_shared<SceneDescription>(read_scene_file(file, {search_paths, shutter}));
     SceneOverrides overrides;
     overrides.shutter = shutter;
@@ -243,7 +248,7 @@ void bind_render(py::module_& module) {
         .def_static("read_string",
                     [](const std::string& text, const std::string& name, const fs::path& folder,
                        const std::vector<fs::path>& search_paths) {
-                        const py::gil_scoped_release release;
+                        const Unlocked unlocked;
                         return std::make_shared<SceneDescription>(
                             read_pbrt_string(text, name, folder, {search_paths}));
                     })

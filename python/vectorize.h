@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "python_lock.h"
+
 namespace covtrace::python {
 
 namespace py = pybind11;
@@ -203,7 +205,7 @@ auto vectorized(R (*function)(Arguments...)) {
             for (const py::ssize_t n : shape) count *= n;
             Result<R> result(shape);
             {
-                const py::gil_scoped_release release;
+                const Unlocked unlocked;
                 std::vector<py::ssize_t> index(shape.size(), 0);
                 for (py::ssize_t i = 0; i < count; ++i) {
                     result.put(function(
