@@ -4,8 +4,10 @@ import json
 import os
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
+import traceback
 
 import bpy
 import numpy as np
@@ -30,6 +32,21 @@ PASSES = (
 LAYERS = "Z,N,albedo,raw,variance,error,samples,density,filter"
 
 
+def _set_pixels(render_pass, pixels):
+    """`pixels`: a row for each. Blender 3.4 counts the rows, newer versions the numbers."""
+    try:
+        render_pass.rect.foreach_set(pixels)
+    except TypeError:
+        render_pass.rect.foreach_set(pixels.reshape(-1))
+
+
+def _is_command_line_render():
+    """Whether Blender's own options render (blender -b scene.blend -f 1), not a script, which gets an exception."""
+    options = sys.argv[:sys.argv.index("--")] if "--" in sys.argv else sys.argv
+    return bpy.app.background and bool(bpy.app.binary_path) and \
+        not {"-f", "--render-frame", "-a", "--render-anim"}.isdisjoint(options)
+
+
 class CovtraceEngine(bpy.types.RenderEngine):
     bl_idname = settings.ENGINE
     bl_label = "covtrace"
@@ -51,8 +68,20 @@ class CovtraceEngine(bpy.types.RenderEngine):
             with tempfile.TemporaryDirectory(prefix="covtrace-") as folder:
                 self._render(depsgraph, scene, folder)
         except (RuntimeError, OSError) as problem:
-            self.report({"ERROR"}, str(problem))
-            self.error_set(str(problem))
+            self._fail(str(problem))
+        except Exception as problem:  # a defect of the add-on: Blender would go on with a blank picture
+            traceback.print_exc()
+            self._fail(f"{type(problem).__name__}: {problem}")
+
+    def _fail(self, text):
+        self.report({"ERROR"}, text)
+        self.error_set(text)
+        if _is_command_line_render():
+            # Blender would write the blank picture, and its exit code know nothing of it.
+            print("covtrace:", text, file=sys.stderr)
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(1)
 
     def _render(self, depsgraph, scene, folder):
         program = settings.find_program()
@@ -77,7 +106,7 @@ class CovtraceEngine(bpy.types.RenderEngine):
             command += ["--threads", str(chosen.threads)]
         code = self._run(command)
         if os.path.exists(image):
-            self._read(image, exporter.size, scene.render.film_transparent)
+            self._read(image, exporter.region, scene.render.film_transparent)
         elif code == 6:
             return  # cancelled before there was anything to see
         if code not in (0, 6):
@@ -128,16 +157,17 @@ class CovtraceEngine(bpy.types.RenderEngine):
             text += f", error {p['error']:.3g}"
         self.update_stats("", text)
 
-    def _read(self, image, size, is_transparent):
+    def _read(self, image, region, is_transparent):
         channels = layers.read(image)
+        x0, y0, x1, y1 = region
         # Only pictures with holes have alpha, and only where the film is transparent it is wanted.
         if not is_transparent or "ViewLayer.Combined.A" not in channels:
-            channels["ViewLayer.Combined.A"] = np.ones(size[::-1], dtype=np.float32)
-        result = self.begin_result(0, 0, *size)
+            channels["ViewLayer.Combined.A"] = np.ones((y1 - y0, x1 - x0), dtype=np.float32)
+        result = self.begin_result(0, 0, x1 - x0, y1 - y0)
         for render_pass in result.layers[0].passes:
             planes = [channels.get(f"ViewLayer.{render_pass.name}.{letter}") for letter in render_pass.channel_id]
             if any(plane is None for plane in planes):
                 continue  # the method has no such layer
             pixels = np.stack(planes, axis=-1).reshape(-1, len(planes))
-            render_pass.rect.foreach_set(np.ascontiguousarray(pixels, dtype=np.float32))
+            _set_pixels(render_pass, np.ascontiguousarray(pixels, dtype=np.float32))
         self.end_result(result)

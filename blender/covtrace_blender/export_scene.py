@@ -42,12 +42,23 @@ class SceneExporter:
         render = self.scene.render
         scale = render.resolution_percentage / 100
         self.size = (max(1, int(render.resolution_x * scale)), max(1, int(render.resolution_y * scale)))
-        if render.use_border:
-            self.warn("the render region is not supported; the whole frame is rendered")
+        self.region = self._region(render)
 
     def warn(self, text):
         if text not in self.warnings:
             self.warnings.append(text)
+
+    def _region(self, render):
+        """x0, y0, x1, y1 of the pixels that are rendered, rows from the bottom, end exclusive; rounded as Blender does,
+        which makes pictures of this size whether they are cropped or put into the frame afterwards."""
+        width, height = self.size
+        if not render.use_border:
+            return 0, 0, width, height
+        x0, x1 = int(render.border_min_x * width), int(render.border_max_x * width)
+        y0, y1 = int(render.border_min_y * height), int(render.border_max_y * height)
+        if x0 >= x1 or y0 >= y1:
+            raise RuntimeError("the render region holds no pixel")
+        return x0, y0, x1, y1
 
     def write(self):
         """The scene file's path."""
@@ -136,10 +147,11 @@ class SceneExporter:
             radius = focal_length / (2 * max(data.dof.aperture_fstop, 1e-3))
             parameters.append(f'"float lensradius" {radius:.9g} "float focaldistance" {max(distance, 1e-4):.9g}')
         out.write(f'Camera "{"perspective" if is_perspective else "orthographic"}" {" ".join(parameters)}\n')
+        x0, y0, x1, y1 = self.region
         # The exposure's length is no brightness in Blender.
         iso = 100 / (self.shutter[1] - self.shutter[0]) if self.shutter else 100
         out.write(f'Film "rgb" "integer xresolution" {self.size[0]} "integer yresolution" {self.size[1]} '
-                  f'"float iso" {iso:.9g}\n')
+                  f'"float iso" {iso:.9g} "integer pixelbounds" [{x0} {x1} {self.size[1] - y1} {self.size[1] - y0}]\n')
         out.write(f'Sampler "zsobol" "integer pixelsamples" {max(1, round(self.scene.covtrace.samples))}\n')
         out.write(f'Integrator "path" "integer maxdepth" {self.scene.covtrace.max_depth}\n')
 

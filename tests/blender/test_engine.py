@@ -1,10 +1,13 @@
 """The engine: layers, cancelling, failures."""
 
 import os
+import subprocess
+import tempfile
 import time
 
+import bpy
+from addon_support import SOURCE, BlenderTest, HEIGHT, WIDTH, material, mean, render
 from covtrace_blender import engine
-from addon_support import BlenderTest, HEIGHT, WIDTH, material, mean, render
 
 
 class EngineTest(BlenderTest):
@@ -38,6 +41,61 @@ class EngineTest(BlenderTest):
         finally:
             engine.CovtraceEngine._is_stopped = is_stopped
         self.assertLess(time.time() - start, 15)
+
+    def region(self, crop):
+        self.scene.render.use_border, self.scene.render.use_crop_to_border = True, crop
+        render = self.scene.render
+        render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.26, 0.72, 0.3, 0.9
+
+    def test_regions_are_where_cycles_has_them(self):
+        self.plane(material(**self.MATT), size=1.5)
+        self.background.inputs["Color"].default_value = (1, 0.5, 0.2, 1)
+        whole = render("COVTRACE", 4)["Noisy Image.R"]
+        for crop in (False, True):
+            with self.subTest(crop=crop):
+                self.region(crop)
+                ours, theirs = render("COVTRACE", 4), render("CYCLES", 4)
+                self.assertEqual(len(ours["Combined.R"]), len(theirs["Combined.R"]))
+                seen = [v > 0 for v in ours["Combined.A"]]
+                self.assertEqual(seen, [v > 0 for v in theirs["Combined.A"]])
+                self.assertEqual(sum(seen), 15 * 14)
+                if not crop:
+                    # The same samples as of the whole frame.
+                    for i, is_seen in enumerate(seen):
+                        if is_seen:
+                            self.assertAlmostEqual(ours["Noisy Image.R"][i], whole[i], delta=1e-5)
+                for name in ("Depth.Z", "Denoising Normal.Z", "Debug Sample Count.X"):
+                    self.assertEqual(len(ours[name]), len(ours["Combined.R"]))
+
+    def test_every_failure_is_an_error(self):
+        """Also those of the add-on itself, after which Blender would go on with a blank picture."""
+        self.plane(material(**self.MATT))
+        read = engine.layers.read
+        engine.layers.read = lambda path: {}["nothing"]
+        try:
+            with self.assertRaisesRegex(RuntimeError, "KeyError"):
+                render("COVTRACE", 1)
+        finally:
+            engine.layers.read = read
+
+    def test_a_failed_command_line_render_has_an_exit_code(self):
+        self.plane(material(**self.MATT))
+        with tempfile.TemporaryDirectory() as folder:
+            scene = os.path.join(folder, "scene.blend")
+            self.scene.render.engine = "COVTRACE"
+            bpy.ops.wm.save_as_mainfile(filepath=scene)
+            register = f"import sys; sys.path.insert(0, {str(SOURCE / 'blender')!r}); import covtrace_blender; covtrace_blender.register()"
+            def run(program, frame):
+                return subprocess.run([bpy.app.binary_path, "--background", "--factory-startup", "-noaudio", scene, "--python-expr", register,
+                                       "-o", folder + "/image_", *frame], env={**os.environ, "COVTRACE": program}, capture_output=True, text=True)
+            for frame in (["-f", "1"], ["-s", "1", "-e", "1", "-a"]):
+                failed = run("/nonexistent/covtrace", frame)
+                self.assertEqual(failed.returncode, 1, failed)
+                self.assertIn("was not found", failed.stderr)
+                self.assertEqual([name for name in os.listdir(folder) if name.startswith("image_")], [])
+            done = run(os.environ["COVTRACE"], ["-f", "1"])
+            self.assertEqual(done.returncode, 0, done)
+            self.assertTrue(os.path.exists(folder + "/image_0001.png"), done)
 
     def test_failures_are_errors(self):
         self.plane(material(**self.MATT))
