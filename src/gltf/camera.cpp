@@ -63,11 +63,16 @@ void read_camera(const Document& document, const PlacedNode& placed, SceneDescri
         camera.kind = CameraDescription::Kind::perspective;
         const double half = std::tan(yfov / 2) * std::min(1.0, aspect);
         camera.fov = static_cast<float>(2 * std::atan(half)) * kDegrees;
+        // Single precision tells no directions apart that are nearer to each other.
+        if (!(camera.fov >= 1e-6f))
+            document.refuse(here + ".perspective",
+                            "expected a field of view of at least 1e-6 degrees");
     } else if (source.type == "orthographic") {
         const double x = std::abs(source.orthographic.xmag);
         const double y = std::abs(source.orthographic.ymag);
-        if (!(x > 0 && x < 1e30 && y > 0 && y < 1e30))
-            document.refuse(here + ".orthographic", "expected xmag and ymag above 0");
+        constexpr double kLeast = 1e-6, kMost = 1e6;
+        if (!(x >= kLeast && x <= kMost && y >= kLeast && y <= kMost))
+            document.refuse(here + ".orthographic", "expected xmag and ymag from 1e-6 to 1e6");
         set_film(scene.film, x / y);
         camera.kind = CameraDescription::Kind::orthographic;
         const auto w = static_cast<float>(x), h = static_cast<float>(y);

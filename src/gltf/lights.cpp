@@ -19,6 +19,8 @@ Rgb light_colour(const Document& document, const tinygltf::Light& light, const s
             document.refuse(place + ".color", "expected numbers of at least 0");
         colour[c] = static_cast<float>(v * light.intensity);
     }
+    if (!is_finite(colour))
+        document.refuse(place, "expected a product of color and intensity below 3.4e38");
     return colour;
 }
 

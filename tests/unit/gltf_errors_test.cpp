@@ -215,6 +215,36 @@ GltfFile rich_file() {
     return file;
 }
 
+TEST(GltfErrors, NumbersThatSinglePrecisionCannotHold) {
+    const auto error_with = [](const json& camera, const json& light) {
+        GltfFile file = square_file();
+        file.root["cameras"] = json::array({camera});
+        file.root["extensions"]["KHR_lights_punctual"]["lights"] = json::array({light});
+        file.add_node({{"camera", 0}});
+        file.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+        return gltf_error(file);
+    };
+    const json light = {{"type", "point"}, {"intensity", 5}};
+    const json camera = {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}};
+    const auto perspective = [](double yfov) {
+        return json{{"type", "perspective"}, {"perspective", {{"yfov", yfov}, {"znear", 1}}}};
+    };
+    const auto orthographic = [](double x, double y) {
+        return json{{"type", "orthographic"},
+                    {"orthographic", {{"xmag", x}, {"ymag", y}, {"zfar", 9}, {"znear", 1}}}};
+    };
+    for (const double yfov : {1e-30, 1e-60, 1e-9})
+        EXPECT_TRUE(contains(error_with(perspective(yfov), light),
+                             "cameras[0].perspective: expected a field of view"))
+            << yfov;
+    for (const auto& [x, y] : {std::pair(1e-40, 1.0), std::pair(1.0, 1e20)})
+        EXPECT_TRUE(contains(error_with(orthographic(x, y), light),
+                             "cameras[0].orthographic: expected xmag and ymag from"));
+    EXPECT_TRUE(contains(
+        error_with(camera, {{"type", "point"}, {"intensity", 1e20}, {"color", {1e20, 1, 1}}}),
+        "lights[0]: expected a product of color and intensity"));
+}
+
 TEST(GltfErrors, SurvivesDamagedFiles) {
     const TemporaryFolder folder;
     const ReadOptions options{{}, std::array<float, 2>{0.2f, 0.8f}};
