@@ -45,11 +45,18 @@ class BoxHierarchy {
                (order_.capacity() + first_.capacity()) * sizeof(uint32_t);
     }
 
-    /// Calls visit(item) for the items whose boxes, and all boxes around them, are met: bit k of
-    /// meets(node, index) tells so of the node's k-th. Not best first: most searches find nothing,
-    /// and no order makes them shorter.
-    template <class Meets, class Visit>
-    void search(const Meets& meets, const Visit& visit) const;
+    /// What a search says of a node's boxes.
+    struct Met {
+        unsigned bits = 0;  ///< the k-th tells whether the k-th box is met
+        /// Of each box: no item in it has less than numerator / denominator.
+        Float8 numerator, denominator;
+    };
+    /// Calls visit(item) for the items whose boxes, and all boxes around them, are met, by
+    /// meets(node, index). Of a node's boxes the one with the least bound comes first, and what is
+    /// no longer below limit() when its turn comes is left out: among thousands of items that are
+    /// all near, the first ones that are found spare the rest.
+    template <class Meets, class Limit, class Visit>
+    void search(const Meets& meets, const Limit& limit, const Visit& visit) const;
 
   private:
     struct Builder;
@@ -60,27 +67,43 @@ class BoxHierarchy {
     Bounds3 bounds_;
 };
 
-template <class Meets, class Visit>
-void BoxHierarchy::search(const Meets& meets, const Visit& visit) const {
-    std::array<uint32_t, kMostDepth * kWidth> stack;
+template <class Meets, class Limit, class Visit>
+void BoxHierarchy::search(const Meets& meets, const Limit& limit, const Visit& visit) const {
+    struct Waiting {
+        uint32_t child;
+        float bound;
+    };
+    std::array<Waiting, kMostDepth * kWidth> stack;
     if (nodes_.empty()) return;
     size_t size = 0;
     // A single item needs no look at its box.
     for (uint32_t next = items() == 1 ? kItem : 0;;) {
         if (next < kItem) {
             const Node& node = nodes_[next];
-            unsigned left = meets(node, next);
+            const Met met = meets(node, next);
+            unsigned left = met.bits;
             if (std::has_single_bit(left)) {
                 next = node.child[static_cast<size_t>(std::countr_zero(left))];
                 continue;
             }
-            for (; left != 0; left &= left - 1)
-                stack[size++] = node.child[static_cast<size_t>(std::countr_zero(left))];
+            if (left != 0) {
+                const Float8 bounds = met.numerator / met.denominator;
+                const size_t first = size;
+                for (; left != 0; left &= left - 1) {
+                    const auto k = static_cast<size_t>(std::countr_zero(left));
+                    size_t at = size++;
+                    for (; at > first && stack[at - 1].bound < bounds[k]; --at)
+                        stack[at] = stack[at - 1];
+                    stack[at] = {node.child[k], bounds[k]};
+                }
+            }
         } else {
             visit(next - kItem);
         }
-        if (size == 0) return;
-        next = stack[--size];
+        do {
+            if (size == 0) return;
+            next = stack[--size].child;
+        } while (stack[size].bound > limit());
     }
 }
 

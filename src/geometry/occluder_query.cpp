@@ -42,8 +42,9 @@ OutlineEvents OccluderQuery::operator()(const Segment& segment, const EdgeMeasur
     if (search.is_over() || g.hierarchy.empty()) return {};
     const auto is = [](Owner a, Owner b) { return a.shape == b.shape && a.instance == b.instance; };
     using Node = BoxHierarchy::Node;
+    const auto limit = [&search] { return search.limit(); };
     g.hierarchy.search(
-        [&](const Node& node, uint32_t) { return search.near_world(node); },
+        [&](const Node& node, uint32_t) { return search.near_world(node); }, limit,
         [&](uint32_t index) {
             const OccluderBody& body = g.bodies[index];
             if (body.curved.shape != Owner::kNone &&
@@ -62,13 +63,13 @@ OutlineEvents OccluderQuery::operator()(const Segment& segment, const EdgeMeasur
                     [&](const Node& node, uint32_t i) {
                         return search.near_world(node, set.cones[i]);
                     },
-                    [&](uint32_t i) { search.meet_world(set.blocks[i], index); });
+                    limit, [&](uint32_t i) { search.meet_world(set.blocks[i], index); });
                 return;
             }
             search.enter(g.geometry.world_from_local(*body.instance, segment.time));
             set.hierarchy.search(
                 [&](const Node& node, uint32_t i) { return search.near_local(node, set.cones[i]); },
-                [&](uint32_t i) { search.meet_local(set.blocks[i], index); });
+                limit, [&](uint32_t i) { search.meet_local(set.blocks[i], index); });
         });
 
     OutlineEvents events;

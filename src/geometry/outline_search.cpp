@@ -29,18 +29,22 @@ OutlineSearch::OutlineSearch(Vec3 begin, Vec3 end, const EdgeMeasure& measure, f
 }
 
 void OutlineSearch::enter(const Affine& m) {
+    if (has_found_) steps_left_ -= kStepsPerBody;
     for (size_t i = 0; i < 3; ++i) rows_[i] = m.row[i].to_float();
     shift_ = m.translation.to_float();
     local_end_ = m.inverse().point(Vec3d(end_)).to_float();
 }
 
-unsigned OutlineSearch::near_local(const BoxHierarchy::Node& node, const BlindCones& cones) const {
+BoxHierarchy::Met OutlineSearch::near_local(const BoxHierarchy::Node& node,
+                                            const BlindCones& cones) {
     const auto row = [this](size_t i) { return all8(rows_[i]); };
     const Vec3x8 x = row(0), y = row(1), z = row(2), shift = all8(shift_ - end_);
     const Vec3x8 middle{dot8(x, node.middle) + shift.x, dot8(y, node.middle) + shift.y,
                         dot8(z, node.middle) + shift.z};
     const Vec3x8 half{dot8(abs8(x), node.half), dot8(abs8(y), node.half), dot8(abs8(z), node.half)};
-    return may_matter(middle, half) & ~bits8(cones.hide(node.middle - all8(local_end_)));
+    BoxHierarchy::Met met = may_matter(middle, half);
+    met.bits &= ~bits8(cones.hide(node.middle - all8(local_end_)));
+    return met;
 }
 
 inline OutlineSearch::Nearest OutlineSearch::nearest(const Vec3x8& from,
@@ -101,6 +105,7 @@ void OutlineSearch::meet_local(const EdgeBlock& edges, uint32_t body) {
 
 inline void OutlineSearch::meet(const Mask8& outlines, const Vec3x8& from, const Vec3x8& along,
                                 uint32_t body) {
+    if (has_found_) --steps_left_;
     if (bits8(outlines) == 0) return;
     const Nearest nearest = this->nearest(from, along);
     unsigned left = bits8(outlines & (nearest.width2 < all8(limit_)));
@@ -115,6 +120,7 @@ inline void OutlineSearch::meet(const Mask8& outlines, const Vec3x8& from, const
 }
 
 void OutlineSearch::meet_ball(Vec3 center, float radius, uint32_t body) {
+    if (has_found_) steps_left_ -= kStepsPerBody;
     const Vec3 d = center - end_;
     const float d2 = length_squared(d), tangent2 = d2 - radius * radius;
     if (!(tangent2 > 1e-4f * d2)) return;  // seen from inside, or from a point of it

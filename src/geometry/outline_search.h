@@ -20,16 +20,19 @@ class OutlineSearch {
     /// Whether no edge can matter.
     bool is_over() const { return !(lo_ <= hi_); }
 
-    /// Bit k tells whether the k-th box of a node, in the world, may hold edges that are narrow
-    /// enough and, by `cones`, outlines.
-    unsigned near_world(const BoxHierarchy::Node& node) const;
-    unsigned near_world(const BoxHierarchy::Node& node, const BlindCones& cones) const;
+    /// Which boxes of a node, in the world, may hold edges that are narrow enough and, by `cones`,
+    /// outlines; bounds are of squared widths.
+    BoxHierarchy::Met near_world(const BoxHierarchy::Node& node);
+    BoxHierarchy::Met near_world(const BoxHierarchy::Node& node, const BlindCones& cones);
+    /// The squared width that an edge must stay below to be of interest; below 0 once enough was
+    /// looked at.
+    float limit() const { return steps_left_ > 0 ? limit_ : -1.0f; }
     /// Edges of the world that belong to `body`.
     void meet_world(const EdgeBlock& edges, uint32_t body);
 
     /// The space of the edges that follow.
     void enter(const Affine& world_from_local);
-    unsigned near_local(const BoxHierarchy::Node& node, const BlindCones& cones) const;
+    BoxHierarchy::Met near_local(const BoxHierarchy::Node& node, const BlindCones& cones);
     void meet_local(const EdgeBlock& edges, uint32_t body);
 
     /// A whole ball of the world: outlined by the circle on which its tangents from end_ touch it.
@@ -41,6 +44,13 @@ class OutlineSearch {
     void collect(OutlineEvents& events, const Velocity& velocity);
 
   private:
+    /// Nodes and blocks of edges that are looked at, nearest first, after the first outline was
+    /// found. Beside a cloud of occluders all of them would be near enough to matter, and none more
+    /// than the first ones (docs/decisions/0110).
+    static constexpr int kMostSteps = 128;
+    /// The time of a ball, or of entering an instance's space, in that of a node.
+    static constexpr int kStepsPerBody = 4;
+
     struct Candidate {
         Vec3 point;    ///< from end_
         Vec3 towards;  ///< along OutlineEvent::direction or against it, not of length 1
@@ -54,7 +64,7 @@ class OutlineSearch {
     };
 
     /// From middles relative to end_ and half sizes, by axis.
-    unsigned may_matter(const Vec3x8& middle, const Vec3x8& half) const;
+    BoxHierarchy::Met may_matter(const Vec3x8& middle, const Vec3x8& half);
     /// `from`, `along`: of edges, in the world, from end_.
     Nearest nearest(const Vec3x8& from, const Vec3x8& along) const;
     void meet(const Mask8& outlines, const Vec3x8& from, const Vec3x8& along, uint32_t body);
@@ -64,7 +74,8 @@ class OutlineSearch {
     Vec3 end_, axis_;  ///< unit, from the end to the beginning
     EdgeMeasure measure_;
     float lo_ = 1, hi_ = 0;  ///< distances from the end
-    float limit_ = 0;        ///< squared width that an edge must stay below to be of interest
+    float limit_ = 0;
+    int steps_left_ = kMostSteps;
     float widest2_ = 0;
     float least_ = 0;  ///< that the measure's denominator is
     float sharp_ = 0;  ///< where the blur is least; 0 where it is the same everywhere
@@ -78,17 +89,20 @@ class OutlineSearch {
     Vec3 shift_, local_end_;
 };
 
-inline unsigned OutlineSearch::near_world(const BoxHierarchy::Node& node) const {
+inline BoxHierarchy::Met OutlineSearch::near_world(const BoxHierarchy::Node& node) {
     return may_matter(node.middle - all8(end_), node.half);
 }
 
-inline unsigned OutlineSearch::near_world(const BoxHierarchy::Node& node,
-                                          const BlindCones& cones) const {
+inline BoxHierarchy::Met OutlineSearch::near_world(const BoxHierarchy::Node& node,
+                                                   const BlindCones& cones) {
     const Vec3x8 middle = node.middle - all8(end_);
-    return may_matter(middle, node.half) & ~bits8(cones.hide(middle));
+    BoxHierarchy::Met met = may_matter(middle, node.half);
+    met.bits &= ~bits8(cones.hide(middle));
+    return met;
 }
 
-inline unsigned OutlineSearch::may_matter(const Vec3x8& middle, const Vec3x8& half) const {
+inline BoxHierarchy::Met OutlineSearch::may_matter(const Vec3x8& middle, const Vec3x8& half) {
+    if (has_found_) --steps_left_;
     const EdgeMeasure& m = measure_;
     const Vec3x8 axis = all8(axis_);
     const Float8 along = dot8(middle, axis), reach = dot8(half, abs8(axis));
@@ -105,8 +119,8 @@ inline unsigned OutlineSearch::may_matter(const Vec3x8& middle, const Vec3x8& ha
     const Float8 h0 = all8(m.h0), h1 = all8(m.h1), h2 = all8(m.h2);
     const Float8 at0 = add_product8(add_product8(h2, z0, h1), z0, h0),
                  at1 = add_product8(add_product8(h2, z1, h1), z1, h0),
-                 denominator = max8(max8(at0, at1), all8(least_));
-    return bits8((z0 <= z1) & (numerator <= all8(limit_) * denominator * scale));
+                 denominator = max8(max8(at0, at1), all8(least_)) * scale;
+    return {bits8((z0 <= z1) & (numerator <= all8(limit_) * denominator)), numerator, denominator};
 }
 
 template <class Velocity>

@@ -36,15 +36,31 @@ std::string reason(const std::string& what) {
     return text.substr(0, kLongest);
 }
 
+/// How deep brackets nest that are in no string. Before the parser sees them, whose own callback
+/// would make objects of many values take the square of their number.
+int deepest_level(std::string_view text) {
+    int level = 0, deepest = 0;
+    bool in_string = false;
+    for (size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (in_string && c == '\\')
+            ++i;
+        else if (c == '"')
+            in_string = !in_string;
+        else if (!in_string && (c == '{' || c == '['))
+            deepest = std::max(deepest, ++level);
+        else if (!in_string && (c == '}' || c == ']'))
+            --level;
+    }
+    return deepest;
+}
+
 json parse(std::string_view text, const std::string& name) {
-    const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
-        if (depth > kMostLevels)
-            throw Error(ErrorKind::scene, name + ": its JSON is nested more than " +
-                                              std::to_string(kMostLevels) + " levels deep");
-        return true;
-    };
+    if (deepest_level(text) > kMostLevels)
+        throw Error(ErrorKind::scene, name + ": its JSON is nested more than " +
+                                          std::to_string(kMostLevels) + " levels deep");
     try {
-        return json::parse(text.begin(), text.end(), limit_depth);
+        return json::parse(text.begin(), text.end());
     } catch (const json::parse_error& e) {
         const size_t byte = e.byte > 0 ? e.byte - 1 : 0;
         throw Error(ErrorKind::scene, location(text, byte, name),

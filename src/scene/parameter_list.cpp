@@ -1,6 +1,7 @@
 #include "scene/parameter_list.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "scene/names.h"
 #include "scene/warning_log.h"
@@ -192,13 +193,13 @@ void ParameterList::ignore_all() {
 }
 
 void ParameterList::warn_unused(WarningLog& log, const std::string& owner) const {
+    std::unordered_map<std::string_view, size_t> last_of_name;
+    for (size_t i = 0; i < all_.size(); ++i)
+        if (!all_[i].may_be_unused) last_of_name[all_[i].name] = i;
     for (size_t i = 0; i < all_.size(); ++i) {
         const Parameter& p = all_[i];
         if (p.may_be_unused) continue;
-        const bool is_shadowed =
-            std::any_of(all_.begin() + static_cast<std::ptrdiff_t>(i) + 1, all_.end(),
-                        [&](const Parameter& later) { return later.name == p.name; });
-        if (is_shadowed) {
+        if (last_of_name[p.name] != i) {
             log.add(p.where, "parameter " + in_quotes(p.name) + " of " + owner +
                                  " is given twice; the last one counts");
         } else if (!p.looked_up) {

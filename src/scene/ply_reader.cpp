@@ -209,8 +209,8 @@ class BodyReader {
             // As pbrt-v4: where a normal is not a number, as exporters write it at vertices
             // without area, the face's own takes its place, as for one of zeros.
             const auto normal = [&](const std::array<int, 3>& k) {
-                for (const int i : k)
-                    if (std::isnan(values[static_cast<size_t>(i)])) return Vec3{};
+                for (const int property : k)
+                    if (std::isnan(values[static_cast<size_t>(property)])) return Vec3{};
                 return triple(k);
             };
             positions_.push_back(triple(layout.position));

@@ -28,6 +28,11 @@ std::vector<OutlineEvent> outlines(const OccluderQuery& query, Vec3 begin, Vec3 
     return {found.events.begin(), found.events.begin() + static_cast<ptrdiff_t>(found.count)};
 }
 
+/// Boxes that a search meets, none of them first.
+BoxHierarchy::Met any_order(const Mask8& boxes) {
+    return {bits8(boxes), all8(0), all8(1)};
+}
+
 std::vector<FoldEdge> edges_of(const TriangleMesh& m) {
     FoldEdgeFinder finder;
     finder.add(m.positions, m.triangles);
@@ -116,8 +121,9 @@ TEST(FoldEdges, BlindConesHideNoOutline) {
             [&](const BoxHierarchy::Node& node, uint32_t n) {
                 const Vec3x8 middle = node.middle - all8(p);
                 // Missing children are no number.
-                return bits8((middle.x == middle.x) & ~cones[n].hide(middle));
+                return any_order((middle.x == middle.x) & ~cones[n].hide(middle));
             },
+            [] { return kInfinity; },
             [&](uint32_t item) {
                 const std::span own =
                     std::span(edges).subspan(first[item], hierarchy.item(item).size());
@@ -171,9 +177,9 @@ TEST(BoxHierarchy, HoldsEveryBoxOnce) {
                 hierarchy.search(
                     [&](const BoxHierarchy::Node& node, uint32_t) {
                         const Vec3x8 d = abs8(node.middle - all8(p)) - node.half;
-                        return bits8(max8(max8(d.x, d.y), d.z) < all8(1e-6f));
+                        return any_order(max8(max8(d.x, d.y), d.z) < all8(1e-6f));
                     },
-                    [&](uint32_t item) { met[item] = true; });
+                    [] { return kInfinity; }, [&](uint32_t item) { met[item] = true; });
                 for (size_t item = 0; item < hierarchy.items(); ++item)
                     for (uint32_t b : hierarchy.item(item))
                         if (boxes[b].contains(p)) {
