@@ -1,23 +1,15 @@
 #include "cli/memory_limit.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "core/error.h"
+#include "core/memory_limit.h"
 
 namespace covtrace::cli {
 
 namespace {
-
-/// Bytes that the process has in memory now; 0 where the system does not tell.
-size_t resident_bytes() {
-    size_t pages = 0, resident = 0;
-    std::ifstream("/proc/self/statm") >> pages >> resident;
-    return resident * size_t(sysconf(_SC_PAGE_SIZE));
-}
 
 std::string megabytes(size_t bytes) {
     return fmt::format("{:.1f}M", double(bytes) / double(1 << 20));
@@ -27,6 +19,7 @@ std::string megabytes(size_t bytes) {
 
 void require_memory(size_t most, const std::map<std::string, size_t>& coming,
                     const RenderScene* scene) {
+    return_freed_memory();
     const size_t now = resident_bytes();
     std::map<std::string, size_t> parts = coming;
     size_t known = 0, sum = now;

@@ -23,6 +23,7 @@
 #include "cli/render_statistics.h"
 #include "cli/same_file.h"
 #include "cli/sample_description.h"
+#include "core/memory_limit.h"
 #include "core/parallel.h"
 #include "image/image.h"
 #include "image/output_file.h"
@@ -137,6 +138,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     progress.begin();
     const InterruptGuard guard;
     monitor.interrupted = &guard.flag();
+    const MemoryLimit memory(a.max_memory);
 
     SceneDescription description = read_scene_file(
         a.scene, {{a.search_paths.begin(), a.search_paths.end()}, a.overrides.shutter});

@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     try {
         const covtrace::RasterImage image = covtrace::read_raster(file.write(data, size));
         const size_t pixels = static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
-        if (image.values.size() != pixels * static_cast<size_t>(image.channels)) std::abort();
+        if (image.size() != pixels * static_cast<size_t>(image.channels)) std::abort();
         for (const float v : image.values)
             if (!std::isfinite(v)) std::abort();
     } catch (const covtrace::Error&) {

@@ -242,7 +242,7 @@ struct BoxHierarchy::Builder {
                     if (c < kItem) c += first;
             h.nodes_[t.node].child[t.child] = first;
             h.nodes_.insert(h.nodes_.end(), t.nodes.begin(), t.nodes.end());
-            t.nodes = {};
+            t.nodes = std::vector<Node>();
         }
         h.nodes_.shrink_to_fit();
         number_items();

@@ -127,8 +127,8 @@ std::vector<FoldEdge> FoldEdgeFinder::take() {
     std::vector<Side> sides(first.back());
     std::vector<uint32_t> next(first.begin(), first.end() - 1);
     for_sides([&](uint32_t corner, Side side) { sides[next[corner]++] = side; });
-    triangles_ = {};
-    table_ = {};
+    triangles_ = decltype(triangles_)();
+    table_ = decltype(table_)();
 
     constexpr size_t kBlock = 8192;  // corners
     const size_t blocks = (corners_.size() + kBlock - 1) / kBlock;
@@ -155,7 +155,7 @@ std::vector<FoldEdge> FoldEdgeFinder::take() {
     for (const auto& edges : found) count += edges.size();
     all.reserve(count);
     for (const auto& edges : found) all.insert(all.end(), edges.begin(), edges.end());
-    corners_ = {};
+    corners_ = decltype(corners_)();
     return all;
 }
 

@@ -86,19 +86,19 @@ bool read_row(JpegReader& reader) {
 void append_row(PlainImage& image, const JpegReader& reader) {
     const size_t width = size_t(image.width), channels = size_t(image.channels);
     if (reader.jpeg.out_color_space != JCS_CMYK) {
-        const size_t count = width * channels, start = image.values.size();
-        image.values.resize(start + count);
-        for (size_t i = 0; i < count; ++i) image.values[start + i] = float(reader.row[i]) / 255.0f;
+        image.bytes.insert(image.bytes.end(), reader.row.begin(),
+                           reader.row.begin() + ptrdiff_t(width * channels));
         return;
     }
     // Adobe's files hold the inks inverted: 255 is none.
     const auto without_ink = [&](JSAMPLE ink) {
-        return float(reader.jpeg.saw_Adobe_marker ? ink : 255 - ink) / 255.0f;
+        return unsigned(reader.jpeg.saw_Adobe_marker ? ink : 255 - ink);
     };
     for (size_t x = 0; x < width; ++x)
         for (size_t c = 0; c < 3; ++c)
-            image.values.push_back(without_ink(reader.row[4 * x + c]) *
-                                   without_ink(reader.row[4 * x + 3]));
+            image.bytes.push_back(uint8_t(
+                (without_ink(reader.row[4 * x + c]) * without_ink(reader.row[4 * x + 3]) + 127) /
+                255));
 }
 
 }  // namespace
@@ -108,8 +108,13 @@ PlainImage decode_jpeg(Bytes bytes) {
     const auto fail = [&] { throw DecodeError(reader.message.data()); };
     if (!read_header(reader, bytes)) fail();
     const int components = reader.jpeg.num_components;
-    PlainImage image = make_plain_image(reader.jpeg.image_width, reader.jpeg.image_height,
-                                        components == 1 ? 1 : 3, 8);
+    const size_t width = reader.jpeg.image_width, height = reader.jpeg.image_height;
+    // Of several scans the library keeps the coefficients of all pixels.
+    const size_t coefficients = jpeg_has_multiple_scans(&reader.jpeg)
+                                    ? width * height * size_t(components) * sizeof(JCOEF)
+                                    : 0;
+    PlainImage image =
+        make_plain_image(int64_t(width), int64_t(height), components == 1 ? 1 : 3, 8, coefficients);
     if (!start(reader)) fail();
     reader.row.resize(size_t(image.width) * size_t(reader.jpeg.output_components));
     for (int y = 0; y < image.height; ++y) {

@@ -65,14 +65,12 @@ bool read_row(PngReader& reader, png_bytep row) {
 }
 
 void append_row(PlainImage& image, const png_byte* row) {
-    const size_t count = size_t(image.width) * size_t(image.channels), start = image.values.size();
-    image.values.resize(start + count);
-    float* values = &image.values[start];
-    if (image.integer_bits == 8)
-        for (size_t i = 0; i < count; ++i) values[i] = float(row[i]) / 255.0f;
+    const size_t count = size_t(image.width) * size_t(image.channels);
+    if (image.is_8bit())
+        image.bytes.insert(image.bytes.end(), row, row + count);
     else
         for (size_t i = 0; i < count; ++i)
-            values[i] = float(row[2 * i] << 8 | row[2 * i + 1]) / 65535.0f;
+            image.values.push_back(float(row[2 * i] << 8 | row[2 * i + 1]) / 65535.0f);
 }
 
 }  // namespace
@@ -85,8 +83,10 @@ PlainImage decode_png(Bytes bytes) {
     if (!reader.info) throw std::bad_alloc();
     if (!read_header(reader)) fail();
 
-    PlainImage image = make_plain_image(reader.width, reader.height, reader.channels, reader.bits);
     const size_t row = png_get_rowbytes(reader.png, reader.info);
+    PlainImage image =
+        make_plain_image(reader.width, reader.height, reader.channels, reader.bits,
+                         reader.passes > 1 && reader.bits != 8 ? row * reader.height : 0);
     if (reader.passes == 1) {
         reader.pixels.resize(row);
         for (int y = 0; y < image.height; ++y) {
@@ -95,11 +95,14 @@ PlainImage decode_png(Bytes bytes) {
         }
         return image;
     }
-    reader.pixels.resize(row * reader.height);
+    // Every pass changes the whole image: that of 8 bits itself.
+    std::vector<png_byte>& all = image.is_8bit() ? image.bytes : reader.pixels;
+    all.resize(row * reader.height);
     for (int pass = 0; pass < reader.passes; ++pass)
         for (size_t y = 0; y < reader.height; ++y)
-            if (!read_row(reader, reader.pixels.data() + y * row)) fail();
-    for (size_t y = 0; y < reader.height; ++y) append_row(image, reader.pixels.data() + y * row);
+            if (!read_row(reader, all.data() + y * row)) fail();
+    if (image.is_8bit()) return image;
+    for (size_t y = 0; y < reader.height; ++y) append_row(image, all.data() + y * row);
     return image;
 }
 

@@ -61,8 +61,15 @@ PlainImage decode_integers(ByteReader& reader, int channels) {
     const int largest = read_number<int>(reader);
     if (largest < 1 || largest > 65535) throw DecodeError("its largest value is not in 1 … 65535");
     const bool bytes = largest < 256;
-    PlainImage image = make_plain_image(width, height, channels, bytes ? 8 : 16);
+    // Other steps than those of 8 bits are kept exactly.
+    PlainImage image = make_plain_image(width, height, channels, largest == 255 ? 8 : 16);
     const size_t count = size_t(width) * size_t(height) * size_t(channels);
+    if (image.is_8bit()) {
+        const Bytes all = reader.rest().first(std::min(count, reader.rest().size()));
+        image.bytes.assign(all.begin(), all.end());
+        reader.take(count);
+        return image;
+    }
     for (size_t i = 0; i < count; ++i) {
         const int value = bytes ? reader.u8() : reader.big_u16();
         image.values.push_back(std::min(1.0f, float(value) / float(largest)));

@@ -74,8 +74,8 @@ PlainImage decode_qoi(Bytes bytes) {
     QoiReader pixels(reader);
     for (int64_t i = 0; i < width * height; ++i) {
         const Pixel p = pixels.next();
-        for (const uint8_t v : {p.r, p.g, p.b}) image.values.push_back(float(v) / 255.0f);
-        if (channels == 4) image.values.push_back(float(p.a) / 255.0f);
+        image.bytes.insert(image.bytes.end(), {p.r, p.g, p.b});
+        if (channels == 4) image.bytes.push_back(p.a);
     }
     return image;
 }

@@ -39,27 +39,28 @@ Header read_header(ByteReader& reader) {
     return h;
 }
 
-using Pixel = std::array<float, 4>;
+using Pixel = std::array<uint8_t, 4>;
 
 /// Colours are stored as B, G, R, A or as 1 + 5 + 5 + 5 bits.
 Pixel read_color(ByteReader& reader, int bits) {
     if (bits == 15 || bits == 16) {
         const int packed = reader.little_u16();
-        const auto part = [&](int shift) { return float(packed >> shift & 31) / 31.0f; };
-        return {part(10), part(5), part(0), 1};
+        const auto part = [&](int shift) {
+            return uint8_t(float(packed >> shift & 31) / 31 * 255 + 0.5f);
+        };
+        return {part(10), part(5), part(0), 255};
     }
     if (bits != 24 && bits != 32)
         throw DecodeError("TGA colours of " + std::to_string(bits) + " bits");
     const Bytes b = reader.take(size_t(bits / 8));
-    return {float(b[2]) / 255, float(b[1]) / 255, float(b[0]) / 255,
-            bits == 32 ? float(b[3]) / 255 : 1};
+    return {b[2], b[1], b[0], bits == 32 ? b[3] : uint8_t(255)};
 }
 
 Pixel read_grey(ByteReader& reader, int bits) {
     if (bits != 8 && bits != 16)
         throw DecodeError("TGA greys of " + std::to_string(bits) + " bits");
     const Bytes b = reader.take(size_t(bits / 8));
-    return {float(b[0]) / 255, bits == 16 ? float(b[1]) / 255 : 1, 0, 0};
+    return {b[0], bits == 16 ? b[1] : uint8_t(255), 0, 0};
 }
 
 std::vector<Pixel> read_palette(ByteReader& reader, const Header& h) {
@@ -120,8 +121,8 @@ void mirror_columns(PlainImage& image) {
     for (size_t y = 0; y < size_t(image.height); ++y)
         for (size_t x = 0; x < width / 2; ++x)
             for (size_t c = 0; c < channels; ++c)
-                std::swap(image.values[(y * width + x) * channels + c],
-                          image.values[(y * width + width - 1 - x) * channels + c]);
+                std::swap(image.bytes[(y * width + x) * channels + c],
+                          image.bytes[(y * width + width - 1 - x) * channels + c]);
 }
 
 }  // namespace
@@ -135,7 +136,7 @@ PlainImage decode_targa(Bytes bytes) {
     const size_t count = size_t(image.width) * size_t(image.height);
     for (size_t i = 0; i < count; ++i) {
         const Pixel pixel = pixels.next();
-        image.values.insert(image.values.end(), pixel.begin(), pixel.begin() + image.channels);
+        image.bytes.insert(image.bytes.end(), pixel.begin(), pixel.begin() + image.channels);
     }
     if (!header.from_top()) flip_rows(image);
     if (header.from_right()) mirror_columns(image);

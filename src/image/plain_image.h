@@ -1,8 +1,9 @@
 /// Private to this folder: decoders of plain pictures, from the bytes of a whole file to pixels.
 ///
-/// They throw DecodeError; nothing is printed, nothing large is allocated before the size in the
-/// header has been checked, and pixels are appended while they are decoded, so that a short file
-/// that claims to be large costs little.
+/// They throw DecodeError, and Error(limit) where what the header claims is more than the process
+/// may hold (core/memory_limit.h); nothing is printed, nothing large is allocated before the size
+/// in the header has been checked, and pixels are appended while they are decoded, so that a short
+/// file that claims to be large costs little.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +11,28 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/memory_limit.h"
+
 namespace covtrace {
 
 struct DecodeError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Pixels as a file holds them: integers scaled to [0, 1] and not decoded.
+/// Pixels as a file holds them, not decoded.
 struct PlainImage {
     int width = 0, height = 0;
-    int channels = 0;           ///< 1: grey, 2: grey and alpha, 3: R G B, 4: R G B A
-    int integer_bits = 0;       ///< 8 or 16; 0: floating point
-    std::vector<float> values;  ///< interleaved, row by row from the top
+    int channels = 0;      ///< 1: grey, 2: grey and alpha, 3: R G B, 4: R G B A
+    int integer_bits = 0;  ///< 8 or 16; 0: floating point
+    /// Interleaved, row by row from the top: of 8-bit images these, ...
+    std::vector<uint8_t> bytes;
+    /// ... of others these, integers scaled to [0, 1].
+    std::vector<float> values;
+    MemoryReservation room;  ///< for them, until they are there
+
+    bool is_8bit() const { return integer_bits == 8; }
+    /// Integers scaled to [0, 1].
+    float value(size_t i) const { return is_8bit() ? float(bytes[i]) / 255.0f : values[i]; }
     bool has_alpha() const { return channels == 2 || channels == 4; }
 };
 
@@ -29,8 +40,10 @@ struct PlainImage {
 /// at most 2^28 pixels and 4 GiB as float.
 void check_image_size(int64_t width, int64_t height, int64_t channels);
 
-/// An image without values yet; checks its size and reserves address space.
-PlainImage make_plain_image(int64_t width, int64_t height, int channels, int integer_bits);
+/// An image without values yet; checks its size and reserves address space. `meanwhile`: bytes that
+/// the decoder itself needs.
+PlainImage make_plain_image(int64_t width, int64_t height, int channels, int integer_bits,
+                            size_t meanwhile = 0);
 
 /// Mirrors the rows: the first becomes the last.
 void flip_rows(PlainImage& image);

@@ -9,16 +9,16 @@ namespace covtrace {
 
 namespace {
 
-/// Planes of the channels that a picture shows: grey, R G B or R G B A.
-std::vector<const Channel*> visible_channels(const Image& image) {
-    const Channel *r = image.find("R"), *g = image.find("G"), *b = image.find("B");
-    if (r && g && b) {
-        const Channel* a = image.find("A");
-        return a ? std::vector{r, g, b, a} : std::vector{r, g, b};
-    }
-    if (const Channel* y = image.find("Y")) return {y};
-    if (image.channels.size() == 1) return {&image.channels.front()};
-    return {};
+/// The channels that a picture shows: grey, R G B or R G B A.
+std::vector<std::string> visible_channels(const std::vector<std::string>& names) {
+    const auto has = [&names](const char* name) {
+        return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    if (has("R") && has("G") && has("B"))
+        return has("A") ? std::vector<std::string>{"R", "G", "B", "A"}
+                        : std::vector<std::string>{"R", "G", "B"};
+    if (has("Y")) return {"Y"};
+    return names.size() == 1 ? names : std::vector<std::string>{};
 }
 
 /// OpenEXR's documentation: without the attribute the primaries are those of Rec.709.
@@ -33,32 +33,48 @@ std::optional<ColourSpace> colour_space_of(const Image& image) {
 }
 
 RasterImage from_exr(const std::filesystem::path& file, const SourceLocation& where) {
-    const Image image = read_exr(file, where);
-    const auto channels = visible_channels(image);
+    std::vector<std::string> channels;
+    Image image = read_exr(file, where, [&channels](const std::vector<std::string>& names) {
+        return channels = visible_channels(names);
+    });
     if (channels.empty()) throw_unreadable(file, where, "it has no channels R, G, B or Y");
+    const MemoryReservation room(image.pixel_count() * channels.size() * sizeof(float),
+                                 in_words(file, image.width(), image.height()));
     RasterImage raster{.width = image.width(),
                        .height = image.height(),
                        .channels = int(channels.size()),
+                       .bytes = {},
                        .values = {},
                        .colour_space = colour_space_of(image)};
     raster.values.resize(image.pixel_count() * channels.size());
-    for (size_t c = 0; c < channels.size(); ++c)
+    for (size_t c = 0; c < channels.size(); ++c) {
+        const auto channel = std::find_if(image.channels.begin(), image.channels.end(),
+                                          [&](const Channel& k) { return k.name == channels[c]; });
         for (size_t i = 0; i < image.pixel_count(); ++i)
-            raster.values[i * channels.size() + c] = channels[c]->values[i];
+            raster.values[i * channels.size() + c] = channel->values[i];
+        channel->values = std::vector<float>();
+    }
     return raster;
+}
+
+/// Of pairs the first.
+template <typename Value>
+void drop_every_second(std::vector<Value>& values) {
+    for (size_t i = 0; i < values.size() / 2; ++i) values[i] = values[2 * i];
+    values.resize(values.size() / 2);
 }
 
 RasterImage from_plain(PlainImage plain) {
     RasterImage raster{.width = plain.width,
                        .height = plain.height,
                        .channels = plain.channels == 2 ? 1 : plain.channels,
+                       .bytes = std::move(plain.bytes),
                        .values = std::move(plain.values),
                        .is_8bit = plain.integer_bits == 8,
                        .is_16bit = plain.integer_bits == 16};
     if (plain.channels == 2) {
-        const size_t pixels = raster.values.size() / 2;
-        for (size_t i = 0; i < pixels; ++i) raster.values[i] = raster.values[2 * i];
-        raster.values.resize(pixels);
+        drop_every_second(raster.bytes);
+        drop_every_second(raster.values);
     }
     return raster;
 }

@@ -100,28 +100,43 @@ class PartReader {
         return count;
     }
 
-    /// The channels of part `index`, in the order of the file.
-    std::vector<Channel> read(Imf::MultiPartInputFile& exr, int index) const {
+    /// The channels of part `index`, in the order of the file; those that are not `wanted` without
+    /// values.
+    std::vector<Channel> read(Imf::MultiPartInputFile& exr, int index,
+                              const std::set<std::string>& wanted) const {
         const Imf::Header& header = exr.header(index);
         const int width = image_.width(), height = image_.height();
         std::vector<Channel> channels;
         Imf::FrameBuffer frame;
         for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
-            std::vector<float>& values = channels.emplace_back(Channel{c.name(), {}}).values;
+            const std::string name = name_in_image(header, index, c.name());
+            std::vector<float>& values = channels.emplace_back(Channel{name, {}}).values;
+            if (!wanted.contains(name)) continue;
             // Filled band by band, so that a short file costs no more memory than it has pixels.
             values.reserve(image_.pixel_count());
             frame.insert(c.name(), Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow(),
                                                     sizeof(float), size_t(width) * sizeof(float)));
         }
+        if (frame.begin() == frame.end()) return channels;
         Imf::InputPart part(exr, index);
         part.setFrameBuffer(frame);
         const int band = header.hasTileDescription() ? int(header.tileDescription().ySize) : 64;
         for (int row = 0; row < height; row += std::min(band, height - row)) {
             const int end = row + std::min(band, height - row);
-            for (Channel& channel : channels) channel.values.resize(size_t(end) * size_t(width));
+            for (Channel& channel : channels)
+                if (wanted.contains(channel.name))
+                    channel.values.resize(size_t(end) * size_t(width));
             part.readPixels(image_.data.y0 + row, image_.data.y0 + end - 1);
         }
         return channels;
+    }
+
+    /// Of further parts with the part's name in front.
+    static std::string name_in_image(const Imf::Header& header, int index,
+                                     const std::string& name) {
+        if (index == 0 || !header.hasName()) return name;
+        const std::string prefix = header.name() + ".";
+        return name.starts_with(prefix) ? name : prefix + name;
     }
 
   private:
@@ -135,7 +150,7 @@ constexpr int64_t kMostPixelBytesPerByte = int64_t(1) << 20;
 /// Largest coordinate of a window, so that sums and differences of coordinates stay in an int.
 constexpr int kLargestCoordinate = 1 << 29;
 
-Image read_parts(const std::filesystem::path& file) {
+Image read_parts(const std::filesystem::path& file, const ChannelChoice& choose) {
     check_exr_attribute_sizes(file);
     Imf::MultiPartInputFile exr(file.c_str(), 0);
     Image image;
@@ -158,17 +173,22 @@ Image read_parts(const std::filesystem::path& file) {
     if (pixel_bytes / kMostPixelBytesPerByte > int64_t(std::filesystem::file_size(file)))
         throw DecodeError("the file is too short for its size in pixels");
 
-    std::set<std::string> names;
+    std::vector<std::string> names;
+    std::set<std::string> known;
     for (int i = 0; i < exr.parts(); ++i)
-        for (Channel& channel : reader.read(exr, i)) {
-            if (i > 0 && exr.header(i).hasName()) {
-                const std::string prefix = exr.header(i).name() + ".";
-                if (!channel.name.starts_with(prefix)) channel.name = prefix + channel.name;
-            }
-            if (!names.insert(channel.name).second)
-                throw DecodeError("two channels are called '" + channel.name + "'");
-            image.channels.push_back(std::move(channel));
+        for (auto c = exr.header(i).channels().begin(); c != exr.header(i).channels().end(); ++c) {
+            names.push_back(PartReader::name_in_image(exr.header(i), i, c.name()));
+            if (!known.insert(names.back()).second)
+                throw DecodeError("two channels are called '" + names.back() + "'");
         }
+    const std::vector<std::string> chosen = choose ? choose(names) : names;
+    const std::set<std::string> wanted(chosen.begin(), chosen.end());
+    const MemoryReservation room(
+        image.pixel_count() * wanted.size() * sizeof(float),
+        std::to_string(image.width()) + "x" + std::to_string(image.height()) + " pixels");
+    for (int i = 0; i < exr.parts(); ++i)
+        for (Channel& channel : reader.read(exr, i, wanted))
+            image.channels.push_back(std::move(channel));
     return image;
 }
 
@@ -182,11 +202,14 @@ std::string reason_of(const std::exception& e, const std::filesystem::path& file
 
 }  // namespace
 
-Image read_exr(const std::filesystem::path& file, const SourceLocation& where) {
+Image read_exr(const std::filesystem::path& file, const SourceLocation& where,
+               const ChannelChoice& choose) {
     try {
-        return read_parts(file);
+        return read_parts(file, choose);
     } catch (const std::bad_alloc&) {
-        throw_unreadable(file, where, "not enough memory");
+        throw_unreadable(file, where, "not enough memory", ErrorKind::limit);
+    } catch (const Error& e) {
+        throw_unreadable(file, where, e.what(), e.kind());
     } catch (const std::exception& e) {
         throw_unreadable(file, where, reason_of(e, file));
     }

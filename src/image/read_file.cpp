@@ -74,6 +74,7 @@ std::vector<uint8_t> read_bytes(const std::filesystem::path& file) {
     constexpr std::uintmax_t kLargestFile = std::uintmax_t(1) << 32;
     const auto size = std::filesystem::file_size(file);
     if (size > kLargestFile) throw DecodeError("the file is larger than 4 GiB");
+    const MemoryReservation room(size, "the file's bytes");
     std::vector<uint8_t> bytes(size);
     std::ifstream stream(file, std::ios::binary);
     if (!stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size)))
@@ -108,7 +109,9 @@ PlainImage with_name(const std::filesystem::path& file, const SourceLocation& wh
     try {
         return decode_it();
     } catch (const std::bad_alloc&) {
-        throw_unreadable(file, where, "not enough memory");
+        throw_unreadable(file, where, "not enough memory", ErrorKind::limit);
+    } catch (const Error& e) {
+        throw_unreadable(file, where, e.what(), e.kind());
     } catch (const std::exception& e) {
         throw_unreadable(file, where, e.what());
     }
@@ -129,7 +132,7 @@ PlainImage decode_plain(std::string_view bytes, const std::filesystem::path& nam
 }
 
 void throw_unreadable(const std::filesystem::path& file, const SourceLocation& where,
-                      const std::string& reason) {
+                      const std::string& reason, ErrorKind kind) {
     constexpr size_t kLongestReason = 300;
     std::string line;
     // Names in a damaged file may hold any bytes, a terminal and JSON not.
@@ -139,7 +142,12 @@ void throw_unreadable(const std::filesystem::path& file, const SourceLocation& w
         else if (!line.empty() && line.back() != ' ')
             line += ' ';
     line.erase(line.find_last_not_of(" .") + 1);
-    throw Error(ErrorKind::scene, where, "cannot read '" + file.string() + "': " + line);
+    throw Error(kind, where, "cannot read '" + file.string() + "': " + line);
+}
+
+std::string in_words(const std::filesystem::path& file, int64_t width, int64_t height) {
+    return "'" + file.string() + "' of " + std::to_string(width) + "x" + std::to_string(height) +
+           " pixels";
 }
 
 }  // namespace covtrace

@@ -1,10 +1,12 @@
 /// Private to this folder: from a path to pixels. All functions throw Error(scene) with the place
-/// `where` and one line that names the file.
+/// `where` and one line that names the file; Error(limit) where memory does not suffice.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/error.h"
 #include "image/image.h"
@@ -26,11 +28,19 @@ PlainImage read_plain(const std::filesystem::path& file, ImageFormat format,
 PlainImage decode_plain(std::string_view bytes, const std::filesystem::path& name,
                         const SourceLocation& where);
 
-/// All parts of an EXR, their channels in the order of the file.
-Image read_exr(const std::filesystem::path& file, const SourceLocation& where);
+/// Of the names of an EXR's channels, those that are wanted, in any order.
+using ChannelChoice = std::function<std::vector<std::string>(const std::vector<std::string>&)>;
 
-/// "cannot read 'file': reason", the reason on one line of ASCII.
+/// All parts of an EXR, their channels in the order of the file; of those that are not chosen only
+/// the names.
+Image read_exr(const std::filesystem::path& file, const SourceLocation& where,
+               const ChannelChoice& choose = {});
+
+/// "cannot read 'file': reason", the reason on one line of ASCII. Error(limit) for limits.
 [[noreturn]] void throw_unreadable(const std::filesystem::path& file, const SourceLocation& where,
-                                   const std::string& reason);
+                                   const std::string& reason, ErrorKind kind = ErrorKind::scene);
+
+/// "'file' of 3x2 pixels", for what is made of an image.
+std::string in_words(const std::filesystem::path& file, int64_t width, int64_t height);
 
 }  // namespace covtrace

@@ -17,6 +17,9 @@ Image read_image(const std::filesystem::path& file) {
     if (format == ImageFormat::exr) return read_exr(file, {});
 
     const PlainImage plain = read_plain(file, format, {});
+    const size_t pixels = size_t(plain.width) * size_t(plain.height);
+    const MemoryReservation room(pixels * size_t(plain.channels) * sizeof(float),
+                                 in_words(file, plain.width, plain.height));
     Image image;
     image.data = image.display = {0, 0, plain.width, plain.height};
     for (int c = 0; c < plain.channels; ++c) {
@@ -25,7 +28,7 @@ Image read_image(const std::filesystem::path& file) {
         const bool is_alpha = plain.has_alpha() && c == plain.channels - 1;
         const bool decode = plain.integer_bits > 0 && !is_alpha;
         for (size_t i = 0; i < channel.values.size(); ++i) {
-            const float value = plain.values[i * size_t(plain.channels) + size_t(c)];
+            const float value = plain.value(i * size_t(plain.channels) + size_t(c));
             channel.values[i] = decode ? srgb_decode(value) : value;
         }
     }

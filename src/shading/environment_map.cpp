@@ -7,6 +7,7 @@
 
 #include "core/fast_math.h"
 #include "core/hash.h"
+#include "core/memory_limit.h"
 #include "core/parallel.h"
 #include "shading/equal_area.h"
 #include "shading/light_texels.h"
@@ -49,16 +50,29 @@ EnvironmentMap EnvironmentMap::read(const std::filesystem::path& file, const Sou
                                     Warnings& warnings) {
     const LightTexels image =
         read_light_texels(file, LightChannels::colour, kBrightest, where, warnings);
-    if (image.width < 1 || (image.width != image.height && image.width != 2 * image.height))
+    const int width = image.width(), height = image.height();
+    if (width < 1 || (width != height && width != 2 * height))
         throw Error(ErrorKind::scene, where,
-                    "environment image \"" + file.string() + "\" is " +
-                        std::to_string(image.width) + " x " + std::to_string(image.height) +
+                    "environment image \"" + file.string() + "\" is " + std::to_string(width) +
+                        " x " + std::to_string(height) +
                         " pixels; expected a square (equal-area map) or twice as wide as high "
                         "(lat-long map)");
-    return EnvironmentMap(image.values, image.width, image.height);
+    // A colour and what a texel takes of the tables by which directions are drawn.
+    const MemoryReservation room(image.size() * (sizeof(Rgb) + sizeof(float)),
+                                 "the texels of '" + file.string() + "'", where);
+    return made_of(file, where, [&] {
+        EnvironmentMap map(width, height);
+        map.build(image);
+        return map;
+    });
 }
 
 EnvironmentMap::EnvironmentMap(const std::vector<Rgb>& texels, int width, int height)
+    : EnvironmentMap(width, height) {
+    build(texels);
+}
+
+EnvironmentMap::EnvironmentMap(int width, int height)
     : width_(width),
       height_(height),
       layout_(width == height ? Layout::equal_area : Layout::lat_long) {
@@ -69,12 +83,17 @@ EnvironmentMap::EnvironmentMap(const std::vector<Rgb>& texels, int width, int he
             row_sine_[static_cast<size_t>(y + 1)] =
                 static_cast<float>(std::sin(row * double(kPi) / height_));
         }
+}
+
+template <typename Texels>
+void EnvironmentMap::build(const Texels& texels) {
     set_texels(texels);
     set_means();
     build_distribution();
 }
 
-void EnvironmentMap::set_texels(const std::vector<Rgb>& texels) {
+template <typename Texels>
+void EnvironmentMap::set_texels(const Texels& texels) {
     texels_.resize(static_cast<size_t>(width_ + 2) * static_cast<size_t>(height_ + 2));
     auto next = texels_.begin();
     for (int row = -1; row <= height_; ++row)

@@ -73,6 +73,7 @@ class EnvironmentMap {
     Rgb irradiance_from_above() const;
 
   private:
+    EnvironmentMap(int width, int height);
     Vec2 to_square(Vec3 w) const;
     Sight nearest(Vec2 uv) const;
     Sight interpolated(Vec2 uv, float polar_sine) const;
@@ -89,13 +90,17 @@ class EnvironmentMap {
         return drawn(texel(x, y)) * row_sine_[static_cast<size_t>(y + 1)];
     }
     float solid_angle(int y) const;  // of one texel of the row
-    void set_texels(const std::vector<Rgb>& texels);
+    /// texels[i]: the i-th, row by row from the top.
+    template <typename Texels>
+    void build(const Texels& texels);
+    template <typename Texels>
+    void set_texels(const Texels& texels);
     void set_means();
     void build_distribution();
 
     /// Row by row with one more texel on every side: of lat-long maps what lies beyond the edge.
     HugePageVector<Rgb> texels_;
-    int width_ = 0, height_ = 0;
+    int width_, height_;
     Layout layout_ = Layout::equal_area;
     /// Of the polar angle at the rows' centres, with a row more at both ends; 1 on equal-area maps.
     std::vector<float> row_sine_;

@@ -6,7 +6,6 @@
 #include <deque>
 #include <memory>
 #include <mutex>
-#include <numeric>
 #include <vector>
 
 #include "core/once.h"
@@ -178,14 +177,20 @@ struct ImageSpectrum::Pyramid {
 };
 
 ImageSpectrum::ImageSpectrum(std::span<const float> luminance, int width, int height, Wrap wrap) {
-    if (luminance.empty()) return;
-    const double mean =
-        std::accumulate(luminance.begin(), luminance.end(), 0.0) / double(luminance.size());
-    // About the mean, because variances are differences of squares.
-    ScalarField field(width, height, wrap != Wrap::clamp, wrap == Wrap::repeat);
-    for (size_t i = 0; i < luminance.size(); ++i) field.values[i] = float(luminance[i] - mean);
+    if (!luminance.empty())
+        *this = {[luminance](size_t i) { return luminance[i]; }, width, height, wrap};
+}
+
+ImageSpectrum::ImageSpectrum(const std::function<float(size_t)>& luminance, int width, int height,
+                             Wrap wrap) {
+    const size_t texels = size_t(width) * size_t(height);
+    double sum = 0;
+    for (size_t i = 0; i < texels; ++i) sum += double(luminance(i));
+    const double mean = sum / double(texels);
     const int factor = (std::max(width, height) + kMaxAnalysedSize - 1) / kMaxAnalysedSize;
-    if (factor > 1) field = box_reduced(field, factor);
+    // About the mean, because variances are differences of squares.
+    ScalarField field = box_reduced([&](size_t i) { return float(luminance(i) - mean); }, width,
+                                    height, wrap != Wrap::clamp, wrap == Wrap::repeat, factor);
 
     const auto pyramid = std::make_shared<Pyramid>();
     Vec2 per_unit{float(width) / float(factor), float(height) / float(factor)};

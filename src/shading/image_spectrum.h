@@ -1,6 +1,7 @@
 /// The local bandwidth of an image, as a texture or an environment map has it around a point.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -36,6 +37,8 @@ class ImageSpectrum {
     ImageSpectrum() = default;
     /// `luminance`: width * height finite linear values, row by row from t = 0 at the first row.
     ImageSpectrum(std::span<const float> luminance, int width, int height, Wrap wrap);
+    /// The same of luminance(i), which is asked for twice: a large image is never there as numbers.
+    ImageSpectrum(const std::function<float(size_t)>& luminance, int width, int height, Wrap wrap);
     /// Covariance (amplitude spectrum) around (s, t), one unit of s and t being the whole image.
     /// Symmetric positive semi-definite and finite everywhere; outside the image, where it is
     /// clamped, that of the border.

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/memory_limit.h"
+
 #include "shading/equal_area.h"
 
 namespace covtrace {
@@ -15,17 +17,25 @@ constexpr float kBrightest = std::numeric_limits<float>::infinity();  // nothing
 
 }  // namespace
 
-LightImage::LightImage(LightTexels image, const Transform& light_to_world)
+LightImage::LightImage(const LightTexels& image, const Transform& light_to_world)
     : world_to_light_(light_to_world.inverse()),
-      width_(image.width),
-      height_(image.height),
-      texels_(std::make_shared<const std::vector<Rgb>>(std::move(image.values))) {}
+      width_(image.width()),
+      height_(image.height()),
+      texels_(std::make_shared<const std::vector<Rgb>>(image.all())) {}
+
+LightImage LightImage::read(const std::filesystem::path& file, LightChannels channels,
+                            const Transform& light_to_world, const SourceLocation& where,
+                            Warnings& warnings) {
+    const LightTexels texels = read_light_texels(file, channels, kBrightest, where, warnings);
+    const MemoryReservation room(texels.size() * sizeof(Rgb),
+                                 "the texels of '" + file.string() + "'", where);
+    return made_of(file, where, [&] { return LightImage(texels, light_to_world); });
+}
 
 LightImage LightImage::goniometric(const std::filesystem::path& file,
                                    const Transform& light_to_world, const SourceLocation& where,
                                    Warnings& warnings) {
-    LightImage light(read_light_texels(file, LightChannels::factors, kBrightest, where, warnings),
-                     light_to_world);
+    LightImage light = read(file, LightChannels::factors, light_to_world, where, warnings);
     if (light.width_ != light.height_)
         throw Error(ErrorKind::scene, where,
                     "image \"" + file.string() + "\" of a goniometric light is " +
@@ -40,8 +50,7 @@ LightImage LightImage::goniometric(const std::filesystem::path& file,
 LightImage LightImage::slide(const std::filesystem::path& file, float fov,
                              const Transform& light_to_world, const SourceLocation& where,
                              Warnings& warnings) {
-    LightImage light(read_light_texels(file, LightChannels::colour, kBrightest, where, warnings),
-                     light_to_world);
+    LightImage light = read(file, LightChannels::colour, light_to_world, where, warnings);
     const float shorter = std::tan(fov * kPi / 360);
     const float aspect = static_cast<float>(light.width_) / static_cast<float>(light.height_);
     light.half_size_ =

@@ -43,7 +43,10 @@ class LightImage {
     SpatialCovariance2 spectrum(const Frame& frame) const;
 
   private:
-    LightImage(LightTexels image, const Transform& light_to_world);
+    static LightImage read(const std::filesystem::path& file, LightChannels channels,
+                           const Transform& light_to_world, const SourceLocation& where,
+                           Warnings& warnings);
+    LightImage(const LightTexels& image, const Transform& light_to_world);
     Rgb texel(Vec2 place) const;
     /// Where the image is looked up, in [0, 1]^2; empty beside a slide.
     std::optional<Vec2> place(Vec3 w) const;

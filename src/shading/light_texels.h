@@ -6,12 +6,22 @@
 
 #include "core/error.h"
 #include "core/vec.h"
+#include "image/raster.h"
 
 namespace covtrace {
 
+/// An image as it was read; its texels are decoded when they are asked for.
 struct LightTexels {
-    int width = 0, height = 0;
-    std::vector<Rgb> values;  ///< linear, row by row from the top; nothing is negative
+    RasterImage raster;
+    ColourSpace space = ColourSpace::srgb;
+    float brightest = 0;
+
+    int width() const { return raster.width; }
+    int height() const { return raster.height; }
+    size_t size() const { return size_t(width()) * size_t(height()); }
+    /// Linear, row by row from the top; nothing is negative.
+    Rgb operator[](size_t texel) const;
+    std::vector<Rgb> all() const;
 };
 
 /// Whether the channels of a light's image make a colour.
@@ -21,8 +31,8 @@ enum class LightChannels {
 };
 
 /// Integers are decoded from sRGB, as in pbrt-v4; values above `brightest` are cut. Throws
-/// Error(scene) at `where` for files that can't be read; warns where a file's colour space is not
-/// known.
+/// Error(scene) at `where` for files that can't be read, Error(limit) for those too large; warns
+/// where a file's colour space is not known.
 LightTexels read_light_texels(const std::filesystem::path& file, LightChannels channels,
                               float brightest, const SourceLocation& where, Warnings& warnings);
 

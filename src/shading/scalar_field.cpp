@@ -99,17 +99,19 @@ Between between(int i, int size, int half_size, bool repeats) {
             ScalarField::wrapped(cell + 1, half_size, repeats), i % 2 == 0 ? 0.75f : 0.25f};
 }
 
-ScalarField box_reduced(const ScalarField& f, int factor) {
-    ScalarField result((f.width + factor - 1) / factor, (f.height + factor - 1) / factor,
-                       f.repeat_x, f.repeat_y);
+ScalarField box_reduced(const std::function<float(size_t)>& cell, int width, int height,
+                        bool repeats_x, bool repeats_y, int factor) {
+    ScalarField result((width + factor - 1) / factor, (height + factor - 1) / factor, repeats_x,
+                       repeats_y);
     for_each_row(result.height, [&](int y) {
-        const int rows = std::min(factor, f.height - y * factor);
+        const int rows = std::min(factor, height - y * factor);
         for (int x = 0; x < result.width; ++x) {
-            const int columns = std::min(factor, f.width - x * factor);
+            const int columns = std::min(factor, width - x * factor);
             double sum = 0;
             for (int j = 0; j < rows; ++j)
                 for (int i = 0; i < columns; ++i)
-                    sum += double(f.row(y * factor + j)[x * factor + i]);
+                    sum += double(
+                        cell(size_t(y * factor + j) * size_t(width) + size_t(x * factor + i)));
             result.row(y)[x] = float(sum / (rows * columns));
         }
     });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace covtrace {
@@ -56,7 +57,9 @@ struct Between {
 };
 /// For the cell i of `size`, of which the halved field has `half_size`.
 Between between(int i, int size, int half_size, bool repeats);
-/// Means over boxes of factor^2 cells; at the right and lower border over those that exist.
-ScalarField box_reduced(const ScalarField& f, int factor);
+/// Means over boxes of factor^2 cells, cell(i) row by row; at the right and lower border over those
+/// that exist.
+ScalarField box_reduced(const std::function<float(size_t)>& cell, int columns, int rows,
+                        bool repeats_x, bool repeats_y, int factor);
 
 }  // namespace covtrace

@@ -171,10 +171,8 @@ ImageSpectrum::Wrap spectrum_wrap(TextureImage::Wrap wrap) {
 }
 
 ImageSpectrum analyse(const TextureImage& image, const ImageNode& node) {
-    std::vector<float> values(size_t(image.width()) * size_t(image.height()));
-    for (size_t i = 0; i < values.size(); ++i)
-        values[i] = luminance(image_value_at(node, image, i));
-    return {values, image.width(), image.height(), spectrum_wrap(image.wrap())};
+    return {[&](size_t i) { return luminance(image_value_at(node, image, i)); }, image.width(),
+            image.height(), spectrum_wrap(image.wrap())};
 }
 
 /// Mean luminance over the unit square of (u, v).
@@ -195,10 +193,8 @@ ImageSpectrum analyse_mixture(const TextureGraph& graph, const MixNode& mix,
                               const ImageNode& amount) {
     const TextureImage& image = graph.images[size_t(amount.image)];
     const float a = mean_luminance(graph, mix.tex1), b = mean_luminance(graph, mix.tex2);
-    std::vector<float> values(size_t(image.width()) * size_t(image.height()));
-    for (size_t i = 0; i < values.size(); ++i)
-        values[i] = a + luminance(image_value_at(amount, image, i)) * (b - a);
-    return {values, image.width(), image.height(), spectrum_wrap(image.wrap())};
+    return {[&](size_t i) { return a + luminance(image_value_at(amount, image, i)) * (b - a); },
+            image.width(), image.height(), spectrum_wrap(image.wrap())};
 }
 
 }  // namespace

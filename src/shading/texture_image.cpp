@@ -23,9 +23,20 @@ float to_linear(float v, TextureImage::Encoding encoding, float gamma) {
 /// Channels to keep; alpha only where it says something.
 size_t kept_channels(const RasterImage& raster) {
     if (raster.channels != 4) return size_t(raster.channels);
-    for (size_t i = 3; i < raster.values.size(); i += 4)
-        if (raster.values[i] != 1) return 4;
+    for (size_t i = 3; i < raster.size(); i += 4)
+        if (raster.value(i) != 1) return 4;
     return 3;
+}
+
+/// Leaves the first `kept` of every `stride` values.
+template <typename Value>
+void drop_channels(std::vector<Value>& values, size_t stride, size_t kept) {
+    if (stride == kept) return;
+    const size_t count = values.size() / stride;
+    for (size_t i = 0; i < count; ++i)
+        for (size_t c = 0; c < kept; ++c) values[i * kept + c] = values[i * stride + c];
+    values.resize(count * kept);
+    values.shrink_to_fit();
 }
 
 /// v limited to [lo, hi]; lo for NaN, so that the result can always become an index.
@@ -44,33 +55,26 @@ float mirrored(float v) {
     return there > 1 ? 2 - there : there;
 }
 
-TextureImage::TextureImage(const RasterImage& raster, Encoding encoding, float gamma, Wrap wrap,
+TextureImage::TextureImage(RasterImage raster, Encoding encoding, float gamma, Wrap wrap,
                            ColourSpace space)
     : channels_(kept_channels(raster)), is_8bit_(raster.is_8bit), wrap_(wrap), space_(space) {
     Level level;
     level.width = raster.width;
     level.height = raster.height;
     level.texels = {float(level.width), float(level.height)};
-    const size_t texels = size_t(level.width) * size_t(level.height);
-    const size_t stride = size_t(raster.channels);
     if (raster.is_8bit) {
         for (size_t i = 0; i < 256; ++i) decode_[i] = to_linear(float(i) / 255, encoding, gamma);
         for (size_t j = 0; j <= kEncodeSteps; ++j)
             encode_from_[j] = uint8_t(
                 std::lower_bound(decode_.begin(), decode_.end() - 1, float(j) / kEncodeSteps) -
                 decode_.begin());
-        level.bytes.resize(texels * channels_);
+        level.bytes = std::move(raster.bytes);
+        drop_channels(level.bytes, size_t(raster.channels), channels_);
     } else {
-        level.floats.resize(texels * channels_);
+        level.floats = std::move(raster.values);
+        drop_channels(level.floats, size_t(raster.channels), channels_);
+        for (float& v : level.floats) v = to_linear(v, encoding, gamma);
     }
-    for (size_t i = 0; i < texels; ++i)
-        for (size_t c = 0; c < channels_; ++c) {
-            const float v = raster.values[i * stride + c];
-            if (raster.is_8bit)
-                level.bytes[i * channels_ + c] = uint8_t(limit(v * 255 + 0.5f, 0, 255));
-            else
-                level.floats[i * channels_ + c] = to_linear(v, encoding, gamma);
-        }
     levels_.push_back(std::move(level));
 }
 

@@ -30,9 +30,10 @@ class TextureImage {
     using Wrap = ImageTexture::Wrap;
     using Filter = ImageTexture::Filter;
 
-    /// Of one level. 8-bit rasters stay 8-bit. `encoding` applies to all channels, alpha included,
-    /// as in pbrt-v4. Colours are taken out of `space`.
-    TextureImage(const RasterImage& raster, Encoding encoding, float gamma, Wrap wrap,
+    /// Of one level, which is the raster's own memory where that can be. 8-bit rasters stay 8-bit.
+    /// `encoding` applies to all channels, alpha included, as in pbrt-v4. Colours are taken out of
+    /// `space`.
+    TextureImage(RasterImage raster, Encoding encoding, float gamma, Wrap wrap,
                  ColourSpace space = ColourSpace::srgb);
 
     /// The texels that make up a value, with weights that sum to 1 less those of black

@@ -5,7 +5,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "core/memory_limit.h"
 #include "core/parallel.h"
 
 namespace covtrace {
@@ -16,39 +18,42 @@ using Encoding = ImageTexture::Encoding;
 
 TextureImage load(const ImageRequest& request, Warnings& warnings) {
     const ImageTexture& t = *request.texture;
-    const RasterImage raster = t.content ? decode_raster(*t.content, t.file, *request.where)
-                                         : read_raster(t.file, *request.where);
+    RasterImage raster = t.content ? decode_raster(*t.content, t.file, *request.where)
+                                   : read_raster(t.file, *request.where);
     // Floating-point files are linear by definition, whatever the scene says, as in pbrt-v4.
     const bool is_encoded = raster.is_8bit || raster.is_16bit;
     const Encoding encoding = is_encoded ? t.encoding.value_or(Encoding::srgb) : Encoding::linear;
     const ColourSpace space = request.is_colour
                                   ? colour_space_of(raster, t.file, *request.where, warnings)
                                   : ColourSpace::srgb;
-    TextureImage image(raster, encoding, t.gamma, t.wrap, space);
+    const size_t bytes = raster.bytes.size() + raster.values.size() * sizeof(float);
+    // All coarser levels together have a third of its texels.
+    const MemoryReservation room(bytes / 3, "the coarser levels of '" + t.file.string() + "'",
+                                 *request.where);
+    TextureImage image(std::move(raster), encoding, t.gamma, t.wrap, space);
     image.build_levels();
     return image;
 }
 
-/// In parallel; of several errors the first in the order of the requests is thrown. Warnings are in
-/// that order.
-std::vector<TextureImage> load_some(std::span<const ImageRequest> requests, Warnings& warnings) {
-    std::vector<std::optional<TextureImage>> loaded(requests.size());
-    std::vector<Warnings> own_warnings(requests.size());
-    std::vector<std::exception_ptr> errors(requests.size());
-    parallel_for(int64_t(requests.size()), [&](int64_t i) {
-        try {
-            loaded[size_t(i)] = load(requests[size_t(i)], own_warnings[size_t(i)]);
-        } catch (...) {
-            errors[size_t(i)] = std::current_exception();
-        }
-    });
-    for (const std::exception_ptr& e : errors)
-        if (e) std::rethrow_exception(e);
-    for (const Warnings& w : own_warnings) warnings.insert(warnings.end(), w.begin(), w.end());
-    std::vector<TextureImage> images;
-    images.reserve(loaded.size());
-    for (auto& image : loaded) images.push_back(std::move(*image));
-    return images;
+struct Loaded {
+    std::optional<TextureImage> image;
+    Warnings warnings;
+    std::exception_ptr error;
+    bool lacked_memory = false;
+};
+
+Loaded try_to_load(const ImageRequest& request) {
+    Loaded loaded;
+    try {
+        loaded.image = made_of(request.texture->file, *request.where,
+                               [&] { return load(request, loaded.warnings); });
+    } catch (const Error& e) {
+        loaded.error = std::current_exception();
+        loaded.lacked_memory = e.kind() == ErrorKind::limit;
+    } catch (...) {
+        loaded.error = std::current_exception();
+    }
+    return loaded;
 }
 
 /// Moves the largest levels of all images to pages, the first of equals, until the rest fits. Done
@@ -92,11 +97,28 @@ LoadedImages load_images(std::span<const ImageRequest> requests, size_t most_byt
     LoadedImages loaded;
     Budget budget(most_bytes);
     size_t bytes = 0;
+    std::vector<Loaded> batch;
     for (size_t first = 0; first < requests.size(); first += kBatch) {
         const size_t count = std::min(kBatch, requests.size() - first);
-        for (TextureImage& image : load_some(requests.subspan(first, count), warnings)) {
-            bytes += image.memory();
-            loaded.images.push_back(std::move(image));
+        batch.clear();
+        batch.resize(count);
+        parallel_for(int64_t(count), [&](int64_t i) {
+            batch[size_t(i)] = try_to_load(requests[first + size_t(i)]);
+        });
+        for (size_t i = 0; i < count; ++i) {
+            // What did not fit beside others may fit alone, after those before went to pages.
+            if (batch[i].lacked_memory) {
+                budget.fit(loaded.images);
+                for (size_t k = i; k < count; ++k) batch[k] = {};
+            }
+            if (!batch[i].image && !batch[i].error) {
+                batch[i] = try_to_load(requests[first + i]);
+                budget.fit(loaded.images);
+            }
+            if (batch[i].error) std::rethrow_exception(batch[i].error);
+            warnings.insert(warnings.end(), batch[i].warnings.begin(), batch[i].warnings.end());
+            bytes += batch[i].image->memory();
+            loaded.images.push_back(*std::exchange(batch[i].image, std::nullopt));
         }
         budget.fit(loaded.images);
     }

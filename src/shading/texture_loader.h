@@ -24,7 +24,8 @@ struct LoadedImages {
 /// together, the largest levels are moved to pages on disk (TexelPages), with a warning; what pages
 /// and the other levels hold is within the bound, down to a page (16 KiB). Primaries of colours
 /// that belong to no known space are a warning, too. Throws Error(scene) for missing and broken
-/// files, of several the first, and Error(io) where the temporary file can't be written.
+/// files, of several the first, Error(limit) where one does not fit into memory even alone, and
+/// Error(io) where the temporary file can't be written.
 LoadedImages load_images(std::span<const ImageRequest> requests, size_t most_bytes,
                          Warnings& warnings);
 

@@ -39,8 +39,9 @@ void TextureImage::move_finest_to(const std::shared_ptr<TexelPages>& pages) {
             if (is_first) level->first_page = page;
             is_first = false;
         }
-    level->bytes = {};
-    level->floats = {};
+    // New ones: an assigned list would leave the old ones' memory.
+    level->bytes = std::vector<uint8_t>();
+    level->floats = std::vector<float>();
     level->pages = pages;
 }
 

@@ -39,9 +39,10 @@ TEST(SharedImages, PngKindsOfTheSuite) {
         EXPECT_EQ(plain.is_8bit, !k.sixteen) << k.name;
         const RasterImage interlaced = read_raster(suite / ("i" + std::string(k.name) + ".png"));
         EXPECT_EQ(plain.values, interlaced.values) << k.name;
+        EXPECT_EQ(plain.bytes, interlaced.bytes) << k.name;
     }
     // A horizontal ramp from black to white in 1-bit grey has only these two values.
-    for (float v : read_raster(suite / "basn0g01.png").values) EXPECT_TRUE(v == 0 || v == 1);
+    for (uint8_t v : read_raster(suite / "basn0g01.png").bytes) EXPECT_TRUE(v == 0 || v == 255);
     const Image alpha = read_image(suite / "basn4a08.png");
     ASSERT_TRUE(alpha.find("Y") && alpha.find("A"));
 }

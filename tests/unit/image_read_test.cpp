@@ -40,7 +40,7 @@ TEST_F(Read, PnmIsDecodedFromSrgbAsImageOnly) {
     const auto f = file("a.ppm", "P6\n# comment\n1 1 255\n" + bytes_of({255, 128, 0}));
     EXPECT_FLOAT_EQ(read_image(f).rgb(0).g, srgb_decode(128 / 255.0f));
     const RasterImage raster = read_raster(f);
-    EXPECT_EQ(raster.values, (std::vector<float>{1, 128 / 255.0f, 0}));
+    EXPECT_EQ(raster.bytes, (std::vector<uint8_t>{255, 128, 0}));
     EXPECT_TRUE(raster.is_8bit);
     const RasterImage grey =
         read_raster(file("b.pgm", "P5 2 1 65535\n" + bytes_of({255, 255, 0, 1})));
@@ -83,26 +83,27 @@ std::string targa_header(int type, int width, int height, int bits, int descript
 
 TEST_F(Read, TargaOrientationsPalettesAndRuns) {
     const std::string pixels = bytes_of({0, 0, 255, 0, 255, 0});  // red, green
-    const std::vector<float> red_green = {1, 0, 0, 0, 1, 0}, green_red = {0, 1, 0, 1, 0, 0};
+    const std::vector<uint8_t> red_green = {255, 0, 0, 0, 255, 0},
+                               green_red = {0, 255, 0, 255, 0, 0};
     const auto raster = [&](const std::string& bytes) { return read_raster(file("a.tga", bytes)); };
-    EXPECT_EQ(raster(targa_header(2, 2, 1, 24, 0x20) + pixels).values, red_green);
-    EXPECT_EQ(raster(targa_header(2, 2, 1, 24, 0x30) + pixels).values, green_red);
-    EXPECT_EQ(raster(targa_header(2, 1, 2, 24, 0x20) + pixels).values, red_green);
-    EXPECT_EQ(raster(targa_header(2, 1, 2, 24, 0) + pixels).values, green_red);
-    EXPECT_EQ(raster(targa_header(10, 2, 1, 24, 0x20) + bytes_of({1}) + pixels).values, red_green);
-    EXPECT_EQ(raster(targa_header(10, 2, 1, 24, 0x20) + bytes_of({129, 0, 0, 255})).values,
-              (std::vector<float>{1, 0, 0, 1, 0, 0}));
-    EXPECT_EQ(raster(targa_header(1, 2, 1, 8, 0x20, 2) + pixels + bytes_of({1, 0})).values,
+    EXPECT_EQ(raster(targa_header(2, 2, 1, 24, 0x20) + pixels).bytes, red_green);
+    EXPECT_EQ(raster(targa_header(2, 2, 1, 24, 0x30) + pixels).bytes, green_red);
+    EXPECT_EQ(raster(targa_header(2, 1, 2, 24, 0x20) + pixels).bytes, red_green);
+    EXPECT_EQ(raster(targa_header(2, 1, 2, 24, 0) + pixels).bytes, green_red);
+    EXPECT_EQ(raster(targa_header(10, 2, 1, 24, 0x20) + bytes_of({1}) + pixels).bytes, red_green);
+    EXPECT_EQ(raster(targa_header(10, 2, 1, 24, 0x20) + bytes_of({129, 0, 0, 255})).bytes,
+              (std::vector<uint8_t>{255, 0, 0, 255, 0, 0}));
+    EXPECT_EQ(raster(targa_header(1, 2, 1, 8, 0x20, 2) + pixels + bytes_of({1, 0})).bytes,
               green_red);
-    EXPECT_EQ(raster(targa_header(3, 2, 1, 8, 0x20) + bytes_of({255, 51})).values,
-              (std::vector<float>{1, 0.2f}));
-    EXPECT_EQ(raster(targa_header(2, 1, 1, 16, 0x20) + bytes_of({0x00, 0x7c})).values,
-              (std::vector<float>{1, 0, 0}));
+    EXPECT_EQ(raster(targa_header(3, 2, 1, 8, 0x20) + bytes_of({255, 51})).bytes,
+              (std::vector<uint8_t>{255, 51}));
+    EXPECT_EQ(raster(targa_header(2, 1, 1, 16, 0x20) + bytes_of({0x00, 0x7c})).bytes,
+              (std::vector<uint8_t>{255, 0, 0}));
     // The fourth byte is alpha only where the descriptor says so.
     const std::string bgra = bytes_of({0, 0, 255, 51});
     EXPECT_EQ(raster(targa_header(2, 1, 1, 32, 0x20) + bgra).channels, 3);
-    EXPECT_EQ(raster(targa_header(2, 1, 1, 32, 0x28) + bgra).values,
-              (std::vector<float>{1, 0, 0, 0.2f}));
+    EXPECT_EQ(raster(targa_header(2, 1, 1, 32, 0x28) + bgra).bytes,
+              (std::vector<uint8_t>{255, 0, 0, 51}));
 }
 
 TEST_F(Read, QoiChunks) {
@@ -112,7 +113,7 @@ TEST_F(Read, QoiChunks) {
         read_raster(file("a.qoi", header + bytes_of({0xfe, 10, 20, 30, 0x40 | 3 << 4 | 2 << 2 | 1,
                                                      0x80 | 36, 9 << 4 | 6, 0xc0 | 1})));
     std::vector<int> values;
-    for (float v : raster.values) values.push_back(int(std::lround(v * 255)));
+    for (const uint8_t v : raster.bytes) values.push_back(v);
     EXPECT_EQ(values,
               (std::vector<int>{10, 20, 30, 11, 20, 29, 16, 24, 31, 16, 24, 31, 16, 24, 31}));
 }
@@ -120,7 +121,7 @@ TEST_F(Read, QoiChunks) {
 TEST_F(Read, Jpeg) {
     const RasterImage raster = read_raster(file("a.jpg", grey_jpeg()));
     EXPECT_EQ(raster.channels, 1);
-    EXPECT_EQ(raster.values, std::vector<float>(64, 128 / 255.0f));
+    EXPECT_EQ(raster.bytes, std::vector<uint8_t>(64, 128));
 }
 
 TEST_F(Read, RasterOfExrTakesTheRootLayerAndRepairs) {

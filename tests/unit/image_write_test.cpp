@@ -162,13 +162,13 @@ TEST(Png, EncodesClampsAndKeepsBytes) {
     // 188 is the sRGB value of half the light, from IEC 61966-2-1.
     const std::vector<int> expected = {0, 255, 188, 0, 255, 255, 0, 0};
     for (size_t i = 0; i < expected.size(); ++i)
-        EXPECT_EQ(int(std::lround(255 * raster.values[3 * i + 1])), expected[i]) << i;
+        EXPECT_EQ(int(raster.bytes[3 * i + 1]), expected[i]) << i;
 
     std::vector<uint8_t> bytes(256 * 3);
     for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = uint8_t(i / 3);
     write_png_rgb8(bytes, 16, 16, file);
     const RasterImage ramp = read_raster(file);
-    for (size_t i = 0; i < bytes.size(); ++i) ASSERT_EQ(ramp.values[i], float(bytes[i]) / 255.0f);
+    for (size_t i = 0; i < bytes.size(); ++i) ASSERT_EQ(ramp.bytes[i], bytes[i]);
     EXPECT_EQ(error_of([&] { write_png_rgb8(bytes, 16, 15, file); }).kind(), ErrorKind::internal);
 }
 

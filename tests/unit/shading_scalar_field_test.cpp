@@ -95,7 +95,8 @@ TEST(ScalarField, HalvesByAFilterOfThreeQuarters) {
 
 TEST(ScalarField, AveragesBoxesAndTheirRemainders) {
     const ScalarField f = ramp(7, 5);
-    const ScalarField r = box_reduced(f, 3);
+    const ScalarField r = box_reduced([&f](size_t i) { return f.values[i]; }, f.width, f.height,
+                                      f.repeat_x, f.repeat_y, 3);
     ASSERT_EQ(r.width, 3);
     ASSERT_EQ(r.height, 2);
     EXPECT_FLOAT_EQ(r.row(0)[0], 2 * 1.5f - 3 * 1.5f);

@@ -20,7 +20,8 @@ TextureImage pair(ImageTexture::Wrap wrap) {
     RasterImage raster{.width = 2,
                        .height = 1,
                        .channels = 4,
-                       .values = {0.2f, 0.4f, 0.6f, 1, 1, 0, 0.8f, 0.5f},
+                       .bytes = {51, 102, 153, 255, 255, 0, 204, 128},
+                       .values = {},
                        .is_8bit = true};
     return {raster, ImageTexture::Encoding::linear, 1, wrap};
 }
@@ -33,7 +34,8 @@ TEST(TextureChannels, AreRead) {
     EXPECT_NEAR(image.value(1, Channel::blue), 0.8f, kStep);
     EXPECT_NEAR(image.value(1, Channel::alpha), 0.5f, kStep);
     EXPECT_NEAR(image.value(1), 0.5f, kStep);  // alpha, as pbrt has it
-    RasterImage grey{.width = 1, .height = 1, .channels = 1, .values = {0.25f}, .is_8bit = false};
+    RasterImage grey{
+        .width = 1, .height = 1, .channels = 1, .bytes = {}, .values = {0.25f}, .is_8bit = false};
     const TextureImage one(grey, ImageTexture::Encoding::linear, 1, ImageTexture::Wrap::repeat);
     EXPECT_EQ(one.value(0, Channel::blue), 0.25f);
     EXPECT_EQ(one.value(0, Channel::alpha), 1);

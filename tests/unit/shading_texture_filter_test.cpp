@@ -5,6 +5,7 @@
 #include "shading/texture.h"
 #include "shading/texture_image.h"
 #include "shading/texture_mapping.h"
+#include "texture_fixtures.h"
 
 namespace covtrace {
 namespace {
@@ -22,7 +23,7 @@ TextureImage image_of(int width, int height, F value, bool is_8bit = false) {
     r.channels = 1;
     r.is_8bit = is_8bit;
     for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) r.values.push_back(value(x, y));
+        for (int x = 0; x < width; ++x) add_value(r, value(x, y));
     TextureImage image(r, TextureImage::Encoding::linear, 1, Wrap::repeat);
     image.build_levels();
     return image;

@@ -24,7 +24,7 @@ RasterImage raster_of(int width, int height, int channels, bool is_8bit) {
     Rng rng(3);
     for (int i = 0; i < width * height * channels; ++i) {
         const float v = rng.next_float();
-        r.values.push_back(is_8bit ? std::floor(v * 255) / 255 : v);
+        add_value(r, is_8bit ? std::floor(v * 255) / 255 : v);
     }
     return r;
 }
@@ -81,7 +81,7 @@ TEST(TextureMemory, CoarserLevelsAreMeansOfFourTexels) {
 TEST(TextureMemory, EightBitColoursThatAreConstantStayExactAtAllLevels) {
     for (int byte = 0; byte < 256; ++byte) {
         RasterImage r = raster_of(4, 2, 1, true);
-        r.values.assign(8, float(byte) / 255);
+        r.bytes.assign(8, uint8_t(byte));
         TextureImage image(r, ImageTexture::Encoding::srgb, 1, ImageTexture::Wrap::repeat);
         image.build_levels();
         for (size_t level = 1; level < image.level_count(); ++level)

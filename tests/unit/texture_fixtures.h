@@ -9,9 +9,18 @@
 #include <string>
 #include <vector>
 
+#include "image/raster.h"
 #include "scene/scene_description.h"
 
 namespace covtrace {
+
+/// Appends a value in [0, 1], rounded to what the raster holds.
+inline void add_value(RasterImage& raster, float value) {
+    if (raster.is_8bit)
+        raster.bytes.push_back(uint8_t(value * 255 + 0.5f));
+    else
+        raster.values.push_back(value);
+}
 
 /// Collects textures; `add` returns the id.
 struct TextureScene {
