@@ -208,6 +208,9 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
         progress.done(result.statistics.samples_per_pixel, monitor.elapsed(), monitor.error());
     warn_of_rejected(result.statistics);
     warn_of_replaced(result.image);
+    if (result.is_below_least)
+        say("warning: --time: the time was over before every pixel had the samples that an image "
+            "needs\n");
     if (!a.quiet) warn_of_failed_denoiser(result.image);
     if (!a.quiet)
         say("{}: {:.4g} samples per pixel in {:.1f} s\n", is_shard ? a.film.film : output.string(),

@@ -139,6 +139,12 @@ double RenderJob::tracing_end() const {
     return options.seconds ? *options.seconds - reserve_ - keeping_seconds() : kInfinity;
 }
 
+double RenderJob::latest_end() const {
+    if (!options.seconds) return kInfinity;
+    const double slack = std::max(0.2, 0.04 * *options.seconds);
+    return (state.stage == Stage::rounds ? tracing_end() : *options.seconds) + slack;
+}
+
 double RenderJob::keeping_seconds() const {
     constexpr double kBytesPerSecond = 1.5e8;
     if (!keeping.keep) return 0;
@@ -192,7 +198,7 @@ void RenderJob::note_memory() {
 }
 
 SceneOccluders::SceneOccluders(RenderJob& job) {
-    const auto cancelled = [&job] { return job.monitor.cancelled(); };
+    const auto cancelled = [&job] { return job.out_of_time(); };
     if (job.options.occlusion == Occlusion::grid) {
         const PhaseTimer timer(job.monitor, job.phase("grid"));
         grid_.emplace(job.scene.geometry,

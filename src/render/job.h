@@ -65,6 +65,11 @@ class RenderJob {
     double plan_round(double round_end) const;
     /// When tracing must end for the rest to be done in time; infinite without a budget of time.
     double tracing_end() const;
+    /// When a round ends that takes longer than was planned, or that was not planned by the clock:
+    /// the first ones, which an image needs.
+    double latest_end() const;
+    /// Whether what takes no samples has to end now.
+    bool out_of_time() const { return monitor.cancelled() || monitor.elapsed() >= latest_end(); }
     /// The most samples of any pixel in a round up to an average of `target`.
     double most_samples(double target) const;
     /// Begins a round: how many samples each pixel, of each film, has at its end. False, and no

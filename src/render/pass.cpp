@@ -52,7 +52,8 @@ template <typename Take>
 PassStatistics take_samples(const PassContext& context, const Film& film,
                             std::span<const uint32_t> counts, const Monitor& monitor,
                             const PassProgress& progress, const Take& take) {
-    constexpr uint32_t kBetweenLooks = 64;  // samples between looks at the clock
+    // Between looks at the clock: a sample is one ray at least, and thousands beyond interfaces.
+    constexpr uint64_t kRaysBetweenLooks = 256;
     const Tiles tiles(film.bounds);
     std::vector<PassStatistics> per_tile(static_cast<size_t>(tiles.count()));
     const double own_tiles = double(tiles.count(context.shard));
@@ -63,13 +64,17 @@ PassStatistics take_samples(const PassContext& context, const Film& film,
         PassStatistics& statistics = per_tile[static_cast<size_t>(tile)];
         const Stopwatch watch(statistics.seconds);
         const PixelBounds b = tiles.bounds(tile);
+        uint64_t look_at = 0;
         for (int y = b.y0; y < b.y1; ++y)
             for (int x = b.x0; x < b.x1; ++x) {
                 const size_t i = film.index(x, y);
                 while (film.pixels[i].count < counts[i]) {
                     if (stop()) return;
                     take(i, x, y, statistics);
-                    if (statistics.samples % kBetweenLooks == 1) stop.took_samples();
+                    const uint64_t rays = statistics.rays.total();
+                    if (rays < look_at) continue;
+                    stop.took_samples();
+                    look_at = rays + kRaysBetweenLooks;
                 }
             }
         progress(double(++done) / own_tiles);

@@ -24,9 +24,8 @@ class Checkpoints {
     Checkpoints& operator=(const Checkpoints&) = delete;
 
     bool out_of_time() const { return job_.monitor.elapsed() >= deadline_; }
-    void round_ended() {
-        if (!std::isfinite(deadline_)) return;
-        deadline_ = kInfinity;
+    void round_begins() {
+        deadline_ = job_.latest_end();
         schedule(0);
     }
 
@@ -101,6 +100,14 @@ void trace(RenderJob& job, const Rounds& rounds) {
     s.seconds_spp += s.mean_count() - before;
 }
 
+/// Whether the first rounds did not come to their end, or a pixel has no sample.
+bool lacks_samples(const RenderState& s) {
+    if (s.stage != Stage::rounds) return true;
+    const auto& pixels = s.films[0].pixels;
+    return s.films.size() == 1 && std::any_of(pixels.begin(), pixels.end(),
+                                              [](const FilmPixel& p) { return p.count == 0; });
+}
+
 }  // namespace
 
 double round_end(double taken) {
@@ -121,15 +128,16 @@ void trace_rounds(RenderJob& job, const Rounds& rounds) {
             s.complete = !rounds.plan();
             begin_shard(job);
             if (s.complete) break;
+            checkpoints.round_begins();
         }
         trace(job, rounds);
         if (!s.reached(job.keeping.shard)) {
             s.complete = for_any(checkpoints.out_of_time());
+            job.result.is_below_least = s.complete && lacks_samples(s);
             if (for_any(job.monitor.cancelled()) || s.complete) break;
             checkpoints.keep(KeepReason::checkpoint);
             continue;
         }
-        checkpoints.round_ended();
         job.note_memory();
         if (!job.keeping.shard.is_all()) break;
         const bool of_rounds = s.stage == Stage::rounds;

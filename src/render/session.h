@@ -30,6 +30,8 @@ struct RenderResult {
     Image image;
     RenderStatistics statistics;
     bool complete = false;  ///< false: cancelled, or not all samples taken
+    /// The time was over before all pixels had the samples that an image is made of.
+    bool is_below_least = false;
 };
 
 /// Applies resolution, crop, shutter, focus and f-number. Throws Error(usage) for a crop outside
