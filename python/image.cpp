@@ -1,4 +1,4 @@
-#include "image/image.h"
+#include "image/write_image.h"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -134,15 +134,10 @@ void bind_image(py::module_& module) {
                         restore_layer_names(image);
                         return std::make_shared<Planes>(std::move(image));
                     })
-        .def("write_exr",
+        .def("write",
              [](const Planes& p, const std::filesystem::path& file) {
                  const Unlocked unlocked;
-                 write_exr(p.image(), file, ThreadLimit(0).threads());
-             })
-        .def("write_png",
-             [](const Planes& p, const std::filesystem::path& file) {
-                 const Unlocked unlocked;
-                 write_png(p.image(), file);
+                 write_image(p.image(), file, ThreadLimit(0).threads());
              })
         .def("channels", &channel_views)
         .def("layers", &layer_views)

@@ -125,14 +125,10 @@ class Image:
         return self._planes.display_window
 
     def write(self, file: str | os.PathLike[str]) -> None:
-        """Writes all layers (.exr) or the sRGB picture, cut at white (.png); beside and renamed."""
-        file = os.fspath(file)
-        if file.endswith(".png"):
-            self._planes.write_png(file)
-        elif file.endswith(".exr"):
-            self._planes.write_exr(file)
-        else:
-            raise ValueError(f"{file!r}: expected a name that ends in .exr or .png")
+        """Writes what the name says: all layers (.exr, or no ending), the sRGB picture, cut at white
+        (.png), or the linear colour (.pfm, .hdr); beside and renamed. `UsageError`, a `ValueError`,
+        for other endings."""
+        self._planes.write(os.fspath(file))
 
     def describe(self) -> str:
         """Several lines for people: windows, channels with their ranges, metadata."""

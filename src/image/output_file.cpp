@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/file_kind.h"
 
 namespace covtrace {
 
@@ -92,6 +93,11 @@ OutputFile::OutputFile(std::filesystem::path target)
     std::filesystem::path opened = final_;
     int flags = O_WRONLY | O_CLOEXEC;
     const int open_already = open_descriptor(final_);
+    // Opening a pipe waits until somebody reads it, which may be never.
+    if (exists && open_already < 0 && (S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode)))
+        throw Error(ErrorKind::usage, "cannot write '" + target_.string() + "': it is " +
+                                          irregular_kind(final_) +
+                                          "; expected a regular file, or /dev/stdout");
     if (open_already < 0 && (!exists || S_ISREG(status.st_mode))) {
         temporary_ = final_;
         temporary_ += part_suffix();

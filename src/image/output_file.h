@@ -10,10 +10,11 @@ namespace covtrace {
 
 /// Until commit() returns, an older file of the target's name stays as it was; without commit() the
 /// destructor removes what was written. A symbolic link is followed, so that it still is one
-/// afterwards. A target that exists and is no regular file (/dev/null, a pipe) and what /dev/stdout
-/// or /dev/fd/N is open on are streams: they get all of it in commit(), after what is there.
+/// afterwards. A device (/dev/null) and what /dev/stdout or /dev/fd/N is open on are streams: they
+/// get all of it in commit(), after what is there.
 ///
-/// All functions throw Error(io) that names the target and the reason of the system.
+/// All functions throw Error(io) that names the target and the reason of the system; the
+/// constructor Error(usage) for named pipes and sockets, which may never be read.
 class OutputFile {
   public:
     /// The file that a target stands for: where it is a symbolic link, what that leads to.

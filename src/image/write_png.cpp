@@ -6,6 +6,7 @@
 #include "image/color_encoding.h"
 #include "image/image.h"
 #include "image/output_file.h"
+#include "image/root_colour.h"
 
 namespace covtrace {
 
@@ -82,16 +83,11 @@ void write_png_rgb8(std::span<const uint8_t> rgb, int width, int height,
 }
 
 void write_png(const Image& image, const std::filesystem::path& file) {
-    const Channel* grey = image.find("Y");
-    const Channel* channels[3] = {image.find("R"), image.find("G"), image.find("B")};
-    const bool colored = channels[0] && channels[1] && channels[2];
-    if (!colored && !grey)
-        throw Error(ErrorKind::internal,
-                    "cannot write '" + file.string() + "': the image has no channels R, G, B");
+    const RootColour colour = root_colour(image, file);
     std::vector<uint8_t> rgb(image.pixel_count() * 3);
     for (size_t i = 0; i < image.pixel_count(); ++i)
         for (size_t c = 0; c < 3; ++c)
-            rgb[i * 3 + c] = srgb_encode_8bit((colored ? channels[c] : grey)->values[i]);
+            rgb[i * 3 + c] = srgb_encode_8bit(colour.channels[c]->values[i]);
     write_png_rgb8(rgb, image.width(), image.height(), file);
 }
 

@@ -1,0 +1,14 @@
+/// Names that stand for something else than a file with bytes of its own.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace covtrace {
+
+/// What stands in the place of a regular file, links followed: "a folder", "a named pipe", "a
+/// socket", "a device". Empty for regular files and where there is nothing. Opening a pipe would
+/// wait for its other side, so readers and writers ask before.
+std::string irregular_kind(const std::filesystem::path& file);
+
+}  // namespace covtrace
