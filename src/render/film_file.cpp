@@ -12,6 +12,7 @@
 #include <memory>
 #include <system_error>
 
+#include "core/file_kind.h"
 #include "core/parallel.h"
 #include "image/output_file.h"
 #include "render/film_arrays.h"
@@ -102,8 +103,11 @@ class FilmReader {
         if (magic != kMagic) fail("this is no film file");
         get(&format, sizeof format);
         if (format < kOldestFilmFormat || format > kFilmFormat)
-            fail("a film of format " + std::to_string(format) + "; expected " +
-                 std::to_string(kOldestFilmFormat) + " or " + std::to_string(kFilmFormat));
+            throw FilmOfOtherVersion(name_ + ": a film of format " + std::to_string(format) +
+                                     ", of another version of covtrace; this version, " +
+                                     program_version() + ", reads the formats " +
+                                     std::to_string(kOldestFilmFormat) + " and " +
+                                     std::to_string(kFilmFormat));
         get(&header_size, sizeof header_size);
         get(&header_hash, sizeof header_hash);
         if (header_size > kMostHeader) fail("the header is damaged");
@@ -142,7 +146,11 @@ class FilmReader {
         try {
             return parse_film_header(header, size_t(std::min(memory, plausible)), format);
         } catch (const Error& e) {
-            throw Error(e.kind(), name_ + ": " + e.what());
+            const std::string version = version_of_film(header), own = program_version();
+            if (e.kind() != ErrorKind::scene || version.empty() || version == own)
+                throw Error(e.kind(), name_ + ": " + e.what());
+            throw FilmOfOtherVersion(name_ + ": a film of version " + version +
+                                     ", which this version, " + own + ", cannot read: " + e.what());
         }
     }
 
@@ -232,6 +240,7 @@ void write_film(const RenderState& state, const fs::path& file) {
 
 bool is_film(const fs::path& file) {
     std::array<char, 8> magic{};
+    if (!irregular_kind(file).empty()) return false;
     std::ifstream in(file, std::ios::binary);
     return in.read(magic.data(), magic.size()) && magic == kMagic;
 }
@@ -248,6 +257,8 @@ RenderState read_film(const fs::path& file) {
     const auto fail = [&file](const std::string& why) {
         throw Error(ErrorKind::scene, file.string() + ": " + why);
     };
+    const std::string kind = irregular_kind(file);
+    if (!kind.empty()) fail("it is " + kind + "; expected a film file");
     std::ifstream in(file, std::ios::binary);
     if (!in) fail(std::generic_category().message(errno));
     std::error_code error;
@@ -266,6 +277,8 @@ FoundFilm find_film(const fs::path& file) {
     }
     try {
         return {read_film(file), {}};
+    } catch (const FilmOfOtherVersion&) {
+        throw;  // it is whole: whoever has that version goes on from it
     } catch (const Error& e) {
         if (e.kind() != ErrorKind::scene || !has_earlier) throw;
         return {read_film(earlier), e.what()};

@@ -22,16 +22,23 @@ void write_film(const RenderState& state, const std::filesystem::path& file);
 /// Whether a file begins as a film does. False where it can't be read.
 bool is_film(const std::filesystem::path& file);
 
-/// Throws Error(scene), whose message begins with the file's name, for what is no film, is damaged
-/// or of another format; Error(limit) for one that this machine's memory can't hold. Whatever the
-/// file says, nothing is allocated before its length makes it plausible.
+/// Error(scene) for a film that is whole, but that another version of the program wrote. The
+/// message says which one, and what this one reads.
+class FilmOfOtherVersion : public Error {
+  public:
+    explicit FilmOfOtherVersion(const std::string& message) : Error(ErrorKind::scene, message) {}
+};
+
+/// Throws Error(scene), whose message begins with the file's name, for what is no film or is
+/// damaged, FilmOfOtherVersion, Error(limit) for one that this machine's memory can't hold.
+/// Whatever the file says, nothing is allocated before its length makes it plausible.
 RenderState read_film(const std::filesystem::path& file);
 
 /// The same from `size` bytes of a stream; `name`: for messages.
 RenderState read_film(std::istream& in, uint64_t size, const std::string& name);
 
 /// The film, or the earlier one where it is damaged or missing: `damage` then says why. None where
-/// there is neither.
+/// there is neither. Throws FilmOfOtherVersion.
 struct FoundFilm {
     std::optional<RenderState> state;
     std::string damage;  ///< empty: the film itself was read

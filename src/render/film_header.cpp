@@ -209,6 +209,14 @@ std::string film_header(const RenderState& s) {
     return j.dump(1);
 }
 
+std::string version_of_film(const std::string& header) {
+    const json j = json::parse(header, nullptr, false);
+    if (!j.is_object() || !j.contains("identity")) return {};
+    const json& identity = j["identity"];
+    if (!identity.is_object() || !identity.contains("version")) return {};
+    return identity["version"].is_string() ? identity["version"].get<std::string>() : "";
+}
+
 RenderState parse_film_header(const std::string& text, size_t most_bytes, uint32_t format) {
     try {
         return parse(json::parse(text), most_bytes, format);

@@ -192,7 +192,7 @@ void finish_round(RenderState& state) {
 RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& options) {
     const SceneDescription& d = scene.description;
     RenderIdentity id{
-        {"version", std::string(kVersion) + " (" + std::string(kCommit) + ")"},
+        {"version", program_version()},
         {"scene", scene_hash(scene)},
         {"instruction set", scene.geometry.isa()},
         {"--method", std::string(name_of(options.method))},
@@ -226,6 +226,10 @@ RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& op
         id["--even-counts"] = options.even_counts ? "given" : "not given";
     }
     return id;
+}
+
+std::string program_version() {
+    return std::string(kVersion) + " (" + std::string(kCommit) + ")";
 }
 
 std::optional<std::string> difference(const RenderIdentity& is, const RenderIdentity& expected) {
