@@ -7,10 +7,12 @@
 
 namespace covtrace {
 
-/// True for the names of scenes: .pbrt, .pbrt.gz, .gltf, .glb.
+/// True for the names of scenes: .pbrt, .pbrt.gz, .gltf, .glb, and those of formats that other
+/// programs read (.blend, .usd, .xml …), for which read_scene_file says what to do.
 bool is_scene_file(const std::filesystem::path& file);
 
-/// glTF 2.0 where the name ends in .gltf or .glb, pbrt-v4 otherwise. Errors: as both readers.
+/// glTF 2.0 where the name ends in .gltf or .glb, pbrt-v4 otherwise. Errors: as both readers, and
+/// Error(scene) for formats that are known to be others.
 SceneDescription read_scene_file(const std::filesystem::path& file,
                                  const ReadOptions& options = {});
 
