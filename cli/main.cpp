@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <iostream>
 
 #include "cli/commands.h"
 #include "cli/failure.h"
@@ -23,6 +24,14 @@ void fill_standard_streams() {
     int descriptor = 0;
     while (descriptor >= 0 && descriptor <= STDERR_FILENO) descriptor = ::open("/dev/null", O_RDWR);
     if (descriptor >= 0) ::close(descriptor);
+}
+
+/// Throws Error(io) where what standard output got has not arrived.
+void require_written_output() {
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout.flush())
+        throw covtrace::Error(
+            covtrace::ErrorKind::io,
+            std::string("cannot write to standard output: ") + std::strerror(errno));
 }
 
 /// Why the command line is wrong; CLI11 itself does not name a command that it does not know.
@@ -62,16 +71,17 @@ int run(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
-        if (e.get_exit_code() == 0) return app.exit(e);
+        if (e.get_exit_code() == 0) {
+            app.exit(e);  // prints the help or the version
+            require_written_output();
+            return 0;
+        }
         covtrace::cli::say("covtrace: {}\nRun 'covtrace --help' or 'covtrace COMMAND --help'.\n",
                            explain(app, e));
         return covtrace::cli::kUsageExitCode;
     }
     const int code = invocation.action();
-    if (std::fflush(stdout) != 0 || std::ferror(stdout))
-        throw covtrace::Error(
-            covtrace::ErrorKind::io,
-            std::string("cannot write to standard output: ") + std::strerror(errno));
+    require_written_output();
     return code;
 }
 
