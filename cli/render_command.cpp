@@ -108,6 +108,14 @@ void deliver(RenderResult& result, const RenderArguments& a, const fs::path& out
     if (!a.png.empty()) write_png(result.image, a.png);
 }
 
+/// Once: the viewer may come later, and the render needs none.
+void warn_of_absent_viewer(TevClient& viewer, const RenderArguments& a, ProgressLine& progress) {
+    const std::string why = viewer.take_failure();
+    if (why.empty() || a.quiet) return;
+    progress.clear();
+    say("warning: --tev: the viewer tev is not there at '{}': {}\n", a.tev, why);
+}
+
 /// All but the first of several processes only trace.
 void be_silent(RenderArguments& a) {
     a.quiet = true;
@@ -188,6 +196,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
         monitor.watcher = [&](Image image) {
             keep_layers(image, a.tev_layers);
             viewer->show(std::move(image));
+            warn_of_absent_viewer(*viewer, a, progress);
         };
     }
     RenderResult result = render(scene, a.options, monitor, std::move(keeping));
@@ -216,7 +225,10 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
         say("{}: {:.4g} samples per pixel in {:.1f} s\n", is_shard ? a.film.film : output.string(),
             result.statistics.samples_per_pixel, monitor.elapsed());
     // A viewer that still takes the last image may; all else is done.
-    if (viewer) viewer->finish(std::max(0.25, 0.01 * monitor.elapsed()));
+    if (viewer) {
+        viewer->finish(std::max(0.25, 0.01 * monitor.elapsed()));
+        warn_of_absent_viewer(*viewer, a, progress);
+    }
     films.finish();
     return result.complete || (is_shard && !monitor.cancelled()) ? 0 : 6;
 }

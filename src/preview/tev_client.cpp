@@ -12,6 +12,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -27,7 +28,8 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kPoll{50};  // how soon a request to stop is seen
 constexpr milliseconds kConnectTimeout{2000};
-constexpr milliseconds kRetry{500};        // between attempts to connect
+constexpr milliseconds kRetry{500};  // between attempts to connect
+constexpr const char* kNoAnswer = "no answer yet";
 constexpr size_t kMessageBytes = 1 << 20;  // about: rows are sent in bands
 
 }  // namespace
@@ -40,6 +42,8 @@ struct TevClient::State {
     std::optional<Image> waiting;               ///< the newest image that is not being sent
     std::optional<Clock::time_point> deadline;  ///< set by finish()
     bool ended = false;                         ///< the thread has
+    bool connected = false;                     ///< has been, once
+    std::optional<std::string> failure;         ///< of the first attempt; empty once it is told
 
     // Of the thread alone.
     int socket = -1;
@@ -55,7 +59,12 @@ struct TevClient::State {
     bool send_image(const Image& image);
     bool send_all(const std::string& bytes);
     bool connect();
-    bool connect_to(const addrinfo& address);
+    /// Empty, or why it cannot be done.
+    std::string connect_to(const addrinfo& address);
+    void fails(const std::string& why) {
+        const std::lock_guard lock(mutex);
+        if (!failure && !connected) failure = why;
+    }
     void disconnect();
     bool peer_is_gone() const;
     /// Whether finish() gives no more time; `stalled`: the viewer has not moved for a while.
@@ -130,20 +139,31 @@ bool TevClient::State::connect() {
     hints.ai_family = AF_UNSPEC;
     hints.ai_socktype = SOCK_STREAM;
     addrinfo* found = nullptr;
-    if (::getaddrinfo(host.c_str(), port.c_str(), &hints, &found) != 0) return false;
+    if (const int error = ::getaddrinfo(host.c_str(), port.c_str(), &hints, &found)) {
+        fails(::gai_strerror(error));
+        return false;
+    }
     const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> addresses(found, ::freeaddrinfo);
-    for (const addrinfo* a = found; a; a = a->ai_next)
-        if (connect_to(*a)) return true;
+    std::string why;
+    for (const addrinfo* a = found; a; a = a->ai_next) {
+        why = connect_to(*a);
+        if (!why.empty()) continue;
+        const std::lock_guard lock(mutex);
+        connected = true;
+        return true;
+    }
+    fails(why);
     return false;
 }
 
-bool TevClient::State::connect_to(const addrinfo& address) {
+std::string TevClient::State::connect_to(const addrinfo& address) {
     disconnect();
     socket = ::socket(address.ai_family, address.ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK,
                       address.ai_protocol);
-    if (socket < 0) return false;
-    if (::connect(socket, address.ai_addr, address.ai_addrlen) == 0) return true;
-    if (errno != EINPROGRESS) return false;
+    const auto reason = [](int error) { return std::generic_category().message(error); };
+    if (socket < 0) return reason(errno);
+    if (::connect(socket, address.ai_addr, address.ai_addrlen) == 0) return {};
+    if (errno != EINPROGRESS) return reason(errno);
     const auto give_up = Clock::now() + kConnectTimeout;
     while (Clock::now() < give_up) {
         pollfd waiting_for{socket, POLLOUT, 0};
@@ -151,11 +171,12 @@ bool TevClient::State::connect_to(const addrinfo& address) {
         if (ready > 0) {
             int error = 0;
             socklen_t size = sizeof error;
-            return ::getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0;
+            if (::getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) != 0) error = errno;
+            return error == 0 ? std::string() : reason(error);
         }
-        if (out_of_time(true)) return false;
+        if (out_of_time(true)) break;
     }
-    return false;
+    return kNoAnswer;
 }
 
 void TevClient::State::disconnect() {
@@ -195,6 +216,13 @@ void TevClient::finish(double seconds) {
                                               std::chrono::duration<double>(seconds));
     state_->changed.notify_all();
     state_->changed.wait_until(lock, *state_->deadline + 2 * kPoll, [&] { return state_->ended; });
+}
+
+std::string TevClient::take_failure() {
+    const std::lock_guard lock(state_->mutex);
+    // A look-up of the name may still be under way.
+    if (state_->deadline && !state_->connected && !state_->failure) state_->failure = kNoAnswer;
+    return state_->failure ? std::exchange(*state_->failure, {}) : std::string();
 }
 
 }  // namespace covtrace

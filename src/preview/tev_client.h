@@ -26,6 +26,9 @@ class TevClient {
     /// Waits for the last image to be sent as long as the viewer keeps taking bytes, but at most
     /// `seconds`; nothing is sent afterwards.
     void finish(double seconds);
+    /// Why the viewer was not there when it was first looked for, or, after finish(), why it never
+    /// was. Told once, in words; empty before, afterwards, and where it was there.
+    std::string take_failure();
 
   private:
     struct State;

@@ -12,7 +12,7 @@ import time
 import unittest
 
 import exr
-from support import DONE, PROGRAM, TINY, USAGE, CliTest
+from support import DONE, PROGRAM, TINY, USAGE, CliTest, warnings_of
 
 CREATE, UPDATE = 4, 6
 SIZE = ["--resolution", "40x30"]
@@ -146,6 +146,33 @@ class Preview(CliTest):
             for address in (f"127.0.0.1:{port}", "no-such-host.invalid:1"):
                 path = self.rendered(*SIZE, "--reproducible", "--tev", address, output="shown.exr", timeout=20)
                 self.assertEqual(path.read_bytes(), plain)
+
+    def test_a_viewer_that_is_absent_is_told_once(self):
+        """Also of renders so short, and of names so slow to look up, that nothing is known before the end."""
+        with socket.socket() as closed:
+            closed.bind(("127.0.0.1", 0))
+            port = closed.getsockname()[1]
+            for address, why in (
+                (f"127.0.0.1:{port}", "Connection refused"),
+                ("no-such-host.invalid:1", ""),
+                ("no-such-host.invalid", ""),  # the port is tev's own
+            ):
+                for spp in ("1", "64"):
+                    with self.subTest(address=address, spp=spp):
+                        result = self.render(TINY, *SIZE, "--spp", spp, "--method", "uniform", "--tev", address, timeout=30)
+                        self.assertEqual(result.code, DONE, result)
+                        [(_, text)] = warnings_of(result)
+                        for fragment in ("--tev", "tev is not there", f"'{address}'", why):
+                            self.assertIn(fragment, text)
+                        self.assertNotRegex(text, r": $")
+            result = self.render(TINY, "--spp", "1", "--quiet", "--tev", f"127.0.0.1:{port}")
+            self.assertEqual((result.code, result.stderr), (DONE, ""))
+
+    def test_a_viewer_that_is_there_is_no_warning(self):
+        peer = Peer().start()
+        result = self.render(TINY, *SIZE, "--spp", "4", "--tev", peer.address)
+        self.finished(peer)
+        self.assertEqual((result.code, warnings_of(result)), (DONE, []), result)
 
     def test_a_viewer_that_comes_late(self):
         peer = Peer()
