@@ -25,7 +25,8 @@ void add_film_options(CLI::App* c, FilmArguments& a) {
         ->option_text("K/N");
 }
 
-void check(const FilmArguments& a) {
+void check(FilmArguments& a) {
+    if (!a.shard && is_same_file(a.film, a.checkpoint)) a.film = a.checkpoint;
     if (a.shard && a.film.empty())
         throw Error(ErrorKind::usage, "--shard: expected --film FILE for the shard's pixels");
     if (a.shard && is_same_file(a.film, a.checkpoint))

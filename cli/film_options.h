@@ -20,7 +20,8 @@ struct FilmArguments {
 /// Adds them to the command; `arguments` must outlive the parser.
 void add_film_options(CLI::App* command, FilmArguments& arguments);
 
-/// Throws Error(usage) for options that need others.
-void check(const FilmArguments& arguments);
+/// Throws Error(usage) for options that need others. Where `film` and `checkpoint` are two
+/// spellings of one name they are the same afterwards.
+void check(FilmArguments& arguments);
 
 }  // namespace covtrace::cli

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -8,10 +10,11 @@
 #include "cli/layer_selection.h"
 #include "cli/message.h"
 #include "cli/options.h"
+#include "cli/picture_name.h"
 #include "cli/pixel_warnings.h"
 #include "cli/same_file.h"
 #include "core/parallel.h"
-#include "image/image.h"
+#include "image/write_image.h"
 #include "render/develop.h"
 #include "render/film_file.h"
 #include "render/merge.h"
@@ -28,18 +31,32 @@ struct MergeArguments {
     bool quiet = false;
 };
 
+/// Of a film that is not complete.
+std::string missing_part(const RenderState& state) {
+    const auto missing = state.shards - int(state.present.size());
+    if (state.shards == 1) return "its render has not come to its end";
+    if (missing == 0) return "its shards have not come to the end of their round";
+    return fmt::format("{} of its {} shards {} missing, and black", missing, state.shards,
+                       missing == 1 ? "is" : "are");
+}
+
 int merge_films(const MergeArguments& a) {
     const ThreadLimit threads(0);
     if (a.output.empty() && a.film.empty() && a.png.empty())
         throw Error(ErrorKind::usage, "merge: expected --output OUT.exr or --film FILE");
-    // The joined film may take the place of one of its parts.
-    require_distinct({{"--output", a.output}, {"--png", a.png}}, {a.films.begin(), a.films.end()});
-    require_distinct({{"--output", a.output}, {"--film", a.film}, {"--png", a.png}}, {});
+    require_image_name("--output", a.output, a.layers);
+    require_picture_name("--png", a.png);
+    std::vector<NamedOutput> outputs{{"--output", a.output}, {"--png", a.png}};
+    add_film(outputs, "--film", a.film);
+    std::vector<std::filesystem::path> inputs(a.films.begin(), a.films.end());
+    if (!a.denoiser.library.empty()) inputs.emplace_back(a.denoiser.library);
+    require_distinct(outputs, inputs);
     FilmMerge merge;
     for (const std::string& file : a.films) merge.add(file, read_film(file));
     const RenderState state = std::move(merge).result();
     if (!a.film.empty()) write_film(state, a.film);
-    if (!a.output.empty() || !a.png.empty()) {
+    const bool makes_image = !a.output.empty() || !a.png.empty();
+    if (makes_image) {
         const FoundDenoiser denoiser =
             state.method == Method::hybrid ? find(a.denoiser) : FoundDenoiser{};
         Image image = develop(state, denoiser.denoiser.get());
@@ -49,7 +66,7 @@ int merge_films(const MergeArguments& a) {
         }
         warn_of_replaced(image);
         keep_layers(image, a.layers);
-        if (!a.output.empty()) write_exr(image, a.output, threads.threads());
+        if (!a.output.empty()) write_image(image, a.output, threads.threads());
         if (!a.png.empty()) write_png(image, a.png);
     }
     if (!a.quiet)
@@ -58,7 +75,9 @@ int merge_films(const MergeArguments& a) {
                                    std::to_string(state.shards) + " shards, "
                              : "",
             state.mean_count(), state.complete ? "complete" : "not complete");
-    return 0;
+    if (state.complete || !makes_image) return 0;
+    say("warning: the image is not complete: {}\n", missing_part(state));
+    return 6;
 }
 
 }  // namespace

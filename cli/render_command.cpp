@@ -20,16 +20,15 @@
 #include "cli/mpi_module.h"
 #include "cli/pixel_warnings.h"
 #include "cli/render_options.h"
+#include "cli/render_outputs.h"
 #include "cli/render_statistics.h"
-#include "cli/same_file.h"
 #include "cli/sample_description.h"
 #include "core/memory_limit.h"
 #include "core/parallel.h"
 #include "image/image.h"
 #include "image/output_file.h"
+#include "image/write_image.h"
 #include "preview/tev_client.h"
-#include "render/film_file.h"
-#include "render/image_hash.h"
 #include "render/scene_file.h"
 #include "render/session.h"
 
@@ -38,26 +37,6 @@ namespace covtrace::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path output_path(const RenderArguments& a, const SceneDescription& scene) {
-    if (!a.output.empty()) return a.output;
-    fs::path name = scene.film.filename.empty() ? scene.name + ".exr" : scene.film.filename;
-    // Every output is an EXR: a film that asks for another format keeps its name.
-    if (name.extension() != ".exr") name.replace_extension(".exr");
-    return name;
-}
-
-/// Before hours of rendering, not after them.
-void require_writable(const fs::path& file) {
-    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-    std::error_code error;
-    if (!fs::is_directory(folder, error))
-        throw Error(ErrorKind::usage,
-                    "the folder of the output '" + file.string() + "' does not exist");
-    // A pipe would end where the probe closes it.
-    if (fs::is_fifo(file, error)) return;
-    const OutputFile probe(file);
-}
 
 /// What the image says of its making, beside what its film knows.
 void describe_making(Image& image, const Monitor& monitor, const std::string& command) {
@@ -103,8 +82,10 @@ void deliver(RenderResult& result, const RenderArguments& a, const fs::path& out
              const Monitor& monitor, const std::string& command, int threads) {
     keep_layers(result.image, a.layers);
     if (!a.reproducible) describe_making(result.image, monitor, command);
-    rename_layers(result.image, a.layer_names);
-    write_exr(result.image, output, threads);
+    const bool has_layers = written_format(output) == WrittenFormat::exr;
+    if (has_layers) rename_layers(result.image, a.layer_names);
+    write_image(result.image, output, threads);
+    if (has_layers) restore_layer_names(result.image);
     if (!a.png.empty()) write_png(result.image, a.png);
 }
 
@@ -153,20 +134,8 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     const double loaded = monitor.elapsed();
     apply(a.overrides, description);
     const bool is_shard = a.film.shard.has_value();
-    const fs::path output = is_shard ? fs::path() : output_path(a, description);
-    std::vector<NamedOutput> outputs{
-        {"--output", output}, {"--png", a.png}, {"--stats", a.stats}, {"--film", a.film.film}};
-    std::vector<fs::path> inputs = image_files(description);
-    inputs.push_back(a.scene);
-    require_distinct(outputs, inputs);
-    // The final film may be that of the checkpoint.
-    outputs.back() = {"--checkpoint", a.film.checkpoint};
-    require_distinct(outputs, inputs);
-    for (const fs::path& file : {output, fs::path(a.png), fs::path(a.stats), fs::path(a.film.film),
-                                 is_shard ? fs::path() : fs::path(a.film.checkpoint)})
-        if (!file.empty()) require_writable(file);
-    for (const fs::path& file : {output, fs::path(a.png), fs::path(a.stats)})
-        if (!file.empty()) remove_leftovers(file);
+    const fs::path output = is_shard ? fs::path() : image_path(a, description);
+    check_outputs(a, output, description);
     const FoundDenoiser denoiser = denoiser_of(a, is_first);
     a.options.denoiser = denoiser.denoiser;
     FilmFiles films(a.film, [&progress] { progress.clear(); });

@@ -1,40 +1,105 @@
 #include "cli/same_file.h"
 
+#include <sys/stat.h>
+
+#include <cctype>
+#include <map>
+#include <optional>
 #include <system_error>
+#include <utility>
 
 #include "core/error.h"
 #include "image/output_file.h"
+#include "render/film_file.h"
 
 namespace covtrace::cli {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+fs::path folder_of(const fs::path& file) {
+    return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// ASCII letters in lower case, other characters left out: equal for all names that a file system
+/// may take for one.
+std::string folded(const fs::path& name) {
+    std::string text;
+    for (const char c : name.string())
+        if (static_cast<unsigned char>(c) < 0x80)
+            text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+/// Whether the file system takes both names for one, by trying it: where a file of the first name
+/// is made, is there one of the second? No rule that is written down here would know all systems
+/// that ignore case or accents.
+bool are_one_name(const fs::path& first, const fs::path& second) {
+    if (first.filename() == second.filename()) return true;
+    if (folded(first.filename()) != folded(second.filename())) return false;
+    try {
+        const OutputFile probe(first);
+        fs::path other = second;
+        other += OutputFile::part_suffix();
+        std::error_code error;
+        return fs::exists(other, error);
+    } catch (const Error&) {
+        return false;  // nothing can be written there: whoever tries says why
+    }
+}
+
+using FileNumber = std::pair<dev_t, ino_t>;
+
+/// What all names of a regular file have in common; none where there is no such file.
+std::optional<FileNumber> number_of(const fs::path& file) {
+    struct stat status {};
+    if (file.empty() || ::stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode))
+        return std::nullopt;
+    return FileNumber(status.st_dev, status.st_ino);
+}
+
+}  // namespace
+
 bool is_same_file(const fs::path& a, const fs::path& b) {
     if (a.empty() || b.empty()) return false;
-    const fs::path first = OutputFile::resolved(a), second = OutputFile::resolved(b);
     std::error_code error;
-    for (const fs::path& file : {first, second})
-        if (fs::exists(file, error) && !fs::is_regular_file(file, error)) return false;
-    if (fs::equivalent(first, second, error)) return true;
-    const fs::path whole = fs::weakly_canonical(first, error);
-    return !error && whole == fs::weakly_canonical(second, error) && !error;
+    if (fs::exists(a, error) || fs::exists(b, error)) {
+        const auto first = number_of(a);
+        return first && first == number_of(b);
+    }
+    const fs::path first = OutputFile::resolved(a), second = OutputFile::resolved(b);
+    // Neither is there yet: they are one where their folders and their names in them are.
+    return fs::equivalent(folder_of(first), folder_of(second), error) &&
+           are_one_name(first, second);
 }
 
 void require_distinct(const std::vector<NamedOutput>& outputs,
                       const std::vector<fs::path>& inputs) {
+    // A scene may read a hundred thousand files: each is looked at once.
+    std::map<FileNumber, const fs::path*> read;
+    for (const fs::path& input : inputs)
+        if (const auto number = number_of(input)) read.emplace(*number, &input);
     for (size_t k = 0; k < outputs.size(); ++k) {
         const auto& [option, file] = outputs[k];
-        for (const fs::path& input : inputs)
-            if (is_same_file(file, input))
-                throw Error(ErrorKind::usage, option + ": '" + file.string() +
-                                                  "' would take the place of the input '" +
-                                                  input.string() + "'");
+        const auto number = number_of(file);
+        const auto input = number ? read.find(*number) : read.end();
+        if (input != read.end())
+            throw Error(ErrorKind::usage, option + ": '" + file.string() +
+                                              "' would take the place of '" +
+                                              input->second->string() + "', which is read");
         for (size_t j = 0; j < k; ++j)
             if (is_same_file(file, outputs[j].file))
                 throw Error(ErrorKind::usage, option + ": '" + file.string() + "' is the file of " +
                                                   outputs[j].option +
                                                   " already; expected another one");
     }
+}
+
+void add_film(std::vector<NamedOutput>& outputs, const std::string& option, const fs::path& film) {
+    if (film.empty()) return;
+    outputs.push_back({option, film});
+    outputs.push_back({option + ", the earlier film", earlier_film(film)});
 }
 
 }  // namespace covtrace::cli

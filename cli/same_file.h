@@ -7,8 +7,9 @@
 
 namespace covtrace::cli {
 
-/// Whether both names, links resolved, are one regular file, there already or not. Devices, pipes
-/// and empty names are none.
+/// Whether both names are one regular file, there already or not, however they are spelled:
+/// relative or not, through links of any kind, in another case where the file system ignores it.
+/// Devices, pipes and empty names are none.
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// What an output is for ("--png") and its name; empty: not asked for.
@@ -21,5 +22,9 @@ struct NamedOutput {
 /// an input.
 void require_distinct(const std::vector<NamedOutput>& outputs,
                       const std::vector<std::filesystem::path>& inputs);
+
+/// Adds a film and the name under which the film that it replaces lives on.
+void add_film(std::vector<NamedOutput>& outputs, const std::string& option,
+              const std::filesystem::path& film);
 
 }  // namespace covtrace::cli

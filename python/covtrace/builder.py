@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import re
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
 import numpy
 from numpy.typing import ArrayLike
 
+from .errors import UsageError
 from .image import Image
 
 _NAME = re.compile(r"[^\x00-\x1f\"\\]+")
@@ -202,9 +204,12 @@ class SceneBuilder:
         return "\n".join([*times, *self._view, "WorldBegin", *self._world, ""])
 
     def write(self, folder: str | os.PathLike[str], name: str = "scene.pbrt") -> str:
-        """Writes the scene with its meshes and textures into a folder; returns the scene's path."""
+        """Writes the scene with its meshes and textures into a folder; returns the scene's path.
+        `UsageError` where that would take the place of a file that the scene reads."""
         os.makedirs(folder, exist_ok=True)
         text = self.text()
+        own = [file for file, *_ in (*self._meshes, *self._textures)]
+        _require_distinct(folder, name, own, text)
         for file, names, columns, triangles in self._meshes:
             _write_ply(os.path.join(folder, file), names, columns, triangles)
         for file, image in self._textures:
@@ -213,6 +218,28 @@ class SceneBuilder:
         with open(path, "w", encoding="utf-8") as out:
             out.write(text)
         return path
+
+
+def _require_distinct(folder, name, own, text):
+    """Raises UsageError where a file that is written is another one, or one that the scene names."""
+    def same(a, b):
+        a, b = os.path.join(folder, a), os.path.join(folder, b)
+        if os.path.exists(a) and os.path.exists(b):
+            return os.path.samefile(a, b)
+        return os.path.realpath(a) == os.path.realpath(b)
+
+    # The text names each of its own files once; once more, and the scene reads one of that name.
+    named = Counter(re.findall(r'"(?:string|spectrum) \w+" "([^"\n]*)"', text))
+    read = [value for value in (named - Counter(own)) if os.path.isfile(os.path.join(folder, value))]
+    for target in (name, *own):
+        for file in read:
+            if same(target, file):
+                raise UsageError(f"{os.path.join(folder, target)!r} would take the place of {file!r}, "
+                                 "which the scene reads; expected another folder or name")
+    for file in own:
+        if same(name, file):
+            raise UsageError(f"name: {name!r} is the file of a mesh or texture of the scene already; "
+                             "expected another one, such as scene.pbrt")
 
 
 def _array(values, width, what, length=None):

@@ -178,6 +178,7 @@ Document read_document(const fs::path& file, const std::vector<fs::path>& search
         check_json(bytes, document.name);
     parse(document, bytes, files);
     document.content_hash = files.content_hash();
+    for (const fs::path& read : files.files()) document.files.insert(read);
     document.bytes = bytes.size();
     for (const tinygltf::Buffer& buffer : document.model.buffers)
         document.bytes += buffer.data.size();
@@ -198,13 +199,14 @@ fs::path find_file(const Document& document, const std::string& uri, const std::
         if (!fs::is_regular_file(candidate, ignored)) continue;
         const bool inside = std::any_of(document.roots.begin(), document.roots.end(),
                                         [&](const fs::path& r) { return is_inside(candidate, r); });
-        if (inside) return candidate;
+        if (inside) return *document.files.insert(candidate).first;
         escapes = true;
     }
     if (escapes)
         document.refuse(place, "file " + path_in_quotes(name) +
                                    " lies outside the scene's folder; expected a file in it or in "
                                    "a folder given as search path");
+    for (const fs::path& root : document.roots) require_regular(root / name, document.place(place));
     document.refuse(place,
                     "file " + path_in_quotes(name) + " not found; looked in " +
                         path_in_quotes(document.folder.empty() ? "." : document.folder.string()) +

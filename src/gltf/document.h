@@ -4,6 +4,7 @@
 #include <tiny_gltf.h>
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,8 +22,9 @@ struct Document {
     std::vector<std::filesystem::path> roots;  ///< folders that files may be read from
     tinygltf::Model model;
     uint64_t content_hash = 0;
-    uint64_t bytes = 0;      ///< of the file and its buffers
-    mutable Budget numbers;  ///< that accessors may still be read as
+    uint64_t bytes = 0;                             ///< of the file and its buffers
+    mutable Budget numbers;                         ///< that accessors may still be read as
+    mutable std::set<std::filesystem::path> files;  ///< that were read or found
 
     /// A place in the document, such as "meshes[2].primitives[0]".
     SourceLocation place(const std::string& path) const;

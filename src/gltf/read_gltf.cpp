@@ -203,6 +203,7 @@ SceneDescription read(const std::filesystem::path& file, const ReadOptions& opti
         add_default_lights(document, scene.camera.camera_to_world.start(), scene, log);
     scene.warnings = log.take();
     scene.content_hash = document.content_hash;
+    scene.files = {document.files.begin(), document.files.end()};
     return scene;
 }
 

@@ -23,6 +23,7 @@ SceneDescription read(std::string text, const std::string& name, SceneFiles& fil
     builder.finish(tokens.next().where());
     scene.warnings = log.take();
     scene.content_hash = files.content_hash();
+    scene.files = files.files();
     return scene;
 }
 

@@ -363,6 +363,9 @@ struct SceneDescription {
     /// What the file asks for and covtrace replaces or ignores, in file order.
     Warnings warnings;
     uint64_t content_hash = 0;  ///< of all bytes read for the description: scene files and meshes
+    /// All files that were read for it or that it names: scenes, meshes, spectra, lenses, buffers,
+    /// images. Each once, by name.
+    std::vector<std::filesystem::path> files;
 };
 
 }  // namespace covtrace

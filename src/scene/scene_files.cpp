@@ -10,6 +10,7 @@
 #include <optional>
 #include <system_error>
 
+#include "core/file_kind.h"
 #include "core/hash.h"
 #include "scene/names.h"
 #include "scene/warning_log.h"
@@ -95,6 +96,13 @@ std::string read_compressed(const fs::path& file, const SourceLocation& where) {
 
 }  // namespace
 
+std::vector<fs::path> SceneFiles::roots() const {
+    std::vector<fs::path> roots{folder_};
+    roots.insert(roots.end(), search_paths_.begin(), search_paths_.end());
+    roots.emplace_back();
+    return roots;
+}
+
 std::optional<fs::path> SceneFiles::find_optional(const std::string& name,
                                                   const SourceLocation& where) {
     if (name.empty()) throw Error(ErrorKind::scene, where, "the file name is empty");
@@ -102,25 +110,29 @@ std::optional<fs::path> SceneFiles::find_optional(const std::string& name,
         throw Error(ErrorKind::scene, where, "the file name holds a zero byte");
     std::string plain = name;
     std::replace(plain.begin(), plain.end(), '\\', '/');
-    std::vector<fs::path> roots{folder_};
-    roots.insert(roots.end(), search_paths_.begin(), search_paths_.end());
-    roots.emplace_back();
-    for (const fs::path& root : roots) {
+    for (const fs::path& root : roots()) {
         const fs::path p = root / name;
-        if (!is_file(p)) continue;
-        warn_outside(name, p, where);
-        return p.lexically_normal();
+        if (is_file(p)) return found(name, p, where);
     }
-    for (const fs::path& root : roots) {
+    for (const fs::path& root : roots()) {
         const auto p = find_without_case(fs::path(plain).is_absolute() ? "/" : root,
                                          fs::path(plain).relative_path());
         if (!p) continue;
-        warn_outside(plain, *p, where);
+        const fs::path file = found(plain, *p, where);
         log_.add(where, "file " + path_in_quotes(name) + " does not exist as written; " +
-                            path_in_quotes(p->lexically_normal().string()) + " is used");
-        return p->lexically_normal();
+                            path_in_quotes(file.string()) + " is used");
+        return file;
     }
+    for (const fs::path& root : roots()) require_regular(root / name, where);
     return std::nullopt;
+}
+
+fs::path SceneFiles::found(const std::string& name, const fs::path& file,
+                           const SourceLocation& where) {
+    warn_outside(name, file, where);
+    fs::path plain = file.lexically_normal();
+    files_.insert(plain);
+    return plain;
 }
 
 void SceneFiles::warn_outside(const std::string& name, const fs::path& file,
@@ -154,6 +166,7 @@ std::string SceneFiles::read(const fs::path& file, const SourceLocation& where) 
     // Files that include two others each, and so on, would keep the reader busy for ever.
     constexpr uint64_t kMostReadAgain = uint64_t(1) << 30, kCostOfReading = 1 << 12;
     std::string text = read_whole_file(file, where);
+    files_.insert(file.lexically_normal());
     if (!read_.insert(file).second) read_again_ += std::max<uint64_t>(text.size(), kCostOfReading);
     if (read_again_ > kMostReadAgain)
         throw Error(ErrorKind::limit, where,
@@ -167,7 +180,15 @@ void SceneFiles::add_to_hash(uint64_t hash_of_a_file) {
     hash_ = hash_combine(hash_, hash_of_a_file);
 }
 
+void require_regular(const fs::path& file, const SourceLocation& where) {
+    const std::string kind = irregular_kind(file);
+    if (!kind.empty())
+        throw Error(ErrorKind::scene, where,
+                    path_in_quotes(file.string()) + " is " + kind + "; expected a regular file");
+}
+
 std::string read_whole_file(const fs::path& file, const SourceLocation& where) {
+    require_regular(file, where);
     if (file.extension() == ".gz") return read_compressed(file, where);
     std::error_code failed;
     if (!fs::exists(file, failed))

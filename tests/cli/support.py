@@ -86,10 +86,10 @@ class CliTest(unittest.TestCase):
         path.write_bytes(content.encode() if isinstance(content, str) else content)
         return path
 
-    def run_program(self, *arguments, before=None, timeout=60, **options):
+    def run_program(self, *arguments, before=None, timeout=60, folder=None, **options):
         done = subprocess.run(
             [PROGRAM, *map(str, arguments)],
-            cwd=self.folder,
+            cwd=folder or self.folder,
             stdin=subprocess.DEVNULL,
             capture_output=not options,
             timeout=SLOWER * timeout,

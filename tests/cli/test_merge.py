@@ -7,7 +7,7 @@ import unittest
 
 import exr
 from films import METHODS, FilmTest
-from support import DONE, USAGE
+from support import DONE, INTERRUPTED, USAGE
 
 SHARDS = 4
 
@@ -68,7 +68,9 @@ class Merge(FilmTest):
                         films.add((self.folder / "joined.film").read_bytes())
                     self.merge([*parts[:2]], "--film", "ab.film")
                     self.merge([*parts[2:]], "--film", "cd.film")
-                    self.merge(["cd.film", "ab.film"], "--film", "all.film", "-o", "all.exr")
+                    result = self.run_program("merge", "cd.film", "ab.film", "--film", "all.film", "-o", "all.exr")
+                    is_last = "; complete" in self.assert_sound("all.film")
+                    self.assertEqual(result.code, DONE if is_last else INTERRUPTED, result)
                     films.add((self.folder / "all.film").read_bytes())
                     self.assertEqual(len(films), 1)
                 self.run_render("sky", method, "--spp", "8", output="whole.exr")
@@ -77,8 +79,10 @@ class Merge(FilmTest):
     def test_a_missing_shard_leaves_a_hole(self):
         self.shard(1, "plain", "uniform", "--spp", "2")
         self.shard(3, "plain", "uniform", "--spp", "2")
-        result = self.merge(["part-3.film", "part-1.film"], "-o", "half.exr")
+        result = self.run_program("merge", "part-3.film", "part-1.film", "-o", "half.exr")
+        self.assertEqual(result.code, INTERRUPTED, result)
         self.assertIn("2 of 4 shards", result.stderr)
+        self.assertIn("warning: the image is not complete: 2 of its 4 shards are missing", result.stderr)
         result = self.run_program("info", "half.exr")
         self.assertRegex(result.stdout, r"complete = 0")
         self.run_render("plain", "uniform", "--spp", "2", output="whole.exr")
@@ -88,6 +92,25 @@ class Merge(FilmTest):
                 x, y = i % 70, i // 70
                 there = (x // 16 + y // 16) % SHARDS in (0, 2)
                 self.assertEqual(value, whole.pixels[name][i] if there else 0, (name, x, y))
+
+    def test_an_image_that_is_not_complete(self):
+        """Exit code 6, as of a render that was interrupted; a film that is joined step by step is nothing of the kind."""
+        for k in (1, 2, 3):
+            self.shard(k, "plain", "hybrid", "--spp", "8", n=3)
+        parts = [f"part-{k}.film" for k in (1, 2, 3)]
+        for films, arguments, why in (
+            (parts[:2], ["-o", "a.exr"], "1 of its 3 shards is missing"),
+            (parts[:1], ["--png", "a.png", "--quiet"], "2 of its 3 shards are missing"),
+            (parts, ["-o", "a.exr", "--film", "all.film"], "not come to its end"),  # of its first round alone
+        ):
+            with self.subTest(films=films, arguments=arguments):
+                result = self.run_program("merge", *films, *arguments)
+                self.assertEqual(result.code, INTERRUPTED, result)
+                self.assertIn(why, result.stderr)
+                self.assertTrue((self.folder / arguments[1]).exists())
+        self.merge(parts[:2], "--film", "two.film")
+        self.run_render("plain", "hybrid", "--spp", "8", "--film", "whole.film")
+        self.assertNotIn("not complete", self.merge(["whole.film"], "-o", "whole.exr").stderr)
 
     def test_a_shard_goes_on_from_its_own_film(self):
         self.shard(1, "plain", "uniform", "--spp", "8")
@@ -100,7 +123,8 @@ class Merge(FilmTest):
         self.assertEqual(result.code, DONE, result)
         self.assertEqual(json.loads((self.folder / "stats.json").read_text())["radiance"]["samples"], 0)
         for film in ("first", "part-1"):
-            self.merge([f"{film}.film"], "-o", f"{film}.exr")
+            result = self.run_program("merge", f"{film}.film", "-o", f"{film}.exr")
+            self.assertEqual(result.code, INTERRUPTED, result)  # of one shard
         self.assert_identical("first.exr", "part-1.exr")
 
     def test_a_shard_that_began_with_another_budget(self):

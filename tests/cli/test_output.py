@@ -53,33 +53,6 @@ class Names(CliTest):
         self.assertEqual(names, ["out.exr", "out.png", "scene.pbrt", "stats.json"])
 
 
-class TakenNames(CliTest):
-    """What one command reads or writes under two names would be lost."""
-
-    def test_the_scene(self):
-        for option in ("-o", "--png", "--stats", "--film", "--checkpoint"):
-            with self.subTest(option=option):
-                result = self.render(TINY, *LONG, option, "./scene.pbrt", output=None, timeout=10)
-                self.assert_fails(result, USAGE, "scene.pbrt")
-                self.assertEqual((self.folder / "scene.pbrt").read_text(), TINY)
-
-    def test_an_image_that_the_scene_shows(self):
-        self.rendered("--resolution", "8x8", output="film.exr")
-        before = (self.folder / "film.exr").read_bytes()
-        sky = TINY.replace("WorldBegin", 'WorldBegin LightSource "infinite" "string filename" "film.exr"', 1)
-        self.assertNotEqual(sky, TINY)
-        self.assert_fails(self.render(sky, output=None), USAGE, "film.exr")
-        self.assertEqual((self.folder / "film.exr").read_bytes(), before)
-
-    def test_two_outputs(self):
-        for option in ("--png", "--stats", "--film", "--checkpoint"):
-            with self.subTest(option=option):
-                result = self.render(TINY, *LONG, option, "out.exr", timeout=10)
-                self.assert_fails(result, USAGE, "out.exr")
-        self.assertEqual(self.render(TINY, "--film", "a.film", "--checkpoint", "a.film").code, DONE)
-        self.assertEqual(self.render(TINY, "--stats", "/dev/null", output="/dev/null").code, DONE)
-
-
 class CannotBeWritten(CliTest):
     """Found before the render, since LONG would not end."""
 
@@ -88,14 +61,6 @@ class CannotBeWritten(CliTest):
             with self.subTest(option=option):
                 result = self.render(TINY, *LONG, option, "nowhere/file", output=None, timeout=10)
                 self.assert_fails(result, USAGE, "nowhere/file")
-
-    def test_statistics_go_into_a_named_pipe(self):
-        os.mkfifo(self.folder / "stats")
-        with open(self.folder / "read", "wb") as read:
-            reader = subprocess.Popen(["cat", self.folder / "stats"], stdout=read)
-            self.rendered("--stats", "stats")
-            self.assertEqual(reader.wait(timeout=30), 0)
-        self.assertIn("seconds_total", json.loads((self.folder / "read").read_text()))
 
     def test_pipes_get_image_and_statistics(self):
         self.write("scene.pbrt", TINY)

@@ -1,0 +1,20 @@
+/// What the name of an image says about its format.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "cli/layer_selection.h"
+
+namespace covtrace::cli {
+
+/// Throws Error(usage), whose message begins with `option`, for a name that says none of the
+/// formats that are written, or one that cannot hold layers that were asked for by name. Empty
+/// names pass.
+void require_image_name(const std::string& option, const std::filesystem::path& file,
+                        const LayerSelection& layers);
+
+/// The same for a name that says another format than PNG; one without an ending passes.
+void require_picture_name(const std::string& option, const std::filesystem::path& file);
+
+}  // namespace covtrace::cli

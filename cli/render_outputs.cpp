@@ -1,0 +1,80 @@
+#include "cli/render_outputs.h"
+
+#include <algorithm>
+#include <system_error>
+#include <vector>
+
+#include "cli/picture_name.h"
+#include "cli/same_file.h"
+#include "core/error.h"
+#include "image/output_file.h"
+#include "image/write_image.h"
+#include "render/film_file.h"
+
+namespace covtrace::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Links followed, as far as there are files.
+bool is_in_working_folder(const fs::path& file) {
+    std::error_code error;
+    const fs::path here = fs::canonical(".", error);
+    const fs::path place =
+        fs::weakly_canonical(fs::absolute(OutputFile::resolved(file), error), error);
+    return !error &&
+           std::mismatch(here.begin(), here.end(), place.begin(), place.end()).first == here.end();
+}
+
+void require_writable(const fs::path& file) {
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    std::error_code error;
+    if (!fs::is_directory(folder, error))
+        throw Error(ErrorKind::usage,
+                    "the folder of the output '" + file.string() + "' does not exist");
+    const OutputFile probe(file);
+}
+
+}  // namespace
+
+fs::path image_path(const RenderArguments& a, SceneDescription& scene) {
+    if (!a.output.empty()) return a.output;
+    const std::string otherwise = scene.name + ".exr";
+    if (scene.film.filename.empty()) return otherwise;
+    fs::path name = scene.film.filename;
+    const fs::path last = name.filename();
+    const bool names_file = !last.empty() && last != "." && last != "..";
+    // A film that asks for another format keeps its name, and all layers.
+    if (names_file && name.extension() != ".exr") name.replace_extension(".exr");
+    if (names_file && is_in_working_folder(name)) return name;
+    const bool may_be_here = names_file && is_in_working_folder(name.filename());
+    const fs::path here = may_be_here ? name.filename() : fs::path(otherwise);
+    scene.warnings.push_back(
+        {scene.film.where, "the film's file '" + scene.film.filename + "' is " +
+                               (names_file ? "outside of the working folder" : "a folder") + "; '" +
+                               here.string() + "' takes its place (--output writes anywhere)"});
+    return here;
+}
+
+void check_outputs(const RenderArguments& a, const fs::path& image, const SceneDescription& scene) {
+    if (!image.empty()) require_image_name("--output", image, a.layers);
+    require_picture_name("--png", a.png);
+    std::vector<fs::path> inputs = scene.files;
+    inputs.push_back(a.scene);
+    if (!a.denoiser.library.empty()) inputs.push_back(a.denoiser.library);
+    std::vector<NamedOutput> outputs{{"--output", image}, {"--png", a.png}, {"--stats", a.stats}};
+    add_film(outputs, "--checkpoint", a.film.checkpoint);
+    // The final film may be that of the checkpoint.
+    if (a.film.film != a.film.checkpoint) add_film(outputs, "--film", a.film.film);
+    require_distinct(outputs, inputs);
+    // A shard only reads the checkpoint.
+    const fs::path checkpoint = a.film.shard ? fs::path() : fs::path(a.film.checkpoint);
+    for (const fs::path& file :
+         {image, fs::path(a.png), fs::path(a.stats), fs::path(a.film.film), checkpoint})
+        if (!file.empty()) require_writable(file);
+    for (const fs::path& file : {image, fs::path(a.png), fs::path(a.stats)})
+        if (!file.empty()) remove_leftovers(file);
+}
+
+}  // namespace covtrace::cli
