@@ -8,7 +8,6 @@
 #include "cli/same_file.h"
 #include "core/error.h"
 #include "image/output_file.h"
-#include "image/write_image.h"
 #include "render/film_file.h"
 
 namespace covtrace::cli {

@@ -2,9 +2,11 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cctype>
 #include <map>
 #include <optional>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -22,14 +24,15 @@ fs::path folder_of(const fs::path& file) {
     return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// ASCII letters in lower case, other characters left out: equal for all names that a file system
-/// may take for one.
-std::string folded(const fs::path& name) {
-    std::string text;
-    for (const char c : name.string())
-        if (static_cast<unsigned char>(c) < 0x80)
-            text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
+/// Whether some file system may take both for one: the same but for capitals, or with letters
+/// beyond ASCII, which have several spellings.
+bool are_alike(const std::string& a, const std::string& b) {
+    const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
+    if (!std::all_of(a.begin(), a.end(), is_ascii) || !std::all_of(b.begin(), b.end(), is_ascii))
+        return true;
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
+        return std::tolower(x) == std::tolower(y);
+    });
 }
 
 /// Whether the file system takes both names for one, by trying it: where a file of the first name
@@ -37,7 +40,7 @@ std::string folded(const fs::path& name) {
 /// that ignore case or accents.
 bool are_one_name(const fs::path& first, const fs::path& second) {
     if (first.filename() == second.filename()) return true;
-    if (folded(first.filename()) != folded(second.filename())) return false;
+    if (!are_alike(first.filename().string(), second.filename().string())) return false;
     try {
         const OutputFile probe(first);
         fs::path other = second;

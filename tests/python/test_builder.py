@@ -1,5 +1,7 @@
 """covtrace.SceneBuilder: what it builds moves, and what it can't build is refused."""
 
+import pathlib
+import tempfile
 import unittest
 
 import numpy
@@ -64,6 +66,31 @@ class Builder(unittest.TestCase):
             scene.material('x" "float roughness" 3', "diffuse")
         with self.assertRaises(ValueError):
             scene.text()  # no camera
+
+    def test_what_the_scene_reads_is_not_written_over(self):
+        scene = covtrace.SceneBuilder()
+        scene.camera(eye=(0, 0, -5), target=(0, 0, 0), resolution=(4, 4))
+        scene.texture("own", numpy.ones((2, 2)))
+        scene.light("infinite", filename="sky.exr")
+        with tempfile.TemporaryDirectory() as folder:
+            sky = pathlib.Path(folder, "sky.exr")
+            covtrace.Image.from_arrays(numpy.ones((2, 2, 3))).write(sky)
+            before = sky.read_bytes()
+            for name in ("sky.exr", "./sky.exr", str(sky)):
+                with self.subTest(name=name), self.assertRaisesRegex(covtrace.UsageError, "sky.exr"):
+                    scene.write(folder, name)
+            pathlib.Path(folder, "texture-0.exr").symlink_to("sky.exr")
+            with self.assertRaisesRegex(covtrace.UsageError, "texture-0.exr.*sky.exr"):
+                scene.write(folder)
+            pathlib.Path(folder, "texture-0.exr").unlink()
+            self.assertEqual(sky.read_bytes(), before)
+            with self.assertRaisesRegex(covtrace.UsageError, "texture-0.exr"):
+                scene.write(folder, "./texture-0.exr")
+            for _ in range(2):  # over its own files
+                scene.write(folder)
+            scene.light("infinite", filename="texture-0.exr")
+            with self.assertRaisesRegex(covtrace.UsageError, "texture-0.exr"):
+                scene.write(folder)
 
 
 if __name__ == "__main__":
