@@ -1,4 +1,4 @@
-/// What the name of an image says about its format.
+/// Names of images, which say their format.
 #pragma once
 
 #include <filesystem>

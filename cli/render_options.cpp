@@ -10,8 +10,7 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
     c->add_option("SCENE", a.scene, "the scene: a pbrt-v4 or glTF 2.0 file")
         ->required()
         ->option_text(" ");
-    c->add_option("-o,--output", a.output,
-                  "the image: .exr .png .pfm .hdr (default: film's)")
+    c->add_option("-o,--output", a.output, "the image: .exr .png .pfm .hdr (default: film's)")
         ->check(not_empty())
         ->option_text("FILE");
     add_choice<Method>(c, "--method", a.options.method,

@@ -54,7 +54,7 @@ bool are_one_name(const fs::path& first, const fs::path& second) {
 
 using FileNumber = std::pair<dev_t, ino_t>;
 
-/// What all names of a regular file have in common; none where there is no such file.
+/// The number that all names of a regular file share; none where there is no such file.
 std::optional<FileNumber> number_of(const fs::path& file) {
     struct stat status {};
     if (file.empty() || ::stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode))

@@ -16,7 +16,7 @@ enum class WrittenFormat { exr, png, pfm, hdr };
 /// as of /dev/stdout. None for any other ending.
 std::optional<WrittenFormat> written_format(const std::filesystem::path& file);
 
-/// What a message says of a name with another ending, after the name.
+/// The end of a message about a name with another ending, after the name.
 inline constexpr const char* kExpectedImageName =
     "names no format that is written; expected a name that ends in .exr (OpenEXR, with layers), "
     ".png, .pfm or .hdr (the colour alone)";

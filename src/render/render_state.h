@@ -97,7 +97,7 @@ FilmParts film_parts(Method method);
 /// next stage.
 void finish_round(RenderState& state);
 
-/// Of this program, with its commit: what films keep as their "version".
+/// Version and commit of this program: what films keep as their "version".
 std::string program_version();
 
 /// What must agree between a film and a render that is to go on with it.

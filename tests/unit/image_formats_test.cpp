@@ -74,7 +74,7 @@ TEST(Pfm, KeepsEveryBitAndNothingElse) {
     }
 }
 
-// Of all widths: below 8 and above 32767 rows have no run lengths; repeated pixels make runs of
+// In all widths: below 8 and above 32767 rows have no run lengths; repeated pixels make runs of
 // all lengths, single ones the bytes between them.
 TEST(Hdr, IsAsCloseAsItsMantissas) {
     TemporaryDirectory directory;
