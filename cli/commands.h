@@ -8,7 +8,7 @@
 
 namespace covtrace::cli {
 
-/// The chosen command; returns the exit code of the contract.
+/// The chosen command; returns the exit code (docs/manual.md).
 using Action = std::function<int()>;
 
 struct Invocation {

@@ -45,7 +45,7 @@ struct Comparison {
 
 /// Filters under a lens beside those without one, `closed`. A lens adds r²/(4 c²) to the filter's
 /// covariance, r the radius of the circle of confusion: the spectrum S seen through it is
-/// (S^-1 + pi² r² I)^-1, SPEC section 4 with the disc's window.
+/// (S^-1 + pi² r² I)^-1, preintegrate.hpp with the disc's window.
 Comparison compare(const LensBoard& board, std::array<int, 2> size, const Forced& closed,
                    const Forced& open) {
     Comparison c;

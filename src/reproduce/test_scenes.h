@@ -31,7 +31,7 @@ struct SphereRows {
     static constexpr double kRadius = 0.45, kStep = 1, kRowStep = 1.05, kDistance = 10,
                             kHalfHeight = 1.12;
     /// The roughness of GGX whose reflected lobe has the covariance of Phong's cos^e: e = 1/alpha²
-    /// (C = e/(4 pi²) for Phong, SPEC 2.7; a GGX lobe's C is 1/alpha² in the same unit).
+    /// (C = e/(4 pi²) for Phong, brdf.hpp; a GGX lobe's C is 1/alpha² in the same unit).
     static double roughness(double exponent);
     std::string text(std::array<int, 2> resolution) const;
     /// Middle and radius in pixels; row 0 is the metal.

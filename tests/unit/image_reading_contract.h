@@ -45,7 +45,7 @@ class PrintCounter {
     int saved_[2]{};
 };
 
-/// Empty where reading kept the contract, else what is wrong.
+/// Empty where reading ended as it may, else what is wrong.
 template <class Reader>
 inline std::string problem_of_reading(const fs::path& file, Reader read) {
     try {
