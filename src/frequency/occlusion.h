@@ -16,6 +16,9 @@ namespace covtrace {
 struct Occluders {
     const VoxelGrid* grid = nullptr;
     const OccluderQuery* query = nullptr;
+    /// With a grid: every occupied voxel on the way occludes, wherever its surface lies, in place
+    /// of the nearest ones beside the way at their distance.
+    bool every_voxel = false;
     explicit operator bool() const { return grid || query; }
 };
 

@@ -1,5 +1,6 @@
 #include "geometry/voxel_grid.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace covtrace {
@@ -7,6 +8,11 @@ namespace covtrace {
 size_t VoxelGrid::memory() const {
     return top_.capacity() * sizeof(top_[0]) + stored_.capacity() * sizeof(Brick) +
            voxels_.capacity() * sizeof(Voxel) + offsets_.capacity() * sizeof(Offset);
+}
+
+float VoxelGrid::longest_side() const {
+    const Vec3 sides = box_.hi - box_.lo;
+    return std::max({sides.x, sides.y, sides.z});
 }
 
 VoxelGrid::Cell VoxelGrid::cell_of(Vec3 point) const {

@@ -47,6 +47,8 @@ class VoxelGrid {
     explicit VoxelGrid(const Geometry& geometry, const VoxelGridOptions& options = {});
 
     float voxel_size() const { return size_; }
+    /// Of the box that the voxels divide.
+    float longest_side() const;
     size_t occupied_voxels() const { return voxels_.size(); }
     size_t memory() const;  ///< bytes
     /// The occupied voxel around a point, or null.
@@ -54,6 +56,7 @@ class VoxelGrid {
 
   private:
     friend class VoxelMarch;
+    friend class VoxelWalk;
     friend class VoxelGridBuilder;
 
     static constexpr int kReach = 4;  ///< voxels, how far within[] looks

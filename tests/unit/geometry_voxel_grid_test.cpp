@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "geometry/voxel_grid.h"
+#include "geometry/voxel_walk.h"
 #include "geometry_fixtures.h"
 
 namespace covtrace {
@@ -16,6 +18,13 @@ using namespace test;
 SceneDescription wall_scene() {
     return scene_of({patches(patch({-10, -10, 5}, {0, -10, 5}, {-10, 10, 5}, {0, 10, 5})),
                      mesh(unit_triangle(), AnimatedTransform(Transform::translate({9, 9, 15})))});
+}
+
+std::vector<VoxelWalk::Crossing> crossings(const VoxelGrid& grid, Vec3 from, Vec3 to) {
+    std::vector<VoxelWalk::Crossing> all;
+    VoxelWalk walk(grid, from, to);
+    for (VoxelWalk::Crossing c; walk.next(c);) all.push_back(c);
+    return all;
 }
 
 std::vector<OccluderEvent> events(const VoxelGrid& grid, Vec3 from, Vec3 to, float radius) {
@@ -55,6 +64,56 @@ TEST(VoxelGrid, AreaNormalsAndCentroidsOfAWall) {
         for (float y = -10 + size / 2; y < 10; y += size)
             if (const Voxel* w = grid.find({x, y, 5})) area += w->area;
     EXPECT_NEAR(area, 200, 2);
+}
+
+TEST(VoxelWalk, MeetsWhatStandsOnTheWayAndNothingBesideIt) {
+    const Geometry g{wall_scene()};
+    const VoxelGrid grid(g, {.width = 100});
+    const float size = grid.voxel_size();
+    const auto through = crossings(grid, {-5.03f, 2.07f, 2}, {-5.03f, 2.07f, 9});
+    ASSERT_EQ(through.size(), 1u);
+    EXPECT_EQ(through[0].voxel, grid.find({-5.03f, 2.07f, 5}));
+    EXPECT_NEAR(through[0].s, 3, size);
+    // A march sees the edge beside this ray, a walk does not.
+    EXPECT_FALSE(events(grid, {1.5f * size, 2, 2}, {1.5f * size, 2, 9}, 3 * size).empty());
+    EXPECT_TRUE(crossings(grid, {1.5f * size, 2, 2}, {1.5f * size, 2, 9}).empty());
+    // What is occupied at either end is the surface's own.
+    EXPECT_TRUE(crossings(grid, {-5.03f, 2.07f, 5}, {-5.03f, 2.07f, 9}).empty());
+    EXPECT_TRUE(crossings(grid, {-5.03f, 2.07f, 2}, {-5.03f, 2.07f, 5}).empty());
+}
+
+/// Along the wall and past its end; whichever way it goes.
+TEST(VoxelWalk, CrossesEveryVoxelOfTheWayOnceAndInOrder) {
+    const Geometry g{wall_scene()};
+    const VoxelGrid grid(g, {.width = 100});
+    const float size = grid.voxel_size();
+    Random random(5);
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 from{random.between(-9, -1), random.between(-9, 9), 5 + random.between(-3, 3)};
+        const Vec3 to{random.between(-9, 15), random.between(-9, 9), 5 + random.between(-3, 3)};
+        const auto found = crossings(grid, from, to);
+        const Vec3 d = normalize(to - from);
+        for (size_t k = 0; k < found.size(); ++k) {
+            ASSERT_TRUE(k == 0 || found[k].s > found[k - 1].s) << i;
+            ASSERT_EQ(found[k].voxel, grid.find(from + d * found[k].s)) << i;
+        }
+        // The same as small steps find between the first and the last empty place, but for voxels
+        // whose corners they miss.
+        const float total = distance(from, to), step = 0.02f * size;
+        float open = 0, close = total;
+        while (open < total && grid.find(from + d * open)) open += step;
+        while (close > 0 && grid.find(from + d * close)) close -= step;
+        std::vector<const Voxel*> stepped;
+        for (float s = open; s < close; s += step)
+            if (const Voxel* v = grid.find(from + d * s))
+                if (stepped.empty() || stepped.back() != v) stepped.push_back(v);
+        for (const Voxel* v : stepped)
+            ASSERT_TRUE(std::any_of(found.begin(), found.end(), [v](const auto& c) {
+                return c.voxel == v;
+            })) << i;
+    }
+    EXPECT_TRUE(crossings(grid, {0, 0, 5}, {0, 0, 5}).empty());
+    EXPECT_TRUE(crossings(grid, {100, 100, 5}, {100, 200, 5}).empty());
 }
 
 TEST(VoxelGrid, RaysPastAnEdgeSeeItAtItsDistance) {
