@@ -46,7 +46,7 @@ class OutlineSearch {
   private:
     /// Nodes and blocks of edges that are looked at, nearest first, after the first outline was
     /// found. Beside a cloud of occluders all of them would be near enough to matter, and none more
-    /// than the first ones (docs/decisions/0110).
+    /// than the first ones (docs/decisions/0090).
     static constexpr int kMostSteps = 128;
     /// The time of a ball, or of entering an instance's space, in that of a node.
     static constexpr int kStepsPerBody = 4;

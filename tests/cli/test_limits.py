@@ -34,7 +34,7 @@ AttributeEnd
 
 class Memory(FilmTest):
     def test_bytes_per_pixel(self):
-        most = {"uniform": 64, "covariance": 160, "hybrid": 272}
+        most = {"uniform": 64, "covariance": 160, "hybrid": 312}
         for method in METHODS:
             for spp in ("2", "16"):
                 with self.subTest(method=method, spp=spp):
