@@ -90,7 +90,8 @@ void clear_at(std::vector<T>& values, size_t i) {
 size_t film_bytes_per_pixel(Method method, FilmParts uniform_parts) {
     constexpr size_t kPlan = sizeof(uint32_t), kDensity = sizeof(float),
                      kCovariance = sizeof(PackedCovariance),
-                     kFeatureRecords = sizeof(PathFeatures) + sizeof(FeatureSquares) + sizeof(uint32_t);
+                     kFeatureRecords =
+                         sizeof(PathFeatures) + sizeof(FeatureSquares) + sizeof(uint32_t);
     switch (method) {
         case Method::uniform:
             return sizeof(FilmPixel) + (uniform_parts.in_view ? sizeof(Rgb) : 0) +

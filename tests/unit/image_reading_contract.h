@@ -1,4 +1,5 @@
-// What every reader of images keeps to: an image or one Error(scene) of one line, and nothing printed.
+// What every reader of images keeps to: an image or one Error(scene) of one line, and nothing
+// printed.
 #pragma once
 
 #include <fcntl.h>
