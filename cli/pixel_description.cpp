@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "covariance/covariance.hpp"
+
 namespace covtrace::cli {
 
 namespace {
@@ -58,6 +60,19 @@ std::string bandwidth_words(size_t axis, double value) {
     const std::string where = axis < 4 ? "across the aperture" : "while the shutter is open";
     if (value < kStill) return (axis < 4 ? "in focus: constant " : "at rest: constant ") + where;
     return format_number(value) + " periods " + where;
+}
+
+/// As the pixel's own covariance has it, before the plan smooths and limits it.
+HypercubeCount hypercube_count(const Image& image,
+                               const std::array<std::array<float, 5>, 5>& covariance) {
+    covariance::SymmetricMatrix5<double> sigma;
+    for (size_t r = 0; r < 5; ++r)
+        for (size_t c = r; c < 5; ++c) sigma(r, c) = covariance[r][c];
+    const auto [spectrum, integration] = covariance::integrate_over_sensor(sigma);
+    HypercubeCount count{covariance::hypercube_density(spectrum, integration), {}};
+    if (const auto k = image.metadata.find("covtrace:k"); k != image.metadata.end())
+        if (const float* value = std::get_if<float>(&k->second)) count.k = *value;
+    return count;
 }
 
 nlohmann::json number_or_null(double value) {
@@ -113,6 +128,7 @@ PixelDescription describe_pixel(const Image& image, int x, int y) {
                 kAxes[k].scale * std::sqrt(std::max(0.0, double((*p.covariance)[k][k])));
             p.bandwidth.push_back({kAxes[k].name, kAxes[k].unit, value, bandwidth_words(k, value)});
         }
+    if (p.covariance) p.hypercube = hypercube_count(image, *p.covariance);
     p.found_light = find_value(image, "covweight.Y", i).value_or(1) != 0;
     p.spectrum = find_axes(image, "spectrum", i);
     p.filter = find_axes(image, "filter", i);
@@ -150,6 +166,14 @@ std::string to_text(const PixelDescription& p) {
             format_number(p.spectrum->major),
             format_number(std::round(p.spectrum->angle * 10) / 10),
             format_number(p.spectrum->minor));
+    if (p.hypercube) {
+        text += "samples per unit hypercube (pixel, aperture, shutter): sqrt|S| = " +
+                format_number(p.hypercube->density);
+        if (p.hypercube->k)
+            text += ", times k = " + format_number(*p.hypercube->k) + ": " +
+                    format_number(p.hypercube->density * *p.hypercube->k);
+        text += "\n";
+    }
     text +=
         "covariance of the spectrum (products of cycles per pixel, per aperture radius, per "
         "shutter)\n          ";
@@ -175,6 +199,11 @@ nlohmann::json to_json(const PixelDescription& p) {
     j["covariance"] = *p.covariance;
     j["covariance_units"] = {"cycles/pixel", "cycles/pixel", "cycles/aperture radius",
                              "cycles/aperture radius", "cycles/shutter"};
+    j["hypercube"] = {{"sqrt_det", number_or_null(p.hypercube->density)}};
+    if (p.hypercube->k) {
+        j["hypercube"]["k"] = *p.hypercube->k;
+        j["hypercube"]["samples"] = number_or_null(p.hypercube->density * *p.hypercube->k);
+    }
     j["found_light"] = p.found_light;
     for (const AxisBandwidth& b : p.bandwidth)
         j["bandwidth"].push_back(

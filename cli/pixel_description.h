@@ -22,12 +22,19 @@ struct PrincipalAxes {
 PrincipalAxes principal_axes(double xx, double xy, double yy);
 
 /// One axis of the local light field: standard deviation of its spectrum. The lens axes count over
-/// the whole aperture, which is two of the radii that the covariance counts in (SPEC 2.12).
+/// the whole aperture, which is two of the radii that the covariance counts in
+/// (covariance/README.md).
 struct AxisBandwidth {
     std::string name;  ///< "image x", "image y", "lens x", "lens y", "time"
     std::string unit;  ///< "cycles/pixel", "cycles/aperture", "cycles/shutter"
     double value = 0;
     std::string words;
+};
+
+/// The thesis' count N = k sqrt|S| of one pixel.
+struct HypercubeCount {
+    double density = 0;       ///< sqrt|S| per unit hypercube: pixel, aperture and shutter as one
+    std::optional<double> k;  ///< absent where the image was not planned by it
 };
 
 struct PixelDescription {
@@ -36,10 +43,11 @@ struct PixelDescription {
     /// Over (pixel x, pixel y, lens radius x, lens radius y, shutter); absent without the 15
     /// channels of cov.
     std::optional<std::array<std::array<float, 5>, 5>> covariance;
-    std::vector<AxisBandwidth> bandwidth;   ///< empty without covariance
-    bool found_light = true;                ///< false: no path of the analysis did, and cov is 0
-    std::optional<PrincipalAxes> spectrum;  ///< cycles/pixel, after lens and shutter
-    std::optional<PrincipalAxes> filter;    ///< standard deviations in pixels
+    std::vector<AxisBandwidth> bandwidth;     ///< empty without covariance
+    bool found_light = true;                  ///< false: no path of the analysis did, and cov is 0
+    std::optional<PrincipalAxes> spectrum;    ///< cycles/pixel, after lens and shutter
+    std::optional<PrincipalAxes> filter;      ///< standard deviations in pixels
+    std::optional<HypercubeCount> hypercube;  ///< from `covariance`
     std::optional<float> samples, density, error;
 };
 

@@ -191,8 +191,12 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
             "needs\n");
     if (!a.quiet) warn_of_failed_denoiser(result.image);
     if (!a.quiet)
-        say("{}: {:.4g} samples per pixel in {:.1f} s\n", is_shard ? a.film.film : output.string(),
-            result.statistics.samples_per_pixel, monitor.elapsed());
+        say("{}: {:.4g} samples per pixel{} in {:.1f} s\n",
+            is_shard ? a.film.film : output.string(), result.statistics.samples_per_pixel,
+            result.statistics.density_factor
+                ? fmt::format(" (k = {:.4g})", *result.statistics.density_factor)
+                : "",
+            monitor.elapsed());
     // A viewer that still takes the last image may; all else is done.
     if (viewer) {
         viewer->finish(std::max(0.25, 0.01 * monitor.elapsed()));

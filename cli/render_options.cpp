@@ -24,20 +24,27 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
         ->check(not_empty())
         ->option_text("T");
     add_positive(c, "--error", a.options.error, 1e6, "stop at this estimated sqrt(relMSE)");
-    add_whole(c, "--cov-spp", a.options.cov_spp, 1, 1 << 20,
-              "covariance paths per pixel (default: 2, hybrid: 1)");
+    c->add_option_function<std::string>(
+         "--cov-spp",
+         [&a](const std::string& text) { a.options.cov_spp = parse_paths("--cov-spp", text); },
+         "covariance paths per pixel (default: 2, hybrid: 1)")
+        ->option_text("N");
     add_choice<DensityRule>(c, "--density", a.options.density,
                             {{"tempered", DensityRule::tempered}, {"thesis", DensityRule::thesis}},
                             "how counts follow from the prediction");
+    add_positive(c, "--k", a.options.density_factor, 1e12,
+                 "density thesis: the k of N = k sqrt|S|");
     add_whole(c, "--max-spp", a.options.max_spp, 1, 1 << 30,
               "most samples in a pixel (default: 16 x average)");
     c->add_flag("--progressive", a.options.progressive, "covariance: rounds of samples on demand");
     c->add_flag("--even-counts", a.options.even_counts, "hybrid: the same count in every pixel");
     add_denoiser_options(c, a.denoiser);
-    add_choice<Occlusion>(
-        c, "--occlusion", a.options.occlusion,
-        {{"grid", Occlusion::grid}, {"query", Occlusion::query}, {"none", Occlusion::none}},
-        "occluders beside the rays of the analysis");
+    add_choice<Occlusion>(c, "--occlusion", a.options.occlusion,
+                          {{"grid", Occlusion::grid},
+                           {"voxels", Occlusion::voxels},
+                           {"query", Occlusion::query},
+                           {"none", Occlusion::none}},
+                          "occluders beside the rays of the analysis");
     add_whole(c, "--voxels", a.options.voxels, 1, 2048,
               "width of the occlusion grid (default 200)");
     add_choice<BrdfCovariance>(
@@ -49,8 +56,10 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
         {{"own", TextureBandwidth::own}, {"highest", TextureBandwidth::highest}},
         "textures' frequencies: own, or the image's");
     add_choice<FilterRule>(c, "--filter", a.options.filter,
-                           {{"verified", FilterRule::verified}, {"thesis", FilterRule::thesis}},
-                           "its constant: verified, or the thesis' eq. 5.7");
+                           {{"verified", FilterRule::verified},
+                            {"matched", FilterRule::matched},
+                            {"thesis", FilterRule::thesis}},
+                           "its constant: verified, c = 1, thesis' eq. 5.7");
     c->add_option("--resolution", a.resolution, "in place of the scene's")
         ->check(not_empty())
         ->option_text("WxH");

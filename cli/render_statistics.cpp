@@ -68,11 +68,13 @@ nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& res
             {"replay_thread_seconds", s.replay_seconds},
             {"first_rejected", rejected}};
     };
+    const std::optional<double>& k = result.statistics.density_factor;
     return {{"seconds_total", monitor.elapsed()},
             {"seconds", result.statistics.seconds},
             {"denoiser", denoiser_json(denoiser, result.image.metadata)},
             {"memory", memory_json(scene, result)},
             {"spp", result.statistics.samples_per_pixel},
+            {"k", k ? nlohmann::json(*k) : nlohmann::json()},
             {"covariance", pass(result.statistics.covariance)},
             {"radiance", pass(result.statistics.radiance)},
             {"replaced_pixels", replaced_json(result.image.metadata)},

@@ -135,6 +135,17 @@ int64_t parse_whole(const std::string& option, const std::string& text, int64_t 
     return value;
 }
 
+double parse_paths(const std::string& option, const std::string& text) {
+    constexpr double kMost = 1 << 20;
+    std::string_view rest = text;
+    double value = 0;
+    if (!take_number(rest, value) || !rest.empty() || !(value > 0) || !(value <= kMost) ||
+        (value > 1 && value != std::floor(value)))
+        refuse(option, text,
+               fmt::format("a whole number from 1 to {:.0f}, or a part of one", kMost));
+    return value;
+}
+
 size_t parse_size(const std::string& option, const std::string& text) {
     constexpr auto kExpected = "a size in bytes such as 500M or 2G";
     constexpr std::string_view kUnits = "kMGT";

@@ -29,6 +29,8 @@ double parse_positive(const std::string& option, const std::string& text, double
 /// A whole number in [least, most], in decimal digits whatever it begins with.
 int64_t parse_whole(const std::string& option, const std::string& text, int64_t least,
                     int64_t most);
+/// Paths per pixel: a whole number up to 2^20, or a part of one: a path in so many of the pixels.
+double parse_paths(const std::string& option, const std::string& text);
 /// Bytes: "500M", "2G", "64k", "1.5T" (powers of 1024) or a plain number.
 size_t parse_size(const std::string& option, const std::string& text);
 /// "k/n", the k-th of n shares, from 1.

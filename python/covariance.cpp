@@ -125,6 +125,9 @@ void bind_ends(py::module_& m) {
     m.def("integration_count",
           vectorized(+[](Sigma s, Sigma window) { return cov::integration_count(s, window); }));
     m.def("image_density", vectorized(+[](Sym2 spectrum) { return cov::image_density(spectrum); }));
+    m.def("hypercube_density", vectorized(+[](Sym2 spectrum, double integration) {
+              return cov::hypercube_density(spectrum, integration);
+          }));
     m.def("filter_sharpness", vectorized(+[](double spp) { return cov::filter_sharpness(spp); }));
     m.def("filter_covariance", vectorized(+[](Sym2 spectrum, double c, double s_min, double s_max) {
               return cov::filter_covariance(

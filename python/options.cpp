@@ -18,22 +18,28 @@ RenderOptions render_options(const py::dict& o) {
     r.density =
         choice<DensityRule>("density", text("density"),
                             {{"tempered", DensityRule::tempered}, {"thesis", DensityRule::thesis}});
-    r.occlusion = choice<Occlusion>(
-        "occlusion", text("occlusion"),
-        {{"grid", Occlusion::grid}, {"query", Occlusion::query}, {"none", Occlusion::none}});
+    r.occlusion = choice<Occlusion>("occlusion", text("occlusion"),
+                                    {{"grid", Occlusion::grid},
+                                     {"voxels", Occlusion::voxels},
+                                     {"query", Occlusion::query},
+                                     {"none", Occlusion::none}});
     r.brdf_covariance = choice<BrdfCovariance>(
         "brdf_covariance", text("brdf_covariance"),
         {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}});
     r.texture_bandwidth = choice<TextureBandwidth>(
         "texture_bandwidth", text("texture_bandwidth"),
         {{"own", TextureBandwidth::own}, {"highest", TextureBandwidth::highest}});
-    r.filter =
-        choice<FilterRule>("filter", text("filter"),
-                           {{"verified", FilterRule::verified}, {"thesis", FilterRule::thesis}});
+    r.filter = choice<FilterRule>("filter", text("filter"),
+                                  {{"verified", FilterRule::verified},
+                                   {"matched", FilterRule::matched},
+                                   {"thesis", FilterRule::thesis}});
     r.spp = positive<double>(o, "spp");
     r.seconds = positive<double>(o, "time");
     r.error = positive<double>(o, "error");
-    r.cov_spp = positive<int>(o, "cov_spp");
+    r.cov_spp = positive<double>(o, "cov_spp");
+    require(!r.cov_spp || *r.cov_spp <= 1 || *r.cov_spp == std::floor(*r.cov_spp),
+            "cov_spp must be a whole number, or a part of one");
+    r.density_factor = positive<double>(o, "k");
     r.max_spp = positive<int>(o, "max_spp");
     r.voxels = value_of<int>(o, "voxels", "a whole number");
     require(r.voxels >= 1 && r.voxels <= 2048, "voxels must be from 1 to 2048");

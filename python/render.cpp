@@ -170,6 +170,7 @@ py::dict statistics_dict(const Rendered& r, double elapsed) {
     d["denoiser"] = denoiser_object(r);
     d["memory"] = r.statistics.memory;
     d["spp"] = r.statistics.samples_per_pixel;
+    d["k"] = r.statistics.density_factor;
     d["covariance"] = pass_dict(r.statistics.covariance);
     d["radiance"] = pass_dict(r.statistics.radiance);
     d["replaced_pixels"] = replaced_dict(r.replaced);

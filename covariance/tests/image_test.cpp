@@ -117,6 +117,40 @@ RC_GTEST_PROP(Budget, IsSpentToTheLastSampleInProportion, ()) {
     for (const std::uint32_t c : allocate(density, 300, taken, 8)) RC_ASSERT(c >= 4 && c <= 8);
 }
 
+/// The multiple of the density that pixels between the limits got.
+TEST(Budget, TellsTheFactorThatItMakes) {
+    const std::vector<double> density{0.5, 1, 2, 40};
+    const std::vector<std::uint32_t> least{4, 0, 0, 0};
+    // With the factor 6: 4 where 3 are wanted, 6, 12, and 100 where 240 are wanted.
+    EXPECT_NEAR(density_factor(density, 122, least, 100), 6, 1e-6);
+    EXPECT_DOUBLE_EQ(mean_count(density, 6, least, 100), 122.0 / 4);
+    EXPECT_EQ(allocate(density, 122, least, 100), (std::vector<std::uint32_t>{4, 6, 12, 100}));
+}
+
+TEST(Budget, GivesBackTheFactorOfAnyMean) {
+    std::vector<float> density(1000);
+    for (std::size_t i = 0; i < density.size(); ++i) density[i] = 0.001F * float(i * i % 977);
+    const std::vector<std::uint32_t> none(density.size(), 0);
+    for (const double k : {0.3, 5.0, 98.0}) {
+        const double total = mean_count(density, k, none, 1U << 30) * double(density.size());
+        EXPECT_NEAR(density_factor(density, std::llround(total), none, 1U << 30) / k, 1, 1 / total);
+    }
+}
+
+/// sqrt|S + W| in cycles per pixel, aperture and shutter. A radius is 1/sqrt(pi) of the side of a
+/// square aperture of the same area.
+TEST(Budget, CountsOfTheHypercubeAreTheWholeDeterminant) {
+    CovarianceImage<double> image(1, 1);
+    Matrix s = Matrix::diagonal(0.01, 0.02, 3, 5, 7);
+    s(0, 2) = 0.1, s(1, 4) = -0.2;
+    image.add(0, 0, s, 1.0);
+    const double window = 1 / (pi<double> * pi<double>);
+    const double determinant =
+        (0.01 * (3 + window) - 0.1 * 0.1) * (0.02 * (7 + 3 * window) - 0.2 * 0.2) * (5 + window);
+    EXPECT_NEAR(hypercube_counts(preintegrate(image), 2, {0.001, 1000})[0],
+                pi<double> * std::sqrt(determinant), 1e-9);
+}
+
 TEST(Budget, ThesisDensityIsTheRootOfTheDeterminant) {
     CovarianceImage<double> image(2, 1);
     image.add(0, 0, Matrix::diagonal(0.01, 0.01, 0, 0, 0), 1.0);

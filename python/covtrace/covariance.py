@@ -225,6 +225,12 @@ def image_density(spectrum: ArrayLike) -> Array | float:
     return _c.image_density(spectrum)
 
 
+def hypercube_density(spectrum: ArrayLike, integration: ArrayLike) -> Array | float:
+    """sqrt|S| per pixel, whole aperture and whole shutter, from `preintegrate` and
+    `integration_count`: times k it is the thesis' number of samples per pixel."""
+    return _c.hypercube_density(spectrum, integration)
+
+
 def filter_sharpness(samples_per_pixel: ArrayLike) -> Array | float:
     """The constant c of the reconstruction filter at a number of samples per pixel."""
     return _c.filter_sharpness(samples_per_pixel)

@@ -38,12 +38,12 @@ class Cancel(Protocol):
 def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            method: Literal["uniform", "covariance", "hybrid"] = "hybrid",
            spp: float | None = None, time: float | None = None, error: float | None = None,
-           cov_spp: int | None = None, max_spp: int | None = None, max_depth: int | None = None,
-           density: Literal["tempered", "thesis"] = "tempered",
-           occlusion: Literal["grid", "query", "none"] = "query", voxels: int = 200,
+           cov_spp: float | None = None, max_spp: int | None = None, max_depth: int | None = None,
+           density: Literal["tempered", "thesis"] = "tempered", k: float | None = None,
+           occlusion: Literal["grid", "voxels", "query", "none"] = "query", voxels: int = 200,
            brdf_covariance: Literal["local", "global"] = "local",
            texture_bandwidth: Literal["own", "highest"] = "own",
-           filter: Literal["verified", "thesis"] = "verified", progressive: bool = False,
+           filter: Literal["verified", "matched", "thesis"] = "verified", progressive: bool = False,
            even_counts: bool = False,
            denoiser: Literal["auto", "oidn", "none"] = "auto",
            denoiser_library: str | os.PathLike[str] | None = None,
@@ -62,6 +62,8 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     method: "uniform" (the plain path tracer), "covariance" (the thesis' method) or "hybrid".
     spp, time, error: budgets: average samples per pixel (default: the scene's), seconds, estimated
         sqrt(relMSE); of several the first one stops.
+    k: with density "thesis", one more budget: k sqrt|S| samples in each pixel, whatever their mean;
+        `image.statistics["k"]` tells it where another budget decided.
     denoiser, denoiser_library: whether "hybrid" has Open Image Denoise as one more filter, "auto" where
         it is found; `image.statistics["denoiser"]` tells. A warning where it is there but unusable.
     resolution (w, h), crop (x0, y0, x1, y1), shutter (t0, t1), focus, fstop: in place of the scene's.
@@ -77,7 +79,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     render and come out of this call. Raises the classes of `covtrace.errors`.
     """
     options = {"method": method, "spp": spp, "time": time, "error": error, "cov_spp": cov_spp,
-               "max_spp": max_spp, "max_depth": max_depth, "density": density,
+               "max_spp": max_spp, "max_depth": max_depth, "density": density, "k": k,
                "occlusion": occlusion, "voxels": voxels, "brdf_covariance": brdf_covariance,
                "texture_bandwidth": texture_bandwidth, "filter": filter,
                "progressive": progressive, "even_counts": even_counts, "denoiser": denoiser,

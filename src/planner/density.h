@@ -21,6 +21,8 @@ Plane emphasis(const Prediction& prediction, DensityRule rule, float c,
                const covariance::FilterLimits<float>& limits);
 
 using covariance::allocate;
+using covariance::density_factor;
+using covariance::mean_count;
 
 /// allocate(), but `at_most` is what one call may add to a pixel, so that repeated calls, in
 /// rounds, go beyond it and sample again where the limit of samples left noise: the thesis'

@@ -4,16 +4,27 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "covariance/filter_field.hpp"
 
 namespace covtrace {
 
-/// How spectra become filters. `verified` is the constant that keeps a signal with the predicted
-/// spectrum; `thesis` prints exp(-pi p^T S p), equation 5.7 to the letter, with no limit by
+/// How spectra become filters exp(-2 pi^2 c^2 p^T S p). All but `verified` know no limit by
 /// neighbours.
-enum class FilterRule { verified, thesis };
+enum class FilterRule {
+    verified,  ///< c grows with the count, so that a signal with the predicted spectrum is kept
+    matched,   ///< c = 1: the filter's spectrum has the signal's own covariance
+    thesis     ///< exp(-pi p^T S p), equation 5.7 of the thesis as printed: c^2 = 1/(2 pi)
+};
+
+/// As the command line calls it.
+constexpr std::string_view name_of(FilterRule rule) {
+    return rule == FilterRule::verified  ? "verified"
+           : rule == FilterRule::matched ? "matched"
+                                         : "thesis";
+}
 
 /// c, 1/s_min and the slope follow the samples (docs/decisions/0004, 0047), for emitters in view
 /// with other constants (docs/decisions/0012).

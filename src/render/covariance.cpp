@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "planner/density.h"
 #include "reconstruction/filter_field.h"
@@ -15,6 +16,9 @@ namespace {
 /// Of the samples on demand, spread evenly.
 constexpr float kEvenShare = 0.1f;
 
+/// What films and images call the factor of the thesis' density.
+constexpr auto kFactorName = "covtrace:k";
+
 class CovarianceRender {
   public:
     explicit CovarianceRender(RenderJob& job) : job_(job), s_(job.state) {
@@ -28,6 +32,8 @@ class CovarianceRender {
 
     void run() {
         trace_rounds(job_, {[this] { return plan(); }, [this] { trace(); }});
+        if (const auto k = s_.metadata.find(kFactorName); k != s_.metadata.end())
+            job_.result.statistics.density_factor = std::get<float>(k->second);
         if (!job_.delivers()) return;
         job_.monitor.update("reconstruction", RenderJob::kTracingShare, s_.mean_count());
         const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
@@ -51,23 +57,67 @@ class CovarianceRender {
             prediction_ = preintegrated(smoothed(merge(*s_.parts)));
             job_.reserve(6 * (job_.monitor.elapsed() - start));
         }
-        const double end = round_end(s_.taken), target = job_.plan_round(end);
-        if (!(target > s_.taken)) return false;
-        const PhaseTimer timer(job_.monitor, job_.phase("plan"));
+        if (has_enough()) return false;
+        const double end = round_end(s_.taken);
         // The filters that the whole round leads to: a budget must not change what it begins with.
         const FilterSettings settings = covariance::filter_settings(end);
-        std::vector<float> density = relative_counts(settings);
         std::vector<uint32_t> have(s_.pixels());
         for (size_t i = 0; i < have.size(); ++i) have[i] = s_.films[0].pixels[i].count;
+        const double enough = enough_samples(settings, have);
+        const double target = job_.plan_round(std::min(end, enough));
+        if (target >= enough) tell_factor(settings, *job_.options.density_factor);
+        if (!(target > s_.taken)) return false;
+        const PhaseTimer timer(job_.monitor, job_.phase("plan"));
+        std::vector<float> density = relative_counts(settings);
         const int64_t total = std::llround(target * double(job_.pixels()));
-        const auto most = uint32_t(std::clamp(job_.most_samples(target), 1.0, 4e9));
+        const uint32_t most = most_samples(target);
         std::vector<uint32_t> counts = job_.options.progressive
                                            ? allocate_on_demand(density, total, have, most)
                                            : allocate(density, total, have, most);
         if (!job_.begin_round(target, {std::move(counts)})) return false;
-        for (float& d : density) d *= float(target);
-        s_.density = std::move(density);
+        if (!has_factor()) {
+            for (float& d : density) d *= float(target);
+            s_.density = std::move(density);
+        } else if (target < enough) {
+            const std::vector<float> n =
+                hypercube_counts(*prediction_, settings.c, settings.limits);
+            tell_factor(settings, density_factor(n, total, have, most));
+        }
         return true;
+    }
+
+    /// Keeps what the thesis' density asks for, and by which factor.
+    void tell_factor(const FilterSettings& settings, double k) {
+        s_.density = hypercube_counts(*prediction_, settings.c, settings.limits);
+        for (float& d : s_.density) d *= float(k);
+        s_.metadata[kFactorName] = float(k);
+    }
+
+    /// Whether counts are multiples of the thesis' N.
+    bool has_factor() const {
+        return job_.options.density == DensityRule::thesis && !job_.options.progressive;
+    }
+
+    uint32_t most_samples(double target) const {
+        return uint32_t(std::clamp(job_.most_samples(target), 1.0, 4e9));
+    }
+
+    /// Whether the last plan had the factor that was asked for. Counts are whole, so that another
+    /// one would find pixels that lack a part of a sample.
+    bool has_enough() const {
+        constexpr double kRounding = 1e-5;  // of the factor in single precision, and of the total
+        const auto k = s_.metadata.find(kFactorName);
+        return job_.options.density_factor && k != s_.metadata.end() &&
+               double(std::get<float>(k->second)) >= *job_.options.density_factor * (1 - kRounding);
+    }
+
+    /// The average at which every pixel has the count that the factor which was asked for gives it.
+    double enough_samples(const FilterSettings& settings, std::span<const uint32_t> have) {
+        if (!job_.options.density_factor) return kInfinity;
+        // The limit does not depend on the average where there is a factor.
+        job_.enough = mean_count(hypercube_counts(*prediction_, settings.c, settings.limits),
+                                 *job_.options.density_factor, have, most_samples(0));
+        return *job_.enough;
     }
 
     std::vector<float> relative_counts(const FilterSettings& settings) const {

@@ -16,7 +16,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::array<const char*, 3> kStages{"first_paths", "pilot", "rounds"};
-constexpr std::array<const char*, 2> kFilters{"verified", "thesis"};
 
 json to_json(const PixelBounds& b) {
     return {b.x0, b.y0, b.x1, b.y1};
@@ -89,6 +88,12 @@ Method method(const json& j) {
     refuse("the method '" + j.get<std::string>() + "'");
 }
 
+FilterRule filter_rule(const json& j) {
+    for (FilterRule r : {FilterRule::verified, FilterRule::matched, FilterRule::thesis})
+        if (j.get<std::string>() == name_of(r)) return r;
+    refuse("the filter '" + j.get<std::string>() + "'");
+}
+
 /// Gives a state all arrays that the header names.
 void add_arrays(RenderState& s, const json& arrays, uint32_t format) {
     const auto has = [&](const std::string& name) {
@@ -143,7 +148,7 @@ RenderState parse(const json& j, size_t most_bytes, uint32_t format) {
     RenderState s;
     s.identity = j.at("identity").get<RenderIdentity>();
     s.method = method(j.at("method"));
-    s.filter = FilterRule(choice(j.at("filter"), kFilters));
+    s.filter = filter_rule(j.at("filter"));
     s.region = bounds(j.at("region"));
     s.display = bounds(j.at("display"));
     s.has_holes = j.at("has_holes");
@@ -186,7 +191,7 @@ std::string film_header(const RenderState& s) {
     for (const RejectedSample& r : s.first_rejected) rejected.push_back({r.x, r.y, r.sample});
     const json j{{"identity", s.identity},
                  {"method", name_of(s.method)},
-                 {"filter", kFilters[size_t(s.filter)]},
+                 {"filter", name_of(s.filter)},
                  {"region", to_json(s.region)},
                  {"display", to_json(s.display)},
                  {"has_holes", s.has_holes},

@@ -240,9 +240,9 @@ class HybridRender {
         if (known == 0) return kInfinity;
         const double error = std::sqrt(sum / known);
         job_.monitor.set_error(error);
-        job_.enough_for_error =
+        job_.enough =
             std::max(kLeastForError, s_.goal.samples(s_.taken, error, *job_.options.error));
-        return *job_.enough_for_error;
+        return *job_.enough;
     }
 
     /// Keeps time for the reconstruction, without the denoiser where there is too little time for

@@ -118,7 +118,7 @@ double RenderJob::fraction(double spp) const {
     double f = 0;
     if (target_spp) f = spp / *target_spp;
     if (options.seconds) f = std::max(f, monitor.elapsed() / *options.seconds);
-    if (enough_for_error) f = std::max(f, spp / *enough_for_error);
+    if (enough) f = std::max(f, spp / *enough);
     return std::clamp(f, 0.0, 1.0) * kTracingShare;
 }
 
@@ -154,7 +154,8 @@ double RenderJob::keeping_seconds() const {
 }
 
 double RenderJob::most_samples(double target) const {
-    return options.max_spp ? double(*options.max_spp) : std::ceil(16 * target);
+    if (options.max_spp) return *options.max_spp;
+    return options.density_factor ? kInfinity : std::ceil(16 * target);
 }
 
 bool RenderJob::begin_round(double target, std::vector<std::vector<uint32_t>> plan) {
@@ -199,7 +200,8 @@ void RenderJob::note_memory() {
 
 SceneOccluders::SceneOccluders(RenderJob& job) {
     const auto cancelled = [&job] { return job.out_of_time(); };
-    if (job.options.occlusion == Occlusion::grid) {
+    every_voxel_ = job.options.occlusion == Occlusion::voxels;
+    if (asks_grid(job.options.occlusion)) {
         const PhaseTimer timer(job.monitor, job.phase("grid"));
         grid_.emplace(job.scene.geometry,
                       VoxelGridOptions{.width = job.options.voxels, .cancelled = cancelled});

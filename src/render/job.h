@@ -45,8 +45,9 @@ class RenderJob {
     PassContext context;
     RenderResult result;
     const std::optional<double> target_spp;  ///< none: time or error alone decide
-    /// The average at which the error will be as asked for, by what is known of it.
-    std::optional<double> enough_for_error;
+    /// The average at which the error, or every pixel's count, will be as asked for, by what is
+    /// known of it.
+    std::optional<double> enough;
 
     /// The tiles that this process traces.
     Shard tiles() const;
@@ -101,11 +102,14 @@ class SceneOccluders {
   public:
     explicit SceneOccluders(RenderJob& job);
     /// Valid while this lives.
-    Occluders view() const { return {grid_ ? &*grid_ : nullptr, query_ ? &*query_ : nullptr}; }
+    Occluders view() const {
+        return {grid_ ? &*grid_ : nullptr, query_ ? &*query_ : nullptr, every_voxel_};
+    }
 
   private:
     std::optional<VoxelGrid> grid_;
     std::optional<OccluderQuery> query_;
+    bool every_voxel_ = false;
 };
 
 /// What a method does in its rounds.

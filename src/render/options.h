@@ -31,9 +31,21 @@ constexpr std::string_view name_of(Method m) {
 /// Where the frequency analysis learns of what stands beside a ray.
 enum class Occlusion {
     none,
-    grid,  ///< the thesis' voxel grid of the scene
-    query  ///< the outlines of the geometry itself
+    grid,    ///< a voxel grid of the scene, whose voxels tell of edges at their distance
+    voxels,  ///< the same grid as the thesis asks it: each occupied voxel on the way occludes
+    query    ///< the outlines of the geometry itself
 };
+
+/// As the command line calls it.
+constexpr std::string_view name_of(Occlusion o) {
+    return o == Occlusion::none     ? "none"
+           : o == Occlusion::grid   ? "grid"
+           : o == Occlusion::voxels ? "voxels"
+                                    : "query";
+}
+constexpr bool asks_grid(Occlusion o) {
+    return o == Occlusion::grid || o == Occlusion::voxels;
+}
 
 struct RenderOptions {
     Method method = Method::hybrid;
@@ -41,8 +53,11 @@ struct RenderOptions {
     std::optional<double> seconds;  ///< wall clock, from `start_time` to the finished file
     std::optional<double>
         error;  ///< stop at this estimated sqrt(relMSE) of the image; not covariance
-    std::optional<int> cov_spp;  ///< covariance paths per pixel; default 2, hybrid: 1
+    /// Covariance paths per pixel, below 1 in so many of the pixels; default 2, hybrid: 1.
+    std::optional<double> cov_spp;
     DensityRule density = DensityRule::tempered;
+    /// covariance with DensityRule::thesis: k of N = k sqrt|S|, a budget that no average bounds.
+    std::optional<double> density_factor;
     Occlusion occlusion = Occlusion::query;
     int voxels = 200;  ///< width of the grid
     BrdfCovariance brdf_covariance = BrdfCovariance::local;

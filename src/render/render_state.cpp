@@ -60,7 +60,7 @@ double covariance_paths(const RenderOptions& options, std::optional<double> spp)
     constexpr double kHybrid = 1, kCovariance = 2;
     if (options.method == Method::uniform) return 0;
     double paths = options.method == Method::covariance ? kCovariance : kHybrid;
-    if (options.cov_spp) paths = *options.cov_spp;
+    paths = options.cov_spp.value_or(paths);
     if (options.max_spp) paths = std::min(paths, double(*options.max_spp));
     return spp ? std::min(paths, *spp) : paths;
 }
@@ -215,14 +215,12 @@ RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& op
     id["--brdf-covariance"] = options.brdf_covariance == BrdfCovariance::local ? "local" : "global";
     id["--texture-bandwidth"] =
         options.texture_bandwidth == TextureBandwidth::own ? "own" : "highest";
-    id["--occlusion"] = options.occlusion == Occlusion::none   ? "none"
-                        : options.occlusion == Occlusion::grid ? "grid"
-                                                               : "query";
-    if (options.occlusion == Occlusion::grid) id["--voxels"] = text(options.voxels);
+    id["--occlusion"] = std::string(name_of(options.occlusion));
+    if (asks_grid(options.occlusion)) id["--voxels"] = text(options.voxels);
     if (options.method == Method::covariance) {
         id["--density"] = options.density == DensityRule::tempered ? "tempered" : "thesis";
         id["--progressive"] = options.progressive ? "given" : "not given";
-        id["--filter"] = options.filter == FilterRule::verified ? "verified" : "thesis";
+        id["--filter"] = std::string(name_of(options.filter));
     } else {
         id["--even-counts"] = options.even_counts ? "given" : "not given";
     }

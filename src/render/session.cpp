@@ -11,7 +11,8 @@
 namespace covtrace {
 
 std::optional<double> target_spp(const SceneDescription& scene, const RenderOptions& options) {
-    if (!options.spp && (options.seconds || options.error)) return std::nullopt;
+    const bool ends_otherwise = options.seconds || options.error || options.density_factor;
+    if (!options.spp && ends_otherwise) return std::nullopt;
     return options.spp.value_or(scene.samples_per_pixel);
 }
 
@@ -56,6 +57,11 @@ RenderResult render(RenderScene& scene, const RenderOptions& options, Monitor& m
         throw Error(ErrorKind::usage,
                     "--error: covariance tracing does not measure its error; expected --method "
                     "hybrid or uniform");
+    if (options.density_factor && !(options.method == Method::covariance &&
+                                    options.density == DensityRule::thesis && !options.progressive))
+        throw Error(ErrorKind::usage,
+                    "--k: only the thesis' density has this factor; expected --method covariance "
+                    "--density thesis, without --progressive");
     if (!keeping.shard.is_all() && (options.seconds || options.error))
         throw Error(ErrorKind::usage,
                     "--shard: shards cannot agree on when to stop by time or error; expected --spp "

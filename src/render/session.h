@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,10 @@ struct RenderStatistics {
     /// Bytes: "film" and "plan"; "prediction" and "occluders" with covariance tracing.
     std::map<std::string, size_t> memory;
     double samples_per_pixel = 0;  ///< average taken
-    uint64_t rejected = 0;         ///< of all samples of the film, also those of earlier processes
+    /// With DensityRule::thesis: k of N = k sqrt|S|, as asked for or as the budget made it; none
+    /// where the budget ended before the first plan.
+    std::optional<double> density_factor;
+    uint64_t rejected = 0;  ///< of all samples of the film, also those of earlier processes
     std::vector<RejectedSample> first_rejected;
 };
 
@@ -41,7 +45,8 @@ void apply(const SceneOverrides& overrides, SceneDescription& scene);
 /// The pixels that a description asks for: its crop window or pixel bounds within the frame.
 PixelBounds render_region(const FilmDescription& film);
 
-/// The average of samples per pixel that is asked for; none where time or error alone decide.
+/// The average of samples per pixel that is asked for; none where time, error or the factor of the
+/// density alone decide.
 std::optional<double> target_spp(const SceneDescription& scene, const RenderOptions& options);
 
 /// Bytes that a render takes beside its scene: "film", with plan and prediction, and "image": the

@@ -24,7 +24,7 @@ bool plan_uniform(RenderJob& job) {
         if (error < *job.options.error) return false;
         // Not a number as long as the error is not known.
         if (const double enough = s.taken * sqr(error / *job.options.error); enough > 0)
-            job.enough_for_error = enough;
+            job.enough = enough;
     }
     const bool alone = job.keeping.shard.is_all();
     const double target = job.plan_round(alone ? next_round(s.taken) : *job.target_spp);

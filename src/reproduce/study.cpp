@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "image/compare.h"
@@ -69,14 +70,24 @@ double bias_floor(const Reference& reference, const Image& filters) {
     return against - reference.noise();
 }
 
-RenderOptions thesis_options(const Workshop& workshop, const ThesisChoices& choices, int cap) {
+/// The thesis' text prints one filter and describes another; the last is ours.
+constexpr std::array kFilters{FilterRule::thesis, FilterRule::matched, FilterRule::verified};
+
+std::string label_of(FilterRule filter) {
+    return filter == FilterRule::thesis    ? "equation 5.7 as printed"
+           : filter == FilterRule::matched ? "matched filter, c = 1"
+                                           : "verified filter";
+}
+
+RenderOptions thesis_options(const Workshop& workshop, const ThesisChoices& choices, int cap,
+                             FilterRule filter) {
     RenderOptions o;
     o.method = Method::covariance;
     o.spp = workshop.settings.spp + choices.cov_spp;
     o.cov_spp = choices.cov_spp;
     o.max_spp = cap;
     o.density = DensityRule::thesis;
-    o.filter = FilterRule::thesis;
+    o.filter = filter;
     o.occlusion = Occlusion::grid;
     o.brdf_covariance = BrdfCovariance::global;
     o.seed = workshop.settings.seeds.front();
@@ -92,6 +103,21 @@ double interpolated_error(const UniformCurve& curve, double spp) {
         return a.error * std::pow(std::max(b.error, 1e-9) / a.error, t);
     }
     return points.back().error;
+}
+
+ThesisStudy thesis_study(Workshop& workshop, const SceneStudy& s, const ThesisChoices& choices,
+                         int cap, FilterRule filter) {
+    ThesisStudy t;
+    t.label = fmt::format("thesis' choices, at most {}, {}", cap, label_of(filter));
+    workshop.tell(s.name + ": " + t.label);
+    t.cap = cap;
+    t.filter = filter;
+    t.timed = workshop.render(*s.scene, thesis_options(workshop, choices, cap, filter));
+    t.error = s.reference->error(t.timed.result.image);
+    t.breakdown = breakdown_of(t.timed, s);
+    t.uniform_error_same_time = interpolated_error(*s.curve, s.curve->spp_in(t.timed.cpu));
+    t.uniform_cpu_same_error = s.curve->spp_for(t.error) * s.curve->cpu_per_spp();
+    return t;
 }
 
 }  // namespace
@@ -130,18 +156,9 @@ SceneStudy& study(Workshop& workshop, const std::string& name, const ThesisChoic
             m.equal_error =
                 match_error(workshop, *s.scene, *s.reference, *s.curve, m.ours.mean_error());
         }
-        for (const int cap : choices.caps) {
-            workshop.tell(
-                fmt::format("{}: the thesis' choices, at most {} samples a pixel", name, cap));
-            ThesisStudy t;
-            t.label = fmt::format("thesis' choices, at most {}", cap);
-            t.timed = workshop.render(*s.scene, thesis_options(workshop, choices, cap));
-            t.error = s.reference->error(t.timed.result.image);
-            t.breakdown = breakdown_of(t.timed, s);
-            t.uniform_error_same_time = interpolated_error(*s.curve, s.curve->spp_in(t.timed.cpu));
-            t.uniform_cpu_same_error = s.curve->spp_for(t.error) * s.curve->cpu_per_spp();
-            s.thesis.push_back(std::move(t));
-        }
+        for (const int cap : choices.caps)
+            for (const FilterRule filter : kFilters)
+                s.thesis.push_back(thesis_study(workshop, s, choices, cap, filter));
         return s;
     });
 }
@@ -202,6 +219,9 @@ Table comparison_table(const SceneStudy& s) {
 
 nlohmann::json to_json(const SceneStudy& s) {
     using nlohmann::json;
+    const auto optional_number = [](const std::optional<double>& v) {
+        return v ? json(*v) : json();
+    };
     const auto sampled = [](const Sampled& v) {
         return json{{"error", v.error}, {"cpu", v.cpu}, {"spp", v.spp}};
     };
@@ -231,6 +251,9 @@ nlohmann::json to_json(const SceneStudy& s) {
     }
     for (const ThesisStudy& t : s.thesis)
         j["thesis"].push_back({{"label", t.label},
+                               {"cap", t.cap},
+                               {"filter", name_of(t.filter)},
+                               {"k", optional_number(t.timed.result.statistics.density_factor)},
                                {"cpu", t.timed.cpu},
                                {"error", t.error},
                                {"spp", t.timed.result.statistics.samples_per_pixel},

@@ -30,6 +30,8 @@ struct MethodStudy {
 /// What the thesis' own choices give, beside the path tracer as the curve has it.
 struct ThesisStudy {
     std::string label;
+    int cap = 0;  ///< most samples of a pixel
+    FilterRule filter = FilterRule::thesis;
     Timed timed;
     double error = 0, uniform_error_same_time = 0, uniform_cpu_same_error = 0;
     Breakdown breakdown;
@@ -41,7 +43,7 @@ struct SceneStudy {
     const Reference* reference = nullptr;  ///< likewise
     std::unique_ptr<UniformCurve> curve;
     std::vector<MethodStudy> methods;  ///< covariance, hybrid
-    std::vector<ThesisStudy> thesis;   ///< by limit of samples
+    std::vector<ThesisStudy> thesis;   ///< by limit of samples, with each of the three filters
 };
 
 /// What the thesis used.

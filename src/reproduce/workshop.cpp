@@ -80,9 +80,10 @@ std::string render_command(const LoadedScene& scene, const RenderOptions& o) {
     if (o.cov_spp) s += fmt::format(" --cov-spp {}", *o.cov_spp);
     if (o.max_spp) s += fmt::format(" --max-spp {}", *o.max_spp);
     if (o.density != d.density) s += " --density thesis";
-    if (o.filter != d.filter) s += " --filter thesis";
-    if (o.occlusion == Occlusion::grid) s += fmt::format(" --occlusion grid --voxels {}", o.voxels);
-    if (o.occlusion == Occlusion::none) s += " --occlusion none";
+    if (o.density_factor) s += fmt::format(" --k {}", *o.density_factor);
+    if (o.filter != d.filter) s += fmt::format(" --filter {}", name_of(o.filter));
+    if (o.occlusion != d.occlusion) s += fmt::format(" --occlusion {}", name_of(o.occlusion));
+    if (asks_grid(o.occlusion)) s += fmt::format(" --voxels {}", o.voxels);
     if (o.brdf_covariance != d.brdf_covariance) s += " --brdf-covariance global";
     if (o.texture_bandwidth != d.texture_bandwidth) s += " --texture-bandwidth highest";
     if (o.progressive) s += " --progressive";

@@ -1,12 +1,13 @@
 """The image: layers, windows, metadata, and the PNG beside it."""
 
+import json
 import math
 import struct
 import unittest
 import zlib
 
 import exr
-from support import TINY, DONE, CliTest
+from support import TINY, DONE, USAGE, CliTest
 
 PLAIN = (
     "R G B A raw.R raw.G raw.B albedo.R albedo.G albedo.B N.X N.Y N.Z Z variance.R variance.G variance.B error.Y samples.Y"
@@ -60,6 +61,40 @@ class Layers(CliTest):
         for paths in (2, 3):
             samples = self.layers("--spp", 3.5, "--cov-spp", paths).pixels["samples.Y"]
             self.assertAlmostEqual(sum(samples) / len(samples), 3.5, delta=0.035)
+
+    def test_factor_of_the_thesis_density(self):
+        thesis = ["--method", "covariance", "--density", "thesis"]
+
+        def rendered(*arguments):
+            image = self.layers(*thesis, *arguments, "--stats", "stats.json")
+            statistics = json.loads((self.folder / "stats.json").read_text())
+            return image.pixels["samples.Y"], image.pixels["density.Y"], statistics
+
+        # A budget of samples makes a factor, which makes the same counts.
+        by_budget, density, statistics = rendered("--spp", 7, "--max-spp", 60)
+        k = statistics["k"]
+        by_factor, _, again = rendered("--k", k, "--max-spp", 60)
+        self.assertAlmostEqual(again["k"] / k, 1, delta=1e-4)
+        self.assertAlmostEqual(again["spp"], 7, delta=0.01)
+        self.assertLessEqual(sum(a != b for a, b in zip(by_budget, by_factor)), 0.01 * len(by_budget))
+        # Counts are the density, but for whole numbers, the limit and paths that were needed to know it.
+        for n, wanted in zip(by_budget, density):
+            self.assertLessEqual(abs(n - min(60, max(2, wanted))), 1.001)
+
+        # Twice the factor is twice the samples where no limit is in the way; nothing else decides.
+        few, _, statistics = rendered("--k", 0.2, "--cov-spp", 0.25)
+        self.assertAlmostEqual(statistics["k"], 0.2, places=6)
+        self.assertLess(statistics["spp"], 1)
+        self.assertLess(sum(few) / len(few), 1)
+        self.assertEqual(min(few), 0)
+        _, once, _ = rendered("--k", 50)
+        many, twice, _ = rendered("--k", 100)
+        for a, b, n in zip(once, twice, many):
+            self.assertAlmostEqual(b, 2 * a, delta=0.05 * b)
+            self.assertLessEqual(abs(n - max(2, b)), 1.001)
+        self.write("scene.pbrt", TINY)
+        for others in (["--method", "hybrid"], ["--method", "covariance"], [*thesis, "--progressive"]):
+            self.assert_fails(self.run_program("render", "scene.pbrt", "-o", "no.exr", "--k", "5", *others), USAGE, "--k")
 
     def test_image_is_as_bright_as_its_few_samples(self):
         size = ["--resolution", "49x32"]  # in odd widths every second pixel is on the same fields of a checkerboard

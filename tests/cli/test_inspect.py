@@ -10,6 +10,13 @@ from support import DONE, IO, SCENE, USAGE, CliTest
 ENTRIES = [f"{i}{j}" for i in range(5) for j in range(i, 5)]
 
 
+def determinant(matrix):
+    if len(matrix) == 1:
+        return matrix[0][0]
+    minors = ([row[:i] + row[i + 1 :] for row in matrix[1:]] for i in range(len(matrix)))
+    return sum((-1) ** i * matrix[0][i] * determinant(minor) for i, minor in enumerate(minors))
+
+
 class Inspect(CliTest):
     def setUp(self):
         super().setUp()
@@ -70,6 +77,23 @@ class Inspect(CliTest):
         a, b = f["major"] ** 2, f["minor"] ** 2
         for found, expected in ((a * c * c + b * s * s, xx), ((a - b) * c * s, xy), (a * s * s + b * c * c, yy)):
             self.assertAlmostEqual(found, expected, places=5)
+
+    def test_count_of_the_hypercube(self):
+        self.image = exr.read(self.rendered("--method", "covariance", "--density", "thesis", "--spp", "6", "--resolution", "40x30"))
+        k = self.image.value("covtrace:k")
+        window = [0, 0, 1 / math.pi**2, 1 / math.pi**2, 3 / math.pi**2]
+        for x, y in ((21, 17), (5, 25)):
+            found = self.inspect("--pixel", f"{x},{y}")["pixel"]
+            matrix = [[v + (window[i] if i == j else 0) for j, v in enumerate(row)] for i, row in enumerate(found["covariance"])]
+            # Per aperture: pi lens radii squared.
+            expected = math.pi * math.sqrt(max(0, determinant(matrix)))
+            self.assertAlmostEqual(found["hypercube"]["sqrt_det"], expected, delta=1e-3 * expected + 1e-6)
+            self.assertAlmostEqual(found["hypercube"]["k"] / float(k), 1, places=4)
+            self.assertAlmostEqual(found["hypercube"]["samples"], found["hypercube"]["k"] * found["hypercube"]["sqrt_det"], places=6)
+        text = self.run_program("inspect", "out.exr", "--pixel", "21,17").stdout
+        self.assertRegex(text, r"samples per unit hypercube .*sqrt\|S\| = \S+, times k = ")
+        self.rendered("--spp", "6", "--resolution", "40x30")
+        self.assertEqual(set(self.inspect("--pixel", "21,17")["pixel"]["hypercube"]), {"sqrt_det"})
 
     def test_pixel_for_people(self):
         result = self.run_program("inspect", "out.exr", "--pixel", "21,17")

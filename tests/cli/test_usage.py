@@ -19,7 +19,7 @@ class Help(CliTest):
                 result = self.run_program(*arguments)
                 self.assertEqual(result.code, DONE, result)
                 self.assertEqual(result.stderr, "")
-                self.assert_fits(result.stdout, 60 if arguments[0] == "render" else 24)
+                self.assert_fits(result.stdout, 62 if arguments[0] == "render" else 24)
 
     def test_help_names_commands_and_options(self):
         overview = self.run_program("--help").stdout
@@ -27,7 +27,7 @@ class Help(CliTest):
             self.assertIn(command, overview)
         options = self.run_program("render", "--help").stdout
         for option in (
-            "--output --method --spp --time --cov-spp --density --max-spp --filter --resolution --crop --max-depth --seed "
+            "--output --method --spp --time --cov-spp --density --k --max-spp --filter --resolution --crop --max-depth --seed "
             "--threads --isa --shutter --focus --fstop --png --layers --layer-names --tev --tev-layers --progress --texture-memory --stats --reproducible "
             "--film --checkpoint --every --resume --shard --max-memory --debug-pixel"
         ).split():
@@ -73,6 +73,7 @@ class WrongCommandLines(CliTest):
             "--error": ["0", "-1", "x", "nan"],
             "--max-spp": ["0", "x", "0x10", "1e3", "1073741825"],
             "--density": ["even"],
+            "--k": ["0", "-1", "x", "nan", "inf", "1e13", "", "3"],  # the last one: not with hybrid
             "--filter": ["none"],
             "--resolution": ["0x5", "5x0", "-4x4", "640", "640x", "640x360x2", "axb", "640X360", " 64x64", "99999999999x1", ""],
             "--crop": ["0,0,8", "0,0,8,8,8", "a,b,c,d", "4,4,4,8", "8,0,4,8", "0,0,25,16", "-1,0,8,8", "0,0,8,17", ""],

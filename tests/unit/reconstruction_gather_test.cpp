@@ -249,11 +249,25 @@ TEST(FilterField, SpectraBeyondFloatsGiveTheNarrowestFilter) {
     const std::vector<Sym2<float>> spectrum{
         {kMost, 0, 1}, {kInf, 0, kInf}, {kInf, kInf, kInf}, {kNan, 0, 1}, {1, kNan, 1}};
     const FilterSettings settings = covariance::filter_settings(16);
-    for (const FilterRule rule : {FilterRule::verified, FilterRule::thesis})
+    for (const FilterRule rule : {FilterRule::verified, FilterRule::matched, FilterRule::thesis})
         for (const auto& filter : filter_field(spectrum, 5, 1, rule, settings).covariance) {
             EXPECT_NEAR(filter.xx, settings.limits.s_min * settings.limits.s_min, 1e-6f);
             EXPECT_TRUE(std::isfinite(filter.xy) && std::isfinite(filter.yy));
         }
+}
+
+/// Whatever the count of samples is.
+TEST(FilterField, MatchedRuleHasTheSignalsOwnCovariance) {
+    const std::vector<Sym2<float>> spectrum{{0.01f, 0.002f, 0.02f}};
+    for (const double samples : {1.0, 16.0, 1024.0}) {
+        const FilterField field =
+            filter_field(spectrum, 1, 1, FilterRule::matched, covariance::filter_settings(samples));
+        // A Gaussian exp(-p^T F^-1 p / 2) has a spectrum of the covariance (4 pi^2 F)^-1.
+        const auto own = covariance::inverse(covariance::four_pi_sq<float> * field.covariance[0]);
+        EXPECT_NEAR(own.xx, spectrum[0].xx, 1e-6f) << samples;
+        EXPECT_NEAR(own.xy, spectrum[0].xy, 1e-6f) << samples;
+        EXPECT_NEAR(own.yy, spectrum[0].yy, 1e-6f) << samples;
+    }
 }
 
 TEST(FilterField, ThesisRuleIsWiderByItsConstant) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <ranges>
 #include <span>
 #include <vector>
 
@@ -11,11 +12,36 @@
 
 namespace covariance {
 
+/// Densities side by side, one per pixel: a vector or span of floats or doubles.
+template <typename Densities>
+concept DensityRange = std::ranges::contiguous_range<Densities> &&
+    std::floating_point<std::ranges::range_value_t<Densities>>;
+
 /// What a pixel gets samples for.
 enum class DensityRule {
     tempered,  ///< n ~ sqrt( sqrt(det S2D) min(N_int, 4) ), a tenth of it shared out evenly
     thesis     ///< n ~ sqrt(det S2D) N_int, equation 5.3 of the thesis read as a Schur complement
 };
+
+namespace detail {
+
+/// `density(spectrum, N_int)` of every pixel, with spectra that filters can use; 0 where not
+/// finite.
+template <std::floating_point T, typename Density>
+[[nodiscard]] std::vector<T> usable_densities(const Prediction<T>& prediction, T c,
+                                              const FilterLimits<T>& limits,
+                                              const Density& density) {
+    std::vector<T> g(prediction.spectrum.size());
+    for (std::size_t i = 0; i < g.size(); ++i) {
+        const Sym2<T> usable =
+            limit_spectrum(prediction.spectrum[i], c, limits.s_min, limits.s_max);
+        g[i] = density(usable, prediction.interior_count[i]);
+        if (!std::isfinite(g[i])) g[i] = 0;
+    }
+    return g;
+}
+
+}  // namespace detail
 
 /// Densities by a rule, without a norm; 0 where they are not finite. The spectra are first limited
 /// to what filters of width factor `c` and the given limits can use (`limit_spectrum`), so that no
@@ -23,16 +49,19 @@ enum class DensityRule {
 template <std::floating_point T>
 [[nodiscard]] std::vector<T> densities(const Prediction<T>& prediction, DensityRule rule,
                                        NonDeduced<T> c, const FilterLimits<NonDeduced<T>>& limits) {
-    std::vector<T> g(prediction.spectrum.size());
-    for (std::size_t i = 0; i < g.size(); ++i) {
-        const Sym2<T> usable =
-            limit_spectrum(prediction.spectrum[i], c, limits.s_min, limits.s_max);
-        const T interior = prediction.interior_count[i];
-        g[i] = rule == DensityRule::thesis ? thesis_density(usable, interior)
-                                           : tempered_density(usable, interior);
-        if (!std::isfinite(g[i])) g[i] = 0;
-    }
-    return g;
+    return detail::usable_densities<T>(
+        prediction, c, limits, [rule](const Sym2<T>& usable, T interior) {
+            return rule == DensityRule::thesis ? thesis_density(usable, interior)
+                                               : tempered_density(usable, interior);
+        });
+}
+
+/// The thesis' N = k sqrt|S| for k = 1, samples per pixel (`hypercube_density`), from spectra that
+/// are limited in the same way; 0 where not finite.
+template <std::floating_point T>
+[[nodiscard]] std::vector<T> hypercube_counts(const Prediction<T>& prediction, NonDeduced<T> c,
+                                              const FilterLimits<NonDeduced<T>>& limits) {
+    return detail::usable_densities<T>(prediction, c, limits, hypercube_density<T>);
 }
 
 /// The same with mean 1; the tempered rule shares a tenth out evenly.
@@ -85,12 +114,9 @@ double level_of(std::size_t n, std::int64_t total, const Wanted& wanted, double 
     return hi;
 }
 
-/// Whole counts with the sum `total`, or as near to it as `wanted` can come in [lo, hi]; fractions
-/// are carried along.
+/// Whole counts near `wanted(i, level)`; fractions are carried along.
 template <typename Wanted>
-std::vector<std::uint32_t> counts_of(std::size_t n, std::int64_t total, const Wanted& wanted,
-                                     double lo, double hi) {
-    const double level = level_of(n, total, wanted, lo, hi);
+std::vector<std::uint32_t> counts_of(std::size_t n, const Wanted& wanted, double level) {
     constexpr int fraction_bits = 20;
     constexpr std::int64_t one = std::int64_t{1} << fraction_bits;
     std::vector<std::uint32_t> counts(n);
@@ -104,6 +130,38 @@ std::vector<std::uint32_t> counts_of(std::size_t n, std::int64_t total, const Wa
     return counts;
 }
 
+/// Multiples of a density, never below `at_least` nor above `most(i)`.
+template <std::floating_point T, typename Most>
+struct Multiple {
+    std::span<const T> density;
+    std::span<const std::uint32_t> at_least;
+    Most most;
+
+    double operator()(std::size_t i, double factor) const {
+        const double lo = at_least[i];
+        return std::clamp(factor * double(density[i]), lo, std::max(lo, most(i)));
+    }
+    double sum(double factor) const {
+        double s = 0;
+        for (std::size_t i = 0; i < density.size(); ++i) s += (*this)(i, factor);
+        return s;
+    }
+    /// The factor with which the sum is, or comes nearest to, `total`.
+    double factor_of(std::int64_t total) const {
+        double hi = 1;
+        while (sum(hi) < double(total) && hi < 1e12) hi *= 2;
+        return level_of(density.size(), total, *this, 0, hi);
+    }
+};
+
+/// With the same limit everywhere, of densities in float or double.
+template <DensityRange Densities>
+auto multiple_below(const Densities& density, std::span<const std::uint32_t> at_least,
+                    std::uint32_t at_most) {
+    auto most = [at_most](std::size_t) { return double(at_most); };
+    return Multiple<std::ranges::range_value_t<Densities>, decltype(most)>{density, at_least, most};
+}
+
 }  // namespace detail
 
 /// Counts as near to one multiple of the density as `most(i)`, never below `at_least`, allows.
@@ -112,39 +170,38 @@ template <std::floating_point T, typename Most>
                                                            std::int64_t total,
                                                            std::span<const std::uint32_t> at_least,
                                                            const Most& most) {
-    const std::size_t n = density.size();
-    const auto wanted = [&](std::size_t i, double scale) {
-        const double lo = at_least[i];
-        return std::clamp(scale * double(density[i]), lo, std::max(lo, most(i)));
-    };
-    const auto sum = [&](double scale) {
-        double s = 0;
-        for (std::size_t i = 0; i < n; ++i) s += wanted(i, scale);
-        return s;
-    };
-    double hi = 1;
-    while (sum(hi) < double(total) && hi < 1e12) hi *= 2;
-    return detail::counts_of(n, total, wanted, 0, hi);
+    const detail::Multiple<T, Most> multiple{density, at_least, most};
+    return detail::counts_of(density.size(), multiple, multiple.factor_of(total));
 }
 
 /// Sample counts with the given total, as near to a multiple of `density` as `at_least` (per
 /// pixel, what has been taken already) and `at_most` (one number) allow. The sum is exactly `total`
 /// where the limits allow it, else as near to it as they do. Fractions are carried along the rows.
-[[nodiscard]] inline std::vector<std::uint32_t> allocate(std::span<const float> density,
-                                                         std::int64_t total,
-                                                         std::span<const std::uint32_t> at_least,
-                                                         std::uint32_t at_most) {
-    return counts_by_density(density, total, at_least,
-                             [at_most](std::size_t) { return double(at_most); });
+template <DensityRange Densities>
+[[nodiscard]] std::vector<std::uint32_t> allocate(const Densities& density, std::int64_t total,
+                                                  std::span<const std::uint32_t> at_least,
+                                                  std::uint32_t at_most) {
+    const auto multiple = detail::multiple_below(density, at_least, at_most);
+    return detail::counts_of(std::size(density), multiple, multiple.factor_of(total));
 }
 
-/// The same with densities in double.
-[[nodiscard]] inline std::vector<std::uint32_t> allocate(std::span<const double> density,
-                                                         std::int64_t total,
-                                                         std::span<const std::uint32_t> at_least,
-                                                         std::uint32_t at_most) {
-    return counts_by_density(density, total, at_least,
-                             [at_most](std::size_t) { return double(at_most); });
+/// The multiple of the density that `allocate` gives with the same arguments, wherever the limits
+/// leave a pixel free: the k of the thesis where the density is `hypercube_counts`. 0 where no
+/// multiple comes near the total.
+template <DensityRange Densities>
+[[nodiscard]] double density_factor(const Densities& density, std::int64_t total,
+                                    std::span<const std::uint32_t> at_least,
+                                    std::uint32_t at_most) {
+    return detail::multiple_below(density, at_least, at_most).factor_of(total);
+}
+
+/// The average count of `factor` times the density between the same limits: what `density_factor`
+/// takes back to the factor.
+template <DensityRange Densities>
+[[nodiscard]] double mean_count(const Densities& density, double factor,
+                                std::span<const std::uint32_t> at_least, std::uint32_t at_most) {
+    return detail::multiple_below(density, at_least, at_most).sum(factor) /
+           double(std::size(density));
 }
 
 }  // namespace covariance

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include "covariance/preintegrate.hpp"
 
@@ -97,6 +98,19 @@ template <std::floating_point T>
 template <std::floating_point T>
 [[nodiscard]] T thesis_density(const Sym2<T>& spectrum, NonDeduced<T> integration) noexcept {
     return image_density(spectrum) * integration;
+}
+
+/// The thesis' N for k = 1: sqrt det(S + W) per unit hypercube, which is one pixel, the whole
+/// aperture and the whole shutter interval. So k times this is a count per pixel.
+///
+/// An aperture of unit area has the radius 1/sqrt(pi): lengths in radii shrink by sqrt(pi) on two
+/// axes, and sqrt det(S + W), of cycles per radius, grows by pi. With `sensor_window()` W has
+/// pi sqrt(det W_rr) = sqrt(3)/pi^2. The windows stand for the "small quantities" that the thesis
+/// adds to the diagonal lest one constant axis make the determinant vanish.
+/// Source   Belcour 2012 thesis, section 5.1; with a lattice k is `lattice_factor()`.
+template <std::floating_point T>
+[[nodiscard]] T hypercube_density(const Sym2<T>& spectrum, NonDeduced<T> integration) noexcept {
+    return std::numbers::sqrt3_v<T> / (pi<T> * pi<T>)*thesis_density(spectrum, integration);
 }
 
 /// clamp(round(N), n_min, n_max), the thesis' count for one pixel. A NaN counts as n_max.
