@@ -11,6 +11,7 @@
 #include "cli/options.h"
 #include "core/parallel.h"
 #include "geometry/voxel_grid.h"
+#include "laboratory/filter_change.h"
 #include "laboratory/local_spectrum.h"
 #include "laboratory/prediction.h"
 #include "render/scene_file.h"
@@ -40,6 +41,8 @@ struct PixelComparison {
     covariance::SymmetricMatrix5<double> predicted;
     double luminance = 0;  ///< of the central ray
     MeasuredSpectrum measured;
+    /// What the filters that follow from both change.
+    FilterChange change_predicted, change_measured;
 
     double bandwidth(const covariance::SymmetricMatrix5<double>& s, size_t axis) const {
         return std::sqrt(std::max(0.0, s(axis, axis)));
@@ -62,6 +65,17 @@ nlohmann::json matrix_json(const covariance::SymmetricMatrix5<double>& s) {
     return rows;
 }
 
+/// Deviations of a filter along its axes, pixels, the longer one first.
+std::array<double, 2> deviations(const covariance::SymmetricMatrix5<double>& sigma) {
+    const auto eigenvalues = covariance::eigen(filter_of(sigma));
+    return {std::sqrt(eigenvalues.high), std::sqrt(eigenvalues.low)};
+}
+
+nlohmann::json filter_json(const covariance::SymmetricMatrix5<double>& sigma,
+                           const FilterChange& change) {
+    return {{"deviations", deviations(sigma)}, {"change", change.change}, {"noise", change.noise}};
+}
+
 nlohmann::json to_json(const PixelComparison& c, const MeasureArguments& a) {
     nlohmann::json j = {{"pixel", c.pixel},
                         {"resolution", c.resolution},
@@ -74,7 +88,9 @@ nlohmann::json to_json(const PixelComparison& c, const MeasureArguments& a) {
                         {"window", c.measured.window},
                         {"luminance_predicted", c.luminance},
                         {"luminance_measured", c.measured.mean},
-                        {"bandwidth_error", c.measured.bandwidth_error}};
+                        {"bandwidth_error", c.measured.bandwidth_error},
+                        {"filter_predicted", filter_json(c.predicted, c.change_predicted)},
+                        {"filter_measured", filter_json(c.measured.sigma, c.change_measured)}};
     for (size_t i = 0; i < 5; ++i) {
         const auto ratio = c.ratio(i);
         j["bandwidth_predicted"].push_back(c.bandwidth(c.predicted, i));
@@ -107,6 +123,16 @@ void print_table(const PixelComparison& c, const MeasureArguments& a) {
                    c.measured.bandwidth_error[i], c.measured.window[i],
                    ratio ? fmt::format("{:.3f}", *ratio) : "-");
     }
+    fmt::print("filter, c = 2     deviations, pixels  change of the 5x5 pixels around, rms\n");
+    const auto print_filter = [](const char* name,
+                                 const covariance::SymmetricMatrix5<double>& sigma,
+                                 const FilterChange& change) {
+        const auto [major, minor] = deviations(sigma);
+        fmt::print("  of the {:<10} {:>7.2f} by {:>5.2f}  {:.2f} % (noise of a pixel {:.2f} %)\n",
+                   name, major, minor, 100 * change.change, 100 * change.noise);
+    };
+    print_filter("prediction", c.predicted, c.change_predicted);
+    print_filter("measured", c.measured.sigma, c.change_measured);
 }
 
 int measure_pixel(MeasureArguments a) {
@@ -130,19 +156,27 @@ int measure_pixel(MeasureArguments a) {
     scene.prepare_spectra();
     std::optional<VoxelGrid> grid;
     std::optional<OccluderQuery> query;
-    if (a.occlusion == Occlusion::grid)
+    if (asks_grid(a.occlusion))
         grid.emplace(scene.geometry, VoxelGridOptions{.width = a.voxels});
     else if (a.occlusion == Occlusion::query)
         query.emplace(scene.geometry);
 
     const SensorRays rays(scene, {float(pixel[0]) + 0.5f, float(pixel[1]) + 0.5f});
     const int depth = a.max_depth.value_or(scene.description.max_depth);
-    const PathReplay replay(scene, {grid ? &*grid : nullptr, query ? &*query : nullptr},
-                            a.brdf_covariance);
+    const PathReplay replay(
+        scene,
+        {grid ? &*grid : nullptr, query ? &*query : nullptr, a.occlusion == Occlusion::voxels},
+        a.brdf_covariance);
     const PathCovariance predicted = predict(scene, replay, rays, depth, a.paths, a.measure.seed);
-    PixelComparison c{pixel, {width, height}, predicted.sigma, predicted.weight, {}};
+    PixelComparison c{pixel, {width, height}, predicted.sigma, predicted.weight, {}, {}, {}};
     a.measure.axes = sensor_axes(scene);
-    c.measured = measure(radiance_field(scene, rays, depth, a.measure.seed), a.measure);
+    const LocalField field = radiance_field(scene, rays, depth, a.measure.seed);
+    c.measured = measure(field, a.measure);
+    const auto change_by = [&](const covariance::SymmetricMatrix5<double>& sigma) {
+        return filter_change(field, filter_of(sigma), a.measure.samples, a.measure.seed);
+    };
+    c.change_predicted = change_by(c.predicted);
+    c.change_measured = change_by(c.measured.sigma);
     if (!(c.measured.mean > 0) && !a.quiet)
         say("warning: no light reaches pixel {},{}: nothing was measured\n", pixel[0], pixel[1]);
     if (a.json)
@@ -167,10 +201,12 @@ void add_measure(CLI::App& app, Invocation& invocation) {
               "radiance samples (default 262144, twice)");
     add_whole(c, "--paths", a->paths, 1, 1 << 24,
               "covariance paths of the prediction (default 1024)");
-    add_choice<Occlusion>(
-        c, "--occlusion", a->occlusion,
-        {{"query", Occlusion::query}, {"grid", Occlusion::grid}, {"none", Occlusion::none}},
-        "how the prediction finds edges beside paths");
+    add_choice<Occlusion>(c, "--occlusion", a->occlusion,
+                          {{"query", Occlusion::query},
+                           {"grid", Occlusion::grid},
+                           {"voxels", Occlusion::voxels},
+                           {"none", Occlusion::none}},
+                          "how the prediction finds edges beside paths");
     add_choice<BrdfCovariance>(
         c, "--brdf-covariance", a->brdf_covariance,
         {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}},

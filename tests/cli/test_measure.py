@@ -50,6 +50,10 @@ class Measure(CliTest):
                     self.assertTrue(math.isfinite(matrix[i][k]))
                     self.assertEqual(matrix[i][k], matrix[k][i])
                 self.assertAlmostEqual(j[f"bandwidth_{name}"][i] ** 2, max(0, matrix[i][i]))
+        for name in ("filter_predicted", "filter_measured"):
+            longer, shorter = j[name]["deviations"]
+            self.assertTrue(0.49 < shorter <= longer < 15.01, j[name])
+            self.assertTrue(0 <= j[name]["change"] < 1 and 0 <= j[name]["noise"] < 1, j[name])
         for name in ("ratio", "bandwidth_error", "window"):
             self.assertEqual(len(j[name]), 5)
         for ratio, predicted, found in zip(
