@@ -62,6 +62,30 @@ class Layers(CliTest):
             samples = self.layers("--spp", 3.5, "--cov-spp", paths).pixels["samples.Y"]
             self.assertAlmostEqual(sum(samples) / len(samples), 3.5, delta=0.035)
 
+    def test_filters_by_their_constants(self):
+        rules = {rule: self.layers("--method", "covariance", "--spp", 16, "--filter", rule).pixels for rule in ("verified", "matched", "thesis")}
+        compared = 0
+        for matched, thesis in zip(*(zip(*(rules[r][f"filter.{s}"] for s in SYMMETRIC)) for r in ("matched", "thesis"))):
+            self.assertLessEqual(matched[0], thesis[0] * 1.00001)
+            # Variances along the axes; at the limits of 0.5 and 15 pixels rules give the same.
+            least, most = (
+                (xx + yy) / 2 + side * math.hypot((xx - yy) / 2, xy) for side, (xx, xy, yy) in ((-1, matched), (1, thesis))
+            )
+            if least > 0.26 and most < 220:
+                compared += 1
+                for a, b in zip(matched, thesis):
+                    self.assertAlmostEqual(b, 2 * math.pi * a, delta=1e-3 * most)
+        self.assertGreater(compared, 0)
+        for pixel in range(len(rules["verified"]["R"])):
+            self.assertEqual(rules["verified"]["raw.G"][pixel], rules["matched"]["raw.G"][pixel])
+
+    def test_every_voxel_occludes_more_than_the_nearest_at_their_distance(self):
+        widths = {}
+        for occlusion in ("grid", "voxels"):
+            pixels = self.layers("--method", "covariance", "--spp", 4, "--occlusion", occlusion, "--voxels", 12).pixels
+            widths[occlusion] = sum(math.log(xx * yy - xy * xy) for xx, xy, yy in zip(*(pixels[f"filter.{s}"] for s in SYMMETRIC)))
+        self.assertLess(widths["voxels"], widths["grid"])
+
     def test_factor_of_the_thesis_density(self):
         thesis = ["--method", "covariance", "--density", "thesis"]
 
@@ -93,6 +117,8 @@ class Layers(CliTest):
             self.assertAlmostEqual(b, 2 * a, delta=0.05 * b)
             self.assertLessEqual(abs(n - max(2, b)), 1.001)
         self.write("scene.pbrt", TINY)
+        told = self.run_program("render", "scene.pbrt", "-o", "out.exr", *map(str, [*thesis, "--spp", 7]))
+        self.assertRegex(told.stderr, r"out.exr: 7 samples per pixel \(k = [0-9.e+]+\) in ")
         for others in (["--method", "hybrid"], ["--method", "covariance"], [*thesis, "--progressive"]):
             self.assert_fails(self.run_program("render", "scene.pbrt", "-o", "no.exr", "--k", "5", *others), USAGE, "--k")
 

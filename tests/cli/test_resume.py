@@ -155,6 +155,8 @@ class Refused(FilmTest):
             ([*same, "--max-spp", "30"], "--max-spp"),
             ([*same, "--density", "thesis"], "--density"),
             ([*same, "--filter", "thesis"], "--filter"),
+            ([*same, "--filter", "matched"], "--filter"),
+            ([*same, "--occlusion", "voxels"], "--occlusion"),
             ([*same, "--occlusion", "none"], "--occlusion"),
             ([*same, "--brdf-covariance", "global"], "--brdf-covariance"),
             ([*same, "--resolution", "64x50"], "--resolution"),

@@ -28,6 +28,14 @@ TEST(FilmHeader, LyingHeadersAllocateNothing) {
     }
 }
 
+TEST(FilmHeader, KeepsTheRuleOfTheFilters) {
+    for (const FilterRule rule : {FilterRule::verified, FilterRule::matched, FilterRule::thesis}) {
+        RenderState s = random_state(Method::covariance, Stage::rounds, false, {0, 0, 3, 2});
+        s.filter = rule;
+        EXPECT_EQ(parse_film_header(film_header(s), size_t{1} << 30).filter, rule);
+    }
+}
+
 /// All that the program does with a film that it has read.
 void use(RenderState state) {
     EXPECT_NE(describe(state), "");
