@@ -122,7 +122,8 @@ TEST(Budget, TellsTheFactorThatItMakes) {
     const std::vector<double> density{0.5, 1, 2, 40};
     const std::vector<std::uint32_t> least{4, 0, 0, 0};
     // With the factor 6: 4 where 3 are wanted, 6, 12, and 100 where 240 are wanted.
-    EXPECT_NEAR(density_factor(density, 122, least, 100), 6, 1e-6);
+    EXPECT_NEAR(density_factor(density, 122, least, 100).value(), 6, 1e-6);
+    EXPECT_FALSE(density_factor(density, 401, least, 100).has_value());  // all are full
     EXPECT_DOUBLE_EQ(mean_count(density, 6, least, 100), 122.0 / 4);
     EXPECT_EQ(allocate(density, 122, least, 100), (std::vector<std::uint32_t>{4, 6, 12, 100}));
 }
@@ -133,7 +134,8 @@ TEST(Budget, GivesBackTheFactorOfAnyMean) {
     const std::vector<std::uint32_t> none(density.size(), 0);
     for (const double k : {0.3, 5.0, 98.0}) {
         const double total = mean_count(density, k, none, 1U << 30) * double(density.size());
-        EXPECT_NEAR(density_factor(density, std::llround(total), none, 1U << 30) / k, 1, 1 / total);
+        EXPECT_NEAR(density_factor(density, std::llround(total), none, 1U << 30).value() / k, 1,
+                    1 / total);
     }
 }
 

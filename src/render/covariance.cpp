@@ -32,8 +32,7 @@ class CovarianceRender {
 
     void run() {
         trace_rounds(job_, {[this] { return plan(); }, [this] { trace(); }});
-        if (const auto k = s_.metadata.find(kFactorName); k != s_.metadata.end())
-            job_.result.statistics.density_factor = std::get<float>(k->second);
+        job_.result.statistics.density_factor = factor();
         if (!job_.delivers()) return;
         job_.monitor.update("reconstruction", RenderJob::kTracingShare, s_.mean_count());
         const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
@@ -75,14 +74,16 @@ class CovarianceRender {
                                            ? allocate_on_demand(density, total, have, most)
                                            : allocate(density, total, have, most);
         if (!job_.begin_round(target, {std::move(counts)})) return false;
-        if (!has_factor()) {
-            for (float& d : density) d *= float(target);
-            s_.density = std::move(density);
-        } else if (target < enough) {
-            const std::vector<float> n =
-                hypercube_counts(*prediction_, settings.c, settings.limits);
-            tell_factor(settings, density_factor(n, total, have, most));
-        }
+        if (target >= enough) return true;
+        for (float& d : density) d *= float(target);
+        s_.density = std::move(density);
+        if (!has_factor()) return true;
+        const auto k = density_factor(hypercube_counts(*prediction_, settings.c, settings.limits),
+                                      total, have, most);
+        if (k)
+            tell_factor(settings, *k);
+        else
+            s_.metadata.erase(kFactorName);
         return true;
     }
 
@@ -106,9 +107,17 @@ class CovarianceRender {
     /// one would find pixels that lack a part of a sample.
     bool has_enough() const {
         constexpr double kRounding = 1e-5;  // of the factor in single precision, and of the total
+        const auto k = factor();
+        return job_.options.density_factor && k &&
+               *k >= *job_.options.density_factor * (1 - kRounding);
+    }
+
+    /// Of the last plan.
+    std::optional<double> factor() const {
         const auto k = s_.metadata.find(kFactorName);
-        return job_.options.density_factor && k != s_.metadata.end() &&
-               double(std::get<float>(k->second)) >= *job_.options.density_factor * (1 - kRounding);
+        if (k == s_.metadata.end()) return std::nullopt;
+        const float* value = std::get_if<float>(&k->second);  // films may have been changed
+        return value ? std::optional(double(*value)) : std::nullopt;
     }
 
     /// The average at which every pixel has the count that the factor which was asked for gives it.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <ranges>
 #include <span>
 #include <vector>
@@ -186,13 +187,17 @@ template <DensityRange Densities>
 }
 
 /// The multiple of the density that `allocate` gives with the same arguments, wherever the limits
-/// leave a pixel free: the k of the thesis where the density is `hypercube_counts`. 0 where no
-/// multiple comes near the total.
+/// leave a pixel free: the k of the thesis where the density is `hypercube_counts`. None where the
+/// limits keep every multiple below the total.
 template <DensityRange Densities>
-[[nodiscard]] double density_factor(const Densities& density, std::int64_t total,
-                                    std::span<const std::uint32_t> at_least,
-                                    std::uint32_t at_most) {
-    return detail::multiple_below(density, at_least, at_most).factor_of(total);
+[[nodiscard]] std::optional<double> density_factor(const Densities& density, std::int64_t total,
+                                                   std::span<const std::uint32_t> at_least,
+                                                   std::uint32_t at_most) {
+    constexpr double rounding = 1e-6;
+    const auto multiple = detail::multiple_below(density, at_least, at_most);
+    const double factor = multiple.factor_of(total);
+    if (multiple.sum(factor) < (1 - rounding) * double(total)) return std::nullopt;
+    return factor;
 }
 
 /// The average count of `factor` times the density between the same limits: what `density_factor`
