@@ -102,6 +102,65 @@ TEST(FilterField, PartsLimitEachOther) {
     EXPECT_NEAR(filter_size(alone.scattered.covariance[10]), 15, 1e-3);
 }
 
+TEST(CovarianceImage, OfNoPixelsStandsForNoLight) {
+    CovarianceImage<float> image(2, 1);
+    const CovarianceImage<float> none(0, 0);
+    image.add(1, 0, Matrix::diagonal(1, 2, 3, 4, 5), 2.0);
+    for (const auto& both : {merge(image, none), merge(none, image)}) {
+        EXPECT_EQ(both.width, 2);
+        EXPECT_EQ(both.covariance, image.covariance);
+        EXPECT_EQ(both.weight, image.weight);
+    }
+}
+
+/// A part without pixels means what one of the same size without light does, in filters and image.
+TEST(FilterField, PartsWithoutPixelsAreWithoutLight) {
+    const CovarianceImage<float> none(0, 0), dark(21, 1);
+    CovarianceImage<float> image(21, 1);
+    for (int x = 0; x < 21; ++x)
+        image.add(x, 0, Matrix::diagonal(x == 10 ? 1e6 : 1e-9, 1e-9, 0, 0, 0), 1.0);
+    const auto lit = filters_of_parts(image, none, 16),
+               with_dark = filters_of_parts(image, dark, 16);
+    EXPECT_EQ(lit.scattered.covariance, with_dark.scattered.covariance);
+    EXPECT_EQ(lit.in_view.covariance, with_dark.in_view.covariance);
+    const auto bright = filters_of_parts(none, image, 16);
+    EXPECT_EQ(bright.in_view.covariance, filters_of_parts(dark, image, 16).in_view.covariance);
+
+    const std::vector<covariance::Vec3<float>> colors(21, {1, 2, 3}), no_colors;
+    const std::vector<std::uint32_t> count(21, 1);
+    for (const auto& c : gather(colors, no_colors, count, lit)) EXPECT_FLOAT_EQ(c.y, 2);
+    for (const auto& c : gather(no_colors, colors, count, bright)) EXPECT_FLOAT_EQ(c.y, 2);
+    for (const auto& c : gather(colors, colors, count, lit)) EXPECT_FLOAT_EQ(c.y, 4);
+}
+
+TEST(FilterField, OfNoPixelsIsLimitedByNothing) {
+    FilterField<float> none, field{3, 1, std::vector<covariance::Sym2<float>>(3, {4, 0, 9})};
+    const FilterField<float> before = field;
+    const std::vector<bool> known(3, true);
+    const auto settings = filter_settings(16);
+    limit_parts<float>(field, none, known, {}, settings, settings);
+    EXPECT_EQ(field.covariance, before.covariance);
+    EXPECT_TRUE(none.covariance.empty());
+}
+
+/// Light that few paths find, all of it varying along x alone: between two of them the filter keeps
+/// its length only where the distance to them counts as known.
+TEST(FilterField, HolesCountAsKnownWithinAChosenDistance) {
+    CovarianceImage<float> image(21, 21);
+    for (const int x : {7, 13}) image.add(x, 10, Matrix::diagonal(0.05, 1e-9, 0, 0, 0), 1.0);
+    const auto middle = [&](const PartFilters<float>& f) {
+        return f.scattered.covariance[10 * 21 + 10];
+    };
+    const CovarianceImage<float> none(0, 0);
+    const auto narrow = middle(filters_of_parts(image, none, 16)),
+               wide = middle(filters_of_parts(image, none, 16, 3));
+    EXPECT_FLOAT_EQ(narrow.xx, narrow.yy);
+    EXPECT_GT(wide.yy, 4 * narrow.yy);
+    const auto still = middle(filters_of_parts(image, none, 16, 2));
+    EXPECT_FLOAT_EQ(still.xx, still.yy);
+    EXPECT_LT(wide.xx, wide.yy);
+}
+
 RC_GTEST_PROP(Budget, IsSpentToTheLastSampleInProportion, ()) {
     std::vector<double> density;
     for (int i = 0; i < 50; ++i) density.push_back(draw(0.2, 4));

@@ -13,7 +13,8 @@
 namespace covariance {
 
 /// Radiance-weighted mean covariances over (pixel x, pixel y, lens, lens, shutter), row by row.
-/// Weight 0: no path of the pixel found light, and the covariance is zero.
+/// Weight 0: no path of the pixel found light, and the covariance is zero. An image of 0x0 pixels
+/// stands for a part of the light that there is not.
 template <std::floating_point T = float>
 struct CovarianceImage {
     CovarianceImage(int w, int h)
@@ -42,9 +43,10 @@ struct CovarianceImage {
     }
 };
 
-/// The covariances of all light, from those of its parts.
+/// The covariances of all light, from those of its parts: images of one size, or of 0x0.
 template <std::floating_point T>
 [[nodiscard]] CovarianceImage<T> merge(const CovarianceImage<T>& a, const CovarianceImage<T>& b) {
+    if (a.weight.empty() || b.weight.empty()) return a.weight.empty() ? b : a;
     CovarianceImage<T> result = a;
     for (std::size_t i = 0; i < result.weight.size(); ++i) {
         if (!(b.weight[i] > 0)) continue;

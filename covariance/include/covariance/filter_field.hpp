@@ -93,14 +93,15 @@ void limit_growth(std::vector<T>& sizes, int width, int height, T slope) {
 
 /// Narrows filters near narrower ones: s = det(S_h)^(1/4) becomes min over q of s(q) + slope |p -
 /// q|. `others`, if not empty, are sizes s of other filters, one per pixel, that limit this field
-/// too: a border is one for all the light that meets there.
+/// too: a border is one for all the light that meets there. A field without pixels stays so.
 template <std::floating_point T>
 void limit_by_neighbours(FilterField<T>& field, const FilterSettings<NonDeduced<T>>& settings,
                          std::span<const NonDeduced<T>> others = {}) {
     std::vector<T> s(field.covariance.size());
     for (std::size_t i = 0; i < s.size(); ++i) s[i] = filter_size(field.covariance[i]);
     std::vector<T> limit = s;
-    for (std::size_t i = 0; i < others.size(); ++i) limit[i] = std::min(limit[i], others[i]);
+    for (std::size_t i = 0; i < std::min(limit.size(), others.size()); ++i)
+        limit[i] = std::min(limit[i], others[i]);
     detail::limit_growth(limit, field.width, field.height, settings.slope);
     for (std::size_t i = 0; i < s.size(); ++i)
         if (limit[i] < s[i])
@@ -171,33 +172,51 @@ void limit_parts(FilterField<T>& scattered, FilterField<T>& in_view,
     make_round_where_unknown(in_view, in_view_known, settings_in_view);
 }
 
+/// For every pixel whether it or one within `radius` columns and rows has a weight.
+template <std::floating_point T>
+[[nodiscard]] std::vector<bool> known_within(const CovarianceImage<T>& part, int radius) {
+    const auto index = [&](int x, int y) {
+        return std::size_t(y) * std::size_t(part.width) + std::size_t(x);
+    };
+    std::vector<bool> known(part.weight.size());
+    for (int y = 0; y < part.height; ++y)
+        for (int x = 0; x < part.width; ++x)
+            for (int py = std::max(0, y - radius); py <= std::min(part.height - 1, y + radius);
+                 ++py)
+                for (int px = std::max(0, x - radius); px <= std::min(part.width - 1, x + radius);
+                     ++px)
+                    if (part.weight[index(px, py)] > 0) known[index(x, y)] = true;
+    return known;
+}
+
 /// The filters of an image whose light is kept in two parts, from covariances to limits: what the
 /// gather needs, in one call.
 ///
 /// `scattered`: of light that a surface sent on; `in_view`: of emitters seen directly or through
-/// mirrors and clear glass alone (leave it empty where there are none).
+/// mirrors and clear glass alone. Both have one size; where there is no light of a part, leave its
+/// image as it was made, or hand over one of 0x0 pixels. The filters have that size in any case.
+/// `scattered_radius`, in pixels: how far from a pixel with scattered light others count as pixels
+/// that know theirs. At least 1, what `smooth` looks at; more where lamps are found by chance, so
+/// that most pixels are without light in the few paths that have covariances.
 template <std::floating_point T>
 [[nodiscard]] PartFilters<T> filters_of_parts(const CovarianceImage<T>& scattered,
                                               const CovarianceImage<NonDeduced<T>>& in_view,
-                                              double samples_per_pixel) {
+                                              double samples_per_pixel, int scattered_radius = 1) {
+    if (scattered.weight.empty() != in_view.weight.empty()) {
+        const CovarianceImage<T> dark(std::max(scattered.width, in_view.width),
+                                      std::max(scattered.height, in_view.height));
+        return filters_of_parts(scattered.weight.empty() ? dark : scattered,
+                                in_view.weight.empty() ? dark : in_view, samples_per_pixel,
+                                scattered_radius);
+    }
     const FilterSettings<T> settings = filter_settings<T>(samples_per_pixel),
                             bright = filter_settings_in_view<T>(samples_per_pixel);
-    const auto known = [](const CovarianceImage<T>& part) {
-        // By the pixel or one beside it, whose covariances `smooth` takes: where lights are found
-        // by chance, lone pixels without any are many.
-        std::vector<bool> result(part.weight.size());
-        for (int y = 0; y < part.height; ++y)
-            for (int x = 0; x < part.width; ++x)
-                for (int py = std::max(0, y - 1); py <= std::min(part.height - 1, y + 1); ++py)
-                    for (int px = std::max(0, x - 1); px <= std::min(part.width - 1, x + 1); ++px)
-                        if (part.weight[std::size_t(py * part.width + px)] > 0)
-                            result[std::size_t(y * part.width + x)] = true;
-        return result;
-    };
     PartFilters<T> filters{filter_field(preintegrate(smooth(scattered)), settings),
                            filter_field(preintegrate(smooth(in_view)), bright)};
-    limit_parts<T>(filters.scattered, filters.in_view, known(scattered), known(in_view), settings,
-                   bright);
+    // Pixels beside one with light take its covariance in `smooth`.
+    limit_parts<T>(filters.scattered, filters.in_view,
+                   known_within(scattered, std::max(1, scattered_radius)),
+                   known_within<T>(in_view, 1), settings, bright);
     return filters;
 }
 

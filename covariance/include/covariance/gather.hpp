@@ -56,9 +56,10 @@ std::pair<Vec3<double>, double> gaussian_mean(std::span<const Color> mean,
 /// Gathers an image by its filters.
 ///
 /// Shapes   mean, count: width * height, row by row; colours of any type with members x, y, z.
-///          (`Vec3<float>` or your own). Pixels without samples (count 0) and means that are not
-///          finite take no part; a pixel with nothing to gather from gets wider filters until it
-///          has.
+///          (`Vec3<float>` or your own).
+/// Errors   none. Pixels without samples (count 0) are left out, and so are means that are not
+///          finite: a NaN of the renderer is hidden here, not reported. A pixel with nothing to
+///          gather from gets wider filters until it has.
 template <Vec3Like Color, std::floating_point T>
 [[nodiscard]] std::vector<Vec3<T>> gather(std::span<const Color> mean,
                                           std::span<const std::uint32_t> count,
@@ -88,12 +89,15 @@ template <Vec3Like Color, std::floating_point T>
     return gather(std::span<const Color>(mean), std::span<const std::uint32_t>(count), field);
 }
 
-/// Both parts of the light, each through its filters, and their sum.
+/// Both parts of the light, each through its filters, and their sum. A part without light may be
+/// an empty vector.
 template <Vec3Like Color, std::floating_point T>
 [[nodiscard]] std::vector<Vec3<T>> gather(const std::vector<Color>& scattered,
                                           const std::vector<Color>& in_view,
                                           const std::vector<std::uint32_t>& count,
                                           const PartFilters<T>& filters) {
+    if (in_view.empty()) return gather(scattered, count, filters.scattered);
+    if (scattered.empty()) return gather(in_view, count, filters.in_view);
     std::vector<Vec3<T>> image = gather(scattered, count, filters.scattered);
     const std::vector<Vec3<T>> bright = gather(in_view, count, filters.in_view);
     for (std::size_t i = 0; i < image.size(); ++i) image[i] += bright[i];
