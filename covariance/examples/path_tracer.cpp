@@ -45,7 +45,7 @@ struct Camera {
 /// What a path leaves behind for the walk back.
 struct Vertex {
     Hit hit;
-    Vec to_camera;      ///< unit, towards the previous vertex
+    Vec to_camera;      ///< unit, to the next vertex towards the camera
     double direct = 0;  ///< mean radiance that the lamp adds at the pixel by way of this vertex
     Vec lamp_point;
 };

@@ -19,7 +19,10 @@
 
 namespace covariance {
 
-/// Where arriving light was sent out, as far as it changes how fast the light falls off.
+/// Where arriving light was sent out, as far as it changes how fast the light falls off: the lamp
+/// that was sampled, or that a path found by chance. In a flat mirror the lamp's mirror image
+/// counts, with its normal mirrored and the distance along the whole way; behind curved mirrors and
+/// glass leave both members as they are.
 template <std::floating_point T = double>
 struct Emitter {
     /// Unit normal of a Lambertian emitter, on either side; zero for one that shines evenly.

@@ -15,12 +15,14 @@ namespace covariance {
 /// disc starts at O + R (l1 e1 + l2 e2) and has the slope p - R l/z_f, p = (i/fpx, j/fpy).
 template <std::floating_point T = double>
 struct ThinLens {
-    Vec3<T> e1{1, 0, 0};   ///< direction, in the scene, of increasing pixel x
-    Vec3<T> e2{0, -1, 0};  ///< direction, in the scene, of increasing pixel y
-    Vec3<T> e3{0, 0, -1};  ///< optical axis, towards the scene
+    Vec3<T> e1{1, 0, 0};   ///< unit direction, in the scene, of increasing pixel x
+    Vec3<T> e2{0, -1, 0};  ///< unit direction, in the scene, of increasing pixel y
+    Vec3<T> e3{0, 0, -1};  ///< optical axis, unit, towards the scene
     T focus_distance = std::numeric_limits<T>::infinity();  ///< along e3, scene units
     T lens_radius = 0;                                      ///< scene units; 0 is a pinhole
-    T pixels_x = 1;  ///< focal length in pixels: width / (2 tan(horizontal field of view / 2))
+    /// Pixels per unit of slope, d(pixel x)/d(tan of the angle), the focal length in pixels:
+    /// width / (2 tan(horizontal field of view / 2)).
+    T pixels_x = 1;
     T pixels_y = 1;
     T shutter = 1;  ///< seconds the shutter is open
 };

@@ -3,7 +3,7 @@
 // outline is follows from the shapes themselves, so that no result has the grid's resolution but
 // the reach: one cell on either side of the ray.
 //
-//   OccluderGrid grid;
+//   OccluderGrid<double> grid;
 //   grid.add_triangle(a, b, c);  grid.add_sphere(center, radius, velocity);  ...
 //   grid.build(-shutter / 2, shutter / 2);
 //   field = travel_past(grid, field, from, to);                          (travel_past.hpp)
@@ -46,7 +46,8 @@ class OccluderGrid {
     explicit OccluderGrid(int cells = 24) : cells_(std::max(1, cells)) {}
 
     /// Adds a triangle that moves with `velocity` (of its middle: turning is not followed). Call
-    /// `build` after the last shape.
+    /// `build` after the last shape. A quad is two triangles; the corners that they share must be
+    /// the same to the last bit, or the diagonal counts as an outline: compute each corner once.
     void add_triangle(const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& c,
                       const Vec3<T>& velocity = {}) {
         add_edge(a, b, c, velocity);
@@ -54,7 +55,9 @@ class OccluderGrid {
         add_edge(c, a, b, velocity);
     }
 
-    /// Adds a sphere.
+    /// Adds a sphere. Segments that start or end within 1e-5 radius of its surface count as
+    /// starting or ending on it: positions of hits must be that exact, without an offset along the
+    /// normal, or the sphere is an occluder of its own light.
     void add_sphere(const Vec3<T>& center, T radius, const Vec3<T>& velocity = {}) {
         spheres_.push_back({center, velocity, radius});
     }

@@ -39,7 +39,7 @@ template <std::floating_point T>
 inline constexpr T mirror_receiver = T(1e6);  ///< and clear glass
 
 /// At a surface whose sharpest lobe has the angular covariance `window` (per axis, in outgoing
-/// slopes): `diffuse_receiver`, `mirror_receiver`, or that of a glossy lobe.
+/// slopes): `diffuse_receiver<T>`, `mirror_receiver<T>`, or that of a glossy lobe.
 template <std::floating_point T>
 [[nodiscard]] EdgeMeasure<T> edge_measure_at_surface(const SymmetricMatrix5<T>& leaving,
                                                      NonDeduced<T> whole,
