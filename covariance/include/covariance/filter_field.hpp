@@ -196,8 +196,9 @@ template <std::floating_point T>
 /// mirrors and clear glass alone. Both have one size; where there is no light of a part, leave its
 /// image as it was made, or hand over one of 0x0 pixels. The filters have that size in any case.
 /// `scattered_radius`, in pixels: how far from a pixel with scattered light others count as pixels
-/// that know theirs. At least 1, what `smooth` looks at; more where lamps are found by chance, so
-/// that most pixels are without light in the few paths that have covariances.
+/// that know theirs. At least 1, what `smooth` looks at; more may suit lamps that are found by
+/// chance, where most pixels have no light in the few paths with covariances; then the covariance
+/// of the nearest pixel with light is trusted from further away.
 template <std::floating_point T>
 [[nodiscard]] PartFilters<T> filters_of_parts(const CovarianceImage<T>& scattered,
                                               const CovarianceImage<NonDeduced<T>>& in_view,
