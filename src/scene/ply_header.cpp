@@ -111,10 +111,12 @@ class HeaderParser {
 
     void add_element(const std::vector<std::string_view>& w) {
         PlyElement e;
-        const bool has_count =
-            w.size() == 3 && std::from_chars(w[2].data(), w[2].data() + w[2].size(), e.count).ptr ==
-                                 w[2].data() + w[2].size();
-        if (!has_count) refuse("expected \"element\", its name, and a count >= 0");
+        // Counts beyond 64 bits are read to their end, too: only the error tells them from 0.
+        const std::string_view count = w.size() == 3 ? w[2] : std::string_view{};
+        const char* end = count.data() + count.size();
+        const auto [rest, error] = std::from_chars(count.data(), end, e.count);
+        if (error != std::errc{} || rest != end)
+            refuse("expected \"element\", its name, and a count >= 0");
         e.name = w[1];
         e.where = {file_, line_number_, 0};
         header_.elements.push_back(std::move(e));

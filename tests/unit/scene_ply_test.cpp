@@ -192,6 +192,10 @@ TEST(ScenePly, AbsurdCountsAreRefusedBeforeAllocating) {
         "element face 1\nproperty list uint uint vertex_indices\nend_header\n";
     EXPECT_TRUE(
         contains(error_of(huge), "m.ply:3: the PLY file is truncated or its header is wrong"));
+    const std::string beyond =
+        "ply\nformat ascii 1.0\nelement vertex 99999999999999999999\n" + std::string(kVertex) +
+        "element face 0\nproperty list uint uint vertex_indices\nend_header\n0 0 0\n";
+    EXPECT_TRUE(contains(error_of(beyond), "m.ply:3: expected \"element\", its name, and a count"));
     std::string list =
         header("binary_little_endian", 1, kVertex, 1, "property list uint uint vertex_indices\n");
     list += std::string(12, '\0') + bytes<uint32_t>(0xfffffff0u, false);
