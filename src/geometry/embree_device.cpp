@@ -18,9 +18,12 @@ std::string chosen_isa(RTCDevice device) {
 
 EmbreeDevice::EmbreeDevice(const std::string& isa) : isa_(isa) {
     device_ = rtcNewDevice(isa.empty() ? nullptr : ("isa=" + isa).c_str());
-    if (!device_)
+    if (!device_) {
+        if (rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY)
+            throw Error(ErrorKind::limit, "not enough memory to start the ray tracing");
         throw Error(ErrorKind::internal,
                     "Embree can't be started" + (isa.empty() ? "" : " with isa=" + isa));
+    }
     if (!rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED)) {
         rtcReleaseDevice(device_);
         throw Error(ErrorKind::internal,

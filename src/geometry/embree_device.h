@@ -24,8 +24,8 @@ using GeometryHandle = std::unique_ptr<RTCGeometryTy, EmbreeRelease<rtcReleaseGe
 
 class EmbreeDevice {
   public:
-    /// `isa`: empty, or one of sse2, avx, avx2, avx512. Throws Error(internal) where Embree can't
-    /// start.
+    /// `isa`: empty, or one of sse2, avx, avx2, avx512. Throws Error(limit) where memory runs out,
+    /// Error(internal) where Embree can't start.
     explicit EmbreeDevice(const std::string& isa);
     /// The instruction set in use: sse2, avx, avx2 or avx512.
     const std::string& isa() const { return isa_; }

@@ -5,7 +5,7 @@ import os
 import struct
 import unittest
 
-from support import DONE, HEADER, LIMIT, SCENE, TINY, WORLD, CliTest, limits, place_of
+from support import DONE, HEADER, LIMIT, SANITIZED, SCENE, TINY, WORLD, CliTest, limits, place_of
 
 TRIANGLE = [(-1, 0, 0), (1, 0, 0), (0, 1, 0)]
 
@@ -281,6 +281,12 @@ class Limits(SceneErrorTest):
     def test_little_memory_is_enough_for_a_little_scene(self):
         result = self.render(TINY, before=limits(AS=2 << 30))
         self.assertEqual(result.code, DONE, result)
+
+    @unittest.skipIf(SANITIZED, "a sanitizer needs more address space")
+    def test_too_little_memory_for_any_scene(self):
+        for megabytes in (120, 150):
+            result = self.render(TINY, before=limits(AS=megabytes << 20))
+            self.assert_fails(result, LIMIT, "not enough memory")
 
     def test_many_includes_end(self):
         for i in range(300):
