@@ -12,6 +12,13 @@ namespace covtrace {
 
 namespace {
 
+/// Some values are "given" and "not given", which "A, not B" would say the wrong way round.
+std::string contrast(const std::string& is, const std::string& expected) {
+    if (is.starts_with("not ") || expected.starts_with("not "))
+        return is + " there, " + expected + " here";
+    return is + ", not " + expected;
+}
+
 std::string text(double v) {
     std::ostringstream out;
     out << std::setprecision(9) << v;  // tells any two floats apart
@@ -235,11 +242,11 @@ std::optional<std::string> difference(const RenderIdentity& is, const RenderIden
     // What was asked for comes first: it explains the rest.
     for (const char* first : {"version", "scene", "images", "--method", "--resolution"})
         if (is.count(first) && expected.count(first) && is.at(first) != expected.at(first))
-            return std::string(first) + ": " + is.at(first) + ", not " + expected.at(first);
+            return std::string(first) + ": " + contrast(is.at(first), expected.at(first));
     for (const auto& [name, value] : expected) {
         const auto it = is.find(name);
         if (it == is.end()) return name + ": not told, not " + value;
-        if (it->second != value) return name + ": " + it->second + ", not " + value;
+        if (it->second != value) return name + ": " + contrast(it->second, value);
     }
     return std::nullopt;
 }

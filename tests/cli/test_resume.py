@@ -165,6 +165,7 @@ class Refused(FilmTest):
             ([*same, "--fstop", "3"], "--fstop"),
             ([*same, "--shutter", "0,0.5"], "--shutter"),
             ([*same, "--isa", "sse2"], "instruction set"),
+            ([*same, "--progressive"], "--progressive: not given there, given here"),
         ):
             with self.subTest(arguments=arguments):
                 self.refuse(*arguments, fragments=("c.film", name))
