@@ -6,6 +6,7 @@
 #include <new>
 #include <utility>
 
+#include "reconstruction/patch_distance.h"
 #include "render/job.h"
 
 namespace covtrace {
@@ -21,6 +22,18 @@ namespace {
 /// Layers and the buffers of the reconstruction, bytes per pixel: `bench/film_cost memory`.
 size_t image_bytes(Method method) {
     return method == Method::uniform ? 68 : method == Method::covariance ? 396 : 488;
+}
+
+/// The reconstruction's planes go on beyond the image, by the reach of its filters and by whole
+/// blocks of patches: bytes, measured on images of one row and of one column, where they are most
+/// of it.
+size_t border_bytes(Method method, const PixelBounds& region) {
+    if (method != Method::hybrid) return 0;
+    constexpr size_t kReach = 2 * 13, kBytes = 160;
+    const size_t width = size_t(region.width()), height = size_t(region.height());
+    const size_t all = (width + kReach + size_t(kLongestPatchRow)) *
+                       (height + kReach + size_t(kLargestPatchBlock));
+    return kBytes * (all - width * height);
 }
 
 /// What a denoiser adds to that. While it works the candidates are not there, of which only its own
@@ -40,8 +53,9 @@ std::map<std::string, size_t> render_memory(const FilmDescription& film,
         film_bytes_per_pixel(options.method, {options.emitters_apart, options.features});
     const PixelBounds region = render_region(film);
     const size_t pixels = size_t(region.width()) * size_t(region.height());
-    std::map<std::string, size_t> bytes{{"film", kept * pixels},
-                                        {"image", image_bytes(options.method) * pixels}};
+    std::map<std::string, size_t> bytes{
+        {"film", kept * pixels},
+        {"image", image_bytes(options.method) * pixels + border_bytes(options.method, region)}};
     if (options.method == Method::hybrid && options.denoiser)
         bytes["denoiser"] = denoiser_bytes(*options.denoiser, pixels);
     return bytes;

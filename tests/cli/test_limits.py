@@ -62,6 +62,15 @@ class Memory(FilmTest):
                 self.assert_no_file()
         self.run_render("plain", "hybrid", "--max-memory", "4G", "--spp", "1")
 
+    def test_long_and_narrow_images(self):
+        """Their borders take several times the memory of their pixels."""
+        for size in ("60000x1", "1x60000"):
+            result = self.run_program(
+                "render", "plain.pbrt", "-o", "out.exr", "--method", "hybrid", "--resolution", size, "--max-memory", "250M"
+            )
+            self.assert_fails(result, LIMIT, "--max-memory", "image")
+            self.assert_no_file()
+
     @unittest.skipIf(SANITIZED, "a sanitizer takes several times what the program does")
     def test_what_is_refused_would_not_have_fit(self):
         """The estimate is near the most that the process then has in memory."""
