@@ -68,14 +68,20 @@ PlainImage decode_qoi(Bytes bytes) {
     reader.take(4);
     const int64_t width = reader.big_u32(), height = reader.big_u32();
     const int channels = reader.u8();
-    reader.u8();
+    // Linear colours are those of a file of floating point: nothing is to be decoded.
+    constexpr int kLinear = 1;
+    const bool is_linear = reader.u8() == kLinear;
     if (channels != 3 && channels != 4) throw DecodeError("it has neither 3 nor 4 channels");
-    PlainImage image = make_plain_image(width, height, channels, 8);
+    PlainImage image = make_plain_image(width, height, channels, is_linear ? 0 : 8);
     QoiReader pixels(reader);
     for (int64_t i = 0; i < width * height; ++i) {
         const Pixel p = pixels.next();
-        image.bytes.insert(image.bytes.end(), {p.r, p.g, p.b});
-        if (channels == 4) image.bytes.push_back(p.a);
+        const std::array<uint8_t, 4> components{p.r, p.g, p.b, p.a};
+        for (size_t c = 0; c < size_t(channels); ++c)
+            if (is_linear)
+                image.values.push_back(float(components[c]) / 255.0f);
+            else
+                image.bytes.push_back(components[c]);
     }
     return image;
 }

@@ -60,7 +60,8 @@ PlainImage decode_targa(Bytes bytes);
 PlainImage decode_hdr(Bytes bytes);
 /// PFM of either byte order, scaled by the magnitude of its scale; binary PGM and PPM.
 PlainImage decode_pnm(Bytes bytes);
-/// The "Quite OK Image" format, qoiformat.org, version 1.0.
+/// The "Quite OK Image" format, qoiformat.org, version 1.0; as floating point where its header says
+/// that the colours are linear.
 PlainImage decode_qoi(Bytes bytes);
 
 }  // namespace covtrace

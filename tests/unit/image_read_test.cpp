@@ -118,6 +118,20 @@ TEST_F(Read, QoiChunks) {
               (std::vector<int>{10, 20, 30, 11, 20, 29, 16, 24, 31, 16, 24, 31, 16, 24, 31}));
 }
 
+TEST_F(Read, QoiOfLinearColours) {
+    const std::string pixel = bytes_of({0xff, 51, 102, 255, 204});
+    for (const int channels : {3, 4}) {
+        const RasterImage raster = read_raster(
+            file("a.qoi", "qoif" + bytes_of({0, 0, 0, 1, 0, 0, 0, 1, channels, 1}) + pixel));
+        EXPECT_FALSE(raster.is_8bit || raster.is_16bit);
+        std::vector<float> expected{0.2f, 0.4f, 1.0f, 0.8f};
+        expected.resize(size_t(channels));
+        EXPECT_EQ(raster.values, expected);
+    }
+    const Image image = read_image(directory_ / "a.qoi");
+    EXPECT_FLOAT_EQ(image.find("R")->values[0], 0.2f);
+}
+
 TEST_F(Read, Jpeg) {
     const RasterImage raster = read_raster(file("a.jpg", grey_jpeg()));
     EXPECT_EQ(raster.channels, 1);
