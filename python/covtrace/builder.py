@@ -134,6 +134,9 @@ class SceneBuilder:
         """An image as texture: (height, width) or (height, width, 3), linear values; rows from the
         top. Use it as `**{"texture reflectance": name}`."""
         values = numpy.asarray(values, dtype=numpy.float32)
+        if values.ndim not in (2, 3):
+            raise ValueError(f"values has the shape {values.shape}; expected (height, width) or "
+                             "(height, width, 3)")
         rgb = values if values.ndim == 3 else numpy.repeat(values[:, :, None], 3, axis=2)
         image = Image.from_arrays(rgb)
         file = f"texture-{len(self._textures)}.exr"

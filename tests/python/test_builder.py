@@ -64,6 +64,9 @@ class Builder(unittest.TestCase):
             scene.mesh(numpy.zeros((3, 3)), good, uv=numpy.zeros((2, 2)))
         with self.assertRaises(ValueError):
             scene.material('x" "float roughness" 3', "diffuse")
+        for values in (1.0, numpy.zeros(9), numpy.zeros((2, 2, 3, 1))):
+            with self.subTest(values=values), self.assertRaisesRegex(ValueError, "shape"):
+                scene.texture("t", values)
         with self.assertRaises(ValueError):
             scene.text()  # no camera
 
