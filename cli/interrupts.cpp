@@ -10,7 +10,8 @@ std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // a signal handler sets it
 
 extern "C" void on_interrupt(int signal) {
-    if (!interrupted.exchange(true)) return;
+    // The system and the shell both tell of a terminal that is closed.
+    if (!interrupted.exchange(true) || signal == SIGHUP) return;
     std::signal(signal, SIG_DFL);
     std::raise(signal);
 }
@@ -21,11 +22,14 @@ InterruptGuard::InterruptGuard() {
     interrupted = false;
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
+    // A terminal that is closed ends a render like Ctrl-C, but not one that runs under nohup.
+    if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 
 InterruptGuard::~InterruptGuard() {
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
+    if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 
 const std::atomic<bool>& InterruptGuard::flag() {

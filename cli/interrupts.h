@@ -1,12 +1,12 @@
-/// Ctrl-C and SIGTERM while renders run.
+/// Ctrl-C, SIGTERM and SIGHUP while renders run.
 #pragma once
 
 #include <atomic>
 
 namespace covtrace::cli {
 
-/// While it lives either signal sets the flag; a second one ends the process at once. One at a
-/// time.
+/// While it lives each of the signals sets the flag; a second one, unless it is SIGHUP, ends the
+/// process at once. One at a time.
 class InterruptGuard {
   public:
     InterruptGuard();
