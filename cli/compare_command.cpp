@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "cli/picture_name.h"
 #include "cli/pixel_description.h"
 #include "cli/report_file.h"
 #include "cli/same_file.h"
@@ -77,6 +78,7 @@ void write_comparison(const CompareArguments& a, const Image& image, const Image
 
 int compare_images(const CompareArguments& a) {
     require_distinct({{"--report", a.report}}, {a.image, a.reference});
+    require_report_name("--report", a.report);
     std::optional<PixelBounds> crop;
     if (!a.crop.empty()) crop = parse_crop("--crop", a.crop);
     const auto read = [](const std::string& file) {

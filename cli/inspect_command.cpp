@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/image_summary.h"
 #include "cli/options.h"
+#include "cli/picture_name.h"
 #include "cli/pixel_description.h"
 #include "cli/report_file.h"
 #include "cli/same_file.h"
@@ -44,6 +45,7 @@ std::vector<viewer::Fact> facts_of(const ImageSummary& summary) {
 
 int inspect_image(const InspectArguments& a) {
     require_distinct({{"--report", a.report}}, {a.image});
+    require_report_name("--report", a.report);
     std::optional<std::array<int, 2>> pixel;
     if (!a.pixel.empty()) pixel = parse_pixel("--pixel", a.pixel);
     Image image = read_image(a.image);

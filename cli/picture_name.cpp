@@ -24,4 +24,10 @@ void require_picture_name(const std::string& option, const std::filesystem::path
                                       ".png (--output writes others)");
 }
 
+void require_report_name(const std::string& option, const std::filesystem::path& file) {
+    if (!file.has_extension() || !written_format(file)) return;
+    throw Error(ErrorKind::usage, option + ": '" + file.string() +
+                                      "' is the name of an image; expected one that ends in .html");
+}
+
 }  // namespace covtrace::cli

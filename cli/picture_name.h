@@ -17,4 +17,7 @@ void require_image_name(const std::string& option, const std::filesystem::path& 
 /// The same for a name that says another format than PNG; one without an ending passes.
 void require_picture_name(const std::string& option, const std::filesystem::path& file);
 
+/// The same for the name of a page that says the format of an image.
+void require_report_name(const std::string& option, const std::filesystem::path& file);
+
 }  // namespace covtrace::cli

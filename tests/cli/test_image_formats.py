@@ -95,6 +95,16 @@ class Formats(CliTest):
         self.assert_fails(self.run_program("merge", "a.film", "--png", "m.exr"), USAGE, "--png", "m.exr")
         self.assert_no_file("m.jpg")
 
+    def test_a_report_is_no_image(self):
+        self.rendered(*SPP)
+        before = (self.folder / "out.exr").read_bytes()
+        for name in ("r.exr", "r.PNG", "r.hdr"):
+            for command in (["compare", "out.exr", "out.exr"], ["inspect", "out.exr"]):
+                with self.subTest(name=name, command=command[0]):
+                    self.assert_fails(self.run_program(*command, "--report", name), USAGE, "--report", name, ".html")
+                    self.assert_no_file(name)
+        self.assertEqual((self.folder / "out.exr").read_bytes(), before)
+
 
 class Read(CliTest):
     def test_compare_reads_what_is_written(self):
