@@ -19,9 +19,9 @@
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "image/image.h"
+#include "pbrt/read_scene.h"
 #include "render/job.h"
 #include "render/session.h"
-#include "scene/read_scene.h"
 
 using namespace covtrace;
 

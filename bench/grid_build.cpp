@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "core/rng.h"
-#include "geometry/occluder_query.h"
-#include "geometry/voxel_grid.h"
+#include "occluders/query.h"
+#include "occluders/voxel_grid.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 #include "hybrid_samples.h"
 
 #include "denoiser/find_denoiser.h"
-#include "planner/covariance_buffer.h"
+#include "prediction/covariance_buffer.h"
 #include "render/hybrid_film.h"
 
 namespace covtrace {

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <memory>
 
+#include "pbrt/read_scene.h"
 #include "render/session.h"
-#include "scene/read_scene.h"
 
 namespace covtrace {
 

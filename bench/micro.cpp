@@ -5,16 +5,16 @@
 
 #include <vector>
 
+#include "bsdf/bsdf.h"
+#include "bsdf/coat_table.h"
 #include "core/rng.h"
 #include "core/sampler.h"
 #include "core/warp.h"
 #include "integrator/pixel_filter.h"
+#include "light/environment_map.h"
+#include "light/spherical_triangle.h"
+#include "light/tree.h"
 #include "render/film.h"
-#include "shading/bsdf.h"
-#include "shading/coat_table.h"
-#include "shading/environment_map.h"
-#include "shading/light_tree.h"
-#include "shading/spherical_triangle.h"
 
 namespace {
 

@@ -15,7 +15,7 @@
 #include "core/parallel.h"
 #include "frequency/replay.h"
 #include "load_scene.h"
-#include "planner/covariance_buffer.h"
+#include "prediction/covariance_buffer.h"
 #include "render/pass.h"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "image/image.h"
-#include "planner/covariance_buffer.h"
+#include "prediction/covariance_buffer.h"
 #include "reconstruction/filter_field.h"
 
 namespace covtrace {

@@ -13,8 +13,8 @@
 
 #include "core/rng.h"
 #include "image/raster.h"
-#include "shading/image_spectrum.h"
-#include "shading/texture_image.h"
+#include "texture/image.h"
+#include "texture/image_spectrum.h"
 
 namespace {
 

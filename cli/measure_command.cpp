@@ -10,10 +10,10 @@
 #include "cli/message.h"
 #include "cli/options.h"
 #include "core/parallel.h"
-#include "geometry/voxel_grid.h"
 #include "laboratory/filter_change.h"
 #include "laboratory/local_spectrum.h"
 #include "laboratory/prediction.h"
+#include "occluders/voxel_grid.h"
 #include "render/scene_file.h"
 #include "render/session.h"
 

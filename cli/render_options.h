@@ -14,7 +14,7 @@
 #include "cli/values.h"
 #include "image/layer_names.h"
 #include "render/options.h"
-#include "shading/texture.h"
+#include "texture/texture.h"
 
 namespace covtrace::cli {
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "scene/read_scene.h"
+#include "pbrt/read_scene.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(data), size);

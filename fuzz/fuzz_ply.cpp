@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "scene/ply_reader.h"
+#include "pbrt/ply_reader.h"
 
 namespace {
 

@@ -14,6 +14,7 @@
 #include "gltf/read_gltf.h"
 #include "image/finite_pixels.h"
 #include "options.h"
+#include "pbrt/read_scene.h"
 #include "planes.h"
 #include "python_lock.h"
 #include "render/scene_file.h"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "bsdf/lobe_function.h"
 #include "covariance/jet.hpp"
-#include "shading/lobe_function.h"
 
 namespace covtrace {
 

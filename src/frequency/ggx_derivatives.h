@@ -7,8 +7,8 @@
 
 #include <optional>
 
+#include "bsdf/bsdf.h"
 #include "covariance/covariance.hpp"
-#include "shading/bsdf.h"
 
 namespace covtrace {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "covariance/covariance.hpp"
-#include "shading/lights.h"
+#include "light/lights.h"
 
 namespace covtrace {
 

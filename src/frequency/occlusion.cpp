@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/voxel_walk.h"
+#include "occluders/voxel_walk.h"
 
 namespace covtrace {
 

@@ -4,10 +4,10 @@
 
 #include "covariance/covariance.hpp"
 #include "frequency/light_source.h"
-#include "geometry/occluder_query.h"
-#include "geometry/voxel_grid.h"
 #include "integrator/camera.h"
 #include "integrator/path_record.h"
+#include "occluders/query.h"
+#include "occluders/voxel_grid.h"
 
 namespace covtrace {
 

@@ -4,8 +4,8 @@
 /// of squares of them.
 #pragma once
 
+#include "bsdf/bsdf.h"
 #include "covariance/covariance.hpp"
-#include "shading/bsdf.h"
 
 namespace covtrace {
 

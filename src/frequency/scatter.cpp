@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bsdf/lobe_function.h"
 #include "frequency/fresnel_derivatives.h"
 #include "frequency/ggx_derivatives.h"
 #include "frequency/round_lobe.h"
-#include "shading/lobe_function.h"
 
 namespace covtrace {
 

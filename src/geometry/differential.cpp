@@ -1,7 +1,7 @@
 #include <cmath>
 #include <optional>
 
-#include "geometry/geometry_impl.h"
+#include "geometry/placed_scene.h"
 
 namespace covtrace {
 

@@ -7,7 +7,7 @@
 
 #include "core/hash.h"
 #include "geometry/embree_shapes.h"
-#include "geometry/geometry_impl.h"
+#include "geometry/placed_scene.h"
 
 namespace covtrace {
 

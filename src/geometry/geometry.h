@@ -76,7 +76,7 @@ class Geometry {
     /// Most bytes that Embree has held: its hierarchies, and what building them took.
     size_t embree_memory() const;
 
-    /// For the other parts of this folder.
+    /// For this folder and src/occluders: placed_scene.h.
     struct Impl;
     const Impl& impl() const { return *impl_; }
 

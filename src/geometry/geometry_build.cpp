@@ -2,7 +2,7 @@
 
 #include "geometry/embree_instances.h"
 #include "geometry/embree_shapes.h"
-#include "geometry/geometry_impl.h"
+#include "geometry/placed_scene.h"
 
 namespace covtrace {
 

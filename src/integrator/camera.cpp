@@ -4,7 +4,7 @@
 
 #include "core/frame.h"
 #include "core/warp.h"
-#include "shading/equal_area.h"
+#include "light/equal_area.h"
 
 namespace covtrace {
 

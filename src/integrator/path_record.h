@@ -4,9 +4,9 @@
 
 #include <array>
 
+#include "bsdf/bsdf.h"
 #include "geometry/hit.h"
-#include "shading/bsdf.h"
-#include "shading/lights.h"
+#include "light/lights.h"
 
 namespace covtrace {
 

@@ -9,11 +9,11 @@
 #include "integrator/camera.h"
 #include "integrator/caustic_guide.h"
 #include "integrator/pixel_filter.h"
+#include "light/lights.h"
 #include "scene/scene_description.h"
-#include "shading/lights.h"
 #include "shading/material.h"
 #include "shading/medium.h"
-#include "shading/texture.h"
+#include "texture/texture.h"
 
 namespace covtrace {
 

@@ -8,7 +8,7 @@
 
 #include "core/plane.h"
 #include "covariance/budget.hpp"
-#include "planner/covariance_buffer.h"
+#include "prediction/covariance_buffer.h"
 
 namespace covtrace {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "image/image.h"
-#include "planner/covariance_buffer.h"
+#include "prediction/covariance_buffer.h"
 #include "reconstruction/hybrid.h"
 #include "render/render_state.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "image/image.h"
-#include "planner/covariance_buffer.h"
+#include "prediction/covariance_buffer.h"
 #include "reconstruction/gather.h"
 #include "render/film.h"
 

@@ -13,7 +13,7 @@
 #include "planner/density.h"
 #include "reconstruction/denoiser.h"
 #include "reconstruction/filter_field.h"
-#include "shading/texture.h"
+#include "texture/texture.h"
 
 namespace covtrace {
 

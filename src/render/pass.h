@@ -13,7 +13,7 @@
 #include "frequency/occlusion.h"
 #include "integrator/path.h"
 #include "integrator/render_scene.h"
-#include "planner/covariance_buffer.h"
+#include "prediction/covariance_buffer.h"
 #include "render/film.h"
 #include "render/hybrid_film.h"
 #include "render/progress.h"

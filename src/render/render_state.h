@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "integrator/render_scene.h"
-#include "planner/covariance_buffer.h"
 #include "planner/error_goal.h"
+#include "prediction/covariance_buffer.h"
 #include "reconstruction/filter_field.h"
 #include "render/film.h"
 #include "render/options.h"

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "gltf/read_gltf.h"
+#include "pbrt/read_scene.h"
 
 namespace covtrace {
 

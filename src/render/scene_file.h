@@ -3,7 +3,8 @@
 
 #include <filesystem>
 
-#include "scene/read_scene.h"
+#include "scene/read_options.h"
+#include "scene/scene_description.h"
 
 namespace covtrace {
 

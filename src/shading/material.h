@@ -4,14 +4,14 @@
 
 #include <vector>
 
+#include "bsdf/bsdf.h"
+#include "bsdf/coat_table.h"
+#include "colour/illuminant_adaptation.h"
+#include "colour/reflectance_powers.h"
 #include "core/frame.h"
 #include "geometry/hit.h"
-#include "scene/illuminant_adaptation.h"
-#include "scene/reflectance_powers.h"
 #include "scene/scene_description.h"
-#include "shading/bsdf.h"
-#include "shading/coat_table.h"
-#include "shading/texture.h"
+#include "texture/texture.h"
 
 namespace covtrace {
 

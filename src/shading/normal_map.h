@@ -10,7 +10,7 @@
 
 #include "core/frame.h"
 #include "geometry/geometry.h"
-#include "shading/texture.h"
+#include "texture/texture.h"
 
 namespace covtrace {
 

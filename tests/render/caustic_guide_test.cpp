@@ -1,8 +1,8 @@
 // Light that reaches a diffuse floor over a mirror: found by the guide, and counted right.
 #include <gtest/gtest.h>
 
+#include "bsdf/fresnel.h"
 #include "integrator/path.h"
-#include "shading/fresnel.h"
 #include "tests/render/fixtures.h"
 #include "tests/statistical/chi_square.h"
 

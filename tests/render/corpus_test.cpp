@@ -167,7 +167,7 @@ TEST(CorpusFile, ColouredLightHasLuminanceOne) {
 }
 
 TEST(CorpusFile, RoughMetalUnderACoatLosesLittle) {
-    // GGX alone keeps 0.97 at this roughness (shading/ggx.h); a refracted view is steeper.
+    // GGX alone keeps 0.97 at this roughness (bsdf/ggx.h); a refracted view is steeper.
     const Block b = block(render_file("furnace-coatedconductor-rough", 256), Where::middle);
     EXPECT_LE(b.mean.g, 1 + 5 * b.error.g + 1e-3f);
     EXPECT_GE(b.mean.g, 0.96f);

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "pbrt/read_scene.h"
 #include "render/session.h"
-#include "scene/read_scene.h"
 
 namespace covtrace::test {
 

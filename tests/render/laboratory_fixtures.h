@@ -12,7 +12,7 @@
 #include "laboratory/edge_spread.h"
 #include "laboratory/local_spectrum.h"
 #include "laboratory/prediction.h"
-#include "scene/read_scene.h"
+#include "pbrt/read_scene.h"
 
 namespace covtrace::test {
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "image/compare.h"
+#include "pbrt/read_scene.h"
 #include "render/session.h"
-#include "scene/read_scene.h"
 #include "tests/shared/shared_folder.h"
 
 namespace covtrace::test {

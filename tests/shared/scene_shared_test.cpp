@@ -1,6 +1,6 @@
 /// Real scenes read without complaints.
 #include "tests/shared/shared_folder.h"
-#include "tests/unit/scene_test_support.h"
+#include "tests/unit/pbrt_test_support.h"
 
 namespace covtrace::test {
 namespace {

@@ -9,11 +9,11 @@
 #include <array>
 #include <string>
 
+#include "bsdf/bsdf.h"
+#include "bsdf/fresnel.h"
 #include "chi_square.h"
 #include "core/rng.h"
 #include "core/warp.h"
-#include "shading/bsdf.h"
-#include "shading/fresnel.h"
 
 namespace covtrace {
 namespace {

@@ -9,8 +9,8 @@
 #include <complex>
 #include <cstdio>
 
+#include "bsdf/coat_table.h"
 #include "core/rng.h"
-#include "shading/coat_table.h"
 
 namespace covtrace {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdio>
 
+#include "bsdf/bsdf.h"
 #include "core/rng.h"
-#include "shading/bsdf.h"
 
 namespace covtrace {
 namespace {

@@ -8,9 +8,9 @@
 #include <array>
 #include <string>
 
+#include "bsdf/coat_table.h"
 #include "chi_square.h"
 #include "core/rng.h"
-#include "shading/coat_table.h"
 
 namespace covtrace {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "../unit/light_fixtures.h"
 #include "core/rng.h"
-#include "shading/environment_map.h"
+#include "light/environment_map.h"
 
 namespace covtrace {
 namespace {

@@ -13,7 +13,7 @@
 #include "core/rng.h"
 #include "core/warp.h"
 #include "integrator/pixel_filter.h"
-#include "shading/environment_map.h"
+#include "light/environment_map.h"
 #include "shading/medium.h"
 #include "shading/phase_function.h"
 

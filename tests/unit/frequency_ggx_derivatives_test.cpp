@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "bsdf/lobe_function.h"
 #include "core/rng.h"
 #include "core/warp.h"
-#include "shading/lobe_function.h"
 
 namespace covtrace {
 namespace {

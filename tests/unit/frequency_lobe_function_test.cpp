@@ -4,11 +4,11 @@
 
 #include <cmath>
 
+#include "bsdf/coat_table.h"
+#include "bsdf/lobe_function.h"
 #include "core/rng.h"
 #include "core/warp.h"
 #include "covariance/covariance.hpp"
-#include "shading/coat_table.h"
-#include "shading/lobe_function.h"
 
 namespace covtrace {
 namespace {

@@ -2,9 +2,9 @@
 // holes.
 #include <gtest/gtest.h>
 
-#include "geometry/occluder_query.h"
-#include "geometry/voxel_grid.h"
 #include "geometry_fixtures.h"
+#include "occluders/query.h"
+#include "occluders/voxel_grid.h"
 
 namespace covtrace::test {
 namespace {

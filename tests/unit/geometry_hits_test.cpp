@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry_fixtures.h"
-#include "scene/loop_subdivision.h"
+#include "pbrt/loop_subdivision.h"
 
 namespace covtrace {
 namespace {

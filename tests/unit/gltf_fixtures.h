@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gltf/read_gltf.h"
-#include "scene_test_support.h"
+#include "pbrt_test_support.h"
 
 namespace covtrace::test {
 

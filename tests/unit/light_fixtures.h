@@ -10,7 +10,7 @@
 
 #include "geometry/geometry.h"
 #include "image/image.h"
-#include "shading/lights.h"
+#include "light/lights.h"
 
 namespace covtrace::test {
 

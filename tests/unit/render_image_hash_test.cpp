@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "scene_test_support.h"
+#include "pbrt_test_support.h"
 
 namespace covtrace::test {
 namespace {

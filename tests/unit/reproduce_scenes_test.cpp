@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "pbrt/read_scene.h"
 #include "reproduce/scene_source.h"
-#include "scene/read_scene.h"
 
 namespace covtrace::reproduce {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "core/colour_space.h"
 #include "light_fixtures.h"
-#include "shading/texture.h"
+#include "texture/texture.h"
 
 namespace covtrace {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "shading/fresnel.h"
+#include "bsdf/fresnel.h"
 
 namespace covtrace {
 namespace {

@@ -13,7 +13,7 @@
 // crease, as where two walls meet, is one for the light that leaves a wall beside it, which ends
 // there and goes on with another brightness.
 //
-// The renderer beside this library has its own search (src/geometry/occluder_query.h): a hierarchy
+// The renderer beside this library has its own search (src/occluders/query.h): a hierarchy
 // of boxes with cones of blind directions, for millions of edges, instances and holes of alpha
 // textures, which needs its scene; and voxels (voxel_grid.h) as the thesis has them, with another
 // answer than outlines. Sharing would mean to take either of them along.

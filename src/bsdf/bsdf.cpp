@@ -1,0 +1,142 @@
+#include "bsdf/bsdf.h"
+
+#include <cmath>
+
+#include "bsdf/fresnel.h"
+#include "bsdf/models.h"
+
+namespace covtrace {
+namespace {
+
+Rgb eval(const InterfaceBsdf&, Vec3, Vec3) {
+    return {};
+}
+float pdf(const InterfaceBsdf&, Vec3, Vec3) {
+    return 0;
+}
+LobeShares lobe_shares(const InterfaceBsdf&, Vec3, Vec3, Rgb) {
+    return {};
+}
+Rgb eval(const ThinDielectricBsdf&, Vec3, Vec3) {
+    return {};
+}
+float pdf(const ThinDielectricBsdf&, Vec3, Vec3) {
+    return 0;
+}
+LobeShares lobe_shares(const ThinDielectricBsdf&, Vec3, Vec3, Rgb) {
+    return {};
+}
+
+/// Of models that share nothing between both.
+template <typename Model>
+BsdfValue eval_and_pdf(const Model& b, Vec3 wo, Vec3 wi) {
+    return {eval(b, wo, wi), pdf(b, wo, wi)};
+}
+
+bool is_specular(const DiffuseBsdf&) {
+    return false;
+}
+bool is_specular(const DiffuseTransmissionBsdf&) {
+    return false;
+}
+bool is_specular(const CoatedDiffuseBsdf&) {
+    return false;
+}
+bool is_specular(const InterfaceBsdf&) {
+    return true;
+}
+bool is_specular(const ThinDielectricBsdf&) {
+    return true;
+}
+bool is_specular(const ConductorBsdf& b) {
+    return b.alpha_x == 0 && b.alpha_y == 0;
+}
+
+Rgb albedo(const DiffuseBsdf& b, Vec3) {
+    return b.reflectance;
+}
+Rgb albedo(const DiffuseTransmissionBsdf& b, Vec3) {
+    return b.reflectance + b.transmittance;
+}
+Rgb albedo(const DielectricBsdf& b, Vec3) {
+    return b.transmittance;
+}
+Rgb albedo(const InterfaceBsdf&, Vec3) {
+    return Rgb(1);
+}
+Rgb albedo(const ThinDielectricBsdf& b, Vec3) {
+    return b.transmittance;
+}
+
+}  // namespace
+
+std::optional<BsdfSample> sample(const InterfaceBsdf&, Vec3 wo, float, Vec2) {
+    return BsdfSample{-wo, Rgb(1), 1, LobeKind::specular_transmission};
+}
+
+std::optional<BsdfSample> sample(const ThinDielectricBsdf& b, Vec3 wo, float u_lobe, Vec2) {
+    // The geometric series of the light that goes to and fro between both faces.
+    float r = fresnel_dielectric(std::abs(wo.z), b.eta).reflectance;
+    if (r < 1) r += sqr(1 - r) * r / (1 - sqr(r));
+    if (u_lobe < r)
+        return BsdfSample{{-wo.x, -wo.y, wo.z}, Rgb(1), r, LobeKind::specular_reflection};
+    return BsdfSample{-wo, b.transmittance, 1 - r, LobeKind::specular_transmission};
+}
+
+BsdfValue eval_and_pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
+    return std::visit([&](const auto& b) { return eval_and_pdf(b, wo, wi); }, bsdf);
+}
+
+Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
+    return std::visit([&](const auto& b) { return eval(b, wo, wi); }, bsdf);
+}
+
+float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi) {
+    return std::visit([&](const auto& b) { return pdf(b, wo, wi); }, bsdf);
+}
+
+std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float u_lobe, Vec2 u) {
+    if (wo.z == 0) return {};
+    return std::visit([&](const auto& b) { return sample(b, wo, u_lobe, u); }, bsdf);
+}
+
+bool is_specular(const Bsdf& bsdf) {
+    return std::visit([](const auto& b) { return is_specular(b); }, bsdf);
+}
+
+bool has_diffuse_lobe(const Bsdf& bsdf) {
+    return std::holds_alternative<DiffuseBsdf>(bsdf) ||
+           std::holds_alternative<CoatedDiffuseBsdf>(bsdf) ||
+           std::holds_alternative<DiffuseTransmissionBsdf>(bsdf);
+}
+
+bool has_sharp_lobe(const Bsdf& bsdf) {
+    return std::holds_alternative<ConductorBsdf>(bsdf) ||
+           std::holds_alternative<CoatedConductorBsdf>(bsdf) ||
+           std::holds_alternative<DielectricBsdf>(bsdf) ||
+           std::holds_alternative<CoatedDiffuseBsdf>(bsdf);
+}
+
+float sharp_lobe_roughness(const Bsdf& bsdf) {
+    const auto larger = [](const auto& b) { return std::max(b.alpha_x, b.alpha_y); };
+    if (const auto* coated = std::get_if<CoatedConductorBsdf>(&bsdf))
+        return std::max(larger(coated->coat), larger(coated->metal));
+    return std::visit(
+        [&](const auto& b) {
+            if constexpr (requires { b.alpha_x; }) return larger(b);
+            constexpr bool passes = std::is_same_v<std::decay_t<decltype(b)>, ThinDielectricBsdf> ||
+                                    std::is_same_v<std::decay_t<decltype(b)>, InterfaceBsdf>;
+            return passes ? 0.0f : std::numeric_limits<float>::infinity();
+        },
+        bsdf);
+}
+
+LobeShares lobe_shares(const Bsdf& bsdf, Vec3 wo, Vec3 wi, Rgb value) {
+    return std::visit([&](const auto& b) { return lobe_shares(b, wo, wi, value); }, bsdf);
+}
+
+Rgb albedo(const Bsdf& bsdf, Vec3 wo) {
+    return std::visit([&](const auto& b) { return albedo(b, wo); }, bsdf);
+}
+
+}  // namespace covtrace

@@ -1,0 +1,178 @@
+#include "bsdf/coat_table.h"
+
+#include "bsdf/fresnel.h"
+#include "bsdf/ggx.h"
+
+namespace covtrace {
+namespace {
+
+float attenuation(float thickness, float cos_theta) {
+    return cos_theta > 0 ? std::exp(-thickness / cos_theta) : 0;
+}
+
+/// Energy that an interface reflects and transmits of light from one direction, each weakened by
+/// the gap where it runs inside.
+struct InterfaceShares {
+    float reflected = 0, transmitted = 0;
+};
+
+/// What lies beyond the interface as seen by the arriving light, and the gap's thickness on either
+/// side.
+struct Interface {
+    float eta;
+    float gap_reflected, gap_transmitted;
+};
+
+InterfaceShares smooth_shares(const Interface& side, float cos_o) {
+    const DielectricFresnel f = fresnel_dielectric(cos_o, side.eta);
+    return {f.reflectance * attenuation(side.gap_reflected, cos_o),
+            (1 - f.reflectance) * attenuation(side.gap_transmitted, f.cos_t)};
+}
+
+/// Nodes and weights on [0, 1], dense at both ends: midpoints of s for x = sin^2(pi s / 2), which
+/// makes integrands smooth that go like a square root at an end.
+template <int n>
+struct Quadrature {
+    std::array<float, n> x, weight;
+    Quadrature() {
+        double sum = 0;
+        for (int i = 0; i < n; ++i) sum += std::sin(M_PI * (i + 0.5) / n);
+        for (int i = 0; i < n; ++i) {
+            const double angle = M_PI * (i + 0.5) / n;
+            x[i] = static_cast<float>((1 - std::cos(angle)) / 2);
+            weight[i] = static_cast<float>(std::sin(angle) / sum);
+        }
+    }
+};
+
+/// Over the square of the visible normals; half of the azimuths, as the plane of incidence is a
+/// mirror.
+constexpr int kAzimuths = 12, kPolar = 16;
+
+InterfaceShares rough_shares(const Interface& side, float alpha, float cos_o) {
+    const Ggx ggx{alpha, alpha};
+    const Vec3 wo{safe_sqrt(1 - cos_o * cos_o), 0, cos_o};
+    static const Quadrature<kPolar> polar;
+    InterfaceShares sum;
+    for (int j = 0; j < kPolar; ++j) {
+        const float weight = polar.weight[j] / kAzimuths;
+        for (int i = 0; i < kAzimuths; ++i) {
+            const float azimuth = (static_cast<float>(i) + 0.5f) / (2 * kAzimuths);
+            const Vec3 m = ggx.sample_visible_normal(wo, {azimuth, polar.x[j]});
+            const float cos_m = dot(wo, m);
+            if (!(cos_m > 0)) continue;
+            const DielectricFresnel f = fresnel_dielectric(cos_m, side.eta);
+            const Vec3 r = m * (2 * cos_m) - wo;
+            if (r.z > 0)
+                sum.reflected += weight * f.reflectance * ggx.g2_over_g1(wo, r) *
+                                 attenuation(side.gap_reflected, r.z);
+            if (f.reflectance == 1) continue;
+            const Vec3 t = wo / side.eta - m * (cos_m / side.eta - f.cos_t);
+            if (t.z > 0)
+                sum.transmitted += weight * (1 - f.reflectance) *
+                                   ggx.g2_over_g1(wo, {-t.x, -t.y, t.z}) *
+                                   attenuation(side.gap_transmitted, t.z);
+        }
+    }
+    return sum;
+}
+
+InterfaceShares interface_shares(const Interface& side, float alpha, float cos_o) {
+    if (cos_o <= 0) return {1, 0};
+    return alpha > 0 && side.eta != 1 ? rough_shares(side, alpha, cos_o)
+                                      : smooth_shares(side, cos_o);
+}
+
+/// Mean of g(cos) over the cosine-weighted hemisphere, where cos^2 is uniform; g may have a kink at
+/// cos^2 = `kink`.
+template <typename Function>
+float cosine_weighted_mean(float kink, Function g) {
+    static const Quadrature<24> nodes;
+    double below = 0, above = 0;
+    for (size_t i = 0; i < nodes.x.size(); ++i) {
+        below += nodes.weight[i] * g(std::sqrt(kink * nodes.x[i]));
+        above += nodes.weight[i] * g(std::sqrt(kink + (1 - kink) * nodes.x[i]));
+    }
+    return static_cast<float>(below * kink + above * (1 - kink));
+}
+
+}  // namespace
+
+CoatTable::CoatTable(float eta, float thickness) : eta_(eta), thickness_(thickness) {
+    const Interface outside{eta, 0, thickness}, inside{1 / eta, thickness, 0};
+    // Where total reflection begins, on the side that has it; any angle on the other.
+    const float inside_kink = eta > 1 ? 1 - 1 / sqr(eta) : 0.5f;
+    const float outside_kink = eta < 1 ? 1 - sqr(eta) : 0.5f;
+    for (int row = 0; row < kRows; ++row) {
+        const float alpha = sqr(static_cast<float>(row) / (kRows - 1));
+        auto& nodes = shares_[row];
+        for (int i = 0; i < kNodes; ++i) {
+            const float x = static_cast<float>(i) / (kNodes - 1);
+            const InterfaceShares s = interface_shares(outside, alpha, x * x);
+            nodes[i + 1] = {s.transmitted, s.reflected};
+        }
+        // Both are even in sqrt(cos), and go on linearly past the normal.
+        nodes[0] = nodes[2];
+        const Shares &last = nodes[kNodes], &before = nodes[kNodes - 1];
+        nodes[kNodes + 1] = {2 * last.transmission - before.transmission,
+                             2 * last.reflection - before.reflection};
+        internal_reflectance_[row] = cosine_weighted_mean(inside_kink, [&](float cos_theta) {
+            return attenuation(thickness, cos_theta) *
+                   interface_shares(inside, alpha, cos_theta).reflected;
+        });
+    }
+    // Between rows the lookup reads the next one too: all must be there.
+    for (int row = 0; row < kRows; ++row) {
+        mean_transmission_[row] = cosine_weighted_mean(outside_kink, [&](float cos_theta) {
+            return row == 0 ? interface_shares(outside, 0, cos_theta).transmitted
+                            : shares(static_cast<float>(row), cos_theta).transmission;
+        });
+        mean_reflection_[row] = cosine_weighted_mean(outside_kink, [&](float cos_theta) {
+            return row == 0 ? interface_shares(outside, 0, cos_theta).reflected
+                            : shares(static_cast<float>(row), cos_theta).reflection;
+        });
+    }
+}
+
+const CoatTable& CoatTables::get(float eta, float thickness) {
+    for (const auto& table : tables_)
+        if (table->eta() == eta && table->thickness() == thickness) return *table;
+    tables_.push_back(std::make_unique<const CoatTable>(eta, thickness));
+    return *tables_.back();
+}
+
+namespace {
+
+CoatedDiffuseBsdf coat_alone(const CoatTable& table, float alpha_x, float alpha_y) {
+    CoatedDiffuseBsdf b;
+    b.eta = table.eta();
+    b.alpha_x = alpha_x;
+    b.alpha_y = alpha_y;
+    b.table = &table;
+    b.table_row = CoatTable::row_of(std::sqrt(0.5f * (sqr(alpha_x) + sqr(alpha_y))));
+    b.mean_transmission = table.mean_transmission(b.table_row);
+    return b;
+}
+
+}  // namespace
+
+CoatedDiffuseBsdf make_coated_diffuse(const CoatTable& table, const ReflectancePowers& base,
+                                      float alpha_x, float alpha_y, int bounces) {
+    CoatedDiffuseBsdf b = coat_alone(table, alpha_x, alpha_y);
+    b.reflectance = base[0];
+    b.base = sum_of_bounces(base, table.internal_reflectance(b.table_row), bounces) *
+             (kInvPi / sqr(table.eta()));
+    return b;
+}
+
+CoatedDiffuseBsdf make_coated_total(const CoatTable& table, Rgb reflectance, float alpha_x,
+                                    float alpha_y) {
+    CoatedDiffuseBsdf b = coat_alone(table, alpha_x, alpha_y);
+    b.reflectance = reflectance;
+    b.is_total = true;
+    b.mean_transmission = 1 - table.mean_reflection(b.table_row);
+    b.base = reflectance * (kInvPi / b.mean_transmission);
+    return b;
+}
+
+}  // namespace covtrace

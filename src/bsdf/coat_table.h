@@ -1,0 +1,130 @@
+/// What a dielectric coat does to the light that meets a Lambertian base below it.
+///
+/// The model is pbrt-v4's layered walk: a (rough) dielectric interface, a gap of the given
+/// thickness that weakens light by A(w) = exp(-thickness / |w.z|) at each crossing, and a
+/// Lambertian base of reflectance rho. Since the base forgets directions, the walk has a closed
+/// form:
+///
+/// 1. Let f_t be the interface's BTDF for energy (without the radiance factor). Of the light from
+///    direction w outside, the share T(w) = integral f_t(w, v) |v.z| A(v) dv reaches the base, so
+///    radiance L from wi within dwi gives it the irradiance E = L |wi.z| T(wi) dwi.
+/// 2. The base sends out the radiance rho E / pi in all directions. The share
+///    R_int = (1 / pi) integral |v.z| A(v) integral f_r(v, v') |v'.z| A(v') dv' dv
+///    of that flux comes back from the interface's inside and is reflected again. After n
+///    reflections at the base its radiance is L_b = (rho E / pi) sum_{j<n} (rho R_int)^j.
+/// 3. Outside, along wo, arrives integral f_t'(wo, v) L_b A(v) |v.z| dv, where f_t' transports
+///    radiance. From outside to inside f_t' = f_t / eta^2 (reciprocity of f_t / eta^2: the solid
+///    angle of a bundle is eta^2 times larger outside), hence L_o = L_b T(wo) / eta^2.
+///
+///    f(wo, wi) = f_coat(wo, wi) + T(wo) T(wi) rho / (pi eta^2) sum_{j<n} (rho R_int)^j
+///
+/// which is reciprocal. n is half of pbrt's `maxdepth`, rounded up.
+///
+/// The tables hold isotropic coats. An anisotropic one is looked up, for each direction w, at the
+/// roughness alpha^2 = alpha_x^2 w.x^2 + alpha_y^2 w.y^2 + w.z^2 (alpha_x^2 + alpha_y^2) / 2: that
+/// of the plane of incidence at grazing angles, the mean of both at the normal.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "bsdf/bsdf.h"
+#include "colour/reflectance_powers.h"
+
+namespace covtrace {
+
+/// T, the coat's own albedo and R_int over roughness and angle, for one (eta, thickness).
+class CoatTable {
+  public:
+    /// Fills the tables by quadrature; takes about 20 ms. `eta`: coat over outside, > 0.
+    CoatTable(float eta, float thickness);
+    float eta() const { return eta_; }
+    float thickness() const { return thickness_; }
+
+    static constexpr int kRows = 24;   ///< over sqrt(alpha) in [0, 1]
+    static constexpr int kNodes = 48;  ///< over sqrt(cos) in [0, 1]
+    /// Coordinate of a roughness alpha among the rows; alphas above 1 are looked up at 1.
+    static float row_of(float alpha) { return std::sqrt(clamp01(alpha)) * (kRows - 1); }
+
+    /// What becomes of light from outside.
+    struct Shares {
+        float transmission;  ///< reaches the base: T
+        float reflection;    ///< is reflected by the interface
+    };
+    /// From a direction with cosine `cos_theta` > 0.
+    Shares shares(float row, float cos_theta) const;
+    /// Share of the base's flux that the coat sends back to it: R_int.
+    float internal_reflectance(float row) const { return lookup(internal_reflectance_, row); }
+    /// Cosine-weighted mean of `reflection` over the hemisphere.
+    float mean_reflection(float row) const { return lookup(mean_reflection_, row); }
+    /// Cosine-weighted mean of T over the hemisphere.
+    float mean_transmission(float row) const { return lookup(mean_transmission_, row); }
+
+  private:
+    using PerRow = std::array<float, kRows>;
+    /// Nodes with one more at either end, for the cubic interpolation.
+    using PerAngle = std::array<std::array<Shares, kNodes + 2>, kRows>;
+    static float lookup(const PerRow& values, float row);
+
+    float eta_, thickness_;
+    PerAngle shares_;
+    PerRow internal_reflectance_, mean_transmission_, mean_reflection_;
+};
+
+/// glTF's and Blender's diffuse under specular: of the light that the coat doesn't reflect
+/// (1 - E, with E its directional albedo) the share `reflectance` leaves again, whatever goes on
+/// inside. Reciprocal and complete for E(wo) and its cosine-weighted mean,
+///
+///    f(wo, wi) = f_coat(wo, wi) + (1 - E(wo)) (1 - E(wi)) reflectance / (pi (1 - mean E))
+///
+/// (Kelemen and Szirmay-Kalos 2001), so white reflects all light at any roughness. For a smooth
+/// coat without a gap this is the layered model with the base rho = reflectance / (1 - R_int +
+/// R_int reflectance); for a rough one it keeps what single scattering loses. The table's thickness
+/// doesn't count.
+CoatedDiffuseBsdf make_coated_total(const CoatTable& table, Rgb reflectance, float alpha_x,
+                                    float alpha_y);
+
+/// The tables of all coats of a scene, one for each distinct pair (eta, thickness).
+class CoatTables {
+  public:
+    /// Makes the table where it does not exist yet; the reference lives as long as this object.
+    const CoatTable& get(float eta, float thickness);
+
+  private:
+    std::vector<std::unique_ptr<const CoatTable>> tables_;
+};
+
+/// `base`: rho and its powers, each the colour of its spectrum. `bounces`: most reflections at the
+/// base. The alphas are both 0 (a smooth coat) or both > 0.
+CoatedDiffuseBsdf make_coated_diffuse(const CoatTable& table, const ReflectancePowers& base,
+                                      float alpha_x, float alpha_y, int bounces);
+
+inline float CoatTable::lookup(const PerRow& values, float row) {
+    const int i = std::min(static_cast<int>(row), kRows - 2);
+    const float t = row - static_cast<float>(i);
+    return values[i] * (1 - t) + values[i + 1] * t;
+}
+
+/// Linear between the rows, Catmull-Rom between the nodes.
+inline CoatTable::Shares CoatTable::shares(float row, float cos_theta) const {
+    const float x = std::sqrt(clamp01(cos_theta)) * (kNodes - 1);
+    const int i = std::min(static_cast<int>(x), kNodes - 2);
+    const float t = x - static_cast<float>(i), s = 1 - t;
+    const float w0 = -0.5f * t * s * s, w3 = -0.5f * s * t * t;
+    const float w1 = s - 2 * w0 + w3, w2 = t - 2 * w3 + w0;
+    const int j = std::min(static_cast<int>(row), kRows - 2);
+    const float r = row - static_cast<float>(j);
+    const Shares* a = shares_[j].data() + i;
+    const Shares* b = shares_[j + 1].data() + i;
+    const auto at = [&](float Shares::*which) {
+        const float at_a =
+            a[0].*which * w0 + a[1].*which * w1 + a[2].*which * w2 + a[3].*which * w3;
+        const float at_b =
+            b[0].*which * w0 + b[1].*which * w1 + b[2].*which * w2 + b[3].*which * w3;
+        return at_a * (1 - r) + at_b * r;
+    };
+    return {at(&Shares::transmission), at(&Shares::reflection)};
+}
+
+}  // namespace covtrace

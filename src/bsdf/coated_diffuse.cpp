@@ -1,0 +1,149 @@
+/// A Lambertian base under a dielectric coat; the model is derived in coat_table.h.
+#include "bsdf/coat_table.h"
+#include "bsdf/fresnel.h"
+#include "bsdf/ggx.h"
+#include "bsdf/models.h"
+#include "core/warp.h"
+
+namespace covtrace {
+namespace {
+
+bool is_smooth(const CoatedDiffuseBsdf& b) {
+    return b.eta == 1 || (b.alpha_x == 0 && b.alpha_y == 0);
+}
+
+Vec3 to_upper_side(Vec3 w) {
+    return {w.x, w.y, std::abs(w.z)};
+}
+
+/// Where the tables hold the coat's roughness towards w.
+float table_row(const CoatedDiffuseBsdf& b, Vec3 w) {
+    if (b.alpha_x == b.alpha_y) return b.table_row;
+    const float x2 = sqr(b.alpha_x), y2 = sqr(b.alpha_y);
+    return CoatTable::row_of(
+        std::sqrt(x2 * sqr(w.x) + y2 * sqr(w.y) + 0.5f * (x2 + y2) * sqr(w.z)));
+}
+
+/// What the coat does to light along w, for w.z > 0 as in the rest of these helpers: T of
+/// coat_table.h, or all that is not reflected, and the share that it reflects.
+CoatTable::Shares shares(const CoatedDiffuseBsdf& b, Vec3 w) {
+    if (!is_smooth(b)) {
+        CoatTable::Shares s = b.table->shares(table_row(b, w), w.z);
+        if (b.is_total) s.transmission = 1 - s.reflection;
+        return s;
+    }
+    const DielectricFresnel f = fresnel_dielectric(w.z, b.eta);
+    if (b.is_total) return {1 - f.reflectance, f.reflectance};
+    const float kept = f.cos_t == 0 ? 0.0f : std::exp(-b.table->thickness() / f.cos_t);
+    return {(1 - f.reflectance) * kept, f.reflectance};
+}
+
+/// What a pair's value and density need of the side of wo.
+struct Outgoing {
+    Vec3 wo;
+    float transmission;
+    /// Probability of sampling the coat: its share of the reflected energy. Below 0 where nothing
+    /// is reflected.
+    float choose_coat;
+    float stretched = 0;  ///< Ggx::stretched_length of wo, where the coat is rough
+
+    Outgoing(const CoatedDiffuseBsdf& b, Vec3 direction) : wo(to_upper_side(direction)) {
+        const auto [t, coat] = shares(b, wo);
+        transmission = t;
+        const float base = max_component(b.base) * (kPi * t * b.mean_transmission);
+        choose_coat = coat + base > 0 ? coat / (coat + base) : -1;
+        if (!is_smooth(b)) stretched = Ggx{b.alpha_x, b.alpha_y}.stretched_length(wo);
+    }
+};
+
+Rgb eval_base(const CoatedDiffuseBsdf& b, const Outgoing& out, Vec3 wi) {
+    return b.base * (out.transmission * shares(b, wi).transmission * wi.z);
+}
+
+/// The coat's part of the value of a pair above the surface, of all colours alike; `d`: density of
+/// the normals that reflect it, `stretched`: Ggx::stretched_length of wo.
+struct CoatValue {
+    float value = 0, d = 0;
+};
+CoatValue eval_coat(const CoatedDiffuseBsdf& b, Vec3 wo, float stretched, Vec3 wi) {
+    const Ggx ggx{b.alpha_x, b.alpha_y};
+    const Vec3 m = normalize(wo + wi);
+    const float d = ggx.d(m);
+    const float masked =
+        2 * wi.z / (stretched * wi.z + ggx.stretched_length(wi) * wo.z);  // over wo.z
+    return {0.25f * fresnel_dielectric(dot(wo, m), b.eta).reflectance * d * masked, d};
+}
+
+BsdfValue value_and_density(const CoatedDiffuseBsdf& b, const Outgoing& out, Vec3 wi) {
+    const Rgb base = eval_base(b, out, wi);
+    const float base_pdf = (1 - out.choose_coat) * cosine_hemisphere_pdf(wi.z);
+    if (is_smooth(b)) return {base, base_pdf};
+    const CoatValue coat = eval_coat(b, out.wo, out.stretched, wi);
+    return {Rgb(coat.value) + base,
+            out.choose_coat * coat.d / (2 * (out.wo.z + out.stretched)) + base_pdf};
+}
+
+}  // namespace
+
+BsdfValue eval_and_pdf(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi) {
+    if (!same_side(wo, wi)) return {};
+    const Outgoing out(b, wo);
+    return out.choose_coat < 0 ? BsdfValue{} : value_and_density(b, out, to_upper_side(wi));
+}
+
+Rgb eval(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi) {
+    return eval_and_pdf(b, wo, wi).f;
+}
+
+float pdf(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi) {
+    return eval_and_pdf(b, wo, wi).pdf;
+}
+
+std::optional<BsdfSample> sample(const CoatedDiffuseBsdf& b, Vec3 wo, float u_lobe, Vec2 u) {
+    const bool below = wo.z < 0;
+    const Outgoing out(b, wo);
+    wo = out.wo;
+    const float choose_coat = out.choose_coat;
+    if (choose_coat < 0) return {};
+
+    const bool from_coat = u_lobe < choose_coat;
+    Vec3 wi;
+    if (!from_coat) {
+        wi = square_to_cosine_hemisphere(u);
+    } else if (is_smooth(b)) {
+        const float f = fresnel_dielectric(wo.z, b.eta).reflectance;
+        return BsdfSample{{-wo.x, -wo.y, below ? -wo.z : wo.z},
+                          Rgb(f / choose_coat),
+                          choose_coat,
+                          LobeKind::specular_reflection};
+    } else {
+        const Vec3 m = Ggx{b.alpha_x, b.alpha_y}.sample_visible_normal(wo, u);
+        wi = normalize(m * (2 * dot(wo, m)) - wo);
+    }
+    if (!(wi.z > 0)) return {};
+    const auto [value, density] = value_and_density(b, out, wi);
+    if (!(density > 0)) return {};
+    return BsdfSample{below ? mirror_z(wi) : wi, value / density, density,
+                      from_coat ? LobeKind::glossy_reflection : LobeKind::diffuse_reflection};
+}
+
+LobeShares lobe_shares(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi, Rgb value) {
+    if (!same_side(wo, wi)) return {};
+    LobeShares found{{LobeShare{LobeKind::diffuse_reflection, value, 0, 0, 1, b.eta}}, 1};
+    if (is_smooth(b)) return found;
+    wo = to_upper_side(wo);
+    const float stretched = Ggx{b.alpha_x, b.alpha_y}.stretched_length(wo);
+    const float coat = eval_coat(b, wo, stretched, to_upper_side(wi)).value;
+    const auto rest = [coat](float channel) { return std::max(0.0f, channel - coat); };
+    found.lobes[0].value = {rest(value.r), rest(value.g), rest(value.b)};
+    found.lobes[1] = {LobeKind::glossy_reflection, Rgb(coat), b.alpha_x, b.alpha_y, 1, b.eta};
+    found.count = 2;
+    return found;
+}
+
+Rgb albedo(const CoatedDiffuseBsdf& b, Vec3 wo) {
+    const auto [transmission, coat] = shares(b, to_upper_side(wo));
+    return Rgb(coat) + b.base * (kPi * transmission * b.mean_transmission);
+}
+
+}  // namespace covtrace

@@ -1,0 +1,115 @@
+/// The border of a clear dielectric: reflection and refraction by a smooth surface or by GGX
+/// microfacets (Walter et al. 2007), reflection chosen with the probability of Fresnel.
+///
+/// Everything is computed as seen from wo's side: wo.z > 0 and eta = index of the far side over
+/// that of wo's side.
+#include "bsdf/fresnel.h"
+#include "bsdf/ggx.h"
+#include "bsdf/models.h"
+
+namespace covtrace {
+namespace {
+
+/// A pair as seen from wo's side, with the microfacet that connects it.
+struct Microfacet {
+    Vec3 wo, wi;
+    float eta = 1;
+    bool reflects = true;
+    Vec3 m;
+    float fresnel = 0;
+    float half_length2 = 0;  ///< |eta wi + wo|^2, of refraction
+};
+
+/// Empty for pairs that no microfacet connects.
+std::optional<Microfacet> connect(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
+    if (wo.z * wi.z == 0 || is_specular(b)) return {};
+    Microfacet f;
+    f.eta = wo.z > 0 ? b.eta : 1 / b.eta;
+    f.wo = wo.z > 0 ? wo : mirror_z(wo);
+    f.wi = wo.z > 0 ? wi : mirror_z(wi);
+    f.reflects = f.wi.z > 0;
+    const Vec3 half = f.reflects ? f.wo + f.wi : f.wo + f.wi * f.eta;
+    f.half_length2 = length_squared(half);
+    if (!(f.half_length2 > 0)) return {};
+    f.m = half / std::copysign(std::sqrt(f.half_length2), half.z);
+    const float cos_o = dot(f.wo, f.m), cos_i = dot(f.wi, f.m);
+    if (!(cos_o > 0) || !(f.reflects ? cos_i > 0 : cos_i < 0)) return {};
+    f.fresnel = fresnel_dielectric(cos_o, f.eta).reflectance;
+    return f;
+}
+
+}  // namespace
+
+bool is_specular(const DielectricBsdf& b) {
+    return b.eta == 1 || (b.alpha_x == 0 && b.alpha_y == 0);
+}
+
+Rgb eval(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
+    const std::optional<Microfacet> f = connect(b, wo, wi);
+    if (!f) return {};
+    const Ggx ggx{b.alpha_x, b.alpha_y};
+    const float d_g = ggx.d(f->m) * ggx.g2_over_cos_o(f->wo, f->reflects ? f->wi : mirror_z(f->wi));
+    if (f->reflects) return Rgb(0.25f * f->fresnel * d_g);
+    // Equation 21 of Walter et al. with |eta wi + wo|^2 for the denominator and its 1 / eta^2 for
+    // radiance.
+    return b.transmittance * ((1 - f->fresnel) * d_g *
+                              std::abs(dot(f->wo, f->m) * dot(f->wi, f->m)) / f->half_length2);
+}
+
+float pdf(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
+    const std::optional<Microfacet> f = connect(b, wo, wi);
+    if (!f) return 0;
+    const Ggx ggx{b.alpha_x, b.alpha_y};
+    if (f->reflects) return f->fresnel * ggx.reflection_pdf(f->wo, f->m);
+    return (1 - f->fresnel) * ggx.visible_normal_pdf(f->wo, f->m) * sqr(f->eta) *
+           std::abs(dot(f->wi, f->m)) / f->half_length2;
+}
+
+std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe, Vec2 u) {
+    const bool below = wo.z < 0;
+    if (below) wo = mirror_z(wo);
+    const float eta = below ? 1 / b.eta : b.eta;
+
+    if (is_specular(b)) {
+        const DielectricFresnel f = fresnel_dielectric(wo.z, eta);
+        if (u_lobe < f.reflectance) {
+            const Vec3 wi{-wo.x, -wo.y, below ? -wo.z : wo.z};
+            return BsdfSample{wi, Rgb(1), f.reflectance, LobeKind::specular_reflection};
+        }
+        const Vec3 wi{-wo.x / eta, -wo.y / eta, below ? f.cos_t : -f.cos_t};
+        return BsdfSample{wi, b.transmittance / sqr(eta), 1 - f.reflectance,
+                          LobeKind::specular_transmission, eta};
+    }
+
+    const Ggx ggx{b.alpha_x, b.alpha_y};
+    const Vec3 m = ggx.sample_visible_normal(wo, u);
+    const float cos_o = dot(wo, m);
+    if (!(cos_o > 0)) return {};
+    const DielectricFresnel f = fresnel_dielectric(cos_o, eta);
+    if (u_lobe < f.reflectance) {
+        const Vec3 wi = normalize(m * (2 * cos_o) - wo);
+        if (!(wi.z > 0)) return {};
+        return BsdfSample{below ? mirror_z(wi) : wi, Rgb(ggx.g2_over_g1(wo, wi)),
+                          f.reflectance * ggx.reflection_pdf(wo, m), LobeKind::glossy_reflection};
+    }
+    const Vec3 wi = normalize(m * (cos_o / eta - f.cos_t) - wo / eta);
+    if (!(wi.z < 0)) return {};
+    // |eta wi + wo| = eta cos_t - cos_o up to sign, both along m.
+    const float half_length2 = sqr(eta * f.cos_t - cos_o);
+    const float density =
+        (1 - f.reflectance) * ggx.visible_normal_pdf(wo, m) * sqr(eta) * f.cos_t / half_length2;
+    if (!(density > 0) || !std::isfinite(density)) return {};
+    return BsdfSample{below ? mirror_z(wi) : wi,
+                      b.transmittance * (ggx.g2_over_g1(wo, mirror_z(wi)) / sqr(eta)), density,
+                      LobeKind::glossy_transmission, eta};
+}
+
+LobeShares lobe_shares(const DielectricBsdf& b, Vec3 wo, Vec3 wi, Rgb value) {
+    if (is_black(value)) return {};
+    const float eta = wo.z > 0 ? b.eta : 1 / b.eta;
+    if (same_side(wo, wi))
+        return {{LobeShare{LobeKind::glossy_reflection, value, b.alpha_x, b.alpha_y, 1, eta}}, 1};
+    return {{LobeShare{LobeKind::glossy_transmission, value, b.alpha_x, b.alpha_y, eta, eta}}, 1};
+}
+
+}  // namespace covtrace

@@ -1,0 +1,62 @@
+/// The models behind bsdf.h, one overload set each; bsdf.cpp chooses among them.
+///
+/// Contracts are those of bsdf.h. All models but the dielectric look the same from both sides.
+#pragma once
+
+#include "bsdf/bsdf.h"
+
+namespace covtrace {
+
+Rgb eval(const DiffuseBsdf& b, Vec3 wo, Vec3 wi);
+float pdf(const DiffuseBsdf& b, Vec3 wo, Vec3 wi);
+std::optional<BsdfSample> sample(const DiffuseBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+LobeShares lobe_shares(const DiffuseBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
+
+Rgb eval(const ConductorBsdf& b, Vec3 wo, Vec3 wi);
+float pdf(const ConductorBsdf& b, Vec3 wo, Vec3 wi);
+BsdfValue eval_and_pdf(const ConductorBsdf& b, Vec3 wo, Vec3 wi);
+std::optional<BsdfSample> sample(const ConductorBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+LobeShares lobe_shares(const ConductorBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
+Rgb albedo(const ConductorBsdf& b, Vec3 wo);
+
+/// Transmission carries the radiance factor 1 / eta^2: paths start at the camera.
+Rgb eval(const DielectricBsdf& b, Vec3 wo, Vec3 wi);
+float pdf(const DielectricBsdf& b, Vec3 wo, Vec3 wi);
+std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+LobeShares lobe_shares(const DielectricBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
+/// True where the border is smooth, or there is none since the indices match.
+bool is_specular(const DielectricBsdf& b);
+
+Rgb eval(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi);
+float pdf(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi);
+BsdfValue eval_and_pdf(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi);
+std::optional<BsdfSample> sample(const CoatedDiffuseBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+LobeShares lobe_shares(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
+Rgb albedo(const CoatedDiffuseBsdf& b, Vec3 wo);
+
+Rgb eval(const DiffuseTransmissionBsdf& b, Vec3 wo, Vec3 wi);
+float pdf(const DiffuseTransmissionBsdf& b, Vec3 wo, Vec3 wi);
+std::optional<BsdfSample> sample(const DiffuseTransmissionBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+LobeShares lobe_shares(const DiffuseTransmissionBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
+
+Rgb eval(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi);
+float pdf(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi);
+std::optional<BsdfSample> sample(const CoatedConductorBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+LobeShares lobe_shares(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
+bool is_specular(const CoatedConductorBsdf& b);
+Rgb albedo(const CoatedConductorBsdf& b, Vec3 wo);
+
+std::optional<BsdfSample> sample(const ThinDielectricBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+
+std::optional<BsdfSample> sample(const InterfaceBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+
+inline bool same_side(Vec3 wo, Vec3 wi) {
+    return wo.z * wi.z > 0;
+}
+inline Vec3 mirror_z(Vec3 w) {
+    return {w.x, w.y, -w.z};
+}
+/// A cosine-distributed direction on the side of wo, or on the other one.
+Vec3 sample_cosine(Vec3 wo, bool transmit, Vec2 u);
+
+}  // namespace covtrace

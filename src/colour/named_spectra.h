@@ -1,0 +1,23 @@
+/// The spectra that pbrt-v4 knows by name: metals, glasses, standard illuminants.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "colour/spectrum.h"
+#include "core/vec.h"
+
+namespace covtrace {
+
+/// "metal-Ag-eta", "metal-Ag-k", … and "glass-BK7", …, the latter constant: the index at 587.6 nm.
+std::optional<Spectrum> material_spectrum(std::string_view name);
+/// Colour of luminance 1 of "stdillum-A", "stdillum-D50", "stdillum-D65", "stdillum-F1" to
+/// "stdillum-F12" and "illum-acesD60".
+std::optional<Rgb> illuminant_colour(std::string_view name);
+bool is_glass(std::string_view name);
+/// All of them, for messages.
+const std::vector<std::string>& spectrum_names();
+
+}  // namespace covtrace

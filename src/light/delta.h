@@ -1,0 +1,51 @@
+/// Lights without extent: point and spot lights at a place, distant lights in a direction.
+#pragma once
+
+#include <optional>
+
+#include "light/image.h"
+#include "light/tree.h"
+#include "scene/scene_description.h"
+
+namespace covtrace {
+
+/// A point light, a spot light (then with an intensity that falls off smoothly towards the rim of
+/// its cone), or a light with an image over the directions.
+struct PointEmitter {
+    Vec3 position;
+    Rgb intensity;  ///< radiant intensity, of a spot within its inner cone
+    bool is_spot = false;
+    Vec3 axis{0, 0, 1};                    ///< unit; of a spot
+    float cos_inner = -1, cos_outer = -1;  ///< where the fall-off starts and ends
+    float cone_variance = 0;          ///< of a spot: angular variance along one axis, radians^2
+    std::optional<LightImage> image;  ///< multiplies the intensity
+    Rgb image_integral;               ///< of the image over all directions
+};
+PointEmitter make_point_emitter(const PointLight& light, const Transform& light_to_world);
+/// The transform's scale does not change the cone.
+PointEmitter make_point_emitter(const SpotLight& light, const Transform& light_to_world);
+/// Images that are missing, broken or of the wrong shape throw Error(scene) at `where`; colours of
+/// an unknown space are a warning.
+PointEmitter make_point_emitter(const GoniometricLight& light, const Transform& light_to_world,
+                                const SourceLocation& where, Warnings& warnings);
+PointEmitter make_point_emitter(const ProjectionLight& light, const Transform& light_to_world,
+                                const SourceLocation& where, Warnings& warnings);
+/// Intensity towards `w` (unit, away from the light).
+Rgb intensity(const PointEmitter& light, Vec3 w);
+/// Emitted in all directions together.
+Rgb power(const PointEmitter& light);
+LightBounds bounds(const PointEmitter& light);
+
+struct DistantEmitter {
+    Vec3 direction;  ///< unit, towards the light
+    Rgb irradiance;  ///< of a surface that faces it
+};
+DistantEmitter make_distant_emitter(const DistantLight& light, const Transform& light_to_world);
+
+/// Factor that brings `radiance` to `target`, where `measured` is what its luminance amounts to
+/// now; 0 where that is nothing.
+constexpr float normalisation(float target, float measured) {
+    return measured > 0 ? target / measured : 0;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,53 @@
+/// What all emissive shapes have in common: the point that light sampling finds on one, and where
+/// it may be over the shutter.
+#pragma once
+
+#include <vector>
+
+#include "core/transform.h"
+#include "light/tree.h"
+
+namespace covtrace {
+
+struct EmitterPoint {
+    Vec3 position, normal;  ///< world; the unit normal is on the shape's outside
+    Vec3 wi;                ///< unit, from the shading point
+    float pdf = 0;          ///< per solid angle
+    Vec2 place;             ///< of meshes: barycentric in the light
+};
+
+/// The transform at times so close that a box around what it does to a shape at all of them, padded
+/// by half a step, holds the motion between; a single one where nothing moves.
+inline std::vector<Transform> poses_over_time(const AnimatedTransform& motion) {
+    if (!motion.is_animated()) return {motion.start()};
+    constexpr int kSteps = 32;
+    std::vector<Transform> poses;
+    for (int i = 0; i <= kSteps; ++i)
+        poses.push_back(motion.at(motion.start_time() +
+                                  (motion.end_time() - motion.start_time()) * (float(i) / kSteps)));
+    return poses;
+}
+
+/// Collects where the corners of an emitter are over its poses.
+class MotionBox {
+  public:
+    /// Corners of successive poses, in the same order each time.
+    void add(const std::vector<Vec3>& corners) {
+        for (size_t i = 0; i < corners.size(); ++i) {
+            box_.extend(corners[i]);
+            if (!previous_.empty()) step_ = std::max(step_, distance(corners[i], previous_[i]));
+        }
+        previous_ = corners;
+    }
+    Bounds3 box() const {
+        const Vec3 pad{step_ / 2, step_ / 2, step_ / 2};
+        return {box_.lo - pad, box_.hi + pad};
+    }
+
+  private:
+    Bounds3 box_;
+    float step_ = 0;
+    std::vector<Vec3> previous_;
+};
+
+}  // namespace covtrace

@@ -1,0 +1,34 @@
+/// What the frequency analysis asks of an emissive shape: its size, border, curvature and motion.
+#pragma once
+
+#include <array>
+#include <variant>
+
+#include "light/border.h"
+#include "light/lights.h"
+#include "light/mesh.h"
+#include "light/quadric.h"
+
+namespace covtrace {
+
+using Emitter = std::variant<EmissiveMesh, EmissiveQuadric>;
+
+class EmitterSpectrum {
+  public:
+    /// Both must outlive the spectrum.
+    EmitterSpectrum(const PlacedShape& shape, const Emitter& emitter);
+
+    /// At a point of the shape with the unit normal `normal` on the emitting outside, with the
+    /// nearest border where it is asked for.
+    SourceSpectrum at(Vec3 position, Vec3 normal, float time, bool with_border) const;
+
+  private:
+    std::optional<Vec3> nearest_border(Vec3 position, const Transform& now) const;
+
+    const PlacedShape* shape_;
+    const Emitter* emitter_;
+    std::array<double, 6> moments_{};  // object space, about the centroid: xx, xy, xz, yy, yz, zz
+    BorderEdges border_;               // world space at the start of the shutter
+};
+
+}  // namespace covtrace

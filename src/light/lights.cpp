@@ -1,0 +1,400 @@
+#include "light/lights.h"
+
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "core/hash.h"
+#include "light/lights_impl.h"
+#include "light/weight.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Neither finite nor infinite lights are trusted to be negligible by an estimate that knows no
+/// shadows.
+constexpr float kSmallestShare = 0.1f;
+
+Emitter make_emitter(const PlacedShape& shape) {
+    const auto& geometry = shape.description.geometry;
+    if (std::holds_alternative<Sphere>(geometry) || std::holds_alternative<Disk>(geometry))
+        return EmissiveQuadric(shape);
+    return EmissiveMesh(shape);
+}
+
+double surface(const Emitter& emitter) {
+    return std::visit(
+        [](const auto& e) {
+            double sum = 0;
+            for (int k = 0; k < e.light_count(); ++k) sum += double(e.area(k));
+            return sum;
+        },
+        emitter);
+}
+
+/// Shapes of equal keys share the power of their light: what one directive made, as a mesh file's
+/// triangles and quads.
+using LightKey = std::tuple<int, int, size_t>;
+LightKey light_key(const std::vector<PlacedShape>& shapes, size_t i) {
+    const ShapeDescription& s = shapes[i].description;
+    return {s.area_light, s.directive, s.directive < 0 ? i : 0};
+}
+
+/// Emitted by one square unit of a diffuse light.
+Rgb exitance(Rgb radiance, bool two_sided) {
+    return (two_sided ? 2 * kPi : kPi) * radiance;
+}
+
+/// Whether alpha hides the whole shape: the customary way to write an invisible light.
+bool is_hidden(const SceneDescription& scene, TextureId alpha) {
+    if (alpha < 0) return false;
+    const auto* constant =
+        std::get_if<ConstantTexture>(&scene.textures[static_cast<size_t>(alpha)].value);
+    return constant && constant->value.r == 0;
+}
+
+}  // namespace
+
+Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry,
+                   const TextureStore* scene_textures)
+    : geometry(&scene_geometry), textures(scene_textures) {
+    const std::vector<PlacedShape>& shapes = geometry->shapes();
+    area_light_of_shape.assign(shapes.size(), -1);
+    std::vector<LightBounds> finite;
+    std::vector<std::optional<Emitter>> emitters(shapes.size());
+    std::map<LightKey, double> surfaces;
+    for (size_t i = 0; i < shapes.size(); ++i) {
+        if (shapes[i].description.area_light < 0 || shapes[i].is_instanced) continue;
+        emitters[i] = make_emitter(shapes[i]);
+        surfaces[light_key(shapes, i)] += surface(*emitters[i]);
+    }
+    for (size_t i = 0; i < shapes.size(); ++i) {
+        if (!emitters[i]) continue;
+        const ShapeDescription& shape = shapes[i].description;
+        const AreaLightDescription& light =
+            scene.area_lights[static_cast<size_t>(shape.area_light)];
+        AreaLight area{.shape = static_cast<uint32_t>(i),
+                       .radiance = light.radiance,
+                       .two_sided = light.two_sided,
+                       .image = textures ? light.image : -1,
+                       .alpha = -1,
+                       .is_visible = !is_hidden(scene, shape.alpha),
+                       .first_light = static_cast<int>(owner.size()),
+                       .emitter = std::move(*emitters[i]),
+                       .spectrum = {}};
+        // A light that is hidden altogether shines as if it had no alpha.
+        if (textures && area.is_visible) area.alpha = shape.alpha;
+        area.mean_factor = area.image < 0 ? Rgb(1) : textures->mean(area.image);
+        if (light.power) {
+            const float measured =
+                static_cast<float>(surfaces.at(light_key(shapes, i))) *
+                luminance(exitance(area.radiance * area.mean_factor, area.two_sided));
+            area.radiance *= normalisation(*light.power, measured);
+        }
+        Rgb choice_factor = area.mean_factor;
+        if (area.alpha >= 0) {
+            // Where position decides, the mean over the parameters may miss all that shines; a
+            // twentieth takes little from the other lights.
+            constexpr float kLeast = 0.05f;
+            // What is not a number becomes 0.
+            const float alpha = std::min(1.0f, std::max(0.0f, textures->mean(area.alpha).r));
+            area.mean_factor *= alpha;
+            choice_factor *= std::max(alpha, kLeast);
+        }
+        std::visit(
+            [&](const auto& emitter) {
+                for (int k = 0; k < emitter.light_count(); ++k) {
+                    LightBounds bounds = emitter.bounds(k);
+                    bounds.intensity *= choice_weight(area.radiance * choice_factor);
+                    bounds.two_sided = bounds.two_sided || light.two_sided;
+                    finite.push_back(bounds);
+                    owner.push_back(static_cast<uint32_t>(area_lights.size()));
+                }
+            },
+            area.emitter);
+        area_light_of_shape[i] = static_cast<int>(area_lights.size());
+        area_lights.push_back(std::move(area));
+    }
+    for (const LightDescription& light : scene.lights) {
+        if (const auto* point = std::get_if<PointLight>(&light.value))
+            points.push_back(make_point_emitter(*point, light.light_to_world));
+        else if (const auto* spot = std::get_if<SpotLight>(&light.value))
+            points.push_back(make_point_emitter(*spot, light.light_to_world));
+        else if (const auto* round = std::get_if<GoniometricLight>(&light.value))
+            points.push_back(
+                make_point_emitter(*round, light.light_to_world, light.where, warnings));
+        else if (const auto* slide = std::get_if<ProjectionLight>(&light.value))
+            points.push_back(
+                make_point_emitter(*slide, light.light_to_world, light.where, warnings));
+        else if (const auto* distant = std::get_if<DistantLight>(&light.value))
+            distants.push_back(make_distant_emitter(*distant, light.light_to_world));
+        else
+            environments.emplace_back(std::get<InfiniteLight>(light.value), light.light_to_world,
+                                      light.where, warnings);
+    }
+    for (const PointEmitter& point : points) finite.push_back(bounds(point));
+    tree = LightTree(finite);
+}
+
+float Lights::Impl::infinite_weight(const InfiniteShare& share, size_t i, Vec3 n) const {
+    if (i >= distants.size()) {
+        const Environment& e = environments[i - distants.size()];
+        return e.irradiance() * (e.is_map() ? 1.0f : share.even);
+    }
+    const float facing = choice_weight(distants[i].irradiance);
+    return n == Vec3{} ? facing : facing * side_weight(dot(distants[i].direction, n));
+}
+
+InfiniteShare Lights::Impl::infinite_share(Vec3 p, Vec3 n) const {
+    InfiniteShare share;
+    if (infinite_count() == 0) return share;
+    float even = 0;
+    for (size_t i = 0; i < infinite_count(); ++i) {
+        const bool is_even = i >= distants.size() && !environments[i - distants.size()].is_map();
+        (is_even ? even : share.weight) += infinite_weight(share, i, n);
+    }
+    const float finite = tree.irradiance(p, n);
+    const bool has_uneven = share.weight > 0;
+    if (even > 0) {
+        // A sky that is alike everywhere is found by BSDFs, too. It is drawn for as far as it
+        // outshines everything else (docs/decisions/0074).
+        const float rest = finite + share.weight;
+        share.even = 0.5f * std::max(0.0f, 1 - rest / even);
+        share.weight += share.even * even;
+    }
+    if (!(share.weight > 0)) return share;
+    share.probability = finite > 0
+                            ? std::clamp(share.weight / (share.weight + finite),
+                                         has_uneven ? kSmallestShare : 0.0f, 1 - kSmallestShare)
+                            : 1.0f;
+    return share;
+}
+
+Rgb Lights::Impl::environment(Vec3 w) const {
+    Rgb sum;
+    for (const Environment& e : environments) sum += e.radiance(w);
+    return sum;
+}
+
+Lights::Sky Lights::Impl::sky(const InfiniteShare& share, Vec3 n, Vec3 w) const {
+    Sky sky;
+    for (size_t i = 0; i < environments.size(); ++i) {
+        const EnvironmentMap::Sight sight = environments[i].look(n, w);
+        const float weight = infinite_weight(share, distants.size() + i, n);
+        sky.radiance += sight.radiance;
+        if (weight > 0) sky.pdf += weight * sight.pdf;
+    }
+    sky.pdf *= share.probability > 0 ? share.probability / share.weight : 0;
+    return sky;
+}
+
+std::optional<LightSample> Lights::Impl::sample_area(int light, float probability, Vec3 p,
+                                                     float time, Vec2 u) const {
+    const AreaLight& area = area_lights[owner[static_cast<size_t>(light)]];
+    const int local = light - area.first_light;
+    const auto point =
+        std::visit([&](const auto& e) { return e.sample(local, p, time, u); }, area.emitter);
+    if (!point || (!area.two_sided && !(dot(point->normal, point->wi) < 0))) return std::nullopt;
+    LightSample s;
+    s.wi = point->wi;
+    s.distance = dot(point->position - p, point->wi);
+    s.radiance = area.radiance;
+    if (area.varies()) {
+        const Vec2 uv =
+            std::visit([&](const auto& e) { return e.uv(local, *point, time); }, area.emitter);
+        const TexturePoint at{uv, point->position};
+        s.radiance = radiance_at(area, at);
+        if (area.alpha >= 0) s.radiance *= clamp01(textures->eval_float(area.alpha, at));
+        if (is_black(s.radiance)) return std::nullopt;
+    }
+    s.pdf = probability * point->pdf;
+    s.light = light;
+    s.position = point->position;
+    s.normal = point->normal;
+    if (!area.is_visible) {
+        // No other strategy finds the light: like a delta light of the same expected irradiance.
+        s.is_delta = true;
+        s.radiance *= 1 / point->pdf;
+        s.pdf = probability;
+    }
+    return s;
+}
+
+std::optional<LightSample> Lights::Impl::sample_point(int light, float probability, Vec3 p) const {
+    const PointEmitter& point = points[static_cast<size_t>(light - first_point())];
+    const Vec3 to_light = point.position - p;
+    const float distance_squared = length_squared(to_light);
+    if (!(distance_squared > 0)) return std::nullopt;
+    LightSample s;
+    s.distance = std::sqrt(distance_squared);
+    s.wi = to_light / s.distance;
+    s.radiance = intensity(point, -s.wi) * (1 / distance_squared);
+    if (is_black(s.radiance)) return std::nullopt;
+    s.pdf = probability;
+    s.is_delta = true;
+    s.light = light;
+    s.position = point.position;
+    return s;
+}
+
+std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& share, Vec3 n,
+                                                         float u_select, Draw draw) const {
+    // The last one with any light takes what rounding leaves over.
+    float rest = u_select * share.weight, chosen_weight = 0;
+    size_t chosen = 0;
+    for (size_t i = 0; i < infinite_count(); ++i) {
+        const float weight = infinite_weight(share, i, n);
+        if (!(weight > 0)) continue;
+        chosen = i;
+        chosen_weight = weight;
+        if (rest < weight) break;
+        rest -= weight;
+    }
+    LightSample s;
+    s.light = first_distant() + static_cast<int>(chosen);
+    if (chosen < distants.size()) {
+        s.wi = distants[chosen].direction;
+        s.radiance = distants[chosen].irradiance;
+        s.pdf = share.probability * chosen_weight / share.weight;
+        s.is_delta = true;
+        return s;
+    }
+    const Environment& environment_light = environments[chosen - distants.size()];
+    advance(environment_light, draw, 2);
+    s.wi = environment_light.direction(n, draw.sky);
+    const Sky there = sky(share, n, s.wi);
+    s.radiance = there.radiance;
+    s.pdf = there.pdf;
+    if (!(s.pdf > 0) || is_black(s.radiance)) return std::nullopt;
+    return s;
+}
+
+void Lights::Impl::advance(const Environment& light, Draw& draw, int steps) const {
+    if (draw.steps < 1 && steps >= 1) draw.sky = light.begin_draw(draw.u);
+    if (draw.steps < 2 && steps >= 2) light.choose_texel(draw.sky);
+    draw.steps = std::max(draw.steps, steps);
+}
+
+Rgb Lights::Impl::radiance_at(const AreaLight& area, const TexturePoint& at) const {
+    return area.image < 0 ? area.radiance : area.radiance * textures->eval(area.image, at);
+}
+
+const AreaLight* Lights::Impl::area_light_of(const SurfaceHit& hit) const {
+    const int index = area_light_of_shape[hit.shape];
+    return index < 0 ? nullptr : &area_lights[static_cast<size_t>(index)];
+}
+
+Lights::Lights(const SceneDescription& scene, const Geometry& geometry,
+               const TextureStore* textures)
+    : impl_(std::make_unique<Impl>(scene, geometry, textures)) {}
+Lights::~Lights() = default;
+
+const Warnings& Lights::warnings() const {
+    return impl_->warnings;
+}
+
+bool Lights::draws_ahead() const {
+    return impl_->infinite_count() == 1 && has_environment() && impl_->environments[0].is_map();
+}
+
+Lights::Draw Lights::begin_draw(Vec2 u) const {
+    Draw draw{u, {}, 0};
+    if (draws_ahead()) impl_->advance(impl_->environments[0], draw, 1);
+    return draw;
+}
+
+void Lights::continue_draw(Draw& draw) const {
+    if (draws_ahead()) impl_->advance(impl_->environments[0], draw, 2);
+}
+
+std::optional<LightSample> Lights::finish_draw(Vec3 p, Vec3 n, float time, float u_select,
+                                               Draw draw) const {
+    const InfiniteShare share = impl_->infinite_share(p, n);
+    if (u_select < share.probability)
+        return impl_->sample_infinite(share, n, u_select / share.probability, draw);
+    const float finite = 1 - share.probability;
+    if (!(finite > 0)) return std::nullopt;
+    const float u_tree = std::min((u_select - share.probability) / finite, kLargestBelowOne);
+    const auto choice = impl_->tree.sample(p, n, u_tree);
+    if (!choice) return std::nullopt;
+    const float probability = finite * choice->probability;
+    return choice->light < impl_->first_point()
+               ? impl_->sample_area(choice->light, probability, p, time, draw.u)
+               : impl_->sample_point(choice->light, probability, p);
+}
+
+Rgb Lights::emitted(const SurfaceHit& hit, Vec3 wo) const {
+    const AreaLight* area = impl_->area_light_of(hit);
+    if (!area || !area->is_visible || (!area->two_sided && !(dot(hit.ng, wo) > 0))) return {};
+    return impl_->radiance_at(*area, {hit.uv, hit.position});
+}
+
+float Lights::pdf(Vec3 p, Vec3 n, Vec3 wi, const SurfaceHit& hit) const {
+    const AreaLight* area = impl_->area_light_of(hit);
+    if (!area || !area->is_visible || (!area->two_sided && !(dot(hit.ng, wi) < 0))) return 0;
+    return std::visit(
+        [&](const auto& e) {
+            const int local = e.light_of(hit);
+            const float probability = selection_probability(p, n, area->first_light + local);
+            return probability > 0 ? probability * e.pdf(local, p, hit) : 0.0f;
+        },
+        area->emitter);
+}
+
+float Lights::selection_probability(Vec3 p, Vec3 n, int light) const {
+    const InfiniteShare share = impl_->infinite_share(p, n);
+    if (light < impl_->first_distant())
+        return (1 - share.probability) * impl_->tree.probability(p, n, light);
+    if (!(share.probability > 0)) return 0;
+    const auto i = static_cast<size_t>(light - impl_->first_distant());
+    return share.probability * impl_->infinite_weight(share, i, n) / share.weight;
+}
+
+bool Lights::has_environment() const {
+    return !impl_->environments.empty();
+}
+Rgb Lights::environment(Vec3 w) const {
+    return impl_->environment(w);
+}
+Lights::Sky Lights::sky(Vec3 p, Vec3 n, Vec3 w) const {
+    return impl_->sky(impl_->infinite_share(p, n), n, w);
+}
+std::vector<DistantView> Lights::distant_views() const {
+    std::vector<DistantView> views;
+    for (const AreaLight& area : impl_->area_lights) {
+        if (!area.is_visible) continue;
+        DistantView view;
+        view.radiance = luminance(area.radiance * area.mean_factor);
+        std::visit(
+            [&](const auto& emitter) {
+                for (int k = 0; k < emitter.light_count(); ++k) {
+                    const LightBounds bounds = emitter.bounds(k);
+                    view.box.extend(bounds.box.lo);
+                    view.box.extend(bounds.box.hi);
+                    view.intensity += bounds.intensity * view.radiance;
+                }
+            },
+            area.emitter);
+        views.push_back(view);
+    }
+    return views;
+}
+
+Rgb Lights::total_power() const {
+    Rgb sum;
+    for (const AreaLight& area : impl_->area_lights)
+        sum += static_cast<float>(surface(area.emitter)) *
+               exitance(area.radiance * area.mean_factor, area.two_sided);
+    for (const PointEmitter& point : impl_->points) sum += power(point);
+    const float disk = kPi * sqr(impl_->geometry->bounds().radius());
+    for (const DistantEmitter& distant : impl_->distants) sum += disk * distant.irradiance;
+    for (const Environment& e : impl_->environments) sum += disk * 4 * kPi * e.mean_radiance();
+    return sum;
+}
+int Lights::count() const {
+    return impl_->first_environment() + static_cast<int>(impl_->environments.size());
+}
+
+}  // namespace covtrace

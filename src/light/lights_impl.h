@@ -1,0 +1,77 @@
+/// The tables behind Lights. Ids: emissive triangles, patch halves and quadrics shape by shape,
+/// then point and spot lights, then distant ones, then infinite ones with extent.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "light/delta.h"
+#include "light/emitter_spectrum.h"
+#include "light/environment.h"
+#include "light/lights.h"
+#include "light/tree.h"
+
+namespace covtrace {
+
+struct AreaLight {
+    uint32_t shape = 0;
+    Rgb radiance;
+    bool two_sided = false;
+    TextureId image = -1, alpha = -1;  ///< that the radiance varies by; -1 where it doesn't
+    bool is_visible =
+        true;  ///< shapes that alpha hides altogether light the scene, but no ray finds them
+    Rgb mean_factor{1};  ///< of image and alpha together
+    int first_light = 0;
+    Emitter emitter;
+    std::optional<EmitterSpectrum> spectrum;
+
+    bool varies() const { return image >= 0 || alpha >= 0; }
+};
+
+/// All infinite lights or all finite ones against each other at a point.
+struct InfiniteShare {
+    float probability = 0;  ///< of choosing an infinite light
+    float weight = 0;       ///< of all infinite lights, which they share that probability by
+    float even = 1;         ///< what the irradiance by even skies counts beside that by others
+};
+
+struct Lights::Impl {
+    Impl(const SceneDescription& scene, const Geometry& geometry, const TextureStore* textures);
+
+    /// By the image, at a place that is there.
+    Rgb radiance_at(const AreaLight& area, const TexturePoint& at) const;
+
+    std::optional<LightSample> sample_area(int light, float probability, Vec3 p, float time,
+                                           Vec2 u) const;
+    std::optional<LightSample> sample_point(int light, float probability, Vec3 p) const;
+    std::optional<LightSample> sample_infinite(const InfiniteShare& share, Vec3 n, float u_select,
+                                               Draw draw) const;
+    void advance(const Environment& light, Draw& draw, int steps) const;
+
+    InfiniteShare infinite_share(Vec3 p, Vec3 n) const;
+    /// Of infinite light i (distant ones first), for choosing among them.
+    float infinite_weight(const InfiniteShare& share, size_t i, Vec3 n) const;
+    Sky sky(const InfiniteShare& share, Vec3 n, Vec3 w) const;
+    Rgb environment(Vec3 w) const;
+    SourceSpectrum environment_spectrum(Vec3 w) const;
+
+    /// Null where the shape does not emit.
+    const AreaLight* area_light_of(const SurfaceHit& hit) const;
+    int first_point() const { return static_cast<int>(owner.size()); }
+    int first_distant() const { return first_point() + static_cast<int>(points.size()); }
+    int first_environment() const { return first_distant() + static_cast<int>(distants.size()); }
+    size_t infinite_count() const { return distants.size() + environments.size(); }
+
+    const Geometry* geometry;
+    const TextureStore* textures;
+    std::vector<int> area_light_of_shape;  ///< into area_lights, -1 for shapes that don't emit
+    std::vector<AreaLight> area_lights;
+    std::vector<uint32_t> owner;  ///< of each area light's id: into area_lights
+    std::vector<PointEmitter> points;
+    std::vector<DistantEmitter> distants;
+    std::vector<Environment> environments;
+    Warnings warnings;
+    LightTree tree;  ///< over the ids of area and point lights
+};
+
+}  // namespace covtrace

@@ -1,0 +1,211 @@
+#include "light/mesh.h"
+
+#include <cmath>
+
+#include "core/warp.h"
+#include "light/spherical_triangle.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Below, areas serve as well and cost less digits; above, the point all but lies in the triangle.
+constexpr float kSmallestSolidAngle = 3e-4f, kLargestSolidAngle = 6.2f;
+
+bool by_solid_angle(float solid_angle) {
+    return solid_angle >= kSmallestSolidAngle && solid_angle <= kLargestSolidAngle;
+}
+
+/// Barycentric coordinates (b1, b2) of the point where the ray from p along w meets the triangle's
+/// plane, moved into the triangle.
+Vec2 barycentric(const WorldTriangle& t, Vec3 p, Vec3 w) {
+    const Vec3 e1 = t.p1 - t.p0, e2 = t.p2 - t.p0, s = p - t.p0;
+    const Vec3 s1 = cross(w, e2);
+    const float divisor = dot(s1, e1);
+    if (divisor == 0) return {1.0f / 3, 1.0f / 3};
+    const float scale = 1 / divisor;
+    const Vec2 b{clamp01(dot(s, s1) * scale), clamp01(dot(w, cross(s, e1)) * scale)};
+    const float sum = b.x + b.y;
+    return sum > 1 ? b * (1 / sum) : b;
+}
+
+}  // namespace
+
+EmissiveMesh::EmissiveMesh(const PlacedShape& shape)
+    : mesh_(shape.description.geometry),
+      motion_(shape.description.object_to_world.is_animated() ? &shape.description.object_to_world
+                                                              : nullptr) {
+    const Transform start = shape.description.object_to_world.start();
+    const Transform placed = motion_ ? Transform() : start;
+    const bool reverse = shape.description.reverse_orientation;
+    const float winding = reverse != placed.swaps_handedness() ? -1.0f : 1.0f;
+    const auto add = [&](const auto& mesh, uint32_t i0, uint32_t i1, uint32_t i2, Vec3 twist) {
+        Element e;
+        e.p0 = placed.point(mesh.positions[i0]);
+        e.p1 = placed.point(mesh.positions[i1]);
+        e.p2 = placed.point(mesh.positions[i2]);
+        e.twist = twist;
+        e.facing = {winding, winding, winding};
+        if (!mesh.normals.empty()) {
+            // Vertex normals decide which side is outside, as in pbrt.
+            const Vec3 n = cross(e.p1 - e.p0, e.p2 - e.p0) * (reverse ? -1.0f : 1.0f);
+            e.facing = {dot(n, placed.normal(mesh.normals[i0])),
+                        dot(n, placed.normal(mesh.normals[i1])),
+                        dot(n, placed.normal(mesh.normals[i2]))};
+        }
+        e.normal = normalize(cross(e.p1 - e.p0, e.p2 - e.p0));
+        elements_.push_back(e);
+    };
+    if (const auto* triangles =
+            std::get_if<std::shared_ptr<const TriangleMesh>>(&shape.description.geometry)) {
+        elements_.reserve((*triangles)->triangles.size());
+        for (const auto& t : (*triangles)->triangles) add(**triangles, t[0], t[1], t[2], {});
+        return;
+    }
+    is_patches_ = true;
+    const auto& mesh = *std::get<std::shared_ptr<const BilinearMesh>>(shape.description.geometry);
+    elements_.reserve(2 * mesh.patches.size());
+    for (const auto& k : mesh.patches) {
+        const auto corner = [&](size_t i) { return placed.point(mesh.positions[k[i]]); };
+        Vec3 twist = corner(0) - corner(1) - corner(2) + corner(3);
+        const float size = std::max(distance(corner(0), corner(3)), distance(corner(1), corner(2)));
+        if (length(twist) <= 1e-5f * size) twist = {};
+        add(mesh, k[0], k[1], k[2], twist);
+        add(mesh, k[3], k[2], k[1], twist);
+    }
+}
+
+int EmissiveMesh::light_of(const SurfaceHit& hit) const {
+    if (!is_patches_) return static_cast<int>(hit.primitive);
+    const bool second = hit.barycentric.x + hit.barycentric.y > 1;
+    return static_cast<int>(2 * hit.primitive + (second ? 1 : 0));
+}
+
+EmissiveMesh::Element EmissiveMesh::moved(Element e, const Transform& t) {
+    const float mirrored = t.swaps_handedness() ? -1.0f : 1.0f;
+    Element m{t.point(e.p0),     t.point(e.p1),      t.point(e.p2), {},
+              t.vector(e.twist), e.facing * mirrored};
+    m.normal = normalize(cross(m.p1 - m.p0, m.p2 - m.p0));
+    return m;
+}
+
+EmissiveMesh::Element EmissiveMesh::at(int light, float time) const {
+    const Element& e = elements_[static_cast<size_t>(light)];
+    return motion_ ? moved(e, motion_->at(time)) : e;
+}
+
+float EmissiveMesh::area_pdf(const Element& e, Vec3 p, Vec3 position, Vec2 b) {
+    // (b1, b2) have density 2, their area element is |d1 x d2|.
+    const Vec3 n = cross(e.d1(b), e.d2(b)), to_point = position - p;
+    const float distance_squared = length_squared(to_point);
+    const float projected = abs_dot(n, to_point);  // |n| distance cos
+    const float pdf = 2 * distance_squared * std::sqrt(distance_squared) / projected;
+    return std::isfinite(pdf) ? pdf : 0.0f;
+}
+
+std::optional<EmitterPoint> EmissiveMesh::sample(int light, Vec3 p, float time, Vec2 u) const {
+    const Element e = at(light, time);
+    EmitterPoint s;
+    Vec2 b;
+    float solid_angle = 0;
+    if (e.is_flat()) {
+        const WorldTriangle triangle{e.p0, e.p1, e.p2};
+        const SphericalTriangle t = spherical_triangle(triangle, p);
+        solid_angle = t.solid_angle;
+        if (by_solid_angle(solid_angle)) b = barycentric(triangle, p, sample_direction(t, u));
+    }
+    if (!by_solid_angle(solid_angle)) b = square_to_triangle(u);
+    s.place = b;
+    s.position = e.point(b);
+    const Vec3 to_point = s.position - p;
+    if (!(length_squared(to_point) > 0)) return std::nullopt;
+    s.wi = normalize(to_point);
+    s.pdf = by_solid_angle(solid_angle) ? 1 / solid_angle : area_pdf(e, p, s.position, b);
+    if (!(s.pdf > 0)) return std::nullopt;
+    const float facing = e.facing.x * (1 - b.x - b.y) + e.facing.y * b.x + e.facing.z * b.y;
+    const Vec3 normal = e.is_flat() ? e.normal : normalize(cross(e.d1(b), e.d2(b)));
+    s.normal = facing < 0 ? -normal : normal;
+    return s;
+}
+
+float EmissiveMesh::pdf(int light, Vec3 p, const SurfaceHit& hit) const {
+    const Element e = at(light, hit.time);
+    if (e.is_flat()) {
+        const float solid_angle = spherical_triangle({e.p0, e.p1, e.p2}, p).solid_angle;
+        if (by_solid_angle(solid_angle)) return 1 / solid_angle;
+    }
+    Vec2 b = hit.barycentric;
+    if (is_patches_ && (light & 1)) b = {1 - b.x, 1 - b.y};
+    return area_pdf(e, p, hit.position, b);
+}
+
+Vec2 EmissiveMesh::uv(int light, const EmitterPoint& point, float) const {
+    const Vec2 b = point.place;
+    if (const auto* triangles = std::get_if<std::shared_ptr<const TriangleMesh>>(&mesh_)) {
+        // As in pbrt, a triangle without coordinates has (0, 0), (1, 0), (1, 1) at its corners.
+        if ((*triangles)->uvs.empty()) return {b.x + b.y, b.y};
+        const auto& t = (*triangles)->triangles[static_cast<size_t>(light)];
+        const auto& uvs = (*triangles)->uvs;
+        return uvs[t[0]] * (1 - b.x - b.y) + uvs[t[1]] * b.x + uvs[t[2]] * b.y;
+    }
+    const auto& mesh = *std::get<std::shared_ptr<const BilinearMesh>>(mesh_);
+    const Vec2 at = light & 1 ? Vec2{1 - b.x, 1 - b.y} : b;
+    if (mesh.uvs.empty()) return at;
+    const auto& k = mesh.patches[static_cast<size_t>(light / 2)];
+    return (mesh.uvs[k[0]] * (1 - at.x) + mesh.uvs[k[1]] * at.x) * (1 - at.y) +
+           (mesh.uvs[k[2]] * (1 - at.x) + mesh.uvs[k[3]] * at.x) * at.y;
+}
+
+std::array<Vec3, 3> EmissiveMesh::start_corners(int light) const {
+    const Element& e = elements_[static_cast<size_t>(light)];
+    if (!motion_) return {e.p0, e.p1, e.p2};
+    const Transform& t = motion_->start();
+    return {t.point(e.p0), t.point(e.p1), t.point(e.p2)};
+}
+
+float EmissiveMesh::area(int light) const {
+    Element e = elements_[static_cast<size_t>(light)];
+    if (motion_) e = moved(e, motion_->start());
+    if (e.is_flat()) return 0.5f * length(cross(e.p1 - e.p0, e.p2 - e.p0));
+    // The midpoint rule over small squares of (b1, b2), those on the diagonal counting half.
+    constexpr int kSteps = 32;
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i)
+        for (int j = 0; i + j < kSteps; ++j) {
+            const Vec2 b{(float(i) + 0.5f) / kSteps, (float(j) + 0.5f) / kSteps};
+            sum += (i + j == kSteps - 1 ? 0.5 : 1.0) * length(cross(e.d1(b), e.d2(b)));
+        }
+    return static_cast<float>(sum / (kSteps * kSteps));
+}
+
+LightBounds EmissiveMesh::bounds(int light) const {
+    const Element& element = elements_[static_cast<size_t>(light)];
+    LightBounds bounds;
+    MotionBox motion_box;
+    bool first = true;
+    const bool both_sides =
+        std::min(element.facing.x, std::min(element.facing.y, element.facing.z)) < 0 &&
+        std::max(element.facing.x, std::max(element.facing.y, element.facing.z)) > 0;
+    for (const Transform& t : motion_ ? poses_over_time(*motion_) : std::vector<Transform>(1)) {
+        const Element e = motion_ ? moved(element, t) : element;
+        // The fourth corner of the whole patch bounds its half, too.
+        motion_box.add({e.p0, e.p1, e.p2, e.is_flat() ? e.p0 : e.point({1, 1})});
+        const float side = e.facing.x + e.facing.y + e.facing.z < 0 ? -1.0f : 1.0f;
+        // d1 x d2 is linear in (b1, b2): the normals at the corners bound all others.
+        for (const Vec2 corner : {Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}}) {
+            LightBounds cone;
+            cone.intensity = 1;
+            cone.axis = normalize(cross(e.d1(corner), e.d2(corner))) * side;
+            if (cone.axis == Vec3{}) continue;
+            bounds = first ? cone : merge(bounds, cone);
+            first = false;
+            if (e.is_flat()) break;
+        }
+    }
+    bounds.box = motion_box.box();
+    bounds.intensity = first ? 0.0f : area(light);
+    bounds.two_sided = both_sides;
+    return bounds;
+}
+
+}  // namespace covtrace

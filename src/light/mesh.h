@@ -1,0 +1,63 @@
+/// Triangle meshes and bilinear patches as emitters: each triangle, and each half of a patch, is a
+/// light of its own.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "geometry/geometry.h"
+#include "light/emitter.h"
+
+namespace covtrace {
+
+class EmissiveMesh {
+  public:
+    /// A mesh, which must outlive the emitter where it moves.
+    explicit EmissiveMesh(const PlacedShape& shape);
+
+    int light_count() const { return static_cast<int>(elements_.size()); }
+    int light_of(const SurfaceHit& hit) const;
+    /// Flat elements: uniform by solid angle, by area where the solid angle is tiny or nearly a
+    /// hemisphere. Halves of patches that are no parallelograms: uniform over the patch's (u, v).
+    /// Empty where the density is not finite.
+    std::optional<EmitterPoint> sample(int light, Vec3 p, float time, Vec2 u) const;
+    /// Density of `sample` at a hit, per solid angle.
+    float pdf(int light, Vec3 p, const SurfaceHit& hit) const;
+    /// The surface's texture coordinates at a sampled point.
+    Vec2 uv(int light, const EmitterPoint& point, float time) const;
+    /// World space, at the start of the shutter.
+    float area(int light) const;
+    /// With an intensity for a radiance of 1.
+    LightBounds bounds(int light) const;
+
+    /// Corners of a light in world space at the start of the shutter.
+    std::array<Vec3, 3> start_corners(int light) const;
+    bool is_patches() const { return is_patches_; }
+
+  private:
+    /// Point p0 + b1 (p1 - p0) + b2 (p2 - p0) + b1 b2 twist with b1, b2 >= 0 and b1 + b2 <= 1.
+    /// Where nothing moves in world space, else in object space.
+    struct Element {
+        Vec3 p0, p1, p2;
+        Vec3 normal;  // unit, along d1 x d2 of flat elements
+        Vec3 twist;   // zero for flat elements
+        Vec3 facing;  // whose interpolated sign tells whether d1 x d2 points to the outside
+        bool is_flat() const { return twist == Vec3{}; }
+        Vec3 d1(Vec2 b) const { return p1 - p0 + twist * b.y; }
+        Vec3 d2(Vec2 b) const { return p2 - p0 + twist * b.x; }
+        Vec3 point(Vec2 b) const {
+            return p0 + (p1 - p0) * b.x + (p2 - p0) * b.y + twist * (b.x * b.y);
+        }
+    };
+    Element at(int light, float time) const;
+    static Element moved(Element e, const Transform& t);
+    static float area_pdf(const Element& e, Vec3 p, Vec3 position, Vec2 b);
+
+    decltype(ShapeDescription::geometry) mesh_;
+    std::vector<Element> elements_;
+    bool is_patches_ = false;
+    const AnimatedTransform* motion_ = nullptr;  // null where nothing moves
+};
+
+}  // namespace covtrace

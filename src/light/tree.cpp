@@ -1,0 +1,121 @@
+#include "light/tree.h"
+
+#include <cmath>
+
+#include "core/hash.h"
+#include "light/weight.h"
+
+namespace covtrace {
+
+namespace {
+
+/// cos(max(0, a - b)) for angles in [0, pi].
+inline float cos_of_excess(float sin_a, float cos_a, float sin_b, float cos_b) {
+    const float difference = cos_a * cos_b + sin_a * sin_b;
+    return cos_a > cos_b ? 1.0f : difference;
+}
+/// sin(max(0, a - b)).
+inline float sin_of_excess(float sin_a, float cos_a, float sin_b, float cos_b) {
+    const float difference = sin_a * cos_b - cos_a * sin_b;
+    return cos_a > cos_b ? 0.0f : difference;
+}
+
+/// Of a normal to what is seen in the cone of half-angle b at the angle i, where that is above the
+/// horizon: the cosine of i, and of cones that the horizon cuts about what of it is left.
+inline float mean_cosine(float cos_i, float sin_b) {
+    const float above = std::max(0.0f, cos_i + sin_b);
+    return cos_i >= sin_b ? cos_i : above * above / std::max(4 * sin_b, 1e-20f);  // of points: 0
+}
+
+float sum(const std::array<float, 4>& v) {
+    return (v[0] + v[1]) + (v[2] + v[3]);
+}
+
+}  // namespace
+
+/// Without branches, so that the loop becomes vector instructions.
+template <LightTree::Estimate kEstimate>
+LightTree::Lanes LightTree::Node::importance(Vec3 p, Vec3 n) const {
+    const bool is_volume = n == Vec3{};
+    Lanes result;
+    for (size_t i = 0; i < kWidth; ++i) {
+        const float dx = p.x - center_x[i], dy = p.y - center_y[i], dz = p.z - center_z[i];
+        const float distance_squared = dx * dx + dy * dy + dz * dz;
+        const float at_least = std::max(distance_squared, 1e-20f);
+        const float scale = 1 / std::sqrt(at_least);
+        const float wx = dx * scale, wy = dy * scale, wz = dz * scale;
+        const float sin_b2 = std::min(1.0f, radius_squared[i] / at_least);
+        const float sin_b = std::sqrt(sin_b2), cos_b = std::sqrt(1 - sin_b2);
+
+        const float cos_axis = axis_x[i] * wx + axis_y[i] * wy + axis_z[i] * wz;
+        const float cos_side = two_sided[i] ? std::abs(cos_axis) : cos_axis;
+        const float cos_w = std::max(-1.0f, std::min(cos_side, 1.0f));
+        const float sin_w = std::sqrt(1 - cos_w * cos_w);
+        const float cos_x = cos_of_excess(sin_w, cos_w, sin_o[i], cos_o[i]);
+        const float sin_x = sin_of_excess(sin_w, cos_w, sin_o[i], cos_o[i]);
+        const float cos_emission = cos_of_excess(sin_x, cos_x, sin_b, cos_b);
+
+        const float cos_i = std::max(-1.0f, std::min(-(wx * n.x + wy * n.y + wz * n.z), 1.0f));
+        const float sin_i = std::sqrt(1 - cos_i * cos_i);
+        const float received = kEstimate == Estimate::mean
+                                   ? mean_cosine(cos_i, sin_b)
+                                   : side_weight(cos_of_excess(sin_i, cos_i, sin_b, cos_b));
+        const float outside = cos_emission > cos_e[i]
+                                  ? intensity[i] * std::max(cos_emission, 1e-3f) *
+                                        (is_volume ? 1.0f : received) / at_least
+                                  : 0.0f;
+        // Within the bounds nothing is known about directions.
+        const float inside = intensity[i] / std::max(radius_squared[i], 1e-20f);
+        result[i] = distance_squared <= radius_squared[i] * 1.0001f ? inside : outside;
+    }
+    return result;
+}
+
+float LightTree::irradiance(Vec3 p, Vec3 n) const {
+    // The root's children are a much better estimate than all lights at once where they are
+    // scattered.
+    return nodes_.empty() ? 0.0f : sum(nodes_.front().importance<Estimate::mean>(p, n));
+}
+
+std::optional<LightTree::Choice> LightTree::sample(Vec3 p, Vec3 n, float u) const {
+    if (nodes_.empty()) return std::nullopt;
+    float probability = 1;
+    uint32_t link = 0;
+    while (!(link & kLeaf)) {
+        const Node& node = nodes_[link];
+        const Lanes importance = node.importance<Estimate::bound>(p, n);
+        const float total = sum(importance);
+        if (!(total > 0)) return std::nullopt;
+        // The last one of any importance takes what rounding leaves over.
+        float rest = u * total;
+        size_t chosen = 0;
+        for (size_t i = 0; i < kWidth; ++i) {
+            if (!(importance[i] > 0)) continue;
+            chosen = i;
+            if (rest < importance[i]) break;
+            rest -= importance[i];
+        }
+        u = std::min(rest / importance[chosen], kLargestBelowOne);
+        probability *= importance[chosen] / total;
+        link = node.link[chosen];
+    }
+    if (!(probability > 0)) return std::nullopt;
+    return Choice{static_cast<int>(link & ~kLeaf), probability};
+}
+
+float LightTree::probability(Vec3 p, Vec3 n, int light) const {
+    uint64_t trail = trails_[static_cast<size_t>(light)];
+    if (trail == kNotInTree) return 0;
+    float probability = 1;
+    for (uint32_t link = 0; !(link & kLeaf); trail >>= 2) {
+        const Node& node = nodes_[link];
+        const Lanes importance = node.importance<Estimate::bound>(p, n);
+        const float own = importance[trail & 3];
+        if (!(own > 0)) return 0;
+        probability *= own / sum(importance);
+        link = node.link[trail & 3];
+    }
+    return probability;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,224 @@
+#include "occluders/bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace covtrace {
+
+namespace {
+
+/// Triangles that curved shapes may have together; each has at least a few hundred.
+constexpr double kCurvedTriangles = 2e6;
+constexpr double kMostAround = 64, kLeastAround = 16;  ///< pieces of a circle
+/// Triangles that shapes with holes may have together, and pieces of an edge of theirs.
+constexpr double kPerforatedTriangles = 2e6;
+constexpr int kMostPerEdge = 64, kLeastPerEdge = 4;
+/// Of alpha: the contrast (1 - t)/(1 + t) of such a surface, t what it lets through, is a tenth,
+/// from which on partial edges count in full (covariance::edge_visibility).
+constexpr float kOpaque = 0.18f;
+
+/// How many times longer the map makes all lengths, or 0 where it does not keep angles.
+double similarity(const Affine& m) {
+    const double s = length(m.row[0]);
+    const auto is = [s](double value, double expected) {
+        return std::abs(value - expected) <= 1e-5 * s * s;
+    };
+    const bool keeps = is(dot(m.row[1], m.row[1]), s * s) && is(dot(m.row[2], m.row[2]), s * s) &&
+                       is(dot(m.row[0], m.row[1]), 0) && is(dot(m.row[1], m.row[2]), 0) &&
+                       is(dot(m.row[2], m.row[0]), 0);
+    return keeps ? s : 0;
+}
+
+/// Notes that a body is a ball, where its shape is a whole sphere that is one in local space.
+void note_ball(const LocalShape& shape, OccluderBody& body) {
+    const auto* q = std::get_if<Quadric>(&shape);
+    if (!q || q->kind != Quadric::Kind::sphere || q->z_min > -q->radius || q->z_max < q->radius ||
+        q->phi_max < 6.2831853)
+        return;
+    body.center = q->local_from_object.translation.to_float();
+    body.radius = static_cast<float>(q->radius * similarity(q->local_from_object));
+}
+
+bool is_flat(const LocalShape& shape) {
+    const auto* patches = std::get_if<PatchShape>(&shape);
+    return std::holds_alternative<TriangleShape>(shape) || (patches && patches->parallelograms);
+}
+
+/// Of a flat shape.
+size_t triangle_count(const LocalShape& shape) {
+    if (const auto* mesh = std::get_if<TriangleShape>(&shape)) return mesh->mesh->triangles.size();
+    return 2 * std::get<PatchShape>(shape).mesh->patches.size();
+}
+
+Bounds3 transformed(const Bounds3& b, const Affine& map) {
+    const Vec3d c = map.point(Vec3d(b.center())), h = map.absolute(Vec3d(b.diagonal() * 0.5f));
+    Bounds3 r;
+    // A little more, for the rounding to float.
+    r.extend((c - h * 1.00001).to_float());
+    r.extend((c + h * 1.00001).to_float());
+    return r;
+}
+
+}  // namespace
+
+EdgeSet::EdgeSet(const std::vector<FoldEdge>& found) : count(found.size()) {
+    std::vector<Bounds3> boxes(count);
+    for (size_t i = 0; i < count; ++i) {
+        boxes[i].extend(found[i].a);
+        boxes[i].extend(found[i].b);
+    }
+    hierarchy = BoxHierarchy(boxes, BoxHierarchy::kWidth);
+    std::vector<FoldEdge> edges;
+    edges.reserve(count);
+    blocks.reserve(hierarchy.items());
+    for (size_t i = 0; i < hierarchy.items(); ++i) {
+        for (uint32_t k : hierarchy.item(i)) edges.push_back(found[k]);
+        blocks.emplace_back(std::span(edges).last(hierarchy.item(i).size()));
+    }
+    cones = blind_cones(hierarchy, edges);
+}
+
+OccluderBodies::OccluderBodies(const Geometry::Impl& g, std::function<bool()> cancelled)
+    : geometry(g), cancelled_(std::move(cancelled)) {
+    size_t curved = 0;
+    for (const LocalShape& shape : g.local)
+        if (!is_flat(shape)) ++curved;
+    // Triangles of a sphere: around * around, two per cell, half as many along.
+    around_ = std::clamp(std::sqrt(kCurvedTriangles / std::max<double>(1, double(curved))),
+                         kLeastAround, kMostAround);
+    double perforated = 0;
+    for (size_t i = 0; i < g.local.size(); ++i)
+        if (has_holes(static_cast<uint32_t>(i)) && is_flat(g.local[i]))
+            perforated += static_cast<double>(triangle_count(g.local[i]));
+    per_edge_ = static_cast<int>(std::min<double>(
+        std::sqrt(kPerforatedTriangles / std::max(1.0, perforated)), kMostPerEdge));
+    std::vector<std::vector<OccluderBody>> of_scene(g.scenes.size());
+    for (const EmbreeInstance& instance : g.instances) {
+        auto& parts = of_scene[instance.scene];
+        if (parts.empty())
+            parts = add(g.scenes[instance.scene].shape_of_geometry,
+                        g.world_from_local(instance, g.clock.open()));
+        for (OccluderBody part : parts) {
+            part.instance = &instance;
+            if (part.radius > 0 && !keeps_angles(instance)) part.radius = 0;
+            if (part.curved.shape != Owner::kNone)
+                part.curved.instance = static_cast<uint32_t>(&instance - g.instances.data()) + 1;
+            bodies.push_back(part);
+        }
+    }
+    // The top scene starts with the instances themselves.
+    const auto& top = g.top.shape_of_geometry;
+    for (const OccluderBody& part :
+         add({top.begin() + static_cast<ptrdiff_t>(g.instances.size()), top.end()}, {}))
+        bodies.push_back(part);
+    std::vector<Bounds3> boxes;
+    for (const OccluderBody& body : bodies) boxes.push_back(bounds_of(body));
+    hierarchy = BoxHierarchy(boxes);
+    std::vector<OccluderBody> ordered;
+    for (size_t i = 0; i < hierarchy.items(); ++i) ordered.push_back(bodies[hierarchy.item(i)[0]]);
+    bodies = std::move(ordered);
+}
+
+/// Throughout the shutter, as far as its ends and its middle tell.
+bool OccluderBodies::keeps_angles(const EmbreeInstance& instance) const {
+    const float open = geometry.clock.open(), close = geometry.clock.close();
+    for (const float time : {open, 0.5f * (open + close), close})
+        if (!(similarity(geometry.world_from_local(instance, time)) > 0)) return false;
+    return true;
+}
+
+bool OccluderBodies::has_holes(uint32_t shape) const {
+    return geometry.placed[shape].description.alpha >= 0 && geometry.alpha;
+}
+
+/// What alpha leaves of a flat shape. Holes that depend on the position are those at
+/// `world_from_local`.
+Tessellation OccluderBodies::perforated(uint32_t shape, const Affine& world_from_local) const {
+    const TextureId texture = geometry.placed[shape].description.alpha;
+    return Tessellation(
+        geometry.local[shape], 1e-30, 1,
+        [&](Vec2 uv, Vec3 position) {
+            const Vec3 at = world_from_local.point(Vec3d(position)).to_float();
+            return geometry.alpha(texture, uv, at) > kOpaque ? 1.0f : 0.0f;
+        },
+        per_edge_);
+}
+
+/// Edge sets of shapes that stand together: one for all that is flat, one for each that is not.
+std::vector<OccluderBody> OccluderBodies::add(const std::vector<uint32_t>& shapes,
+                                              const Affine& world_from_local) {
+    FoldEdgeFinder flat;
+    std::vector<OccluderBody> parts;
+    for (uint32_t shape : shapes) {
+        if (cancelled_ && cancelled_()) break;
+        if (geometry.is_interface[shape]) continue;
+        const LocalShape& local = geometry.local[shape];
+        if (is_flat(local)) {
+            const Tessellation surface = has_holes(shape) && per_edge_ >= kLeastPerEdge
+                                             ? perforated(shape, world_from_local)
+                                             : Tessellation(local, 1, 1);
+            flat.add(surface.positions(), surface.triangles());
+            continue;
+        }
+        FoldEdgeFinder curved;
+        const Tessellation surface(local, piece_of(local), 1);
+        curved.add(surface.positions(), surface.triangles());
+        if (keep(curved, {shape, 0}, parts)) note_ball(local, parts.back());
+    }
+    keep(flat, {}, parts);
+    return parts;
+}
+
+/// Whether there is anything to keep.
+bool OccluderBodies::keep(FoldEdgeFinder& finder, Owner curved, std::vector<OccluderBody>& parts) {
+    const std::vector<FoldEdge> edges = finder.take();
+    if (edges.empty()) return false;
+    OccluderBody body;
+    body.set = static_cast<uint32_t>(sets.size());
+    body.curved = curved;
+    parts.push_back(body);
+    sets.emplace_back(edges);
+    return true;
+}
+
+/// Scene units of the local space, so that a whole turn has around_ pieces.
+double OccluderBodies::piece_of(const LocalShape& shape) const {
+    Bounds3 b;
+    if (const auto* quadric = std::get_if<Quadric>(&shape)) {
+        const Affine& m = quadric->local_from_object;
+        const double widest = std::max({length(m.row[0]), length(m.row[1]), length(m.row[2])});
+        return 2 * double(kPi) * quadric->radius * widest / around_;
+    }
+    for (Vec3 p : std::get<PatchShape>(shape).positions) b.extend(p);
+    return std::max(4 * double(length(b.diagonal())) / around_, 1e-30);
+}
+
+Bounds3 OccluderBodies::bounds_of(const OccluderBody& body) const {
+    Bounds3 local = sets[body.set].hierarchy.bounds();
+    if (body.radius > 0) {
+        const Vec3 r = Vec3{1, 1, 1} * (1.00001f * body.radius);
+        local = {body.center - r, body.center + r};
+    }
+    if (!body.instance) return local;
+    if (!body.instance->moves) return transformed(local, body.instance->still);
+    // Between two times the corners move along a curve: the boxes of many times, with room for
+    // what lies between them.
+    constexpr int kTimes = 32;
+    const ShutterClock& clock = geometry.clock;
+    Bounds3 all, before;
+    for (int i = 0; i <= kTimes; ++i) {
+        const float f = static_cast<float>(i) / kTimes;
+        const float time = clock.open() + f * (clock.close() - clock.open());
+        const Bounds3 now = transformed(local, geometry.world_from_local(*body.instance, time));
+        all.extend(now);
+        if (i > 0) {
+            const Vec3 step = max(max(now.lo - before.lo, before.lo - now.lo),
+                                  max(now.hi - before.hi, before.hi - now.hi));
+            all.extend(Bounds3{now.lo - step * 0.5f, now.hi + step * 0.5f});
+        }
+        before = now;
+    }
+    return all;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,63 @@
+/// What the query of occluders searches: the edges of all shapes in hierarchies, and where in the
+/// world they stand. Only for query.cpp.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "geometry/placed_scene.h"
+#include "geometry/tessellation.h"
+#include "occluders/blind_cones.h"
+#include "occluders/box_hierarchy.h"
+#include "occluders/edge_block.h"
+#include "occluders/fold_edges.h"
+#include "occluders/query.h"
+
+namespace covtrace {
+
+/// Edges in the local space of a scene of Embree.
+struct EdgeSet {
+    size_t count = 0;
+    BoxHierarchy hierarchy;
+    std::vector<EdgeBlock> blocks;  ///< its items
+    std::vector<BlindCones> cones;  ///< of its nodes
+
+    explicit EdgeSet(const std::vector<FoldEdge>& found);
+};
+
+/// An edge set, or a ball, somewhere in the world.
+struct OccluderBody {
+    uint32_t set = 0;
+    Vec3 center;                               ///< of a ball, local
+    float radius = 0;                          ///< 0: not a ball but its edge set
+    const EmbreeInstance* instance = nullptr;  ///< null: local space is world space
+    OccluderQuery::Owner curved;  ///< the curved shape that this is; none: flat triangles
+};
+
+class OccluderBodies {
+  public:
+    OccluderBodies(const Geometry::Impl& geometry, std::function<bool()> cancelled);
+
+    const Geometry::Impl& geometry;
+    std::vector<EdgeSet> sets;
+    std::vector<OccluderBody> bodies;  ///< in the order of `hierarchy`
+    BoxHierarchy hierarchy;            ///< over the bodies, throughout the shutter
+
+  private:
+    using Owner = OccluderQuery::Owner;
+
+    bool has_holes(uint32_t shape) const;
+    Tessellation perforated(uint32_t shape, const Affine& world_from_local) const;
+    std::vector<OccluderBody> add(const std::vector<uint32_t>& shapes,
+                                  const Affine& world_from_local);
+    bool keep(FoldEdgeFinder& finder, Owner curved, std::vector<OccluderBody>& parts);
+    double piece_of(const LocalShape& shape) const;
+    bool keeps_angles(const EmbreeInstance& instance) const;
+    Bounds3 bounds_of(const OccluderBody& body) const;
+
+    std::function<bool()> cancelled_;
+    double around_;  ///< pieces of a whole turn of curved shapes
+    int per_edge_;   ///< pieces of the edges of shapes with holes
+};
+
+}  // namespace covtrace

@@ -1,0 +1,157 @@
+/// The state of one search for outlines beside a segment: which boxes to enter, what was found.
+/// Only for query.cpp.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "core/frame.h"
+#include "geometry/affine.h"
+#include "occluders/blind_cones.h"
+#include "occluders/edge_block.h"
+#include "occluders/query.h"
+
+namespace covtrace {
+
+class OutlineSearch {
+  public:
+    OutlineSearch(Vec3 begin, Vec3 end, const EdgeMeasure& measure, float nearest);
+
+    /// Whether no edge can matter.
+    bool is_over() const { return !(lo_ <= hi_); }
+
+    /// Which boxes of a node, in the world, may hold edges that are narrow enough and, by `cones`,
+    /// outlines; bounds are of squared widths.
+    BoxHierarchy::Met near_world(const BoxHierarchy::Node& node);
+    BoxHierarchy::Met near_world(const BoxHierarchy::Node& node, const BlindCones& cones);
+    /// The squared width that an edge must stay below to be of interest; below 0 once enough was
+    /// looked at.
+    float limit() const { return steps_left_ > 0 ? limit_ : -1.0f; }
+    /// Edges of the world that belong to `body`.
+    void meet_world(const EdgeBlock& edges, uint32_t body);
+
+    /// The space of the edges that follow.
+    void enter(const Affine& world_from_local);
+    BoxHierarchy::Met near_local(const BoxHierarchy::Node& node, const BlindCones& cones);
+    void meet_local(const EdgeBlock& edges, uint32_t body);
+
+    /// A whole ball of the world: outlined by the circle on which its tangents from end_ touch it.
+    void meet_ball(Vec3 center, float radius, uint32_t body);
+
+    bool has_found() const { return has_found_; }
+    /// velocity(body, point).
+    template <class Velocity>
+    void collect(OutlineEvents& events, const Velocity& velocity);
+
+  private:
+    /// Nodes and blocks of edges that are looked at, nearest first, after the first outline was
+    /// found. Beside a cloud of occluders all of them would be near enough to matter, and none more
+    /// than the first ones (docs/decisions/0090).
+    static constexpr int kMostSteps = 128;
+    /// The time of a ball, or of entering an instance's space, in that of a node.
+    static constexpr int kStepsPerBody = 4;
+
+    struct Candidate {
+        Vec3 point;    ///< from end_
+        Vec3 towards;  ///< along OutlineEvent::direction or against it, not of length 1
+        uint32_t body;
+    };
+    /// Where eight edges are narrowest.
+    struct Nearest {
+        Float8 width2;  ///< infinity where nothing of the edge is beside the segment
+        Float8 t;       ///< the place, 0 to 1 along the edge
+        Mask8 inside;   ///< all bits set where it is no end of it
+    };
+
+    /// From middles relative to end_ and half sizes, by axis.
+    BoxHierarchy::Met may_matter(const Vec3x8& middle, const Vec3x8& half);
+    /// `from`, `along`: of edges, in the world, from end_.
+    Nearest nearest(const Vec3x8& from, const Vec3x8& along) const;
+    void meet(const Mask8& outlines, const Vec3x8& from, const Vec3x8& along, uint32_t body);
+    /// `point`: from end_, the edge's nearest, `is_inside` where that is no end of it.
+    void keep(float width2, Vec3 point, Vec3 along, bool is_inside, uint32_t body);
+
+    Vec3 end_, axis_;  ///< unit, from the end to the beginning
+    EdgeMeasure measure_;
+    float lo_ = 1, hi_ = 0;  ///< distances from the end
+    float limit_ = 0;
+    int steps_left_ = kMostSteps;
+    float widest2_ = 0;
+    float least_ = 0;  ///< that the measure's denominator is
+    float sharp_ = 0;  ///< where the blur is least; 0 where it is the same everywhere
+    bool has_found_ = false;
+    /// By sector of direction.
+    std::array<float, OutlineEvents::kMost> widths2_{kInfinity, kInfinity, kInfinity, kInfinity};
+    std::array<Candidate, OutlineEvents::kMost> best_;
+    Frame frame_;  ///< about axis_, where anything was found
+
+    std::array<Vec3, 3> rows_;
+    Vec3 shift_, local_end_;
+};
+
+inline BoxHierarchy::Met OutlineSearch::near_world(const BoxHierarchy::Node& node) {
+    return may_matter(node.middle - all8(end_), node.half);
+}
+
+inline BoxHierarchy::Met OutlineSearch::near_world(const BoxHierarchy::Node& node,
+                                                   const BlindCones& cones) {
+    const Vec3x8 middle = node.middle - all8(end_);
+    BoxHierarchy::Met met = may_matter(middle, node.half);
+    met.bits &= ~bits8(cones.hide(middle));
+    return met;
+}
+
+inline BoxHierarchy::Met OutlineSearch::may_matter(const Vec3x8& middle, const Vec3x8& half) {
+    if (has_found_) --steps_left_;
+    const EdgeMeasure& m = measure_;
+    const Vec3x8 axis = all8(axis_);
+    const Float8 along = dot8(middle, axis), reach = dot8(half, abs8(axis));
+    const Float8 z0 = max8(along - reach, all8(lo_)), z1 = min8(along + reach, all8(hi_));
+    // Across the axis: the box lies beyond a plane at right angles to the way to its middle, at
+    // beyond / |p|. Both sides of the comparison are multiplied by what a quotient would divide by;
+    // equal ones count, as both vanish where their products become too small.
+    const Vec3x8 p = less_product8(axis, along, middle);
+    const Float8 p2 = dot8(p, p);
+    const Float8 beyond = max8(p2 - dot8(half, abs8(p)), Float8{});
+    const Float8 scale = p2 + 1e-20f;
+    const Float8 blur = add_product8(all8(m.a1), min8(max8(all8(sharp_), z0), z1), all8(m.a0));
+    const Float8 numerator = add_product8(beyond * beyond, all8(m.b), blur * blur * scale);
+    const Float8 h0 = all8(m.h0), h1 = all8(m.h1), h2 = all8(m.h2);
+    const Float8 at0 = add_product8(add_product8(h2, z0, h1), z0, h0),
+                 at1 = add_product8(add_product8(h2, z1, h1), z1, h0),
+                 denominator = max8(max8(at0, at1), all8(least_)) * scale;
+    return {bits8((z0 <= z1) & (numerator <= all8(limit_) * denominator)), numerator, denominator};
+}
+
+template <class Velocity>
+void OutlineSearch::collect(OutlineEvents& events, const Velocity& velocity) {
+    std::array<size_t, OutlineEvents::kMost> narrowest{0, 1, 2, 3};
+    std::sort(narrowest.begin(), narrowest.end(),
+              [this](size_t a, size_t b) { return widths2_[a] < widths2_[b]; });
+    /// Cosine of the angle within which two edges limit the light in the same direction.
+    constexpr float kSameDirection = 0.87f;
+    for (const size_t sector : narrowest) {
+        const float width2 = widths2_[sector];
+        if (width2 == kInfinity || width2 > limit_) break;
+        const Candidate& c = best_[sector];
+        OutlineEvent e;
+        const Vec3 unit = c.towards / length(c.towards);
+        e.z = dot(c.point, axis_);
+        const float side = dot(c.point - axis_ * e.z, unit);
+        e.direction = side < 0 ? -unit : unit;
+        e.distance = std::abs(side);
+        bool repeats = false;
+        for (size_t i = 0; i < events.count; ++i)
+            repeats =
+                repeats || std::abs(dot(events.events[i].direction, e.direction)) > kSameDirection;
+        if (repeats) continue;
+        e.width = std::sqrt(width2);
+        e.velocity = velocity(c.body, end_ + c.point);
+        size_t at = events.count++;
+        for (; at > 0 && events.events[at - 1].z < e.z; --at)
+            events.events[at] = events.events[at - 1];
+        events.events[at] = e;
+    }
+}
+
+}  // namespace covtrace

@@ -1,0 +1,87 @@
+#include "occluders/query.h"
+
+#include <new>
+
+#include "core/error.h"
+#include "occluders/bodies.h"
+#include "occluders/outline_search.h"
+
+namespace covtrace {
+
+struct OccluderQuery::Impl : OccluderBodies {
+    using OccluderBodies::OccluderBodies;
+};
+
+OccluderQuery::OccluderQuery(const Geometry& geometry, std::function<bool()> cancelled) {
+    try {
+        impl_ = std::make_unique<Impl>(geometry.impl(), std::move(cancelled));
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::limit, "out of memory while collecting the scene's outlines");
+    }
+}
+OccluderQuery::~OccluderQuery() = default;
+
+size_t OccluderQuery::edges() const {
+    size_t count = 0;
+    for (const EdgeSet& set : impl_->sets) count += set.count;
+    return count;
+}
+
+size_t OccluderQuery::memory() const {
+    size_t bytes = impl_->hierarchy.memory() + impl_->bodies.capacity() * sizeof(OccluderBody);
+    for (const EdgeSet& set : impl_->sets)
+        bytes += set.hierarchy.memory() + set.blocks.capacity() * sizeof(EdgeBlock) +
+                 set.cones.capacity() * sizeof(BlindCones);
+    return bytes;
+}
+
+OutlineEvents OccluderQuery::operator()(const Segment& segment, const EdgeMeasure& measure,
+                                        float nearest) const {
+    const Impl& g = *impl_;
+    OutlineSearch search(segment.begin, segment.end, measure, nearest);
+    if (search.is_over() || g.hierarchy.empty()) return {};
+    const auto is = [](Owner a, Owner b) { return a.shape == b.shape && a.instance == b.instance; };
+    using Node = BoxHierarchy::Node;
+    const auto limit = [&search] { return search.limit(); };
+    g.hierarchy.search(
+        [&](const Node& node, uint32_t) { return search.near_world(node); }, limit,
+        [&](uint32_t index) {
+            const OccluderBody& body = g.bodies[index];
+            if (body.curved.shape != Owner::kNone &&
+                (is(body.curved, segment.at_begin) || is(body.curved, segment.at_end)))
+                return;
+            if (body.radius > 0) {
+                if (!body.instance) return search.meet_ball(body.center, body.radius, index);
+                const Affine map = g.geometry.world_from_local(*body.instance, segment.time);
+                const auto scale = static_cast<float>(length(map.row[0]));
+                return search.meet_ball(map.point(Vec3d(body.center)).to_float(),
+                                        body.radius * scale, index);
+            }
+            const EdgeSet& set = g.sets[body.set];
+            if (!body.instance) {
+                set.hierarchy.search(
+                    [&](const Node& node, uint32_t i) {
+                        return search.near_world(node, set.cones[i]);
+                    },
+                    limit, [&](uint32_t i) { search.meet_world(set.blocks[i], index); });
+                return;
+            }
+            search.enter(g.geometry.world_from_local(*body.instance, segment.time));
+            set.hierarchy.search(
+                [&](const Node& node, uint32_t i) { return search.near_local(node, set.cones[i]); },
+                limit, [&](uint32_t i) { search.meet_local(set.blocks[i], index); });
+        });
+
+    OutlineEvents events;
+    if (!search.has_found()) return events;
+    search.collect(events, [&](uint32_t index, Vec3 point) -> Vec3 {
+        const EmbreeInstance* instance = g.bodies[index].instance;
+        if (!instance || !instance->moves) return {};
+        const Affine velocity = instance->motion.rate(segment.time, g.geometry.clock) *
+                                g.geometry.world_from_local(*instance, segment.time).inverse();
+        return velocity.point(Vec3d(point)).to_float();
+    });
+    return events;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,185 @@
+#include "pbrt/light_builder.h"
+
+#include "pbrt/spectrum_parameter.h"
+#include "pbrt/version_three.h"
+#include "scene/names.h"
+
+namespace covtrace {
+
+namespace {
+
+float light_scale(Entity& e) {
+    const float scale = e.parameters.number("scale", 1);
+    if (scale < 0)
+        throw Error(ErrorKind::scene, e.parameters.where("scale", e.where),
+                    "parameter \"scale\" of a light must not be negative");
+    return scale;
+}
+
+/// The light's colour times its scale.
+Rgb light_of(Entity& e, std::string_view name, BuildContext& context) {
+    const Rgb colour = light_colour(e.parameters, name, context);
+    return scaled_light(colour, light_scale(e), e.where, context);
+}
+
+/// Power or illuminance that the light as a whole is to have. pbrt scales light of luminance 1 to
+/// the given number and then applies the colour and "scale". Empty where it isn't a positive
+/// number, as in pbrt.
+std::optional<float> target(Entity& e, std::string_view name, Rgb colour_and_scale,
+                            const BuildContext& context) {
+    const auto v = e.parameters.number(name);
+    if (!v || !(*v > 0)) return std::nullopt;
+    const SourceLocation where = e.parameters.where(name, e.where);
+    return luminance(scaled_light(colour_and_scale, *v, where, context));
+}
+
+/// Unit vector between two points of the light; they must differ.
+Vec3 direction(Vec3 from, Vec3 to, const Entity& e) {
+    const Vec3 d = to - from;
+    if (!(length(d) > 0) || !is_finite(d))
+        throw Error(ErrorKind::scene, e.where,
+                    "\"from\" and \"to\" of the light are the same point");
+    return normalize(d);
+}
+
+PointLight point_light(Entity& e, BuildContext& context) {
+    PointLight light;
+    light.intensity = light_of(e, "I", context);
+    light.from = e.parameters.triple("from", {});
+    light.power = target(e, "power", light.intensity, context);
+    return light;
+}
+
+SpotLight spot_light(Entity& e, BuildContext& context) {
+    ParameterList& p = e.parameters;
+    SpotLight light;
+    light.intensity = light_of(e, "I", context);
+    light.from = p.triple("from", {});
+    light.to = p.triple("to", {0, 0, 1});
+    direction(light.from, light.to, e);
+    light.cone_angle = p.number("coneangle", 30);
+    light.cone_delta_angle = p.number("conedeltaangle", 5);
+    if (!(light.cone_angle > 0 && light.cone_angle <= 180))
+        throw Error(ErrorKind::scene, p.where("coneangle", e.where),
+                    "parameter \"coneangle\" must be between 0 and 180 degrees");
+    if (!(light.cone_delta_angle >= 0 && light.cone_delta_angle <= 2 * light.cone_angle))
+        throw Error(ErrorKind::scene, p.where("conedeltaangle", e.where),
+                    "parameter \"conedeltaangle\" must be between 0 and twice coneangle");
+    light.power = target(e, "power", light.intensity, context);
+    return light;
+}
+
+DistantLight distant_light(Entity& e, BuildContext& context) {
+    DistantLight light;
+    light.radiance = light_of(e, "L", context);
+    const Vec3 from = e.parameters.triple("from", {}), to = e.parameters.triple("to", {0, 0, 1});
+    light.direction = direction(to, from, e);
+    // Light of luminance 1 already has illuminance 1 on a surface that faces it.
+    if (const auto v = e.parameters.number("illuminance"); v && *v > 0)
+        light.radiance =
+            scaled_light(light.radiance, *v, e.parameters.where("illuminance", e.where), context);
+    return light;
+}
+
+InfiniteLight infinite_light(Entity& e, BuildContext& context) {
+    ParameterList& p = e.parameters;
+    if (p.has("mapname"))
+        throw version_three_error(p.where("mapname", e.where), "parameter \"mapname\"");
+    InfiniteLight light;
+    const bool has_colour = p.has("L");
+    light.radiance = light_of(e, "L", context);
+    const std::string file = p.text("filename");
+    light.illuminance = target(e, "illuminance", light.radiance, context);
+    if (!file.empty()) {
+        if (has_colour)
+            throw Error(ErrorKind::scene, e.where,
+                        "an infinite light has both \"L\" and \"filename\"; expected one of them");
+        light.image = context.files.find(file, p.where("filename", e.where));
+    }
+    if (p.has("portal"))
+        context.log.add(p.where("portal", e.where),
+                        "portals are not supported; the light is sampled over the whole sky");
+    p.ignore({"portal"});
+    return light;
+}
+
+GoniometricLight goniometric_light(Entity& e, BuildContext& context) {
+    GoniometricLight light;
+    light.intensity = light_of(e, "I", context);
+    light.power = target(e, "power", light.intensity, context);
+    if (const std::string file = e.parameters.text("filename"); file.empty())
+        context.log.add(e.where, "a goniometric light has no image; it shines alike to all sides");
+    else
+        light.image = context.files.find(file, e.parameters.where("filename", e.where));
+    return light;
+}
+
+ProjectionLight projection_light(Entity& e, BuildContext& context) {
+    ParameterList& p = e.parameters;
+    ProjectionLight light;
+    light.scale = scaled_light(Rgb(1), light_scale(e), e.where, context).r;
+    light.power = target(e, "power", Rgb(light.scale), context);
+    light.fov = p.number("fov", 90);
+    if (!(light.fov > 0 && light.fov < 180))
+        throw Error(ErrorKind::scene, p.where("fov", e.where),
+                    "parameter \"fov\" must be between 0 and 180 degrees");
+    const std::string file = p.text("filename");
+    if (file.empty())
+        throw Error(ErrorKind::scene, e.where,
+                    "a projection light has no image; expected \"string filename\"");
+    light.image = context.files.find(file, p.where("filename", e.where));
+    return light;
+}
+
+}  // namespace
+
+LightDescription build_light(Entity& e, const Transform& light_to_world, BuildContext& context) {
+    LightDescription light;
+    light.light_to_world = light_to_world;
+    light.where = e.where;
+    if (e.type == "point") {
+        light.value = point_light(e, context);
+    } else if (e.type == "spot") {
+        light.value = spot_light(e, context);
+    } else if (e.type == "distant") {
+        light.value = distant_light(e, context);
+    } else if (e.type == "infinite") {
+        light.value = infinite_light(e, context);
+    } else if (e.type == "goniometric") {
+        light.value = goniometric_light(e, context);
+    } else if (e.type == "projection") {
+        light.value = projection_light(e, context);
+    } else {
+        throw unknown_type_error(
+            e.where, "light", e.type,
+            {"point", "spot", "distant", "infinite", "goniometric", "projection"});
+    }
+    e.parameters.warn_unused(context.log, "light " + in_quotes(e.type));
+    return light;
+}
+
+AreaLightDescription build_area_light(Entity& e, BuildContext& context) {
+    if (e.type != "diffuse") throw unknown_type_error(e.where, "area light", e.type, {"diffuse"});
+    ParameterList& p = e.parameters;
+    AreaLightDescription light;
+    light.where = e.where;
+    const bool has_colour = p.has("L");
+    light.radiance = light_of(e, "L", context);
+    light.two_sided = p.flag("twosided", false);
+    light.power = target(e, "power", light.radiance, context);
+    if (const std::string file = p.text("filename"); !file.empty()) {
+        const SourceLocation where = p.where("filename", e.where);
+        if (has_colour)
+            throw Error(ErrorKind::scene, e.where,
+                        "an area light has both \"L\" and \"filename\"; expected one of them");
+        ImageTexture image;
+        image.file = context.files.find(file, where);
+        image.wrap = ImageTexture::Wrap::clamp;
+        light.image = static_cast<TextureId>(context.scene.textures.size());
+        context.scene.textures.push_back({{}, true, image, where});
+    }
+    p.warn_unused(context.log, "area light \"diffuse\"");
+    return light;
+}
+
+}  // namespace covtrace

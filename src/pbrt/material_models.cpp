@@ -1,0 +1,300 @@
+#include "pbrt/material_models.h"
+
+#include <cmath>
+
+#include "colour/named_spectra.h"
+#include "colour/sigmoid_spectrum.h"
+#include "pbrt/named_media.h"
+#include "pbrt/spectrum_parameter.h"
+#include "pbrt/texture_builder.h"
+#include "pbrt/version_three.h"
+#include "scene/names.h"
+
+namespace covtrace {
+
+namespace {
+
+using Model = decltype(MaterialDescription::value);
+
+struct Builder {
+    Entity& e;
+    ParameterList& p;
+    TextureBuilder& textures;
+    BuildContext& context;
+
+    void warn(const std::string& text) const { context.log.add(e.where, text); }
+
+    /// u_roughness, v_roughness: their own parameters, else "roughness", else `otherwise`.
+    template <typename Material>
+    void roughness(Material& m, const std::string& prefix = {}, float otherwise = 0) {
+        const auto one = [&](const std::string& name) {
+            const TextureId id = textures.grey_or_none(p, prefix + name);
+            return id >= 0 ? id : textures.grey(p, prefix + "roughness", otherwise);
+        };
+        m.u_roughness = one("uroughness");
+        m.v_roughness = one("vroughness");
+        m.remap_roughness = p.flag("remaproughness", true);
+    }
+
+    /// Roughness given by a single value makes "roughness" beside both of its parts superfluous,
+    /// not unknown.
+    void ignore_shared() { p.ignore({"roughness", "conductor.roughness", "interface.roughness"}); }
+
+    DiffuseMaterial diffuse() { return {textures.reflectance(p, "reflectance", Rgb{0.5f})}; }
+    /// `outside`: index of what covers the metal, whose reflectance there its colours are made for.
+    ConductorMaterial conductor(const std::string& prefix, float outside);
+    DielectricMaterial dielectric();
+    CoatedDiffuseMaterial coated_diffuse();
+    CoatedConductorMaterial coated_conductor();
+    DiffuseTransmissionMaterial diffuse_transmission();
+    CoatedDiffuseMaterial subsurface();
+    DiffuseMaterial hair();
+};
+
+/// One of "eta" and "k": a texture or colour as it is, a spectrum as its means per channel.
+TextureId index_texture(Builder& b, const Parameter& p) {
+    if (p.type == ParameterType::texture || p.type == ParameterType::rgb)
+        return b.textures.unbounded(b.p, p.name, Rgb{});
+    const auto s = spectrum_value(p, b.context);
+    return b.textures.constant(s ? channel_means(*s) : factor_colour(p, b.context), true);
+}
+
+Spectrum scaled(Spectrum s, float factor) {
+    for (float& v : s.values) v *= factor;
+    return s;
+}
+
+ConductorMaterial Builder::conductor(const std::string& prefix, float outside) {
+    ConductorMaterial m;
+    roughness(m, prefix);
+    m.reflectance = textures.reflectance_or_none(p, "reflectance");
+    const auto types = {ParameterType::texture, ParameterType::rgb, ParameterType::spectrum,
+                        ParameterType::blackbody};
+    const Parameter* eta = p.find(prefix + "eta", types);
+    const Parameter* k = p.find(prefix + "k", types);
+    if (m.reflectance >= 0) {
+        if (eta || k)
+            throw Error(
+                ErrorKind::scene, e.where,
+                "a conductor has both \"reflectance\" and \"eta\" or \"k\"; expected one of them");
+        return m;
+    }
+    const auto spectral = [&](const Parameter* given,
+                              const char* otherwise) -> std::optional<Spectrum> {
+        if (!given) return material_spectrum(otherwise);
+        if (given->type == ParameterType::rgb) return unbounded_spectrum(rgb_value(*given));
+        if (given->type != ParameterType::spectrum) return std::nullopt;
+        std::optional<Spectrum> s = spectrum_value(*given, context);
+        // An index of 0 outside of the measured range would make a mirror of it.
+        if (s) s->extends = true;
+        return s;
+    };
+    const auto eta_spectrum = spectral(eta, "metal-Cu-eta");
+    const auto k_spectrum = spectral(k, "metal-Cu-k");
+    if (eta_spectrum && k_spectrum) {
+        const bool is_rgb = eta && eta->type == ParameterType::rgb;
+        const Rgb index = is_rgb ? rgb_value(*eta) : channel_means(*eta_spectrum);
+        const ConductorColours c =
+            conductor_colours(scaled(*eta_spectrum, 1 / outside), scaled(*k_spectrum, 1 / outside),
+                              index * (1 / outside));
+        m.eta = textures.constant(c.eta * outside, true);
+        m.k = textures.constant(c.k * outside, true);
+    } else {
+        m.eta = eta ? index_texture(*this, *eta)
+                    : textures.constant(channel_means(*eta_spectrum), true);
+        m.k = k ? index_texture(*this, *k) : textures.constant(channel_means(*k_spectrum), true);
+    }
+    return m;
+}
+
+DielectricMaterial Builder::dielectric() {
+    DielectricMaterial m;
+    roughness(m);
+    m.eta = refractive_index(p, "eta", 1.5f, context);
+    // Ours, not pbrt's: the colour of glass, as exporters of other models need it.
+    m.transmittance = textures.reflectance_or_none(p, "transmittance");
+    return m;
+}
+
+CoatedDiffuseMaterial Builder::coated_diffuse() {
+    CoatedDiffuseMaterial m;
+    roughness(m);
+    m.reflectance = textures.reflectance(p, "reflectance", Rgb{0.5f});
+    m.thickness = textures.grey(p, "thickness", 0.01f);
+    m.g = textures.grey(p, "g", 0);
+    m.albedo = textures.reflectance(p, "albedo", Rgb{0});
+    m.eta = refractive_index(p, "eta", 1.5f, context);
+    m.max_depth = p.integer("maxdepth", 10);
+    m.samples = p.integer("nsamples", 1);
+    // Ours, not pbrt's: diffuse under specular as glTF and Blender have it.
+    m.reflects_through_coat = p.flag("reflectsthroughcoat", false);
+    return m;
+}
+
+CoatedConductorMaterial Builder::coated_conductor() {
+    CoatedConductorMaterial m;
+    m.eta = refractive_index(p, "interface.eta", 1.5f, context);
+    roughness(m, "interface.");
+    m.conductor = conductor("conductor.", m.eta);
+    m.thickness = textures.grey(p, "thickness", 0.01f);
+    m.g = textures.grey(p, "g", 0);
+    m.albedo = textures.reflectance(p, "albedo", Rgb{0});
+    m.max_depth = p.integer("maxdepth", 10);
+    m.samples = p.integer("nsamples", 1);
+    return m;
+}
+
+DiffuseTransmissionMaterial Builder::diffuse_transmission() {
+    DiffuseTransmissionMaterial m;
+    m.reflectance = textures.reflectance(p, "reflectance", Rgb{0.25f});
+    m.transmittance = textures.reflectance(p, "transmittance", Rgb{0.25f});
+    m.scale = p.number("scale", 1);
+    return m;
+}
+
+/// Albedo of a semi-infinite medium under diffuse light, by van de Hulst's fit (Multiple Light
+/// Scattering, 1980, vol. 2; the constants as in Kulla and Conty, SIGGRAPH course 2017).
+float medium_albedo(float sigma_a, float sigma_s, float g) {
+    const float sigma_t = sigma_a + sigma_s;
+    const float single = sigma_t > 0 ? sigma_s / sigma_t : 0;
+    const float s = std::sqrt(std::max(0.0f, (1 - single) / std::max(1e-6f, 1 - single * g)));
+    return clamp01((1 - s) * (1 - 0.139f * s) / (1 + 1.17f * s));
+}
+
+CoatedDiffuseMaterial Builder::subsurface() {
+    warn(
+        "material \"subsurface\" is not supported; \"coateddiffuse\" of the same colour takes its "
+        "place");
+    CoatedDiffuseMaterial m;
+    roughness(m);
+    // What counts of several: the name, then coefficients, then the reflectance, as in pbrt.
+    const std::string name = p.text("name");
+    const bool has_coefficients = p.has("sigma_a") || p.has("sigma_s");
+    if (name.empty() && !has_coefficients)
+        m.reflectance = textures.reflectance_or_none(p, "reflectance");
+    // A reflectance is what gets out, reflections on the inside of the surface included.
+    m.reflects_through_coat = m.reflectance >= 0;
+    if (m.reflectance < 0) {
+        Rgb a, s;
+        float g = p.number("g", 0);
+        if (!name.empty()) {
+            const std::optional<NamedMedium> medium = named_medium(name);
+            if (!medium)
+                throw Error(ErrorKind::scene, p.where("name", e.where),
+                            unknown_name("medium", name, medium_names()));
+            a = medium->sigma_a;
+            s = medium->sigma_s;
+            g = 0;  // the measured scattering is the reduced one
+        } else {
+            if (has_coefficients && p.has("sigma_a") != p.has("sigma_s"))
+                throw Error(ErrorKind::scene, e.where,
+                            "material \"subsurface\" has one of \"sigma_a\" and \"sigma_s\"; "
+                            "expected both or none");
+            a = textures.mean(textures.unbounded(p, "sigma_a", {0.0011f, 0.0024f, 0.014f}));
+            s = textures.mean(textures.unbounded(p, "sigma_s", {2.55f, 3.21f, 3.77f}));
+        }
+        m.reflectance = textures.constant(
+            {medium_albedo(a.r, s.r, g), medium_albedo(a.g, s.g, g), medium_albedo(a.b, s.b, g)},
+            true);
+    }
+    m.thickness = textures.constant(Rgb{0.01f}, false);
+    m.g = textures.constant(Rgb{0}, false);
+    m.albedo = textures.constant(Rgb{0}, true);
+    m.eta = refractive_index(p, "eta", 1.33f, context);
+    p.ignore_all();
+    return m;
+}
+
+DiffuseMaterial Builder::hair() {
+    warn("material \"hair\" is not supported; \"diffuse\" of the same colour takes its place");
+    DiffuseMaterial m;
+    // What counts of several: absorption, then the colour, then the pigments, as in pbrt.
+    const bool has_absorption = p.has("sigma_a");
+    if (!has_absorption) m.reflectance = textures.reflectance_or_none(p, "reflectance");
+    if (!has_absorption && m.reflectance < 0)
+        m.reflectance = textures.reflectance_or_none(p, "color");
+    if (m.reflectance < 0) {
+        // Absorption of the pigments and its relation to the colour of dense hair: Chiang et al.,
+        // "A Practical and Controllable Hair and Fur Model for Production Path Tracing" (2016), for
+        // azimuthal roughness 0.3.
+        const bool has_pigment = p.has("eumelanin") || p.has("pheomelanin");
+        const float eu = textures.mean(textures.grey(p, "eumelanin", has_pigment ? 0 : 1.3f)).r;
+        const float pheo = textures.mean(textures.grey(p, "pheomelanin", 0)).r;
+        const Rgb pigment = eu * Rgb{0.419f, 0.697f, 1.37f} + pheo * Rgb{0.187f, 0.4f, 1.05f};
+        const Rgb sigma = textures.mean(textures.unbounded(p, "sigma_a", pigment));
+        const auto colour = [](float s) { return std::exp(-5.89f * std::sqrt(std::max(0.0f, s))); };
+        m.reflectance =
+            textures.constant({colour(sigma.r), colour(sigma.g), colour(sigma.b)}, true);
+    }
+    p.ignore_all();
+    return m;
+}
+
+CoatedDiffuseMaterial measured(Builder& b) {
+    b.warn("material \"measured\" is not supported; a grey \"coateddiffuse\" takes its place");
+    b.p.ignore_all();
+    Entity plain{"coateddiffuse", {}, b.e.where, b.e.directive};
+    return Builder{plain, plain.parameters, b.textures, b.context}.coated_diffuse();
+}
+
+}  // namespace
+
+NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& context) {
+    ParameterList& p = entity.parameters;
+    NormalMaps maps;
+    // A constant height turns no normal.
+    if (const Parameter* height =
+            p.find("displacement", {ParameterType::texture, ParameterType::floats});
+        height && height->type == ParameterType::texture)
+        maps.displacement = textures.grey_of(*height);
+    if (const std::string file = p.text("normalmap"); !file.empty()) {
+        const SourceLocation where = p.where("normalmap", entity.where);
+        ImageTexture image;
+        image.file = context.files.find(file, where);
+        image.encoding = ImageTexture::Encoding::linear;
+        image.is_colour = false;
+        maps.normal_map = static_cast<TextureId>(context.scene.textures.size());
+        context.scene.textures.push_back({{}, true, image, where});
+    }
+    return maps;
+}
+
+Model material_model(Entity& entity, TextureBuilder& textures, BuildContext& context) {
+    Builder b{entity, entity.parameters, textures, context};
+    const std::string& type = entity.type;
+    Model model;
+    if (type == "diffuse") {
+        model = b.diffuse();
+    } else if (type == "coateddiffuse") {
+        model = b.coated_diffuse();
+    } else if (type == "conductor") {
+        model = b.conductor("", 1);
+    } else if (type == "dielectric") {
+        model = b.dielectric();
+    } else if (type == "diffusetransmission") {
+        model = b.diffuse_transmission();
+    } else if (type == "coatedconductor") {
+        model = b.coated_conductor();
+    } else if (type == "thindielectric") {
+        model = ThinDielectricMaterial{refractive_index(b.p, "eta", 1.5f, context),
+                                       textures.reflectance_or_none(b.p, "transmittance")};
+    } else if (type == "subsurface") {
+        model = b.subsurface();
+    } else if (type == "hair") {
+        model = b.hair();
+    } else if (type == "measured") {
+        model = measured(b);
+    } else if (type == "interface" || type.empty() || type == "none") {
+        model = InterfaceMaterial{};
+    } else {
+        throw unknown_type_error(entity.where, "material", type,
+                                 {"diffuse", "coateddiffuse", "conductor", "dielectric",
+                                  "diffusetransmission", "coatedconductor", "thindielectric",
+                                  "subsurface", "hair", "measured", "mix", "interface"});
+    }
+    b.ignore_shared();
+    b.p.warn_unused(context.log, "material " + in_quotes(type));
+    return model;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,21 @@
+/// One function per material type of pbrt-v4: parameters to a model that covtrace renders.
+#pragma once
+
+#include "pbrt/build_context.h"
+
+namespace covtrace {
+
+class TextureBuilder;
+
+/// Types that are not rendered are replaced by the nearest one, with a warning.
+/// Errors: Error(scene) for types that pbrt-v4 doesn't have and for values out of range.
+decltype(MaterialDescription::value) material_model(Entity& entity, TextureBuilder& textures,
+                                                    BuildContext& context);
+
+/// What turns a material's normals: see MaterialDescription; -1 for what isn't given.
+struct NormalMaps {
+    TextureId displacement = -1, normal_map = -1;
+};
+NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& context);
+
+}  // namespace covtrace

@@ -1,0 +1,11 @@
+/// Participating media out of MakeNamedMedium.
+#pragma once
+
+#include "pbrt/build_context.h"
+
+namespace covtrace {
+
+/// Errors: Error(scene) for unknown types and coefficients out of range.
+MediumDescription build_medium(std::string name, Entity& entity, BuildContext& context);
+
+}  // namespace covtrace

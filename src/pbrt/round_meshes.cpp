@@ -1,0 +1,102 @@
+#include "pbrt/round_meshes.h"
+
+#include <array>
+#include <cmath>
+
+#include "core/frame.h"
+
+namespace covtrace {
+
+namespace {
+
+constexpr size_t kSidesOfTube = 5;
+constexpr size_t kStepsPerSegment = 5;
+
+/// Two triangles for each cell of a grid of vertices, row after row.
+std::vector<std::array<uint32_t, 3>> grid_triangles(size_t rows, size_t columns) {
+    std::vector<std::array<uint32_t, 3>> all;
+    for (size_t r = 0; r + 1 < rows; ++r)
+        for (size_t c = 0; c + 1 < columns; ++c) {
+            const auto i = static_cast<uint32_t>(r * columns + c),
+                       up = static_cast<uint32_t>(columns);
+            all.push_back({i, i + 1, i + up + 1});
+            all.push_back({i, i + up + 1, i + up});
+        }
+    return all;
+}
+
+struct CurvePoint {
+    Vec3 position, derivative;
+};
+
+/// De Casteljau's or de Boor's scheme on the control points of one segment.
+CurvePoint evaluate(const CurveDescription& curve, size_t first, float t) {
+    const auto degree = static_cast<size_t>(curve.degree);
+    std::array<Vec3, 4> p{};
+    for (size_t i = 0; i <= degree; ++i) p[i] = curve.points[first + i];
+    Vec3 derivative;
+    for (size_t level = degree; level > 0; --level) {
+        if (level == 1) derivative = p[1] - p[0];
+        for (size_t i = 0; i < level; ++i) {
+            // Knots of a uniform B-spline are 1 apart; those of a Bézier segment coincide at its
+            // ends.
+            const float span = static_cast<float>(level);
+            const float w = curve.is_bspline ? (t + span - 1 - static_cast<float>(i)) / span : t;
+            p[i] = lerp(w, p[i], p[i + 1]);
+        }
+    }
+    return {p[0], derivative};
+}
+
+}  // namespace
+
+TriangleMesh cylinder_mesh(float radius, float z_min, float z_max, float phi_max_degrees,
+                           int segments) {
+    TriangleMesh m;
+    const auto columns = static_cast<size_t>(segments) + 1;
+    for (int row = 0; row < 2; ++row)
+        for (size_t i = 0; i < columns; ++i) {
+            const float u = static_cast<float>(i) / static_cast<float>(segments);
+            const float phi = u * phi_max_degrees * kPi / 180;
+            m.normals.push_back({std::cos(phi), std::sin(phi), 0});
+            const float z = row == 0 ? z_min : z_max;
+            m.positions.push_back(radius * m.normals.back() + Vec3{0, 0, z});
+            m.uvs.push_back({u, static_cast<float>(row)});
+        }
+    m.triangles = grid_triangles(2, columns);
+    return m;
+}
+
+TriangleMesh curve_mesh(const CurveDescription& curve) {
+    const auto degree = static_cast<size_t>(curve.degree);
+    const size_t segments =
+        curve.is_bspline ? curve.points.size() - degree : (curve.points.size() - 1) / degree;
+    const size_t rings = segments * kStepsPerSegment + 1;
+    // Seen from all sides, a tube of flat sides is as wide in the mean as a round one.
+    const float widening = kPi / (kSidesOfTube * std::sin(kPi / kSidesOfTube));
+    TriangleMesh m;
+    Vec3 tangent{0, 0, 1}, side;
+    for (size_t r = 0; r < rings; ++r) {
+        const size_t segment = std::min(r / kStepsPerSegment, segments - 1);
+        const float t = static_cast<float>(r - segment * kStepsPerSegment) / kStepsPerSegment;
+        const CurvePoint at = evaluate(curve, curve.is_bspline ? segment : segment * degree, t);
+        if (length(at.derivative) > 0) tangent = normalize(at.derivative);
+        // The side turns no more than the tangent makes it, so that the tube doesn't twist.
+        side = normalize(side - dot(side, tangent) * tangent);
+        if (!(length(side) > 0.5f)) side = Frame::from_z(tangent).x;
+        const Vec3 other = cross(tangent, side);
+        const float u = static_cast<float>(r) / static_cast<float>(rings - 1);
+        const float radius = 0.5f * widening * ((1 - u) * curve.width0 + u * curve.width1);
+        for (size_t i = 0; i <= kSidesOfTube; ++i) {
+            const float v = static_cast<float>(i) / kSidesOfTube, angle = 2 * kPi * v;
+            const Vec3 n = std::cos(angle) * side + std::sin(angle) * other;
+            m.normals.push_back(n);
+            m.positions.push_back(at.position + radius * n);
+            m.uvs.push_back({u, v});
+        }
+    }
+    m.triangles = grid_triangles(rings, kSidesOfTube + 1);
+    return m;
+}
+
+}  // namespace covtrace

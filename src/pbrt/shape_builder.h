@@ -1,0 +1,46 @@
+/// Geometry out of Shape directives.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pbrt/build_context.h"
+#include "pbrt/mesh_files.h"
+
+namespace covtrace {
+
+using ShapeGeometry = decltype(ShapeDescription::geometry);
+
+/// What a Shape directive makes: geometry at once, or a mesh file that is read later.
+struct BuiltShape {
+    std::vector<ShapeGeometry> geometry;
+    std::optional<size_t> mesh_file;
+};
+
+/// Builds shapes as they are read; mesh files wait, so that they are read in parallel.
+class ShapeBuilder {
+  public:
+    explicit ShapeBuilder(BuildContext& context) : context_(context) {}
+
+    /// What the file calls "alpha" is left to the caller. Errors: Error(scene) with the place in
+    /// the scene.
+    BuiltShape build(Entity& entity);
+
+    /// Reads all mesh files that shapes have named. Errors: as MeshFiles::read_all.
+    void read_mesh_files() { mesh_files_.read_all(context_.files, context_.log); }
+    /// None for an empty mesh, two for a file with triangles and quads. After read_mesh_files.
+    std::vector<ShapeGeometry> mesh(size_t file) const;
+
+  private:
+    std::vector<ShapeGeometry> triangle_mesh(Entity& e);
+    std::vector<ShapeGeometry> bilinear_mesh(Entity& e);
+    size_t mesh_file(Entity& e);
+    std::vector<ShapeGeometry> subdivided_mesh(Entity& e);
+    std::vector<ShapeGeometry> cylinder(Entity& e);
+    std::vector<ShapeGeometry> curve(Entity& e);
+
+    BuildContext& context_;
+    MeshFiles mesh_files_;
+};
+
+}  // namespace covtrace

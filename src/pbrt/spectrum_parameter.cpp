@@ -1,0 +1,159 @@
+#include "pbrt/spectrum_parameter.h"
+
+#include <algorithm>
+
+#include "colour/named_spectra.h"
+#include "pbrt/token_stream.h"
+#include "pbrt/tokenizer.h"
+#include "scene/imaging_scale.h"
+#include "scene/names.h"
+
+namespace covtrace {
+
+namespace {
+
+Spectrum from_pairs(const std::vector<float>& numbers, const SourceLocation& where,
+                    BuildContext& context) {
+    if (numbers.empty() || numbers.size() % 2 != 0)
+        throw Error(ErrorKind::scene, where,
+                    "a spectrum has " + std::to_string(numbers.size()) +
+                        " values; expected pairs of wavelength and value");
+    Spectrum s;
+    int negative = 0;
+    for (size_t i = 0; i < numbers.size(); i += 2) {
+        if (i > 0 && !(numbers[i] > numbers[i - 2]))
+            throw Error(ErrorKind::scene, where,
+                        "the wavelengths of a spectrum must increase; entry " +
+                            std::to_string(i / 2 + 1) + " does not");
+        s.wavelengths.push_back(numbers[i]);
+        s.values.push_back(std::max(0.0f, numbers[i + 1]));
+        negative += numbers[i + 1] < 0;
+    }
+    // Measured reflectances have such values where they are all but nothing.
+    if (negative > 0) context.log.add(where, "negative values of a spectrum are set to 0");
+    return s;
+}
+
+/// A text file of wavelength and value pairs, with "#" comments.
+Spectrum from_file(const std::string& name, const SourceLocation& where, BuildContext& context) {
+    const std::filesystem::path file = context.files.find(name, where);
+    const std::string text = context.files.read(file, where);
+    const auto shared_name = std::make_shared<const std::string>(file.string());
+    Tokenizer tokens(text, shared_name);
+    std::vector<float> numbers;
+    for (Token t = tokens.next(); t.kind != Token::Kind::end; t = tokens.next())
+        numbers.push_back(parse_float(t));
+    return from_pairs(numbers, {shared_name, 0, 0}, context);
+}
+
+constexpr double kHeliumLine = 587.6;
+
+}  // namespace
+
+std::optional<Spectrum> spectrum_value(const Parameter& p, BuildContext& context) {
+    if (p.type == ParameterType::blackbody) {
+        // Exporters write the scale of version 3, which pbrt-v4 passes over.
+        if (p.numbers.size() == 2)
+            context.log.add(p.where, "the second number of blackbody " + in_quotes(p.name) +
+                                         ", a scale in pbrt-v3, is ignored");
+        if (p.numbers.empty() || p.numbers.size() > 2 || !(p.numbers[0] > 0))
+            throw Error(
+                ErrorKind::scene, p.where,
+                "parameter " + in_quotes(p.name) + " expects one temperature > 0 in kelvin");
+        return blackbody_spectrum(p.numbers[0]);
+    }
+    if (p.strings.empty()) return from_pairs(p.numbers, p.where, context);
+    if (p.strings.size() != 1)
+        throw Error(ErrorKind::scene, p.where,
+                    "parameter " + in_quotes(p.name) + " expects one spectrum");
+    const std::string& name = p.strings[0];
+    if (illuminant_colour(name)) return std::nullopt;
+    if (auto known = material_spectrum(name)) return known;
+    const bool looks_like_file = name.find_first_of("./\\") != std::string::npos;
+    if (!looks_like_file)
+        throw Error(ErrorKind::scene, p.where,
+                    "unknown spectrum " + in_quotes(name) + "; expected a file or a name such as " +
+                        "metal-Cu-eta, glass-BK7, stdillum-D65" +
+                        did_you_mean(name, spectrum_names()));
+    return from_file(name, p.where, context);
+}
+
+Rgb factor_colour(const Parameter& p, BuildContext& context) {
+    if (p.type == ParameterType::rgb) return rgb_value(p);
+    const std::optional<Spectrum> s = spectrum_value(p, context);
+    if (!s) {
+        context.log.add(p.where,
+                        "the colour of light " + in_quotes(p.strings[0]) + " is used as a factor");
+        return *illuminant_colour(p.strings[0]);
+    }
+    const Rgb c = reflectance_colour(*s);
+    return {std::max(0.0f, c.r), std::max(0.0f, c.g), std::max(0.0f, c.b)};
+}
+
+Rgb light_colour(ParameterList& parameters, std::string_view name, BuildContext& context) {
+    const Parameter* p = parameters.find(
+        name, {ParameterType::rgb, ParameterType::spectrum, ParameterType::blackbody});
+    if (!p) return Rgb{1};
+    if (p->type == ParameterType::rgb) return rgb_value(*p);
+    const std::optional<Spectrum> s = spectrum_value(*p, context);
+    if (!s) return *illuminant_colour(p->strings[0]);
+    const Rgb c = emission_colour(*s);
+    if (is_black(c) &&
+        std::any_of(s->values.begin(), s->values.end(), [](float v) { return v > 0; }))
+        context.log.add(p->where, "the spectrum " + in_quotes(p->name) +
+                                      " has no visible light; the light is black");
+    return c;
+}
+
+Rgb scaled_light(Rgb light, float factor, const SourceLocation& where,
+                 const BuildContext& context) {
+    const Rgb scaled = light * factor;
+    if (!is_finite(scaled))
+        throw Error(ErrorKind::scene, where,
+                    "the light is too bright; expected a product of its colour and factors that "
+                    "single precision holds, less than 3.4e38");
+    if (!is_finite(scaled * imaging_scale(context.scene)))
+        throw Error(ErrorKind::scene, where,
+                    "the light is too bright for the film; expected a product with the film's iso "
+                    "and the shutter's time that single precision holds, less than 3.4e38");
+    return scaled;
+}
+
+float refractive_index(ParameterList& parameters, std::string_view name, float otherwise,
+                       BuildContext& context) {
+    const Parameter* p =
+        parameters.find(name, {ParameterType::floats, ParameterType::spectrum, ParameterType::rgb});
+    if (!p) return otherwise;
+    float eta = 0;
+    if (p->type == ParameterType::floats) {
+        eta = p->numbers[0];
+    } else if (p->type == ParameterType::rgb) {
+        eta = rgb_value(*p).g;
+        context.log.add(p->where, "dispersion is not rendered; the green index of " +
+                                      in_quotes(p->name) + " is used");
+    } else {
+        const std::optional<Spectrum> s = spectrum_value(*p, context);
+        if (!s)
+            throw Error(ErrorKind::scene, p->where,
+                        in_quotes(p->strings[0]) + " is a light; expected an index of refraction");
+        Spectrum index = *s;
+        index.extends = true;
+        eta = static_cast<float>(index.at(kHeliumLine));
+        const bool varies = is_glass(p->strings.empty() ? "" : p->strings[0]) ||
+                            std::any_of(s->values.begin(), s->values.end(),
+                                        [&](float v) { return v != s->values[0]; });
+        if (varies)
+            context.log.add(p->where, "dispersion is not rendered; parameter " +
+                                          in_quotes(p->name) + " has its value at 587.6 nm");
+    }
+    if (!(eta > 0))
+        throw Error(ErrorKind::scene, p->where,
+                    "parameter " + in_quotes(p->name) + " must be greater than 0");
+    constexpr float kLargest = 1e6f;  // the squares of its squares must be numbers
+    if (eta > kLargest)
+        throw Error(ErrorKind::scene, p->where,
+                    "parameter " + in_quotes(p->name) + " is too large; expected at most 1e6");
+    return eta;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,33 @@
+/// Colours out of parameters of the types rgb, spectrum and blackbody.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "colour/spectrum.h"
+#include "core/vec.h"
+#include "pbrt/build_context.h"
+
+namespace covtrace {
+
+/// The spectrum of a `spectrum` (inline pairs, a known name or a .spd file) or `blackbody`
+/// parameter. Empty for a standard illuminant, of which only the colour is known. Errors:
+/// Error(scene) for odd counts, wavelengths that don't increase, unknown names, broken files.
+std::optional<Spectrum> spectrum_value(const Parameter& p, BuildContext& context);
+
+/// The colour of a reflectance or a coefficient; `p` is of type rgb, spectrum or blackbody.
+Rgb factor_colour(const Parameter& p, BuildContext& context);
+
+/// The colour of a light: rgb as it is, anything else at luminance 1 (pbrt's photometric
+/// normalisation); white where the parameter is missing.
+Rgb light_colour(ParameterList& parameters, std::string_view name, BuildContext& context);
+/// `light` times `factor`. Errors: Error(scene) at `where` in case single precision can't hold that
+/// or what the film makes of it.
+Rgb scaled_light(Rgb light, float factor, const SourceLocation& where, const BuildContext& context);
+
+/// An index of refraction: a number, or a spectrum's value at 587.6 nm with a warning where it
+/// varies. Errors: Error(scene) where it isn't positive.
+float refractive_index(ParameterList& parameters, std::string_view name, float otherwise,
+                       BuildContext& context);
+
+}  // namespace covtrace

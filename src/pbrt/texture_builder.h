@@ -1,0 +1,71 @@
+/// Textures out of Texture directives and out of values given inline.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "pbrt/build_context.h"
+#include "pbrt/current_transform.h"
+
+namespace covtrace {
+
+/// Holds the declared textures until all of the file is read, since they may be used before they
+/// are declared, then builds each one once.
+class TextureBuilder {
+  public:
+    explicit TextureBuilder(BuildContext& context) : context_(context) {}
+
+    /// Errors: Error(scene) where the name is taken.
+    void declare(std::string name, bool is_spectrum, Entity entity,
+                 const CurrentTransform& texture_to_world);
+    /// Builds all that was declared, used or not. Errors: Error(scene).
+    void build_all();
+
+    TextureId constant(Rgb value, bool is_spectrum);
+    /// The texture of a spectrum parameter (texture, rgb, spectrum, blackbody); `otherwise` where
+    /// it is missing. Reflectances above 1 are cut to 1 with a warning.
+    TextureId reflectance(ParameterList& p, std::string_view name, Rgb otherwise);
+    /// The same without a limit.
+    TextureId unbounded(ParameterList& p, std::string_view name, Rgb otherwise);
+    /// -1 where the parameter is missing.
+    TextureId reflectance_or_none(ParameterList& p, std::string_view name);
+    /// The texture of a float parameter (texture, float).
+    TextureId grey(ParameterList& p, std::string_view name, float otherwise);
+    TextureId grey_or_none(ParameterList& p, std::string_view name);
+    TextureId grey_of(const Parameter& p);
+    /// A value that stands for the whole texture where a single one is needed.
+    Rgb mean(TextureId id);
+
+  private:
+    Rgb mean_of_parts(size_t texture) const;
+    struct Declared {
+        std::string name;
+        bool is_spectrum = true;
+        Entity entity;
+        CurrentTransform texture_to_world;
+        TextureId id = -1;
+        bool in_progress = false;
+    };
+
+    TextureId named(const Parameter& p, bool is_spectrum);
+    TextureId build(Declared& d);
+    TextureId spectrum_or_none(ParameterList& p, std::string_view name, bool is_reflectance);
+    TextureId part(Declared& d, std::string_view name, float otherwise);
+    /// A value of a bilerp texture.
+    Rgb corner(Declared& d, std::string_view name, float otherwise);
+    TextureId stand_in(Declared& d);
+    TextureId add(Declared& d, decltype(TextureDescription::value) value);
+    std::vector<std::string> names(bool is_spectrum) const;
+
+    BuildContext& context_;
+    std::vector<Declared> declared_;
+    std::map<std::pair<bool, std::string>, size_t> by_name_;
+    std::map<std::tuple<bool, float, float, float>, TextureId> constants_;
+    int depth_ = 0;
+    std::vector<Rgb> means_;  ///< of the first textures of the scene
+};
+
+}  // namespace covtrace

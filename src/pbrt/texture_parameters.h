@@ -1,0 +1,16 @@
+/// Image textures and mappings out of the parameters of a Texture directive.
+#pragma once
+
+#include "pbrt/build_context.h"
+#include "pbrt/current_transform.h"
+
+namespace covtrace {
+
+/// Errors: Error(scene) for unknown mappings, and for those of a space that a matrix flattens.
+TextureMapping texture_mapping(ParameterList& p, const SourceLocation& where,
+                               const CurrentTransform& texture_to_world);
+/// Errors: Error(scene) for missing files and unknown wrap modes, filters and encodings.
+ImageTexture image_texture(ParameterList& p, const SourceLocation& where,
+                           const CurrentTransform& texture_to_world, BuildContext& context);
+
+}  // namespace covtrace

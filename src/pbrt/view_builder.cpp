@@ -1,0 +1,346 @@
+#include "pbrt/view_builder.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <sstream>
+#include <utility>
+
+#include "colour/white_balance.h"
+#include "pbrt/lens_file.h"
+#include "pbrt/version_three.h"
+#include "scene/imaging_scale.h"
+#include "scene/names.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Of pbrt-v4, beside "cie1931".
+constexpr std::array<const char*, 17> kSensors{
+    "canon_eos_100d", "canon_eos_1dx_mkii", "canon_eos_200d",     "canon_eos_200d_mkii",
+    "canon_eos_5d",   "canon_eos_5d_mkii",  "canon_eos_5d_mkiii", "canon_eos_5d_mkiv",
+    "canon_eos_5ds",  "canon_eos_m",        "hasselblad_l1d_20c", "nikon_d810",
+    "nikon_d850",     "sony_ilce_6400",     "sony_ilce_7m3",      "sony_ilce_7rm3",
+    "sony_ilce_9"};
+
+[[noreturn]] void refuse(const Entity& e, std::string_view parameter, const std::string& text) {
+    throw Error(ErrorKind::scene, e.parameters.where(parameter, e.where), text);
+}
+
+float positive(Entity& e, std::string_view name, float otherwise) {
+    const float v = e.parameters.number(name, otherwise);
+    if (!(v > 0)) refuse(e, name, "parameter " + in_quotes(name) + " must be greater than 0");
+    return v;
+}
+
+/// `v`, the value of a parameter or its negative.
+float at_most(const Entity& e, std::string_view name, float v, float most) {
+    if (v <= most) return v;
+    std::ostringstream limit;
+    limit << "parameter " << in_quotes(name) << " is out of range; expected at most " << most
+          << " in size";
+    refuse(e, name, limit.str());
+}
+
+/// `v`, the value of a parameter or a difference of values.
+float within(const Entity& e, std::string_view name, float v, float least, float most) {
+    if (v >= least && v <= most) return v;
+    std::ostringstream limit;
+    limit << "parameter " << in_quotes(name) << " is out of range; expected a size from " << least
+          << " to " << most;
+    refuse(e, name, limit.str());
+}
+
+/// A film of such sides still has a size, and its pixels have one.
+constexpr float kFlattest = 1e-6f;
+
+std::string owner(std::string_view kind, const Entity& e) {
+    return std::string(kind) + " " + in_quotes(e.type);
+}
+
+/// A thin lens of the same focal length, aperture and distance in focus in place of one of several
+/// elements, and so of the same field of view but for the lens' distortion.
+void thin_lens_camera(Entity& e, Entity& film_entity, BuildContext& context) {
+    ParameterList& p = e.parameters;
+    CameraDescription& camera = context.scene.camera;
+    const FilmDescription& film = context.scene.film;
+    const std::string file = p.text("lensfile");
+    if (file.empty())
+        throw Error(ErrorKind::scene, e.where,
+                    "a realistic camera has no lens; expected \"string lensfile\"");
+    const SourceLocation where = p.where("lensfile", e.where);
+    // A double Gauss lens of full frame stands in where scenes come without their lens.
+    LensSummary lens{50, 0, 1};
+    const auto found = context.files.find_optional(file, where);
+    if (found) lens = read_lens(context.files.read(*found, where), file, where);
+    camera.focal_distance = positive(e, "focusdistance", 10);
+    // The aperture is given in millimetres as the lens is, and can't open wider than the lens.
+    float diameter = positive(e, "aperturediameter", 1);
+    if (lens.aperture_diameter > 0) diameter = std::min(diameter, lens.aperture_diameter);
+    constexpr float kMetre = 1e-3f;
+    camera.lens_radius = 0.5f * diameter / lens.stop_per_pupil * kMetre;
+    const float focal_length = lens.focal_length * kMetre;
+    const float behind = camera.focal_distance > 2 * focal_length
+                             ? 1 / (1 / focal_length - 1 / camera.focal_distance)
+                             : focal_length;
+    const float diagonal = positive(film_entity, "diagonal", 35) * kMetre;
+    const auto w = static_cast<float>(film.width), h = static_cast<float>(film.height);
+    const float shorter = diagonal * std::min(w, h) / std::sqrt(w * w + h * h);
+    camera.fov = 2 * std::atan(0.5f * shorter / behind) * (180 / kPi);
+    // pbrt's other cameras take radiance for what the film gets; this one takes irradiance.
+    camera.film_irradiance = kPi * sqr(camera.lens_radius / behind);
+    context.log.add(
+        e.where, found ? "camera \"realistic\" is not supported; a thin lens of the same focal "
+                         "length, aperture and field of view takes its place"
+                       : "camera \"realistic\" is not supported and its lens " + in_quotes(file) +
+                             " was not found; a thin lens of 50 mm takes its place");
+    if (const std::string aperture = p.text("aperture"); !aperture.empty())
+        context.log.add(p.where("aperture", e.where),
+                        "the aperture " + in_quotes(aperture) +
+                            " is not supported; a round one takes its place");
+}
+
+void spherical_camera(Entity& e, CameraDescription& camera) {
+    camera.kind = CameraDescription::Kind::spherical;
+    const std::string mapping = e.parameters.text("mapping", "equalarea");
+    if (mapping == "equirectangular")
+        camera.mapping = CameraDescription::Mapping::equirectangular;
+    else if (mapping != "equalarea")
+        refuse(e, "mapping",
+               unknown_name("mapping of a spherical camera", mapping,
+                            {"equalarea", "equirectangular"}));
+    e.parameters.ignore({"lensradius", "focaldistance", "frameaspectratio", "screenwindow"});
+}
+
+void build_camera(ViewEntities& view, BuildContext& context) {
+    Entity& e = view.camera;
+    ParameterList& p = e.parameters;
+    CameraDescription& camera = context.scene.camera;
+    camera.where = e.where;
+    camera.camera_to_world = view.camera_to_world;
+    camera.shutter_open = p.number("shutteropen", 0);
+    camera.shutter_close = p.number("shutterclose", 1);
+    if (!(camera.shutter_open < camera.shutter_close))
+        refuse(e, p.has("shutterclose") ? "shutterclose" : "shutteropen",
+               "the shutter never opens: expected shutteropen < shutterclose");
+    if (e.type == "perspective" || e.type == "orthographic") {
+        camera.kind = e.type == "perspective" ? CameraDescription::Kind::perspective
+                                              : CameraDescription::Kind::orthographic;
+        if (e.type == "perspective") camera.fov = p.number("fov", 90);
+        if (!(camera.fov > 0 && camera.fov < 180))
+            refuse(e, "fov", "parameter \"fov\" must be between 0 and 180 degrees");
+        // Single precision tells no directions apart that are nearer to each other.
+        constexpr float kNarrowest = 1e-6f;
+        if (camera.fov < kNarrowest)
+            refuse(e, "fov", "parameter \"fov\" is too small; expected at least 1e-6 degrees");
+        camera.lens_radius = p.number("lensradius", 0);
+        if (camera.lens_radius < 0)
+            refuse(e, "lensradius", "parameter \"lensradius\" must not be negative");
+        camera.focal_distance = positive(e, "focaldistance", 1e6f);
+        if (p.has("frameaspectratio"))
+            camera.frame_aspect_ratio =
+                within(e, "frameaspectratio", positive(e, "frameaspectratio", 0), kFlattest,
+                       1 / kFlattest);
+        if (const std::vector<float> window = p.numbers("screenwindow"); !window.empty()) {
+            if (window.size() != 4 || !(window[0] < window[1] && window[2] < window[3]))
+                refuse(e, "screenwindow", "parameter \"screenwindow\" expects x0 < x1 and y0 < y1");
+            for (const size_t side : {0, 2})
+                within(e, "screenwindow", window[side + 1] - window[side], kFlattest,
+                       1 / kFlattest);
+            camera.screen_window = {window[0], window[1], window[2], window[3]};
+        }
+    } else if (e.type == "realistic") {
+        thin_lens_camera(e, view.film, context);
+    } else if (e.type == "spherical") {
+        spherical_camera(e, camera);
+    } else {
+        throw unknown_type_error(e.where, "camera", e.type,
+                                 {"perspective", "orthographic", "realistic", "spherical"});
+    }
+    p.warn_unused(context.log, owner("camera", e));
+}
+
+void set_crop(Entity& e, FilmDescription& film, WarningLog& log) {
+    if (const std::vector<int> b = e.parameters.integers("pixelbounds"); !b.empty()) {
+        if (b.size() != 4)
+            refuse(e, "pixelbounds", "parameter \"pixelbounds\" expects x0 x1 y0 y1");
+        const std::array<int, 4> inside{std::max(b[0], 0), std::min(b[1], film.width),
+                                        std::max(b[2], 0), std::min(b[3], film.height)};
+        if (inside[0] >= inside[1] || inside[2] >= inside[3])
+            refuse(e, "pixelbounds", "parameter \"pixelbounds\" leaves no pixel of the image");
+        if (!std::equal(inside.begin(), inside.end(), b.begin()))
+            log.add(e.parameters.where("pixelbounds", e.where),
+                    "\"pixelbounds\" reach beyond the image; cut to its size");
+        film.pixel_bounds = inside;
+    }
+    if (const std::vector<float> c = e.parameters.numbers("cropwindow"); !c.empty()) {
+        if (c.size() != 4) refuse(e, "cropwindow", "parameter \"cropwindow\" expects x0 x1 y0 y1");
+        const SourceLocation where = e.parameters.where("cropwindow", e.where);
+        film.crop_window = {clamp01(std::min(c[0], c[1])), clamp01(std::max(c[0], c[1])),
+                            clamp01(std::min(c[2], c[3])), clamp01(std::max(c[2], c[3]))};
+        const auto& w = film.crop_window;
+        if (!(w[0] < w[1] && w[2] < w[3]))
+            refuse(e, "cropwindow", "parameter \"cropwindow\" leaves no pixel of the image");
+        if (film.pixel_bounds) {
+            log.add(where, "both \"pixelbounds\" and \"cropwindow\" are given; the latter counts");
+            film.pixel_bounds.reset();
+        }
+    }
+}
+
+void build_film(ViewEntities& view, BuildContext& context) {
+    Entity& e = view.film;
+    ParameterList& p = e.parameters;
+    FilmDescription& film = context.scene.film;
+    film.where = e.where;
+    if (e.type == "gbuffer" || e.type == "spectral") {
+        context.log.add(e.where,
+                        "film " + in_quotes(e.type) + " is not supported; \"rgb\" takes its place");
+        p.ignore({"coordinatesystem", "nbuckets", "lambdamin", "lambdamax"});
+    } else if (e.type != "rgb") {
+        throw unknown_type_error(e.where, "film", e.type, {"rgb", "gbuffer", "spectral"});
+    }
+    film.width = p.integer("xresolution", 1280);
+    film.height = p.integer("yresolution", 720);
+    const bool bad_width = film.width < 1;
+    const std::string resolution = std::to_string(film.width) + "x" + std::to_string(film.height);
+    if (film.width < 1 || film.height < 1)
+        refuse(e, bad_width ? "xresolution" : "yresolution",
+               "the resolution " + resolution + " has no pixels");
+    if (film.is_too_large())
+        throw Error(ErrorKind::limit, p.where("xresolution", e.where),
+                    "the resolution " + resolution + " is too large; " + film.kLargest);
+    film.filename = p.text("filename");
+    film.iso = positive(e, "iso", 100);
+    film.max_component_value = positive(e, "maxcomponentvalue", kInfinity);
+    set_crop(e, film, context.log);
+    float balance = p.number("whitebalance", 0);
+    if (balance < 0) refuse(e, "whitebalance", "parameter \"whitebalance\" must not be negative");
+    if (const std::string sensor = p.text("sensor", "cie1931"); sensor != "cie1931") {
+        if (std::find(kSensors.begin(), kSensors.end(), sensor) == kSensors.end())
+            refuse(e, "sensor", unknown_name("sensor", sensor, {kSensors.begin(), kSensors.end()}));
+        // pbrt solves for a matrix that brings the sensor's colours to those of the standard
+        // observer, under the light of the white balance.
+        context.log.add(
+            p.where("sensor", e.where),
+            "sensor " + in_quotes(sensor) +
+                " is not supported; \"cie1931\" with its white balance takes its place");
+        if (balance == 0) balance = 6500;
+    }
+    if (balance > 0) film.white_balance = white_balance(balance);
+    if (view.film_colour_space != ColourSpace::srgb)
+        context.log.add(e.where,
+                        "the image is written in linear Rec.709, not in the film's colour space");
+    p.ignore({"diagonal", "savefp16"});
+    p.warn_unused(context.log, owner("film", e));
+}
+
+void build_filter(Entity& e, BuildContext& context) {
+    using Kind = FilterDescription::Kind;
+    struct Default {
+        const char* name;
+        Kind kind;
+        float radius;
+    };
+    constexpr std::array<Default, 5> known{{{"box", Kind::box, 0.5f},
+                                            {"triangle", Kind::triangle, 2},
+                                            {"gaussian", Kind::gaussian, 1.5f},
+                                            {"mitchell", Kind::mitchell, 2},
+                                            {"sinc", Kind::lanczos_sinc, 4}}};
+    const auto it = std::find_if(known.begin(), known.end(),
+                                 [&](const Default& d) { return e.type == d.name; });
+    if (it == known.end())
+        throw unknown_type_error(e.where, "filter", e.type,
+                                 {"box", "triangle", "gaussian", "mitchell", "sinc"});
+    FilterDescription& filter = context.scene.filter;
+    filter.kind = it->kind;
+    const bool is_sinc = filter.kind == Kind::lanczos_sinc;
+    // Wider than the widest image says nothing; a sinc has to be sampled finer than it swings.
+    constexpr float kWidest = 65536, kSwings = 128;
+    const float widest = is_sinc ? kSwings : kWidest;
+    filter.x_radius = at_most(e, "xradius", positive(e, "xradius", it->radius), widest);
+    filter.y_radius = at_most(e, "yradius", positive(e, "yradius", it->radius), widest);
+    if (filter.kind == Kind::gaussian) filter.sigma = positive(e, "sigma", 0.5f);
+    if (filter.kind == Kind::mitchell) {
+        // Beyond, a pixel is the difference of numbers ten times as large and more: noise alone.
+        constexpr float kLargest = 10;
+        for (const auto& [name, value] : {std::pair("B", &filter.b), std::pair("C", &filter.c)}) {
+            *value = at_most(e, name, e.parameters.number(name, 1.0f / 3), kLargest);
+            at_most(e, name, -*value, kLargest);
+        }
+    }
+    if (is_sinc) {
+        filter.tau = positive(e, "tau", 3);
+        if (filter.tau * kSwings < std::max(filter.x_radius, filter.y_radius))
+            refuse(e, "tau", "parameter \"tau\" is too small; expected at least the radius / 128");
+    }
+    e.parameters.warn_unused(context.log, owner("filter", e));
+}
+
+void build_sampler(Entity& e, BuildContext& context) {
+    const std::vector<std::string> known{"zsobol",  "halton",      "sobol",     "paddedsobol",
+                                         "pmj02bn", "independent", "stratified"};
+    if (std::find(known.begin(), known.end(), e.type) == known.end())
+        throw unknown_type_error(e.where, "sampler", e.type, known);
+    ParameterList& p = e.parameters;
+    int64_t samples = 0;
+    if (e.type == "stratified") {
+        const int x = p.integer("xsamples", 4), y = p.integer("ysamples", 4);
+        samples = x < 1 || y < 1 ? 0 : int64_t{x} * y;
+    } else {
+        samples = p.integer("pixelsamples", e.type == "independent" ? 4 : 16);
+    }
+    constexpr int64_t most = int64_t{1} << 30;
+    if (samples < 1 || samples > most)
+        refuse(e, e.type == "stratified" ? "xsamples" : "pixelsamples",
+               "expected from 1 to 2^30 samples per pixel");
+    context.scene.samples_per_pixel = static_cast<int>(samples);
+    p.ignore({"seed", "randomization", "jitter"});
+    p.warn_unused(context.log, owner("sampler", e));
+}
+
+void build_integrator(Entity& e, BuildContext& context) {
+    ParameterList& p = e.parameters;
+    context.scene.max_depth = p.integer("maxdepth", 5);
+    if (context.scene.max_depth < 0)
+        refuse(e, "maxdepth", "parameter \"maxdepth\" must not be negative");
+    const std::vector<std::string> known{
+        "path", "volpath", "simplepath", "simplevolpath",    "lightpath", "bdpt",
+        "mlt",  "sppm",    "randomwalk", "ambientocclusion", "function"};
+    if (std::find(known.begin(), known.end(), e.type) == known.end())
+        throw unknown_type_error(e.where, "integrator", e.type, known);
+    if (e.type != "path" && e.type != "volpath") {
+        context.log.add(e.where, "integrator " + in_quotes(e.type) +
+                                     " is not supported; path tracing takes its place");
+        p.ignore_all();
+    }
+    const std::vector<std::string> volumetric{"volpath", "simplevolpath", "bdpt", "mlt"};
+    context.scene.renders_media =
+        std::find(volumetric.begin(), volumetric.end(), e.type) != volumetric.end();
+    if (p.flag("regularize", false))
+        context.log.add(p.where("regularize", e.where), "parameter \"regularize\" is ignored");
+    p.ignore({"lightsampler"});
+    p.warn_unused(context.log, owner("integrator", e));
+}
+
+}  // namespace
+
+void build_view(ViewEntities& view, BuildContext& context) {
+    const auto at = [&](const Entity& e) { context.log.set_order(e.directive); };
+    at(view.film), build_film(view, context);
+    at(view.camera), build_camera(view, context);
+    if (!std::isfinite(imaging_scale(context.scene)))
+        refuse(view.camera, "shutterclose",
+               "the film's iso times the shutter's time is too large for single precision");
+    at(view.filter), build_filter(view.filter, context);
+    at(view.sampler), build_sampler(view.sampler, context);
+    at(view.integrator), build_integrator(view.integrator, context);
+    at(view.accelerator);
+    if (const std::string& type = view.accelerator.type; type != "bvh" && type != "kdtree")
+        context.log.add(view.accelerator.where,
+                        "accelerator " + in_quotes(type) + " is not known; ignored");
+}
+
+}  // namespace covtrace

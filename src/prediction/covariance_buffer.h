@@ -1,0 +1,44 @@
+/// One 5x5 covariance and its weight per pixel, and the prediction that follows from them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "covariance/covariance_image.hpp"
+#include "prediction/packed_covariance.h"
+
+namespace covtrace {
+
+using Covariance5 = covariance::SymmetricMatrix5<float>;
+using Covariance2 = covariance::Sym2<float>;
+
+/// Radiance-weighted mean covariances of the pixels, and what follows from them: the library's.
+using CovarianceBuffer = covariance::CovarianceImage<float>;
+using Prediction = covariance::Prediction<float>;
+
+/// The light of a pixel in two parts. An emitter in view outshines what is beside it a hundred
+/// times: in one mean it would decide the spectra around it, and the tails of filters would carry
+/// it over its border. `scattered` is all the light that surfaces sent on.
+struct CovarianceBuffers {
+    CovarianceBuffers(int w, int h)
+        : width(w), height(h), scattered(size_t(w) * size_t(h)), in_view(scattered.size()) {}
+    int width, height;
+    std::vector<PackedCovariance> scattered, in_view;
+
+    size_t memory() const {  ///< bytes
+        return (scattered.size() + in_view.size()) * sizeof(PackedCovariance);
+    }
+};
+CovarianceBuffer unpack(std::span<const PackedCovariance> packed, int width, int height);
+/// The covariances of all light: the mean of both parts, weighted by their radiance.
+CovarianceBuffer merge(const CovarianceBuffers& buffers);
+/// The same to keep; no rounding to floats comes before the packing.
+std::vector<PackedCovariance> packed_merge(const CovarianceBuffers& buffers);
+
+/// covariance::preintegrate in parallel: every pixel as it is, the `spectrum` layer.
+Prediction preintegrated(const CovarianceBuffer& buffer);
+
+/// covariance::smooth in parallel: means over 3x3 pixels, holes filled from the nearest pixel.
+CovarianceBuffer smoothed(const CovarianceBuffer& buffer);
+
+}  // namespace covtrace

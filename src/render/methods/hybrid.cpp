@@ -1,0 +1,311 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "planner/error_goal.h"
+#include "reconstruction/hybrid.h"
+#include "reconstruction/luminance.h"
+#include "render/develop.h"
+#include "render/job.h"
+#include "render/methods/hybrid.h"
+#include "render/sample_knowledge.h"
+#include "render/timed_denoiser.h"
+#include "render/unmet_emitters.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Samples per pixel of the pilot, both halves together.
+constexpr double kPilot = 4;
+/// Fewer cannot tell that an error is small: paths that carry much light and are rare have not been
+/// met yet.
+constexpr double kLeastForError = 16;
+
+class HybridRender {
+  public:
+    explicit HybridRender(RenderJob& job) : job_(job), s_(job.state) {
+        for (uint32_t k = 0; k < 2; ++k) contexts_.push_back(half_context(job.context, k));
+        if (job.options.denoiser)
+            denoiser_.emplace(*job.options.denoiser, job.monitor, job.phase("denoise"),
+                              job.phase("reconstruction"));
+        if (job.options.error) unmet_ = UnmetEmitters(job.context, job.region);
+        if (s_.stage == Stage::rounds) return;
+        {
+            const PhaseTimer timer(job_.monitor, job_.phase("spectra"));
+            job_.scene.prepare_spectra(job_.options.texture_bandwidth);
+        }
+        occluders_.emplace(job_);
+    }
+
+    void trace() {
+        trace_rounds(job_, {[this] { return plan(); }, [this] { trace_round(); }});
+    }
+
+    /// The image, made from the samples.
+    void deliver() {
+        if (!job_.delivers()) return;
+        reconstruct_image(true);
+        if (is_denoiser_too_slow_)
+            image_->denoiser_failure = "it takes longer than the time that was left";
+        const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
+        const Reconstructed known{*image_, *prediction_};
+        job_.result.image = develop(s_, denoiser(), known);
+    }
+
+    HybridSamples samples() && {
+        predict();
+        return {std::move(s_.films), std::move(*prediction_)};
+    }
+
+  private:
+    size_t size() const { return s_.pixels(); }
+    const Denoiser* denoiser() const { return denoiser_ ? &*denoiser_ : nullptr; }
+    HybridSettings settings() const {
+        HybridSettings settings;
+        settings.denoiser = denoiser();
+        return settings;
+    }
+    double pilot() const {
+        const double most = job_.options.max_spp ? double(*job_.options.max_spp) : kPilot;
+        return std::min({kPilot, most, job_.target_spp.value_or(kPilot)});
+    }
+
+    /// The same count in every pixel, `spp` for both halves together. Odd samples go to the halves
+    /// in turn, along rows and from row to row: like a checkerboard where all pixels have one.
+    std::vector<uint32_t> share_between_halves(size_t k, double spp) const {
+        std::vector<uint32_t> counts = job_.even_counts(spp);
+        const size_t w = size_t(job_.region.width());
+        size_t rows = 0;  // that have odd samples
+        for (size_t begin = 0; begin < counts.size(); begin += w) {
+            size_t turn = rows;
+            for (size_t i = begin; i < begin + w; ++i) {
+                const bool odd = counts[i] % 2 == 1;
+                counts[i] = counts[i] / 2 + (odd && turn % 2 == k ? 1 : 0);
+                turn += odd ? 1 : 0;
+            }
+            rows += turn > rows ? 1 : 0;
+        }
+        return counts;
+    }
+
+    /// Covariance paths of a half. They are samples, too: the odd one goes to the half for which
+    /// the pilot plans more.
+    std::vector<uint32_t> paths_of(size_t k) const {
+        std::vector<uint32_t> counts = share_between_halves(k, s_.covariance_spp);
+        const std::vector<uint32_t> both = job_.even_counts(s_.covariance_spp),
+                                    own = share_between_halves(k, pilot()),
+                                    other = share_between_halves(1 - k, pilot());
+        for (size_t i = 0; i < counts.size(); ++i)
+            if (both[i] % 2 == 1 && own[i] != other[i])
+                counts[i] = both[i] / 2 + (own[i] > other[i] ? 1 : 0);
+        return counts;
+    }
+
+    bool plan() {
+        switch (s_.stage) {
+            case Stage::first_paths: {
+                std::vector<uint32_t> first = paths_of(0);
+                for (uint32_t& c : first) c = std::min(c, 1u);
+                s_.plan = {std::move(first), std::vector<uint32_t>(size(), 0)};
+                s_.target = std::min(1.0, 0.5 * s_.covariance_spp);
+                return true;
+            }
+            case Stage::pilot:
+                s_.plan = {share_between_halves(0, pilot()), share_between_halves(1, pilot())};
+                s_.target = pilot();
+                return true;
+            case Stage::rounds:
+                break;
+        }
+        const bool first_here = !prediction_;
+        predict();
+        if (first_here && job_.options.seconds) reserve_time();
+        const double target = job_.plan_round(std::min(round_end(s_.taken), enough_samples()));
+        return target > s_.taken && plan_samples(target);
+    }
+
+    /// What the covariances say.
+    void predict() {
+        if (prediction_) return;
+        const PhaseTimer timer(job_.monitor, job_.phase("plan"));
+        prediction_ = preintegrated(smoothed(s_.covariance()));
+    }
+
+    void trace_round() {
+        image_.reset();  // of fewer samples
+        if (s_.stage == Stage::first_paths) {
+            trace_covariance(0, s_.plan[0], {});
+            return;
+        }
+        if (s_.stage == Stage::pilot) {
+            const std::array<std::vector<uint32_t>, 2> paths{paths_of(0), paths_of(1)};
+            trace_covariance(0, paths[0], {});
+            // The paths of a pixel count in their order: all of the first half come before.
+            if (!s_.has(0, paths[0], job_.tiles())) return;
+            trace_covariance(1, paths[1], paths[0]);
+            if (!s_.has(1, paths[1], job_.tiles())) return;
+        }
+        for (size_t k = 0; k < 2; ++k) trace_radiance(k);
+    }
+
+    PassProgress reporter(const char* name, size_t k) {
+        const double step = 0.5 * (s_.target - s_.taken);
+        return job_.reporter(name, s_.taken + double(k) * step, s_.taken + double(k + 1) * step);
+    }
+
+    void trace_covariance(size_t k, std::span<const uint32_t> counts,
+                          std::span<const uint32_t> earlier) {
+        const PhaseTimer timer(job_.monitor, job_.phase("covariance"));
+        job_.counted(job_.result.statistics.covariance,
+                     covariance_pass(contexts_[k], occluders_->view(), job_.options.brdf_covariance,
+                                     s_.films[k], counts,
+                                     {*s_.parts, earlier, s_.weight_limit.value_or(kInfinity)},
+                                     job_.monitor, reporter("covariance", k)));
+    }
+
+    void trace_radiance(size_t k) {
+        const PhaseTimer timer(job_.monitor, job_.phase("radiance"));
+        job_.counted(job_.result.statistics.radiance,
+                     radiance_pass(contexts_[k], s_.films[k], s_.plan[k], job_.monitor,
+                                   reporter("radiance", k)));
+    }
+
+    /// What the planner may know for one half: the samples of the other one.
+    std::vector<float> density_from(const Film& film) const {
+        SampleKnowledge known = knowledge_from(film, prediction_->spectrum);
+        for (size_t i = 0; i < size(); ++i)
+            known.variance[i] =
+                std::max(known.variance[i], unmet_.variance(i, 2.0 * film.pixels[i].count));
+        return adaptive_density(known, kHalvesPlan);
+    }
+
+    bool plan_samples(double target) {
+        const PhaseTimer timer(job_.monitor, job_.phase("plan"));
+        const double most = std::clamp(0.5 * job_.most_samples(target), 1.0, 4e9);
+        std::array<std::vector<float>, 2> density{density_from(s_.films[1]),
+                                                  density_from(s_.films[0])};
+        const float even_samples = even_share(density[0], density[1]);
+        for (std::vector<float>& d : density) spread_evenly(d, even_samples);
+        const std::vector<float> even(size(), 1.0f);
+        std::vector<std::vector<uint32_t>> counts;
+        for (size_t k = 0; k < 2; ++k) {
+            std::vector<uint32_t> have(size());
+            for (size_t i = 0; i < have.size(); ++i) have[i] = s_.films[k].pixels[i].count;
+            counts.push_back(allocate(job_.options.even_counts ? even : density[k],
+                                      std::llround(target / 2 * double(size())), have,
+                                      uint32_t(most)));
+        }
+        if (!job_.begin_round(target, std::move(counts))) return false;
+        s_.density.resize(size());
+        for (size_t i = 0; i < size(); ++i)
+            s_.density[i] = 0.5f * (density[0][i] + density[1][i]) * float(target);
+        return true;
+    }
+
+    /// `last`: no sample follows, and the film was kept.
+    void reconstruct_image(bool last = false) {
+        if (image_) return;
+        predict();
+        const double count = s_.mean_count();
+        job_.monitor.update("reconstruction", job_.fraction(count), count);
+        const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
+        Halves halves = halves_of(s_.films);
+        // The layers of the image have no need of what only weights and plans are made of.
+        if (last)
+            for (Film& film : s_.films) {
+                if (!job_.options.features) film.features = std::vector<PathFeatures>();
+                film.feature_squares = std::vector<FeatureSquares>();
+                film.rays = std::vector<uint32_t>();
+            }
+        image_ = reconstruct(std::move(halves), prediction_->spectrum, settings());
+    }
+
+    /// The average count at which the image will be as good as was asked for; what is taken where
+    /// it is, by its own estimate.
+    double enough_samples() {
+        if (!job_.options.error) return kInfinity;
+        reconstruct_image();
+        // Light beyond what squares can hold has no error that could be told.
+        double sum = 0, known = 0;
+        const Plane brightness = luminance(image_->color);
+        for (size_t i = 0; i < size(); ++i) {
+            const float e = image_->relative_error[i];
+            if (!std::isfinite(e)) continue;
+            const double count = double(s_.films[0].pixels[i].count) + s_.films[1].pixels[i].count;
+            sum += double(e) + unmet_.squared_error(i, count, brightness[i]);
+            ++known;
+        }
+        if (known == 0) return kInfinity;
+        const double error = std::sqrt(sum / known);
+        job_.monitor.set_error(error);
+        job_.enough =
+            std::max(kLeastForError, s_.goal.samples(s_.taken, error, *job_.options.error));
+        return *job_.enough;
+    }
+
+    /// Keeps time for the reconstruction, without the denoiser where there is too little time for
+    /// one with it.
+    void reserve_time() {
+        double seconds = reconstruction_time();
+        if (denoiser_ && seconds > job_.tracing_end() - job_.monitor.elapsed()) {
+            denoiser_.reset();
+            is_denoiser_too_slow_ = true;
+            seconds = reconstruction_time();
+        }
+        job_.reserve(seconds);
+    }
+
+    /// Seconds that the reconstruction of this image will take, by that of a part of it. It decides
+    /// when to stop and nothing else.
+    double reconstruction_time() {
+        constexpr int kSide = 96;
+        const PixelBounds all = job_.region;
+        const PixelBounds part{all.x0, all.y0, std::min(all.x1, all.x0 + kSide),
+                               std::min(all.y1, all.y0 + kSide)};
+        const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
+        const double start = job_.monitor.elapsed();
+        std::vector<Film> films(2, Film(part, film_parts(Method::hybrid)));
+        std::vector<Covariance2> spectrum;
+        for (int y = part.y0; y < part.y1; ++y)
+            for (int x = part.x0; x < part.x1; ++x) {
+                const size_t to = size_t(y - part.y0) * size_t(part.width()) + size_t(x - part.x0);
+                const size_t from = size_t(y - all.y0) * size_t(all.width()) + size_t(x - all.x0);
+                for (size_t k = 0; k < 2; ++k) {
+                    films[k].pixels[to] = s_.films[k].pixels[from];
+                    films[k].features[to] = s_.films[k].features[from];
+                    films[k].feature_squares[to] = s_.films[k].feature_squares[from];
+                }
+                spectrum.push_back(prediction_->spectrum[from]);
+            }
+        reconstruct(halves_of(films), spectrum, settings());
+        return (job_.monitor.elapsed() - start) * double(size()) / double(spectrum.size());
+    }
+
+    RenderJob& job_;
+    RenderState& s_;
+    std::vector<PassContext> contexts_;
+    std::optional<TimedDenoiser> denoiser_;
+    bool is_denoiser_too_slow_ = false;
+    std::optional<SceneOccluders> occluders_;  // while covariance paths are traced
+    std::optional<Prediction> prediction_;     // smoothed, from their end on
+    std::optional<HybridImage> image_;         // of the film as it is
+    UnmetEmitters unmet_;                      // where an error is asked for
+};
+
+}  // namespace
+
+void render_hybrid(RenderJob& job) {
+    HybridRender render(job);
+    render.trace();
+    render.deliver();
+}
+
+HybridSamples trace_hybrid(RenderJob& job) {
+    HybridRender render(job);
+    render.trace();
+    return std::move(render).samples();
+}
+
+}  // namespace covtrace

@@ -1,0 +1,250 @@
+/// How fast textures vary: the covariance of their amplitude spectra per unit of (u, v).
+#include <cmath>
+
+#include "texture/graph.h"
+#include "texture/mapping.h"
+#include "texture/noise.h"
+
+namespace covtrace {
+namespace {
+
+/// Frequencies of an edge reach the point at distance e up to 1 / (2 pi beta e).
+constexpr float kEdgeBeta = 0.5f;
+/// Variations below this share of the mean count in proportion: smoothing them away changes less
+/// than the noise that the smoothing removes.
+constexpr float kFullContrast = 0.1f;
+/// Distances below this part of a checkerboard's cell or an image count as this.
+constexpr float kMinEdgeDistance = 1e-5f;
+
+SpatialCovariance2 operator+(SpatialCovariance2 a, SpatialCovariance2 b) {
+    return {a.ss + b.ss, a.st + b.st, a.tt + b.tt};
+}
+SpatialCovariance2 operator*(SpatialCovariance2 a, float w) {
+    return {a.ss * w, a.st * w, a.tt * w};
+}
+
+/// Of textures whose parameters are near the largest numbers there are, none.
+SpatialCovariance2 finite(SpatialCovariance2 c) {
+    return std::isfinite(c.ss + c.st + c.tt) ? c : SpatialCovariance2{};
+}
+
+/// J^T T J with J = d(s, t)/d(u, v).
+SpatialCovariance2 to_uv(SpatialCovariance2 c, const StGradient& g) {
+    const auto form = [&](Vec2 a, Vec2 b) {
+        return a.x * (c.ss * b.x + c.st * b.y) + a.y * (c.st * b.x + c.tt * b.y);
+    };
+    const Vec2 du{g.s.x, g.t.x}, dv{g.s.y, g.t.y};
+    return {form(du, du), form(du, dv), form(dv, dv)};
+}
+
+/// An edge across the coordinate with this gradient, `distance` away in units of the coordinate.
+SpatialCovariance2 edge(float distance, Vec2 gradient, float footprint_uv) {
+    const float e = std::max({distance, footprint_uv * length(gradient), kMinEdgeDistance});
+    const float variance = 1 / sqr(2 * kPi * kEdgeBeta * e);
+    return {variance * gradient.x * gradient.x, variance * gradient.x * gradient.y,
+            variance * gradient.y * gradient.y};
+}
+
+/// Where a mirrored image shows its columns or rows in reverse order.
+bool runs_back(float v) {
+    return std::floor(v) != 2 * std::floor(0.5f * v);
+}
+
+float distance_to_integer(float v) {
+    return std::abs(v - std::round(v));
+}
+
+/// Of a window with a's and b's in equal shares: standard deviation over mean, in units of the
+/// contrast from which on it counts in full.
+float relative_contrast(Rgb a, Rgb b) {
+    const Rgb difference(std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b));
+    const float d = luminance(difference);
+    const auto size = [](Rgb c) {
+        return luminance({std::abs(c.r), std::abs(c.g), std::abs(c.b)});
+    };
+    return d > 0 ? d / (kFullContrast * (size(a) + size(b))) : 0;
+}
+float contrast_weight(Rgb a, Rgb b) {
+    return std::min(1.0f, relative_contrast(a, b));
+}
+
+/// The weight of such a contrast between unit cells once a pixel has smoothed it: a Gaussian with a
+/// deviation of half a pixel leaves this much of their fundamental wave, two cells long. `gradient`
+/// takes uv to cells.
+float kept_weight(float contrast, Vec2 gradient, float footprint_uv) {
+    const float exponent = 0.5f * sqr(kPi * footprint_uv) * dot(gradient, gradient);
+    // exp(-x) >= 1 - x: most contrasts count in full whatever it is.
+    if (contrast * (1 - exponent) >= 1) return 1;
+    return std::min(1.0f, contrast * std::exp(-exponent));
+}
+
+struct Analyser {
+    const TextureGraph& graph;
+    const TexturePoint& at;
+    Vec3 dpdu, dpdv;
+    float footprint_uv;
+
+    SpatialCovariance2 of(TextureId id) const { return std::visit(*this, graph.nodes[size_t(id)]); }
+
+    SpatialCovariance2 operator()(const ConstantNode&) const { return {}; }
+
+    SpatialCovariance2 operator()(const ImageNode& node) const {
+        return of_image(node, node.spectrum);
+    }
+
+    SpatialCovariance2 of_image(const ImageNode& node, int spectrum) const {
+        const TextureImage& image = graph.images[size_t(node.image)];
+        const StGradient gradient = st_gradient(node.mapping, at, dpdu, dpdv);
+        Vec2 st = flip_t(map_to_st(node.mapping, at));
+        float turns = -1;  // the image's rows run against t
+        if (image.wrap() == TextureImage::Wrap::mirror) {
+            if (runs_back(st.x) != runs_back(st.y)) turns = 1;
+            st = {mirrored(st.x), mirrored(st.y)};
+        }
+        const float pixel_uv = 2 * footprint_uv;
+        SpatialCovariance2 c = graph.spectra[size_t(spectrum)].at(
+            st.x, st.y, {pixel_uv * length(gradient.s), pixel_uv * length(gradient.t)});
+        c.st *= turns;
+        SpatialCovariance2 result = to_uv(c, gradient);
+        if (image.wrap() == TextureImage::Wrap::black) {
+            // The image ends in hard edges that its own analysis, on clamped values, doesn't see.
+            result = result +
+                     edge(std::min(std::abs(st.x), std::abs(1 - st.x)), gradient.s, footprint_uv) +
+                     edge(std::min(std::abs(st.y), std::abs(1 - st.y)), gradient.t, footprint_uv);
+        }
+        return result;
+    }
+
+    SpatialCovariance2 of_mixture(const MixNode& node) const {
+        return of_image(std::get<ImageNode>(graph.nodes[size_t(node.amount)]),
+                        node.mixture_spectrum);
+    }
+
+    SpatialCovariance2 operator()(const CheckerboardNode& node) const {
+        const Rgb a = eval(graph, node.tex1, at), b = eval(graph, node.tex2, at);
+        const float contrast = relative_contrast(a, b);
+        const auto edge_at = [&](float coordinate, Vec2 gradient) {
+            return edge(distance_to_integer(coordinate), gradient, footprint_uv) *
+                   kept_weight(contrast, gradient, footprint_uv);
+        };
+        SpatialCovariance2 edges;
+        if (node.dimension == 2) {
+            const Vec2 st = map_to_st(node.mapping, at);
+            const StGradient gradient = st_gradient(node.mapping, at, dpdu, dpdv);
+            edges = edge_at(st.x, gradient.s) + edge_at(st.y, gradient.t);
+        } else {
+            const Vec3 p = node.texture_from_world.point(at.position);
+            const Vec3 pu = node.texture_from_world.vector(dpdu);
+            const Vec3 pv = node.texture_from_world.vector(dpdv);
+            for (int axis = 0; axis < 3; ++axis)
+                edges = edges + edge_at(p[axis], {pu[axis], pv[axis]});
+        }
+        return edges + of(active_texture(node, at));
+    }
+
+    /// Varies as slowly as the surface bends.
+    SpatialCovariance2 operator()(const AsideTexture&) const { return {}; }
+
+    /// The nearest rim counts as a straight edge.
+    SpatialCovariance2 operator()(const DotsTexture& node) const {
+        const Vec2 st = map_to_st(node.mapping, at);
+        const StGradient gradient = st_gradient(node.mapping, at, dpdu, dpdv);
+        float nearest = kInfinity;
+        Vec2 across;  // the rim, by (u, v)
+        for (int j = -1; j <= 1; ++j)
+            for (int i = -1; i <= 1; ++i) {
+                const auto center = dot_center({st.x + float(i), st.y + float(j)});
+                if (!center) continue;
+                const Vec2 d{st.x - center->x, st.y - center->y};
+                const float r = length(d), rim = std::abs(r - kDotRadius);
+                if (!(rim < nearest) || !(r > 0)) continue;
+                nearest = rim;
+                across = {(d.x * gradient.s.x + d.y * gradient.t.x) / r,
+                          (d.x * gradient.s.y + d.y * gradient.t.y) / r};
+            }
+        const SpatialCovariance2 own = of(active_texture(node, at));
+        if (nearest == kInfinity) return own;
+        const float contrast =
+            relative_contrast(eval(graph, node.inside, at), eval(graph, node.outside, at));
+        return own +
+               edge(nearest, across, footprint_uv) * kept_weight(contrast, across, footprint_uv);
+    }
+
+    /// A ramp varies as fast as it rises, relative to its value.
+    SpatialCovariance2 operator()(const BilerpTexture& node) const {
+        const Vec2 st = map_to_st(node.mapping, at);
+        const float value = std::abs(luminance(bilerp(node, st)));
+        // A thousandth of the corners keeps the quotient finite where a ramp goes through black.
+        const float least = 1e-3f * (std::abs(luminance(node.v00)) + std::abs(luminance(node.v01)) +
+                                     std::abs(luminance(node.v10)) + std::abs(luminance(node.v11)));
+        if (!(value + least > 0)) return {};
+        const float scale = 1 / (2 * kPi * (value + least));
+        const float s =
+            scale * luminance((1 - st.y) * (node.v10 - node.v00) + st.y * (node.v11 - node.v01));
+        const float t =
+            scale * luminance((1 - st.x) * (node.v01 - node.v00) + st.x * (node.v11 - node.v10));
+        return to_uv({s * s, s * t, t * t}, st_gradient(node.mapping, at, dpdu, dpdv));
+    }
+
+    /// Along each axis of texture space the mean square frequency of the octaves that a pixel
+    /// shows, by their energy: noise is alike everywhere and in all directions.
+    SpatialCovariance2 operator()(const NoiseTexture& node) const {
+        using Kind = NoiseTexture::Kind;
+        const Vec3 pu = node.texture_from_world.vector(dpdu),
+                   pv = node.texture_from_world.vector(dpdv);
+        const float stretch = node.kind == Kind::marble ? std::abs(node.scale) : 1.0f;
+        const float pixel = 2 * footprint_uv * std::max(length(pu), length(pv)) * stretch;
+        const Octaves octaves =
+            node.kind == Kind::windy ? Octaves{6, 0.5f} : Octaves{node.octaves, node.omega};
+        const NoiseEnergy energy = noise_energy(pixel, octaves);
+        const SpatialCovariance2 all = {dot(pu, pu), dot(pu, pv), dot(pv, pv)};
+        if (node.kind == Kind::marble) {
+            // What the colours make of a phase that runs along y and is bent by the noise: the
+            // root mean square slope of marble's luminance, but for its jumps, over its deviation.
+            constexpr float kHarmonic = 8.4f;
+            const float square = sqr(kHarmonic * node.scale / (2 * kPi));
+            const SpatialCovariance2 along{pu.y * pu.y, pu.y * pv.y, pv.y * pv.y};
+            return finite(along * square +
+                          all * (square * sqr(2 * kPi * node.variation) * energy.slope));
+        }
+        if (!(energy.all > 0)) return {};
+        // Of the absolute value, as much slope is left, but 1 - 2 / pi of the variance.
+        const float folded = node.kind == Kind::wrinkled ? 1 / (1 - 2 * kInvPi) : 1.0f;
+        return finite(all * (folded * energy.slope / energy.all));
+    }
+
+    /// A product of signals: their spectra are convolved, their covariances add.
+    SpatialCovariance2 operator()(const ScaleNode& node) const {
+        return of(node.tex) + of(node.scale);
+    }
+
+    /// A sum of two signals, each weighted by what it contributes here. The amount multiplies their
+    /// difference, so it counts as much as an edge between the two would.
+    SpatialCovariance2 operator()(const MixNode& node) const {
+        const SpatialCovariance2 first = of(node.tex1), second = of(node.tex2);
+        const bool varies = first.ss + first.tt + second.ss + second.tt > 0;
+        if (node.mixture_spectrum >= 0 && !varies) return of_mixture(node);
+        const Rgb a = eval(graph, node.tex1, at), b = eval(graph, node.tex2, at);
+        SpatialCovariance2 result =
+            node.mixture_spectrum >= 0 ? of_mixture(node) : of(node.amount) * contrast_weight(a, b);
+        if (!varies) return result;
+        const Rgb amount = eval(graph, node.amount, at);
+        const float wa = std::abs(luminance((Rgb(1) - amount) * a));
+        const float wb = std::abs(luminance(amount * b));
+        if (wa + wb > 0) result = result + first * (wa / (wa + wb)) + second * (wb / (wa + wb));
+        return result;
+    }
+};
+
+}  // namespace
+
+SpatialCovariance2 highest_covariance(float footprint_uv) {
+    return edge(0, {1, 0}, footprint_uv) + edge(0, {0, 1}, footprint_uv);
+}
+
+SpatialCovariance2 uv_covariance(const TextureGraph& graph, TextureId id, const TexturePoint& at,
+                                 Vec3 dpdu, Vec3 dpdv, float footprint_uv) {
+    return Analyser{graph, at, dpdu, dpdv, footprint_uv}.of(id);
+}
+
+}  // namespace covtrace

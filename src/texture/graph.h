@@ -1,0 +1,87 @@
+/// The textures of a scene as a graph of small nodes, ready for evaluation.
+#pragma once
+
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "texture/image.h"
+#include "texture/image_spectrum.h"
+#include "texture/texture.h"
+
+namespace covtrace {
+
+struct ConstantNode {
+    Rgb value;
+};
+struct ImageNode {
+    int image = -1;           ///< into TextureGraph::images
+    int spectrum = -1;        ///< into TextureGraph::spectra, once prepared
+    bool is_spectrum = true;  ///< else the value of a float texture, in all channels
+    TextureImage::Channel channel = TextureImage::Channel::automatic;
+    std::optional<float> cutoff;
+    ImageTexture::Filter filter = ImageTexture::Filter::bilinear;
+    float anisotropy = 8;  ///< at most, of ewa
+    float scale = 1;
+    bool invert = false;
+    TextureMapping mapping;
+};
+struct CheckerboardNode {
+    int dimension = 2;
+    TextureMapping mapping;
+    Transform texture_from_world;
+    TextureId tex1 = -1, tex2 = -1;
+};
+struct ScaleNode {
+    TextureId tex = -1, scale = -1;
+};
+struct MixNode {
+    TextureId tex1 = -1, tex2 = -1, amount = -1;
+    /// Of the mixture of both textures' means by an image as the amount; -1 for other amounts.
+    int mixture_spectrum = -1;
+};
+using TextureNode = std::variant<ConstantNode, ImageNode, CheckerboardNode, ScaleNode, MixNode,
+                                 AsideTexture, DotsTexture, BilerpTexture, NoiseTexture>;
+
+struct TextureGraph {
+    std::vector<TextureNode> nodes;  ///< one per TextureId
+    std::vector<TextureImage> images;
+    size_t page_memory = 0;  ///< bytes for pages of images that are not in memory whole
+    std::vector<ImageSpectrum> spectra;
+};
+
+/// Where images are looked up: their first row is at the top, t = 1.
+constexpr Vec2 flip_t(Vec2 st) {
+    return {st.x, 1 - st.y};
+}
+/// What an image texture makes of a decoded value.
+constexpr Rgb image_value(const ImageNode& node, Rgb decoded) {
+    const Rgb v = decoded * node.scale;
+    if (node.cutoff) return Rgb(v.r >= *node.cutoff ? 1.0f : 0.0f);
+    if (!node.invert) return v;
+    return {std::max(0.0f, 1 - v.r), std::max(0.0f, 1 - v.g), std::max(0.0f, 1 - v.b)};
+}
+/// What it makes of one texel, or of a mean of several.
+template <typename Texels>
+Rgb image_value_at(const ImageNode& node, const TextureImage& image, const Texels& texels) {
+    return image_value(
+        node, node.is_spectrum ? image.color(texels) : Rgb(image.value(texels, node.channel)));
+}
+/// The checkerboard's texture at this point: tex1 where the sum of the cell's coordinates is even.
+TextureId active_texture(const CheckerboardNode& node, const TexturePoint& at);
+/// The texture's value at (s, t).
+Rgb bilerp(const BilerpTexture& node, Vec2 st);
+/// The texture in the dot, or around the dots.
+TextureId active_texture(const DotsTexture& node, const TexturePoint& at);
+
+Rgb eval(const TextureGraph& graph, TextureId id, const TexturePoint& at);
+
+/// As if an edge along u and one along v went through every point: what TextureBandwidth::highest
+/// takes for every texture.
+SpatialCovariance2 highest_covariance(float footprint_uv);
+
+/// As TextureStore::uv_covariance.
+SpatialCovariance2 uv_covariance(const TextureGraph& graph, TextureId id, const TexturePoint& at,
+                                 Vec3 dpdu, Vec3 dpdv, float footprint_uv);
+
+}  // namespace covtrace

@@ -1,0 +1,95 @@
+#include "texture/mapping.h"
+
+namespace covtrace {
+namespace {
+
+/// Azimuth in [0, 2 pi).
+float azimuth(Vec3 p) {
+    const float phi = std::atan2(p.y, p.x);
+    return phi < 0 ? phi + 2 * kPi : phi;
+}
+
+struct StGradient3 {
+    Vec3 s, t;  ///< by the position in texture space
+};
+
+StGradient3 gradient_by_position(const TextureMapping& mapping, Vec3 p) {
+    const float r2 = p.x * p.x + p.y * p.y;
+    const Vec3 azimuthal = r2 > 0 ? Vec3{-p.y, p.x, 0} / (2 * kPi * r2) : Vec3{};
+    switch (mapping.kind) {
+        case TextureMapping::Kind::spherical: {
+            if (!(r2 > 0)) return {};
+            const float r = std::sqrt(r2);
+            const Vec3 polar = Vec3{p.x * p.z / r, p.y * p.z / r, -r} / (kPi * (r2 + p.z * p.z));
+            return {polar, azimuthal};
+        }
+        case TextureMapping::Kind::cylindrical:
+            return {azimuthal, {0, 0, 1}};
+        default:
+            return {mapping.v1, mapping.v2};
+    }
+}
+
+}  // namespace
+
+Vec2 map_to_st(const TextureMapping& mapping, const TexturePoint& at) {
+    if (mapping.kind == TextureMapping::Kind::uv)
+        return {mapping.scale_u * at.uv.x + mapping.u_per_v * at.uv.y + mapping.delta_u,
+                mapping.v_per_u * at.uv.x + mapping.scale_v * at.uv.y + mapping.delta_v};
+    const Vec3 p = mapping.texture_from_world.point(at.position);
+    switch (mapping.kind) {
+        case TextureMapping::Kind::spherical: {
+            const float theta = std::atan2(std::sqrt(p.x * p.x + p.y * p.y), p.z);
+            return {theta * kInvPi, azimuth(p) * 0.5f * kInvPi};
+        }
+        case TextureMapping::Kind::cylindrical:
+            return {(kPi + std::atan2(p.y, p.x)) * 0.5f * kInvPi, p.z};
+        default:
+            return {mapping.delta_u + dot(p, mapping.v1), mapping.delta_v + dot(p, mapping.v2)};
+    }
+}
+
+StGradient st_gradient(const TextureMapping& mapping, const TexturePoint& at, Vec3 dpdu,
+                       Vec3 dpdv) {
+    if (mapping.kind == TextureMapping::Kind::uv)
+        return {{mapping.scale_u, mapping.u_per_v}, {mapping.v_per_u, mapping.scale_v}};
+    const Transform& to_texture = mapping.texture_from_world;
+    const StGradient3 g = gradient_by_position(mapping, to_texture.point(at.position));
+    const Vec3 pu = to_texture.vector(dpdu), pv = to_texture.vector(dpdv);
+    return {{dot(g.s, pu), dot(g.s, pv)}, {dot(g.t, pu), dot(g.t, pv)}};
+}
+
+PointFootprint footprint_on(const SurfaceHit& hit, Vec3 w, float width) {
+    if (!(width > 0)) return {};
+    constexpr float kMostStretched = 50;  // seen at grazing angles
+    PointFootprint f;
+    const Vec3 across = cross(hit.ng, w);
+    const float sine = length(across);
+    const Vec3 short_axis = sine > 1e-4f ? across / sine : Frame::from_z(hit.ng).x;
+    const float stretch = std::min(kMostStretched, 1 / std::abs(dot(hit.ng, w)));
+    f.dp = {short_axis * width, cross(hit.ng, short_axis) * (width * stretch)};
+    // (u, v) by least squares: dp = dpdu du + dpdv dv.
+    const float uu = dot(hit.dpdu, hit.dpdu), uv = dot(hit.dpdu, hit.dpdv),
+                vv = dot(hit.dpdv, hit.dpdv);
+    const float determinant = uu * vv - uv * uv;
+    if (!(determinant > 0)) return f;
+    for (size_t i = 0; i < 2; ++i) {
+        const float u = dot(hit.dpdu, f.dp[i]), v = dot(hit.dpdv, f.dp[i]);
+        f.duv[i] = {(vv * u - uv * v) / determinant, (uu * v - uv * u) / determinant};
+    }
+    return f;
+}
+
+ImageFootprint image_footprint(const TextureMapping& mapping, const TexturePoint& at) {
+    const PointFootprint& f = at.footprint;
+    if (f.is_point()) return {};
+    const auto along = [&mapping](Vec2 duv) {
+        return Vec2{mapping.scale_u * duv.x + mapping.u_per_v * duv.y,
+                    mapping.v_per_u * duv.x + mapping.scale_v * duv.y};
+    };
+    if (mapping.kind == TextureMapping::Kind::uv) return {along(f.duv[0]), along(f.duv[1])};
+    const StGradient g = st_gradient(mapping, at, f.dp[0], f.dp[1]);
+    return {{g.s.x, g.t.x}, {g.s.y, g.t.y}};
+}
+
+}  // namespace covtrace

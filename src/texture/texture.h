@@ -1,0 +1,92 @@
+/// Textures: values over a surface, and how fast they vary there.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "geometry/hit.h"
+#include "scene/scene_description.h"
+#include "texture/image_spectrum.h"
+
+namespace covtrace {
+
+/// What a pixel covers of a surface around a place: how far (u, v) and the world position move
+/// along the axes of that ellipse. Zero: nothing, the texture is read as it is.
+struct PointFootprint {
+    std::array<Vec2, 2> duv{};
+    std::array<Vec3, 2> dp{};
+    bool is_point() const { return dp[0] == Vec3{} && dp[1] == Vec3{}; }
+};
+/// Of a surface that is seen along the unit direction `w` (to or from the eye) by a pixel that is
+/// `width` wide there.
+PointFootprint footprint_on(const SurfaceHit& hit, Vec3 w, float width);
+
+/// Where a texture is looked up.
+struct TexturePoint {
+    Vec2 uv;
+    Vec3 position;  ///< world space
+    PointFootprint footprint = {};
+    Vec3 normal = {};  ///< unit, of the geometry; zero where it isn't known
+};
+
+/// What the frequency analysis takes textures for.
+enum class TextureBandwidth {
+    own,     ///< what their values show
+    highest  ///< the image's: as if every pixel saw an edge along both axes
+};
+
+/// All textures of a scene, images loaded once per file, encoding and wrap mode. Thread-safe once
+/// constructed and, where covariances are wanted, prepared.
+///
+/// Values follow pbrt-v4: images are looked up at (s, 1 - t), so that t = 0 is their last row; a
+/// float texture of a colour image is the mean of R, G and B, or alpha where the image has one that
+/// isn't 1 everywhere. Images are read from mip levels by the footprint and the filter that the
+/// file names (TextureImage::color); checkerboards aren't filtered.
+/// Textures take as much memory as their files ask for.
+inline constexpr size_t kNoTextureLimit = std::numeric_limits<size_t>::max();
+
+class TextureStore {
+  public:
+    /// Loads every image. Missing or broken files throw Error(scene) with the place in the scene
+    /// file; textures nested a thousand deep or more, or of more than 10000
+    /// lookups each, throw Error(limit).
+    ///
+    /// `most_bytes` limits what the images hold in memory together: where they need more, the
+    /// largest levels are read from a temporary file, page by page, with a warning. Values don't
+    /// depend on it. Throws Error(io) where that file can't be written, and later on where it can't
+    /// be read.
+    explicit TextureStore(const SceneDescription& scene, size_t most_bytes = kNoTextureLimit);
+    ~TextureStore();
+    TextureStore(const TextureStore&) = delete;
+    TextureStore& operator=(const TextureStore&) = delete;
+
+    Rgb eval(TextureId id, const TexturePoint& at) const;
+    /// The red channel; for float textures, where all channels are equal.
+    float eval_float(TextureId id, const TexturePoint& at) const;
+    bool is_constant(TextureId id) const;
+    /// Over (u, v) in [0, 1]^2: of an image its texels', of others that of a grid of 64 x 64
+    /// points.
+    Rgb mean(TextureId id) const;
+
+    /// Analyses all images; needed before `uv_covariance`, and by nothing else. May be called again
+    /// for another bandwidth.
+    void prepare_spectra(TextureBandwidth bandwidth = TextureBandwidth::own);
+    /// Covariance of the texture's amplitude spectrum per unit of the surface's (u, v) around `at`:
+    /// edges by their distance (never closer than `footprint_uv`, half a pixel's footprint in uv
+    /// units), images by windows of all sizes. Textures that are mapped by position are first
+    /// expressed in (u, v) with dpdu, dpdv. Requires `prepare_spectra`.
+    SpatialCovariance2 uv_covariance(TextureId id, const TexturePoint& at, Vec3 dpdu, Vec3 dpdv,
+                                     float footprint_uv) const;
+    /// Bytes held in memory by images, their pages and spectra.
+    size_t memory() const;
+    /// That images are read from a temporary file, or that the colour space of one is not known.
+    const Warnings& warnings() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace covtrace

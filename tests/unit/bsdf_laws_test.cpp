@@ -1,0 +1,246 @@
+/// Laws that hold for every model, at random pairs of directions.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "bsdf/coat_table.h"
+#include "core/rng.h"
+#include "core/warp.h"
+
+namespace covtrace {
+namespace {
+
+struct Case {
+    std::string name;
+    Bsdf bsdf;
+};
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+    return out << c.name;
+}
+
+const CoatTable& coat() {
+    static const CoatTable table(1.5f, 0.01f);
+    return table;
+}
+
+CoatedConductorBsdf coated_metal(float coat_x, float coat_y, float metal_x, float metal_y) {
+    CoatedConductorBsdf b;
+    b.coat = {1.5f, coat_x, coat_y};
+    b.metal = {Rgb(0.13f, 0.6f, 0.73f), Rgb(2.6f, 1.63f, 1.43f), metal_x, metal_y};
+    b.thickness = 0.01f;
+    return b;
+}
+
+std::vector<Case> all_cases() {
+    const Rgb copper_eta(0.2f, 0.92f, 1.1f), copper_k(3.9f, 2.45f, 2.14f), tan(0.7f, 0.5f, 0.2f);
+    return {
+        {"diffuse", DiffuseBsdf{tan}},
+        {"black", DiffuseBsdf{}},
+        {"transmitting", DiffuseTransmissionBsdf{{0.5f, 0.3f, 0.1f}, {0.1f, 0.4f, 0.2f}}},
+        {"only_transmitting", DiffuseTransmissionBsdf{Rgb(0), tan}},
+        {"mirror", ConductorBsdf{copper_eta, copper_k}},
+        {"copper_smoothest", ConductorBsdf{copper_eta, copper_k, 0.001f, 0.001f}},
+        {"copper_rough", ConductorBsdf{copper_eta, copper_k, 0.3f, 0.3f}},
+        {"copper_roughest", ConductorBsdf{copper_eta, copper_k, 1, 1}},
+        {"copper_brushed", ConductorBsdf{copper_eta, copper_k, 0.05f, 0.4f}},
+        {"copper_thread", ConductorBsdf{copper_eta, copper_k, 1e-4f, 0.5f}},
+        {"glass", DielectricBsdf{1.5f}},
+        {"no_border", DielectricBsdf{1, 0.3f, 0.3f}},
+        {"frosted", DielectricBsdf{1.5f, 0.2f, 0.2f}},
+        {"frosted_fine", DielectricBsdf{1.5f, 0.01f, 0.01f}},
+        {"frosted_brushed", DielectricBsdf{1.33f, 0.1f, 0.6f}},
+        {"bubble", DielectricBsdf{1 / 1.5f, 0.4f, 0.4f}},
+        {"nearly_matched", DielectricBsdf{1.001f, 0.3f, 0.3f}},
+        {"varnish", make_coated_diffuse(coat(), reflectance_powers(tan), 0, 0, 5)},
+        {"satin", make_coated_diffuse(coat(), reflectance_powers(tan), 0.1f, 0.1f, 5)},
+        {"matt", make_coated_diffuse(coat(), reflectance_powers(tan), 0.7f, 0.7f, 5)},
+        {"brushed_coat", make_coated_diffuse(coat(), reflectance_powers(tan), 0.1f, 0.5f, 5)},
+        {"coat_on_black", make_coated_diffuse(coat(), reflectance_powers(Rgb(0)), 0.1f, 0.1f, 5)},
+        {"lacquer_on_mirror", coated_metal(0, 0, 0, 0)},
+        {"lacquer_on_copper", coated_metal(0, 0, 0.2f, 0.2f)},
+        {"frost_on_mirror", coated_metal(0.2f, 0.2f, 0, 0)},
+        {"frost_on_copper", coated_metal(0.1f, 0.3f, 0.05f, 0.4f)},
+        {"pane", ThinDielectricBsdf{1.5f}},
+        {"interface", InterfaceBsdf{}},
+    };
+}
+
+class BsdfLaws : public testing::TestWithParam<Case> {
+  protected:
+    const Bsdf& bsdf = GetParam().bsdf;
+};
+INSTANTIATE_TEST_SUITE_P(Models, BsdfLaws, testing::ValuesIn(all_cases()),
+                         [](const auto& c) { return c.param.name; });
+
+bool is_valid(Rgb c) {
+    return is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0;
+}
+
+void expect_near(Rgb a, Rgb b, float relative, const char* what) {
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(a[i], b[i], relative * std::max(std::abs(a[i]), std::abs(b[i])) + 3e-6f)
+            << what;
+}
+
+/// Index on the side of w.
+float index_at(const Bsdf& bsdf, Vec3 w) {
+    const auto* dielectric = std::get_if<DielectricBsdf>(&bsdf);
+    return dielectric && w.z < 0 ? dielectric->eta : 1;
+}
+
+TEST_P(BsdfLaws, Reciprocity) {
+    Rng rng(11);
+    for (int i = 0; i < 4000; ++i) {
+        const Vec3 wo = square_to_sphere(rng.next_2d());
+        // Sampled pairs reach narrow lobes, others the rest.
+        Vec3 wi = square_to_sphere(rng.next_2d());
+        if (i % 2) {
+            const auto s = sample(bsdf, wo, rng.next_float(), rng.next_2d());
+            if (!s || is_specular(s->lobe)) continue;
+            wi = s->wi;
+        }
+        if (std::abs(wo.z) < 0.01f || std::abs(wi.z) < 0.01f) continue;
+        const Rgb there = eval(bsdf, wo, wi) / std::abs(wi.z) / sqr(index_at(bsdf, wo));
+        const Rgb back = eval(bsdf, wi, wo) / std::abs(wo.z) / sqr(index_at(bsdf, wi));
+        // Half vectors of almost straight transmission cancel: alphas of 1e-4 and matched indices
+        // feel the rounding.
+        const bool ill_conditioned = GetParam().name == "copper_thread" ||
+                                     GetParam().name == "copper_smoothest" ||
+                                     GetParam().name == "nearly_matched";
+        expect_near(there, back, ill_conditioned ? 0.05f : 1e-3f, "f(wo, wi) against f(wi, wo)");
+    }
+}
+
+TEST_P(BsdfLaws, SampleAgreesWithEvalAndPdf) {
+    Rng rng(12);
+    int sampled = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const Vec3 wo = square_to_sphere(rng.next_2d());
+        const auto s = sample(bsdf, wo, rng.next_float(), rng.next_2d());
+        if (!s) continue;
+        ASSERT_NEAR(length(s->wi), 1, 1e-4f);
+        ASSERT_GT(s->pdf, 0);
+        ASSERT_TRUE(is_valid(s->weight));
+        EXPECT_EQ(is_transmission(s->lobe), wo.z * s->wi.z < 0);
+        if (is_specular(s->lobe)) continue;
+        if (std::abs(wo.z) < 1e-3f || std::abs(s->wi.z) < 1e-3f) continue;
+        ++sampled;
+        const bool ill_conditioned = GetParam().name == "copper_thread" ||
+                                     GetParam().name == "copper_smoothest" ||
+                                     GetParam().name == "nearly_matched";
+        const float tolerance = ill_conditioned ? 0.1f : 4e-3f;
+        EXPECT_NEAR(pdf(bsdf, wo, s->wi) / s->pdf, 1, tolerance) << wo.z << " -> " << s->wi.z;
+        // A walk's weight: tests/statistical/bsdf_coated_conductor_test.cpp.
+        if (!std::holds_alternative<CoatedConductorBsdf>(bsdf))
+            expect_near(s->weight, eval(bsdf, wo, s->wi) / pdf(bsdf, wo, s->wi),
+                        ill_conditioned ? 0.02f : 1e-3f, "weight");
+        EXPECT_FLOAT_EQ(s->eta, index_at(bsdf, s->wi) / index_at(bsdf, wo));
+    }
+    if (is_specular(bsdf) || GetParam().name == "black")
+        EXPECT_EQ(sampled, 0);
+    else
+        EXPECT_GT(sampled, 1000);
+}
+
+TEST_P(BsdfLaws, LobesSumToEval) {
+    Rng rng(13);
+    for (int i = 0; i < 4000; ++i) {
+        const Vec3 wo = square_to_sphere(rng.next_2d());
+        Vec3 wi = square_to_sphere(rng.next_2d());
+        if (i % 2) {
+            const auto s = sample(bsdf, wo, rng.next_float(), rng.next_2d());
+            if (s && !is_specular(s->lobe)) wi = s->wi;
+        }
+        const LobeShares shares = lobe_shares(bsdf, wo, wi, eval(bsdf, wo, wi));
+        Rgb sum;
+        for (int j = 0; j < shares.count; ++j) {
+            sum += shares.lobes[static_cast<size_t>(j)].value;
+            EXPECT_EQ(is_transmission(shares.lobes[static_cast<size_t>(j)].kind), wo.z * wi.z < 0);
+            EXPECT_FALSE(is_specular(shares.lobes[static_cast<size_t>(j)].kind));
+        }
+        expect_near(sum, eval(bsdf, wo, wi), 1e-5f, "sum of the lobes");
+    }
+}
+
+TEST_P(BsdfLaws, GivesOutNoMoreEnergyThanArrives) {
+    Rng rng(14);
+    for (float cos_o : {1.0f, 0.7f, 0.3f, 0.05f, -0.05f, -0.4f, -1.0f}) {
+        const Vec3 wo{std::sqrt(1 - cos_o * cos_o), 0, cos_o};
+        constexpr int kSide = 60;
+        double sum[3] = {0, 0, 0};
+        for (int i = 0; i < kSide * kSide; ++i) {
+            const Vec2 u{(static_cast<float>(i % kSide) + rng.next_float()) / kSide,
+                         (static_cast<float>(i / kSide) + rng.next_float()) / kSide};
+            const auto s = sample(bsdf, wo, rng.next_float(), u);
+            if (!s) continue;
+            // The radiance factor of transmission undone: this is energy.
+            for (int c = 0; c < 3; ++c) sum[c] += s->weight[c] * sqr(s->eta);
+        }
+        for (double c : sum) EXPECT_LE(c / (kSide * kSide), 1.002) << "cos " << cos_o;
+    }
+}
+
+TEST_P(BsdfLaws, DegenerateDirectionsGiveNoEnergyAndNoNan) {
+    Rng rng(15);
+    const float grazing[] = {0.0f, -0.0f, 1e-38f, 1e-20f, -1e-10f, 1e-6f, -1e-4f, 1.0f, -1.0f};
+    auto with_z = [&](float z) {
+        const float phi = 2 * kPi * rng.next_float(), r = safe_sqrt(1 - z * z);
+        return Vec3{r * std::cos(phi), r * std::sin(phi), z};
+    };
+    const float corners[] = {0.0f, 0.5f, 1 - 0x1p-24f};
+    for (float zo : grazing) {
+        for (float zi : grazing) {
+            for (int i = 0; i < 20; ++i) {
+                const Vec3 wo = with_z(zo);
+                // The opposite and the mirror direction are where half vectors vanish.
+                const Vec3 wi = i == 0 ? -wo : i == 1 ? Vec3{-wo.x, -wo.y, wo.z} : with_z(zi);
+                const Rgb f = eval(bsdf, wo, wi);
+                const float p = pdf(bsdf, wo, wi);
+                EXPECT_TRUE(is_valid(f)) << zo << " " << zi;
+                EXPECT_TRUE(std::isfinite(p) && p >= 0) << zo << " " << zi;
+                EXPECT_TRUE(is_valid(albedo(bsdf, wo)));
+                if (wo.z == 0 || wi.z == 0) {
+                    EXPECT_TRUE(is_black(f));
+                    EXPECT_EQ(p, 0);
+                    EXPECT_TRUE(is_black(eval(bsdf, wi, wo)));
+                }
+            }
+        }
+        for (float a : corners)
+            for (float b : corners)
+                for (float lobe : corners) {
+                    const auto s = sample(bsdf, with_z(zo), lobe, {a, b});
+                    if (zo == 0) {
+                        EXPECT_FALSE(s);
+                    }
+                    if (!s) continue;
+                    EXPECT_TRUE(is_valid(s->weight)) << zo << " " << a << " " << b;
+                    EXPECT_TRUE(std::isfinite(s->pdf) && s->pdf > 0) << zo << " " << a << " " << b;
+                    EXPECT_NEAR(length(s->wi), 1, 1e-4f);
+                    EXPECT_NE(s->wi.z, 0);
+                }
+    }
+}
+
+TEST(BsdfSpecular, ModelsWithoutOtherLobesNeverEvaluate) {
+    int models = 0;
+    for (const Case& c : all_cases()) {
+        if (!is_specular(c.bsdf)) continue;
+        ++models;
+        Rng rng(16);
+        for (int i = 0; i < 1000; ++i) {
+            const Vec3 wo = square_to_sphere(rng.next_2d()), wi = square_to_sphere(rng.next_2d());
+            EXPECT_TRUE(is_black(eval(c.bsdf, wo, wi))) << c.name;
+            EXPECT_EQ(pdf(c.bsdf, wo, wi), 0) << c.name;
+            EXPECT_EQ(lobe_shares(c.bsdf, wo, wi, Rgb(0)).count, 0) << c.name;
+            const auto s = sample(c.bsdf, wo, rng.next_float(), rng.next_2d());
+            ASSERT_TRUE(s) << c.name;
+            EXPECT_TRUE(is_specular(s->lobe)) << c.name;
+        }
+    }
+    // mirror, glass, no_border, lacquer_on_mirror, pane, interface
+    EXPECT_EQ(models, 6);
+}
+
+}  // namespace
+}  // namespace covtrace

@@ -1,0 +1,360 @@
+#include "pbrt_test_support.h"
+
+namespace covtrace::test {
+namespace {
+
+struct Made {
+    SceneDescription scene;
+    MaterialDescription material;
+};
+Made material_of(const std::string& text) {
+    Made m{read_world("Material " + text + "\nShape \"sphere\""), {}};
+    m.material = m.scene.materials.at(static_cast<size_t>(m.scene.shapes.at(0).material));
+    return m;
+}
+template <typename Model>
+Model model_of(const std::string& text) {
+    return std::get<Model>(material_of(text).material.value);
+}
+
+TEST(SceneMaterials, TheDefaultIsDiffuseGrey) {
+    const auto scene = read_world("Shape \"sphere\"");
+    const auto& m = std::get<DiffuseMaterial>(
+        scene.materials.at(static_cast<size_t>(scene.shapes.at(0).material)).value);
+    EXPECT_EQ(constant_value(scene, m.reflectance), Rgb{0.5f});
+}
+
+TEST(SceneMaterials, CoatedDiffuseHasAllItsParameters) {
+    const auto made = material_of(
+        "\"coateddiffuse\" \"rgb reflectance\" [ .1 .2 .3 ] \"float roughness\" .4 \"float "
+        "vroughness\" .2\n"
+        "\"float thickness\" .5 \"float g\" .3 \"rgb albedo\" [ .6 .6 .6 ] \"float eta\" 1.7\n"
+        "\"bool remaproughness\" false \"integer maxdepth\" 3 \"integer nsamples\" 2");
+    const auto& m = std::get<CoatedDiffuseMaterial>(made.material.value);
+    const auto value = [&](TextureId id) { return constant_value(made.scene, id); };
+    EXPECT_EQ(value(m.reflectance), (Rgb{0.1f, 0.2f, 0.3f}));
+    EXPECT_EQ(value(m.u_roughness), Rgb{0.4f});
+    EXPECT_EQ(value(m.v_roughness), Rgb{0.2f});
+    EXPECT_EQ(value(m.thickness), Rgb{0.5f});
+    EXPECT_EQ(value(m.g), Rgb{0.3f});
+    EXPECT_EQ(value(m.albedo), Rgb{0.6f});
+    EXPECT_EQ(m.eta, 1.7f);
+    EXPECT_FALSE(m.remap_roughness);
+    EXPECT_EQ(m.max_depth, 3);
+    EXPECT_EQ(m.samples, 2);
+    EXPECT_TRUE(made.scene.warnings.empty()) << warnings_of(made.scene);
+}
+
+TEST(SceneMaterials, DefaultsAreThoseOfPbrt) {
+    const auto made = material_of("\"coateddiffuse\"");
+    const auto& m = std::get<CoatedDiffuseMaterial>(made.material.value);
+    EXPECT_EQ(constant_value(made.scene, m.reflectance), Rgb{0.5f});
+    EXPECT_EQ(constant_value(made.scene, m.u_roughness), Rgb{0});
+    EXPECT_EQ(constant_value(made.scene, m.thickness), Rgb{0.01f});
+    EXPECT_EQ(m.eta, 1.5f);
+    EXPECT_TRUE(m.remap_roughness);
+    EXPECT_EQ(model_of<DielectricMaterial>("\"dielectric\"").eta, 1.5f);
+    const auto t = material_of("\"diffusetransmission\"");
+    const auto& d = std::get<DiffuseTransmissionMaterial>(t.material.value);
+    EXPECT_EQ(constant_value(t.scene, d.reflectance), Rgb{0.25f});
+    EXPECT_EQ(constant_value(t.scene, d.transmittance), Rgb{0.25f});
+}
+
+TEST(SceneMaterials, GlassHasItsIndexAtTheHeliumLine) {
+    const auto made =
+        material_of("\"dielectric\" \"spectrum eta\" \"glass-BK7\" \"float roughness\" .1");
+    EXPECT_NEAR(std::get<DielectricMaterial>(made.material.value).eta, 1.5168f, 1e-4f);
+    EXPECT_TRUE(contains(warnings_of(made.scene), "dispersion is not rendered"));
+    EXPECT_NEAR(
+        model_of<DielectricMaterial>("\"dielectric\" \"spectrum eta\" [ 500 1.4 600 1.6 ]").eta,
+        1.5752f, 1e-4f);
+}
+
+Rgb normal_reflectance(const Made& made) {
+    const auto& m = std::get<ConductorMaterial>(made.material.value);
+    const Rgb n = constant_value(made.scene, m.eta), k = constant_value(made.scene, m.k);
+    Rgb f;
+    for (int c = 0; c < 3; ++c) f[c] = (sqr(n[c] - 1) + sqr(k[c])) / (sqr(n[c] + 1) + sqr(k[c]));
+    return f;
+}
+
+TEST(SceneMaterials, MetalsHaveTheColourOfTheirSpectra) {
+    const auto metal = [](const std::string& name) {
+        return normal_reflectance(material_of("\"conductor\" \"spectrum eta\" \"metal-" + name +
+                                              "-eta\" \"spectrum k\" \"metal-" + name + "-k\""));
+    };
+    // Linear colours as tabulated for normal incidence (Hoffman, "Physics and Math of Shading",
+    // SIGGRAPH 2015).
+    expect_near(metal("Ag"), {0.97f, 0.96f, 0.92f}, 0.03f);
+    expect_near(metal("Al"), {0.91f, 0.92f, 0.92f}, 0.02f);
+    expect_near(metal("Au"), {1.0f, 0.77f, 0.34f}, 0.06f);
+    expect_near(metal("Cu"), {0.96f, 0.64f, 0.54f}, 0.04f);
+    expect_near(metal("TiO2"), {0.23f, 0.24f, 0.27f}, 0.03f);
+}
+
+TEST(SceneMaterials, ConductorsDefaultToCopper) {
+    const Rgb copper = normal_reflectance(material_of(
+        "\"conductor\" \"spectrum eta\" \"metal-Cu-eta\" \"spectrum k\" \"metal-Cu-k\""));
+    expect_near(normal_reflectance(material_of("\"conductor\"")), copper, 0);
+    expect_near(normal_reflectance(material_of("\"conductor\" \"spectrum eta\" \"metal-Cu-eta\"")),
+                copper, 0);
+}
+
+TEST(SceneMaterials, ConductorColoursAreKept) {
+    const auto made = material_of(
+        "\"conductor\" \"rgb eta\" [ .2 .9 1.1 ] \"rgb k\" [ 3.9 2.4 2.1 ] \"float uroughness\" "
+        ".25");
+    const auto& m = std::get<ConductorMaterial>(made.material.value);
+    EXPECT_EQ(constant_value(made.scene, m.eta), (Rgb{0.2f, 0.9f, 1.1f}));
+    // (n - 1)^2 + k^2 over (n + 1)^2 + k^2 of each channel; k may follow the colour of smooth
+    // spectra.
+    expect_near(normal_reflectance(made), {0.952f, 0.615f, 0.501f}, 0.05f);
+    EXPECT_EQ(constant_value(made.scene, m.u_roughness), Rgb{0.25f});
+    const auto mirror =
+        model_of<ConductorMaterial>("\"conductor\" \"rgb reflectance\" [ .9 .9 .9 ]");
+    EXPECT_GE(mirror.reflectance, 0);
+    EXPECT_EQ(mirror.eta, -1);
+    EXPECT_EQ(mirror.k, -1);
+}
+
+TEST(SceneMaterials, NamesMayBeUsedBeforeTheyAreDefined) {
+    const auto scene = read_world(
+        "NamedMaterial \"later\" Shape \"sphere\"\n"
+        "MakeNamedMaterial \"later\" \"string type\" \"diffuse\" \"texture reflectance\" \"tex\"\n"
+        "Texture \"tex\" \"spectrum\" \"constant\" \"rgb value\" [ .1 .2 .3 ]\n");
+    const auto& m = scene.materials.at(static_cast<size_t>(scene.shapes.at(0).material));
+    EXPECT_EQ(m.name, "later");
+    EXPECT_EQ(constant_value(scene, std::get<DiffuseMaterial>(m.value).reflectance),
+              (Rgb{0.1f, 0.2f, 0.3f}));
+    EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
+}
+
+TEST(SceneMaterials, InterfacesHaveSeveralNames) {
+    for (const char* name : {"interface", "", "none"})
+        EXPECT_NO_THROW(model_of<InterfaceMaterial>(std::string("\"") + name + "\""));
+}
+
+TEST(SceneMaterials, OthersAreReplacedWithOneWarning) {
+    const auto check = [](const std::string& text, auto expected) {
+        const auto made = material_of(text);
+        EXPECT_TRUE(std::holds_alternative<decltype(expected)>(made.material.value)) << text;
+        EXPECT_EQ(made.scene.warnings.size(), 1u) << text << "\n" << warnings_of(made.scene);
+    };
+    check("\"subsurface\" \"string name\" \"Skin1\" \"float scale\" 4", CoatedDiffuseMaterial{});
+    check("\"hair\" \" float beta_n\" .3 \"float eumelanin\" 8", DiffuseMaterial{});
+    check("\"measured\" \"string filename\" \"x.bsdf\"", CoatedDiffuseMaterial{});
+}
+
+TEST(SceneMaterials, CoatedConductors) {
+    const auto made = material_of(
+        "\"coatedconductor\" \"float interface.roughness\" .1 \"float conductor.uroughness\" .2 "
+        "\"float conductor.roughness\" .3 \"float thickness\" 1 \"float interface.eta\" 1.3 "
+        "\"spectrum conductor.eta\" \"metal-Al-eta\" \"spectrum conductor.k\" \"metal-Al-k\"");
+    EXPECT_TRUE(made.scene.warnings.empty()) << warnings_of(made.scene);
+    const auto& m = std::get<CoatedConductorMaterial>(made.material.value);
+    const auto number = [&](TextureId id) { return constant_value(made.scene, id).r; };
+    EXPECT_EQ(m.eta, 1.3f);
+    EXPECT_EQ(number(m.u_roughness), 0.1f);
+    EXPECT_EQ(number(m.conductor.u_roughness), 0.2f);
+    EXPECT_EQ(number(m.conductor.v_roughness), 0.3f);
+    EXPECT_EQ(number(m.thickness), 1);
+    EXPECT_GT(constant_value(made.scene, m.conductor.k).g, 5);
+}
+
+TEST(SceneMaterials, ThinDielectrics) {
+    EXPECT_EQ(model_of<ThinDielectricMaterial>("\"thindielectric\" \"float eta\" 1.4").eta, 1.4f);
+}
+
+TEST(SceneMaterials, BumpAndNormalMaps) {
+    const TemporaryFolder folder;
+    folder.write("n.png", "");
+    const auto scene = read_pbrt(folder.write("scene.pbrt", R"(WorldBegin
+Texture "bumps" "float" "checkerboard"
+Material "diffuse" "texture displacement" "bumps"
+Shape "sphere"
+Material "conductor" "string normalmap" "n.png"
+Shape "sphere"
+Material "diffuse" "float displacement" 2
+Shape "sphere"
+)"));
+    EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
+    const auto of = [&](size_t shape) {
+        return scene.materials.at(static_cast<size_t>(scene.shapes.at(shape).material));
+    };
+    EXPECT_TRUE(std::holds_alternative<CheckerboardTexture>(
+        scene.textures.at(static_cast<size_t>(of(0).displacement)).value));
+    EXPECT_EQ(of(0).normal_map, -1);
+    EXPECT_EQ(constant_as<ImageTexture>(scene, of(1).normal_map).encoding,
+              ImageTexture::Encoding::linear);
+    EXPECT_EQ(of(2).displacement, -1) << "a constant height turns no normal";
+}
+
+TEST(SceneMaterials, DarkHairIsDark) {
+    const auto reflectance = [](const std::string& text) {
+        const auto made = material_of(text);
+        return constant_value(made.scene,
+                              std::get<DiffuseMaterial>(made.material.value).reflectance);
+    };
+    const Rgb dark = reflectance("\"hair\" \"float eumelanin\" 8"),
+              fair = reflectance("\"hair\" \"float eumelanin\" .3");
+    EXPECT_LT(max_component(dark), 0.01f);
+    EXPECT_GT(fair.r, fair.g);
+    EXPECT_GT(fair.g, fair.b);
+    EXPECT_GT(fair.r, 0.05f);
+}
+
+TEST(SceneMaterials, OfSeveralColoursOfHairAbsorptionCounts) {
+    const auto reflectance = [](const std::string& text) {
+        const auto made = material_of(text);
+        return constant_value(made.scene,
+                              std::get<DiffuseMaterial>(made.material.value).reflectance);
+    };
+    const std::string absorption = "\"hair\" \"rgb sigma_a\" [ .1 .2 .4 ]";
+    expect_near(reflectance(absorption + " \"rgb reflectance\" [ 0 1 0 ] \"rgb color\" [ 0 1 0 ]"),
+                reflectance(absorption), 0);
+    expect_near(reflectance("\"hair\" \"rgb color\" [ 0 1 0 ] \"float eumelanin\" 8"), {0, 1, 0},
+                0);
+}
+
+TEST(SceneMaterials, SubsurfaceTakesTheNameThenCoefficientsThenReflectance) {
+    const auto reflectance = [](const std::string& text) {
+        const auto made = material_of("\"subsurface\" " + text);
+        return constant_value(made.scene,
+                              std::get<CoatedDiffuseMaterial>(made.material.value).reflectance);
+    };
+    const std::string ketchup =
+        "\"rgb sigma_a\" [ .061 .97 1.45 ] \"rgb sigma_s\" [ .18 .07 .03 ] ";
+    const std::string green = "\"rgb reflectance\" [ 0 1 0 ] ";
+    const std::string cream = "\"string name\" \"Cream\" ";
+    // A reflectance holds what is reflected inside; what coefficients make of it does not.
+    for (const auto& [text, whole] : {std::pair{green, true}, {cream, false}, {ketchup, false}})
+        EXPECT_EQ(
+            std::get<CoatedDiffuseMaterial>(material_of("\"subsurface\" " + text).material.value)
+                .reflects_through_coat,
+            whole)
+            << text;
+    const Rgb red = reflectance(ketchup);
+    expect_near(reflectance("\"string name\" \"Ketchup\" \"float g\" .8"), red, 1e-6f);
+    EXPECT_GT(red.r, 5 * red.g);
+    expect_near(reflectance(ketchup + green), red, 0);
+    expect_near(reflectance(cream + ketchup + green), reflectance(cream), 0);
+    EXPECT_GT(reflectance(cream).b, 0.5f);
+    expect_near(reflectance(green), {0, 1, 0}, 0);
+    EXPECT_TRUE(contains(world_error("Material \"subsurface\" \"string name\" \"Ketchip\""),
+                         "did you mean \"Ketchup\""));
+    EXPECT_TRUE(contains(world_error("Material \"subsurface\" \"rgb sigma_a\" [ 1 1 1 ]"),
+                         "expected both or none"));
+}
+
+TEST(SceneMaterials, MixesKeepBothParts) {
+    const std::string two =
+        "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n"
+        "MakeNamedMaterial \"b\" \"string type\" \"conductor\"\n";
+    const auto scene =
+        read_world(two +
+                   "Material \"mix\" \"string materials\" [ \"a\" \"b\" ] \"float amount\" .2\n"
+                   "Shape \"sphere\"");
+    EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
+    const auto& m = scene.materials.at(static_cast<size_t>(scene.shapes.at(0).material));
+    ASSERT_TRUE(m.mix);
+    EXPECT_EQ(constant_value(scene, m.mix->amount), Rgb(0.2f));
+    EXPECT_EQ(scene.materials.at(static_cast<size_t>(m.mix->materials[0])).name, "a");
+    EXPECT_EQ(scene.materials.at(static_cast<size_t>(m.mix->materials[1])).name, "b");
+}
+
+TEST(SceneMaterials, ReflectancesAreAtMostOne) {
+    const auto made = material_of("\"diffuse\" \"rgb reflectance\" [ 2 .5 .5 ]");
+    EXPECT_EQ(
+        constant_value(made.scene, std::get<DiffuseMaterial>(made.material.value).reflectance),
+        (Rgb{1, 0.5f, 0.5f}));
+    EXPECT_TRUE(contains(warnings_of(made.scene), "above 1"));
+}
+
+TEST(SceneMaterials, MediaAreRead) {
+    const auto scene = read_world(
+        "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 1 2 3 ] \"rgb "
+        "sigma_s\" [ 0 0 0 ] \"float scale\" 2 \"float g\" .5\n"
+        "MakeNamedMedium \"default\" \"string type\" \"homogeneous\" \"rgb Le\" [ 1 2 4 ] "
+        "\"float Lescale\" .5\n"
+        "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\" \"string preset\" \"Wholemilk\" "
+        "\"float scale\" 10\n"
+        "MakeNamedMedium \"cloud\" \"string type\" \"nanovdb\" \"string filename\" \"x.nvdb\"\n"
+        "MakeNamedMedium \"smoke\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \"float "
+        "density\" [ 1 2 ] \"rgb sigma_a\" [ 1 1 2 ]\n"
+        "MakeNamedMedium \"dye\" \"string type\" \"rgbgrid\" \"integer nz\" 2 \"rgb sigma_a\" [ 1 "
+        "2 "
+        "3 3 4 5 ]\n"
+        "MakeNamedMedium \"odd\" \"string type\" \"homogeneous\" \"string preset\" "
+        "\"Wholemilc\"\n");
+    ASSERT_EQ(scene.media.size(), 7u);
+    EXPECT_EQ(scene.media[0].sigma_a, (Rgb{2, 4, 6}));
+    EXPECT_TRUE(is_black(scene.media[0].sigma_s));
+    EXPECT_TRUE(is_black(scene.media[0].emission));
+    EXPECT_EQ(scene.media[0].g, 0.5f);
+    EXPECT_EQ(scene.media[1].sigma_a, Rgb{1});
+    EXPECT_EQ(scene.media[1].sigma_s, Rgb{1});
+    EXPECT_EQ(scene.media[1].emission, (Rgb{0.5f, 1, 2}));
+    EXPECT_FLOAT_EQ(scene.media[2].sigma_s.g, 32.1f);
+    EXPECT_FLOAT_EQ(scene.media[2].sigma_a.b, 0.14f);
+    EXPECT_TRUE(is_black(scene.media[3].sigma_a));
+    EXPECT_EQ(scene.media[4].sigma_a, (Rgb{1.5f, 1.5f, 3}));
+    EXPECT_EQ(scene.media[4].sigma_s, Rgb{1.5f});
+    EXPECT_EQ(scene.media[5].sigma_a, (Rgb{2, 3, 4}));
+    EXPECT_EQ(scene.media[5].sigma_s, Rgb{1});
+    EXPECT_EQ(scene.warnings.size(), 4u) << warnings_of(scene);
+    EXPECT_TRUE(contains(warnings_of(scene), "did you mean \"Wholemilk\"")) << warnings_of(scene);
+}
+
+TEST(SceneMaterials, TheCameraStandsInItsMedium) {
+    const std::string fog =
+        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"\" \"fog\"\n"
+        "Camera \"perspective\"\n";
+    const auto scene = read_pbrt_string(fog + "WorldBegin\n", "test.pbrt", ".");
+    EXPECT_EQ(scene.camera.medium, 0);
+    const auto path = read_pbrt_string(fog + "Integrator \"path\"\nWorldBegin\n", "test.pbrt", ".");
+    EXPECT_EQ(path.camera.medium, -1);
+    EXPECT_TRUE(contains(warnings_of(path), "4: integrator \"path\" sees no media"))
+        << warnings_of(path);
+}
+
+TEST(SceneMaterials, ErrorsNameThePlace) {
+    struct Case {
+        const char* text;
+        const char* message;
+    };
+    const Case cases[] = {
+        {"Material \"matte\"", "test.pbrt:2:1: material \"matte\" belongs to pbrt-v3"},
+        {"Material \"velvet\"", "unknown material \"velvet\"; expected one of diffuse"},
+        {"NamedMaterial \"Fluor\" Shape \"sphere\" MakeNamedMaterial \"Floor\" \"string type\" "
+         "\"diffuse\"",
+         "test.pbrt:2:1: material \"Fluor\" is not defined; did you mean \"Floor\"?"},
+        {"MakeNamedMaterial \"a\"", "has no type"},
+        {"MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"a\" \"string "
+         "type\" \"diffuse\"",
+         "test.pbrt:3:1: material \"a\" is already defined at test.pbrt:2:1"},
+        {"Material \"conductor\" \"rgb reflectance\" [1 1 1] \"rgb k\" [1 1 1]",
+         "both \"reflectance\" and"},
+        {"Material \"dielectric\" \"float eta\" 0", "must be greater than 0"},
+        {"Material \"dielectric\" \"spectrum eta\" \"stdillum-A\"", "is a light"},
+        {"Material \"mix\" \"string materials\" [ \"a\" ]", "names of two materials"},
+        {"Material \"mix\" \"string materials\" [ \"a\" \"b\" ]", "material \"a\" is not defined"},
+        {"MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [ \"a\" \"a\" ]",
+         "mixes itself"},
+        {"Material \"diffuse\" \"texture reflectance\" \"t\"",
+         "names the spectrum texture \"t\", which is not defined"},
+        {"Texture \"t\" \"float\" \"constant\" Material \"diffuse\" \"texture reflectance\" \"t\"",
+         "the texture of this name is of type float"},
+        {"MediumInterface \"fog\" \"\" Shape \"sphere\"", "medium \"fog\" is not defined"},
+        {"MakeNamedMedium \"m\" \"string type\" \"gas\"", "unknown medium \"gas\""},
+        {"MakeNamedMedium \"m\"", "medium \"m\" has no type"},
+        {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\"", "expected \"float density\""},
+        {"MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 3 \"float density\" "
+         "[ 1 2 ]",
+         "has 2 values; expected nx * ny * nz"},
+        {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float g\" 1", "between -1 and 1"},
+    };
+    for (const Case& c : cases) EXPECT_TRUE(contains(world_error(c.text), c.message)) << c.text;
+}
+
+}  // namespace
+}  // namespace covtrace::test

@@ -1,0 +1,213 @@
+#include <cmath>
+
+#include "colour/spectrum.h"
+#include "pbrt_test_support.h"
+
+namespace covtrace::test {
+namespace {
+
+TEST(SceneView, HasTheDefaultsOfPbrt) {
+    const auto scene = read_options("");
+    EXPECT_EQ(scene.camera.kind, CameraDescription::Kind::perspective);
+    EXPECT_EQ(scene.camera.fov, 90);
+    EXPECT_EQ(scene.camera.lens_radius, 0);
+    EXPECT_EQ(scene.camera.focal_distance, 1e6f);
+    EXPECT_EQ(scene.camera.shutter_open, 0);
+    EXPECT_EQ(scene.camera.shutter_close, 1);
+    EXPECT_EQ(scene.film.width, 1280);
+    EXPECT_EQ(scene.film.height, 720);
+    EXPECT_EQ(scene.film.iso, 100);
+    EXPECT_EQ(scene.film.max_component_value, kInfinity);
+    EXPECT_EQ(scene.filter.kind, FilterDescription::Kind::gaussian);
+    EXPECT_EQ(scene.filter.x_radius, 1.5f);
+    EXPECT_EQ(scene.filter.sigma, 0.5f);
+    EXPECT_EQ(scene.samples_per_pixel, 16);
+    EXPECT_EQ(scene.max_depth, 5);
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(SceneView, ReadsCameraAndFilm) {
+    const auto scene = read_options(
+        "Camera \"orthographic\" \"float screenwindow\" [ -2 2 -1 1 ] \"float lensradius\" .1\n"
+        "  \"float focaldistance\" 4 \"float shutteropen\" .2 \"float shutterclose\" .7 \"float "
+        "frameaspectratio\" 2\n"
+        "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" 32 \"string filename\" "
+        "\"a b.exr\"\n"
+        "  \"float iso\" 200 \"float maxcomponentvalue\" 50 \"float diagonal\" 30 \"bool "
+        "savefp16\" false\n"
+        "  \"float cropwindow\" [ .5 .25 0 1 ]\n"
+        "Sampler \"halton\" \"integer pixelsamples\" 3 \"integer seed\" 2\n"
+        "Integrator \"volpath\" \"integer maxdepth\" 9 \"string lightsampler\" \"bvh\"\n");
+    const CameraDescription& c = scene.camera;
+    EXPECT_EQ(c.kind, CameraDescription::Kind::orthographic);
+    EXPECT_EQ(c.screen_window, (std::array<float, 4>{-2, 2, -1, 1}));
+    EXPECT_EQ(c.lens_radius, 0.1f);
+    EXPECT_EQ(c.focal_distance, 4);
+    EXPECT_EQ(c.shutter_open, 0.2f);
+    EXPECT_EQ(c.shutter_close, 0.7f);
+    EXPECT_EQ(c.frame_aspect_ratio, 2);
+    EXPECT_EQ(scene.film.width, 64);
+    EXPECT_EQ(scene.film.height, 32);
+    EXPECT_EQ(scene.film.filename, "a b.exr");
+    EXPECT_EQ(scene.film.iso, 200);
+    EXPECT_EQ(scene.film.max_component_value, 50);
+    EXPECT_EQ(scene.film.crop_window, (std::array<float, 4>{0.25f, 0.5f, 0, 1}));
+    EXPECT_EQ(scene.samples_per_pixel, 3);
+    EXPECT_EQ(scene.max_depth, 9);
+    EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
+}
+
+TEST(SceneView, PixelBoundsAreCutToTheImage) {
+    const auto scene = read_options("Film \"rgb\" \"integer pixelbounds\" [ 10 5000 0 20 ]");
+    EXPECT_EQ(scene.film.pixel_bounds, (std::array<int, 4>{10, 1280, 0, 20}));
+    EXPECT_TRUE(contains(warnings_of(scene), "reach beyond the image"));
+}
+
+TEST(SceneView, FiltersHaveTheirOwnDefaults) {
+    struct Case {
+        const char* name;
+        FilterDescription::Kind kind;
+        float radius;
+    };
+    for (const Case& c : {Case{"box", FilterDescription::Kind::box, 0.5f},
+                          Case{"triangle", FilterDescription::Kind::triangle, 2},
+                          Case{"mitchell", FilterDescription::Kind::mitchell, 2},
+                          Case{"sinc", FilterDescription::Kind::lanczos_sinc, 4},
+                          Case{"gaussian", FilterDescription::Kind::gaussian, 1.5f}}) {
+        const auto scene = read_options(std::string("PixelFilter \"") + c.name + "\"");
+        EXPECT_EQ(scene.filter.kind, c.kind);
+        EXPECT_EQ(scene.filter.x_radius, c.radius);
+        EXPECT_EQ(scene.filter.y_radius, c.radius);
+    }
+}
+
+TEST(SceneView, SamplersSayHowManySamples) {
+    const auto count = [](const std::string& text) {
+        return read_options("Sampler " + text).samples_per_pixel;
+    };
+    EXPECT_EQ(
+        count("\"stratified\" \"integer xsamples\" 3 \"integer ysamples\" 5 \"bool jitter\" false"),
+        15);
+    EXPECT_EQ(count("\"stratified\""), 16);
+    EXPECT_EQ(count("\"independent\""), 4);
+    for (const char* name : {"halton", "sobol", "zsobol", "paddedsobol", "pmj02bn"})
+        EXPECT_EQ(count(std::string("\"") + name + "\" \"integer pixelsamples\" 7"), 7);
+}
+
+TEST(SceneView, WhatIsNotRenderedIsReplacedWithAWarning) {
+    for (const char* text :
+         {"Integrator \"bdpt\" \"bool visualizestrategies\" true", "Integrator \"sppm\"",
+          "Film \"gbuffer\" \"string coordinatesystem\" \"world\"", "Film \"spectral\"",
+          "Camera \"realistic\" \"string lensfile\" \"x.dat\"",
+          "Film \"rgb\" \"string sensor\" \"canon_eos_5d\"",
+          "Integrator \"path\" \"bool regularize\" true", "ColorSpace \"rec2020\" Film \"rgb\"",
+          "Film \"rgb\" \"float scale\" 2"}) {
+        const auto scene = read_options(text);
+        EXPECT_EQ(scene.warnings.size(), 1u) << text << "\n" << warnings_of(scene);
+    }
+}
+
+TEST(SceneView, SphericalCameras) {
+    using Mapping = CameraDescription::Mapping;
+    EXPECT_EQ(read_options("Camera \"spherical\"").camera.mapping, Mapping::equal_area);
+    const auto scene = read_options("Camera \"spherical\" \"string mapping\" \"equirectangular\"");
+    EXPECT_EQ(scene.camera.kind, CameraDescription::Kind::spherical);
+    EXPECT_EQ(scene.camera.mapping, Mapping::equirectangular);
+    EXPECT_TRUE(contains(options_error("Camera \"spherical\" \"string mapping\" \"flat\""),
+                         "expected one of equalarea, equirectangular"));
+}
+
+TEST(SceneView, LensesOfSeveralElementsBecomeThin) {
+    const TemporaryFolder folder;
+    // Two thin lenses of 100 mm in contact.
+    folder.write("two.dat", R"(# radius thickness index diameter
+100 0.001 1.5 30
+-100 0.001 1 30
+0 0.001 0 12   # the stop
+100 0.001 1.5 30
+-100 40 1 30
+)");
+    const auto scene = read_pbrt(folder.write("scene.pbrt", R"(
+Camera "realistic" "string lensfile" "two.dat" "float aperturediameter" 20 "float focusdistance" 5.05
+Film "rgb" "integer xresolution" 30 "integer yresolution" 40 "float diagonal" 50
+WorldBegin
+)"));
+    // The stop stands behind one of both lenses, so its image before it is hardly larger.
+    EXPECT_NEAR(scene.camera.lens_radius, 6e-3f, 1e-6f) << "the stop's own radius";
+    EXPECT_NEAR(scene.camera.film_irradiance, kPi * sqr(6e-3f / 50.5e-3f), 1e-4f);
+    EXPECT_NEAR(scene.camera.focal_distance, 5.05f, 1e-6f);
+    // 50 mm, focused at 5.05 m: 50.5 mm behind the lens; the shorter side is 30 mm.
+    EXPECT_NEAR(scene.camera.fov, 2 * std::atan(15 / 50.5f) * 180 / kPi, 0.01f);
+    EXPECT_EQ(scene.warnings.size(), 1u);
+    const auto star = read_options(
+        "Camera \"realistic\" \"string lensfile\" \"x.dat\" \"string aperture\" \"star\"");
+    EXPECT_TRUE(contains(warnings_of(star), "the aperture \"star\" is not supported"));
+    folder.write("two.dat", "1 2 3");
+    EXPECT_TRUE(contains(failure_of([&] { read_pbrt(folder.path() / "scene.pbrt"); }).message,
+                         "expected four for each element"));
+}
+
+TEST(SceneView, WhiteBalanceMakesDaylightWhite) {
+    const auto scene = read_options("Film \"rgb\" \"float whitebalance\" 6504");
+    for (size_t i = 0; i < 3; ++i)
+        for (size_t j = 0; j < 3; ++j)
+            EXPECT_NEAR(scene.film.white_balance[i][j], i == j ? 1 : 0, 2e-3f);
+    // A candle's light, balanced for it.
+    const auto warm = read_options("Film \"rgb\" \"float whitebalance\" 2800").film.white_balance;
+    const Rgb candle = emission_colour(blackbody_spectrum(2800));
+    for (const auto& row : warm)
+        EXPECT_NEAR(row[0] * candle.r + row[1] * candle.g + row[2] * candle.b, 1, 5e-3f);
+}
+
+TEST(SceneView, ErrorsNameThePlace) {
+    struct Case {
+        const char* text;
+        const char* message;
+    };
+    const Case cases[] = {
+        {"Camera \"perspective\" \"float shutteropen\" 1",
+         "test.pbrt:1:22: the shutter never opens"},
+        {"Camera \"perspective\" \"float fov\" 180",
+         "test.pbrt:1:22: parameter \"fov\" must be between"},
+        {"Camera \"perspective\" \"float focaldistance\" 0", "must be greater than 0"},
+        {"Camera \"perspective\" \"float lensradius\" -1", "must not be negative"},
+        {"Camera \"perspective\" \"float screenwindow\" [ 1 2 3 ]", "expects x0 < x1"},
+        {"Camera \"pinhole\"", "pbrt-v3"},
+        {"Camera \"fisheye\"",
+         "test.pbrt:1:1: unknown camera \"fisheye\"; expected one of perspective"},
+        {"Film \"image\"", "test.pbrt:1:1: film \"image\" belongs to pbrt-v3"},
+        {"Film \"rgb\" \"integer xresolution\" 0",
+         "test.pbrt:1:12: the resolution 0x720 has no pixels"},
+        {"Film \"rgb\" \"integer yresolution\" -5", "has no pixels"},
+        {"Film \"rgb\" \"float cropwindow\" [ .5 .5 0 1 ]", "leaves no pixel"},
+        {"Film \"rgb\" \"integer pixelbounds\" [ 2000 3000 0 5 ]", "leaves no pixel"},
+        {"Film \"rgb\" \"float iso\" 0", "must be greater than 0"},
+        {"Film \"rgb\" \"string sensor\" \"nikon_d850x\"",
+         "test.pbrt:1:12: unknown sensor \"nikon_d850x\""},
+        {"PixelFilter \"cubic\"", "unknown filter \"cubic\""},
+        {"PixelFilter \"box\" \"float xradius\" 0", "must be greater than 0"},
+        {"Sampler \"random\"", "pbrt-v3"},
+        {"Sampler \"sobal\"", "did you mean \"sobol\""},
+        {"Sampler \"sobol\" \"integer pixelsamples\" 0", "expected from 1 to 2^30"},
+        {"Integrator \"path\" \"integer maxdepth\" -1", "must not be negative"},
+        {"Integrator \"directlighting\"", "pbrt --upgrade"},
+        {"Integrator \"magic\"", "unknown integrator \"magic\""},
+        {"TransformTimes 1 1", "test.pbrt:1:1: TransformTimes expects a start before the end"},
+        {"ColorSpace \"rgb\"", "unknown colour space \"rgb\""},
+    };
+    for (const Case& c : cases) EXPECT_TRUE(contains(options_error(c.text), c.message)) << c.text;
+}
+
+TEST(SceneView, HugeImagesAreALimit) {
+    for (const char* text :
+         {"\"integer xresolution\" 65537 \"integer yresolution\" 1",
+          "\"integer xresolution\" 65536 \"integer yresolution\" 65536",
+          "\"integer xresolution\" 2147483647 \"integer yresolution\" 2147483647"}) {
+        const Failure f = failure_of([&] { read_options(std::string("Film \"rgb\" ") + text); });
+        EXPECT_EQ(f.kind, ErrorKind::limit) << text;
+        EXPECT_TRUE(contains(f.message, "test.pbrt:1:12: the resolution"));
+    }
+}
+
+}  // namespace
+}  // namespace covtrace::test
