@@ -8,7 +8,7 @@
 
 namespace covtrace::cli {
 
-/// The chosen command; returns the exit code (docs/manual.md).
+/// The chosen command; returns the exit code (docs/reference/exit-codes.md).
 using Action = std::function<int()>;
 
 struct Invocation {

@@ -5,7 +5,7 @@
 
 namespace covtrace::cli {
 
-/// Says on standard error what went wrong. Returns the exit code (docs/manual.md).
+/// Says on standard error what went wrong. Returns the exit code (docs/reference/exit-codes.md).
 int report_failure(const std::exception_ptr& failure);
 
 /// The exit code of a command line that cannot be understood.

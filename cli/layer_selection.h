@@ -11,7 +11,7 @@ namespace covtrace::cli {
 
 /// Beside the root's R G B A, which every selection has.
 struct LayerSelection {
-    bool all = false;                ///< but those that docs/manual.md gives where named
+    bool all = false;                ///< but those that docs/reference/layers.md gives where named
     std::vector<std::string> names;  ///< beside them, or where not all: "raw", "Z" …
 };
 

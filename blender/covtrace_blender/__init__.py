@@ -1,4 +1,4 @@
-"""Renders Blender's scenes with covtrace: docs/blender.md."""
+"""Renders Blender's scenes with covtrace: docs/guide/blender.md."""
 
 bl_info = {
     "name": "covtrace",

@@ -1,4 +1,4 @@
-"""Shader node trees as pbrt-v4 materials; docs/blender.md has the table."""
+"""Shader node trees as pbrt-v4 materials; docs/guide/blender.md has the table."""
 
 import math
 

@@ -19,7 +19,7 @@ struct SourceLocation {
     std::string to_string() const;
 };
 
-/// What went wrong; the command line maps each to one exit code (docs/manual.md).
+/// What went wrong; the command line maps each to one exit code (docs/reference/exit-codes.md).
 enum class ErrorKind {
     usage,        ///< exit code 2
     scene,        ///< exit code 3: the scene or an input that it names is wrong or missing

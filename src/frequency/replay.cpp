@@ -54,7 +54,7 @@ cov::Emitter<double> emitter_at(const PathVertex& v, double distance) {
 constexpr double kSmallestShare = 0.1;
 
 /// A contribution or lobe below this part of a path's luminance is not followed: whatever a filter
-/// does to it alone changes a pixel by less than counts as a change (docs/prediction.md).
+/// does to it alone changes a pixel by less than counts as a change (docs/internals/prediction.md).
 constexpr double kInvisible = 0.02;
 /// All together they may be as much of a path's light as one contribution may be that is carried
 /// without its occluders; where they are more, every one is followed.

@@ -16,7 +16,7 @@ void add_light(const Document& document, const PlacedNode& placed, SceneDescript
 /// them, take candela and lux for the units of the picture; exporters of renderers (Blender's)
 /// write 683 lm/W times what the renderer used. Lights that give the middle of the scene more than
 /// kPhysicalLux together are taken for the latter and divided by kLumensPerWatt, with a warning;
-/// docs/gltf.md.
+/// docs/guide/gltf.md.
 void scale_lights(const Document& document, const Bounds3& bounds, SceneDescription& scene,
                   WarningLog& log);
 inline constexpr float kPhysicalLux = 100;

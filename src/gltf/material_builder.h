@@ -24,7 +24,7 @@ class MaterialBuilder {
           pbr_(material.pbrMetallicRoughness),
           place_(std::move(place)) {}
 
-    /// Appends what the material consists of; docs/gltf.md has all substitutions.
+    /// Appends what the material consists of; docs/guide/gltf.md has all substitutions.
     Surface build();
 
   private:

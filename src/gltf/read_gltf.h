@@ -4,7 +4,7 @@
 /// emissive 1 is a radiance of 1, a light of 1 candela gives 1 lux at a metre, unless the lights
 /// are so strong that they must be physical: then both are divided by 683 lm/W (gltf/lights.h).
 /// What the file asks for and covtrace doesn't render becomes a warning that says what takes its
-/// place. docs/gltf.md has the whole mapping.
+/// place. docs/guide/gltf.md has the whole mapping.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-/// Film files: a render's whole state on disk. docs/film.md describes every byte.
+/// Film files: a render's whole state on disk. docs/reference/film-format.md describes every byte.
 #pragma once
 
 #include <filesystem>

@@ -1,7 +1,7 @@
 /// What a filter does to the pixels around one ray: the judge between two bandwidths.
 ///
 /// A measured bandwidth is relative to the mean, a predicted one to the variation, so that they
-/// differ for faint detail (docs/laboratory.md). This tells which filter would be seen.
+/// differ for faint detail (docs/internals/laboratory.md). This tells which filter would be seen.
 #pragma once
 
 #include "covariance/covariance.hpp"

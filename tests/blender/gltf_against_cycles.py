@@ -1,4 +1,4 @@
-"""glTF files as covtrace renders them against what Cycles makes of them in Blender. The table of docs/gltf.md.
+"""glTF files as covtrace renders them against what Cycles makes of them in Blender. The table of docs/results/gltf.md.
 
     COVTRACE=build/release/covtrace blender --background --factory-startup -noaudio --python tests/blender/gltf_against_cycles.py -- \\
         [-o FOLDER] [--samples N] [FILE.glb ...]

@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Wraps the prose of documents at 100 columns; tables, code and headings stay as they are.
+
+    tests/docs/wrap_prose.py FILE.md ..."""
+
+import pathlib
+import re
+import sys
+
+import markdown
+
+WIDTH = 100
+# What would begin a list, a quotation, a heading or a table at the start of a line.
+BEGINS_A_BLOCK = re.compile(r"([-*+]|\d+[.)]|#+|>.*|\|.*)$")
+
+
+def tokens(text):
+    """What is kept together: words, short code, text that would begin a block together with the word before it."""
+    text = " ".join(text.split())
+    words = re.findall(r"(?:`[^`]{1,70}`|\S)+", text)
+    kept = []
+    for word in words:
+        if kept and BEGINS_A_BLOCK.match(word):
+            kept[-1] += " " + word
+        else:
+            kept.append(word)
+    return kept
+
+
+def wrapped(paragraph):
+    """The lines of one paragraph or item."""
+    item = markdown.ITEM.match(paragraph[0])
+    indent = len(paragraph[0]) - len(paragraph[0].lstrip(" "))
+    first, rest = (item[0], " " * item.end()) if item else (" " * indent, " " * indent)
+    result, line = [], first
+    for token in tokens(" ".join([paragraph[0][len(first):], *paragraph[1:]])):
+        if line.strip() and line not in (first, rest) and len(line) + 1 + len(token) > WIDTH:
+            result.append(line)
+            line = rest
+        line += ("" if line in (first, rest) else " ") + token
+    return result + [line]
+
+
+def wrap(text):
+    result, paragraph = [], []
+
+    def end():
+        if paragraph:
+            result.extend(wrapped(paragraph))
+            paragraph.clear()
+
+    for line in markdown.lines(text):
+        if line.kind != "prose":
+            end()
+            result.append(line.text)
+            continue
+        if markdown.ITEM.match(line.text) or line.text.startswith("!["):
+            end()
+        paragraph.append(line.text)
+        if line.text.endswith("  ") or line.text.startswith("!["):
+            end()
+    end()
+    return "\n".join(result) + "\n"
+
+
+def main():
+    for name in sys.argv[1:]:
+        file = pathlib.Path(name)
+        file.write_text(wrap(file.read_text()))
+
+
+if __name__ == "__main__":
+    main()
