@@ -6,7 +6,7 @@
 // --method covariance`. Prints trimmed relMSE per image and the geometric mean over the images, for
 // the width factor c, the narrowest deviation s_min and the slope by which a filter may widen away
 // from a narrower one (docs/decisions/0004); and for widths that follow the pixel's own count and
-// N_int (docs/decisions/0059).
+// N_int (docs/decisions/archive/0059).
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 // error, and how good the image's own estimate of its error is: mean true over mean estimated
 // squared error, and in how many of 20 bins of tiles (16 x 16 pixels, 8 x 8 where that makes fewer
 // than 200), sorted by the estimate, it lies between 0.7 and 1.4. The references are two
-// independent images, whose own noise is taken out. docs/decisions/0061 has the table.
+// independent images, whose own noise is taken out. docs/decisions/archive/0061 has the table.
 #include <fmt/format.h>
 
 #include <algorithm>

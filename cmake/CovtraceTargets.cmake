@@ -50,7 +50,7 @@ if(COVTRACE_WARNINGS_AS_ERRORS)
 endif()
 
 # covtrace_library(NAME SOURCES a.cpp … [DEPENDS covtrace_core …] [PRIVATE_DEPENDS embree …])
-# One library per folder; DEPENDS are the arrows of the design and nothing else.
+# One library per folder; DEPENDS are the arrows of docs/internals/architecture.md and nothing else.
 function(covtrace_library name)
     cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
     add_library(${name} STATIC ${ARG_SOURCES})

@@ -1,4 +1,5 @@
-/// Spectra of scene files and the linear Rec.709 colours that stand for them (docs/reference/colour.md).
+/// Spectra of scene files and the linear Rec.709 colours that stand for them
+/// (docs/reference/colour.md).
 ///
 /// Integrals use the CIE 1931 colour matching functions in the analytic fit of Wyman, Sloan and
 /// Shirley (JCGT 2013, single- and multi-lobe fits), from 380 to 780 nm. Every colour is divided by

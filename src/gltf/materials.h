@@ -22,7 +22,8 @@ struct Surface {
 };
 
 /// glTF's model is a mixture of two: metal, whose reflectance at the normal is the base colour, and
-/// dielectric with a diffuse base under a specular border. docs/guide/gltf.md has all substitutions.
+/// dielectric with a diffuse base under a specular border. docs/guide/gltf.md has all
+/// substitutions.
 class MaterialReader {
   public:
     MaterialReader(const Document& document, SceneDescription& scene, WarningLog& log)

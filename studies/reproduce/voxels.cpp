@@ -147,8 +147,9 @@ Section voxels(Workshop& workshop) {
         "describes it: light that crosses an occupied voxel crosses an edge, wherever in the voxel "
         "the surface lies, so that a coarser grid occludes more. \"Grid\" (--occlusion grid) is "
         "ours. An edge has no second moment, so that its distance from the ray counts "
-        "(docs/internals/laboratory.md has measurements): a voxel tells of an edge at its centroid, at least "
-        "half a voxel away; of three voxels on the way one counts; and the one and a half beside "
+        "(docs/results/laboratory.md has measurements): a voxel tells of an edge at its centroid, "
+        "at least half a voxel away; of three voxels on the way one counts; and the one and a half "
+        "beside "
         "either end, where the surfaces themselves are, are left out. Each of the three grows with "
         "the voxel, so that a coarse grid knows of fewer and farther edges: its filters are wide, "
         "and its error is that of shadows that were blurred.");
