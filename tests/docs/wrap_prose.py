@@ -10,16 +10,30 @@ import sys
 import markdown
 
 WIDTH = 100
+LONGEST_CODE = 70  # that is not broken
 # What would begin a list, a quotation, a heading or a table at the start of a line.
 BEGINS_A_BLOCK = re.compile(r"([-*+]|\d+[.)]|#+|>.*|\|.*)$")
 
 
+def words(text):
+    """Words, with code of up to LONGEST_CODE columns in one piece."""
+    pieces, glued = [], False
+    for piece in re.findall(r"`[^`]*`|[^\s`]+|`|\s+", text):
+        if piece.isspace():
+            glued = False
+            continue
+        parts = piece.split(" ") if len(piece) > LONGEST_CODE else [piece]
+        if glued:
+            pieces[-1] += parts.pop(0)
+        pieces += parts
+        glued = True
+    return pieces
+
+
 def tokens(text):
-    """What is kept together: words, short code, text that would begin a block together with the word before it."""
-    text = " ".join(text.split())
-    words = re.findall(r"(?:`[^`]{1,70}`|\S)+", text)
+    """What is kept together: words, and what would begin a block with the word before it."""
     kept = []
-    for word in words:
+    for word in words(" ".join(text.split())):
         if kept and BEGINS_A_BLOCK.match(word):
             kept[-1] += " " + word
         else:
