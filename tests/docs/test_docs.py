@@ -50,6 +50,15 @@ def text_of(file):
     return file.read_text(errors="replace")
 
 
+@functools.cache
+def options_of_all():
+    """What the program's commands say of their options, and all scripts."""
+    commands = re.findall(r"(?m)^  ([a-z]+)  ", help_of(PROGRAM).partition("Subcommands:")[2])
+    scripts = [file for folder in ("bench", "scripts", "scenes") for file in (ROOT / folder).rglob("*")
+               if file.is_file() and file.suffix in ("", ".py")]
+    return "\n".join([*(help_of(PROGRAM, command) for command in commands), *map(text_of, scripts)])
+
+
 def statements(code):
     """Shell statements of a block: lines joined at their backslashes, without comments, split at ; && || |."""
     joined = re.sub(r"\\\n\s*", " ", "\n".join(code))
@@ -73,7 +82,7 @@ def statements(code):
 def command_of(statement):
     """A statement without what stands before its command: assignments, `sudo`, the `do` of a loop."""
     words = list(statement)
-    while words and (re.match(r"\w+=", words[0]) or words[0] in ("sudo", "do")):
+    while words and (re.match(r"\w+=(?!\$\()", words[0]) or words[0] in ("sudo", "do")):
         words.pop(0)
     return words
 
@@ -120,7 +129,9 @@ class Documents(unittest.TestCase):
         if not words:
             return None
         name, arguments = words[0], words[1:]
-        if re.fullmatch(r"(?:\S*/)?covtrace", name) and arguments and re.fullmatch(r"[a-z]+", arguments[0]):
+        if name.startswith("--"):  # options alone: of some command of ours
+            text, arguments = options_of_all(), words
+        elif re.fullmatch(r"(?:\S*/)?covtrace", name) and arguments and re.fullmatch(r"[a-z]+", arguments[0]):
             text = help_of(PROGRAM, arguments[0])
             if text is None:
                 return f"{where}: 'covtrace {arguments[0]}' is no command"
