@@ -42,7 +42,9 @@ def tokens(text):
 
 
 def wrapped(paragraph):
-    """The lines of one paragraph or item."""
+    """The lines of one paragraph or item. A picture is one line."""
+    if paragraph[0].startswith("!["):
+        return [" ".join(paragraph)]
     item = markdown.ITEM.match(paragraph[0])
     indent = len(paragraph[0]) - len(paragraph[0].lstrip(" "))
     first, rest = (item[0], " " * item.end()) if item else (" " * indent, " " * indent)
@@ -71,7 +73,7 @@ def wrap(text):
         if markdown.ITEM.match(line.text) or line.text.startswith("!["):
             end()
         paragraph.append(line.text)
-        if line.text.endswith("  ") or line.text.startswith("!["):
+        if line.text.endswith("  ") or paragraph[0].startswith("![") and line.text.endswith(")"):
             end()
     end()
     return "\n".join(result) + "\n"
