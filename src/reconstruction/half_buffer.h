@@ -1,4 +1,4 @@
-/// What the reconstruction sees of the film: two independent halves of the samples, as planes.
+/// What the reconstruction sees of the film: two halves of the samples, as planes.
 #pragma once
 
 #include <array>
