@@ -21,6 +21,7 @@ PROGRAM = os.environ.get("COVTRACE", str(ROOT / "build/release/covtrace"))
 # Folders that hold no documents of the project.
 NOT_OURS = {"build", "out", ".git", "node_modules"}
 OPTION = re.compile(r"(?<![\w-])(--?[a-zA-Z][\w-]*)")
+SOURCE = re.compile(r"(?:src|studies|cli|covariance|viewer|python|blender|tests)/[\w./-]*\w/?$|[a-z]+/\w+\.(?:h|hpp|cpp)$")
 SCRIPT = re.compile(r"(?:\./)?((?:scripts|bench|tests|scenes|fuzz)/[\w./-]*[\w])$")
 BENCHMARK = re.compile(r"(?:\./)?build/release/bench/([\w-]+)$")
 
@@ -168,6 +169,10 @@ class Documents(unittest.TestCase):
             for number, code in markdown.code_spans(text_of(file)):
                 if " " in code:
                     faults += [self.check(f"{name}:{number}", s) for s in statements([code])]
+                elif SOURCE.match(code):
+                    bases = (ROOT, ROOT / "src", ROOT / "studies", ROOT / "covariance/include", file.parent)
+                    if not any((base / code).exists() for base in bases):
+                        faults.append(f"{name}:{number}: there is no {code}")
                 elif (path := SCRIPT.match(code)) and not re.search(r"[A-Z]{3}|generated", code):
                     places = [ROOT / path[1], file.parent / path[1], ROOT / f"{path[1]}.cpp"]
                     if not any(place.exists() for place in places):
