@@ -32,7 +32,7 @@ struct PlanSettings {
 /// For the predicted Gaussians: what the derivation below says.
 constexpr PlanSettings kOwnPlan{true, 0.01f, 15, 0.25f};
 /// For two halves that plan for each other, and regressions, which leave no less noise than a
-/// Gaussian of some 2 pixels does: as found by a sweep (docs/decisions/0120).
+/// Gaussian of some 2 pixels does: as found by a sweep (docs/decisions/0093).
 constexpr PlanSettings kHalvesPlan{false, 0.1f, 2, 0.2f};
 
 /// Relative densities with mean 1.
@@ -45,7 +45,7 @@ constexpr PlanSettings kHalvesPlan{false, 0.1f, 2, 0.2f};
 /// Few samples know little of sigma / I: its square is averaged over a few pixels. Where light is
 /// rare, who has seen some gets more samples and sees more; counts that follow their own samples,
 /// or, through several rounds, those of another half that followed them, so make the image too
-/// dark, the more the fewer pixels own the average (docs/decisions/0120). For own samples
+/// dark, the more the fewer pixels own the average (docs/decisions/0093). For own samples
 /// sigma / I itself is averaged.
 std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSettings& settings);
 
@@ -54,7 +54,7 @@ std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSett
 /// 2 (1 - r), but at least 0.15, r the correlation of their square roots. What counts miss the best
 /// ones by costs, to second order, the squared difference of their roots; of two measurements that
 /// agree by r, 1 - r of the variance is noise. Twice that and the least share are from a sweep
-/// (docs/decisions/0120). Pre: as many of both, none negative.
+/// (docs/decisions/0093). Pre: as many of both, none negative.
 float even_share(std::span<const float> a, std::span<const float> b);
 
 /// Gives `share` of all samples out evenly. Pre: densities with mean 1.

@@ -13,7 +13,7 @@ namespace covtrace {
 /// One way to reconstruct: each half by itself, from the samples of that half.
 using Candidate = std::array<ColorPlanes, 2>;
 
-/// The candidates beside the raw pixels. What each gives: docs/decisions/0121.
+/// The candidates beside the raw pixels. What each gives: docs/decisions/0094.
 struct CandidateSettings {
     /// Scales of the predicted Gaussians; 1: the width factor c = 2.
     std::vector<float> gaussians{0.5f, 1.0f};

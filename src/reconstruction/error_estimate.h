@@ -9,7 +9,7 @@ namespace covtrace {
 
 /// What the terms of the estimate count. The defaults fit the true errors of a set of scenes best:
 /// `bench/error_fit` makes them, `bench/error_calibration` measures how well they do
-/// (docs/decisions/0122).
+/// (docs/decisions/0095).
 struct ErrorFactors {
     float noise = 1.31f, noise_of_few = 3.1f;
     float spread = 1.39f, returned = 0.37f, cut = 0.002f, sights = 0;
@@ -29,7 +29,7 @@ struct ErrorEstimate {
 /// `raw`: the mean of the halves before rare bright paths were limited; `brightness`: I.
 ///
 /// What a pixel's halves measure of it is no estimate: raw pixels are ten times as noisy as the
-/// image, and the halves that judge have chosen shares and weights before (docs/decisions/0122).
+/// image, and the halves that judge have chosen shares and weights before (docs/decisions/0095).
 /// So it is told from what is known with little noise, averages over the pixels around that are
 /// about as bright of
 ///     N = (M_A - M_B)^2 / 4, the noise that the mixtures M of the halves do not share,

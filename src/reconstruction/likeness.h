@@ -29,7 +29,7 @@ class MarginPlane {
     std::vector<float> values_;
 };
 
-/// Both from the sweep in docs/decisions/0121-candidates-and-their-mixture.md.
+/// Both from the sweep in docs/decisions/0094-candidates-and-their-mixture.md.
 struct LikenessSettings {
     float sigma = 6;    ///< of the Gaussian G, pixels
     float any = 0.05f;  ///< the share that everything around has, alike or not

@@ -70,7 +70,7 @@ struct PatchDistances {
     /// range of sqrt(kDarkSquared), below which errors are no longer relative, either.
     static constexpr float kDark = 0.05f, kLeastAlbedo = 0.01f;
     /// With more noise textures are hardly told apart, and light by patches of its own gains less
-    /// than its time is worth (docs/decisions/0121).
+    /// than its time is worth (docs/decisions/0094).
     static constexpr float kTellingNoise = 0.1f;
 };
 

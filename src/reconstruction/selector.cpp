@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kMost = 12;  // candidates
 /// Shares are judged at every so many pixels, and where pixels differ from those around them by
-/// this sum of squared differences of the guides (docs/decisions/0121).
+/// this sum of squared differences of the guides (docs/decisions/0094).
 constexpr int kCoarsest = 4;
 constexpr float kAlike = 0.5f;
 constexpr int kSteps = 24;          // of the minimisation; more change nothing

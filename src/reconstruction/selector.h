@@ -15,7 +15,7 @@ constexpr float kDarkSquared = 0.01f;
 /// g = 1 / (I^2 + eps) per channel, what squared errors count; 0 where neither half has samples,
 /// and everywhere if one of them has none at all. A hole of one half judges with what fills it:
 /// judged at the other half's holes alone, candidates that keep the noise of their own sample
-/// would seem clean (docs/decisions/0121). `brightness`: I, on the scale of the colours.
+/// would seem clean (docs/decisions/0094). `brightness`: I, on the scale of the colours.
 ColorPlanes error_weights(const Halves& halves, const ColorPlanes& brightness);
 
 struct Selection {
