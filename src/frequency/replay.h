@@ -21,35 +21,37 @@ struct PathCovariance {
 /// they shed on surfaces have spectra, and contrasts, of their own.
 enum class LightPart { all, in_view, scattered };
 
+/// Light below this part of a path's luminance is carried without a look at its occluders, the
+/// dearest step of the replay: the contrast of its shadow edges is below what the spectra of
+/// textures count as visible.
+inline constexpr double kSmallestShare = 0.1;
+
+/// What the replays of all paths of a scene share.
+struct ReplayedScene {
+    const RenderScene& scene;
+    Occluders occluders;
+    BrdfCovariance rule;
+    Vec3 center;      ///< bounding sphere of the scene: light from infinity enters there
+    float radius;     ///< scene units
+    double smallest;  ///< extent that stands for a point, scene units
+
+    ReplayedScene(const RenderScene& scene, const Occluders& occluders, BrdfCovariance rule);
+    /// Where light from infinity, seen from p in the direction w, enters the bounding sphere.
+    Vec3 entry(Vec3 p, Vec3 w) const;
+};
+
 /// Walks the path once from its far end to the sensor. At every vertex the light found there (its
 /// own emission, a sampled light) and the light that arrives from further on are merged by
 /// luminance (an incoherent sum, covariance::merge), so that k vertices cost k steps.
 class PathReplay {
   public:
     /// What is given must outlive this.
-    PathReplay(const RenderScene& scene, const Occluders& occluders, BrdfCovariance rule);
+    PathReplay(const RenderScene& scene, const Occluders& occluders, BrdfCovariance rule)
+        : context_(scene, occluders, rule) {}
     PathCovariance operator()(const PathRecord& record, LightPart part = LightPart::all) const;
 
   private:
-    /// Without light that carries less than `least` of the path's luminance. `kept`: the luminance
-    /// of the light that was followed.
-    PathCovariance follow(const PathRecord& record, LightPart part, double least,
-                          double& kept) const;
-    /// Travel, past the occluders on the way where `share`, this light's part of the path's
-    /// luminance, is large enough to be seen and the end's features can be.
-    LightField to_surface(const LightField& field, const OccluderQuery::Segment& segment,
-                          const Visibility& end, double share,
-                          const OwnOutline* own = nullptr) const;
-    LightField to_camera(const LightField& field, const OccluderQuery::Segment& segment,
-                         const SensorGeometry& camera, double share,
-                         const OwnOutline* own = nullptr) const;
-
-    const RenderScene& scene_;
-    Occluders occluders_;
-    BrdfCovariance rule_;
-    double smallest_;  // extent that stands for a point, scene units
-    Vec3 center_;      // bounding sphere of the scene: light from infinity enters there
-    float radius_;
+    ReplayedScene context_;
 };
 
 }  // namespace covtrace

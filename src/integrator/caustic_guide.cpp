@@ -8,8 +8,8 @@
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "core/warp.h"
+#include "integrator/lit_scene.h"
 #include "integrator/path.h"
-#include "integrator/render_scene.h"
 
 namespace covtrace {
 
@@ -120,7 +120,7 @@ float GuideMixture::pdf(Vec3 w) const {
     return p;
 }
 
-CausticGuide::CausticGuide(const RenderScene& scene) {
+CausticGuide::CausticGuide(const LitScene& scene) {
     const FilmDescription& film = scene.description.film;
     const int64_t round = std::min(kRoundPaths, int64_t(film.width) * int64_t(film.height));
     std::vector<CausticPhoton> photons;
@@ -230,31 +230,24 @@ CausticGuide::Image CausticGuide::fit(std::span<const CausticPhoton> cluster) {
     return image;
 }
 
-float CausticGuide::measure(const RenderScene& scene, Region& region, uint64_t key) {
-    Rng rng(hash_combine(kProbeKey, key));
-    uint32_t probes = 0;
-    const auto radiance = [&](const CausticPhoton& at, Vec3 w) {
-        Sampler sampler(kProbeKey, int(key), int(probes++), 0);
-        const Ray ray{at.position, w, at.time, kInfinity};
-        const float y = luminance(trace_path(scene, ray, sampler, kProbeDepth, nullptr).radiance);
-        return std::isfinite(y) ? y : 0.0f;
-    };
-    const auto place = [&](int i) -> const CausticPhoton& {
-        return region.photons[size_t(i) * region.photons.size() / kProbes];
+/// Paths that measure what a leaf's images and all else bring to its photons' places.
+class CausticGuide::Probes {
+  public:
+    struct Found {
+        Image image;           ///< with its irradiance
+        double second_moment;  ///< of finding it by sampling the cosine
+        bool is_photon_seen;   ///< whether a photon of the leaf came by it
     };
 
-    struct Found {
-        Image image;
-        double second_moment;  // of finding it by sampling the cosine
-    };
-    std::vector<Found> all;
-    for (Image image : region.images) {
-        if (!(image.kappa > 0)) continue;
+    Probes(const LitScene& scene, const Region& region, uint64_t key)
+        : scene_(scene), region_(region), key_(key), rng_(hash_combine(kProbeKey, key)) {}
+
+    Found look_at(Image image) {
         double mean = 0, second_moment = 0;
         for (int i = 0; i < kProbes; ++i) {
             const CausticPhoton& at = place(i);
             const Vec3 axis = normalize(image.point - at.position);
-            const Vec3 w = sample_fisher(axis, image.kappa, rng.next_2d());
+            const Vec3 w = sample_fisher(axis, image.kappa, rng_.next_2d());
             const float cosine = dot(at.normal, w);
             if (!(cosine > 0)) continue;
             const double l = radiance(at, w);
@@ -264,50 +257,83 @@ float CausticGuide::measure(const RenderScene& scene, Region& region, uint64_t k
         }
         image.irradiance = float(mean);
         const bool seen =
-            std::any_of(region.photons.begin(), region.photons.end(),
+            std::any_of(region_.photons.begin(), region_.photons.end(),
                         [&image](const CausticPhoton& p) { return p.source == image.source; });
-        if (mean > 0 || seen) all.push_back({image, mean > 0 ? second_moment : double(kInfinity)});
+        return {image, mean > 0 ? second_moment : double(kInfinity), seen};
     }
 
-    // What reaches the surface else: by lamps, and by all other paths. Each finds a part of it; the
-    // larger will do to share samples out.
-    double lamps = 0;
-    std::array<float, kProbes> others{};
-    for (int i = 0; i < kProbes; ++i) {
-        const CausticPhoton& at = place(i);
-        const float u_select = rng.next_float();
-        const auto light =
-            scene.lights.sample(at.position, at.normal, at.time, u_select, rng.next_2d());
-        if (light && light->pdf > 0) {
-            const Ray shadow{at.position, light->wi, at.time, light->distance * (1 - 1e-3f)};
-            // What the cosine finds as well is counted below.
-            const float cosine = std::max(0.0f, dot(at.normal, light->wi));
-            const float density = light->pdf + (light->is_delta ? 0.0f : cosine * kInvPi);
-            if (!scene.geometry.occluded(shadow))
-                lamps += luminance(light->radiance) * cosine / density / kProbes;
+    /// Irradiance by all else: by lamps, and by all other paths. Each finds a part of it; the
+    /// larger will do to share samples out.
+    double rest() {
+        double lamps = 0;
+        std::array<float, kProbes> others{};
+        for (int i = 0; i < kProbes; ++i) {
+            const CausticPhoton& at = place(i);
+            lamps += by_lamp(at) / kProbes;
+            const Vec3 w =
+                Frame::from_z(at.normal).to_world(square_to_cosine_hemisphere(rng_.next_2d()));
+            others[size_t(i)] = kPi * radiance(at, w);
         }
-        const Vec3 w =
-            Frame::from_z(at.normal).to_world(square_to_cosine_hemisphere(rng.next_2d()));
-        others[size_t(i)] = kPi * radiance(at, w);
+        std::sort(others.begin(), others.end());
+        const auto typical =
+            std::span(others).first(kProbes - kProbes / 8);  // rare bright ones left out
+        double rest = 0;
+        for (float e : typical) rest += e / double(typical.size());
+        return std::max(rest, lamps);
     }
-    std::sort(others.begin(), others.end());
-    const auto typical =
-        std::span(others).first(kProbes - kProbes / 8);  // rare bright ones left out
-    double rest = 0;
-    for (float e : typical) rest += e / double(typical.size());
-    rest = std::max(rest, lamps);
+
+  private:
+    const CausticPhoton& place(int i) const {
+        return region_.photons[size_t(i) * region_.photons.size() / kProbes];
+    }
+    float radiance(const CausticPhoton& at, Vec3 w) {
+        Sampler sampler(kProbeKey, int(key_), int(count_++), 0);
+        const Ray ray{at.position, w, at.time, kInfinity};
+        const float y =
+            luminance(trace_path(scene_, {}, ray, sampler, kProbeDepth, nullptr).radiance);
+        return std::isfinite(y) ? y : 0.0f;
+    }
+    double by_lamp(const CausticPhoton& at) {
+        const float u_select = rng_.next_float();
+        const auto light =
+            scene_.lights.sample(at.position, at.normal, at.time, u_select, rng_.next_2d());
+        if (!light || !(light->pdf > 0)) return 0;
+        const Ray shadow{at.position, light->wi, at.time, light->distance * (1 - 1e-3f)};
+        // The part that the cosine finds as well is counted with the other paths.
+        const float cosine = std::max(0.0f, dot(at.normal, light->wi));
+        const float density = light->pdf + (light->is_delta ? 0.0f : cosine * kInvPi);
+        if (scene_.geometry.occluded(shadow)) return 0;
+        return luminance(light->radiance) * cosine / density;
+    }
+
+    const LitScene& scene_;
+    const Region& region_;
+    uint64_t key_;
+    Rng rng_;
+    uint32_t count_ = 0;
+};
+
+float CausticGuide::measure(const LitScene& scene, Region& region, uint64_t key) {
+    Probes probes(scene, region, key);
+    std::vector<Probes::Found> all;
+    for (const Image& image : region.images) {
+        if (!(image.kappa > 0)) continue;
+        const Probes::Found found = probes.look_at(image);
+        if (found.image.irradiance > 0 || found.is_photon_seen) all.push_back(found);
+    }
+    const double rest = probes.rest();
 
     // Only what the surface's own sampling would leave noisy is worth samples.
     double total = rest;
-    for (const Found& f : all) total += f.image.irradiance;
-    std::erase_if(all, [total](const Found& f) { return f.second_moment < total * total; });
-    std::stable_sort(all.begin(), all.end(), [](const Found& a, const Found& b) {
+    for (const Probes::Found& f : all) total += f.image.irradiance;
+    std::erase_if(all, [total](const Probes::Found& f) { return f.second_moment < total * total; });
+    std::stable_sort(all.begin(), all.end(), [](const Probes::Found& a, const Probes::Found& b) {
         return a.image.irradiance > b.image.irradiance;
     });
     if (all.size() > GuideMixture::kMostLobes) all.resize(GuideMixture::kMostLobes);
     region.images.clear();
     double found = 0;
-    for (Found& f : all) {
+    for (Probes::Found& f : all) {
         // A part of the leaf that the probes missed may be lit brightly.
         f.image.irradiance = std::max(f.image.irradiance, float(kLeastShare * total));
         region.images.push_back(f.image);

@@ -17,7 +17,7 @@
 
 namespace covtrace {
 
-struct RenderScene;
+struct LitScene;
 
 /// A density over directions: von Mises-Fisher lobes at one point.
 class GuideMixture {
@@ -59,8 +59,8 @@ class CausticGuide {
   public:
     /// Empty: shares are 0 everywhere.
     CausticGuide() = default;
-    /// Learns from a scene whose own guide is empty. Deterministic.
-    explicit CausticGuide(const RenderScene& scene);
+    /// Learns from a scene by paths that no guide leads. Deterministic.
+    explicit CausticGuide(const LitScene& scene);
 
     /// At a point with the normal `n` on the side that is to be lit; zero where light counts from
     /// both.
@@ -91,6 +91,7 @@ class CausticGuide {
         std::span<const CausticPhoton> photons;
         std::vector<Image> images;
     };
+    class Probes;
     uint32_t build(std::span<CausticPhoton> photons, std::vector<Image> images, int depth,
                    std::vector<Region>& regions);
     /// Renews those images that the photons suffice for; the others stay as they are.
@@ -98,7 +99,7 @@ class CausticGuide {
     static Image fit(std::span<const CausticPhoton> cluster);
     /// Measures what is to be found in each image, drops those that are worth nothing, and returns
     /// the share of the samples for the others.
-    static float measure(const RenderScene& scene, Region& region, uint64_t key);
+    static float measure(const LitScene& scene, Region& region, uint64_t key);
 
     std::vector<Node> nodes_;
     std::vector<Leaf> leaves_;
@@ -107,7 +108,7 @@ class CausticGuide {
 
 /// Sends light over the glossy surfaces that `count` camera paths meet, the first of them number
 /// `first`, and returns where it arrives on surfaces that spread light. Deterministic.
-std::vector<CausticPhoton> trace_caustic_photons(const RenderScene& scene, int64_t first,
+std::vector<CausticPhoton> trace_caustic_photons(const LitScene& scene, int64_t first,
                                                  int64_t count);
 
 }  // namespace covtrace

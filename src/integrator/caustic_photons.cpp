@@ -5,7 +5,7 @@
 #include "core/rng.h"
 #include "core/warp.h"
 #include "integrator/caustic_guide.h"
-#include "integrator/render_scene.h"
+#include "integrator/lit_scene.h"
 
 namespace covtrace {
 
@@ -21,7 +21,7 @@ constexpr int kLightSamples = 2;  // at every glossy surface found
 /// A pilot path from the camera, and the light sent over the glossy surfaces that it finds.
 class Pilot {
   public:
-    Pilot(const RenderScene& scene, uint64_t index, std::vector<CausticPhoton>& photons)
+    Pilot(const LitScene& scene, uint64_t index, std::vector<CausticPhoton>& photons)
         : scene_(scene), rng_(hash_combine(kPilotKey, index)), photons_(photons) {}
 
     void run() {
@@ -109,14 +109,14 @@ class Pilot {
         }
     }
 
-    const RenderScene& scene_;
+    const LitScene& scene_;
     Rng rng_;
     std::vector<CausticPhoton>& photons_;
 };
 
 }  // namespace
 
-std::vector<CausticPhoton> trace_caustic_photons(const RenderScene& scene, int64_t first,
+std::vector<CausticPhoton> trace_caustic_photons(const LitScene& scene, int64_t first,
                                                  int64_t count) {
     const int64_t chunks = (count + kPathsPerChunk - 1) / kPathsPerChunk;
     std::vector<std::vector<CausticPhoton>> found(static_cast<size_t>(chunks));

@@ -83,7 +83,7 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, M
     // passes through.
     light_normal_ = transmits(bsdf) ? Vec3{} : face_forward(frame.z, wo);
     guide_ = has_diffuse_lobe(bsdf) && depth_ < max_depth_
-                 ? scene_.guide.at(hit.position, light_normal_)
+                 ? caustic_guide_.at(hit.position, light_normal_)
                  : GuideMixture{};
     if (!is_specular(bsdf)) add_direct(surface, u_choice.x, u_light, vertex);
     return scatter(surface, u_choice.y, u_scatter, vertex) && survives(u_roulette.x);
@@ -146,9 +146,9 @@ bool PathTracer::survives(float u) {
     return true;
 }
 
-PathResult trace_path(const RenderScene& scene, Ray ray, Sampler& sampler, int max_depth,
-                      PathRecord* record) {
-    return PathTracer(scene, ray, sampler, max_depth, record).run();
+PathResult trace_path(const LitScene& scene, const CausticGuide& guide, Ray ray, Sampler& sampler,
+                      int max_depth, PathRecord* record) {
+    return PathTracer(scene, guide, ray, sampler, max_depth, record).run();
 }
 
 }  // namespace covtrace

@@ -26,9 +26,10 @@ inline float power_heuristic(float a, float b) {
 /// found by two strategies whose weights add to one.
 class PathTracer {
   public:
-    PathTracer(const RenderScene& scene, Ray ray, Sampler& sampler, int max_depth,
-               PathRecord* record)
+    PathTracer(const LitScene& scene, const CausticGuide& guide, Ray ray, Sampler& sampler,
+               int max_depth, PathRecord* record)
         : scene_(scene),
+          caustic_guide_(guide),
           ray_(ray),
           sampler_(sampler),
           max_depth_(max_depth),
@@ -95,7 +96,8 @@ class PathTracer {
     MediumEvent cross_medium(float length);
     bool scatter_in_medium(float distance);
 
-    const RenderScene& scene_;
+    const LitScene& scene_;
+    const CausticGuide& caustic_guide_;
     Ray ray_;
     Sampler& sampler_;
     const int max_depth_;

@@ -10,13 +10,13 @@ MediumId medium_beyond(const PlacedShape& shape, const SurfaceHit& hit, Vec3 w, 
     return dot(w, hit.ng) < 0 ? d.inside : d.outside;
 }
 
-Rgb transmittance(const RenderScene& scene, MediumId medium, float distance) {
+Rgb transmittance(const LitScene& scene, MediumId medium, float distance) {
     if (medium < 0) return Rgb(1);
     return transmittance(scene.media[static_cast<size_t>(medium)],
                          std::isfinite(distance) ? distance : scene.unbounded_distance);
 }
 
-Rgb visibility(const RenderScene& scene, Ray ray, float distance, MediumId medium, uint32_t& rays) {
+Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, uint32_t& rays) {
     ++rays;
     if (scene.geometry.occluded(ray)) return Rgb(0);
     if (!scene.has_interfaces) return transmittance(scene, medium, distance);

@@ -171,6 +171,38 @@ TextureId TextureBuilder::add(Declared& d, decltype(TextureDescription::value) v
     return id;
 }
 
+CheckerboardTexture TextureBuilder::checkerboard(Declared& d) {
+    ParameterList& p = d.entity.parameters;
+    CheckerboardTexture t;
+    t.dimension = p.integer("dimension", 2);
+    if (t.dimension != 2 && t.dimension != 3)
+        throw Error(ErrorKind::scene, p.where("dimension", d.entity.where),
+                    "parameter \"dimension\" of a checkerboard must be 2 or 3");
+    if (t.dimension == 2)
+        t.mapping = texture_mapping(p, d.entity.where, d.texture_to_world);
+    else
+        t.texture_from_world = d.texture_to_world.get(d.entity.where).inverse();
+    t.tex1 = part(d, "tex1", 1);
+    t.tex2 = part(d, "tex2", 0);
+    return t;
+}
+
+MixTexture TextureBuilder::direction_mix(Declared& d) {
+    ParameterList& p = d.entity.parameters;
+    const Vec3 direction =
+        d.texture_to_world.get(d.entity.where).vector(p.triple("dir", {0, 1, 0}));
+    if (!(length(direction) > 0))
+        throw Error(ErrorKind::scene, p.where("dir", d.entity.where),
+                    "parameter \"dir\" must not be zero");
+    MixTexture t;
+    t.tex1 = part(d, "tex1", 0);
+    t.tex2 = part(d, "tex2", 1);
+    t.amount = static_cast<TextureId>(context_.scene.textures.size());
+    context_.scene.textures.push_back(
+        {{}, false, AsideTexture{normalize(direction)}, d.entity.where});
+    return t;
+}
+
 TextureId TextureBuilder::build(Declared& d) {
     if (d.id >= 0) return d.id;
     if (d.in_progress)
@@ -191,18 +223,7 @@ TextureId TextureBuilder::build(Declared& d) {
     } else if (type == "imagemap") {
         d.id = add(d, image_texture(p, d.entity.where, d.texture_to_world, context_));
     } else if (type == "checkerboard") {
-        CheckerboardTexture t;
-        t.dimension = p.integer("dimension", 2);
-        if (t.dimension != 2 && t.dimension != 3)
-            throw Error(ErrorKind::scene, p.where("dimension", d.entity.where),
-                        "parameter \"dimension\" of a checkerboard must be 2 or 3");
-        if (t.dimension == 2)
-            t.mapping = texture_mapping(p, d.entity.where, d.texture_to_world);
-        else
-            t.texture_from_world = d.texture_to_world.get(d.entity.where).inverse();
-        t.tex1 = part(d, "tex1", 1);
-        t.tex2 = part(d, "tex2", 0);
-        d.id = add(d, t);
+        d.id = add(d, checkerboard(d));
     } else if (type == "scale") {
         ScaleTexture t;
         t.tex = part(d, "tex", 1);
@@ -215,18 +236,7 @@ TextureId TextureBuilder::build(Declared& d) {
         t.amount = grey(p, "amount", 0.5f);
         d.id = add(d, t);
     } else if (type == "directionmix") {
-        const Vec3 direction =
-            d.texture_to_world.get(d.entity.where).vector(p.triple("dir", {0, 1, 0}));
-        if (!(length(direction) > 0))
-            throw Error(ErrorKind::scene, p.where("dir", d.entity.where),
-                        "parameter \"dir\" must not be zero");
-        MixTexture t;
-        t.tex1 = part(d, "tex1", 0);
-        t.tex2 = part(d, "tex2", 1);
-        t.amount = static_cast<TextureId>(context_.scene.textures.size());
-        context_.scene.textures.push_back(
-            {{}, false, AsideTexture{normalize(direction)}, d.entity.where});
-        d.id = add(d, t);
+        d.id = add(d, direction_mix(d));
     } else if (type == "dots") {
         DotsTexture t;
         t.mapping = texture_mapping(p, d.entity.where, d.texture_to_world);

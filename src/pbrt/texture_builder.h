@@ -56,6 +56,8 @@ class TextureBuilder {
     TextureId part(Declared& d, std::string_view name, float otherwise);
     /// A value of a bilerp texture.
     Rgb corner(Declared& d, std::string_view name, float otherwise);
+    CheckerboardTexture checkerboard(Declared& d);
+    MixTexture direction_mix(Declared& d);
     TextureId stand_in(Declared& d);
     TextureId add(Declared& d, decltype(TextureDescription::value) value);
     std::vector<std::string> names(bool is_spectrum) const;

@@ -1,0 +1,93 @@
+#include "integrator/lit_scene.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+namespace covtrace {
+
+namespace {
+
+bool anything_moves(const SceneDescription& d) {
+    const auto shape_moves = [](const ShapeDescription& s) {
+        return s.object_to_world.is_animated();
+    };
+    return d.camera.camera_to_world.is_animated() ||
+           std::any_of(d.shapes.begin(), d.shapes.end(), shape_moves) ||
+           std::any_of(
+               d.instances.begin(), d.instances.end(),
+               [](const InstanceDescription& i) { return i.instance_to_world.is_animated(); }) ||
+           std::any_of(d.objects.begin(), d.objects.end(), [&](const ObjectDescription& o) {
+               return std::any_of(o.shapes.begin(), o.shapes.end(), shape_moves);
+           });
+}
+
+/// Of a sphere around the shapes that holds a camera in a medium, too, and what lights it from a
+/// place: their rays must reach each other before the medium ends.
+float radius_of_media(const SceneDescription& d, const Bounds3& shapes) {
+    float radius = shapes.radius();
+    if (d.camera.medium < 0 || shapes.empty()) return radius;
+    const auto hold = [&](Vec3 p) { radius = std::max(radius, length(p - shapes.center())); };
+    hold(d.camera.camera_to_world.start().point({}));
+    hold(d.camera.camera_to_world.end().point({}));
+    for (const LightDescription& light : d.lights) {
+        if (const auto* point = std::get_if<PointLight>(&light.value))
+            hold(light.light_to_world.point(point->from));
+        else if (const auto* spot = std::get_if<SpotLight>(&light.value))
+            hold(light.light_to_world.point(spot->from));
+        else if (std::holds_alternative<GoniometricLight>(light.value) ||
+                 std::holds_alternative<ProjectionLight>(light.value))
+            hold(light.light_to_world.point({}));
+    }
+    return radius;
+}
+
+}  // namespace
+
+LitScene::LitScene(SceneDescription scene_description, const std::string& isa, size_t texture_bytes)
+    : description(std::move(scene_description)),
+      geometry(description, isa),
+      textures(description, texture_bytes),
+      lights(description, geometry, &textures),
+      materials(description, textures, IlluminantAdaptation(lights.total_power())),
+      camera(description.camera, description.film.width, description.film.height),
+      filter(description.filter) {
+    geometry.set_alpha([this](TextureId id, Vec2 uv, Vec3 position) {
+        return textures.eval_float(id, {uv, position});
+    });
+    for (const Warnings* w : {&textures.warnings(), &lights.warnings()})
+        description.warnings.insert(description.warnings.end(), w->begin(), w->end());
+    for (const MediumDescription& m : description.media)
+        media.push_back({m.sigma_a, m.sigma_s, m.emission, m.g});
+    has_lens_or_motion = camera.has_lens() || anything_moves(description);
+    has_interfaces = geometry.has_interfaces();
+    unbounded_distance = 2 * radius_of_media(description, geometry.bounds());
+}
+
+void LitScene::prepare_spectra(TextureBandwidth bandwidth) {
+    textures.prepare_spectra(bandwidth);
+    lights.prepare_spectra();
+}
+
+std::map<std::string, size_t> LitScene::memory() const {
+    const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+    const auto mesh_bytes = [&](const auto& mesh, const auto& faces) {
+        return bytes(mesh.positions) + bytes(mesh.normals) + bytes(mesh.uvs) + bytes(faces);
+    };
+    std::map<const void*, size_t> meshes;  // shapes share them
+    for (const PlacedShape& shape : geometry.shapes()) {
+        const auto& g = shape.description.geometry;
+        if (const auto* triangles = std::get_if<std::shared_ptr<const TriangleMesh>>(&g))
+            meshes[triangles->get()] = mesh_bytes(**triangles, (*triangles)->triangles);
+        else if (const auto* patches = std::get_if<std::shared_ptr<const BilinearMesh>>(&g))
+            meshes[patches->get()] = mesh_bytes(**patches, (*patches)->patches);
+    }
+    size_t sum = 0;
+    for (const auto& [mesh, size] : meshes) sum += size;
+    return {{"meshes", sum},
+            {"shapes", geometry.memory()},
+            {"embree", geometry.embree_memory()},
+            {"textures", textures.memory()}};
+}
+
+}  // namespace covtrace
