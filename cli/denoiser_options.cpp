@@ -9,11 +9,7 @@
 namespace covtrace::cli {
 
 void add_denoiser_options(CLI::App* c, DenoiserArguments& a) {
-    add_choice<DenoiserChoice>(c, "--denoiser", a.choice,
-                               {{"auto", DenoiserChoice::automatic},
-                                {"oidn", DenoiserChoice::oidn},
-                                {"none", DenoiserChoice::none}},
-                               "hybrid: Open Image Denoise, too");
+    add_choice(c, "--denoiser", a.choice, "hybrid: Open Image Denoise, too");
     c->add_option("--denoiser-library", a.library, "its file: libOpenImageDenoise.so.2")
         ->check(not_empty())
         ->option_text("FILE");

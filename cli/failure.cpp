@@ -1,6 +1,8 @@
 #include "cli/failure.h"
 
+#include <algorithm>
 #include <new>
+#include <string>
 #include <system_error>
 
 #include "cli/message.h"
@@ -29,13 +31,22 @@ int exit_code(ErrorKind kind) {
     return 7;
 }
 
+/// The message; the option that is refused is spelled as on the command line: "--max-spp: ".
+std::string message_of(const Error& e) {
+    const std::string text = e.what();
+    if (e.option().empty()) return text;
+    std::string option = e.option();
+    std::replace(option.begin(), option.end(), '_', '-');
+    return "--" + option + text.substr(option.size());
+}
+
 }  // namespace
 
 int report_failure(const std::exception_ptr& failure) {
     try {
         std::rethrow_exception(failure);
     } catch (const Error& e) {
-        say("covtrace: {}\n", e.what());
+        say("covtrace: {}\n", message_of(e));
         return exit_code(e.kind());
     } catch (const std::bad_alloc&) {
         say("covtrace: not enough memory\n");

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "image/image.h"
+#include "render/describe_state.h"
 #include "render/film_file.h"
 #include "render/scene_file.h"
 #include "scene/summary.h"

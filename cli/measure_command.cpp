@@ -10,10 +10,12 @@
 #include "cli/message.h"
 #include "cli/options.h"
 #include "core/parallel.h"
+#include "geometry/instruction_set.h"
 #include "laboratory/filter_change.h"
 #include "laboratory/local_spectrum.h"
 #include "laboratory/prediction.h"
 #include "occluders/voxel_grid.h"
+#include "render/overrides.h"
 #include "render/scene_file.h"
 #include "render/session.h"
 
@@ -22,7 +24,8 @@ namespace covtrace::cli {
 namespace {
 
 struct MeasureArguments {
-    std::string scene, pixel, resolution, shutter, isa;
+    std::string scene, pixel, resolution, shutter;
+    std::optional<InstructionSet> isa;
     Occlusion occlusion = RenderOptions{}.occlusion;
     BrdfCovariance brdf_covariance = RenderOptions{}.brdf_covariance;
     SceneOverrides overrides;
@@ -148,7 +151,7 @@ int measure_pixel(MeasureArguments a) {
     if (pixel[0] < 0 || pixel[1] < 0 || pixel[0] >= width || pixel[1] >= height)
         throw Error(ErrorKind::usage, fmt::format("--pixel: {},{} is outside the frame of {}x{}",
                                                   pixel[0], pixel[1], width, height));
-    RenderScene scene(std::move(description), a.isa);
+    RenderScene scene(std::move(description), isa_name(a.isa));
     if (!a.quiet) {
         print_warnings(scene.description.warnings);
         print_warnings(scene.materials.warnings());
@@ -201,16 +204,9 @@ void add_measure(CLI::App& app, Invocation& invocation) {
               "radiance samples (default 262144, twice)");
     add_whole(c, "--paths", a->paths, 1, 1 << 24,
               "covariance paths of the prediction (default 1024)");
-    add_choice<Occlusion>(c, "--occlusion", a->occlusion,
-                          {{"query", Occlusion::query},
-                           {"grid", Occlusion::grid},
-                           {"voxels", Occlusion::voxels},
-                           {"none", Occlusion::none}},
-                          "how the prediction finds edges beside paths");
-    add_choice<BrdfCovariance>(
-        c, "--brdf-covariance", a->brdf_covariance,
-        {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}},
-        "a BRDF's frequencies: at the path, or its peak's");
+    add_choice(c, "--occlusion", a->occlusion, "how the prediction finds edges beside paths");
+    add_choice(c, "--brdf-covariance", a->brdf_covariance,
+               "a BRDF's frequencies: at the path, or its peak's");
     add_whole(c, "--voxels", a->voxels, 1, 2048, "width of the occlusion grid (default 200)");
     c->add_option("--resolution", a->resolution, "in place of the scene's")
         ->check(not_empty())
@@ -222,9 +218,7 @@ void add_measure(CLI::App& app, Invocation& invocation) {
          "seed of all random numbers (default 0)")
         ->option_text("N");
     add_whole(c, "--threads", a->threads, 1, 4096, "worker threads (default: all cores)");
-    c->add_option("--isa", a->isa, "instruction set of the ray tracing")
-        ->check(CLI::IsMember({"sse2", "avx", "avx2", "avx512"}).description(""))
-        ->option_text("sse2|avx|avx2|avx512");
+    add_choice(c, "--isa", a->isa, "instruction set of the ray tracing");
     c->add_option("--shutter", a->shutter, "in place of the scene's")
         ->check(not_empty())
         ->option_text("T0,T1");

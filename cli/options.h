@@ -8,23 +8,36 @@
 #include <string>
 
 #include "cli/values.h"
+#include "core/enum_names.h"
 #include "core/error.h"
 
 namespace covtrace::cli {
 
-/// One of a few names.
-template <typename T>
-void add_choice(CLI::App* c, const std::string& name, T& value,
-                const std::map<std::string, T>& choices, const std::string& help) {
-    std::string names;
-    for (const auto& [choice, unused] : choices) names += (names.empty() ? "" : "|") + choice;
-    const auto choose = [name, &value, choices, names](const std::string& text) {
-        const auto it = choices.find(text);
-        if (it == choices.end())
-            throw Error(ErrorKind::usage, name + ": '" + text + "' is none of " + names);
-        value = it->second;
+/// The value that has this name. Errors: Error(usage) that lists all names.
+template <NamedEnum Enum>
+Enum choice(const std::string& option, const std::string& text) {
+    if (const auto value = value_named<Enum>(text)) return *value;
+    throw Error(ErrorKind::usage,
+                option + ": '" + text + "' is none of " + listed_names<Enum>("|"));
+}
+
+/// One of a few names, or none.
+template <NamedEnum Enum>
+void add_choice(CLI::App* c, const std::string& name, std::optional<Enum>& value,
+                const std::string& help) {
+    const auto choose = [name, &value](const std::string& text) {
+        value = choice<Enum>(name, text);
     };
-    c->add_option_function<std::string>(name, choose, help)->option_text(names);
+    c->add_option_function<std::string>(name, choose, help)->option_text(listed_names<Enum>("|"));
+}
+
+/// The same with a default.
+template <NamedEnum Enum>
+void add_choice(CLI::App* c, const std::string& name, Enum& value, const std::string& help) {
+    const auto choose = [name, &value](const std::string& text) {
+        value = choice<Enum>(name, text);
+    };
+    c->add_option_function<std::string>(name, choose, help)->option_text(listed_names<Enum>("|"));
 }
 
 /// A number above zero, not below `least` and up to `most`.

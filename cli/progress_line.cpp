@@ -43,7 +43,7 @@ std::vector<std::string> details(const Progress& p) {
 }
 
 std::string plain_line(const Progress& p) {
-    std::string text = fmt::format("{:<14} {:3}%", p.phase, percent(p));
+    std::string text = fmt::format("{:<14} {:3}%", name_of(p.phase), percent(p));
     for (const std::string& part : details(p)) text += "  " + part;
     return text;
 }
@@ -57,7 +57,7 @@ size_t terminal_width() {
 /// As much as fits: percent and phase, details from the left, then the bar.
 std::string bar_line(const Progress& p, size_t width) {
     constexpr size_t kLeastBar = 8, kMostBar = 32;
-    std::string text = fmt::format("{:3}%  {}", percent(p), p.phase);
+    std::string text = fmt::format("{:3}%  {}", percent(p), name_of(p.phase));
     for (const std::string& part : details(p))
         if (text.size() + 2 + part.size() < width) text += "  " + part;
     text.resize(std::min(text.size(), width - 1));
@@ -111,13 +111,11 @@ void ProgressLine::report(const Progress& p) {
         say("{}%\n", percent(p));
     } else if (style_ == ProgressStyle::json) {
         const double rate = p.elapsed > 0 ? p.samples_per_pixel * pixels_ / p.elapsed : kUnknown;
-        const nlohmann::ordered_json j{{"phase", p.phase},
-                                       {"fraction", number(p.fraction)},
-                                       {"spp", number(p.samples_per_pixel)},
-                                       {"error", number(p.error)},
-                                       {"elapsed", number(p.elapsed)},
-                                       {"remaining", number(p.remaining)},
-                                       {"samples_per_second", number(rate)}};
+        const nlohmann::ordered_json j{
+            {"phase", name_of(p.phase)},          {"fraction", number(p.fraction)},
+            {"spp", number(p.samples_per_pixel)}, {"error", number(p.error)},
+            {"elapsed", number(p.elapsed)},       {"remaining", number(p.remaining)},
+            {"samples_per_second", number(rate)}};
         say("{}\n", j.dump());
     }
 }
@@ -130,7 +128,7 @@ void ProgressLine::clear() {
 void ProgressLine::done(double samples_per_pixel, double elapsed, double error) {
     if (style_ == ProgressStyle::percent) say("100%\n");
     if (style_ == ProgressStyle::json) {
-        Progress p{"done", 1, samples_per_pixel, elapsed};
+        Progress p{Phase::done, 1, samples_per_pixel, elapsed};
         p.remaining = 0;
         p.error = error;
         report(p);

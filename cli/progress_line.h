@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "core/enum_names.h"
 #include "render/progress.h"
 
 namespace covtrace::cli {
@@ -17,6 +18,23 @@ enum class ProgressStyle {
               ///< samples_per_second
     none
 };
+
+}  // namespace covtrace::cli
+
+namespace covtrace {
+
+template <>
+inline constexpr auto kEnumNames<cli::ProgressStyle> =
+    enum_names<cli::ProgressStyle>({{cli::ProgressStyle::automatic, "auto"},
+                                    {cli::ProgressStyle::bar, "bar"},
+                                    {cli::ProgressStyle::plain, "plain"},
+                                    {cli::ProgressStyle::percent, "percent"},
+                                    {cli::ProgressStyle::json, "json"},
+                                    {cli::ProgressStyle::none, "none"}});
+
+}  // namespace covtrace
+
+namespace covtrace::cli {
 
 class ProgressLine {
   public:

@@ -29,6 +29,7 @@
 #include "image/output_file.h"
 #include "image/write_image.h"
 #include "preview/tev_client.h"
+#include "render/render_memory.h"
 #include "render/scene_file.h"
 #include "render/session.h"
 
@@ -143,7 +144,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     keeping.ranks = ranks;
     require_memory(a.max_memory, render_memory(description.film, a.options));
 
-    RenderScene scene(std::move(description), a.isa, a.texture_bytes);
+    RenderScene scene(std::move(description), isa_name(a.isa), a.texture_bytes);
     const double built = monitor.elapsed();
     progress.clear();
     if (!a.quiet) {
@@ -172,14 +173,14 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     if (monitor.cancelled() && result.statistics.samples_per_pixel == 0)
         throw Error(ErrorKind::interrupted,
                     "interrupted before the first sample: nothing is written");
-    result.statistics.seconds["load"] = loaded;
-    result.statistics.seconds["build"] = built - loaded;
+    result.statistics.seconds[Phase::load] = loaded;
+    result.statistics.seconds[Phase::build] = built - loaded;
     const double rendered = monitor.elapsed();
     progress.clear();
     if (viewer) viewer->show(copy_layers(result.image, a.tev_layers));
     if (!is_shard && is_first)
         deliver(result, a, output, monitor, invocation.command_line, threads.threads());
-    result.statistics.seconds["write"] = monitor.elapsed() - rendered;
+    result.statistics.seconds[Phase::write] = monitor.elapsed() - rendered;
     if (!a.stats.empty())
         write_text(statistics_json(scene, result, denoiser, monitor).dump(2) + "\n", a.stats);
     if (result.complete || (is_shard && !monitor.cancelled()))

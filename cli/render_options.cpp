@@ -13,11 +13,7 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
     c->add_option("-o,--output", a.output, "the image: .exr .png .pfm .hdr (default: film's)")
         ->check(not_empty())
         ->option_text("FILE");
-    add_choice<Method>(c, "--method", a.options.method,
-                       {{"uniform", Method::uniform},
-                        {"covariance", Method::covariance},
-                        {"hybrid", Method::hybrid}},
-                       "plain, the thesis' method, or hybrid (default)");
+    add_choice(c, "--method", a.options.method, "plain, the thesis' method, or hybrid (default)");
     add_positive(c, "--spp", a.options.spp, 1 << 30,
                  "average samples per pixel (default: the scene's)");
     c->add_option("--time", a.seconds, "wall-clock budget: 2.5, 45s, 3m, 1h30m")
@@ -29,9 +25,7 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
          [&a](const std::string& text) { a.options.cov_spp = parse_paths("--cov-spp", text); },
          "covariance paths per pixel (default: 2, hybrid: 1)")
         ->option_text("N");
-    add_choice<DensityRule>(c, "--density", a.options.density,
-                            {{"tempered", DensityRule::tempered}, {"thesis", DensityRule::thesis}},
-                            "how counts follow from the prediction");
+    add_choice(c, "--density", a.options.density, "how counts follow from the prediction");
     add_positive(c, "--k", a.options.density_factor, 1e12,
                  "density thesis: the k of N = k sqrt|S|");
     add_whole(c, "--max-spp", a.options.max_spp, 1, 1 << 30,
@@ -39,27 +33,14 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
     c->add_flag("--progressive", a.options.progressive, "covariance: rounds of samples on demand");
     c->add_flag("--even-counts", a.options.even_counts, "hybrid: the same count in every pixel");
     add_denoiser_options(c, a.denoiser);
-    add_choice<Occlusion>(c, "--occlusion", a.options.occlusion,
-                          {{"grid", Occlusion::grid},
-                           {"voxels", Occlusion::voxels},
-                           {"query", Occlusion::query},
-                           {"none", Occlusion::none}},
-                          "occluders beside the rays of the analysis");
+    add_choice(c, "--occlusion", a.options.occlusion, "occluders beside the rays of the analysis");
     add_whole(c, "--voxels", a.options.voxels, 1, 2048,
               "width of the occlusion grid (default 200)");
-    add_choice<BrdfCovariance>(
-        c, "--brdf-covariance", a.options.brdf_covariance,
-        {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}},
-        "a BRDF's frequencies: at the path, or its peak's");
-    add_choice<TextureBandwidth>(
-        c, "--texture-bandwidth", a.options.texture_bandwidth,
-        {{"own", TextureBandwidth::own}, {"highest", TextureBandwidth::highest}},
-        "textures' frequencies: own, or the image's");
-    add_choice<FilterRule>(c, "--filter", a.options.filter,
-                           {{"verified", FilterRule::verified},
-                            {"matched", FilterRule::matched},
-                            {"thesis", FilterRule::thesis}},
-                           "its constant: verified, c = 1, thesis' eq. 5.7");
+    add_choice(c, "--brdf-covariance", a.options.brdf_covariance,
+               "a BRDF's frequencies: at the path, or its peak's");
+    add_choice(c, "--texture-bandwidth", a.options.texture_bandwidth,
+               "textures' frequencies: own, or the image's");
+    add_choice(c, "--filter", a.options.filter, "its constant: verified, c = 1, thesis' eq. 5.7");
     c->add_option("--resolution", a.resolution, "in place of the scene's")
         ->check(not_empty())
         ->option_text("WxH");
@@ -73,9 +54,7 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
          "seed of all random numbers (default 0)")
         ->option_text("N");
     add_whole(c, "--threads", a.threads, 1, 4096, "worker threads (default: all cores)");
-    c->add_option("--isa", a.isa, "instruction set of the ray tracing")
-        ->check(CLI::IsMember({"sse2", "avx", "avx2", "avx512"}).description(""))
-        ->option_text("sse2|avx|avx2|avx512");
+    add_choice(c, "--isa", a.isa, "instruction set of the ray tracing");
     c->add_option("--shutter", a.shutter, "in place of the scene's")
         ->check(not_empty())
         ->option_text("T0,T1");
@@ -92,23 +71,12 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
         ->check(not_empty())
         ->option_text("FILE");
     add_layers(c, "--layers", a.layers, "all, or name,name…: layers beside the image");
-    add_choice<LayerNames>(c, "--layer-names", a.layer_names,
-                           {{"default", LayerNames::standard},
-                            {"pbrt", LayerNames::pbrt},
-                            {"blender", LayerNames::blender}},
-                           "whose names the layers get in the EXR");
+    add_choice(c, "--layer-names", a.layer_names, "whose names the layers get in the EXR");
     c->add_option("--tev", a.tev, "show the image in the viewer tev while it renders")
         ->check(not_empty())
         ->option_text("HOST:PORT");
     add_layers(c, "--tev-layers", a.tev_layers, "layers that tev shows, too (default: none)");
-    add_choice<ProgressStyle>(c, "--progress", a.progress,
-                              {{"auto", ProgressStyle::automatic},
-                               {"bar", ProgressStyle::bar},
-                               {"plain", ProgressStyle::plain},
-                               {"percent", ProgressStyle::percent},
-                               {"json", ProgressStyle::json},
-                               {"none", ProgressStyle::none}},
-                              "how progress is shown on standard error");
+    add_choice(c, "--progress", a.progress, "how progress is shown on standard error");
     c->add_option_function<std::string>(
          "--texture-memory",
          [&a](const std::string& text) { a.texture_bytes = parse_size("--texture-memory", text); },

@@ -12,8 +12,10 @@
 #include "cli/layer_selection.h"
 #include "cli/progress_line.h"
 #include "cli/values.h"
+#include "geometry/instruction_set.h"
 #include "image/layer_names.h"
 #include "render/options.h"
+#include "render/overrides.h"
 #include "texture/texture.h"
 
 namespace covtrace::cli {
@@ -21,7 +23,8 @@ namespace covtrace::cli {
 inline constexpr size_t kNoMemoryLimit = std::numeric_limits<size_t>::max();
 
 struct RenderArguments {
-    std::string scene, output, png, stats, isa;
+    std::string scene, output, png, stats;
+    std::optional<InstructionSet> isa;
     std::string seconds, resolution, crop, shutter, tev;
     FilmArguments film;
     DenoiserArguments denoiser;

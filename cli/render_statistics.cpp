@@ -70,7 +70,7 @@ nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& res
     };
     const std::optional<double>& k = result.statistics.density_factor;
     return {{"seconds_total", monitor.elapsed()},
-            {"seconds", result.statistics.seconds},
+            {"seconds", named(result.statistics.seconds)},
             {"denoiser", denoiser_json(denoiser, result.image.metadata)},
             {"memory", memory_json(scene, result)},
             {"spp", result.statistics.samples_per_pixel},

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "render/job.h"
+#include "render/overrides.h"
 
 namespace covtrace::cli {
 

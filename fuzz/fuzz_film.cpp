@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "render/describe_state.h"
 #include "render/develop.h"
 #include "render/film_arrays.h"
 #include "render/film_file.h"

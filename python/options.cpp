@@ -11,28 +11,12 @@ namespace covtrace::python {
 RenderOptions render_options(const py::dict& o) {
     RenderOptions r;
     const auto text = [&](const char* name) { return value_of<std::string>(o, name, "a text"); };
-    r.method = choice<Method>("method", text("method"),
-                              {{"uniform", Method::uniform},
-                               {"covariance", Method::covariance},
-                               {"hybrid", Method::hybrid}});
-    r.density =
-        choice<DensityRule>("density", text("density"),
-                            {{"tempered", DensityRule::tempered}, {"thesis", DensityRule::thesis}});
-    r.occlusion = choice<Occlusion>("occlusion", text("occlusion"),
-                                    {{"grid", Occlusion::grid},
-                                     {"voxels", Occlusion::voxels},
-                                     {"query", Occlusion::query},
-                                     {"none", Occlusion::none}});
-    r.brdf_covariance = choice<BrdfCovariance>(
-        "brdf_covariance", text("brdf_covariance"),
-        {{"local", BrdfCovariance::local}, {"global", BrdfCovariance::global}});
-    r.texture_bandwidth = choice<TextureBandwidth>(
-        "texture_bandwidth", text("texture_bandwidth"),
-        {{"own", TextureBandwidth::own}, {"highest", TextureBandwidth::highest}});
-    r.filter = choice<FilterRule>("filter", text("filter"),
-                                  {{"verified", FilterRule::verified},
-                                   {"matched", FilterRule::matched},
-                                   {"thesis", FilterRule::thesis}});
+    r.method = choice<Method>("method", text("method"));
+    r.density = choice<DensityRule>("density", text("density"));
+    r.occlusion = choice<Occlusion>("occlusion", text("occlusion"));
+    r.brdf_covariance = choice<BrdfCovariance>("brdf_covariance", text("brdf_covariance"));
+    r.texture_bandwidth = choice<TextureBandwidth>("texture_bandwidth", text("texture_bandwidth"));
+    r.filter = choice<FilterRule>("filter", text("filter"));
     r.spp = positive<double>(o, "spp");
     r.seconds = positive<double>(o, "time");
     r.error = positive<double>(o, "error");
@@ -57,10 +41,7 @@ DenoiserSearch denoiser_search(const py::dict& o) {
     namespace fs = std::filesystem;
     DenoiserSearch search;
     search.choice =
-        choice<DenoiserChoice>("denoiser", value_of<std::string>(o, "denoiser", "a text"),
-                               {{"auto", DenoiserChoice::automatic},
-                                {"oidn", DenoiserChoice::oidn},
-                                {"none", DenoiserChoice::none}});
+        choice<DenoiserChoice>("denoiser", value_of<std::string>(o, "denoiser", "a text"));
     if (is_given(o, "denoiser_library"))
         search.library = value_of<fs::path>(o, "denoiser_library", "a file's path");
     Dl_info module{};

@@ -6,30 +6,25 @@
 
 #include <array>
 #include <cmath>
-#include <initializer_list>
 #include <optional>
 #include <string>
-#include <utility>
 
+#include "core/enum_names.h"
 #include "core/error.h"
 #include "denoiser/find_denoiser.h"
 #include "render/options.h"
+#include "render/overrides.h"
 
 namespace covtrace::python {
 
 namespace py = pybind11;
 
 /// The value that a text stands for. Errors: Error(usage) that lists all.
-template <typename T>
-T choice(const char* option, const std::string& value,
-         std::initializer_list<std::pair<const char*, T>> choices) {
-    std::string expected;
-    for (const auto& [name, result] : choices) {
-        if (value == name) return result;
-        expected += std::string(expected.empty() ? "" : ", ") + "'" + name + "'";
-    }
-    throw Error(ErrorKind::usage,
-                std::string(option) + " is '" + value + "'; expected one of " + expected);
+template <NamedEnum Enum>
+Enum choice(const char* option, const std::string& text) {
+    if (const auto value = value_named<Enum>(text)) return *value;
+    throw Error(ErrorKind::usage, std::string(option) + " is '" + text + "'; expected one of " +
+                                      listed_names<Enum>(", ", "'"));
 }
 
 inline void require(bool holds, const std::string& message) {

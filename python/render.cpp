@@ -11,6 +11,7 @@
 
 #include "bindings.h"
 #include "core/parallel.h"
+#include "geometry/instruction_set.h"
 #include "gltf/read_gltf.h"
 #include "image/finite_pixels.h"
 #include "options.h"
@@ -36,12 +37,12 @@ struct Exchange {
     std::condition_variable changed;
     bool finished = false;
     std::optional<Progress> progress;
-    std::string phase;  // what `progress` points to
 };
 
-py::object progress_object(const Progress& p, const std::string& phase) {
+py::object progress_object(const Progress& p) {
     return py::module_::import("covtrace.progress")
-        .attr("Progress")(phase, p.fraction, p.samples_per_pixel, p.elapsed, p.remaining, p.error);
+        .attr("Progress")(name_of(p.phase), p.fraction, p.samples_per_pixel, p.elapsed, p.remaining,
+                          p.error);
 }
 
 /// Waits for the render with the interpreter's lock released, but for the moments in which signals
@@ -53,20 +54,18 @@ std::exception_ptr wait(Exchange& exchange, Monitor& monitor, const py::object& 
     std::exception_ptr thrown;
     for (;;) {
         std::optional<Progress> latest;
-        std::string phase;
         {
             const Unlocked unlocked(&calls);
             std::unique_lock lock(exchange.mutex);
             exchange.changed.wait_for(lock, std::chrono::milliseconds(50),
                                       [&] { return exchange.finished; });
             latest = std::exchange(exchange.progress, std::nullopt);
-            phase = exchange.phase;
             if (exchange.finished && (thrown || !latest)) return thrown;
         }
         if (thrown) continue;
         try {
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-            if (latest && !progress.is_none()) progress(progress_object(*latest, phase));
+            if (latest && !progress.is_none()) progress(progress_object(*latest));
             // Whatever it returns is true or false as in an `if`.
             if (!cancel.is_none() && py::bool_(cancel.attr("is_set")())) monitor.cancel();
         } catch (...) {
@@ -167,7 +166,7 @@ py::dict replaced_dict(const std::optional<ReplacedPixels>& r) {
 py::dict statistics_dict(const Rendered& r, double elapsed) {
     py::dict d;
     d["seconds_total"] = elapsed;
-    d["seconds"] = r.statistics.seconds;
+    d["seconds"] = named(r.statistics.seconds);
     d["denoiser"] = denoiser_object(r);
     d["memory"] = r.statistics.memory;
     d["spp"] = r.statistics.samples_per_pixel;
@@ -185,12 +184,9 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
     const SceneOverrides overrides = scene_overrides(o);
     const int threads = value_of<int>(o, "threads", "a whole number");
     require(threads >= 0 && threads <= 4096, "threads must be from 0 to 4096");
-    const auto isa =
-        is_given(o, "isa")
-            ? choice<std::string>(
-                  "isa", value_of<std::string>(o, "isa", "a text"),
-                  {{"sse2", "sse2"}, {"avx", "avx"}, {"avx2", "avx2"}, {"avx512", "avx512"}})
-            : std::string();
+    std::optional<InstructionSet> isa;
+    if (is_given(o, "isa"))
+        isa = choice<InstructionSet>("isa", value_of<std::string>(o, "isa", "a text"));
     const size_t texture_bytes =
         is_given(o, "texture_memory")
             ? value_of<size_t>(o, "texture_memory", "a number of bytes, or a text such as '500M'")
@@ -202,7 +198,6 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
         [&exchange](const Progress& p) {
             const std::lock_guard lock(exchange.mutex);
             exchange.progress = p;
-            exchange.phase = p.phase;
         },
         0.1);
     std::optional<Rendered> rendered;
@@ -211,7 +206,7 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
     std::thread worker([&, description = scene]() mutable {
         try {
             rendered = render_description(std::move(description), options, search, overrides,
-                                          threads, isa, texture_bytes, monitor);
+                                          threads, isa_name(isa), texture_bytes, monitor);
         } catch (...) {
             failure = std::current_exception();
         }

@@ -13,4 +13,9 @@ std::string SourceLocation::to_string() const {
 Error::Error(ErrorKind kind, const SourceLocation& where, const std::string& message)
     : std::runtime_error(where.file ? where.to_string() + ": " + message : message), kind_(kind) {}
 
+Error::Error(ErrorKind kind, OptionName option, const std::string& message)
+    : std::runtime_error(std::string(option.field) + ": " + message),
+      kind_(kind),
+      option_(option.field) {}
+
 }  // namespace covtrace

@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -29,15 +30,25 @@ enum class ErrorKind {
     internal      ///< exit code 7
 };
 
+/// An option as its field is called, "max_spp". Front ends spell it in their own way.
+struct OptionName {
+    std::string_view field;
+};
+
 class Error : public std::runtime_error {
   public:
     Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
     /// The message is prefixed with the location.
     Error(ErrorKind kind, const SourceLocation& where, const std::string& message);
+    /// An option's value is refused; what() begins with "max_spp: ".
+    Error(ErrorKind kind, OptionName option, const std::string& message);
     ErrorKind kind() const { return kind_; }
+    /// The field of the option that is refused; empty where no option is at fault.
+    const std::string& option() const { return option_; }
 
   private:
     ErrorKind kind_;
+    std::string option_;
 };
 
 struct Warning {

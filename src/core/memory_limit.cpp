@@ -62,7 +62,7 @@ MemoryReservation::MemoryReservation(size_t bytes, const std::string& what,
             throw Error(ErrorKind::limit, where,
                         what + " need " + megabytes(bytes) + " beside the " +
                             megabytes(resident_bytes()) + " that are in memory, more than " +
-                            (own <= most ? "--max-memory " : "the machine's ") + megabytes(most));
+                            (own <= most ? "the limit of " : "the machine's ") + megabytes(most));
     }
     bytes_ = bytes;
     reserved_bytes += bytes;

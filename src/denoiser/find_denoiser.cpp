@@ -33,7 +33,7 @@ std::string not_found(const DenoiserSearch& search) {
         text += "'" + folder.lexically_normal().string() + "', ";
     return text +
            "nor where the system has its libraries; ./scripts/install-dependencies fetches it, "
-           "--denoiser-library and COVTRACE_OIDN_LIBRARY name one";
+           "the denoiser's library and COVTRACE_OIDN_LIBRARY name one";
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ FoundDenoiser find_denoiser(const DenoiserSearch& search) {
         return {oidn, oidn->file(), {}};
     } catch (const Error& e) {
         if (search.choice == DenoiserChoice::oidn)
-            throw Error(ErrorKind::usage, std::string("--denoiser oidn: ") + e.what());
+            throw Error(ErrorKind::usage, OptionName{"denoiser"}, e.what());
         return {nullptr, {}, e.what(), !file.empty()};
     }
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/enum_names.h"
 #include "reconstruction/denoiser.h"
 
 namespace covtrace {
@@ -15,6 +16,12 @@ enum class DenoiserChoice {
     oidn,       ///< Open Image Denoise, or an error
     none
 };
+
+template <>
+inline constexpr auto kEnumNames<DenoiserChoice> =
+    enum_names<DenoiserChoice>({{DenoiserChoice::automatic, "auto"},
+                                {DenoiserChoice::oidn, "oidn"},
+                                {DenoiserChoice::none, "none"}});
 
 struct DenoiserSearch {
     DenoiserChoice choice = DenoiserChoice::automatic;

@@ -1,6 +1,8 @@
 /// The choice between two descriptions of a BRDF.
 #pragma once
 
+#include "core/enum_names.h"
+
 namespace covtrace {
 
 /// What stands for a BRDF in the frequency analysis.
@@ -8,5 +10,9 @@ enum class BrdfCovariance {
     local,  ///< its lobes as they are at the pair of directions that the path took
     global  ///< each lobe's peak, as in the thesis
 };
+
+template <>
+inline constexpr auto kEnumNames<BrdfCovariance> = enum_names<BrdfCovariance>(
+    {{BrdfCovariance::local, "local"}, {BrdfCovariance::global, "global"}});
 
 }  // namespace covtrace

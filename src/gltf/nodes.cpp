@@ -45,8 +45,8 @@ class Placer {
         placed_.worlds.resize(parents_.size());
         if (!placed_.animations.empty() && !shutter)
             log.add(document.place("animations"),
-                    "the scene is rendered at rest, at 0 seconds; --shutter T0,T1 opens the "
-                    "shutter over a part of its animations");
+                    "the scene is rendered at rest, at 0 seconds; a shutter from T0 to T1 "
+                    "seconds shows a part of its animations");
         find_parents();
     }
 

@@ -2,6 +2,7 @@
 /// renderers look for.
 #pragma once
 
+#include "core/enum_names.h"
 #include "image/image.h"
 
 namespace covtrace {
@@ -17,6 +18,12 @@ enum class LayerNames {
     /// cov a pass of its own.
     blender
 };
+
+template <>
+inline constexpr auto kEnumNames<LayerNames> =
+    enum_names<LayerNames>({{LayerNames::standard, "default"},
+                            {LayerNames::pbrt, "pbrt"},
+                            {LayerNames::blender, "blender"}});
 
 /// Renames the channels of an image that has our own names.
 void rename_layers(Image& image, LayerNames names);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/enum_names.h"
 #include "core/plane.h"
 #include "covariance/budget.hpp"
 #include "prediction/covariance_buffer.h"
@@ -13,6 +14,10 @@
 namespace covtrace {
 
 using covariance::DensityRule;
+
+template <>
+inline constexpr auto kEnumNames<DensityRule> =
+    enum_names<DensityRule>({{DensityRule::tempered, "tempered"}, {DensityRule::thesis, "thesis"}});
 
 /// What `rule` asks for beyond the tempered density, (g / g_tempered)^0.7, as a mean over a few
 /// pixels since a few paths tell it with much noise: SampleKnowledge::emphasis (docs/decisions/0062

@@ -4,9 +4,9 @@
 #pragma once
 
 #include <span>
-#include <string_view>
 #include <vector>
 
+#include "core/enum_names.h"
 #include "covariance/filter_field.hpp"
 
 namespace covtrace {
@@ -19,12 +19,11 @@ enum class FilterRule {
     thesis     ///< exp(-pi p^T S p), equation 5.7 of the thesis as printed: c^2 = 1/(2 pi)
 };
 
-/// As the command line calls it.
-constexpr std::string_view name_of(FilterRule rule) {
-    return rule == FilterRule::verified  ? "verified"
-           : rule == FilterRule::matched ? "matched"
-                                         : "thesis";
-}
+template <>
+inline constexpr auto kEnumNames<FilterRule> =
+    enum_names<FilterRule>({{FilterRule::verified, "verified"},
+                            {FilterRule::matched, "matched"},
+                            {FilterRule::thesis, "thesis"}});
 
 /// c, 1/s_min and the slope follow the samples (docs/decisions/0004, 0047), for emitters in view
 /// with other constants (docs/decisions/0012).

@@ -1,8 +1,7 @@
-#include <algorithm>
+#include "render/describe_state.h"
+
 #include <iomanip>
 #include <sstream>
-
-#include "render/render_state.h"
 
 namespace covtrace {
 

@@ -55,7 +55,7 @@ GatheredImage gathered(const Film& film, const FilterField& filters,
 
 Image gathered_image(const RenderState& state) {
     const Film& film = state.films[0];
-    const CovarianceBuffers& parts = *state.parts;
+    const CovarianceBuffers& parts = state.parts();
     const double taken = film.mean_count();
     const FilterSettings settings = covariance::filter_settings(taken),
                          settings_in_view = covariance::filter_settings_in_view(taken);

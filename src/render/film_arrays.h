@@ -34,11 +34,12 @@ inline std::vector<FilmArray> film_arrays(RenderState& state) {
         add(film + ".rays", state.films[k].rays);
         if (state.in_round()) add(film + ".plan", state.plan[k]);
     }
-    if (state.parts) {
-        add("scattered", state.parts->scattered);
-        add("in_view", state.parts->in_view);
+    if (auto* parts = std::get_if<CovarianceBuffers>(&state.covariances)) {
+        add("scattered", parts->scattered);
+        add("in_view", parts->in_view);
+    } else if (auto* all = std::get_if<std::vector<PackedCovariance>>(&state.covariances)) {
+        add("all", *all);
     }
-    add("all", state.all);
     add("density", state.density);
     return arrays;
 }

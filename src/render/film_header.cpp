@@ -1,7 +1,6 @@
 #include "render/film_header.h"
 
 #include <algorithm>
-#include <array>
 #include <concepts>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -14,8 +13,6 @@ namespace covtrace {
 namespace {
 
 using nlohmann::json;
-
-constexpr std::array<const char*, 3> kStages{"first_paths", "pilot", "rounds"};
 
 json to_json(const PixelBounds& b) {
     return {b.x0, b.y0, b.x1, b.y1};
@@ -75,23 +72,12 @@ std::optional<double> number(const json& j) {
     return j.is_null() ? std::nullopt : std::optional(j.get<double>());
 }
 
-template <size_t N>
-size_t choice(const json& j, const std::array<const char*, N>& names) {
-    for (size_t i = 0; i < N; ++i)
-        if (j.get<std::string>() == names[i]) return i;
-    refuse("'" + j.get<std::string>() + "'");
-}
-
-Method method(const json& j) {
-    for (Method m : {Method::uniform, Method::covariance, Method::hybrid})
-        if (j.get<std::string>() == name_of(m)) return m;
-    refuse("the method '" + j.get<std::string>() + "'");
-}
-
-FilterRule filter_rule(const json& j) {
-    for (FilterRule r : {FilterRule::verified, FilterRule::matched, FilterRule::thesis})
-        if (j.get<std::string>() == name_of(r)) return r;
-    refuse("the filter '" + j.get<std::string>() + "'");
+/// A value by its name. `what`: what messages call it.
+template <NamedEnum Enum>
+Enum named(const json& j, const char* what) {
+    const auto name = j.get<std::string>();
+    if (const auto value = value_named<Enum>(name)) return *value;
+    refuse(std::string("the ") + what + " '" + name + "'");
 }
 
 /// Gives a state all arrays that the header names.
@@ -111,9 +97,9 @@ void add_arrays(RenderState& s, const json& arrays, uint32_t format) {
         if (has("film0.plan")) s.plan.emplace_back(s.pixels());
     }
     if (s.method == Method::hybrid && s.stage == Stage::rounds)
-        s.all.resize(s.pixels());
+        s.covariances = std::vector<PackedCovariance>(s.pixels());
     else if (s.method != Method::uniform)
-        s.parts.emplace(s.region.width(), s.region.height());
+        s.covariances = CovarianceBuffers(s.region.width(), s.region.height());
     if (has("density")) s.density.resize(s.pixels());
 }
 
@@ -147,13 +133,13 @@ void check_shards(const RenderState& s) {
 RenderState parse(const json& j, size_t most_bytes, uint32_t format) {
     RenderState s;
     s.identity = j.at("identity").get<RenderIdentity>();
-    s.method = method(j.at("method"));
-    s.filter = filter_rule(j.at("filter"));
+    s.method = named<Method>(j.at("method"), "method");
+    s.filter = named<FilterRule>(j.at("filter"), "filter");
     s.region = bounds(j.at("region"));
     s.display = bounds(j.at("display"));
     s.has_holes = j.at("has_holes");
     s.metadata = metadata(j.at("metadata"));
-    s.stage = Stage(choice(j.at("stage"), kStages));
+    s.stage = named<Stage>(j.at("stage"), "stage");
     s.covariance_spp = j.at("covariance_spp");
     s.weight_limit = number(j.at("weight_limit"));
     s.taken = j.at("taken");
@@ -196,7 +182,7 @@ std::string film_header(const RenderState& s) {
                  {"display", to_json(s.display)},
                  {"has_holes", s.has_holes},
                  {"metadata", to_json(s.metadata)},
-                 {"stage", kStages[size_t(s.stage)]},
+                 {"stage", name_of(s.stage)},
                  {"covariance_spp", s.covariance_spp},
                  {"weight_limit", to_json(s.weight_limit)},
                  {"taken", s.taken},

@@ -107,10 +107,10 @@ bool RenderJob::delivers() const {
     return keeping.shard.is_all() && (!keeping.ranks || keeping.ranks->index() == 0);
 }
 
-PassProgress RenderJob::reporter(const char* name, double from, double to) {
+PassProgress RenderJob::reporter(Phase phase, double from, double to) {
     const double begin = fraction(from), end = fraction(to);
-    return [this, name, from, to, begin, end](double f) {
-        monitor.update(name, begin + f * (end - begin), from + f * (to - from));
+    return [this, phase, from, to, begin, end](double f) {
+        monitor.update(phase, begin + f * (end - begin), from + f * (to - from));
     };
 }
 
@@ -196,21 +196,6 @@ void RenderJob::note_memory() {
     if (sum < most_memory_) return;
     most_memory_ = sum;
     for (const auto& [name, count] : bytes) result.statistics.memory[name] = count;
-}
-
-SceneOccluders::SceneOccluders(RenderJob& job) {
-    const auto cancelled = [&job] { return job.out_of_time(); };
-    every_voxel_ = job.options.occlusion == Occlusion::voxels;
-    if (asks_grid(job.options.occlusion)) {
-        const PhaseTimer timer(job.monitor, job.phase("grid"));
-        grid_.emplace(job.scene.geometry,
-                      VoxelGridOptions{.width = job.options.voxels, .cancelled = cancelled});
-        job.result.statistics.memory["occluders"] = grid_->memory();
-    } else if (job.options.occlusion == Occlusion::query) {
-        const PhaseTimer timer(job.monitor, job.phase("outlines"));
-        query_.emplace(job.scene.geometry, cancelled);
-        job.result.statistics.memory["occluders"] = query_->memory();
-    }
 }
 
 }  // namespace covtrace

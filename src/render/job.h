@@ -1,29 +1,14 @@
 /// What the methods share: the scene, the budget, the clock and the progress of one render.
 #pragma once
 
-#include <functional>
 #include <optional>
 
 #include "render/keeping.h"
+#include "render/phase_timer.h"
+#include "render/render_result.h"
 #include "render/render_state.h"
-#include "render/session.h"
 
 namespace covtrace {
-
-/// Adds the seconds that a scope took to a phase.
-class PhaseTimer {
-  public:
-    PhaseTimer(const Monitor& monitor, double& total)
-        : monitor_(monitor), total_(total), start_(monitor.elapsed()) {}
-    ~PhaseTimer() { total_ += monitor_.elapsed() - start_; }
-    PhaseTimer(const PhaseTimer&) = delete;
-    PhaseTimer& operator=(const PhaseTimer&) = delete;
-
-  private:
-    const Monitor& monitor_;
-    double& total_;
-    const double start_;
-};
 
 /// What the passes of a render share.
 PassContext pass_context(const RenderScene& scene, const RenderOptions& options);
@@ -53,11 +38,11 @@ class RenderJob {
     Shard tiles() const;
     /// Whether this process makes the image.
     bool delivers() const;
-    double& phase(const char* name) { return result.statistics.seconds[name]; }
+    double& seconds(Phase phase) { return result.statistics.seconds[phase]; }
     int64_t pixels() const { return int64_t(region.width()) * region.height(); }
 
     /// A reporter for a pass that takes the average count from `from` to `to`.
-    PassProgress reporter(const char* name, double from, double to);
+    PassProgress reporter(Phase phase, double from, double to);
     /// Share of the tracing that is done at an average of `spp`, in [0, kTracingShare].
     double fraction(double spp) const;
 
@@ -96,38 +81,5 @@ class RenderJob {
     size_t most_memory_ = 0;
     double reserve_ = kWriteSeconds;
 };
-
-/// What the frequency analysis learns of occluders from, as the options ask.
-class SceneOccluders {
-  public:
-    explicit SceneOccluders(RenderJob& job);
-    /// Valid while this lives.
-    Occluders view() const {
-        return {grid_ ? &*grid_ : nullptr, query_ ? &*query_ : nullptr, every_voxel_};
-    }
-
-  private:
-    std::optional<VoxelGrid> grid_;
-    std::optional<OccluderQuery> query_;
-    bool every_voxel_ = false;
-};
-
-/// What a method does in its rounds.
-struct Rounds {
-    std::function<bool()> plan;   ///< begins the next round; false: the budget is spent
-    std::function<void()> trace;  ///< takes samples of the round, until the monitor ends it
-};
-/// Goes on from where the job's state stands until the budget is spent, the monitor is cancelled
-/// or, for a shard, the other shards' samples are needed. Keeps the film as the job asks.
-void trace_rounds(RenderJob& job, const Rounds& rounds);
-
-/// The end of the round after an average of `taken`: rounds double the total, whatever the budget.
-double round_end(double taken);
-
-/// The three methods. Each leaves image, unless it is only a shard's, and statistics in the job's
-/// result.
-void render_uniform(RenderJob& job);
-void render_covariance(RenderJob& job);
-void render_hybrid(RenderJob& job);
 
 }  // namespace covtrace

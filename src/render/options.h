@@ -6,13 +6,14 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
+#include "core/enum_names.h"
 #include "frequency/brdf_covariance.h"
 #include "image/image.h"
 #include "planner/density.h"
 #include "reconstruction/denoiser.h"
 #include "reconstruction/filter_field.h"
+#include "scene/scene_description.h"
 #include "texture/texture.h"
 
 namespace covtrace {
@@ -23,10 +24,10 @@ enum class Method {
     hybrid       ///< prediction and samples together: adaptive counts, candidates, selection
 };
 
-/// As the command line calls it.
-constexpr std::string_view name_of(Method m) {
-    return m == Method::uniform ? "uniform" : m == Method::covariance ? "covariance" : "hybrid";
-}
+template <>
+inline constexpr auto kEnumNames<Method> = enum_names<Method>({{Method::uniform, "uniform"},
+                                                               {Method::covariance, "covariance"},
+                                                               {Method::hybrid, "hybrid"}});
 
 /// Where the frequency analysis learns of what stands beside a ray.
 enum class Occlusion {
@@ -36,13 +37,12 @@ enum class Occlusion {
     query    ///< the outlines of the geometry itself
 };
 
-/// As the command line calls it.
-constexpr std::string_view name_of(Occlusion o) {
-    return o == Occlusion::none     ? "none"
-           : o == Occlusion::grid   ? "grid"
-           : o == Occlusion::voxels ? "voxels"
-                                    : "query";
-}
+template <>
+inline constexpr auto kEnumNames<Occlusion> = enum_names<Occlusion>({{Occlusion::none, "none"},
+                                                                     {Occlusion::grid, "grid"},
+                                                                     {Occlusion::voxels, "voxels"},
+                                                                     {Occlusion::query, "query"}});
+
 constexpr bool asks_grid(Occlusion o) {
     return o == Occlusion::grid || o == Occlusion::voxels;
 }
@@ -77,15 +77,8 @@ struct RenderOptions {
     uint64_t seed = 0;
 };
 
-/// Changes to a scene before it is built.
-struct SceneOverrides {
-    std::optional<std::array<int, 2>> resolution;
-    std::optional<PixelBounds> crop;  ///< pixels, end exclusive
-    std::optional<std::array<float, 2>> shutter;
-    std::optional<float> focal_distance;
-    std::optional<float> f_number;
-    /// Of both: what is below asks for lenses that single precision cannot hold.
-    static constexpr double kLeastOfLens = 1e-9;
-};
+/// The average of samples per pixel that is asked for; none where time, error or the factor of the
+/// density alone decide.
+std::optional<double> target_spp(const SceneDescription& scene, const RenderOptions& options);
 
 }  // namespace covtrace

@@ -1,8 +1,11 @@
+#include "render/overrides.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "render/session.h"
+#include "core/error.h"
+#include "core/vec.h"
 
 namespace covtrace {
 
@@ -19,18 +22,18 @@ void apply(const SceneOverrides& overrides, SceneDescription& scene) {
         film.width = (*overrides.resolution)[0];
         film.height = (*overrides.resolution)[1];
         if (film.is_too_large())
-            throw Error(ErrorKind::limit, "--resolution: " + std::to_string(film.width) + "x" +
-                                              std::to_string(film.height) + " is too large; " +
-                                              film.kLargest);
+            throw Error(ErrorKind::limit, OptionName{"resolution"},
+                        std::to_string(film.width) + "x" + std::to_string(film.height) +
+                            " is too large; " + film.kLargest);
     }
     if (overrides.crop) {
         const PixelBounds& c = *overrides.crop;
         if (c.x0 < 0 || c.y0 < 0 || c.x1 > scene.film.width || c.y1 > scene.film.height ||
             c.x0 >= c.x1 || c.y0 >= c.y1)
-            throw Error(ErrorKind::usage, "--crop must lie inside the frame of " +
-                                              std::to_string(scene.film.width) + "x" +
-                                              std::to_string(scene.film.height) +
-                                              " pixels and hold at least one");
+            throw Error(ErrorKind::usage, OptionName{"crop"},
+                        "the pixels must lie inside the frame of " +
+                            std::to_string(scene.film.width) + "x" +
+                            std::to_string(scene.film.height) + " pixels and hold at least one");
         scene.film.pixel_bounds = {c.x0, c.x1, c.y0, c.y1};
     }
     if (overrides.shutter) {

@@ -23,7 +23,7 @@ double Monitor::remaining(double now, double fraction) {
     return done >= kLeast ? (now - begin_) * (1 - fraction) / done : kUnknown;
 }
 
-void Monitor::update(std::string_view phase, double fraction, double samples_per_pixel) {
+void Monitor::update(Phase phase, double fraction, double samples_per_pixel) {
     if (!report_) return;
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock) return;

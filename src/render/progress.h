@@ -6,17 +6,17 @@
 #include <functional>
 #include <limits>
 #include <mutex>
-#include <string_view>
 
 #include "image/image.h"
+#include "render/phase.h"
 
 namespace covtrace {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct Progress {
-    std::string_view phase;  ///< "covariance", "radiance", "reconstruction"
-    double fraction = 0;     ///< of the whole render, in [0, 1); 1 only when the image is ready
+    Phase phase{};        ///< covariance, radiance or reconstruction
+    double fraction = 0;  ///< of the whole render, in [0, 1); 1 only when the image is ready
     double samples_per_pixel = 0;  ///< taken so far
     double elapsed = 0;            ///< seconds
     double remaining = kUnknown;   ///< estimated seconds; kUnknown at first
@@ -43,7 +43,7 @@ class Monitor {
     void pause_at(double elapsed) { pause_at_ = elapsed; }
     bool pause_is_due() const { return elapsed() >= pause_at_; }
     /// Reports, unless the last report is too fresh or another thread is reporting.
-    void update(std::string_view phase, double fraction, double samples_per_pixel);
+    void update(Phase phase, double fraction, double samples_per_pixel);
     /// What the following reports say of the error.
     void set_error(double error) { error_ = error; }
     double error() const { return error_; }

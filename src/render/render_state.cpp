@@ -2,35 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 
-#include "render/session.h"
+#include "render/overrides.h"
 #include "render/version.h"
 
 namespace covtrace {
 
 namespace {
-
-/// Some values are "given" and "not given", which "A, not B" would say the wrong way round.
-std::string contrast(const std::string& is, const std::string& expected) {
-    if (is.starts_with("not ") || expected.starts_with("not "))
-        return is + " there, " + expected + " here";
-    return is + ", not " + expected;
-}
-
-std::string text(double v) {
-    std::ostringstream out;
-    out << std::setprecision(9) << v;  // tells any two floats apart
-    return out.str();
-}
-std::string text(const PixelBounds& b) {
-    return text(b.x0) + "," + text(b.y0) + "," + text(b.x1) + "," + text(b.y1);
-}
-template <typename T>
-std::string text(const std::optional<T>& v) {
-    return v ? text(double(*v)) : "by default";
-}
 
 std::vector<float> flat(const Matrix4& m) {
     // OpenEXR's convention: row vectors times matrix.
@@ -38,12 +16,6 @@ std::vector<float> flat(const Matrix4& m) {
     for (size_t c = 0; c < 4; ++c)
         for (size_t r = 0; r < 4; ++r) v.push_back(static_cast<float>(m.m[r][c]));
     return v;
-}
-
-std::string scene_hash(const RenderScene& scene) {
-    std::ostringstream out;
-    out << std::hex << std::setw(16) << std::setfill('0') << scene.description.content_hash;
-    return out.str();
 }
 
 /// What any image of the render says of its scene.
@@ -94,25 +66,6 @@ void clear_at(std::vector<T>& values, size_t i) {
 
 }  // namespace
 
-size_t film_bytes_per_pixel(Method method, FilmParts uniform_parts) {
-    constexpr size_t kPlan = sizeof(uint32_t), kDensity = sizeof(float),
-                     kCovariance = sizeof(PackedCovariance),
-                     kFeatureRecords =
-                         sizeof(PathFeatures) + sizeof(FeatureSquares) + sizeof(uint32_t);
-    switch (method) {
-        case Method::uniform:
-            return sizeof(FilmPixel) + (uniform_parts.in_view ? sizeof(Rgb) : 0) +
-                   (uniform_parts.features ? kFeatureRecords : 0) + kPlan;
-        case Method::covariance:
-            return sizeof(FilmPixel) + sizeof(Rgb) + kPlan + kDensity + 2 * kCovariance;
-        case Method::hybrid:
-            break;
-    }
-    const size_t half = sizeof(FilmPixel) + kFeatureRecords + kPlan;
-    // Up to the end of the pilot both parts of the light; then their sum, and densities.
-    return 2 * half + std::max(2 * kCovariance, kCovariance + kDensity);
-}
-
 FilmParts film_parts(Method method) {
     return {.in_view = method == Method::covariance, .features = method == Method::hybrid};
 }
@@ -131,7 +84,7 @@ RenderState::RenderState(const RenderScene& scene, const RenderOptions& options)
     FilmParts kept = film_parts(method);
     if (method == Method::uniform) kept = {options.emitters_apart, options.features};
     for (int k = 0; k < (method == Method::hybrid ? 2 : 1); ++k) films.emplace_back(region, kept);
-    if (method != Method::uniform) parts.emplace(region.width(), region.height());
+    if (method != Method::uniform) covariances = CovarianceBuffers(region.width(), region.height());
 }
 
 bool RenderState::has(size_t k, std::span<const uint32_t> counts, const Shard& shard) const {
@@ -158,9 +111,17 @@ std::map<std::string, size_t> RenderState::memory() const {
     for (const Film& film : films) bytes["film"] += film.memory();
     for (const auto& counts : plan) bytes["plan"] += counts.size() * sizeof(uint32_t);
     bytes["plan"] += density.size() * sizeof(float);
-    if (parts) bytes["prediction"] += parts->memory();
-    if (!all.empty()) bytes["prediction"] += all.size() * sizeof(PackedCovariance);
+    if (const auto* parts = std::get_if<CovarianceBuffers>(&covariances))
+        bytes["prediction"] = parts->memory();
+    else if (const auto* all = std::get_if<std::vector<PackedCovariance>>(&covariances))
+        bytes["prediction"] = all->size() * sizeof(PackedCovariance);
     return bytes;
+}
+
+CovarianceBuffer RenderState::covariance() const {
+    if (const auto* parts = std::get_if<CovarianceBuffers>(&covariances)) return merge(*parts);
+    return unpack(std::get<std::vector<PackedCovariance>>(covariances), region.width(),
+                  region.height());
 }
 
 void RenderState::keep_only(const Shard& shard) {
@@ -173,82 +134,28 @@ void RenderState::keep_only(const Shard& shard) {
             clear_at(film.rays, i);
         }
         for (auto& counts : plan) clear_at(counts, i);
-        if (parts) {
+        if (auto* parts = std::get_if<CovarianceBuffers>(&covariances)) {
             clear_at(parts->scattered, i);
             clear_at(parts->in_view, i);
+        } else if (auto* all = std::get_if<std::vector<PackedCovariance>>(&covariances)) {
+            clear_at(*all, i);
         }
-        clear_at(all, i);
         clear_at(density, i);
     });
 }
 
 void finish_round(RenderState& state) {
     if (state.stage == Stage::first_paths) {
-        state.weight_limit = limit_weights(state.films[0], *state.parts);
+        state.weight_limit = limit_weights(state.films[0], state.parts());
         state.stage = Stage::pilot;
     } else if (state.stage == Stage::pilot) {
         if (state.method == Method::hybrid) {
-            state.all = packed_merge(*state.parts);
-            state.parts.reset();
+            state.covariances = packed_merge(state.parts());
         }
         state.stage = Stage::rounds;
     }
     state.taken = state.target;
     state.plan.clear();
-}
-
-RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& options) {
-    const SceneDescription& d = scene.description;
-    RenderIdentity id{
-        {"version", program_version()},
-        {"scene", scene_hash(scene)},
-        {"instruction set", scene.geometry.isa()},
-        {"--method", std::string(name_of(options.method))},
-        {"--seed", std::to_string(options.seed)},
-        {"--resolution", text(d.film.width) + "x" + text(d.film.height)},
-        {"--crop", text(render_region(d.film))},
-        {"--max-depth", text(options.max_depth.value_or(d.max_depth))},
-        {"--shutter", text(d.camera.shutter_open) + "," + text(d.camera.shutter_close)},
-        {"--focus", text(d.camera.focal_distance)},
-        {"lens radius (--fstop)", text(d.camera.lens_radius)},
-    };
-    id["--max-spp"] = text(options.max_spp);
-    if (options.method == Method::uniform) {
-        id["light of emitters (--layers)"] = options.emitters_apart ? "apart" : "not apart";
-        id["features (--layers)"] = options.features ? "kept" : "not kept";
-        return id;
-    }
-    id["--cov-spp"] = text(options.cov_spp);
-    id["--brdf-covariance"] = options.brdf_covariance == BrdfCovariance::local ? "local" : "global";
-    id["--texture-bandwidth"] =
-        options.texture_bandwidth == TextureBandwidth::own ? "own" : "highest";
-    id["--occlusion"] = std::string(name_of(options.occlusion));
-    if (asks_grid(options.occlusion)) id["--voxels"] = text(options.voxels);
-    if (options.method == Method::covariance) {
-        id["--density"] = options.density == DensityRule::tempered ? "tempered" : "thesis";
-        id["--progressive"] = options.progressive ? "given" : "not given";
-        id["--filter"] = std::string(name_of(options.filter));
-    } else {
-        id["--even-counts"] = options.even_counts ? "given" : "not given";
-    }
-    return id;
-}
-
-std::string program_version() {
-    return std::string(kVersion) + " (" + std::string(kCommit) + ")";
-}
-
-std::optional<std::string> difference(const RenderIdentity& is, const RenderIdentity& expected) {
-    // What was asked for comes first: it explains the rest.
-    for (const char* first : {"version", "scene", "images", "--method", "--resolution"})
-        if (is.count(first) && expected.count(first) && is.at(first) != expected.at(first))
-            return std::string(first) + ": " + contrast(is.at(first), expected.at(first));
-    for (const auto& [name, value] : expected) {
-        const auto it = is.find(name);
-        if (it == is.end()) return name + ": not told, not " + value;
-        if (it->second != value) return name + ": " + contrast(it->second, value);
-    }
-    return std::nullopt;
 }
 
 }  // namespace covtrace

@@ -6,8 +6,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "core/enum_names.h"
 #include "integrator/render_scene.h"
 #include "planner/error_goal.h"
 #include "prediction/covariance_buffer.h"
@@ -15,6 +17,7 @@
 #include "render/film.h"
 #include "render/options.h"
 #include "render/pass.h"
+#include "render/render_identity.h"
 
 namespace covtrace {
 
@@ -25,8 +28,15 @@ enum class Stage {
     rounds        ///< samples where the plan wants them
 };
 
-/// What must agree for a render to go on, by name: version, scene, sampling options.
-using RenderIdentity = std::map<std::string, std::string>;
+template <>
+inline constexpr auto kEnumNames<Stage> = enum_names<Stage>({{Stage::first_paths, "first_paths"},
+                                                             {Stage::pilot, "pilot"},
+                                                             {Stage::rounds, "rounds"}});
+
+/// What is known of the light's frequencies. `uniform`: nothing. `covariance`: emitters in view and
+/// scattered light, apart. `hybrid`: the same up to the end of the pilot, from then on both
+/// together, a matrix per pixel.
+using Covariances = std::variant<std::monostate, CovarianceBuffers, std::vector<PackedCovariance>>;
 
 struct RenderState {
     RenderIdentity identity;
@@ -51,10 +61,9 @@ struct RenderState {
     ErrorGoal goal;                       ///< what the errors after earlier rounds told
     double seconds = 0, seconds_spp = 0;  ///< what tracing cost: seconds for samples per pixel
 
-    std::vector<Film> films;                 ///< one; `hybrid`: two halves
-    std::optional<CovarianceBuffers> parts;  ///< `hybrid`: up to the end of the pilot
-    std::vector<PackedCovariance> all;       ///< `hybrid`: both parts, from then on
-    std::vector<float> density;              ///< what the last plan wanted, samples per pixel
+    std::vector<Film> films;  ///< one; `hybrid`: two halves
+    Covariances covariances;
+    std::vector<float> density;  ///< what the last plan wanted, samples per pixel
 
     uint64_t rejected = 0;                       ///< samples that were not finite
     std::vector<RejectedSample> first_rejected;  ///< a few of them
@@ -76,19 +85,16 @@ struct RenderState {
     /// Whether every pixel of the shard's tiles has what the plan wants.
     bool reached(const Shard& shard) const;
     double mean_count() const;
-    /// Of both parts of the light.
-    CovarianceBuffer covariance() const {
-        return parts ? merge(*parts) : unpack(all, region.width(), region.height());
-    }
+    /// Emitters in view and scattered light apart; only where the covariances are held so.
+    CovarianceBuffers& parts() { return std::get<CovarianceBuffers>(covariances); }
+    const CovarianceBuffers& parts() const { return std::get<CovarianceBuffers>(covariances); }
+    /// All light together; not for `uniform`.
+    CovarianceBuffer covariance() const;
     /// Bytes by what they are for: "film"; "plan"; "prediction" where there is one.
     std::map<std::string, size_t> memory() const;
     /// Leaves zeros in all pixels but those of the shard's tiles.
     void keep_only(const Shard& shard);
 };
-
-/// Bytes that a render keeps for each pixel, plan and prediction included, where they are most.
-/// `uniform_parts`: what `uniform` keeps beside its pixels.
-size_t film_bytes_per_pixel(Method method, FilmParts uniform_parts = {});
 
 /// What the films of one method keep.
 FilmParts film_parts(Method method);
@@ -96,17 +102,5 @@ FilmParts film_parts(Method method);
 /// To be called where all pixels have what the plan wants: draws the conclusions and goes to the
 /// next stage.
 void finish_round(RenderState& state);
-
-/// Version and commit of this program: what films keep as their "version".
-std::string program_version();
-
-/// What must agree between a film and a render that is to go on with it.
-RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& options);
-
-/// Several lines for people: the method, where it stands, what it was asked for, what it holds.
-std::string describe(const RenderState& state);
-
-/// The first difference, as "--seed: 1, not 2"; none where all agree.
-std::optional<std::string> difference(const RenderIdentity& is, const RenderIdentity& expected);
 
 }  // namespace covtrace

@@ -1,8 +1,9 @@
+#include "render/rounds.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "render/develop.h"
-#include "render/job.h"
 #include "render/ranks.h"
 #include "render/round.h"
 
@@ -32,7 +33,7 @@ class Checkpoints {
     void keep(KeepReason reason) {
         const double start = job_.monitor.elapsed();
         if (job_.keeping.keep) {
-            const PhaseTimer timer(job_.monitor, job_.phase("checkpoint"));
+            const PhaseTimer timer(job_.monitor, job_.seconds(Phase::checkpoint));
             job_.keeping.keep(job_.state, reason);
         }
         schedule(job_.monitor.elapsed() - start);

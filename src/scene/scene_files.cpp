@@ -148,7 +148,7 @@ void SceneFiles::warn_outside(const std::string& name, const fs::path& file,
     };
     if (holds(folder_) || std::any_of(search_paths_.begin(), search_paths_.end(), holds)) return;
     log_.add(where,
-             "files outside of the scene's folder are read; --search-path with their folder says "
+             "files outside of the scene's folder are read; their folder as a search path says "
              "that this is meant");
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/enum_names.h"
 #include "geometry/hit.h"
 #include "scene/scene_description.h"
 #include "texture/image_spectrum.h"
@@ -36,6 +37,10 @@ enum class TextureBandwidth {
     own,     ///< what their values show
     highest  ///< the image's: as if every pixel saw an edge along both axes
 };
+
+template <>
+inline constexpr auto kEnumNames<TextureBandwidth> = enum_names<TextureBandwidth>(
+    {{TextureBandwidth::own, "own"}, {TextureBandwidth::highest, "highest"}});
 
 /// All textures of a scene, images loaded once per file, encoding and wrap mode. Thread-safe once
 /// constructed and, where covariances are wanted, prepared.

@@ -18,18 +18,18 @@ Breakdown breakdown_of(const Timed& timed, const SceneStudy& study) {
     const auto& seconds = timed.result.statistics.seconds;
     // Phases are measured by the clock; their shares of the render's CPU time are taken alike.
     const double rate = timed.cpu / timed.wall;
-    const auto phase = [&](const char* name) {
-        const auto found = seconds.find(name);
+    const auto phase = [&](Phase which) {
+        const auto found = seconds.find(which);
         return found == seconds.end() ? 0.0 : rate * found->second;
     };
     const double pixels = double(study.scene->resolution[0]) * study.scene->resolution[1];
     const double delivered =
         study.curve->cpu_per_spp() / pixels * double(timed.result.statistics.covariance.samples);
     Breakdown b;
-    b.analysis =
-        phase("covariance") - delivered + phase("grid") + phase("outlines") + phase("plan");
-    b.radiance = phase("radiance") + delivered;
-    b.reconstruction = phase("reconstruction");
+    b.analysis = phase(Phase::covariance) - delivered + phase(Phase::grid) +
+                 phase(Phase::outlines) + phase(Phase::plan);
+    b.radiance = phase(Phase::radiance) + delivered;
+    b.reconstruction = phase(Phase::reconstruction);
     b.total = timed.cpu;
     return b;
 }

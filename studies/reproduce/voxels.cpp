@@ -22,7 +22,7 @@ double mean_size(const std::vector<float>& sizes) {
 /// Seconds by the clock that learning of occluders and asking them took.
 double occluder_seconds(const RenderStatistics& s) {
     double sum = 0;
-    for (const char* phase : {"grid", "outlines", "covariance"})
+    for (const Phase phase : {Phase::grid, Phase::outlines, Phase::covariance})
         if (const auto found = s.seconds.find(phase); found != s.seconds.end())
             sum += found->second;
     return sum;

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include "pbrt/read_scene.h"
+#include "render/overrides.h"
 
 namespace covtrace::reproduce {
 

@@ -52,7 +52,7 @@ class ImageMemory(CliTest):
                     # Of the address space 1 GiB is enough to refuse it.
                     result = self.run_program(*self.scene_with(world.format(name)), "--max-memory", "500M",
                                               before=limits(AS=1 << 30))
-                    self.assert_fails(result, LIMIT, name, "--max-memory 500M", f"{SIDE}x{SIDE}")
+                    self.assert_fails(result, LIMIT, name, "the limit of 500M", f"{SIDE}x{SIDE}")
 
     @unittest.skipIf(SANITIZED, "a sanitizer needs more address space than there is")
     def test_what_the_system_refuses_is_a_limit_too(self):

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "core/parallel.h"
+#include "render/overrides.h"
 #include "tests/render/fixtures.h"
 
 namespace covtrace {

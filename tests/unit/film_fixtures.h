@@ -34,9 +34,9 @@ inline RenderState random_state(Method method, Stage stage, bool in_round, Pixel
         if (in_round) s.plan.emplace_back(s.pixels());
     }
     if (hybrid && stage == Stage::rounds)
-        s.all.resize(s.pixels());
+        s.covariances = std::vector<PackedCovariance>(s.pixels());
     else if (method != Method::uniform)
-        s.parts.emplace(region.width(), region.height());
+        s.covariances = CovarianceBuffers(region.width(), region.height());
     if (stage == Stage::rounds && method != Method::uniform) s.density.resize(s.pixels());
     std::mt19937 bits(17);
     for (const FilmArray& a : film_arrays(s)) {

@@ -7,9 +7,11 @@
 
 #include "core/error.h"
 #include "film_fixtures.h"
+#include "render/describe_state.h"
 #include "render/develop.h"
 #include "render/film_header.h"
 #include "render/merge.h"
+#include "render/render_memory.h"
 
 namespace covtrace {
 namespace {

@@ -1,3 +1,5 @@
+#include "render/methods/covariance.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -6,8 +8,9 @@
 #include "planner/density.h"
 #include "reconstruction/filter_field.h"
 #include "render/develop.h"
-#include "render/job.h"
+#include "render/rounds.h"
 #include "render/sample_knowledge.h"
+#include "render/scene_occluders.h"
 
 namespace covtrace {
 
@@ -24,7 +27,7 @@ class CovarianceRender {
     explicit CovarianceRender(RenderJob& job) : job_(job), s_(job.state) {
         if (s_.stage == Stage::rounds) return;
         {
-            const PhaseTimer timer(job.monitor, job.phase("spectra"));
+            const PhaseTimer timer(job.monitor, job.seconds(Phase::spectra));
             job.scene.prepare_spectra(job.options.texture_bandwidth);
         }
         occluders_.emplace(job);
@@ -34,8 +37,8 @@ class CovarianceRender {
         trace_rounds(job_, {[this] { return plan(); }, [this] { trace(); }});
         job_.result.statistics.density_factor = factor();
         if (!job_.delivers()) return;
-        job_.monitor.update("reconstruction", RenderJob::kTracingShare, s_.mean_count());
-        const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
+        job_.monitor.update(Phase::reconstruction, RenderJob::kTracingShare, s_.mean_count());
+        const PhaseTimer timer(job_.monitor, job_.seconds(Phase::reconstruction));
         job_.result.image = develop(s_);
     }
 
@@ -51,9 +54,9 @@ class CovarianceRender {
             return true;
         }
         if (!prediction_) {
-            const PhaseTimer timer(job_.monitor, job_.phase("plan"));
+            const PhaseTimer timer(job_.monitor, job_.seconds(Phase::plan));
             const double start = job_.monitor.elapsed();
-            prediction_ = preintegrated(smoothed(merge(*s_.parts)));
+            prediction_ = preintegrated(smoothed(merge(s_.parts())));
             job_.reserve(6 * (job_.monitor.elapsed() - start));
         }
         if (has_enough()) return false;
@@ -66,7 +69,7 @@ class CovarianceRender {
         const double target = job_.plan_round(std::min(end, enough));
         if (target >= enough) tell_factor(settings, *job_.options.density_factor);
         if (!(target > s_.taken)) return false;
-        const PhaseTimer timer(job_.monitor, job_.phase("plan"));
+        const PhaseTimer timer(job_.monitor, job_.seconds(Phase::plan));
         std::vector<float> density = relative_counts(settings);
         const int64_t total = std::llround(target * double(job_.pixels()));
         const uint32_t most = most_samples(target);
@@ -142,9 +145,9 @@ class CovarianceRender {
 
     void trace() {
         const bool radiance = s_.stage == Stage::rounds;
-        const char* name = radiance ? "radiance" : "covariance";
-        const PhaseTimer timer(job_.monitor, job_.phase(name));
-        const PassProgress progress = job_.reporter(name, s_.taken, s_.target);
+        const Phase phase = radiance ? Phase::radiance : Phase::covariance;
+        const PhaseTimer timer(job_.monitor, job_.seconds(phase));
+        const PassProgress progress = job_.reporter(phase, s_.taken, s_.target);
         auto& statistics = job_.result.statistics;
         if (radiance)
             job_.counted(statistics.radiance, radiance_pass(job_.context, s_.films[0], s_.plan[0],
@@ -153,7 +156,7 @@ class CovarianceRender {
             job_.counted(statistics.covariance,
                          covariance_pass(job_.context, occluders_->view(),
                                          job_.options.brdf_covariance, s_.films[0], s_.plan[0],
-                                         {*s_.parts, {}, s_.weight_limit.value_or(kInfinity)},
+                                         {s_.parts(), {}, s_.weight_limit.value_or(kInfinity)},
                                          job_.monitor, progress));
     }
 

@@ -1,3 +1,5 @@
+#include "render/methods/hybrid.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -7,9 +9,9 @@
 #include "reconstruction/hybrid.h"
 #include "reconstruction/luminance.h"
 #include "render/develop.h"
-#include "render/job.h"
-#include "render/methods/hybrid.h"
+#include "render/rounds.h"
 #include "render/sample_knowledge.h"
+#include "render/scene_occluders.h"
 #include "render/timed_denoiser.h"
 #include "render/unmet_emitters.h"
 
@@ -28,12 +30,12 @@ class HybridRender {
     explicit HybridRender(RenderJob& job) : job_(job), s_(job.state) {
         for (uint32_t k = 0; k < 2; ++k) contexts_.push_back(half_context(job.context, k));
         if (job.options.denoiser)
-            denoiser_.emplace(*job.options.denoiser, job.monitor, job.phase("denoise"),
-                              job.phase("reconstruction"));
+            denoiser_.emplace(*job.options.denoiser, job.monitor, job.seconds(Phase::denoise),
+                              job.seconds(Phase::reconstruction));
         if (job.options.error) unmet_ = UnmetEmitters(job.context, job.region);
         if (s_.stage == Stage::rounds) return;
         {
-            const PhaseTimer timer(job_.monitor, job_.phase("spectra"));
+            const PhaseTimer timer(job_.monitor, job_.seconds(Phase::spectra));
             job_.scene.prepare_spectra(job_.options.texture_bandwidth);
         }
         occluders_.emplace(job_);
@@ -49,7 +51,7 @@ class HybridRender {
         reconstruct_image(true);
         if (is_denoiser_too_slow_)
             image_->denoiser_failure = "it takes longer than the time that was left";
-        const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
+        const PhaseTimer timer(job_.monitor, job_.seconds(Phase::reconstruction));
         const Reconstructed known{*image_, *prediction_};
         job_.result.image = develop(s_, denoiser(), known);
     }
@@ -129,7 +131,7 @@ class HybridRender {
     /// What the covariances say.
     void predict() {
         if (prediction_) return;
-        const PhaseTimer timer(job_.monitor, job_.phase("plan"));
+        const PhaseTimer timer(job_.monitor, job_.seconds(Phase::plan));
         prediction_ = preintegrated(smoothed(s_.covariance()));
     }
 
@@ -150,26 +152,26 @@ class HybridRender {
         for (size_t k = 0; k < 2; ++k) trace_radiance(k);
     }
 
-    PassProgress reporter(const char* name, size_t k) {
+    PassProgress reporter(Phase phase, size_t k) {
         const double step = 0.5 * (s_.target - s_.taken);
-        return job_.reporter(name, s_.taken + double(k) * step, s_.taken + double(k + 1) * step);
+        return job_.reporter(phase, s_.taken + double(k) * step, s_.taken + double(k + 1) * step);
     }
 
     void trace_covariance(size_t k, std::span<const uint32_t> counts,
                           std::span<const uint32_t> earlier) {
-        const PhaseTimer timer(job_.monitor, job_.phase("covariance"));
+        const PhaseTimer timer(job_.monitor, job_.seconds(Phase::covariance));
         job_.counted(job_.result.statistics.covariance,
                      covariance_pass(contexts_[k], occluders_->view(), job_.options.brdf_covariance,
                                      s_.films[k], counts,
-                                     {*s_.parts, earlier, s_.weight_limit.value_or(kInfinity)},
-                                     job_.monitor, reporter("covariance", k)));
+                                     {s_.parts(), earlier, s_.weight_limit.value_or(kInfinity)},
+                                     job_.monitor, reporter(Phase::covariance, k)));
     }
 
     void trace_radiance(size_t k) {
-        const PhaseTimer timer(job_.monitor, job_.phase("radiance"));
+        const PhaseTimer timer(job_.monitor, job_.seconds(Phase::radiance));
         job_.counted(job_.result.statistics.radiance,
                      radiance_pass(contexts_[k], s_.films[k], s_.plan[k], job_.monitor,
-                                   reporter("radiance", k)));
+                                   reporter(Phase::radiance, k)));
     }
 
     /// What the planner may know for one half: the samples of the other one.
@@ -182,7 +184,7 @@ class HybridRender {
     }
 
     bool plan_samples(double target) {
-        const PhaseTimer timer(job_.monitor, job_.phase("plan"));
+        const PhaseTimer timer(job_.monitor, job_.seconds(Phase::plan));
         const double most = std::clamp(0.5 * job_.most_samples(target), 1.0, 4e9);
         std::array<std::vector<float>, 2> density{density_from(s_.films[1]),
                                                   density_from(s_.films[0])};
@@ -209,8 +211,8 @@ class HybridRender {
         if (image_) return;
         predict();
         const double count = s_.mean_count();
-        job_.monitor.update("reconstruction", job_.fraction(count), count);
-        const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
+        job_.monitor.update(Phase::reconstruction, job_.fraction(count), count);
+        const PhaseTimer timer(job_.monitor, job_.seconds(Phase::reconstruction));
         Halves halves = halves_of(s_.films);
         // The layers of the image have no need of what only weights and plans are made of.
         if (last)
@@ -264,7 +266,7 @@ class HybridRender {
         const PixelBounds all = job_.region;
         const PixelBounds part{all.x0, all.y0, std::min(all.x1, all.x0 + kSide),
                                std::min(all.y1, all.y0 + kSide)};
-        const PhaseTimer timer(job_.monitor, job_.phase("reconstruction"));
+        const PhaseTimer timer(job_.monitor, job_.seconds(Phase::reconstruction));
         const double start = job_.monitor.elapsed();
         std::vector<Film> films(2, Film(part, film_parts(Method::hybrid)));
         std::vector<Covariance2> spectrum;

@@ -1,4 +1,4 @@
-/// The samples of `--method hybrid` without their reconstruction, for tools that compare several.
+/// `--method hybrid`: prediction and samples together (docs/internals/hybrid.md).
 #pragma once
 
 #include "prediction/covariance_buffer.h"
@@ -7,6 +7,10 @@
 
 namespace covtrace {
 
+/// Leaves the image, unless it is only a shard's, and statistics in the job's result.
+void render_hybrid(RenderJob& job);
+
+/// The samples without their reconstruction, for tools that compare several.
 struct HybridSamples {
     std::vector<Film> film;  ///< both halves
     Prediction prediction;   ///< smoothed, as the reconstruction uses it

@@ -1,11 +1,13 @@
+#include "render/methods/uniform.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/vec.h"
 #include "planner/density.h"
 #include "render/develop.h"
-#include "render/job.h"
 #include "render/round.h"
+#include "render/rounds.h"
 
 namespace covtrace {
 
@@ -43,11 +45,11 @@ void render_uniform(RenderJob& job) {
     RenderState& s = job.state;
     trace_rounds(job, {[&] { return plan_uniform(job); },
                        [&] {
-                           const PhaseTimer timer(job.monitor, job.phase("radiance"));
+                           const PhaseTimer timer(job.monitor, job.seconds(Phase::radiance));
                            job.counted(
                                job.result.statistics.radiance,
                                radiance_pass(job.context, s.films[0], s.plan[0], job.monitor,
-                                             job.reporter("radiance", s.taken, s.target)));
+                                             job.reporter(Phase::radiance, s.taken, s.target)));
                        }});
     if (job.delivers()) job.result.image = develop(s);
 }

@@ -1,0 +1,13 @@
+/// A film in words, for `covtrace info`.
+#pragma once
+
+#include <string>
+
+#include "render/render_state.h"
+
+namespace covtrace {
+
+/// Several lines for people: the method, where it stands, what it was asked for, what it holds.
+std::string describe(const RenderState& state);
+
+}  // namespace covtrace

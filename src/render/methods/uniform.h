@@ -1,0 +1,11 @@
+/// `--method uniform`: the plain path tracer.
+#pragma once
+
+#include "render/job.h"
+
+namespace covtrace {
+
+/// Leaves the image, unless it is only a shard's, and statistics in the job's result.
+void render_uniform(RenderJob& job);
+
+}  // namespace covtrace

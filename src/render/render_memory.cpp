@@ -1,0 +1,74 @@
+#include "render/render_memory.h"
+
+#include <algorithm>
+
+#include "prediction/packed_covariance.h"
+#include "reconstruction/patch_distance.h"
+#include "render/overrides.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Layers and the buffers of the reconstruction, bytes per pixel: `bench/film_cost memory`.
+size_t image_bytes(Method method) {
+    return method == Method::uniform ? 68 : method == Method::covariance ? 396 : 488;
+}
+
+/// The reconstruction's planes go on beyond the image, by the reach of its filters and by whole
+/// blocks of patches: bytes, measured on images of one row and of one column, where they are most
+/// of it.
+size_t border_bytes(Method method, const PixelBounds& region) {
+    if (method != Method::hybrid) return 0;
+    constexpr size_t kReach = 2 * 13, kBytes = 160;
+    const size_t width = size_t(region.width()), height = size_t(region.height());
+    const size_t all = (width + kReach + size_t(kLongestPatchRow)) *
+                       (height + kReach + size_t(kLargestPatchBlock));
+    return kBytes * (all - width * height);
+}
+
+/// What a denoiser adds to that. While it works the candidates are not there, of which only its own
+/// stays.
+size_t denoiser_bytes(const Denoiser& denoiser, size_t pixels) {
+    constexpr size_t kMeanwhile = 310, kCandidate = 36;
+    const size_t peak = denoiser.memory(pixels) + kMeanwhile * pixels,
+                 otherwise = image_bytes(Method::hybrid) * pixels;
+    return std::max(peak, otherwise + kCandidate * pixels) - otherwise;
+}
+
+}  // namespace
+
+size_t film_bytes_per_pixel(Method method, FilmParts uniform_parts) {
+    constexpr size_t kPlan = sizeof(uint32_t), kDensity = sizeof(float),
+                     kCovariance = sizeof(PackedCovariance),
+                     kFeatureRecords =
+                         sizeof(PathFeatures) + sizeof(FeatureSquares) + sizeof(uint32_t);
+    switch (method) {
+        case Method::uniform:
+            return sizeof(FilmPixel) + (uniform_parts.in_view ? sizeof(Rgb) : 0) +
+                   (uniform_parts.features ? kFeatureRecords : 0) + kPlan;
+        case Method::covariance:
+            return sizeof(FilmPixel) + sizeof(Rgb) + kPlan + kDensity + 2 * kCovariance;
+        case Method::hybrid:
+            break;
+    }
+    const size_t half = sizeof(FilmPixel) + kFeatureRecords + kPlan;
+    // Up to the end of the pilot both parts of the light; then their sum, and densities.
+    return 2 * half + std::max(2 * kCovariance, kCovariance + kDensity);
+}
+
+std::map<std::string, size_t> render_memory(const FilmDescription& film,
+                                            const RenderOptions& options) {
+    const size_t kept =
+        film_bytes_per_pixel(options.method, {options.emitters_apart, options.features});
+    const PixelBounds region = render_region(film);
+    const size_t pixels = size_t(region.width()) * size_t(region.height());
+    std::map<std::string, size_t> bytes{
+        {"film", kept * pixels},
+        {"image", image_bytes(options.method) * pixels + border_bytes(options.method, region)}};
+    if (options.method == Method::hybrid && options.denoiser)
+        bytes["denoiser"] = denoiser_bytes(*options.denoiser, pixels);
+    return bytes;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,22 @@
+/// What a render takes of memory beside its scene, told before it begins.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+
+#include "render/film.h"
+#include "render/options.h"
+
+namespace covtrace {
+
+/// Bytes that a render keeps for each pixel, plan and prediction included, where they are most.
+/// `uniform_parts`: what `uniform` keeps beside its pixels.
+size_t film_bytes_per_pixel(Method method, FilmParts uniform_parts = {});
+
+/// Bytes that a render takes beside its scene: "film", with plan and prediction, and "image": the
+/// layers and the buffers of the reconstruction, as measured; "denoiser" where there is one.
+std::map<std::string, size_t> render_memory(const FilmDescription& film,
+                                            const RenderOptions& options);
+
+}  // namespace covtrace
