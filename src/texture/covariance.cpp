@@ -8,12 +8,13 @@
 namespace covtrace {
 namespace {
 
-/// Frequencies of an edge reach the point at distance e up to 1 / (2 pi beta e).
+/// Share of an edge's distance e that a filter may reach: with an edge at the distance e a point
+/// sees frequencies up to 1 / (2 pi beta e).
 constexpr float kEdgeBeta = 0.5f;
-/// Variations below this share of the mean count in proportion: smoothing them away changes less
-/// than the noise that the smoothing removes.
+/// Contrast, standard deviation over mean, from which on a variation counts in full. A lower one
+/// counts in proportion: smoothing it away changes less than the noise that the smoothing removes.
 constexpr float kFullContrast = 0.1f;
-/// Distances below this part of a checkerboard's cell or an image count as this.
+/// Least distance to an edge, as a part of a checkerboard's cell or of an image.
 constexpr float kMinEdgeDistance = 1e-5f;
 
 SpatialCovariance2 operator+(SpatialCovariance2 a, SpatialCovariance2 b) {
@@ -23,12 +24,13 @@ SpatialCovariance2 operator*(SpatialCovariance2 a, float w) {
     return {a.ss * w, a.st * w, a.tt * w};
 }
 
-/// Of textures whose parameters are near the largest numbers there are, none.
+/// Replaces a covariance that is not finite by none: parameters of textures may be near the largest
+/// numbers there are.
 SpatialCovariance2 finite(SpatialCovariance2 c) {
     return std::isfinite(c.ss + c.st + c.tt) ? c : SpatialCovariance2{};
 }
 
-/// J^T T J with J = d(s, t)/d(u, v).
+/// The covariance `c` over (s, t), expressed over (u, v): J^T c J with J = d(s, t)/d(u, v).
 SpatialCovariance2 to_uv(SpatialCovariance2 c, const StGradient& g) {
     const auto form = [&](Vec2 a, Vec2 b) {
         return a.x * (c.ss * b.x + c.st * b.y) + a.y * (c.st * b.x + c.tt * b.y);
@@ -37,7 +39,8 @@ SpatialCovariance2 to_uv(SpatialCovariance2 c, const StGradient& g) {
     return {form(du, du), form(du, dv), form(dv, dv)};
 }
 
-/// An edge across the coordinate with this gradient, `distance` away in units of the coordinate.
+/// The covariance over (u, v) that comes from an edge across a texture coordinate: `distance` away
+/// in units of the coordinate, whose gradient by (u, v) is given.
 SpatialCovariance2 edge(float distance, Vec2 gradient, float footprint_uv) {
     const float e = std::max({distance, footprint_uv * length(gradient), kMinEdgeDistance});
     const float variance = 1 / sqr(2 * kPi * kEdgeBeta * e);
@@ -45,7 +48,7 @@ SpatialCovariance2 edge(float distance, Vec2 gradient, float footprint_uv) {
             variance * gradient.y * gradient.y};
 }
 
-/// Where a mirrored image shows its columns or rows in reverse order.
+/// Whether a mirrored image shows its columns (or rows) in reverse order at the coordinate `v`.
 bool runs_back(float v) {
     return std::floor(v) != 2 * std::floor(0.5f * v);
 }
@@ -54,8 +57,8 @@ float distance_to_integer(float v) {
     return std::abs(v - std::round(v));
 }
 
-/// Of a window with a's and b's in equal shares: standard deviation over mean, in units of the
-/// contrast from which on it counts in full.
+/// Contrast of two colours in equal shares, such as a checkerboard's: their standard deviation over
+/// their mean, in units of kFullContrast.
 float relative_contrast(Rgb a, Rgb b) {
     const Rgb difference(std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b));
     const float d = luminance(difference);
@@ -68,12 +71,12 @@ float contrast_weight(Rgb a, Rgb b) {
     return std::min(1.0f, relative_contrast(a, b));
 }
 
-/// The weight of such a contrast between unit cells once a pixel has smoothed it: a Gaussian with a
-/// deviation of half a pixel leaves this much of their fundamental wave, two cells long. `gradient`
-/// takes uv to cells.
+/// The weight of a contrast between neighbouring unit cells once a pixel has smoothed it: a
+/// Gaussian with a deviation of half a pixel leaves this much of the cells' fundamental wave, which
+/// is two cells long. `gradient` takes uv to cells.
 float kept_weight(float contrast, Vec2 gradient, float footprint_uv) {
     const float exponent = 0.5f * sqr(kPi * footprint_uv) * dot(gradient, gradient);
-    // exp(-x) >= 1 - x: most contrasts count in full whatever it is.
+    // Since exp(-x) >= 1 - x, most contrasts are seen to count in full without the exponential.
     if (contrast * (1 - exponent) >= 1) return 1;
     return std::min(1.0f, contrast * std::exp(-exponent));
 }
@@ -107,7 +110,8 @@ struct Analyser {
         c.st *= turns;
         SpatialCovariance2 result = to_uv(c, gradient);
         if (image.wrap() == TextureImage::Wrap::black) {
-            // The image ends in hard edges that its own analysis, on clamped values, doesn't see.
+            // An image without repetition ends in hard edges, which its own analysis, on clamped
+            // values, doesn't see.
             result = result +
                      edge(std::min(std::abs(st.x), std::abs(1 - st.x)), gradient.s, footprint_uv) +
                      edge(std::min(std::abs(st.y), std::abs(1 - st.y)), gradient.t, footprint_uv);
@@ -142,10 +146,11 @@ struct Analyser {
         return edges + of(active_texture(node, at));
     }
 
-    /// Varies as slowly as the surface bends.
+    /// A texture that depends on the normal alone varies as slowly as the surface bends: no
+    /// covariance.
     SpatialCovariance2 operator()(const AsideTexture&) const { return {}; }
 
-    /// The nearest rim counts as a straight edge.
+    /// Dots: the nearest rim counts as a straight edge.
     SpatialCovariance2 operator()(const DotsTexture& node) const {
         const Vec2 st = map_to_st(node.mapping, at);
         const StGradient gradient = st_gradient(node.mapping, at, dpdu, dpdv);
@@ -170,7 +175,7 @@ struct Analyser {
                edge(nearest, across, footprint_uv) * kept_weight(contrast, across, footprint_uv);
     }
 
-    /// A ramp varies as fast as it rises, relative to its value.
+    /// Bilinear ramps vary as fast as they rise, relative to their value.
     SpatialCovariance2 operator()(const BilerpTexture& node) const {
         const Vec2 st = map_to_st(node.mapping, at);
         const float value = std::abs(luminance(bilerp(node, st)));
@@ -186,8 +191,8 @@ struct Analyser {
         return to_uv({s * s, s * t, t * t}, st_gradient(node.mapping, at, dpdu, dpdv));
     }
 
-    /// Along each axis of texture space the mean square frequency of the octaves that a pixel
-    /// shows, by their energy: noise is alike everywhere and in all directions.
+    /// Noise is alike everywhere and in all directions: along each axis of texture space it has the
+    /// mean square frequency, weighted by energy, of the octaves that a pixel shows.
     SpatialCovariance2 operator()(const NoiseTexture& node) const {
         using Kind = NoiseTexture::Kind;
         const Vec3 pu = node.texture_from_world.vector(dpdu),
@@ -199,8 +204,9 @@ struct Analyser {
         const NoiseEnergy energy = noise_energy(pixel, octaves);
         const SpatialCovariance2 all = {dot(pu, pu), dot(pu, pv), dot(pv, pv)};
         if (node.kind == Kind::marble) {
-            // What the colours make of a phase that runs along y and is bent by the noise: the
-            // root mean square slope of marble's luminance, but for its jumps, over its deviation.
+            // Marble's colours follow a phase that runs along y and is bent by the noise. The
+            // harmonic is the root mean square slope of marble's luminance, but for its jumps, over
+            // its deviation.
             constexpr float kHarmonic = 8.4f;
             const float square = sqr(kHarmonic * node.scale / (2 * kPi));
             const SpatialCovariance2 along{pu.y * pu.y, pu.y * pv.y, pv.y * pv.y};
@@ -208,18 +214,18 @@ struct Analyser {
                           all * (square * sqr(2 * kPi * node.variation) * energy.slope));
         }
         if (!(energy.all > 0)) return {};
-        // Of the absolute value, as much slope is left, but 1 - 2 / pi of the variance.
+        // The absolute value of noise has as much slope as noise, but 1 - 2 / pi of its variance.
         const float folded = node.kind == Kind::wrinkled ? 1 / (1 - 2 * kInvPi) : 1.0f;
         return finite(all * (folded * energy.slope / energy.all));
     }
 
-    /// A product of signals: their spectra are convolved, their covariances add.
+    /// Scaling is a product of signals: their spectra are convolved, so their covariances add.
     SpatialCovariance2 operator()(const ScaleNode& node) const {
         return of(node.tex) + of(node.scale);
     }
 
-    /// A sum of two signals, each weighted by what it contributes here. The amount multiplies their
-    /// difference, so it counts as much as an edge between the two would.
+    /// Mixing is a sum of two signals, each weighted by what it contributes here. The amount
+    /// multiplies their difference, so it counts as much as an edge between the two would.
     SpatialCovariance2 operator()(const MixNode& node) const {
         const SpatialCovariance2 first = of(node.tex1), second = of(node.tex2);
         const bool varies = first.ss + first.tt + second.ss + second.tt > 0;

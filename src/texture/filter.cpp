@@ -27,7 +27,7 @@ Value TextureImage::decoded(const Taps& taps, [[maybe_unused]] Channel channel) 
 
 float TextureImage::level_of(float extent) const {
     const float texels = extent * std::max(levels_[0].texels.x, levels_[0].texels.y);
-    // Not a number, or below a texel.
+    // Level 0 serves extents below a texel, and those that are not a number.
     if (!(texels > 1)) return 0;
     return std::min(std::log2(texels), float(levels_.size() - 1));
 }
@@ -41,7 +41,8 @@ Value TextureImage::ellipse(Vec2 st, const ImageFootprint& footprint, size_t lev
     const float x = at.x * l.texels.x - 0.5f, y = at.y * l.texels.y - 0.5f;
     const Vec2 a{footprint.a.x * l.texels.x, footprint.a.y * l.texels.y},
         b{footprint.b.x * l.texels.x, footprint.b.y * l.texels.y};
-    // A x^2 + B x y + C y^2 < 1, widened by a texel's radius (Heckbert 1989, section 3.5.8).
+    // The ellipse is A x^2 + B x y + C y^2 < 1, widened by a texel's radius (Heckbert 1989,
+    // "Fundamentals of Texture Mapping and Image Warping", section 3.5.8).
     float A = a.y * a.y + b.y * b.y + 1, B = -2 * (a.x * a.y + b.x * b.y),
           C = a.x * a.x + b.x * b.x + 1;
     const float scale = 1 / (A * C - 0.25f * B * B);
@@ -56,7 +57,7 @@ Value TextureImage::ellipse(Vec2 st, const ImageFootprint& footprint, size_t lev
             const float dx = float(i) - x, dy = float(j) - y;
             const float r2 = A * dx * dx + B * dx * dy + C * dy * dy;
             if (!(r2 < 1)) continue;
-            // A Gaussian that falls to zero at the rim.
+            // The filter is a Gaussian that falls to zero at the ellipse's rim.
             const float weight = std::exp(-2 * r2) - std::exp(-2.0f);
             Taps taps;
             taps.level = level;
@@ -87,7 +88,8 @@ Value TextureImage::filtered(Vec2 st, Filter filter, ImageFootprint footprint, f
         }
         if (shorter > 0 && level_of(longer) > 0) {
             const float level = level_of(shorter), fine = std::floor(level);
-            // No level is coarser, however many repeats of the image the ellipse covers.
+            // The coarsest level serves all larger ellipses, however many repeats of the image they
+            // cover.
             if (level >= float(levels_.size() - 1))
                 return decoded<Value>(bilinear(st, levels_.size() - 1), channel);
             const Value first = ellipse<Value>(st, footprint, size_t(fine), channel);

@@ -10,7 +10,8 @@
 namespace covtrace {
 namespace {
 
-/// 1 in cells with an odd coordinate, else 0; exact for coordinates of any size.
+/// Parity of the cell that holds `v`: 1 where its coordinate is odd, else 0; exact for coordinates
+/// of any size.
 int odd(float v) {
     const float cell = std::floor(v);
     return cell - 2 * std::floor(0.5f * cell) == 1 ? 1 : 0;
@@ -51,7 +52,7 @@ struct Evaluator {
         return eval(graph, active_texture(node, at), at);
     }
     Rgb operator()(const AsideTexture& node) const {
-        // Without a normal half, as the mean over all directions.
+        // A point without a normal gets one half, the mean over all directions.
         if (at.normal == Vec3{}) return Rgb(0.5f);
         return Rgb(1 - std::min(1.0f, std::abs(dot(at.normal, node.direction))));
     }
@@ -81,7 +82,7 @@ struct Evaluator {
             }
         }
     }
-    /// Parameters near the largest numbers there are make values that are none.
+    /// Non-finite values, which parameters near the largest numbers there are give, become 0.
     static Rgb grey(float value) { return Rgb(std::isfinite(value) ? value : 0.0f); }
     Rgb operator()(const ScaleNode& node) const {
         const Rgb scale = eval(graph, node.scale, at);

@@ -37,7 +37,8 @@ struct ScaleNode {
 };
 struct MixNode {
     TextureId tex1 = -1, tex2 = -1, amount = -1;
-    /// Of the mixture of both textures' means by an image as the amount; -1 for other amounts.
+    /// Index of the spectrum of the mixture of both textures' means where the amount is an image;
+    /// -1 for other amounts.
     int mixture_spectrum = -1;
 };
 using TextureNode = std::variant<ConstantNode, ImageNode, CheckerboardNode, ScaleNode, MixNode,
@@ -50,18 +51,19 @@ struct TextureGraph {
     std::vector<ImageSpectrum> spectra;
 };
 
-/// Where images are looked up: their first row is at the top, t = 1.
+/// The place in an image that (s, t) means: an image's first row is at the top, t = 1.
 constexpr Vec2 flip_t(Vec2 st) {
     return {st.x, 1 - st.y};
 }
-/// What an image texture makes of a decoded value.
+/// The value of an image texture where its image has the given decoded value: scaled, then inverted
+/// or compared with the cutoff.
 constexpr Rgb image_value(const ImageNode& node, Rgb decoded) {
     const Rgb v = decoded * node.scale;
     if (node.cutoff) return Rgb(v.r >= *node.cutoff ? 1.0f : 0.0f);
     if (!node.invert) return v;
     return {std::max(0.0f, 1 - v.r), std::max(0.0f, 1 - v.g), std::max(0.0f, 1 - v.b)};
 }
-/// What it makes of one texel, or of a mean of several.
+/// The value of an image texture from one texel of `image`, or from several with weights (Taps).
 template <typename Texels>
 Rgb image_value_at(const ImageNode& node, const TextureImage& image, const Texels& texels) {
     return image_value(
@@ -69,18 +71,19 @@ Rgb image_value_at(const ImageNode& node, const TextureImage& image, const Texel
 }
 /// The checkerboard's texture at this point: tex1 where the sum of the cell's coordinates is even.
 TextureId active_texture(const CheckerboardNode& node, const TexturePoint& at);
-/// The texture's value at (s, t).
+/// Bilinear interpolation of the four corners' values at (s, t).
 Rgb bilerp(const BilerpTexture& node, Vec2 st);
-/// The texture in the dot, or around the dots.
+/// The texture that the dots show at this point: the one inside of a dot, or the one around the
+/// dots.
 TextureId active_texture(const DotsTexture& node, const TexturePoint& at);
 
 Rgb eval(const TextureGraph& graph, TextureId id, const TexturePoint& at);
 
-/// As if an edge along u and one along v went through every point: what TextureBandwidth::highest
-/// takes for every texture.
+/// The covariance per (u, v) of one edge along u and one along v through every point:
+/// TextureBandwidth::highest takes it for every texture.
 SpatialCovariance2 highest_covariance(float footprint_uv);
 
-/// As TextureStore::uv_covariance.
+/// Covariance of one texture's amplitude spectrum per (u, v): see TextureStore::uv_covariance.
 SpatialCovariance2 uv_covariance(const TextureGraph& graph, TextureId id, const TexturePoint& at,
                                  Vec3 dpdu, Vec3 dpdv, float footprint_uv);
 

@@ -20,7 +20,7 @@ float to_linear(float v, TextureImage::Encoding encoding, float gamma) {
     }
 }
 
-/// Channels to keep; alpha only where it says something.
+/// Number of a raster's channels to keep: alpha is kept only where it is not 1 everywhere.
 size_t kept_channels(const RasterImage& raster) {
     if (raster.channels != 4) return size_t(raster.channels);
     for (size_t i = 3; i < raster.size(); i += 4)
@@ -136,7 +136,8 @@ size_t TextureImage::memory() const {
 Vec2 TextureImage::wrap_st(Vec2 st) const {
     if (wrap_ == Wrap::repeat) return {fraction(st.x), fraction(st.y)};
     if (wrap_ == Wrap::mirror) return {mirrored(st.x), mirrored(st.y)};
-    // More than an image away from the image nothing changes any more.
+    // The lookup is limited to one image's size around the image, beyond which its values don't
+    // change any more.
     return {limit(st.x, -1, 2), limit(st.y, -1, 2)};
 }
 
@@ -151,7 +152,8 @@ void TextureImage::add_tap(Taps& taps, int x, int y, float weight) const {
             if (x < 0 || y < 0 || x >= width || y >= height) return;
             break;
         case Wrap::octahedral_sphere:
-            // Crossing a border continues, mirrored, at the opposite half of the same border.
+            // On the octahedral sphere a path across a border continues, mirrored, at the opposite
+            // half of the same border.
             if (x < 0 || x >= width) {
                 x = x < 0 ? -1 - x : 2 * width - 1 - x;
                 y = height - 1 - y;

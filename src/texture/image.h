@@ -14,8 +14,8 @@
 
 namespace covtrace {
 
-/// The ellipse that a pixel covers around a place in an image: its half axes in (s, t). All zero:
-/// a point.
+/// The ellipse that a pixel covers around a place in an image, by its half axes in (s, t). All zero
+/// stands for a point.
 struct ImageFootprint {
     Vec2 a, b;
 };
@@ -23,16 +23,17 @@ struct ImageFootprint {
 /// The coordinate in [0, 1] whose texel a mirrored image shows at v: it runs back and forth.
 float mirrored(float v);
 
-/// Texels of the first row lie at t = 0 here: callers flip t where they mean a texture's.
+/// One image with its mip levels. Texels of the first row lie at t = 0 here: callers flip t where
+/// they mean a texture's.
 class TextureImage {
   public:
     using Encoding = ImageTexture::Encoding;
     using Wrap = ImageTexture::Wrap;
     using Filter = ImageTexture::Filter;
 
-    /// Of one level, which is the raster's own memory where that can be. 8-bit rasters stay 8-bit.
-    /// `encoding` applies to all channels, alpha included, as in pbrt-v4. Colours are taken out of
-    /// `space`.
+    /// Makes an image of one level, the finest. It takes over the raster's memory where that can
+    /// be; 8-bit rasters stay 8-bit. `encoding` applies to all channels, alpha included, as in
+    /// pbrt-v4. Colours are taken out of `space`.
     TextureImage(RasterImage raster, Encoding encoding, float gamma, Wrap wrap,
                  ColourSpace space = ColourSpace::srgb);
 
@@ -49,13 +50,14 @@ class TextureImage {
     /// The four texels whose centres surround st.
     Taps bilinear(Vec2 st, size_t level = 0) const;
 
-    /// Decoded colour, linear Rec.709.
+    /// Colour, decoded and linear, with the primaries of Rec.709.
     Rgb color(const Taps& taps) const;
     using Channel = ImageTexture::Channel;
     /// Decoded value of a float texture, whatever the colour space. `automatic`: alpha where there
     /// is one, else the mean of R, G and B. The alpha of an image without is 1.
     float value(const Taps& taps, Channel channel = Channel::automatic) const;
-    /// Of the finest level.
+    /// The colour, and below it the float value, of one texel of the finest level, counted row by
+    /// row.
     Rgb color(size_t texel) const { return color_at(levels_[0], texel); }
     float value(size_t texel, Channel channel = Channel::automatic) const {
         return value_at(levels_[0], texel, channel);
@@ -75,10 +77,11 @@ class TextureImage {
     void build_levels();
     /// Bytes of the finest level that is in memory; 0 where none is.
     size_t finest_in_memory() const;
-    /// Moves that level to the disk. All lookups give the same bits as before.
+    /// Moves the finest level that is in memory to the disk. All lookups give the same bits as
+    /// before.
     void move_finest_to(const std::shared_ptr<TexelPages>& pages);
 
-    /// Of the finest level.
+    /// Size of the finest level in texels.
     int width() const { return levels_[0].width; }
     int height() const { return levels_[0].height; }
     size_t level_count() const { return levels_.size(); }
@@ -91,12 +94,14 @@ class TextureImage {
     struct Level {
         int width = 0, height = 0;
         Vec2 texels;                 ///< per unit of s and t: not whole where sizes were odd
-        std::vector<uint8_t> bytes;  ///< either these,
-        std::vector<float> floats;   ///< or these, already linear,
-        std::shared_ptr<const TexelPages> pages;  ///< or one of both here, in square tiles
-        size_t first_page = 0;                    ///< tiles row by row, one to a page
+        std::vector<uint8_t> bytes;  ///< encoded texels: one of the three stores in use
+        std::vector<float> floats;   ///< texels already linear: the second store
+        /// Encoded or linear texels in square tiles on the disk: the third store. Tiles lie row by
+        /// row, one to a page.
+        std::shared_ptr<const TexelPages> pages;
+        size_t first_page = 0;  ///< page of the first tile
     };
-    /// One texel's channels: of one of both kinds.
+    /// The channels of one texel: one of the two pointers is set.
     struct Texel {
         const uint8_t* bytes = nullptr;
         const float* floats = nullptr;
@@ -121,7 +126,7 @@ class TextureImage {
     int tile_bits() const;
     /// The byte that decodes to the value nearest to `v`.
     uint8_t encode(float v) const;
-    /// Of a level in memory.
+    /// The decoded value at the index `i` (row, column, channel) of a level that is in memory.
     float channel(const Level& level, size_t i) const {
         return is_8bit_ ? decode_[level.bytes[i]] : level.floats[i];
     }
@@ -147,7 +152,8 @@ class TextureImage {
     ColourSpace space_ = ColourSpace::srgb;
     std::vector<Level> levels_;  ///< the finest first; at least one
     std::array<float, 256> decode_{};
-    /// Of every value j / kEncodeSteps the first byte that decodes to no less.
+    /// The first byte that decodes to at least j / kEncodeSteps, for every j: where the search of
+    /// `encode` begins.
     static constexpr size_t kEncodeSteps = 1024;
     std::array<uint8_t, kEncodeSteps + 1> encode_from_{};
 };

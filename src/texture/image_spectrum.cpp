@@ -20,7 +20,7 @@ namespace {
 constexpr float kMinEigenvalueRatio = 0.1f;
 using Covariance = SpatialCovariance2;  // in cycles^2 per analysed texel^2 within this file
 
-/// Raises the smaller eigenvalue where it is too small.
+/// Raises the smaller eigenvalue to kMinEigenvalueRatio of the larger one.
 Covariance bounded_anisotropy(Covariance c) {
     const float half_trace = 0.5f * (c.ss + c.tt);
     const float radius = std::sqrt(0.25f * sqr(c.ss - c.tt) + c.st * c.st);
@@ -41,7 +41,7 @@ inline AxisTaps axis_taps(float coordinate, float cells_per_unit, int n, bool re
     c = c > 0 ? std::min(c, 1.0f) : 0.0f;
     const float x = c * cells_per_unit - 0.5f;
     const float below = std::floor(x);
-    // At most one cell beyond either end.
+    // Bilinear taps lie at most one cell beyond either end of the axis.
     const int first = std::min(int(below), n - 1), second = first + 1;
     return {first >= 0 ? first : (repeats ? n - 1 : 0), second < n ? second : (repeats ? 0 : n - 1),
             x - below};
@@ -60,7 +60,8 @@ class ImageSpectrum::Scale {
           texels_per_unit_(texels_per_unit),
           mean_(mean) {}
 
-    /// Bilinear.
+    /// The covariance around (s, t), interpolated bilinearly between cells; analyses the cells that
+    /// it needs.
     Covariance at(float s, float t) const {
         prepared_([this] { prepare(); });
         const ScalarField& image = values_[0];
@@ -94,11 +95,11 @@ class ImageSpectrum::Scale {
     }
 
   private:
-    /// Cells, each of two by two texels, that are made at once.
+    /// Side of the tiles that are analysed at once, in cells of two by two texels.
     static constexpr int kTile = WindowEstimates::kTile / 2;
     struct Tile {
         std::once_flag once;
-        std::atomic<bool> is_made{false};  // the same, cheaper to ask
+        std::atomic<bool> is_made{false};  // whether `once` is done, cheaper to ask
     };
 
     void prepare() const {
@@ -106,12 +107,12 @@ class ImageSpectrum::Scale {
         for (float& v : squares[0].values) v *= v;
         for (size_t i = 1; i < values_.size(); ++i) squares.push_back(halved(squares.back()));
         squares[0] = {};
-        levels_.clear();  // of an attempt that threw
+        levels_.clear();  // left over from an attempt that threw
         const WindowEstimates* coarser = nullptr;
         for (size_t i = values_.size(); i-- > 0;) {
             std::vector<float> windows{2};
-            // The narrowest window is as wide as a cell of two by two texels, so that less would
-            // tell no more.
+            // The finest level needs no window narrower than a cell of two by two texels: such a
+            // one would tell no more.
             if (i == 0) windows.push_back(1);
             coarser = &levels_.emplace_front(values_[i], std::move(squares[i]),
                                              float(uint64_t{1} << i), mean_, windows, coarser);
@@ -171,9 +172,11 @@ class ImageSpectrum::Scale {
 };
 
 struct ImageSpectrum::Pyramid {
-    std::vector<ScalarField> values;  ///< about the mean, each of half the resolution of the last
-    std::deque<Scale> scales;         ///< of the first of them on
-    Vec2 texels_per_unit;             ///< of the first
+    /// Luminance about the mean, each of half the resolution of the last.
+    std::vector<ScalarField> values;
+    /// Analysis by resolution: the first of all `values`, the next without the finest.
+    std::deque<Scale> scales;
+    Vec2 texels_per_unit;  ///< texels of the finest resolution per unit of s and t
 };
 
 ImageSpectrum::ImageSpectrum(std::span<const float> luminance, int width, int height, Wrap wrap) {
@@ -188,7 +191,7 @@ ImageSpectrum::ImageSpectrum(const std::function<float(size_t)>& luminance, int 
     for (size_t i = 0; i < texels; ++i) sum += double(luminance(i));
     const double mean = sum / double(texels);
     const int factor = (std::max(width, height) + kMaxAnalysedSize - 1) / kMaxAnalysedSize;
-    // About the mean, because variances are differences of squares.
+    // Values are taken about the mean, because variances are differences of squares.
     ScalarField field = box_reduced([&](size_t i) { return float(luminance(i) - mean); }, width,
                                     height, wrap != Wrap::clamp, wrap == Wrap::repeat, factor);
 

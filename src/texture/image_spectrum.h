@@ -10,8 +10,8 @@
 
 namespace covtrace {
 
-/// Around each point the image is seen through Gaussian windows of all sizes w = 1, 2, 4 ...
-/// texels. Each gives an estimate
+/// Bandwidth of an image. Around each point it is seen through Gaussian windows of all sizes w = 1,
+/// 2, 4 ... texels. Each window gives an estimate
 ///
 ///     T_w = C / (2 pi^2 V) * min(1, V / (0.1 mean)^2) * min(1, w^2 trace(C) / V)
 ///
@@ -27,17 +27,19 @@ namespace covtrace {
 /// for what it sees, about as fine as its pixels. Any number of threads may ask.
 class ImageSpectrum {
   public:
-    /// repeat_s: repeat in s, clamp in t, for lat-long maps.
+    /// How the image continues beyond its borders; `repeat_s` repeats in s and clamps in t, for
+    /// lat-long maps.
     enum class Wrap { repeat, clamp, repeat_s };
     /// Largest side that is analysed as it is; larger images are averaged over squares of texels
     /// first.
     static constexpr int kMaxAnalysedSize = 2048;
 
-    /// Of a constant image.
+    /// Makes the spectrum of a constant image: no bandwidth anywhere.
     ImageSpectrum() = default;
     /// `luminance`: width * height finite linear values, row by row from t = 0 at the first row.
     ImageSpectrum(std::span<const float> luminance, int width, int height, Wrap wrap);
-    /// The same of luminance(i), which is asked for twice: a large image is never there as numbers.
+    /// Analyses luminance(i), row by row. It is asked for each texel twice, so that a large image
+    /// never has to be in memory as floating-point numbers.
     ImageSpectrum(const std::function<float(size_t)>& luminance, int width, int height, Wrap wrap);
     /// Covariance (amplitude spectrum) around (s, t), one unit of s and t being the whole image.
     /// Symmetric positive semi-definite and finite everywhere; outside the image, where it is

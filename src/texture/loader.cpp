@@ -27,7 +27,7 @@ TextureImage load(const ImageRequest& request, Warnings& warnings) {
                                   ? colour_space_of(raster, t.file, *request.where, warnings)
                                   : ColourSpace::srgb;
     const size_t bytes = raster.bytes.size() + raster.values.size() * sizeof(float);
-    // All coarser levels together have a third of its texels.
+    // The coarser levels have together a third of the finest one's texels.
     const MemoryReservation room(bytes / 3, "the coarser levels of '" + t.file.string() + "'",
                                  *request.where);
     TextureImage image(std::move(raster), encoding, t.gamma, t.wrap, space);
@@ -56,9 +56,9 @@ Loaded try_to_load(const ImageRequest& request) {
     return loaded;
 }
 
-/// Moves the largest levels of all images to pages, the first of equals, until the rest fits. Done
-/// after every few files it ends as if done after the last: what is too large beside some images is
-/// too large beside all.
+/// Keeps images within their memory: moves the largest levels of all images to pages, the first of
+/// equals, until the rest fits. Run after every few files it ends as if run after the last: what is
+/// too large beside some images is too large beside all.
 class Budget {
   public:
     explicit Budget(size_t most_bytes) : most_bytes_(most_bytes) {}
@@ -68,7 +68,8 @@ class Budget {
         for (const TextureImage& image : images) bytes += image.memory();
         if (!pages_) {
             if (bytes <= most_bytes_) return;
-            // One half for pages, the other for levels that are in memory as a whole.
+            // The budget is halved: one half for pages, the other for levels that are in memory as
+            // a whole.
             pages_ = std::make_shared<TexelPages>(most_bytes_ / 2);
         }
         const size_t most_whole = most_bytes_ - std::min(most_bytes_, pages_->memory());
@@ -106,7 +107,8 @@ LoadedImages load_images(std::span<const ImageRequest> requests, size_t most_byt
             batch[size_t(i)] = try_to_load(requests[first + size_t(i)]);
         });
         for (size_t i = 0; i < count; ++i) {
-            // What did not fit beside others may fit alone, after those before went to pages.
+            // An image that did not fit beside others may fit alone, once those before it have gone
+            // to pages.
             if (batch[i].lacked_memory) {
                 budget.fit(loaded.images);
                 for (size_t k = i; k < count; ++k) batch[k] = {};

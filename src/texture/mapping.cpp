@@ -10,7 +10,7 @@ float azimuth(Vec3 p) {
 }
 
 struct StGradient3 {
-    Vec3 s, t;  ///< by the position in texture space
+    Vec3 s, t;  ///< gradients of s and t by the position in texture space
 };
 
 StGradient3 gradient_by_position(const TextureMapping& mapping, Vec3 p) {
@@ -68,7 +68,7 @@ PointFootprint footprint_on(const SurfaceHit& hit, Vec3 w, float width) {
     const Vec3 short_axis = sine > 1e-4f ? across / sine : Frame::from_z(hit.ng).x;
     const float stretch = std::min(kMostStretched, 1 / std::abs(dot(hit.ng, w)));
     f.dp = {short_axis * width, cross(hit.ng, short_axis) * (width * stretch)};
-    // (u, v) by least squares: dp = dpdu du + dpdv dv.
+    // The pixel's extent in (u, v) follows by least squares from dp = dpdu du + dpdv dv.
     const float uu = dot(hit.dpdu, hit.dpdu), uv = dot(hit.dpdu, hit.dpdv),
                 vv = dot(hit.dpdv, hit.dpdv);
     const float determinant = uu * vv - uv * uv;

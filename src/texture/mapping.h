@@ -8,7 +8,7 @@
 
 namespace covtrace {
 
-/// (s, t) as pbrt-v4 defines them: spherical (theta / pi, phi / 2 pi), cylindrical
+/// Texture coordinates as pbrt-v4 defines them: spherical (theta / pi, phi / 2 pi), cylindrical
 /// ((pi + phi) / 2 pi, z), planar (delta_u + p.v1, delta_v + p.v2) with p in texture space.
 Vec2 map_to_st(const TextureMapping& mapping, const TexturePoint& at);
 
@@ -21,7 +21,7 @@ struct StGradient {
 /// mapping has none (the origin of a spherical mapping, the axis of a cylindrical one).
 StGradient st_gradient(const TextureMapping& mapping, const TexturePoint& at, Vec3 dpdu, Vec3 dpdv);
 
-/// What the footprint of `at` covers in (s, t).
+/// The ellipse in (s, t) that the footprint of `at` covers.
 ImageFootprint image_footprint(const TextureMapping& mapping, const TexturePoint& at);
 
 }  // namespace covtrace

@@ -30,8 +30,8 @@ uint8_t permuted(int i) {
     return kPermutation[static_cast<size_t>(i & 255)];
 }
 
-/// The product of the offset and one of twelve gradients, four of them twice. Which corner has
-/// which is as in pbrt-v4, whose choice is not Perlin's.
+/// The product of the offset `d` from a corner and the corner's gradient, one of twelve, four of
+/// them twice. Which corner has which is as in pbrt-v4, whose choice is not Perlin's.
 float gradient(int x, int y, int z, Vec3 d) {
     const int h = permuted(permuted(permuted(x) + y) + z) & 15;
     const bool is_extra = h == 12 || h == 13;
@@ -52,7 +52,7 @@ float smooth_step(float from, float to, float x) {
     return t * t * (3 - 2 * t);
 }
 
-/// Octaves that a footprint leaves, the last one in part.
+/// Number of octaves that a footprint leaves: a fraction stands for the last one, kept in part.
 float octaves_left(float footprint, int most) {
     if (!(footprint > 0)) return static_cast<float>(most);
     return std::min(std::max(0.0f, -1 - std::log2(footprint)), static_cast<float>(most));
@@ -79,7 +79,7 @@ float noise(Vec3 p) {
     std::array<int, 3> cell{};
     Vec3 d;
     for (int axis = 0; axis < 3; ++axis) {
-        // Cells repeat after 256.
+        // Perlin's cells repeat after 256.
         const float x = std::fmod(p[axis], 256.0f);
         if (!std::isfinite(x)) return 0;
         const float floor = std::floor(x);
@@ -113,7 +113,7 @@ float turbulence(Vec3 p, float footprint, const Octaves& octaves) {
         const float value = share > 0 ? std::abs(noise(frequency * p)) : 0.0f;
         sum += weight * between(kMean, value, share);
     });
-    // pbrt-v4 counts the octave that is there in part among these, too.
+    // The octave that is there in part counts as left out, too, as in pbrt-v4.
     float weight = 1;
     const int whole = static_cast<int>(octaves_left(footprint, octaves.most));
     for (int i = 0; i < octaves.most; ++i, weight *= octaves.omega)
@@ -122,8 +122,8 @@ float turbulence(Vec3 p, float footprint, const Octaves& octaves) {
 }
 
 NoiseEnergy noise_energy(float footprint, const Octaves& octaves) {
-    // Over three million places: what noise varies by, and the mean square of its slopes along the
-    // axes (which differ by a tenth, as do the gradients' shares) over that and (2 pi)^2.
+    // Noise over three million places: its variance, and the mean square of its slopes along the
+    // axes (which differ by a tenth, as do the gradients' shares) over that variance and (2 pi)^2.
     constexpr float kVariance = 0.0716f, kSquareFrequency = 0.1747f;
     NoiseEnergy energy;
     for_octaves(footprint, octaves, [&](float weight, float frequency, float share) {
@@ -136,7 +136,7 @@ NoiseEnergy noise_energy(float footprint, const Octaves& octaves) {
 
 std::optional<Vec2> dot_center(Vec2 st) {
     const float s = std::floor(st.x + 0.5f), t = std::floor(st.y + 0.5f);
-    // The numbers are pbrt-v4's: places of the noise that have nothing to do with each other.
+    // The offsets are pbrt-v4's: places of the noise that have nothing to do with each other.
     const auto value = [&](float ds, float dt) { return noise({s + ds, t + dt, 0.5f}); };
     if (!(value(0.5f, 0.5f) > 0)) return std::nullopt;
     constexpr float kMostShift = 0.5f - kDotRadius;

@@ -30,7 +30,8 @@ void TextureImage::move_finest_to(const std::shared_ptr<TexelPages>& pages) {
     bool is_first = true;
     for (size_t top = 0; top < height; top += side)
         for (size_t left = 0; left < width; left += side) {
-            // Tiles at the right and lower border are filled up with what was there before.
+            // Tiles at the right and lower border keep in their unused part the texels of an
+            // earlier tile, which nobody reads.
             const size_t columns = std::min(side, width - left);
             for (size_t y = 0; y < std::min(side, height - top); ++y)
                 std::memcpy(tile.data() + y * side * bytes,
@@ -39,7 +40,7 @@ void TextureImage::move_finest_to(const std::shared_ptr<TexelPages>& pages) {
             if (is_first) level->first_page = page;
             is_first = false;
         }
-    // New ones: an assigned list would leave the old ones' memory.
+    // The vectors are replaced, not cleared: clearing or assigning a list would keep their memory.
     level->bytes = std::vector<uint8_t>();
     level->floats = std::vector<float>();
     level->pages = pages;

@@ -13,7 +13,7 @@ struct ScalarField {
     std::vector<float> values;                ///< row by row
 
     ScalarField() = default;
-    /// Zero-filled.
+    /// Makes a field of zeros.
     ScalarField(int columns, int rows, bool repeats_x, bool repeats_y)
         : width(columns),
           height(rows),
@@ -35,27 +35,27 @@ struct ScalarField {
     }
 };
 
-/// A Gaussian cut off at three standard deviations, normalised.
+/// Weights of a Gaussian window, cut off at three standard deviations and normalised to a sum of 1.
 struct GaussianWindow {
     explicit GaussianWindow(float standard_deviation);
     int radius = 0;
     std::vector<float> weights;  ///< 2 radius + 1
-    float variance = 0;          ///< of the window as it is, in cells^2
+    float variance = 0;          ///< variance of the window after the cut, in cells^2
 };
 
-/// The weighted mean around each cell that has the window's radius of cells on all sides: a field
-/// with twice the radius less in both directions.
+/// Means weighted by the window, around each cell that has the window's radius of cells on all
+/// sides: the field becomes smaller by twice the radius in both directions.
 ScalarField smooth_inside(const ScalarField& f, const GaussianWindow& window);
-/// Every second cell in both directions after the binomial filter (1 3 3 1) / 8, whose variance is
+/// Every second cell in both directions, after the binomial filter (1 3 3 1) / 8 whose variance is
 /// 3/4 of a cell^2. Odd sizes are rounded up.
 ScalarField halved(const ScalarField& f);
-/// Where the bilinear interpolation of a halved field to the size it had reads on one axis: two
-/// neighbouring cells and the second one's weight.
+/// Interpolation on one axis of a halved field back to its former size: the two neighbouring cells
+/// to read, and the second one's weight.
 struct Between {
     int first = 0, second = 0;
     float weight = 0;
 };
-/// For the cell i of `size`, of which the halved field has `half_size`.
+/// The taps for cell `i` of an axis with `size` cells, `half_size` in the halved field.
 Between between(int i, int size, int half_size, bool repeats);
 /// Means over boxes of factor^2 cells, cell(i) row by row; at the right and lower border over those
 /// that exist.

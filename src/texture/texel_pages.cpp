@@ -15,8 +15,8 @@
 namespace covtrace {
 namespace {
 
-/// Slots of a set: enough that pages which are needed together seldom push each other out, and few
-/// enough to look through.
+/// Slots of one set: enough that pages which are needed together seldom push each other out, and
+/// few enough to search one by one.
 constexpr size_t kWays = 8;
 
 std::string scratch_folder() {
@@ -24,8 +24,8 @@ std::string scratch_folder() {
     return named && *named ? named : "/var/tmp";
 }
 
-/// Neighbouring pages fall into different sets, and so do the same rows of images that begin at
-/// round numbers (Fibonacci hashing).
+/// The set that holds a page, by Fibonacci hashing: neighbouring pages fall into different sets,
+/// and so do the same rows of images that begin at round numbers.
 size_t set_of(size_t page, size_t sets) {
     return size_t(((page * 0x9E3779B97F4A7C15ull) >> 32) % sets);
 }

@@ -11,8 +11,9 @@
 
 namespace covtrace {
 
-/// Pages of at most kPageBytes each, of which a bounded number is held in memory. What is read does
-/// not depend on which these are, and so neither on time nor on threads.
+/// A file of pages of at most kPageBytes each, of which a bounded number is held in memory. The
+/// bytes that are read do not depend on which pages are held, and so neither on time nor on
+/// threads.
 ///
 /// The file lies in the folder that the environment variable TMPDIR names, or in /var/tmp, which
 /// unlike /tmp is on a disk everywhere. It has no name, so that nothing remains of it however the
@@ -39,7 +40,8 @@ class TexelPages {
         size_t page = SIZE_MAX;  ///< none
         uint64_t used = 0;       ///< tick of its set when it was last read
     };
-    /// Pages compete for the slots of their set; the one that was read longest ago gives way.
+    /// A set of slots. Pages compete for those of their set; the one that was read longest ago
+    /// gives way.
     struct Set {
         mutable std::mutex mutex;
         std::vector<Slot> slots;

@@ -14,11 +14,13 @@
 namespace covtrace {
 namespace {
 
-/// Evaluation recurses once per level; this keeps it far from the end of any stack.
+/// Deepest nesting of textures. Evaluation recurses once per level; this keeps it far from the end
+/// of any stack.
 constexpr int kMaxNesting = 1000;
 
 using Encoding = ImageTexture::Encoding;
-/// Textures with equal keys share an image. The encoding is empty where the file decides.
+/// Key of an image: textures with equal ones share it. The encoding is empty where the file
+/// decides.
 using ImageKey = std::tuple<std::filesystem::path, const std::string*, std::optional<Encoding>,
                             float, ImageTexture::Wrap, bool>;
 
@@ -58,7 +60,8 @@ class GraphBuilder {
                             std::to_string(kMaxNesting) + " levels");
         TextureNode node = std::visit(
             [&](const auto& t) { return make_node(t, textures_[i], depth); }, textures_[i].value);
-        // Textures of two textures of two textures each ... would take for ever to look up.
+        // Nested textures multiply their lookups: textures of two textures of two textures each, a
+        // few dozen deep, would take for ever.
         constexpr double kMostLookups = 1e4;
         lookups_[i] = std::visit([this](const auto& n) { return lookups_of(n); }, node);
         if (lookups_[i] > kMostLookups)
@@ -159,7 +162,8 @@ class GraphBuilder {
     const size_t most_bytes_;
     Warnings& warnings_;
     std::vector<bool> built_;
-    std::vector<double> lookups_;  ///< of images and constants, for one of the texture
+    /// Lookups of images and constants that one lookup of each texture takes.
+    std::vector<double> lookups_;
     std::map<ImageKey, int> image_ids_;
     std::vector<ImageRequest> requests_;
     TextureGraph graph_;
@@ -175,7 +179,7 @@ ImageSpectrum analyse(const TextureImage& image, const ImageNode& node) {
             image.height(), spectrum_wrap(image.wrap())};
 }
 
-/// Mean luminance over the unit square of (u, v).
+/// Mean luminance of a texture over the unit square of (u, v).
 float mean_luminance(const TextureGraph& graph, TextureId id) {
     constexpr int kSide = 16;
     float sum = 0;
@@ -186,9 +190,9 @@ float mean_luminance(const TextureGraph& graph, TextureId id) {
     return sum / (kSide * kSide);
 }
 
-/// An amount has no contrast of its own: a trace of chalk on a cloth is as visible as the
-/// difference it makes there. So the image that is analysed is the mixture, of the means of both
-/// textures.
+/// Spectrum of a mix whose amount is an image. An amount has no contrast of its own: a trace of
+/// chalk on a cloth is as visible as the difference it makes there. So the image that is analysed
+/// is the mixture of the two textures' means.
 ImageSpectrum analyse_mixture(const TextureGraph& graph, const MixNode& mix,
                               const ImageNode& amount) {
     const TextureImage& image = graph.images[size_t(amount.image)];
@@ -235,7 +239,8 @@ Rgb TextureStore::mean(TextureId id) const {
         count = double(texels);
     } else {
         // Solid textures are looked up here and there in a box that is large beside their cells: at
-        // Roberts' sequence R3 (2018, "The unreasonable effectiveness of quasirandom sequences").
+        // the points of Roberts' sequence R3 (2018, "The unreasonable effectiveness of quasirandom
+        // sequences").
         constexpr int kSide = 64;
         const auto scattered = [](int i, float step) {
             const float x = float(i) * step;
@@ -254,9 +259,10 @@ void TextureStore::prepare_spectra(TextureBandwidth bandwidth) {
     impl_->bandwidth = bandwidth;
     if (impl_->is_prepared) return;
     TextureGraph& graph = impl_->graph;
-    // One job per distinct image, in parallel: most images are too small to fill the cores alone.
+    // Each distinct image is one job: most are too small to fill the cores alone.
     std::vector<std::function<ImageSpectrum()>> jobs;
-    // The analysis is relative: a scale matters only where an inversion or a cutoff follows it.
+    // The analysis is relative to the mean: a scale matters only where an inversion or a cutoff
+    // follows it.
     std::map<std::tuple<int, bool, bool, float, TextureImage::Channel, std::optional<float>>, int>
         ids;
     for (TextureNode& node : graph.nodes) {

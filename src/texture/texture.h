@@ -13,18 +13,18 @@
 
 namespace covtrace {
 
-/// What a pixel covers of a surface around a place: how far (u, v) and the world position move
-/// along the axes of that ellipse. Zero: nothing, the texture is read as it is.
+/// The ellipse that a pixel covers of a surface around a place: how far (u, v) and the world
+/// position move along each of its two axes. All zero: the texture is read without a filter.
 struct PointFootprint {
     std::array<Vec2, 2> duv{};
     std::array<Vec3, 2> dp{};
     bool is_point() const { return dp[0] == Vec3{} && dp[1] == Vec3{}; }
 };
-/// Of a surface that is seen along the unit direction `w` (to or from the eye) by a pixel that is
-/// `width` wide there.
+/// The footprint on a surface that is seen along the unit direction `w` (to or from the eye) by a
+/// pixel that is `width` wide there.
 PointFootprint footprint_on(const SurfaceHit& hit, Vec3 w, float width);
 
-/// Where a texture is looked up.
+/// A place on a surface where a texture is looked up.
 struct TexturePoint {
     Vec2 uv;
     Vec3 position;  ///< world space
@@ -32,10 +32,11 @@ struct TexturePoint {
     Vec3 normal = {};  ///< unit, of the geometry; zero where it isn't known
 };
 
-/// What the frequency analysis takes textures for.
+/// How fast the frequency analysis takes textures to vary.
 enum class TextureBandwidth {
-    own,     ///< what their values show
-    highest  ///< the image's: as if every pixel saw an edge along both axes
+    own,  ///< each texture by its own values
+    /// Every texture as the image can show at most: as if every pixel saw an edge along both axes.
+    highest
 };
 
 template <>
@@ -49,7 +50,7 @@ inline constexpr auto kEnumNames<TextureBandwidth> = enum_names<TextureBandwidth
 /// float texture of a colour image is the mean of R, G and B, or alpha where the image has one that
 /// isn't 1 everywhere. Images are read from mip levels by the footprint and the filter that the
 /// file names (TextureImage::color); checkerboards aren't filtered.
-/// Textures take as much memory as their files ask for.
+/// No limit: textures take as much memory as their files ask for.
 inline constexpr size_t kNoTextureLimit = std::numeric_limits<size_t>::max();
 
 class TextureStore {
@@ -68,11 +69,11 @@ class TextureStore {
     TextureStore& operator=(const TextureStore&) = delete;
 
     Rgb eval(TextureId id, const TexturePoint& at) const;
-    /// The red channel; for float textures, where all channels are equal.
+    /// The red channel of a texture; for float textures, where all channels are equal.
     float eval_float(TextureId id, const TexturePoint& at) const;
     bool is_constant(TextureId id) const;
-    /// Over (u, v) in [0, 1]^2: of an image its texels', of others that of a grid of 64 x 64
-    /// points.
+    /// Mean of the texture over (u, v) in [0, 1]^2: of an image's texels, of other textures at 64 x
+    /// 64 points.
     Rgb mean(TextureId id) const;
 
     /// Analyses all images; needed before `uv_covariance`, and by nothing else. May be called again
@@ -86,7 +87,7 @@ class TextureStore {
                                      float footprint_uv) const;
     /// Bytes held in memory by images, their pages and spectra.
     size_t memory() const;
-    /// That images are read from a temporary file, or that the colour space of one is not known.
+    /// Warnings of loading: images are read from a temporary file, or a colour space is not known.
     const Warnings& warnings() const;
 
   private:

@@ -11,14 +11,16 @@ namespace {
 
 using Covariance = SpatialCovariance2;
 
-/// Standard deviation over mean from which on a structure counts in full.
+/// Contrast, standard deviation over mean, from which on a structure counts in full.
 constexpr float kFullContrast = 0.1f;
-/// Means below this share of the image's mean count as this.
+/// Least mean that contrasts are measured against, as a share of the image's mean.
 constexpr float kDarkest = 0.01f;
-/// The variance about the trend is a difference; below this share of its minuend it is rounding.
+/// Least variance about the trend, as a share of the whole variance: it is a difference, and less
+/// would be rounding.
 constexpr float kMinDetrended = 0.03f;
 
-/// Indices inside the field of the columns of a rectangle that may reach beyond it.
+/// Columns of the field that those of a rectangle read, `shift` further on; the rectangle may reach
+/// beyond the field.
 std::vector<int> columns_of(const ScalarField& field, CellRect rect, int shift) {
     std::vector<int> columns(size_t(rect.width()));
     for (int x = rect.x0; x < rect.x1; ++x)
@@ -26,7 +28,7 @@ std::vector<int> columns_of(const ScalarField& field, CellRect rect, int shift) 
     return columns;
 }
 
-/// Map(value) of all cells of a rectangle that may reach beyond the field.
+/// A copy of map(value) for all cells of a rectangle, which may reach beyond the field.
 template <typename Map>
 ScalarField copied(const ScalarField& field, CellRect rect, const Map& map) {
     ScalarField copy(rect.width(), rect.height(), false, false);
@@ -39,7 +41,7 @@ ScalarField copied(const ScalarField& field, CellRect rect, const Map& map) {
     return copy;
 }
 
-/// Products of the components of the gradient, per cell^2.
+/// Products of the components of the gradient at each cell, per cell^2.
 struct GradientProducts {
     ScalarField xx, xy, yy;
 };
@@ -55,8 +57,8 @@ GradientProducts gradient_products(const ScalarField& f, float spacing, CellRect
     const auto width = size_t(rect.width());
     std::array<std::vector<int>, 3> columns;
     for (int i = 0; i < 3; ++i) columns[size_t(i)] = columns_of(f, rect, i - 1);
-    // Of the rows above, at and below a cell the columns left, at and right of it: in the field
-    // itself, or copied where the rectangle reaches its border.
+    // The 3 x 3 neighbours of a row's cells: v[row][column] points into the field itself, or to a
+    // copy where the rectangle reaches the field's border.
     std::array<std::array<const float*, 3>, 3> v{};
     std::array<std::array<std::vector<float>, 3>, 3> copies;
     const bool is_inside = rect.x0 > 0 && rect.x1 < f.width;
@@ -101,7 +103,7 @@ GradientProducts gradient_products(const ScalarField& f, float spacing, CellRect
     return out;
 }
 
-/// One window's estimate from the gradient's covariance c.
+/// The estimate of one window (see image_spectrum.h) from the covariance `c` of the gradient in it.
 Covariance estimate(Covariance c, float variance, float mean, float window) {
     if (!(variance > 0)) return {};
     const float trace = c.ss + c.tt;
@@ -194,7 +196,8 @@ std::vector<WindowEstimate> WindowEstimates::of(CellRect rect) const {
     if (coarser_) sum = doubled_coarser(rect);
     const bool is_widest = sum.empty();
     if (is_widest) sum.resize(size_t(rect.width()) * size_t(rect.height()));
-    // The windowed mean is asked for beside each cell too.
+    // The halo is one cell more than the window: slopes need the windowed mean beside each cell,
+    // too.
     const int halo = GaussianWindow(windows_.front()).radius + 1;
     const CellRect seen{rect.x0 - halo, rect.y0 - halo, rect.x1 + halo, rect.y1 + halo};
     const GradientProducts g = gradient_products(value_, spacing_, seen);
@@ -211,7 +214,7 @@ std::vector<WindowEstimate> WindowEstimates::of(CellRect rect) const {
         const float spacing2 = spacing_ * spacing_;
         const float spread = window.variance * spacing2 + 0.25f * (spacing2 - 1);
         const int x0 = rect.x0 - halo + window.radius, y0 = rect.y0 - halo + window.radius;
-        // Outside of a field that does not repeat the mean is that of its border.
+        // The mean outside of a field that does not repeat is that of its border.
         const auto column = [&](int x) {
             return (value_.repeat_x ? x : std::clamp(x, 0, value_.width - 1)) - x0;
         };

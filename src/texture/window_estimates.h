@@ -1,6 +1,6 @@
-/// What Gaussian windows at one level of an image's pyramid and at all coarser ones say of its
-/// bandwidth: the estimates of image_spectrum.h, in tiles that are made when they are first asked
-/// for.
+/// Estimates of an image's bandwidth from Gaussian windows at one level of its pyramid and at all
+/// coarser ones (see image_spectrum.h for the formula), in tiles that are made when they are first
+/// asked for.
 #pragma once
 
 #include <atomic>
@@ -13,8 +13,8 @@
 
 namespace covtrace {
 
-/// Of one cell: the variance in the last window, and the largest estimate by trace of all windows
-/// so far, in cycles^2 per texel^2.
+/// Estimate for one cell: the variance in the last window, and the estimate with the largest trace
+/// among all windows so far, in cycles^2 per texel^2.
 struct WindowEstimate {
     float variance = 0;
     SpatialCovariance2 largest;
@@ -38,8 +38,8 @@ class WindowEstimates {
     WindowEstimates(const ScalarField& value, ScalarField square, float spacing, float image_mean,
                     std::vector<float> windows, const WindowEstimates* coarser);
 
-    /// Of all cells of `rect`, row by row. Thread-safe; makes the tiles of the coarser levels that
-    /// these cells are within, whose estimates are kept.
+    /// Estimates of all cells of `rect`, row by row. Thread-safe; makes the tiles of the coarser
+    /// levels that these cells are within, whose estimates are kept.
     std::vector<WindowEstimate> of(CellRect rect) const;
 
     /// Bytes; not while others ask.
