@@ -7,7 +7,7 @@ namespace covtrace {
 
 namespace {
 
-/// A linear scan of so few edges is faster than descending further.
+/// Edges in a leaf: a linear scan of so few is faster than descending further.
 constexpr uint32_t kEdgesPerLeaf = 8;
 
 bool before(Vec3 a, Vec3 b) {

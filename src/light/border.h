@@ -13,7 +13,8 @@ namespace covtrace {
 class BorderEdges {
   public:
     BorderEdges() = default;
-    /// Corners are the same where their coordinates are. Triangles without area are left out.
+    /// Finds the border edges of the triangles. Corners are the same where their coordinates are;
+    /// triangles without area are left out.
     explicit BorderEdges(const std::vector<std::array<Vec3, 3>>& triangles);
 
     /// Point of the border nearest to p; empty for closed meshes.
@@ -24,11 +25,12 @@ class BorderEdges {
     struct Edge {
         Vec3 a, b;
     };
-    /// A box over edges [begin, end); inner nodes are followed by their first child.
+    /// One box of the hierarchy, over the edges [begin, end). An inner node is followed by its
+    /// first child.
     struct Node {
         Bounds3 box;
         uint32_t begin = 0, end = 0;
-        uint32_t second = 0;  ///< child; 0 for leaves
+        uint32_t second = 0;  ///< index of the second child; 0 for leaves
     };
     void build(uint32_t begin, uint32_t end);
 

@@ -54,7 +54,7 @@ PointEmitter make_point_emitter(const SpotLight& light, const Transform& light_t
     e.axis = normalize(light_to_world.point(light.to) - e.position);
     if (e.axis == Vec3{}) e.axis = normalize(light_to_world.vector({0, 0, 1}));
     const float outer = std::clamp(light.cone_angle, 0.0f, 180.0f);
-    // As in pbrt only the cosine counts, where the difference is negative, too.
+    // The cosine alone counts, as in pbrt, also where the difference of the angles is negative.
     const float inner =
         std::clamp(std::abs(light.cone_angle - light.cone_delta_angle), 0.0f, outer);
     e.cos_outer = std::cos(radians(outer));
@@ -99,7 +99,7 @@ Rgb intensity(const PointEmitter& light, Vec3 w) {
 
 Rgb power(const PointEmitter& light) {
     if (light.image) return light.intensity * light.image_integral;
-    // A smoothstep in the cosine lets half of its range through.
+    // The fall-off, a smoothstep in the cosine, lets half of its range through.
     const float angle =
         light.is_spot ? 2 * kPi * ((1 - light.cos_inner) + (light.cos_inner - light.cos_outer) / 2)
                       : 4 * kPi;
@@ -115,7 +115,7 @@ LightBounds bounds(const PointEmitter& light) {
     b.theta_o = is_cone ? std::acos(light.cos_inner) : kPi;
     b.theta_e = is_cone ? std::acos(light.cos_outer) - b.theta_o : kPi / 2;
     if (light.image) {
-        // Their mean, over what they light.
+        // The image counts with its mean over the directions that the light shines into.
         const float solid_angle = is_cone ? 2 * kPi * (1 - light.cos_outer) : 4 * kPi;
         b.intensity *= choice_weight(light.image_integral) / solid_angle;
     }

@@ -22,17 +22,17 @@ struct PointEmitter {
     Rgb image_integral;               ///< of the image over all directions
 };
 PointEmitter make_point_emitter(const PointLight& light, const Transform& light_to_world);
-/// The transform's scale does not change the cone.
+/// Makes a spot light. The transform's scale does not change the cone.
 PointEmitter make_point_emitter(const SpotLight& light, const Transform& light_to_world);
-/// Images that are missing, broken or of the wrong shape throw Error(scene) at `where`; colours of
-/// an unknown space are a warning.
+/// Makes a light with an image. Images that are missing, broken or of the wrong shape throw
+/// Error(scene) at `where`; colours of an unknown space are a warning.
 PointEmitter make_point_emitter(const GoniometricLight& light, const Transform& light_to_world,
                                 const SourceLocation& where, Warnings& warnings);
 PointEmitter make_point_emitter(const ProjectionLight& light, const Transform& light_to_world,
                                 const SourceLocation& where, Warnings& warnings);
-/// Intensity towards `w` (unit, away from the light).
+/// Radiant intensity towards `w` (unit, away from the light).
 Rgb intensity(const PointEmitter& light, Vec3 w);
-/// Emitted in all directions together.
+/// Power that the light emits in all directions together.
 Rgb power(const PointEmitter& light);
 LightBounds bounds(const PointEmitter& light);
 
@@ -42,8 +42,8 @@ struct DistantEmitter {
 };
 DistantEmitter make_distant_emitter(const DistantLight& light, const Transform& light_to_world);
 
-/// Factor that brings `radiance` to `target`, where `measured` is what its luminance amounts to
-/// now; 0 where that is nothing.
+/// The factor that brings a light, whose luminance amounts to `measured`, to `target`; 0 where it
+/// is black.
 constexpr float normalisation(float target, float measured) {
     return measured > 0 ? target / measured : 0;
 }

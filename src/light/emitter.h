@@ -1,5 +1,5 @@
-/// What all emissive shapes have in common: the point that light sampling finds on one, and where
-/// it may be over the shutter.
+/// Parts that all emissive shapes have in common: the point that light sampling finds on one, and
+/// the room that it takes over the shutter.
 #pragma once
 
 #include <vector>
@@ -13,11 +13,11 @@ struct EmitterPoint {
     Vec3 position, normal;  ///< world; the unit normal is on the shape's outside
     Vec3 wi;                ///< unit, from the shading point
     float pdf = 0;          ///< per solid angle
-    Vec2 place;             ///< of meshes: barycentric in the light
+    Vec2 place;             ///< barycentric coordinates in the light, of meshes only
 };
 
-/// The transform at times so close that a box around what it does to a shape at all of them, padded
-/// by half a step, holds the motion between; a single one where nothing moves.
+/// The transform at times so close that the motion between them stays in a box around the shape at
+/// all of these times, padded by half a step. A single transform where nothing moves.
 inline std::vector<Transform> poses_over_time(const AnimatedTransform& motion) {
     if (!motion.is_animated()) return {motion.start()};
     constexpr int kSteps = 32;
@@ -31,7 +31,7 @@ inline std::vector<Transform> poses_over_time(const AnimatedTransform& motion) {
 /// Collects where the corners of an emitter are over its poses.
 class MotionBox {
   public:
-    /// Corners of successive poses, in the same order each time.
+    /// Adds the corners at one more pose; the same corners come in the same order each time.
     void add(const std::vector<Vec3>& corners) {
         for (size_t i = 0; i < corners.size(); ++i) {
             box_.extend(corners[i]);

@@ -6,8 +6,8 @@ namespace covtrace {
 
 namespace {
 
-/// Second moments about the centroid of all triangles together, weighted by their area in the
-/// world, in the object space that `start` places.
+/// Second moments of a mesh about the centroid of all its triangles together, in the object space
+/// that `start` places. Triangles are weighted by their area in the world.
 std::array<double, 6> mesh_moments(const EmissiveMesh& mesh, const Transform& start) {
     const Transform to_object = start.inverse();
     std::array<double, 6> square{};
@@ -39,7 +39,7 @@ std::array<double, 6> mesh_moments(const EmissiveMesh& mesh, const Transform& st
     return square;
 }
 
-/// The transpose of the linear part applied to v.
+/// The vector v multiplied by the transpose of the transform's linear part.
 std::array<double, 3> transposed_vector(const Transform& t, Vec3 v) {
     const auto& m = t.matrix().m;
     std::array<double, 3> r;

@@ -1,4 +1,5 @@
-/// What the frequency analysis asks of an emissive shape: its size, border, curvature and motion.
+/// The part of an emissive shape that the frequency analysis asks for: its size, border, curvature
+/// and motion.
 #pragma once
 
 #include <array>
@@ -15,11 +16,11 @@ using Emitter = std::variant<EmissiveMesh, EmissiveQuadric>;
 
 class EmitterSpectrum {
   public:
-    /// Both must outlive the spectrum.
+    /// Measures the emitter of a shape; shape and emitter must outlive the spectrum.
     EmitterSpectrum(const PlacedShape& shape, const Emitter& emitter);
 
-    /// At a point of the shape with the unit normal `normal` on the emitting outside, with the
-    /// nearest border where it is asked for.
+    /// The source spectrum at a point of the shape, whose unit normal `normal` is on the emitting
+    /// outside; with the nearest border where it is asked for.
     SourceSpectrum at(Vec3 position, Vec3 normal, float time, bool with_border) const;
 
   private:

@@ -100,7 +100,7 @@ void Environment::prepare_spectrum() {
         }
     });
     spectrum_.emplace(values, width, height, ImageSpectrum::Wrap::repeat_s);
-    // Two rows next to the poles share one factor: there the map's rows shrink to a point.
+    // The two rows next to a pole share one factor: there the map's rows shrink to a point.
     pole_sine_ = std::sin(std::min(2 * kPi / float(height), kPi / 2));
     is_mirrored_ = light_to_world_.swaps_handedness();
 }

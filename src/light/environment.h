@@ -22,13 +22,14 @@ struct AngularCovariance {
 /// not be rigid: light space is looked up along the transformed direction, and densities follow.
 class Environment {
   public:
-    /// Throws as EnvironmentMap::read.
+    /// Reads the light's image, if it has one. Throws as EnvironmentMap::read does.
     Environment(const InfiniteLight& light, const Transform& light_to_world,
                 const SourceLocation& where, Warnings& warnings);
 
     Rgb radiance(Vec3 w) const { return look({}, w).radiance; }
-    /// A direction for a surface with the unit normal n, which uniform light is sampled about by
-    /// the cosine; n zero: from all sides. In three steps as of a map.
+    /// A direction for a surface with the unit normal n; with n zero, for light from all sides.
+    /// Uniform light is sampled by the cosine to n, an image as EnvironmentMap does, in the same
+    /// three steps.
     EnvironmentMap::Draw begin_draw(Vec2 u) const {
         return map_ ? map_->begin_draw(u) : EnvironmentMap::Draw{u};
     }
@@ -38,22 +39,22 @@ class Environment {
     Vec3 direction(Vec3 n, const EnvironmentMap::Draw& draw) const;
     bool is_map() const { return map_.has_value(); }
     float pdf(Vec3 n, Vec3 w) const { return look(n, w).pdf; }
-    /// Both at once.
+    /// Radiance and density together, for less than both one by one.
     EnvironmentMap::Sight look(Vec3 n, Vec3 w) const;
-    /// Over all directions, of a rigid transform.
+    /// Mean radiance over all directions, where the transform is rigid.
     Rgb mean_radiance() const;
-    /// Rough irradiance of any surface, mean of the channels, of a map by what directions are drawn
-    /// for: 0 where the light is black.
+    /// Rough irradiance of any surface, mean of the channels: of a map, by the part of its light
+    /// that directions are drawn for. 0 where the light is black.
     float irradiance() const;
 
-    /// Measures the image, once; without it the light counts as uniform below.
+    /// Measures the image's spectrum, once; without it `spectrum` takes the light for uniform.
     void prepare_spectrum();
     AngularCovariance spectrum(Vec3 w) const;
     /// Whether the spectrum is anything but zero.
     bool varies() const { return spectrum_.has_value(); }
 
   private:
-    /// The linear part of a transform, in float: what directions need of it.
+    /// The linear part of a transform, in single precision: enough for directions.
     struct Linear {
         Vec3 x, y, z;  ///< columns
         Vec3 operator()(Vec3 v) const { return x * v.x + y * v.y + z * v.z; }
@@ -67,8 +68,9 @@ class Environment {
     Rgb scale_{1};
     std::optional<EnvironmentMap> map_;
     std::optional<ImageSpectrum> spectrum_;
-    float pole_sine_ = 1;       ///< of the spectrum's rows next to the poles
-    bool is_mirrored_ = false;  ///< the light's space in the world
+    /// Sine of the polar angle that the spectrum's rows next to the poles use.
+    float pole_sine_ = 1;
+    bool is_mirrored_ = false;  ///< whether light space is a mirror image of the world's
 };
 
 }  // namespace covtrace

@@ -16,10 +16,12 @@ namespace covtrace {
 
 namespace {
 
-/// What is brighter is damage (the sun is below 1e10), and sums of it would overflow.
+/// Largest radiance of a texel. A brighter one is damage (the sun is below 1e10), and sums of it
+/// would overflow.
 constexpr float kBrightest = 1e18f;
 
-/// One of two, the first with probability a / (a + b); u is stretched to be used again.
+/// Chooses one of two, the first with probability a / (a + b), and says whether it is the second; u
+/// is stretched to be used again.
 bool choose_second(float a, float b, float& u) {
     const float share = a + b > 0 ? a / (a + b) : 0.5f;
     const bool second = u >= share;
@@ -28,10 +30,10 @@ bool choose_second(float a, float b, float& u) {
     return second;
 }
 
-/// x in [0, 1] with density proportional to a + (b - a) x.
+/// A number in [0, 1] with density proportional to a + (b - a) x.
 float sample_linear(float a, float b, float u) {
     if (!(a + b > 0)) return u;
-    // Relative to the larger: squares of a very bright sun would overflow.
+    // The weights are taken relative to the larger: squares of a very bright sun would overflow.
     const float largest = std::max(a, b);
     a /= largest;
     b /= largest;
@@ -57,7 +59,7 @@ EnvironmentMap EnvironmentMap::read(const std::filesystem::path& file, const Sou
                         " x " + std::to_string(height) +
                         " pixels; expected a square (equal-area map) or twice as wide as high "
                         "(lat-long map)");
-    // A colour and what a texel takes of the tables by which directions are drawn.
+    // Each texel takes a colour, and a number in the tables by which directions are drawn.
     const MemoryReservation room(image.size() * (sizeof(Rgb) + sizeof(float)),
                                  "the texels of '" + file.string() + "'", where);
     return made_of(file, where, [&] {
@@ -106,13 +108,14 @@ void EnvironmentMap::set_texels(const Texels& texels) {
 
 namespace {
 
-/// Column or row of the texel whose centre lies at or before `s`, and how far beyond it s lies.
+/// The column or row of the texel whose centre lies at or before a coordinate, and how far beyond
+/// that centre the coordinate lies, in texels.
 struct Position {
     int index;
     float fraction;
 };
 Position position(float s, int n) {
-    // Of a direction that is not a number, any texel will do: its sample is rejected later.
+    // A coordinate that is not a number gets any texel: its sample is rejected later.
     const float inside = s >= 0 ? std::min(s, 1.0f) : 0.0f;
     const float x = inside * static_cast<float>(n) - 0.5f, whole = std::floor(x);
     return {static_cast<int>(whole), x - whole};
@@ -127,7 +130,7 @@ EnvironmentMap::Sight EnvironmentMap::look(Vec3 w) const {
 }
 
 EnvironmentMap::Sight EnvironmentMap::nearest(Vec2 uv) const {
-    // Of a direction that is not a number, any texel will do: its sample is rejected later.
+    // A coordinate that is not a number gets any texel: its sample is rejected later.
     const auto index = [](float s, int n) {
         return s > 0 ? static_cast<int>(std::min(s * float(n), float(n - 1))) : 0;
     };
@@ -171,7 +174,8 @@ float EnvironmentMap::solid_angle(int y) const {
 }
 
 void EnvironmentMap::set_means() {
-    // Sums of rows first: each row is done by one thread, and rows are added in their order.
+    // Rows are summed first, each by one thread, and then added in their order, so that the sum
+    // does not depend on threads.
     const auto mean = [&](const auto& of_texel) {
         std::vector<std::array<double, 3>> rows(static_cast<size_t>(height_));
         parallel_for(height_, [&](int64_t y) {
@@ -202,7 +206,8 @@ void EnvironmentMap::build_distribution() {
     std::vector<double> rows(h);
     parallel_for(height_, [&](int64_t row) {
         const int y = static_cast<int>(row);
-        // The mean over a texel of what bilinear interpolation makes of it and its neighbours.
+        // The weight of a texel is the mean, over its area, of the bilinear interpolation between
+        // its centre's weight and its neighbours'.
         const auto column = [&](int x) {
             return 0.125 * weight(x, y - 1) + 0.75 * weight(x, y) + 0.125 * weight(x, y + 1);
         };

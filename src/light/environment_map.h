@@ -27,8 +27,9 @@ namespace covtrace {
 class EnvironmentMap {
   public:
     enum class Layout { equal_area, lat_long };
-    /// With all of the mean left out, maps that are nearly even would have samples for their few
-    /// brighter texels only; the error over several maps is in docs/decisions/0074.
+    /// Part of the map's mean that no directions are drawn for. With all of it left out, maps that
+    /// are nearly even would have samples for their few brighter texels only; the error over
+    /// several maps is in docs/decisions/0074.
     static constexpr float kLeftOut = 0.8f;
 
     /// Reads an image; integers are taken as sRGB-encoded, grey as all channels alike, negative and
@@ -36,7 +37,8 @@ class EnvironmentMap {
     /// square nor 2:1; warns where its colour space is not known.
     static EnvironmentMap read(const std::filesystem::path& file, const SourceLocation& where,
                                Warnings& warnings);
-    /// Texels row by row from the top, finite and not negative; height == width or width / 2.
+    /// Makes a map of texels, row by row from the top, finite and not negative; height == width or
+    /// width / 2.
     EnvironmentMap(const std::vector<Rgb>& texels, int width, int height);
 
     Layout layout() const { return layout_; }
@@ -47,8 +49,9 @@ class EnvironmentMap {
     Rgb radiance(Vec3 w) const { return look(w).radiance; }
     /// A unit direction with density `pdf`, for u in [0, 1)^2. Not for black maps.
     Vec3 sample(Vec2 u) const;
-    /// The same in three steps. Each of the first two ends with a request to memory, which takes as
-    /// long as hundreds of instructions: who can do something else meanwhile does not wait for it.
+    /// A draw of `sample` in three steps: `begin_draw`, `choose_texel`, `direction`. Each of the
+    /// first two ends with a request to memory, which takes as long as hundreds of instructions: a
+    /// caller that does something else meanwhile does not wait for it.
     struct Draw {
         Vec2 u;
         size_t row = 0, column = 0;
@@ -56,9 +59,9 @@ class EnvironmentMap {
     Draw begin_draw(Vec2 u) const;
     void choose_texel(Draw& draw) const;
     Vec3 direction(const Draw& draw) const;
-    /// Per solid angle.
+    /// Density of `sample` per solid angle.
     float pdf(Vec3 w) const { return look(w).pdf; }
-    /// Both from the same texels.
+    /// Radiance and density of one direction, from the same texels.
     struct Sight {
         Rgb radiance;
         float pdf = 0;
@@ -67,7 +70,7 @@ class EnvironmentMap {
 
     /// Mean radiance over the sphere.
     Rgb mean() const { return mean_; }
-    /// The part of it that directions are drawn for.
+    /// The part of the mean radiance that directions are drawn for.
     float drawn_share() const { return drawn_share_; }
     /// Irradiance of a surface that faces +z.
     Rgb irradiance_from_above() const;
@@ -78,19 +81,21 @@ class EnvironmentMap {
     Sight nearest(Vec2 uv) const;
     Sight interpolated(Vec2 uv, float polar_sine) const;
     Vec3 to_direction(Vec2 uv) const;
-    /// With x in [-1, width] and y in [-1, height].
+    /// The texel (x, y), with x in [-1, width] and y in [-1, height]: the map has a margin of one
+    /// texel.
     const Rgb& texel(int x, int y) const {
         return texels_[static_cast<size_t>(y + 1) * static_cast<size_t>(width_ + 2) +
                        static_cast<size_t>(x + 1)];
     }
-    /// What counts of a radiance.
+    /// The part of a radiance that directions are drawn for: what it has above kLeftOut of the
+    /// mean.
     float drawn(Rgb c) const { return std::max(0.0f, choice_weight(c) - left_out_); }
-    /// What the sampling density is proportional to, at a texel's centre.
+    /// The weight at a texel's centre that the sampling density is proportional to.
     float weight(int x, int y) const {
         return drawn(texel(x, y)) * row_sine_[static_cast<size_t>(y + 1)];
     }
     float solid_angle(int y) const;  // of one texel of the row
-    /// texels[i]: the i-th, row by row from the top.
+    /// Fills the map from texels[i], the i-th row by row from the top.
     template <typename Texels>
     void build(const Texels& texels);
     template <typename Texels>
@@ -98,11 +103,13 @@ class EnvironmentMap {
     void set_means();
     void build_distribution();
 
-    /// Row by row with one more texel on every side: of lat-long maps what lies beyond the edge.
+    /// Texels row by row with one more on every side, which on lat-long maps is what lies beyond
+    /// the edge.
     HugePageVector<Rgb> texels_;
     int width_, height_;
     Layout layout_ = Layout::equal_area;
-    /// Of the polar angle at the rows' centres, with a row more at both ends; 1 on equal-area maps.
+    /// Sine of the polar angle at the rows' centres, with a row more at both ends; 1 on equal-area
+    /// maps.
     std::vector<float> row_sine_;
     TableCdf columns_;  // of each row
     TableCdf rows_;

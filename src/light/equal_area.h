@@ -9,7 +9,7 @@ namespace covtrace {
 
 /// Unit direction of a point of [0, 1]^2.
 Vec3 equal_area_square_to_sphere(Vec2 uv);
-/// Inverse of the above for a unit direction.
+/// The point of [0, 1]^2 of a unit direction: the inverse of `equal_area_square_to_sphere`.
 Vec2 equal_area_sphere_to_square(Vec3 w);
 
 }  // namespace covtrace

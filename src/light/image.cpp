@@ -60,7 +60,7 @@ LightImage LightImage::slide(const std::filesystem::path& file, float fov,
 
 Rgb LightImage::texel(Vec2 place) const {
     const auto index = [](float x, int n) {
-        // Not a number becomes the first: its sample is rejected later.
+        // A place that is not a number becomes the first texel: its sample is rejected later.
         return x > 0 ? std::min(static_cast<size_t>(x * static_cast<float>(n)), size_t(n) - 1) : 0;
     };
     return (
@@ -89,7 +89,7 @@ Rgb LightImage::integral() const {
         for (int x = 0; x < width_; ++x) {
             double solid_angle = 4 * double(kPi) / (double(width_) * height_);
             if (is_slide()) {
-                // dw = cos^3 dA in the plane at distance 1.
+                // The solid angle of a texel is cos^3 times its area in the plane at distance 1.
                 const double sx = ((2 * x + 1.0) / width_ - 1) * half_size_.x,
                              sy = ((2 * y + 1.0) / height_ - 1) * half_size_.y;
                 solid_angle = 4.0 * half_size_.x * half_size_.y / (double(width_) * height_) /
@@ -106,7 +106,8 @@ Rgb LightImage::integral() const {
 
 void LightImage::prepare_spectrum() {
     if (spectrum_) return;
-    // A slide ends before the dark: an eighth of it all around, at least the widest derivative.
+    // A slide ends in the dark, so the image is measured with a black margin of an eighth of its
+    // size, at least as wide as the widest derivative.
     const auto border = [this](int n) { return is_slide() ? std::max(4, n / 8) : 0; };
     const int left = border(width_), top = border(height_);
     const int width = width_ + 2 * left, height = height_ + 2 * top;
@@ -127,7 +128,8 @@ Vec2 LightImage::place_per_radian(Vec3 w, Vec3 axis) const {
     constexpr float kStep = 1e-3f;
     const std::optional<Vec2> a = place(normalize(w - axis * kStep)),
                               b = place(normalize(w + axis * kStep));
-    // Across a border of the octahedral square: its mean scale. At the rim of a slide: none.
+    // The derivative across a border of the octahedral square is taken as the map's mean scale; at
+    // the rim of a slide it is zero.
     const float mean = is_slide() ? 0.0f : 1 / std::sqrt(4 * kPi);
     const bool crosses_border = !is_slide() && a && b && length(*b - *a) > 0.1f;
     if (!a || !b || crosses_border) return {mean, mean};

@@ -15,8 +15,9 @@ namespace covtrace {
 
 class LightImage {
   public:
-    /// Square and equal-area, light space's y as the pole, as pbrt-v4 has it; grey: the mean of the
-    /// channels. Throws Error(scene) at `where` for images that can't be read or aren't square.
+    /// The image of a goniometric light: square and equal-area, with light space's y as the pole,
+    /// as pbrt-v4 has it. Grey: each texel is the mean of its channels. Throws Error(scene) at
+    /// `where` for images that can't be read or aren't square.
     static LightImage goniometric(const std::filesystem::path& file,
                                   const Transform& light_to_world, const SourceLocation& where,
                                   Warnings& warnings);
@@ -26,16 +27,16 @@ class LightImage {
                             const Transform& light_to_world, const SourceLocation& where,
                             Warnings& warnings);
 
-    /// Of the texel that the world direction w (unit, away from the light) falls into; black beside
-    /// a slide.
+    /// The value of the texel that the world direction w (unit, away from the light) falls into;
+    /// black beside a slide.
     Rgb operator()(Vec3 w) const;
-    /// Over all directions, by solid angle.
+    /// Integral of the image over all directions, by solid angle.
     Rgb integral() const;
     bool is_slide() const { return half_size_.x > 0; }
     /// Cosine of the angle between a slide's axis and its corners.
     float cos_corner() const;
 
-    /// Measures the image and, of a slide, its borders against the dark; once. Not thread-safe.
+    /// Measures the image, and for a slide its borders against the dark; once. Not thread-safe.
     void prepare_spectrum();
     /// Second moments of the angular amplitude spectrum around the world direction `frame.z`, which
     /// points away from the light, in the frame's x and y, (cycles per radian)^2. Zero beside a
@@ -48,7 +49,7 @@ class LightImage {
                            Warnings& warnings);
     LightImage(const LightTexels& image, const Transform& light_to_world);
     Rgb texel(Vec2 place) const;
-    /// Where the image is looked up, in [0, 1]^2; empty beside a slide.
+    /// The place in the image, in [0, 1]^2, that a world direction falls on; empty beside a slide.
     std::optional<Vec2> place(Vec3 w) const;
     /// Derivative of `place` by a rotation of w towards the unit vector `axis`, per radian.
     Vec2 place_per_radian(Vec3 w, Vec3 axis) const;
@@ -58,7 +59,8 @@ class LightImage {
     std::shared_ptr<const std::vector<Rgb>> texels_;
     Vec2 half_size_;  // of a slide
     std::shared_ptr<const ImageSpectrum> spectrum_;
-    Vec2 margin_;  // black, around what `spectrum_` has measured, in parts of the image
+    // Black margin around the image as `spectrum_` has measured it, in parts of the image.
+    Vec2 margin_;
 };
 
 }  // namespace covtrace

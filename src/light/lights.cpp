@@ -13,8 +13,8 @@ namespace covtrace {
 
 namespace {
 
-/// Neither finite nor infinite lights are trusted to be negligible by an estimate that knows no
-/// shadows.
+/// Least probability of choosing finite lights, or infinite ones beyond an even sky: an estimate
+/// that knows no shadows is not trusted to call either negligible.
 constexpr float kSmallestShare = 0.1f;
 
 Emitter make_emitter(const PlacedShape& shape) {
@@ -34,20 +34,20 @@ double surface(const Emitter& emitter) {
         emitter);
 }
 
-/// Shapes of equal keys share the power of their light: what one directive made, as a mesh file's
-/// triangles and quads.
+/// Key of the light that shapes belong to: those with equal keys share its power. They come from
+/// one directive, as a mesh file's triangles and quads do.
 using LightKey = std::tuple<int, int, size_t>;
 LightKey light_key(const std::vector<PlacedShape>& shapes, size_t i) {
     const ShapeDescription& s = shapes[i].description;
     return {s.area_light, s.directive, s.directive < 0 ? i : 0};
 }
 
-/// Emitted by one square unit of a diffuse light.
+/// Radiant exitance of a diffuse light: its power per unit of area.
 Rgb exitance(Rgb radiance, bool two_sided) {
     return (two_sided ? 2 * kPi : kPi) * radiance;
 }
 
-/// Whether alpha hides the whole shape: the customary way to write an invisible light.
+/// Whether alpha hides the whole shape, which is the customary way to write an invisible light.
 bool is_hidden(const SceneDescription& scene, TextureId alpha) {
     if (alpha < 0) return false;
     const auto* constant =
@@ -95,10 +95,10 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
         }
         Rgb choice_factor = area.mean_factor;
         if (area.alpha >= 0) {
-            // Where position decides, the mean over the parameters may miss all that shines; a
+            // Alpha's mean over the parameters may miss all that shines where position decides; a
             // twentieth takes little from the other lights.
             constexpr float kLeast = 0.05f;
-            // What is not a number becomes 0.
+            // Alpha that is not a number becomes 0.
             const float alpha = std::min(1.0f, std::max(0.0f, textures->mean(area.alpha).r));
             area.mean_factor *= alpha;
             choice_factor *= std::max(alpha, kLeast);
@@ -158,8 +158,8 @@ InfiniteShare Lights::Impl::infinite_share(Vec3 p, Vec3 n) const {
     const float finite = tree.irradiance(p, n);
     const bool has_uneven = share.weight > 0;
     if (even > 0) {
-        // A sky that is alike everywhere is found by BSDFs, too. It is drawn for as far as it
-        // outshines everything else (docs/decisions/0074).
+        // An even sky is found by BSDFs, too. It is drawn for only as far as it outshines
+        // everything else (docs/decisions/0074).
         const float rest = finite + share.weight;
         share.even = 0.5f * std::max(0.0f, 1 - rest / even);
         share.weight += share.even * even;
@@ -214,7 +214,7 @@ std::optional<LightSample> Lights::Impl::sample_area(int light, float probabilit
     s.position = point->position;
     s.normal = point->normal;
     if (!area.is_visible) {
-        // No other strategy finds the light: like a delta light of the same expected irradiance.
+        // An invisible light, which no ray finds, acts as a delta light of the same irradiance.
         s.is_delta = true;
         s.radiance *= 1 / point->pdf;
         s.pdf = probability;
@@ -241,7 +241,7 @@ std::optional<LightSample> Lights::Impl::sample_point(int light, float probabili
 
 std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& share, Vec3 n,
                                                          float u_select, Draw draw) const {
-    // The last one with any light takes what rounding leaves over.
+    // The last light with any weight takes the probability that rounding leaves over.
     float rest = u_select * share.weight, chosen_weight = 0;
     size_t chosen = 0;
     for (size_t i = 0; i < infinite_count(); ++i) {

@@ -1,5 +1,5 @@
-/// All lights of a scene: emission, sampling with light selection, and what the frequency analysis
-/// asks.
+/// All lights of a scene: emission, sampling with light selection, and the spectra that the
+/// frequency analysis starts from.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ namespace covtrace {
 /// A point (or direction) of a light seen from a shading point.
 struct LightSample {
     Vec3 wi;  ///< unit, towards the light
-    /// To the sampled point; infinite for distant and environment light.
+    /// Distance to the sampled point; infinite for distant and environment light.
     float distance = kInfinity;
     Rgb radiance;   ///< arriving if unoccluded; for delta lights irradiance of a facing surface
     float pdf = 0;  ///< selection times solid angle; for delta lights selection alone
@@ -26,12 +26,13 @@ struct LightSample {
     Vec3 normal;     ///< of area lights: unit, on the emitting outside
 };
 
-/// What the covariance of a light's radiance starts from.
+/// The spectrum of a light at its source, from which the covariance of its radiance starts. Each
+/// field says for which kinds it is set.
 struct SourceSpectrum {
     enum class Kind { area, point, directional, environment };
     Kind kind = Kind::area;
-    /// area: at the emitting point, z = normal; all others: x, y span the directions, z is the
-    /// direction that the light travels in.
+    /// Frame of the quantities below. area: at the emitting point, z = normal; all others: x, y
+    /// span the directions, z is the direction that the light travels in.
     Frame tangent;
     /// area: second moments of the whole emitter about its centroid in (tangent.x, tangent.y),
     /// length^2
@@ -42,7 +43,8 @@ struct SourceSpectrum {
     /// triangle only, the rim of a disk); infinite for closed meshes and for spheres, whose
     /// silhouette depends on the view.
     float border_distance = kInfinity;
-    Vec2 border_direction{1, 0};  ///< area: towards it, unit, in (tangent.x, tangent.y)
+    /// Area: unit vector towards that border point, in (tangent.x, tangent.y).
+    Vec2 border_direction{1, 0};
     /// environment, directional, and point for the image of a goniometric or projection light:
     /// angular covariance in (tangent.x, tangent.y), (cycles per radian)^2
     float a11 = 0, a12 = 0, a22 = 0;
@@ -58,9 +60,10 @@ struct DistantView {
 
 class Lights {
   public:
-    /// Image files that are missing, broken or of an unknown layout throw Error(scene) with the
-    /// place in the scene file. `geometry` and `textures` must outlive the lights; without textures
-    /// there is no alpha and no image on area lights. Shapes of instanced objects don't emit.
+    /// Builds the lights of a scene. Image files that are missing, broken or of an unknown layout
+    /// throw Error(scene) with the place in the scene file. `geometry` and `textures` must outlive
+    /// the lights; without textures there is no alpha and no image on area lights. Shapes of
+    /// instanced objects don't emit.
     Lights(const SceneDescription& scene, const Geometry& geometry,
            const TextureStore* textures = nullptr);
     ~Lights();
@@ -75,26 +78,27 @@ class Lights {
     /// what comes from all directions alike is left to BSDFs and phase functions where other lights
     /// outshine it, and so is the dark part of environment maps.
     ///
-    /// All infinite lights with extent count as one here: `radiance` and `pdf` are of all of them
+    /// Infinite lights with extent count as one light here: `radiance` and `pdf` are of all of them
     /// together.
     std::optional<LightSample> sample(Vec3 p, Vec3 n, float time, float u_select, Vec2 u) const {
         return finish_draw(p, n, time, u_select, {u, {}, 0});
     }
 
-    /// What of a sample depends on `u` alone: where it falls in an environment map. Begun as soon
-    /// as u is known, it lets memory answer while a path looks for p.
+    /// The part of a sample that depends on `u` alone: the place where it falls in an environment
+    /// map. Begun as soon as u is known, it lets memory answer while a path looks for p.
     struct Draw {
         Vec2 u;
         EnvironmentMap::Draw sky;
-        int steps = 0;  ///< of it that are done
+        int steps = 0;  ///< steps of the draw that are done
     };
-    /// Whether there is anything to gain: one infinite light with an image, and no other.
+    /// Whether drawing ahead gains anything: the scene has one infinite light with an image, and no
+    /// other light.
     bool draws_ahead() const;
-    /// The first step.
+    /// Does the first step of a draw.
     Draw begin_draw(Vec2 u) const;
-    /// The second one, best before something else that takes its time.
+    /// Does the second step of a draw, best before something else that takes its time.
     void continue_draw(Draw& draw) const;
-    /// `sample` with a draw that was taken as far as time allowed.
+    /// Finishes `sample` with a draw that was taken as far as time allowed.
     std::optional<LightSample> finish_draw(Vec3 p, Vec3 n, float time, float u_select,
                                            Draw draw) const;
 
@@ -107,8 +111,8 @@ class Lights {
     bool has_environment() const;
     /// Radiance of all infinite lights from the direction `w` (unit, away from the scene).
     Rgb environment(Vec3 w) const;
-    /// What comes from a direction of the infinite lights, and the density with which `sample(p,
-    /// n)` finds it there.
+    /// Radiance of the infinite lights from one direction, and the density with which `sample(p,
+    /// n)` finds that direction.
     struct Sky {
         Rgb radiance;
         float pdf = 0;
@@ -119,27 +123,30 @@ class Lights {
     /// Computes what the source spectra need; to be called once before asking for any. Not
     /// thread-safe.
     void prepare_spectra();
-    /// Of an emitter that lights something. Without its border, which only one in view shows.
+    /// Spectrum of the emitter of a sample that lights something, without its border: only an
+    /// emitter in view shows that.
     SourceSpectrum source_spectrum(const LightSample& s, float time) const;
-    /// Of the shape that was hit; empty where it does not emit. The border is left infinitely far
-    /// unless it is asked for: finding it takes a search.
+    /// Spectrum of the shape that was hit; empty where it does not emit. The border is left
+    /// infinitely far away unless it is asked for: finding it takes a search.
     SourceSpectrum source_spectrum(const SurfaceHit& emitter, bool with_border) const;
     /// Whether the infinite lights shine alike from all directions, with a spectrum that is zero.
     bool has_even_sky() const;
-    /// Of all infinite lights together around the direction `w`, weighted by radiance.
+    /// Spectrum of all infinite lights together around the direction `w`, weighted by radiance.
     SourceSpectrum environment_spectrum(Vec3 w) const;
 
-    /// The emissive shapes that rays can meet.
+    /// All emissive shapes that rays can meet, each as a whole.
     std::vector<DistantView> distant_views() const;
 
-    /// Power that all lights emit, of infinite ones that which enters the sphere around the scene.
+    /// Power that all lights emit; infinite lights count with what enters the sphere around the
+    /// scene.
     Rgb total_power() const;
-    /// Every emissive triangle, patch half, sphere and disk counts as a light of its own.
+    /// Number of lights: every emissive triangle, patch half, sphere and disk counts as one of its
+    /// own.
     int count() const;
-    /// That the colour space of an image is not known.
+    /// Warnings of images whose colour space is not known.
     const Warnings& warnings() const;
-    /// Probability that `sample(p, n)` chooses the light. Those of all lights sum to 1, or less
-    /// where all of a group of lights look away from p: choosing the group then chooses none.
+    /// Probability that `sample(p, n)` chooses the light. Over all lights it sums to 1, or to less
+    /// where a whole group of lights looks away from p: choosing the group then chooses none.
     float selection_probability(Vec3 p, Vec3 n, int light) const;
 
   private:

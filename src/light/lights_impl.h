@@ -1,5 +1,5 @@
-/// The tables behind Lights. Ids: emissive triangles, patch halves and quadrics shape by shape,
-/// then point and spot lights, then distant ones, then infinite ones with extent.
+/// The tables behind Lights. Lights are numbered: emissive triangles, patch halves and quadrics
+/// shape by shape, then point and spot lights, then distant ones, then infinite ones with extent.
 #pragma once
 
 #include <optional>
@@ -17,10 +17,9 @@ struct AreaLight {
     uint32_t shape = 0;
     Rgb radiance;
     bool two_sided = false;
-    TextureId image = -1, alpha = -1;  ///< that the radiance varies by; -1 where it doesn't
-    bool is_visible =
-        true;  ///< shapes that alpha hides altogether light the scene, but no ray finds them
-    Rgb mean_factor{1};  ///< of image and alpha together
+    TextureId image = -1, alpha = -1;  ///< textures that the radiance varies by; -1: none
+    bool is_visible = true;            ///< mean of image and alpha together
+    Rgb mean_factor{1};                ///< of image and alpha together
     int first_light = 0;
     Emitter emitter;
     std::optional<EmitterSpectrum> spectrum;
@@ -28,17 +27,18 @@ struct AreaLight {
     bool varies() const { return image >= 0 || alpha >= 0; }
 };
 
-/// All infinite lights or all finite ones against each other at a point.
+/// The balance between all infinite lights and all finite ones at a point, for choosing among them.
 struct InfiniteShare {
-    float probability = 0;  ///< of choosing an infinite light
-    float weight = 0;       ///< of all infinite lights, which they share that probability by
-    float even = 1;         ///< what the irradiance by even skies counts beside that by others
+    float probability = 0;  ///< of choosing some infinite light
+    /// Summed over infinite lights, which share `probability` by their weights.
+    float weight = 0;
+    float even = 1;  ///< factor on the irradiance by even skies beside that by other lights
 };
 
 struct Lights::Impl {
     Impl(const SceneDescription& scene, const Geometry& geometry, const TextureStore* textures);
 
-    /// By the image, at a place that is there.
+    /// Radiance of an area light at a place, by its image; alpha does not count.
     Rgb radiance_at(const AreaLight& area, const TexturePoint& at) const;
 
     std::optional<LightSample> sample_area(int light, float probability, Vec3 p, float time,
@@ -49,13 +49,13 @@ struct Lights::Impl {
     void advance(const Environment& light, Draw& draw, int steps) const;
 
     InfiniteShare infinite_share(Vec3 p, Vec3 n) const;
-    /// Of infinite light i (distant ones first), for choosing among them.
+    /// Weight of infinite light i (distant ones come first) for choosing among them.
     float infinite_weight(const InfiniteShare& share, size_t i, Vec3 n) const;
     Sky sky(const InfiniteShare& share, Vec3 n, Vec3 w) const;
     Rgb environment(Vec3 w) const;
     SourceSpectrum environment_spectrum(Vec3 w) const;
 
-    /// Null where the shape does not emit.
+    /// The area light of the shape that was hit; null where the shape does not emit.
     const AreaLight* area_light_of(const SurfaceHit& hit) const;
     int first_point() const { return static_cast<int>(owner.size()); }
     int first_distant() const { return first_point() + static_cast<int>(points.size()); }
@@ -66,7 +66,7 @@ struct Lights::Impl {
     const TextureStore* textures;
     std::vector<int> area_light_of_shape;  ///< into area_lights, -1 for shapes that don't emit
     std::vector<AreaLight> area_lights;
-    std::vector<uint32_t> owner;  ///< of each area light's id: into area_lights
+    std::vector<uint32_t> owner;  ///< for each area light's id, an index into area_lights
     std::vector<PointEmitter> points;
     std::vector<DistantEmitter> distants;
     std::vector<Environment> environments;

@@ -9,7 +9,8 @@ namespace covtrace {
 
 namespace {
 
-/// Below, areas serve as well and cost less digits; above, the point all but lies in the triangle.
+/// Range of solid angles, steradians, that are sampled by solid angle. Below it areas serve as well
+/// and cost fewer digits; above it the point all but lies in the triangle.
 constexpr float kSmallestSolidAngle = 3e-4f, kLargestSolidAngle = 6.2f;
 
 bool by_solid_angle(float solid_angle) {
@@ -95,7 +96,7 @@ EmissiveMesh::Element EmissiveMesh::at(int light, float time) const {
 }
 
 float EmissiveMesh::area_pdf(const Element& e, Vec3 p, Vec3 position, Vec2 b) {
-    // (b1, b2) have density 2, their area element is |d1 x d2|.
+    // Barycentric coordinates (b1, b2) are drawn with density 2; their area element is |d1 x d2|.
     const Vec3 n = cross(e.d1(b), e.d2(b)), to_point = position - p;
     const float distance_squared = length_squared(to_point);
     const float projected = abs_dot(n, to_point);  // |n| distance cos
@@ -167,7 +168,8 @@ float EmissiveMesh::area(int light) const {
     Element e = elements_[static_cast<size_t>(light)];
     if (motion_) e = moved(e, motion_->start());
     if (e.is_flat()) return 0.5f * length(cross(e.p1 - e.p0, e.p2 - e.p0));
-    // The midpoint rule over small squares of (b1, b2), those on the diagonal counting half.
+    // The area comes by the midpoint rule over small squares of (b1, b2); those on the diagonal
+    // count half.
     constexpr int kSteps = 32;
     double sum = 0;
     for (int i = 0; i < kSteps; ++i)
@@ -191,7 +193,7 @@ LightBounds EmissiveMesh::bounds(int light) const {
         // The fourth corner of the whole patch bounds its half, too.
         motion_box.add({e.p0, e.p1, e.p2, e.is_flat() ? e.p0 : e.point({1, 1})});
         const float side = e.facing.x + e.facing.y + e.facing.z < 0 ? -1.0f : 1.0f;
-        // d1 x d2 is linear in (b1, b2): the normals at the corners bound all others.
+        // The normal d1 x d2 is linear in (b1, b2): the normals at the corners bound all others.
         for (const Vec2 corner : {Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}}) {
             LightBounds cone;
             cone.intensity = 1;

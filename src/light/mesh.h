@@ -13,22 +13,22 @@ namespace covtrace {
 
 class EmissiveMesh {
   public:
-    /// A mesh, which must outlive the emitter where it moves.
+    /// Makes emitters of a shape's mesh; the shape must outlive them where it moves.
     explicit EmissiveMesh(const PlacedShape& shape);
 
     int light_count() const { return static_cast<int>(elements_.size()); }
     int light_of(const SurfaceHit& hit) const;
-    /// Flat elements: uniform by solid angle, by area where the solid angle is tiny or nearly a
-    /// hemisphere. Halves of patches that are no parallelograms: uniform over the patch's (u, v).
-    /// Empty where the density is not finite.
+    /// A point on a light. Flat elements: uniform by solid angle as seen from p, but by area where
+    /// the solid angle is tiny or nearly a hemisphere. Halves of patches that are no
+    /// parallelograms: uniform over the patch's (u, v). Empty where the density is not finite.
     std::optional<EmitterPoint> sample(int light, Vec3 p, float time, Vec2 u) const;
     /// Density of `sample` at a hit, per solid angle.
     float pdf(int light, Vec3 p, const SurfaceHit& hit) const;
     /// The surface's texture coordinates at a sampled point.
     Vec2 uv(int light, const EmitterPoint& point, float time) const;
-    /// World space, at the start of the shutter.
+    /// Area of a light in world space, at the start of the shutter.
     float area(int light) const;
-    /// With an intensity for a radiance of 1.
+    /// Bounds of a light, with the intensity that a radiance of 1 gives.
     LightBounds bounds(int light) const;
 
     /// Corners of a light in world space at the start of the shutter.
@@ -36,13 +36,13 @@ class EmissiveMesh {
     bool is_patches() const { return is_patches_; }
 
   private:
-    /// Point p0 + b1 (p1 - p0) + b2 (p2 - p0) + b1 b2 twist with b1, b2 >= 0 and b1 + b2 <= 1.
-    /// Where nothing moves in world space, else in object space.
+    /// One triangle or half of a patch: the points p0 + b1 (p1 - p0) + b2 (p2 - p0) + b1 b2 twist
+    /// with b1, b2 >= 0 and b1 + b2 <= 1. In world space where nothing moves, else in object space.
     struct Element {
         Vec3 p0, p1, p2;
         Vec3 normal;  // unit, along d1 x d2 of flat elements
         Vec3 twist;   // zero for flat elements
-        Vec3 facing;  // whose interpolated sign tells whether d1 x d2 points to the outside
+        Vec3 facing;  // interpolated, its sign tells whether d1 x d2 points to the outside
         bool is_flat() const { return twist == Vec3{}; }
         Vec3 d1(Vec2 b) const { return p1 - p0 + twist * b.y; }
         Vec3 d2(Vec2 b) const { return p2 - p0 + twist * b.x; }

@@ -14,7 +14,7 @@ float radians(float degrees) {
     return degrees * (kPi / 180);
 }
 
-/// The transpose of the linear part applied to v.
+/// The vector v multiplied by the transpose of the transform's linear part M.
 Vec3 transposed_vector(const Transform& t, Vec3 v) {
     const auto& m = t.matrix().m;
     const auto component = [&](size_t c) {
@@ -82,7 +82,7 @@ float EmissiveQuadric::object_area() const {
 
 float EmissiveQuadric::area(int) const {
     if (start_.scale > 0) return object_area() * start_.scale * start_.scale;
-    // An area element grows by |det M| |M^-T n|.
+    // The map M makes an area element |det M| |M^-T n| times as large.
     constexpr int kSteps = 64;
     double sum = 0;
     for (int i = 0; i < kSteps; ++i)
@@ -126,7 +126,8 @@ float EmissiveQuadric::curvature(float time) const {
 bool EmissiveQuadric::seen_as_cone(const Pose& pose, Vec3 p, float& distance_squared) const {
     if (!is_whole_sphere() || !(pose.scale > 0)) return false;
     distance_squared = length_squared(pose.object_to_world.point({}) - p);
-    // Closer than this the cone nears the hemisphere and its rim loses digits.
+    // The limit is a little outside of the sphere: closer than this the cone nears the hemisphere
+    // and its rim loses digits.
     const float r = radius_ * pose.scale;
     return distance_squared > r * r * 1.0001f;
 }
@@ -143,7 +144,7 @@ float EmissiveQuadric::area_pdf(const Pose& pose, Vec3 p, Vec3 position, Vec3 no
 
 namespace {
 
-/// 1 - cos of the half angle under which a sphere is seen.
+/// The value 1 - cos of the half angle under which a sphere is seen.
 float one_minus_cos_cone(float radius_squared, float distance_squared) {
     const float sin2 = radius_squared / distance_squared;
     return sin2 / (1 + safe_sqrt(1 - sin2));
@@ -216,7 +217,8 @@ Vec2 EmissiveQuadric::uv(int, const EmitterPoint& point, float time) const {
 std::array<double, 6> EmissiveQuadric::second_moments() const {
     const double r = radius_;
     if (is_whole_sphere()) return {r * r / 4, 0, 0, r * r / 4, 0, r * r / 4};
-    // The midpoint rule over (u, v), which is uniform by area; exact for whole disks.
+    // The moments come by the midpoint rule over (u, v), which is uniform by area; exact for whole
+    // disks.
     constexpr int kSteps = 64;
     double mean[3] = {}, square[6] = {};
     for (int i = 0; i < kSteps; ++i)

@@ -12,21 +12,21 @@ namespace covtrace {
 
 class EmissiveQuadric {
   public:
-    /// A sphere or a disk, which must outlive the emitter where it moves.
+    /// Makes the emitter of a sphere or a disk, which must outlive it where it moves.
     explicit EmissiveQuadric(const PlacedShape& shape);
 
     int light_count() const { return 1; }
     int light_of(const SurfaceHit&) const { return 0; }
-    /// Uniform by solid angle within the cone around a whole sphere seen from outside, uniform by
-    /// object-space area otherwise. Empty where the density is not finite.
+    /// A point on the emitter. Uniform by solid angle within the cone around a whole sphere seen
+    /// from outside, uniform by object-space area otherwise. Empty where the density is not finite.
     std::optional<EmitterPoint> sample(int light, Vec3 p, float time, Vec2 u) const;
     /// Density of `sample` at a hit, per solid angle.
     float pdf(int light, Vec3 p, const SurfaceHit& hit) const;
     /// The surface's texture coordinates at a sampled point, as pbrt defines them.
     Vec2 uv(int light, const EmitterPoint& point, float time) const;
-    /// World space, at the start of the shutter.
+    /// Area in world space, at the start of the shutter.
     float area(int light) const;
-    /// With an intensity for a radiance of 1.
+    /// Bounds of the emitter, with the intensity that a radiance of 1 gives.
     LightBounds bounds(int light) const;
 
     bool is_sphere() const { return is_sphere_; }
@@ -51,7 +51,7 @@ class EmissiveQuadric {
     };
     static Pose make_pose(const Transform& object_to_world);
     Pose pose(float time) const { return motion_ ? make_pose(motion_->at(time)) : start_; }
-    ObjectPoint point(Vec2 u) const;  // uniform by area
+    ObjectPoint point(Vec2 u) const;  // a point of the surface, uniform by area in object space
     float object_area() const;
     bool is_whole_sphere() const;
     bool seen_as_cone(const Pose& pose, Vec3 p, float& distance_squared) const;
@@ -61,7 +61,7 @@ class EmissiveQuadric {
 
     bool is_sphere_ = true;
     float radius_ = 1, phi_max_ = 2 * kPi;
-    float z_min_ = -1, z_max_ = 1;  // both the height of a disk
+    float z_min_ = -1, z_max_ = 1;  // of a disk both are its height
     float inner_radius_ = 0;        // of disks
     float orientation_ = 1;         // -1 where the outside is opposite to the quadric's own normal
     Pose start_;

@@ -7,7 +7,8 @@ namespace covtrace {
 
 namespace {
 
-/// Stands for "no extent at all" in an angular covariance, (cycles per radian)^2.
+/// Angular covariance of light from a single direction, (cycles per radian)^2, in place of
+/// infinity.
 constexpr float kDirectionalCap = 1e8f;
 
 SourceSpectrum directional_spectrum(Vec3 wi) {
@@ -52,7 +53,7 @@ SourceSpectrum Lights::Impl::environment_spectrum(Vec3 w) const {
         if (!(weight > 0)) continue;
         const AngularCovariance a = e.spectrum(w);
         if (total == 0) s.tangent = a.tangent;
-        // Both frames share z: turn this light's axes into the first one's.
+        // This light's axes are turned into the first light's: both frames share z.
         const float c = dot(s.tangent.x, a.tangent.x), d = dot(s.tangent.x, a.tangent.y);
         s.a11 += weight * (c * c * a.a11 + 2 * c * d * a.a12 + d * d * a.a22);
         s.a12 += weight * (-c * d * a.a11 + (c * c - d * d) * a.a12 + c * d * a.a22);

@@ -15,24 +15,25 @@ SphericalTriangle spherical_triangle(const WorldTriangle& triangle, Vec3 p) {
     t.v0 = a * ia;
     t.v1 = b * ib;
     t.v2 = c * ic;
-    // The determinant by the edges: unit vectors to a small triangle would cancel.
+    // The determinant is taken from the edges: unit vectors to the corners of a small triangle
+    // would cancel.
     const Vec3 normal = cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0);
     t.volume = std::abs(dot(t.v0, normal)) * (ib * ic);
     t.g1 = dot(t.v0, t.v2) + dot(t.v1, t.v2);
     t.g2 = 1 + dot(t.v0, t.v1);
-    // van Oosterom and Strackee 1983
+    // Solid angle by van Oosterom and Strackee 1983, "The solid angle of a plane triangle".
     t.solid_angle = 2 * arctangent(t.volume, t.g1 + t.g2);
     return t;
 }
 
 Vec3 sample_direction(const SphericalTriangle& t, Vec2 u) {
-    // A corner v2' on the arc from v0 to v2 that cuts off the share u.x of the solid angle ...
+    // First a corner v2' on the arc from v0 to v2 that cuts off the share u.x of the solid angle.
     const float half = 0.5f * t.solid_angle * u.x;
     const auto [s, c] = sin_cos(half);
     const Vec3 r = t.v0 * (t.volume * c - t.g1 * s) + t.v2 * (t.g2 * s);
     const Vec3 corner = r * (2 * dot(t.v0, r) / dot(r, r)) - t.v0;
-    // ... then a point on the arc from v1 to v2', uniform by h = 1 - cos. The factor 1 - s2 of
-    // sin^2 = h (2 - h) over 1 - s2^2 is divided out: it has few digits for short arcs.
+    // Then a point on the arc from v1 to v2', uniform by h = 1 - cos. The factor 1 - s2 of sin^2 =
+    // h (2 - h) over 1 - s2^2 is divided out: it has few digits for short arcs.
     const float s2 = dot(t.v1, corner);
     const float h = u.y * (1 - s2);
     const float k = s2 > -1 ? safe_sqrt(u.y * (2 - h) / (1 + s2)) : u.y;

@@ -16,7 +16,7 @@ struct SphericalTriangle {
 };
 
 SphericalTriangle spherical_triangle(const WorldTriangle& triangle, Vec3 p);
-/// Unit direction with density 1 / solid_angle; the solid angle must be above zero.
+/// A unit direction into the triangle with density 1 / solid_angle, which must be above zero.
 Vec3 sample_direction(const SphericalTriangle& t, Vec2 u);
 
 }  // namespace covtrace

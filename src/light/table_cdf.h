@@ -1,6 +1,6 @@
-/// A tabulated distribution function, inverted without a search: for every slice of u it is known
+/// A tabulated distribution function, inverted without a search: a table tells for every slice of u
 /// where to begin (Chen and Asau 1974, "On generating random variates from an empirical
-/// distribution"). The same numbers as by bisection; u stays stratified.
+/// distribution"). It gives the same numbers as bisection; u stays stratified.
 #pragma once
 
 #include <algorithm>
@@ -15,28 +15,29 @@ namespace covtrace {
 class TableCdf {
   public:
     TableCdf() = default;
-    /// `cumulated`: running sums of weights that are not negative; where all are zero every entry
-    /// is as likely.
+    /// Makes one distribution. `cumulated`: running sums of weights that are not negative; where
+    /// all are zero every entry is as likely.
     explicit TableCdf(const std::vector<double>& cumulated) : TableCdf(1, cumulated.size()) {
         set_row(0, cumulated);
     }
-    /// Several distributions of the same size side by side, to be set one by one.
+    /// Makes room for several distributions of the same size side by side, to be set one by one.
     TableCdf(size_t rows, size_t entries);
-    /// Rows may be set at the same time.
+    /// Sets one distribution. Different rows may be set at the same time.
     void set_row(size_t row, const std::vector<double>& cumulated);
 
     /// Index of the entry that holds u in [0, 1); u becomes its place within the entry, in [0, 1).
     size_t sample(float& u, size_t row = 0) const { return finish(begin(u, row), u, row); }
 
-    /// The same in two steps, for those who have something else to do while memory answers: where
-    /// to look for u, which only reads the small table and asks for the other one, ...
+    /// The first half of `sample`, for callers that have something else to do while memory answers:
+    /// where to begin to look for u. It only reads the small table and asks memory for the large
+    /// one.
     size_t begin(float u, size_t row = 0) const {
         const size_t first =
             first_[row * slices_ + static_cast<size_t>(u * static_cast<float>(slices_))];
         __builtin_prefetch(&upper_[row * stride_ + first]);
         return first;
     }
-    /// ... and the look.
+    /// The second half of `sample`, from the place that `begin` gave.
     size_t finish(size_t first, float& u, size_t row = 0) const {
         const float* upper = &upper_[row * stride_];
         size_t i = first;
@@ -50,12 +51,13 @@ class TableCdf {
     }
 
   private:
-    /// Few, so that the slices of all rows of an image stay in the cache while entries do not.
+    /// Entries of a slice: so few slices that those of all rows of an image stay in the cache,
+    /// though their entries do not.
     static constexpr size_t kEntriesPerSlice = 16;
     static constexpr size_t kLanes = 8;  ///< entries that are compared at once
 
     size_t entries_ = 0, stride_ = 0, slices_ = 0;  ///< of each row
-    /// Cumulated shares, the last of a row is 1; then as many larger ones as lanes.
+    /// Cumulated shares of each row, of which the last is 1; then as many larger ones as lanes.
     HugePageVector<float> upper_;
     HugePageVector<uint32_t> first_;  ///< the entry where each slice of u begins
 };

@@ -19,20 +19,20 @@ struct LightTexels {
     int width() const { return raster.width; }
     int height() const { return raster.height; }
     size_t size() const { return size_t(width()) * size_t(height()); }
-    /// Linear, row by row from the top; nothing is negative.
+    /// The radiance of one texel, linear, row by row from the top; nothing is negative.
     Rgb operator[](size_t texel) const;
     std::vector<Rgb> all() const;
 };
 
-/// Whether the channels of a light's image make a colour.
+/// How the channels of a light's image are read.
 enum class LightChannels {
-    colour,  ///< linear Rec.709, from the colour space that the file names
-    factors  ///< as they are
+    colour,  ///< as a colour, linear Rec.709, from the colour space that the file names
+    factors  ///< as plain numbers
 };
 
-/// Integers are decoded from sRGB, as in pbrt-v4; values above `brightest` are cut. Throws
-/// Error(scene) at `where` for files that can't be read, Error(limit) for those too large; warns
-/// where a file's colour space is not known.
+/// Reads the image of a light. Integers are decoded from sRGB, as in pbrt-v4; values above
+/// `brightest` are cut. Throws Error(scene) at `where` for files that can't be read, Error(limit)
+/// for those too large; warns where a file's colour space is not known.
 LightTexels read_light_texels(const std::filesystem::path& file, LightChannels channels,
                               float brightest, const SourceLocation& where, Warnings& warnings);
 

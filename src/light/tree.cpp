@@ -9,19 +9,20 @@ namespace covtrace {
 
 namespace {
 
-/// cos(max(0, a - b)) for angles in [0, pi].
+/// The value cos(max(0, a - b)) for angles a, b in [0, pi].
 inline float cos_of_excess(float sin_a, float cos_a, float sin_b, float cos_b) {
     const float difference = cos_a * cos_b + sin_a * sin_b;
     return cos_a > cos_b ? 1.0f : difference;
 }
-/// sin(max(0, a - b)).
+/// The value sin(max(0, a - b)) for angles a, b in [0, pi].
 inline float sin_of_excess(float sin_a, float cos_a, float sin_b, float cos_b) {
     const float difference = sin_a * cos_b - cos_a * sin_b;
     return cos_a > cos_b ? 0.0f : difference;
 }
 
-/// Of a normal to what is seen in the cone of half-angle b at the angle i, where that is above the
-/// horizon: the cosine of i, and of cones that the horizon cuts about what of it is left.
+/// Mean cosine between a surface's normal and the part above the horizon of a cone of directions
+/// with half angle b, at the angle i to the normal: the cosine of i, and for cones that the horizon
+/// cuts about that of the part that is left.
 inline float mean_cosine(float cos_i, float sin_b) {
     const float above = std::max(0.0f, cos_i + sin_b);
     return cos_i >= sin_b ? cos_i : above * above / std::max(4 * sin_b, 1e-20f);  // of points: 0
@@ -33,7 +34,8 @@ float sum(const std::array<float, 4>& v) {
 
 }  // namespace
 
-/// Without branches, so that the loop becomes vector instructions.
+/// Importance of all children at once. It has no branches, so that the loop becomes vector
+/// instructions.
 template <LightTree::Estimate kEstimate>
 LightTree::Lanes LightTree::Node::importance(Vec3 p, Vec3 n) const {
     const bool is_volume = n == Vec3{};
@@ -64,7 +66,7 @@ LightTree::Lanes LightTree::Node::importance(Vec3 p, Vec3 n) const {
                                   ? intensity[i] * std::max(cos_emission, 1e-3f) *
                                         (is_volume ? 1.0f : received) / at_least
                                   : 0.0f;
-        // Within the bounds nothing is known about directions.
+        // A point within the bounds knows nothing of the directions to the lights.
         const float inside = intensity[i] / std::max(radius_squared[i], 1e-20f);
         result[i] = distance_squared <= radius_squared[i] * 1.0001f ? inside : outside;
     }
@@ -72,8 +74,8 @@ LightTree::Lanes LightTree::Node::importance(Vec3 p, Vec3 n) const {
 }
 
 float LightTree::irradiance(Vec3 p, Vec3 n) const {
-    // The root's children are a much better estimate than all lights at once where they are
-    // scattered.
+    // The root's children are summed: where the lights are scattered, this is a much better
+    // estimate than one bound of all of them.
     return nodes_.empty() ? 0.0f : sum(nodes_.front().importance<Estimate::mean>(p, n));
 }
 
@@ -86,7 +88,7 @@ std::optional<LightTree::Choice> LightTree::sample(Vec3 p, Vec3 n, float u) cons
         const Lanes importance = node.importance<Estimate::bound>(p, n);
         const float total = sum(importance);
         if (!(total > 0)) return std::nullopt;
-        // The last one of any importance takes what rounding leaves over.
+        // The last child of any importance takes the probability that rounding leaves over.
         float rest = u * total;
         size_t chosen = 0;
         for (size_t i = 0; i < kWidth; ++i) {

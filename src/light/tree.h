@@ -1,7 +1,8 @@
 /// Chooses one of many finite lights by what each may contribute at a point: a bounding volume
 /// hierarchy over lights (Conty Estevez and Kulla 2018, "Importance sampling of many lights with
 /// adaptive tree splitting"), walked down at random by the importance of the children. Every node
-/// has up to four, side by side in memory, so that they are judged by the same vector instructions.
+/// has up to four children, side by side in memory, so that they are judged by the same vector
+/// instructions.
 #pragma once
 
 #include <array>
@@ -23,21 +24,22 @@ struct LightBounds {
     bool two_sided = false;  ///< shines along -axis as well
 };
 
-/// Bounds of both; one without intensity leaves the other unchanged.
+/// Bounds of two groups of lights together; one without intensity leaves the other unchanged.
 LightBounds merge(const LightBounds& a, const LightBounds& b);
 
 class LightTree {
   public:
     LightTree() = default;
-    /// One entry per light, whose index names it; those without intensity are never chosen.
+    /// Builds the tree. `lights` has one entry per light, whose index names it; those without
+    /// intensity are never chosen.
     explicit LightTree(const std::vector<LightBounds>& lights);
 
     struct Choice {
         int light = -1;
         float probability = 0;
     };
-    /// `n`: unit normal on the side that light is wanted for; the zero vector where there is none.
-    /// Empty where no light can reach p. `u` in [0, 1).
+    /// Chooses a light for the point p. `n`: unit normal on the side that light is wanted for; the
+    /// zero vector where there is none. `u` in [0, 1). Empty where no light can reach p.
     std::optional<Choice> sample(Vec3 p, Vec3 n, float u) const;
     /// Probability that `sample` returns this light.
     float probability(Vec3 p, Vec3 n, int light) const;
@@ -46,8 +48,8 @@ class LightTree {
 
   private:
     static constexpr size_t kWidth = 4;
-    /// How the cosine at the surface counts: for choosing among lights none that may shine is left
-    /// out; all of them together are estimated by the mean.
+    /// How the cosine at the surface counts. `bound`, for choosing among lights, leaves out none
+    /// that may shine; `mean` estimates the irradiance of all of them together.
     enum class Estimate { bound, mean };
     using Lanes = std::array<float, kWidth>;
     /// Up to four children, each a light or a node; those that are not there have no intensity.
@@ -69,7 +71,8 @@ class LightTree {
     class Builder;
 
     std::vector<Node> nodes_;  ///< the first is the root
-    /// Per light: two bits for each level say which child to take, the lowest at the root.
+    /// Per light, the way from the root to it: two bits for each level say which child to take, the
+    /// lowest bits at the root.
     std::vector<uint64_t> trails_;
 };
 

@@ -9,14 +9,15 @@ namespace covtrace {
 namespace {
 
 constexpr int kBuckets = 12;
-/// From this depth on nodes are halved by count: no leaf is deeper than 64.
+/// Depth from which on nodes are halved by count, so that no leaf is deeper than 64.
 constexpr int kMostBinnedDepth = 32;
 
 float angle_between(Vec3 a, Vec3 b) {
     return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-/// Measure of the directions a cone of emitters shines into, Conty and Kulla 2018, section 4.3.
+/// Measure of the directions that a cone of emitters shines into (Conty Estevez and Kulla 2018,
+/// section 4.3).
 float orientation_measure(const LightBounds& b) {
     const float o = b.theta_o, w = std::min(o + b.theta_e, kPi);
     const float sin_o = std::sin(o), cos_o = std::cos(o);
@@ -24,7 +25,8 @@ float orientation_measure(const LightBounds& b) {
            kPi / 2 * (2 * w * sin_o - std::cos(o - 2 * w) - 2 * o * sin_o + cos_o);
 }
 
-/// Cost of a node: power, directions and size. The squared diagonal keeps lights on a line apart.
+/// Cost of a node from its power, directions and size. The squared diagonal keeps lights on a line
+/// apart.
 float cost(const LightBounds& b) {
     if (!(b.intensity > 0)) return 0;
     const Vec3 d = b.box.diagonal();
@@ -43,7 +45,7 @@ LightBounds merge(const LightBounds& a, const LightBounds& b) {
     m.intensity = a.intensity + b.intensity;
     m.two_sided = a.two_sided || b.two_sided;
     m.theta_e = std::max(a.theta_e, b.theta_e);
-    // A two-sided light has no preferred side: take the one that keeps the cone narrow.
+    // The axis of a two-sided light may be turned: the side is taken that keeps the cone narrow.
     const Vec3 b_axis = b.two_sided && dot(a.axis, b.axis) < 0 ? -b.axis : b.axis;
     const float between = angle_between(a.axis, b_axis);
     m.axis = a.axis;
@@ -65,7 +67,7 @@ LightBounds merge(const LightBounds& a, const LightBounds& b) {
     return m;
 }
 
-/// A binary tree by the cost above, then two of its levels to one.
+/// Builds a binary tree by the cost of its nodes, then makes one level of each two.
 class LightTree::Builder {
   public:
     Builder(LightTree& tree, const std::vector<LightBounds>& lights) : tree_(tree) {
@@ -157,7 +159,8 @@ uint32_t LightTree::Builder::split(size_t begin, size_t end, int depth) {
 }
 
 void LightTree::Builder::widen(uint32_t pair, uint32_t node, uint64_t trail, int shift) {
-    // Two levels of pairs at once, so that a wide tree is at most half as deep; then what is left.
+    // All pairs of a level are opened in turn: two levels fill a node, so that a wide tree is at
+    // most half as deep. Room that leaves have spared goes to the levels below.
     std::array<uint32_t, kWidth> child{pair};
     size_t count = 1;
     const auto open = [&](size_t i) {
@@ -185,7 +188,8 @@ void LightTree::Builder::widen(uint32_t pair, uint32_t node, uint64_t trail, int
 }
 
 void LightTree::Builder::set_child(Node& node, size_t i, const LightBounds& b) {
-    // A little more than the exact angles, so that rounding can't cut off what a light emits.
+    // The cones are a little wider than the exact angles, so that rounding can't cut off what a
+    // light emits.
     constexpr float kSlack = 2e-3f;
     const Vec3 center = b.box.center();
     node.center_x[i] = center.x;

@@ -5,7 +5,8 @@
 
 namespace covtrace {
 
-/// The mean of the channels: luminance would starve saturated blue lights of samples.
+/// The weight of a colour is the mean of its channels: luminance would starve saturated blue lights
+/// of samples.
 constexpr float choice_weight(Rgb c) {
     return (c.r + c.g + c.b) * (1.0f / 3);
 }
