@@ -9,20 +9,21 @@ namespace covtrace {
 
 namespace {
 
-/// Lines about an axis; an angle of 90 degrees holds all.
+/// A double cone of lines about an axis; one with a half angle of 90 degrees holds all lines.
 struct Cone {
     Vec3 axis{0, 0, 1};
     float cosine = 0, sine = 1;
 };
 
-/// The middle of the wedge about an edge; the edge is no outline for lines of sight inside of the
-/// wedge or of its mirror image.
+/// The cone about the middle of the wedge at an edge. The edge is no outline for lines of sight
+/// inside of the wedge or of its mirror image.
 Cone cone_of(const FoldEdge& e) {
-    // The outer faces' directions away from the edge.
+    // The wedge is spanned by the directions from the edge into its two outer faces.
     const Vec3 along = normalize(e.b - e.a);
     const Vec3 u = cross(e.normal0, along), v = cross(e.normal1, along), sum = u + v;
     const float l = length(sum);
-    // Almost flat: the middle is at right angles to the surface, whose normal is safer.
+    // An edge that is almost flat has the middle of its wedge at right angles to the surface, whose
+    // normal is safer to compute.
     if (!(l > 1e-3f)) {
         const float angle = 1e-3f;
         return {normalize(e.normal0 - e.normal1), std::cos(angle), angle};
@@ -51,12 +52,12 @@ Vec3 main_axis(const Tensor& t) {
     return v;
 }
 
-/// Edges [begin, end).
+/// Edges [begin, end) of the hierarchy's order.
 struct Range {
     size_t begin = 0, end = 0;
 };
 
-/// A cone that holds those of all edges, with a little more for what was rounded.
+/// A cone that holds the cones of all edges in a range, a little wider to make up for rounding.
 Cone cone_of(const std::vector<Cone>& cones, Range r) {
     Tensor sum{};
     for (size_t i = r.begin; i < r.end; ++i) {
@@ -92,7 +93,8 @@ std::vector<BlindCones> blind_cones(const BoxHierarchy& hierarchy,
     const auto range_of = [&](uint32_t child) {
         return child < BoxHierarchy::kItem ? of_node[child] : of_item[child - BoxHierarchy::kItem];
     };
-    // Children follow their parents, and what they hold is in their order.
+    // Nodes are visited from the last to the first, so that children come before their parents;
+    // their edges follow each other.
     for (size_t i = nodes.size(); i-- > 0;)
         for (uint32_t child : nodes[i].child) {
             if (child == BoxHierarchy::kNone) continue;

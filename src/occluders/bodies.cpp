@@ -7,17 +7,19 @@ namespace covtrace {
 
 namespace {
 
-/// Triangles that curved shapes may have together; each has at least a few hundred.
+/// Triangles that curved shapes may have together; each shape has at least a few hundred.
 constexpr double kCurvedTriangles = 2e6;
 constexpr double kMostAround = 64, kLeastAround = 16;  ///< pieces of a circle
-/// Triangles that shapes with holes may have together, and pieces of an edge of theirs.
+/// Triangles that shapes with holes may have together, and the pieces that their edges are cut
+/// into.
 constexpr double kPerforatedTriangles = 2e6;
 constexpr int kMostPerEdge = 64, kLeastPerEdge = 4;
-/// Of alpha: the contrast (1 - t)/(1 + t) of such a surface, t what it lets through, is a tenth,
-/// from which on partial edges count in full (covariance::edge_visibility).
+/// Alpha from which on a surface occludes. A surface that lets t through has the contrast (1 -
+/// t)/(1 + t); here that is a tenth, from which on partial edges count in full
+/// (covariance::edge_visibility).
 constexpr float kOpaque = 0.18f;
 
-/// How many times longer the map makes all lengths, or 0 where it does not keep angles.
+/// The factor by which the map makes all lengths longer, or 0 where it does not keep angles.
 double similarity(const Affine& m) {
     const double s = length(m.row[0]);
     const auto is = [s](double value, double expected) {
@@ -29,7 +31,7 @@ double similarity(const Affine& m) {
     return keeps ? s : 0;
 }
 
-/// Notes that a body is a ball, where its shape is a whole sphere that is one in local space.
+/// Makes a body a ball where its shape is a whole sphere that is round in local space.
 void note_ball(const LocalShape& shape, OccluderBody& body) {
     const auto* q = std::get_if<Quadric>(&shape);
     if (!q || q->kind != Quadric::Kind::sphere || q->z_min > -q->radius || q->z_max < q->radius ||
@@ -44,7 +46,7 @@ bool is_flat(const LocalShape& shape) {
     return std::holds_alternative<TriangleShape>(shape) || (patches && patches->parallelograms);
 }
 
-/// Of a flat shape.
+/// Number of triangles of a flat shape.
 size_t triangle_count(const LocalShape& shape) {
     if (const auto* mesh = std::get_if<TriangleShape>(&shape)) return mesh->mesh->triangles.size();
     return 2 * std::get<PatchShape>(shape).mesh->patches.size();
@@ -53,7 +55,7 @@ size_t triangle_count(const LocalShape& shape) {
 Bounds3 transformed(const Bounds3& b, const Affine& map) {
     const Vec3d c = map.point(Vec3d(b.center())), h = map.absolute(Vec3d(b.diagonal() * 0.5f));
     Bounds3 r;
-    // A little more, for the rounding to float.
+    // The box is a little larger than computed, for the rounding to single precision.
     r.extend((c - h * 1.00001).to_float());
     r.extend((c + h * 1.00001).to_float());
     return r;
@@ -83,7 +85,7 @@ OccluderBodies::OccluderBodies(const Geometry::Impl& g, std::function<bool()> ca
     size_t curved = 0;
     for (const LocalShape& shape : g.local)
         if (!is_flat(shape)) ++curved;
-    // Triangles of a sphere: around * around, two per cell, half as many along.
+    // A sphere has around^2 triangles: two per cell, and half as many cells along as around.
     around_ = std::clamp(std::sqrt(kCurvedTriangles / std::max<double>(1, double(curved))),
                          kLeastAround, kMostAround);
     double perforated = 0;
@@ -106,7 +108,7 @@ OccluderBodies::OccluderBodies(const Geometry::Impl& g, std::function<bool()> ca
             bodies.push_back(part);
         }
     }
-    // The top scene starts with the instances themselves.
+    // The top scene starts with the instances themselves, so its own shapes come after these.
     const auto& top = g.top.shape_of_geometry;
     for (const OccluderBody& part :
          add({top.begin() + static_cast<ptrdiff_t>(g.instances.size()), top.end()}, {}))
@@ -119,7 +121,8 @@ OccluderBodies::OccluderBodies(const Geometry::Impl& g, std::function<bool()> ca
     bodies = std::move(ordered);
 }
 
-/// Throughout the shutter, as far as its ends and its middle tell.
+/// Whether an instance's map is a similarity throughout the shutter, as far as its ends and its
+/// middle tell.
 bool OccluderBodies::keeps_angles(const EmbreeInstance& instance) const {
     const float open = geometry.clock.open(), close = geometry.clock.close();
     for (const float time : {open, 0.5f * (open + close), close})
@@ -131,7 +134,7 @@ bool OccluderBodies::has_holes(uint32_t shape) const {
     return geometry.placed[shape].description.alpha >= 0 && geometry.alpha;
 }
 
-/// What alpha leaves of a flat shape. Holes that depend on the position are those at
+/// The triangles that alpha leaves of a flat shape. Holes that depend on the position are those at
 /// `world_from_local`.
 Tessellation OccluderBodies::perforated(uint32_t shape, const Affine& world_from_local) const {
     const TextureId texture = geometry.placed[shape].description.alpha;
@@ -144,7 +147,8 @@ Tessellation OccluderBodies::perforated(uint32_t shape, const Affine& world_from
         per_edge_);
 }
 
-/// Edge sets of shapes that stand together: one for all that is flat, one for each that is not.
+/// Makes edge sets of shapes that stand together: one for all that is flat, one for each curved
+/// shape.
 std::vector<OccluderBody> OccluderBodies::add(const std::vector<uint32_t>& shapes,
                                               const Affine& world_from_local) {
     FoldEdgeFinder flat;
@@ -169,7 +173,7 @@ std::vector<OccluderBody> OccluderBodies::add(const std::vector<uint32_t>& shape
     return parts;
 }
 
-/// Whether there is anything to keep.
+/// Keeps the edges that a finder has found as a body; false where there are none.
 bool OccluderBodies::keep(FoldEdgeFinder& finder, Owner curved, std::vector<OccluderBody>& parts) {
     const std::vector<FoldEdge> edges = finder.take();
     if (edges.empty()) return false;
@@ -181,7 +185,7 @@ bool OccluderBodies::keep(FoldEdgeFinder& finder, Owner curved, std::vector<Occl
     return true;
 }
 
-/// Scene units of the local space, so that a whole turn has around_ pieces.
+/// Length of a tessellation's pieces in local space, such that a whole turn has around_ of them.
 double OccluderBodies::piece_of(const LocalShape& shape) const {
     Bounds3 b;
     if (const auto* quadric = std::get_if<Quadric>(&shape)) {
@@ -201,8 +205,8 @@ Bounds3 OccluderBodies::bounds_of(const OccluderBody& body) const {
     }
     if (!body.instance) return local;
     if (!body.instance->moves) return transformed(local, body.instance->still);
-    // Between two times the corners move along a curve: the boxes of many times, with room for
-    // what lies between them.
+    // A moving body's corners go along curves between two times: its bounds are the boxes at many
+    // times, with half a step of room for the way between.
     constexpr int kTimes = 32;
     const ShutterClock& clock = geometry.clock;
     Bounds3 all, before;

@@ -1,5 +1,5 @@
-/// What the query of occluders searches: the edges of all shapes in hierarchies, and where in the
-/// world they stand. Only for query.cpp.
+/// The bodies that the query of occluders searches: the edges of all shapes in hierarchies, and
+/// where in the world they stand. Only for query.cpp.
 #pragma once
 
 #include <functional>
@@ -15,12 +15,12 @@
 
 namespace covtrace {
 
-/// Edges in the local space of a scene of Embree.
+/// The edges of one body, in the local space of a scene of Embree.
 struct EdgeSet {
     size_t count = 0;
     BoxHierarchy hierarchy;
-    std::vector<EdgeBlock> blocks;  ///< its items
-    std::vector<BlindCones> cones;  ///< of its nodes
+    std::vector<EdgeBlock> blocks;  ///< its items, in their order
+    std::vector<BlindCones> cones;  ///< for each node of the hierarchy
 
     explicit EdgeSet(const std::vector<FoldEdge>& found);
 };
@@ -31,7 +31,7 @@ struct OccluderBody {
     Vec3 center;                               ///< of a ball, local
     float radius = 0;                          ///< 0: not a ball but its edge set
     const EmbreeInstance* instance = nullptr;  ///< null: local space is world space
-    OccluderQuery::Owner curved;  ///< the curved shape that this is; none: flat triangles
+    OccluderQuery::Owner curved;  ///< the curved shape that this is; none for flat triangles
 };
 
 class OccluderBodies {

@@ -11,15 +11,15 @@ namespace covtrace {
 
 namespace {
 
-/// Boxes [begin, end) of the order.
+/// Boxes [begin, end) of the builder's order.
 struct Range {
     uint32_t begin = 0, end = 0;
     uint32_t size() const { return end - begin; }
 };
 
-/// What boxes fill together.
+/// The box around several boxes, and how many they are.
 struct Extent {
-    Float8 least = all8(kInfinity);  ///< of lo and of -hi, by axis
+    Float8 least = all8(kInfinity);  ///< lower ends, and upper ones with the sign turned, by axis
     uint32_t count = 0;
 
     void add(const Extent& e) {
@@ -31,13 +31,15 @@ struct Extent {
     }
 };
 
-/// Of the size of all: the width of a usual search, in which it enters boxes without any area.
+/// Width of a usual search, as a part of the size of all boxes: with it a search enters boxes
+/// without any area, too.
 constexpr float kMargin = 0.01f;
 
 }  // namespace
 
-/// Splits ranges where the searches that are expected to enter the parts, times the items in these,
-/// are fewest: the surface area heuristic, over the boxes' middles in bins along each axis.
+/// Builds the hierarchy by the surface area heuristic: ranges are split where the sum over both
+/// parts, of the chance that a search enters one times its number of items, is least. The boxes'
+/// middles are sorted into bins along each axis.
 struct BoxHierarchy::Builder {
     BoxHierarchy& h;
     std::span<const Bounds3> boxes;
@@ -45,7 +47,7 @@ struct BoxHierarchy::Builder {
     float margin = 0;
     static constexpr uint32_t kSerial = 1 << 14;  ///< ranges below are built by one thread each
     static constexpr int kBins = 16;
-    /// Ranges this deep are halved, so that no hierarchy is deeper than kMostDepth.
+    /// smaller ranges are built by one thread each
     static constexpr int kLopsided = 20;
 
     struct Part {
@@ -58,7 +60,7 @@ struct BoxHierarchy::Builder {
     struct Task {
         Part part;
         int depth = 0;
-        uint32_t node = 0;  ///< of the tree above
+        uint32_t node = 0;  ///< parent in the tree above
         size_t child = 0;
         std::vector<Node> nodes;
     };
@@ -68,10 +70,10 @@ struct BoxHierarchy::Builder {
         const Bounds3& b = boxes[box];
         return {Float8{b.lo.x, b.lo.y, b.lo.z, -b.hi.x, -b.hi.y, -b.hi.z, 0, 0}, 1};
     }
-    /// Half of its middle: differences stay finite.
+    /// Half of a box's middle, by which boxes are sorted: differences of these stay finite.
     Vec3 key_of(uint32_t box) const { return boxes[box].lo * 0.25f + boxes[box].hi * 0.25f; }
 
-    /// Of a search to enter, up to a factor.
+    /// Chance that a search enters a box, up to a common factor: half its surface, with a margin.
     float chance_of(const Extent& e) const {
         const Vec3 d = e.bounds().diagonal() + Vec3{margin, margin, margin};
         return d.x * d.y + d.y * d.z + d.z * d.x;
@@ -146,7 +148,7 @@ struct BoxHierarchy::Builder {
         return {best_left, best_right};
     }
 
-    /// Up to eight parts of a range, in order; returns how many.
+    /// Splits a range into up to eight parts, in order; returns how many.
     size_t split_wide(const Part& whole, int depth, std::array<Part, kWidth>& parts) const {
         size_t count = 1;
         parts[0] = whole;
@@ -186,7 +188,7 @@ struct BoxHierarchy::Builder {
             const Bounds3 b = parts[k].extent.bounds();
             const auto place = [k](float lo, float hi, Float8& middle, Float8& half) {
                 middle[k] = 0.5f * (lo + hi);
-                // Rounded up, so that the box holds what it is of.
+                // Half sizes are rounded up, so that the rounded box holds the exact one.
                 half[k] = 0.5f * (hi - lo) + 2e-7f * std::max(std::abs(lo), std::abs(hi));
             };
             place(b.lo.x, b.hi.x, node.middle.x, node.half.x);

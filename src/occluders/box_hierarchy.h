@@ -18,17 +18,17 @@ class BoxHierarchy {
     static constexpr int kWidth = 8;
 
     struct Node {
-        /// Middles and half sizes of the children's boxes; no number where there is none, so that
+        /// Middles and half sizes of the children's boxes; NaN where there is no child, so that
         /// every comparison fails.
         Vec3x8 middle, half;
-        /// A node, or kItem + an item, or kNone.
+        /// Index of a node, or kItem + index of an item, or kNone.
         std::array<uint32_t, kWidth> child{};
     };
     static constexpr uint32_t kItem = uint32_t{1} << 31, kNone = ~uint32_t{0};
 
     BoxHierarchy() = default;
-    /// Items of up to `per_item` boxes each. The same for any number of threads. Fewer than 2^31 -
-    /// 1 boxes, none of them empty.
+    /// Builds a hierarchy over items of up to `per_item` boxes each. The result is the same for any
+    /// number of threads. Fewer than 2^31 - 1 boxes, none of them empty.
     explicit BoxHierarchy(std::span<const Bounds3> boxes, uint32_t per_item = 1);
 
     bool empty() const { return nodes_.empty(); }
@@ -45,16 +45,17 @@ class BoxHierarchy {
                (order_.capacity() + first_.capacity()) * sizeof(uint32_t);
     }
 
-    /// What a search says of a node's boxes.
+    /// The answer of a search to one node: which of its eight boxes to enter, and how near they may
+    /// be.
     struct Met {
-        unsigned bits = 0;  ///< the k-th tells whether the k-th box is met
-        /// Of each box: no item in it has less than numerator / denominator.
+        unsigned bits = 0;  ///< bit k tells whether the k-th box is met
+        /// A bound for each box, numerator / denominator, which no item in it is below.
         Float8 numerator, denominator;
     };
-    /// Calls visit(item) for the items whose boxes, and all boxes around them, are met, by
-    /// meets(node, index). Of a node's boxes the one with the least bound comes first, and what is
-    /// no longer below limit() when its turn comes is left out: among thousands of items that are
-    /// all near, the first ones that are found spare the rest.
+    /// Calls visit(item) for the items whose boxes, and all boxes around them, are met by
+    /// meets(node, index). The box of a node with the least bound comes first. Boxes whose bound is
+    /// no longer below limit() when their turn comes are left out: among thousands of items that
+    /// are all near, the first ones that are found spare the rest.
     template <class Meets, class Limit, class Visit>
     void search(const Meets& meets, const Limit& limit, const Visit& visit) const;
 

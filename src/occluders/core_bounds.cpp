@@ -26,7 +26,7 @@ Bounds3 core_bounds(const Geometry::Impl& geometry) {
         if (const auto* corners = corners_of(*o.shape)) count += corners->size() - 1;
     const size_t step = count / kSample + 1;
     std::array<std::vector<float>, 3> values;
-    size_t next = 0;  // corners to pass before the next of the sample
+    size_t next = 0;  // corners to pass before the next one that is sampled
     for (const Occurrence& o : all) {
         const auto add = [&](Vec3 local) {
             const Vec3 p = o.world_from_local.point(Vec3d(local)).to_float();
@@ -41,7 +41,7 @@ Bounds3 core_bounds(const Geometry::Impl& geometry) {
             add(b.hi);
             continue;
         }
-        const size_t size = corners->size() - 1;  // the last is a spare
+        const size_t size = corners->size() - 1;  // the last corner is a spare one
         for (; next < size; next += step) add((*corners)[next]);
         next -= size;
     }

@@ -1,4 +1,4 @@
-/// Where most of a scene is. Only for .cpp files of this folder.
+/// The box that most of a scene lies in, without far outliers. Only for .cpp files of this folder.
 #pragma once
 
 #include "geometry/placed_scene.h"

@@ -7,7 +7,8 @@ namespace covtrace {
 EdgeMeasure::Range EdgeMeasure::reach(float length) const {
     const Range none{1, 0};
     if (!(widest > 0) || !(length > 0)) return none;
-    // (a0 + a1 z)^2 - widest^2 h(z) <= 0, in double: both terms may be large beside the result.
+    // The range is where (a0 + a1 z)^2 - widest^2 h(z) <= 0. In double, as both terms may be large
+    // beside the difference.
     const double w2 = double(widest) * widest;
     const double a = double(a1) * a1 - w2 * h2, half_b = double(a0) * a1 - 0.5 * w2 * h1,
                  c = double(a0) * a0 - w2 * h0;
@@ -16,7 +17,7 @@ EdgeMeasure::Range EdgeMeasure::reach(float length) const {
     if (discriminant < 0) return a < 0 ? Range{0, length} : none;
     const double root = std::sqrt(discriminant);
     double lo = 0, hi = length;
-    // Roots without cancellation.
+    // The roots are computed in the form without cancellation.
     const double q = -(half_b + std::copysign(root, half_b));
     double z0 = a != 0 ? q / a : -c / (2 * half_b), z1 = q != 0 ? c / q : z0;
     if (a == 0) z1 = z0;
@@ -30,7 +31,8 @@ EdgeMeasure::Range EdgeMeasure::reach(float length) const {
         else
             lo = std::max(lo, z0);
     } else {
-        // Outside of the roots: the whole, less what either root cuts off an end.
+        // A parabola that opens downwards: the range lies outside of the roots, [0, length] less
+        // what either root cuts off an end.
         if (z0 < 0) lo = std::max(lo, std::min(z1, hi + 1));
         if (z1 > hi) hi = std::min(hi, z0);
     }

@@ -1,4 +1,4 @@
-/// How an edge beside a ray matters where the ray arrives.
+/// How much an edge beside a ray matters at the ray's end.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ struct EdgeMeasure {
     float a0 = 0, a1 = 0;
     float b = 1;
     float h0 = 1, h1 = 0, h2 = 0;
-    float widest = 0;  ///< width, not its square
+    float widest = 0;  ///< the width itself, not its square
 
     float numerator(float z, float r2) const {
         const float a = a0 + a1 * z;
@@ -29,7 +29,7 @@ struct EdgeMeasure {
     float width_squared(float z, float r2) const { return numerator(z, r2) / denominator(z); }
 
     /// Part of [0, length] outside of which every edge is wider than `widest`; empty (lo > hi)
-    /// where all are.
+    /// where all edges are.
     struct Range {
         float lo = 0, hi = 0;
     };

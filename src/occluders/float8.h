@@ -7,19 +7,19 @@
 
 #include "core/vec.h"
 
-// How such vectors are passed depends on the processor that is compiled for, which is one for all
-// of the program.
+// The warning is about the calling convention for such vectors, which depends on the processor that
+// is compiled for: one for all of the program.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace covtrace {
 
 using Float8 __attribute__((vector_size(32))) = float;
-/// What a comparison gives: all bits of the k-th set where it holds for the k-th.
+/// Result of a comparison: all bits of the k-th lane are set where it holds for the k-th pair.
 using Mask8 = decltype(Float8{} < Float8{});
 inline Float8 all8(float a) {
     return Float8{a, a, a, a, a, a, a, a};
 }
-/// a > b ? a : b, for which compilers take two instructions.
+/// The larger of each pair, a > b ? a : b, for which compilers take two instructions.
 inline Float8 max8(const Float8& a, const Float8& b) {
 #ifdef __AVX__
     return reinterpret_cast<Float8>(
@@ -28,7 +28,7 @@ inline Float8 max8(const Float8& a, const Float8& b) {
     return a > b ? a : b;
 #endif
 }
-/// a < b ? a : b.
+/// The smaller of each pair, a < b ? a : b.
 inline Float8 min8(const Float8& a, const Float8& b) {
 #ifdef __AVX__
     return reinterpret_cast<Float8>(
@@ -54,7 +54,7 @@ inline Float8 sqrt8(const Float8& a) {
     return roots;
 #endif
 }
-/// a b + c; whether the product is rounded depends on the processor that is compiled for.
+/// The sum a b + c; whether the product is rounded depends on the processor that is compiled for.
 inline Float8 add_product8(const Float8& a, const Float8& b, const Float8& c) {
 #ifdef __FMA__
     return reinterpret_cast<Float8>(_mm256_fmadd_ps(
@@ -63,7 +63,7 @@ inline Float8 add_product8(const Float8& a, const Float8& b, const Float8& c) {
     return a * b + c;
 #endif
 }
-/// c - a b.
+/// The difference c - a b, rounded as in add_product8.
 inline Float8 less_product8(const Float8& a, const Float8& b, const Float8& c) {
 #ifdef __FMA__
     return reinterpret_cast<Float8>(_mm256_fnmadd_ps(
@@ -72,7 +72,7 @@ inline Float8 less_product8(const Float8& a, const Float8& b, const Float8& c) {
     return c - a * b;
 #endif
 }
-/// Bit k tells whether the k-th is set.
+/// The mask as a number whose bit k tells whether the k-th lane is set.
 inline unsigned bits8(const Mask8& mask) {
 #ifdef __AVX__
     return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
@@ -102,11 +102,11 @@ inline Float8 dot8(const Vec3x8& a, const Vec3x8& b) {
 inline Vec3x8 cross8(const Vec3x8& a, const Vec3x8& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-/// c - a s.
+/// The difference c - a s of vectors, with one factor s for each.
 inline Vec3x8 less_product8(const Vec3x8& a, const Float8& s, const Vec3x8& c) {
     return {less_product8(a.x, s, c.x), less_product8(a.y, s, c.y), less_product8(a.z, s, c.z)};
 }
-/// a s + c.
+/// The sum a s + c of vectors, with one factor s for each.
 inline Vec3x8 add_product8(const Vec3x8& a, const Float8& s, const Vec3x8& c) {
     return {add_product8(a.x, s, c.x), add_product8(a.y, s, c.y), add_product8(a.z, s, c.z)};
 }

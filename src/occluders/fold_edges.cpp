@@ -12,11 +12,11 @@ namespace covtrace {
 namespace {
 
 constexpr uint32_t kFree = ~uint32_t{0};
-/// Bends below this angle, radians, cast no outline worth knowing.
+/// Least angle, radians, of a bend that casts an outline worth knowing.
 constexpr float kLeastBend = 1e-3f;
 
 std::array<uint32_t, 3> bits_of(Vec3 p) {
-    // -0 and +0 are one place.
+    // Positions are compared by their bits; adding 0 makes -0 and +0 one place.
     return {std::bit_cast<uint32_t>(p.x + 0.0f), std::bit_cast<uint32_t>(p.y + 0.0f),
             std::bit_cast<uint32_t>(p.z + 0.0f)};
 }
@@ -30,13 +30,14 @@ uint64_t hash_of(Vec3 p) {
     return h;
 }
 
-/// One triangle beside an edge.
+/// One triangle beside an edge, as stored with the edge's smaller corner.
 struct Side {
     uint32_t other = 0;     ///< the edge's second corner, the larger
-    uint32_t opposite = 0;  ///< corner
+    uint32_t opposite = 0;  ///< the triangle's third corner
 };
 
-/// The wedge around the edge a-b that `opposite` corners span; false where it is no fold.
+/// Makes the wedge around the edge a-b that the triangles' third corners span; false where it is no
+/// fold.
 bool wedge(Vec3 a, Vec3 b, const std::vector<Vec3>& corners, const Side* begin, const Side* end,
            FoldEdge& edge) {
     if (!(distance(a, b) > 0)) return false;
@@ -50,7 +51,7 @@ bool wedge(Vec3 a, Vec3 b, const std::vector<Vec3>& corners, const Side* begin, 
     }
     if (angles.empty()) return false;
     std::sort(angles.begin(), angles.end());
-    // The widest gap between neighbours; what is outside of it is the wedge.
+    // The wedge is all but the widest gap between neighbouring angles.
     float widest = angles.front() + 2 * kPi - angles.back();
     float first = angles.front(), last = angles.back();
     for (size_t i = 0; i + 1 < angles.size(); ++i)
@@ -113,7 +114,7 @@ void FoldEdgeFinder::add(const std::vector<Vec3>& positions,
 }
 
 std::vector<FoldEdge> FoldEdgeFinder::take() {
-    // Sides by the smaller corner of their edge.
+    // Sides are sorted by the smaller corner of their edge.
     std::vector<uint32_t> first(corners_.size() + 1, 0);
     const auto for_sides = [this](const auto& body) {
         for (const auto& t : triangles_)

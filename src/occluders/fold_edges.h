@@ -10,8 +10,8 @@
 
 namespace covtrace {
 
-/// An edge from `a` to `b` and the wedge that the surfaces around it fill: from p the edge is an
-/// outline where all of them lie on one side of the plane through p, a and b.
+/// An edge from `a` to `b` and the wedge that the surfaces around it fill. Seen from p the edge is
+/// an outline where all of these surfaces lie on one side of the plane through p, a and b.
 struct FoldEdge {
     Vec3 a, b;
     /// Normals, unit and across the edge, of the wedge's two outer faces: the directions from the
@@ -19,14 +19,15 @@ struct FoldEdge {
     Vec3 normal0, normal1;
 };
 
-/// Collects triangles, of one space, and finds their edges. Corners at the very same place are one,
-/// whichever mesh they are of.
+/// Collects triangles of one space and finds their edges. Corners at the very same place are one,
+/// whichever mesh they belong to.
 class FoldEdgeFinder {
   public:
-    /// Corners that are not finite drop their triangle.
+    /// Adds triangles; those with a corner that is not finite are dropped.
     void add(const std::vector<Vec3>& positions,
              const std::vector<std::array<uint32_t, 3>>& triangles);
-    /// In an order that depends on what was added alone; forgets everything.
+    /// Gives the edges, in an order that depends on nothing but what was added, and forgets
+    /// everything.
     std::vector<FoldEdge> take();
 
   private:

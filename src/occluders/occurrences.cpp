@@ -19,7 +19,7 @@ std::vector<Occurrence> occurrences(const Geometry::Impl& g, float time) {
     };
     for (const EmbreeInstance& instance : g.instances)
         for (uint32_t shape : g.scenes[instance.scene].shape_of_geometry) add(shape, &instance);
-    // The top scene starts with the instances themselves.
+    // The top scene starts with the instances themselves, so its own shapes come after these.
     for (size_t i = g.instances.size(); i < g.top.shape_of_geometry.size(); ++i)
         add(g.top.shape_of_geometry[i], nullptr);
     return all;

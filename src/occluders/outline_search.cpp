@@ -9,7 +9,8 @@ namespace covtrace {
 
 namespace {
 
-/// Edges so many times (squared) wider than the narrowest do not change what it allows.
+/// Ratio of squared widths from which on an edge is left out: one so much wider than the narrowest
+/// does not change what that allows.
 constexpr float kFaint = 16;
 
 }  // namespace
@@ -52,12 +53,12 @@ inline OutlineSearch::Nearest OutlineSearch::nearest(const Vec3x8& from,
     const EdgeMeasure& m = measure_;
     const Vec3x8 axis = all8(axis_);
     const Float8 za = dot8(from, axis), dz = dot8(along, axis);
-    // The part of the edge, t0 to t1 of its length, that lies beside the segment. Edges at right
-    // angles to it have none or, by infinities, all.
+    // Clip each edge to the part, t0 to t1 of its length, that lies beside the segment. Edges at
+    // right angles to the segment have no such part or, by infinities, are kept whole.
     const Float8 ta = (all8(lo_) - za) / dz, tb = (all8(hi_) - za) / dz;
     const Float8 t0 = max8(min8(ta, tb), Float8{}), t1 = min8(max8(ta, tb), all8(1));
     const Vec3x8 p = less_product8(axis, za, from), dp = less_product8(axis, dz, along);
-    // Numerator and denominator along the edge, polynomials in t.
+    // Expand the width's numerator and denominator along the edge as polynomials in t.
     const Float8 a1 = all8(m.a1), b = all8(m.b), h2 = all8(m.h2);
     const Float8 blur = add_product8(a1, za, all8(m.a0)), slope = a1 * dz;
     const Float8 p2 = dot8(p, p), pdp = dot8(p, dp), dp2 = dot8(dp, dp);
@@ -67,15 +68,16 @@ inline OutlineSearch::Nearest OutlineSearch::nearest(const Vec3x8& from,
     const Float8 bend = h2 * dz;
     const Float8 d0 = max8(add_product8(add_product8(h2, za, all8(m.h1)), za, all8(m.h0)), least),
                  d1 = add_product8(2 * za, bend, m.h1 * dz), d2 = bend * dz;
-    // The quotient's derivative has the sign of a quadratic, qa t^2 + 2 qb t + qc; the quotient is
-    // least where that crosses zero upwards.
+    // Find the least width: the quotient's derivative has the sign of a quadratic, qa t^2 + 2 qb t
+    // + qc, and the quotient is least where that crosses zero upwards.
     const Float8 qa = less_product8(n1, d2, n2 * d1), qb = less_product8(n0, d2, n2 * d0),
                  qc = less_product8(n0, d1, n1 * d0);
     const Float8 root = sqrt8(less_product8(qa, qc, qb * qb));
     const Mask8 rises = qb > Float8{};
     const Float8 valley = (rises ? -qc : root - qb) / (rises ? qb + root : qa);
     const Float8 t2 = min8(max8(valley, t0), t1);
-    // Not by the polynomials: what is left of their terms beside the axis would be rounding.
+    // Evaluate the width anew at t: the polynomials would leave of points near the axis only
+    // rounding.
     const auto width2 = [&](const Float8& t) {
         const Float8 z = add_product8(t, dz, za);
         const Vec3x8 q = add_product8(dp, t, p);
@@ -123,18 +125,20 @@ void OutlineSearch::meet_ball(Vec3 center, float radius, uint32_t body) {
     if (has_found_) steps_left_ -= kStepsPerBody;
     const Vec3 d = center - end_;
     const float d2 = length_squared(d), tangent2 = d2 - radius * radius;
-    if (!(tangent2 > 1e-4f * d2)) return;  // seen from inside, or from a point of it
+    // Seen from inside, or from a point of the ball's surface.
+    if (!(tangent2 > 1e-4f * d2)) return;
     const Vec3 middle = d * (tangent2 / d2);
     const float rho = radius * std::sqrt(tangent2 / d2);
-    // The circle's radius towards the axis, u, and v across both.
+    // The axes of the outline's circle: u points towards the segment's axis, v across.
     const Vec3 towards = axis_ * d2 - d * dot(d, axis_);
     const float l = length(towards);
     const Vec3 u = l > 1e-6f * d2 ? towards / l : Frame::from_z(d / std::sqrt(d2)).x;
     const Vec3 v = cross(d / std::sqrt(d2), u);
     const float z_middle = dot(middle, axis_), z_slope = rho * dot(u, axis_);
 
-    // Both halves are alike. Nearest to the axis is the angle 0; where the width falls along the
-    // axis, or the range ends, it may be another.
+    // Search the place on the circle where the outline is narrowest, by its cosine to u: both
+    // halves of the circle are alike. Nearest to the axis is the cosine 1; where the width falls
+    // along the axis, or the range ends, another may be best.
     float best = kInfinity, best_cosine = 1;
     const auto attempt = [&](float cosine) {
         const float z = z_middle + cosine * z_slope;
@@ -146,7 +150,7 @@ void OutlineSearch::meet_ball(Vec3 center, float radius, uint32_t body) {
         best_cosine = cosine;
     };
     for (const float cosine : {1.0f, 0.7f, 0.0f, -0.7f, -1.0f}) attempt(cosine);
-    // Just within the range.
+    // Two more attempts lie just within the ends of the range.
     attempt((lo_ * 1.00001f - z_middle) / z_slope);
     attempt((hi_ * 0.99999f - z_middle) / z_slope);
     if (!(best < 2 * limit_)) return;
@@ -173,7 +177,8 @@ void OutlineSearch::keep(float width2, Vec3 point, Vec3 along, bool is_inside, u
     if (!(length_squared(towards) > 0) || !(is_inside || length_squared(offset) <= sqr(1e-6f * z)))
         towards = offset;
     if (!(length_squared(towards) > 0)) return;  // seen end on, at a point: no direction
-    // Sectors of 45 degrees of the line along the direction: quadrants of the doubled angle.
+    // Choose the sector of 45 degrees that the line along the direction lies in: it is the quadrant
+    // of the doubled angle.
     if (!has_found_) frame_ = Frame::from_z(axis_);
     has_found_ = true;
     const float x = dot(towards, frame_.x), y = dot(towards, frame_.y);

@@ -17,38 +17,41 @@ class OutlineSearch {
   public:
     OutlineSearch(Vec3 begin, Vec3 end, const EdgeMeasure& measure, float nearest);
 
-    /// Whether no edge can matter.
+    /// Whether the search ends before it begins: no edge can matter.
     bool is_over() const { return !(lo_ <= hi_); }
 
-    /// Which boxes of a node, in the world, may hold edges that are narrow enough and, by `cones`,
-    /// outlines; bounds are of squared widths.
+    /// The boxes of a node, in the world, that may hold edges which are narrow enough and, by
+    /// `cones`, outlines. Their bounds are squared widths.
     BoxHierarchy::Met near_world(const BoxHierarchy::Node& node);
     BoxHierarchy::Met near_world(const BoxHierarchy::Node& node, const BlindCones& cones);
-    /// The squared width that an edge must stay below to be of interest; below 0 once enough was
-    /// looked at.
+    /// The squared width that an edge must stay below to be of interest; below 0 once the search
+    /// has taken enough steps.
     float limit() const { return steps_left_ > 0 ? limit_ : -1.0f; }
-    /// Edges of the world that belong to `body`.
+    /// Looks at edges, in world space, that belong to `body`.
     void meet_world(const EdgeBlock& edges, uint32_t body);
 
-    /// The space of the edges that follow.
+    /// Enters the local space of the nodes and edges that follow.
     void enter(const Affine& world_from_local);
     BoxHierarchy::Met near_local(const BoxHierarchy::Node& node, const BlindCones& cones);
     void meet_local(const EdgeBlock& edges, uint32_t body);
 
-    /// A whole ball of the world: outlined by the circle on which its tangents from end_ touch it.
+    /// Looks at a whole ball of the world. Its outline is the circle on which its tangents from
+    /// end_ touch it.
     void meet_ball(Vec3 center, float radius, uint32_t body);
 
     bool has_found() const { return has_found_; }
-    /// velocity(body, point).
+    /// Writes the outlines that were found; velocity(body, point) gives the velocity of a body's
+    /// point.
     template <class Velocity>
     void collect(OutlineEvents& events, const Velocity& velocity);
 
   private:
-    /// Nodes and blocks of edges that are looked at, nearest first, after the first outline was
-    /// found. Beside a cloud of occluders all of them would be near enough to matter, and none more
-    /// than the first ones (docs/decisions/0090).
+    /// Most nodes and blocks of edges that are looked at, nearest first, after the first outline
+    /// was found. Beside a cloud of occluders all of them would be near enough to matter, but the
+    /// first ones matter as much as any (docs/decisions/0090).
     static constexpr int kMostSteps = 128;
-    /// The time of a ball, or of entering an instance's space, in that of a node.
+    /// Steps that a ball, or entering an instance's space, counts for: it takes the time of so many
+    /// nodes.
     static constexpr int kStepsPerBody = 4;
 
     struct Candidate {
@@ -56,31 +59,34 @@ class OutlineSearch {
         Vec3 towards;  ///< along OutlineEvent::direction or against it, not of length 1
         uint32_t body;
     };
-    /// Where eight edges are narrowest.
+    /// The places at which eight edges are narrowest.
     struct Nearest {
-        Float8 width2;  ///< infinity where nothing of the edge is beside the segment
-        Float8 t;       ///< the place, 0 to 1 along the edge
-        Mask8 inside;   ///< all bits set where it is no end of it
+        Float8 width2;  ///< infinity where no part of the edge is beside the segment
+        Float8 t;       ///< the place along the edge, from 0 to 1
+        Mask8 inside;   ///< all bits set where the place is no end of the edge's part
     };
 
-    /// From middles relative to end_ and half sizes, by axis.
+    /// The boxes that may matter, given their middles relative to end_ and their half sizes, by
+    /// axis.
     BoxHierarchy::Met may_matter(const Vec3x8& middle, const Vec3x8& half);
-    /// `from`, `along`: of edges, in the world, from end_.
+    /// Where edges are narrowest; `from`: in the world, from end_ to their first corner, `along` to
+    /// the second.
     Nearest nearest(const Vec3x8& from, const Vec3x8& along) const;
     void meet(const Mask8& outlines, const Vec3x8& from, const Vec3x8& along, uint32_t body);
-    /// `point`: from end_, the edge's nearest, `is_inside` where that is no end of it.
+    /// Keeps an edge if it is the narrowest in its sector of direction. `point`: the place where it
+    /// is narrowest, from end_; `is_inside`: that place is no end of the edge.
     void keep(float width2, Vec3 point, Vec3 along, bool is_inside, uint32_t body);
 
-    Vec3 end_, axis_;  ///< unit, from the end to the beginning
+    Vec3 end_, axis_;  ///< `axis_`: unit, from the end to the beginning
     EdgeMeasure measure_;
-    float lo_ = 1, hi_ = 0;  ///< distances from the end
+    float lo_ = 1, hi_ = 0;  ///< range of distances from the end in which edges matter
     float limit_ = 0;
     int steps_left_ = kMostSteps;
     float widest2_ = 0;
-    float least_ = 0;  ///< that the measure's denominator is
-    float sharp_ = 0;  ///< where the blur is least; 0 where it is the same everywhere
+    float least_ = 0;  ///< least value of the measure's denominator
+    float sharp_ = 0;  ///< distance at which the blur is least; 0 where it is the same everywhere
     bool has_found_ = false;
-    /// By sector of direction.
+    /// Least squared width so far in each sector of direction.
     std::array<float, OutlineEvents::kMost> widths2_{kInfinity, kInfinity, kInfinity, kInfinity};
     std::array<Candidate, OutlineEvents::kMost> best_;
     Frame frame_;  ///< about axis_, where anything was found
@@ -107,9 +113,10 @@ inline BoxHierarchy::Met OutlineSearch::may_matter(const Vec3x8& middle, const V
     const Vec3x8 axis = all8(axis_);
     const Float8 along = dot8(middle, axis), reach = dot8(half, abs8(axis));
     const Float8 z0 = max8(along - reach, all8(lo_)), z1 = min8(along + reach, all8(hi_));
-    // Across the axis: the box lies beyond a plane at right angles to the way to its middle, at
-    // beyond / |p|. Both sides of the comparison are multiplied by what a quotient would divide by;
-    // equal ones count, as both vanish where their products become too small.
+    // The distance across the axis is bounded thus: the box lies beyond a plane at right angles to
+    // the way to its middle, at beyond / |p|. Both sides of the comparison are multiplied by what a
+    // quotient would divide by; equal ones count, as both vanish where their products become too
+    // small.
     const Vec3x8 p = less_product8(axis, along, middle);
     const Float8 p2 = dot8(p, p);
     const Float8 beyond = max8(p2 - dot8(half, abs8(p)), Float8{});

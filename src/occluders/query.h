@@ -15,10 +15,10 @@ namespace covtrace {
 /// An outline beside a segment.
 struct OutlineEvent {
     float z = 0;         ///< distance from the segment's end
-    Vec3 direction;      ///< unit, across the segment, towards the edge and at right angles to it
-    float distance = 0;  ///< from the segment, along `direction`
+    Vec3 direction;      ///< unit, at right angles to the segment and to the edge, towards it
+    float distance = 0;  ///< of the edge from the segment, along `direction`
     Vec3 velocity;       ///< of the edge, scene units per unit of time
-    float width = 0;     ///< by the measure
+    float width = 0;     ///< as the search's EdgeMeasure has it
 };
 
 /// The few outlines that matter most, from the segment's beginning on.
@@ -30,19 +30,19 @@ struct OutlineEvents {
 
 class OccluderQuery {
   public:
-    /// All surfaces but interfaces, instances and moving shapes where they are at a query's time;
-    /// spheres exactly, other curved shapes as fine polygons, flat ones with the holes that their
-    /// alpha textures cut, in pieces of a 64th of a triangle's edge or, where these would be too
-    /// many, larger ones, down to a quarter; with more triangles yet (125,000 that have holes)
-    /// these count as whole. Once `cancelled` says yes, no more shapes are added. Throws
-    /// Error(limit) where memory runs out.
+    /// Finds the edges of all surfaces but interfaces, with instances and moving shapes where they
+    /// are at a query's time. Spheres are exact; other curved shapes are fine polygons. Flat shapes
+    /// have the holes that their alpha textures cut, in pieces of a 64th of a triangle's edge or,
+    /// where these would be too many, larger ones, down to a quarter; with more than 125,000
+    /// triangles that have holes, such shapes count as whole. Once `cancelled` says yes, no more
+    /// shapes are added. Throws Error(limit) where memory runs out.
     explicit OccluderQuery(const Geometry& geometry, std::function<bool()> cancelled = {});
     ~OccluderQuery();
     OccluderQuery(const OccluderQuery&) = delete;
     OccluderQuery& operator=(const OccluderQuery&) = delete;
 
-    /// The surface that a segment starts or ends on. Curved ones do not occlude what starts on
-    /// them: their polygons are beside their true surface.
+    /// The surface that a segment starts or ends on. A curved one does not occlude what starts on
+    /// it: its polygons are beside its true surface.
     struct Owner {
         static constexpr uint32_t kNone = ~uint32_t{0};
         uint32_t shape = kNone, instance = 0;
@@ -53,9 +53,8 @@ class OccluderQuery {
         Owner at_begin, at_end;
     };
     /// The narrowest edge by `measure` in each of four sectors of direction, without those that
-    /// repeat a narrower one's direction and those many times wider than the narrowest.
-    /// `nearest`: edges that pass closer than this to either end do not count. Thread-safe, no heap
-    /// use.
+    /// repeat a narrower one's direction and those many times wider than the narrowest. `nearest`:
+    /// edges that pass closer than this to either end do not count. Thread-safe, no heap use.
     OutlineEvents operator()(const Segment& segment, const EdgeMeasure& measure,
                              float nearest) const;
 

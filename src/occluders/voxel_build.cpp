@@ -19,7 +19,7 @@ namespace {
 constexpr size_t kBatch = 2048;  ///< triangles
 constexpr size_t kMostInstancedTriangles = 1 << 24;
 
-/// Triangles that one thread enters in one go.
+/// A run of triangles that one thread enters in one go.
 struct Batch {
     const Occurrence* occurrence;
     const Tessellation* surface;
@@ -59,7 +59,7 @@ class VoxelGridBuilder {
   private:
     bool is_cancelled() const { return options_.cancelled && options_.cancelled(); }
 
-    /// The bounds without far outliers, if there are any.
+    /// The bounds of the scene, without far outliers if it has any.
     Bounds3 scene_box() const {
         const Bounds3 all = geometry_.bounds;
         const Bounds3 core = core_bounds(geometry_);
@@ -105,7 +105,7 @@ class VoxelGridBuilder {
                     weights_.push_back(o.moves ? 1.0f / static_cast<float>(times) : 1.0f);
                 }
         }
-        // One tessellation per shape, fine enough for the largest of its occurrences.
+        // Each shape gets one tessellation, fine enough for the largest of its occurrences.
         const LocalShape* first = geometry_.local.data();
         std::vector<double> scales(geometry_.local.size(), 0);
         std::vector<const Occurrence*> firsts(scales.size(), nullptr);
@@ -121,7 +121,8 @@ class VoxelGridBuilder {
             if (scales[i] > 0) surfaces_[i] = tessellate(i, scales[i], *firsts[i]);
     }
 
-    /// Holes of alpha textures that depend on the position are those of the `first` occurrence.
+    /// Makes the triangles of a shape. Holes of alpha textures that depend on the position are
+    /// those of the `first` occurrence.
     std::unique_ptr<Tessellation> tessellate(size_t shape, double scale,
                                              const Occurrence& first) const {
         const LocalShape& local = geometry_.local[shape];
@@ -148,7 +149,7 @@ class VoxelGridBuilder {
         for (const Occurrence& o : occurrences_) {
             const Tessellation& surface = surface_of(o);
             const size_t count = surface.size(), step = o.is_instanced ? stride : 1;
-            // Few triangles may be large ones, so they are spread too.
+            // A few triangles may be large ones, so they are spread over several batches, too.
             const size_t batch = std::clamp<size_t>(count / 4, 1, kBatch) * step;
             for (size_t i = 0; i < count; i += batch)
                 all.push_back({&o, &surface, i, std::min(count, i + batch), step});
@@ -174,7 +175,8 @@ class VoxelGridBuilder {
         });
     }
 
-    /// Entries by brick, in the order of the batches, so that every sum has one order.
+    /// Sorts entries by brick, within it in the order of the batches, so that every sum has one
+    /// order.
     void sort_into_bricks() {
         std::vector<uint32_t> count(grid_.top_.size() + 1, 0);
         for (const auto& batch : entries_)
@@ -249,8 +251,8 @@ class VoxelGridBuilder {
         return voxels;
     }
 
-    /// Stores the empty bricks beside occupied ones too, and marks in all of them which voxels have
-    /// something near.
+    /// Stores the empty bricks beside occupied ones, too, and marks in all bricks which voxels have
+    /// something near (Brick::within).
     void mark_neighbourhoods() {
         std::vector<size_t> places = occupied_;
         for (size_t place : occupied_) {
@@ -313,9 +315,9 @@ class VoxelGridBuilder {
     const VoxelGridOptions& options_;
     VoxelLayout layout_;
     std::vector<Occurrence> occurrences_;
-    std::vector<float> weights_;  ///< of the occurrence of the same index
+    std::vector<float> weights_;  ///< for the occurrence of the same index
     std::vector<std::unique_ptr<Tessellation>> surfaces_;
-    std::vector<std::vector<VoxelEntry>> entries_;  ///< of each batch
+    std::vector<std::vector<VoxelEntry>> entries_;  ///< for each batch
     std::vector<size_t> occupied_;                  ///< places of bricks with anything in them
     std::vector<const VoxelEntry*> sorted_;
     std::vector<uint32_t> range_of_;  ///< where a place's entries begin in sorted_

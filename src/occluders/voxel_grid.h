@@ -1,7 +1,6 @@
-/// The scene's surfaces in coarse voxels: who may occlude a bundle of rays that passes by. For the
-/// occlusion term of the frequency analysis alone; radiance never
-/// depends on it. Only bricks of 8^3 voxels near a surface are stored, and in them only what is
-/// occupied.
+/// The scene's surfaces in coarse voxels: occluders of a bundle of rays that passes by. They serve
+/// the occlusion term of the frequency analysis alone; radiance never depends on them. Only bricks
+/// of 8^3 voxels near a surface are stored, and in these only the occupied voxels.
 #pragma once
 
 #include <array>
@@ -20,7 +19,7 @@ struct NormalTensor {
     float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
 };
 
-/// What lies in one voxel, averaged over area.
+/// The surfaces within one voxel, averaged over area.
 struct Voxel {
     NormalTensor normals;
     Vec3 centroid;
@@ -32,22 +31,23 @@ struct VoxelGridOptions {
     int width = 200;  ///< voxels along the longest side of the box
     int shutter_samples =
         1;  ///< times, spread over the shutter, at which moving shapes are entered
-    /// What lies outside is ignored; empty: Geometry::bounds(), or without a few far corners
-    /// beside which all the rest would lie in one voxel.
+    /// Box that the voxels divide; surfaces outside of it are ignored. Empty: Geometry::bounds(),
+    /// or without a few far corners beside which all the rest would lie in one voxel.
     Bounds3 box{};
-    /// Asked from all threads; once it says yes the grid ends up empty, soon.
+    /// Tells whether to stop; asked from all threads. Once it says yes the grid ends up empty,
+    /// soon.
     std::function<bool()> cancelled{};
 };
 
 class VoxelGrid {
   public:
-    /// All surfaces but interfaces. The same for any number of threads. Where instances hold more
-    /// than 2^24 triangles, only every k-th of them is entered, with k times its area. Throws
-    /// Error(limit) where the width is not in [1, 2048].
+    /// Enters all surfaces but interfaces. The result is the same for any number of threads. Where
+    /// instances hold more than 2^24 triangles, only every k-th of them is entered, with k times
+    /// its area. Throws Error(limit) where the width is not in [1, 2048].
     explicit VoxelGrid(const Geometry& geometry, const VoxelGridOptions& options = {});
 
     float voxel_size() const { return size_; }
-    /// Of the box that the voxels divide.
+    /// Longest side of the box that the voxels divide.
     float longest_side() const;
     size_t occupied_voxels() const { return voxels_.size(); }
     size_t memory() const;  ///< bytes
@@ -59,13 +59,14 @@ class VoxelGrid {
     friend class VoxelWalk;
     friend class VoxelGridBuilder;
 
-    static constexpr int kReach = 4;  ///< voxels, how far within[] looks
+    static constexpr int kReach = 4;  ///< voxels, the furthest that within[] looks
 
-    /// Bit y * 8 + x of word z stands for voxel (x, y, z).
+    /// A bit for each voxel of a brick: bit y * 8 + x of word z stands for voxel (x, y, z).
     using Bits = std::array<uint64_t, 8>;
     struct Brick {
         Bits occupied{};
-        /// within[d - 1]: something is occupied within a Chebyshev distance of d voxels.
+        /// Voxels near an occupied one: within[d - 1] has those within a Chebyshev distance of d
+        /// voxels.
         std::array<Bits, kReach> within{};
         uint32_t first = 0;              ///< into voxels_
         std::array<uint16_t, 8> rank{};  ///< occupied voxels of this brick before word z
@@ -77,13 +78,13 @@ class VoxelGrid {
     Cell cell_of(Vec3 point) const;
     /// Brick that holds the voxel `cell`; null where it is empty or outside.
     const Brick* brick_of(Cell cell) const;
-    /// Into voxels_ and offsets_.
+    /// Index into voxels_ and offsets_ of an occupied voxel of a brick.
     static uint32_t voxel_index(const Brick& brick, int z, int bit) {
         const uint64_t below = brick.occupied[static_cast<size_t>(z)] & ((uint64_t{1} << bit) - 1);
         return brick.first + brick.rank[static_cast<size_t>(z)] +
                static_cast<uint32_t>(std::popcount(below));
     }
-    /// Where in its voxel a centroid is, in 256 parts: small enough to stay in the cache.
+    /// Place of a centroid in its voxel, in 256 parts: small enough to stay in the cache.
     struct Offset {
         uint8_t x = 0, y = 0, z = 0;
     };
@@ -118,7 +119,8 @@ struct OccluderEvent {
 ///     for (OccluderEvent e; march.next(radius, e);) …
 class VoxelMarch {
   public:
-    /// Only what lies between the distances `begin` and `end` from `from` is looked at.
+    /// Prepares a march from `from` to `to`; it looks only at the part between the distances
+    /// `begin` and `end` from `from`.
     VoxelMarch(const VoxelGrid& grid, Vec3 from, Vec3 to, float begin = 0, float end = kInfinity);
     /// The next occluder whose centroid is within `radius` of the ray, at most 3 voxels; false at
     /// the end. Per 3 voxels of the way it gives the nearest one only: an edge that runs along the
@@ -128,17 +130,17 @@ class VoxelMarch {
   private:
     struct Nearest {
         uint32_t voxel = 0;
-        float first = 0;  ///< step where anything is met first
+        float first = 0;  ///< step at which the march meets anything first
     };
     /// The voxel nearest to the ray in the slab that starts at step_, within `radius`.
     Nearest nearest_in_slab(float radius) const;
-    /// First step behind the empty brick that holds `cell`.
+    /// The first step behind the empty brick that holds `cell`.
     int step_behind_brick(VoxelGrid::Cell cell) const;
 
     const VoxelGrid& grid_;
     Vec3 start_, direction_;  ///< step 0 begins at `start_`
     float skipped_ = 0;       ///< distance from the start of the segment to `start_`
-    float length_ = 0;        ///< from `start_` on
+    float length_ = 0;        ///< length of the march from `start_` on
     int step_ = 0, steps_ = 0;
 };
 

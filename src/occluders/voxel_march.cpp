@@ -8,7 +8,7 @@ namespace covtrace {
 
 namespace {
 
-/// Bits of the columns x0..x1 of the rows y0..y1 of a word.
+/// Bits of the columns x0..x1 in the rows y0..y1 of a word.
 uint64_t rectangle(int x0, int x1, int y0, int y1) {
     const uint64_t row = (uint64_t{0xff} >> (7 - x1 + x0)) << x0;
     const uint64_t all = row * 0x0101010101010101u;
@@ -27,7 +27,7 @@ VoxelMarch::VoxelMarch(const VoxelGrid& grid, Vec3 from, Vec3 to, float begin, f
     const float total = distance(from, to), size = grid.size_;
     if (grid.voxels_.empty() || !(total > 2 * kEnds * size) || !std::isfinite(total)) return;
     direction_ = (to - from) / total;
-    // Clipped to the box and what can see into it.
+    // The march is clipped to the box and a margin from which centroids within the box can be met.
     float enter = std::max(begin, kEnds * size), leave = std::min(end, total - kEnds * size);
     const float margin = kWidest * size;
     for (int k = 0; k < 3; ++k) {
@@ -52,7 +52,8 @@ bool VoxelMarch::next(float radius, OccluderEvent& event) {
     const float size = grid_.size_;
     radius = std::min(radius, kWidest * size);
     if (!(radius > 0)) return false;
-    // A centroid within the radius and half a step of a point is at most this many voxels away.
+    // The reach in voxels: a centroid within the radius and half a step of a point is at most so
+    // far away.
     const float far = std::sqrt(sqr(radius / size) + 0.25f);
     const int reach = std::clamp(static_cast<int>(far) + 1, 1, VoxelGrid::kReach);
     while (step_ < steps_) {
@@ -69,7 +70,8 @@ bool VoxelMarch::next(float radius, OccluderEvent& event) {
             ++step_;
             continue;
         }
-        // A slab starts where something is first seen, lest one edge falls into two of them.
+        // A slab starts where something is first seen, so that one edge does not fall into two of
+        // them.
         const float begin = static_cast<float>(step_);
         Nearest nearest = nearest_in_slab(radius);
         if (nearest.voxel != kNoVoxel && nearest.first >= begin + 1) {
@@ -90,13 +92,13 @@ bool VoxelMarch::next(float radius, OccluderEvent& event) {
 }
 
 VoxelMarch::Nearest VoxelMarch::nearest_in_slab(float radius) const {
-    // In units of voxels, from the grid's corner on.
+    // Lengths below are in voxels, positions from the grid's corner on.
     const float scale = 1 / grid_.size_;
     const Vec3 start = (start_ - grid_.origin_) * scale, d = direction_;
     const auto begin = static_cast<float>(step_);
     const float end = std::min(begin + kSlab, length_ * scale), middle = 0.5f * (begin + end);
     radius *= scale;
-    // The box of a cylinder about the slab.
+    // The cells to look at are in the box of a cylinder about the slab.
     const auto half = [&](float c) {
         return 0.5f * (end - begin) * std::abs(c) + radius * safe_sqrt(1 - c * c);
     };

@@ -43,7 +43,7 @@ void VoxelRasterizer::split(Vec3 a, Vec3 b, Vec3 c, float area) {
         c = b, b = a, a = last;
     }
     const Vec3 middle = (a + b) * 0.5f;
-    // Where float has no more room between the corners, or nothing of the piece is in the box.
+    // A piece is entered at once where single precision has no more room between its corners.
     if (middle == a || middle == b) return enter((a + b + c) * (1.0f / 3), area);
     if (longest > sqr(16 * layout_.size)) {
         const Vec3 lo = min(a, min(b, c)), hi = max(a, max(b, c));

@@ -1,4 +1,4 @@
-/// Triangles into voxels, one batch at a time: the part of building a VoxelGrid that runs in
+/// Enters triangles into voxels, one batch at a time: the part of building a VoxelGrid that runs in
 /// parallel.
 #pragma once
 
@@ -26,7 +26,7 @@ struct VoxelEntry {
     VoxelSums sums;
 };
 
-/// Where the voxels are.
+/// Size and place of the voxels.
 struct VoxelLayout {
     float size = 1;
     Vec3 origin;
@@ -37,14 +37,14 @@ struct VoxelLayout {
 class VoxelRasterizer {
   public:
     explicit VoxelRasterizer(const VoxelLayout& layout) : layout_(layout) {}
-    /// `velocity` is a field over world points, null where nothing moves; `weight` multiplies the
-    /// area.
+    /// Adds a triangle. `velocity` is a field over world points, null where nothing moves; `weight`
+    /// multiplies the area.
     void add(const std::array<Vec3, 3>& corners, const Affine* velocity, float weight);
-    /// One entry per voxel that was met, each key once, in no order; forgets them.
+    /// Gives one entry per voxel that was met, each key once, in no order, and forgets them.
     std::vector<VoxelEntry> take();
 
   private:
-    /// `area` belongs to the piece, weight included.
+    /// Halves a piece of a triangle until it is small; `area`: of the piece, weight included.
     void split(Vec3 a, Vec3 b, Vec3 c, float area);
     void enter(Vec3 center, float area);
 

@@ -11,7 +11,7 @@ VoxelWalk::VoxelWalk(const VoxelGrid& grid, Vec3 from, Vec3 to) : grid_(grid) {
     const Vec3 direction = (to - from) / total;
     float enter = 0, leave = total;
     for (int k = 0; k < 3; ++k) {
-        // Beyond what rounding may have entered outside of the box.
+        // The walk covers two voxels beyond the box, where rounding may have entered something.
         const float lo = grid.box_.lo[k] - 2 * size - from[k],
                     hi = grid.box_.hi[k] + 2 * size - from[k];
         if (direction[k] == 0) {
