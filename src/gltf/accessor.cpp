@@ -12,7 +12,7 @@ struct Bytes {
     size_t stride = 0;
 };
 
-/// Where `count` elements of `size` bytes lie in a buffer view.
+/// The bytes of a buffer view in which `count` elements of `size` bytes lie.
 Bytes locate(const Document& document, int view_index, size_t offset, size_t count, size_t size,
              const std::string& place) {
     const auto& model = document.model;
@@ -24,7 +24,7 @@ Bytes locate(const Document& document, int view_index, size_t offset, size_t cou
         document.refuse(element("bufferViews", static_cast<size_t>(view_index)),
                         "it ends beyond its buffer of " + std::to_string(held) + " bytes");
     const size_t stride = view.byteStride == 0 ? size : view.byteStride;
-    // Of count elements all but the last take a stride.
+    // All elements but the last take a whole stride.
     if (count > 0 && (offset > view.byteLength || size > view.byteLength - offset ||
                       (count - 1) > (view.byteLength - offset - size) / stride))
         document.refuse(place, std::to_string(count) + " elements end beyond the buffer view of " +
@@ -94,8 +94,8 @@ size_t component_size(const Document& document, int type, const std::string& pla
     }
 }
 
-/// Columns of matrices of small components start at multiples of four bytes; joints and weights
-/// are never so stored, and nothing else here reads such matrices.
+/// Refuses accessors of another type than expected, and matrices of small components, whose columns
+/// are padded to four bytes: nothing that is read here is stored so.
 void check_layout(const Document& document, const tinygltf::Accessor& a, size_t components,
                   const std::string& place) {
     const int found = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(a.type));
@@ -106,7 +106,7 @@ void check_layout(const Document& document, const tinygltf::Accessor& a, size_t 
                                    std::to_string(found));
 }
 
-/// Calls replace(element, bytes of its new value) for what a sparse accessor changes.
+/// Calls replace(element, bytes of its new value) for each element that a sparse accessor changes.
 template <typename Replace>
 void apply_sparse(const Document& document, const tinygltf::Accessor& a, size_t element_size,
                   const std::string& place, Replace replace) {
@@ -144,8 +144,8 @@ void spend(const Document& document, const tinygltf::Accessor& a, size_t compone
                         std::to_string(document.bytes) + " bytes");
 }
 
-/// Calls visit(element, its bytes) for all elements; those without bytes, which are zero, aren't
-/// visited.
+/// Calls visit(element, its bytes) for all elements of an accessor; those without bytes, which are
+/// zero, aren't visited.
 template <typename Visit>
 void visit_elements(const Document& document, const tinygltf::Accessor& a, size_t element_size,
                     const std::string& place, Visit visit) {

@@ -10,7 +10,7 @@
 
 namespace covtrace::gltf {
 
-/// `count` elements of `components` numbers each, one after the other.
+/// Elements of an accessor, one after the other, of `components` numbers each.
 struct Numbers {
     size_t components = 0;
     std::vector<float> values;
@@ -20,8 +20,8 @@ struct Numbers {
 
 /// Reads accessors[index], whose type must have `components` numbers (SCALAR 1, VEC3 3, MAT4 16).
 /// Integers become themselves, or [0, 1] and [-1, 1] where the accessor is normalised. Refuses, at
-/// `place`, what reaches beyond its buffer, and values that are not finite. Throws Error(limit)
-/// where the document's budget is spent, as read_indices does.
+/// `place`, accessors that reach beyond their buffer, and values that are not finite. Throws
+/// Error(limit) where the document's budget is spent, as read_indices does.
 Numbers read_numbers(const Document& document, int index, size_t components,
                      const std::string& place);
 
@@ -29,7 +29,7 @@ Numbers read_numbers(const Document& document, int index, size_t components,
 std::vector<uint32_t> read_indices(const Document& document, int index, size_t vertices,
                                    const std::string& place);
 
-/// Elements of accessors[index]; refuses an index that is not there.
+/// Number of elements of accessors[index]; refuses an index that is not there.
 size_t accessor_count(const Document& document, int index, const std::string& place);
 
 }  // namespace covtrace::gltf

@@ -25,7 +25,7 @@ void Animations::read_channel(const Document& document, size_t a, size_t c, Warn
     const tinygltf::Animation& animation = document.model.animations[a];
     const tinygltf::AnimationChannel& channel = animation.channels[c];
     const std::string place = element("animations", a) + "." + element("channels", c);
-    if (channel.target_node < 0) return;  // of an extension
+    if (channel.target_node < 0) return;  // the target belongs to an extension
     at(document, document.model.nodes, channel.target_node, "nodes", place + ".target.node");
     Path path{};
     if (channel.target_path == "translation") {
@@ -99,7 +99,8 @@ std::vector<double> Animations::Channel::at(double time) const {
             result[i] = (1 - u) * p0 + u * p1;
             continue;
         }
-        // Cubic Hermite spline: glTF 2.0, appendix C.5; tangents are per second.
+        // Interpolate by a cubic Hermite spline (glTF 2.0, appendix C.5), whose tangents are per
+        // second.
         const double out = length * double(values.element(3 * before + 2)[i]);
         const double in = length * double(values.element(3 * after)[i]);
         const double u2 = u * u, u3 = u2 * u;

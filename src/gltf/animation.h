@@ -1,4 +1,4 @@
-/// Private to this folder: where nodes are at a time of the animations.
+/// Private to this folder: the poses of nodes at a time of the animations.
 #pragma once
 
 #include <array>
@@ -26,11 +26,12 @@ class Animations {
     Animations(const Document& document, WarningLog& log);
 
     bool empty() const { return channels_.empty(); }
-    /// Whether a channel places it, morphs it, or both.
+    /// Whether a channel places the node, morphs it, or both.
     bool moves(int node) const { return channels_.contains(node); }
-    /// Of the node's morph targets; empty where no channel moves them.
+    /// Weights of the node's morph targets at a time; empty where no channel moves them.
     std::vector<double> weights(int node, double time) const;
-    /// Replaces what moves in `pose` by its value at `time`, held outside the keys.
+    /// Replaces the parts of `pose` that channels move by their values at `time`; beyond the first
+    /// and last key these stay as there.
     void apply(int node, double time, Pose& pose) const;
 
   private:

@@ -1,4 +1,4 @@
-/// Private to this folder: how much may be made of a file.
+/// Private to this folder: bounds on the numbers and bytes that may be made of a file.
 ///
 /// A buffer may be read by any number of primitives and animations, and accessors without bytes
 /// hold any number of zeros: nothing but a budget bounds what a small file makes of itself.
@@ -14,7 +14,7 @@ class Budget {
     Budget() = default;
     Budget(uint64_t least, uint64_t per_byte, uint64_t bytes) : left_(least + per_byte * bytes) {}
 
-    /// False where `count` pieces of `size` are more than what is left.
+    /// Takes `count` pieces of `size` from the budget; false where that is more than it has left.
     [[nodiscard]] bool spend(uint64_t count, uint64_t size) {
         if (size > 0 && count > left_ / size) return false;
         left_ -= count * size;
@@ -25,14 +25,14 @@ class Budget {
     uint64_t left_ = 0;
 };
 
-/// Numbers that accessors are read as: 256 for each byte, since files hold thousands of primitives
-/// that pick their triangles from the same vertices.
+/// Budget of the numbers that accessors are read as: 256 for each byte of the file, since files
+/// hold thousands of primitives that pick their triangles from the same vertices.
 inline Budget budget_of_numbers(uint64_t bytes) {
     return {uint64_t{1} << 26, 256, bytes};
 }
 
-/// Bytes of all meshes. An index of one byte is one of three in a triangle of 12 bytes; meshes that
-/// share vertices keep but those that they use.
+/// Budget of the bytes of all meshes. An index of one byte is one of three in a triangle of 12
+/// bytes; meshes that share vertices keep only those that they use.
 inline Budget budget_of_meshes(uint64_t bytes) {
     return {uint64_t{1} << 28, 32, bytes};
 }

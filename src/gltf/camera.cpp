@@ -8,9 +8,10 @@
 namespace covtrace::gltf {
 namespace {
 
-constexpr int kLongerSide = 1280;  // as everywhere, where a file gives no resolution
+// Film resolution in pixels, as everywhere where a file gives none.
+constexpr int kLongerSide = 1280;
 
-/// Film of about 1280 pixels on its longer side.
+/// Gives the film about 1280 pixels on its longer side.
 void set_film(FilmDescription& film, double aspect) {
     aspect = std::clamp(aspect, 1e-2, 1e2);
     const auto shorter = [&](double a) { return std::max(1, int(std::lround(kLongerSide * a))); };
@@ -18,8 +19,9 @@ void set_film(FilmDescription& film, double aspect) {
     film.height = aspect >= 1 ? shorter(1 / aspect) : kLongerSide;
 }
 
-/// Without scale and shear, which do not count for cameras (glTF 2.0, section 3.10): the axis of
-/// view stays, "up" is made orthogonal to it. As it is where nothing is left of an axis.
+/// A camera's transform without scale and shear, which do not count for cameras (glTF 2.0, section
+/// 3.10): the axis of view stays, "up" is made orthogonal to it. The transform stays as it is where
+/// nothing is left of an axis.
 Transform without_scale(const Transform& node) {
     const Vec3 given[] = {node.vector({1, 0, 0}), node.vector({0, 1, 0}), node.vector({0, 0, 1})};
     const Vec3 z = normalize(given[2]), x = normalize(cross(given[1], z)), y = cross(z, x);
@@ -63,7 +65,7 @@ void read_camera(const Document& document, const PlacedNode& placed, SceneDescri
         camera.kind = CameraDescription::Kind::perspective;
         const double half = std::tan(yfov / 2) * std::min(1.0, aspect);
         camera.fov = static_cast<float>(2 * std::atan(half)) * kDegrees;
-        // Single precision tells no directions apart that are nearer to each other.
+        // The limit is where single precision tells no directions apart any more.
         if (!(camera.fov >= 1e-6f))
             document.refuse(here + ".perspective",
                             "expected a field of view of at least 1e-6 degrees");
@@ -83,7 +85,8 @@ void read_camera(const Document& document, const PlacedNode& placed, SceneDescri
     }
 }
 
-/// All of the bounding sphere, from the front, 30 degrees to the right and 20 up.
+/// Places a camera that sees all of the bounding sphere, from the front, 30 degrees to the right
+/// and 20 up.
 void frame(const Document& document, const Bounds3& bounds, SceneDescription& scene) {
     constexpr float kFov = 40;
     const Vec3 center = bounds.center();

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The library reads nested values recursively.
+/// Deepest nesting of values, because the library reads them recursively.
 constexpr int kMostLevels = 128;
 
 SourceLocation location(std::string_view text, size_t byte, const std::string& name) {
@@ -26,7 +26,7 @@ SourceLocation location(std::string_view text, size_t byte, const std::string& n
             static_cast<int>(column) + 1};
 }
 
-/// The parser's words after its own position, in ASCII.
+/// The reason in the parser's message, without the position in front of it, in ASCII.
 std::string reason(const std::string& what) {
     const size_t start = what.find(": ", what.find("column"));
     std::string text = start == std::string::npos ? what : what.substr(start + 2);
@@ -36,8 +36,9 @@ std::string reason(const std::string& what) {
     return text.substr(0, kLongest);
 }
 
-/// How deep brackets nest that are in no string. Before the parser sees them, whose own callback
-/// would make objects of many values take the square of their number.
+/// The depth to which brackets outside of strings nest. It is measured before the parser sees the
+/// text: the parser's own callback would make objects of many values take the square of their
+/// number.
 int deepest_level(std::string_view text) {
     int level = 0, deepest = 0;
     bool in_string = false;
@@ -83,7 +84,8 @@ const json* element(const json& root, const char* list, std::optional<uint64_t> 
     return e.is_object() ? &e : nullptr;
 }
 
-/// The library takes the address of an embedded image before anyone can check it.
+/// Checks where embedded images lie: the library takes the address of one before anyone else can
+/// check it.
 void check_embedded_images(const json& root, const std::string& name) {
     const auto images = root.find("images");
     if (images == root.end() || !images->is_array()) return;

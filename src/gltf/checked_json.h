@@ -1,4 +1,4 @@
-/// Private to this folder: what must hold of the JSON before the library may see it.
+/// Private to this folder: checks on the JSON that must come before the library sees it.
 #pragma once
 
 #include <string>

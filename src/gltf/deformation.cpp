@@ -7,12 +7,12 @@
 namespace covtrace::gltf {
 namespace {
 
-/// Of four joints each; files have one or two.
+/// Most sets of joints, of four each, that a vertex may have; files have one or two.
 constexpr size_t kMostSets = 8;
 
 using Matrix3x4 = std::array<std::array<double, 4>, 3>;
 
-/// Joints that are no index become one that no skin has.
+/// A number as the type T. Joints that are no index become one that no skin has.
 template <typename T>
 T number(float v) {
     if constexpr (std::is_same_v<T, uint32_t>)
@@ -49,8 +49,8 @@ Vec3 transformed(const Matrix3x4& m, Vec3 p) {
     return {row(0), row(1), row(2)};
 }
 
-/// By the cofactors of the upper left 3x3: its inverse transpose up to a factor, without a
-/// division.
+/// The normal after the map m, by the cofactors of its upper left 3x3: these are the inverse
+/// transpose up to a factor, without a division.
 Vec3 transformed_normal(const Matrix3x4& m, Vec3 n) {
     const auto cofactor = [&](size_t i, size_t j) {
         const size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
@@ -82,7 +82,8 @@ void skin(TriangleMesh& mesh, const Deformation& deformation, std::span<const Ma
     }
 }
 
-/// So that vertices stay where all of their joints agree, as the specification demands of files.
+/// Makes the weights of each vertex sum to 1, as the specification demands of files: then vertices
+/// stay where all of their joints agree.
 void normalise(Deformation& d, size_t vertices) {
     for (size_t i = 0; i < vertices; ++i) {
         const auto begin = d.weights.begin() + static_cast<std::ptrdiff_t>(i * d.influences);
@@ -128,7 +129,8 @@ Deformation read_deformation(const Document& document, const tinygltf::Primitive
         if (joints.components == 0 || weights.components == 0) break;
         const auto j = pick<uint32_t>(joints, kept);
         const auto w = pick<float>(weights, kept);
-        // Sets lie one behind the other in the file and side by side here.
+        // Sets of four joints lie one behind the other in the file; here a vertex has all of its
+        // joints side by side.
         const size_t before = result.influences;
         std::vector<uint32_t> all_joints;
         std::vector<float> all_weights;

@@ -13,9 +13,9 @@ bool any(const std::vector<double>& weights) {
     return std::any_of(weights.begin(), weights.end(), [](double w) { return w != 0; });
 }
 
-/// The triangles of a piece, with the vertices that they use, and its place in `mesh`. Motions are
-/// interpolated as turns about the origin, which goes straight: that is the middle of the piece or,
-/// where joints move it, the point that it turns about.
+/// The triangles of a piece as a mesh, with the vertices that they use, and the mesh's place in
+/// `mesh`. Its origin is the middle of the piece or, where joints move it, the point that it turns
+/// about: motions are interpolated as turns about the origin, and the origin goes straight.
 std::pair<std::shared_ptr<const TriangleMesh>, Transform> part_of(
     const TriangleMesh& mesh, const std::vector<uint32_t>& triangles, const Matrix4& motion,
     bool is_skinned) {
@@ -75,7 +75,7 @@ std::vector<MovedMesh> DeformedNodes::meshes(const PlacedNode& node, size_t prim
         return geometry_.deformed(n.mesh, primitive, uv_set, weights, joints[end], place);
     };
     const TriangleMesh open = at_end(0), close = at_end(1);
-    // Joints place what they carry, whatever the node's own transform.
+    // Joints place the vertices that they carry, whatever the node's own transform.
     const bool is_skinned = !joints[0].empty() && geometry_.has_joints(n.mesh, primitive, uv_set);
     const AnimatedTransform to_world = is_skinned ? AnimatedTransform(Transform()) : node.transform;
     if (open.positions == close.positions)

@@ -1,4 +1,4 @@
-/// Private to this folder: what morph targets and skins make of the meshes of nodes over the
+/// Private to this folder: the meshes of nodes that morph targets and skins deform over the
 /// shutter, as meshes that each move by one transform (gltf/moving_pieces.h).
 #pragma once
 
@@ -23,13 +23,14 @@ class DeformedNodes {
                   const PlacedNodes& placed, std::array<float, 2> shutter)
         : document_(document), log_(log), geometry_(geometry), placed_(placed), shutter_(shutter) {}
 
-    /// Whether the mesh of the node is another than the file's.
+    /// Whether the node's mesh is deformed, by morph targets or a skin.
     bool deforms(const PlacedNode& node);
-    /// What becomes of one primitive of its mesh: one mesh that may move with the node, or pieces.
+    /// One primitive of the node's mesh, deformed: one mesh that may move with the node, or pieces.
     std::vector<MovedMesh> meshes(const PlacedNode& node, size_t primitive, int uv_set);
 
   private:
-    /// From the mesh's space to the world's at both ends of the shutter; empty without joints.
+    /// A skin's joint matrices, from the mesh's space to the world's, at both ends of the shutter;
+    /// empty without joints.
     using JointMatrices = std::array<std::vector<Matrix4>, 2>;
 
     const tinygltf::Node& node_of(const PlacedNode& node) const;

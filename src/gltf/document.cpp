@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The library counts bytes in 32 bits.
+/// Size of the largest file: the library counts bytes in 32 bits.
 constexpr uintmax_t kLargestFile = (uintmax_t{1} << 32) - 1;
 
 int hex_digit(char c) {
@@ -60,7 +60,7 @@ bool is_inside(const fs::path& file, const fs::path& folder) {
     return mismatch == root.end();
 }
 
-/// What the library's file callbacks work on.
+/// Data of the library's file callbacks.
 struct Reading {
     const Document* document;
     SceneFiles* files;
@@ -75,7 +75,7 @@ std::string same_path(const std::string& name, void*) {
 bool read_file(std::vector<unsigned char>* bytes, std::string*, const std::string& name,
                void* data) {
     const auto& reading = *static_cast<const Reading*>(data);
-    // The library has already decoded the percent signs, and a name may hold them.
+    // Percent signs are encoded again: the library has decoded them, and a name may hold them.
     std::string uri;
     for (const char c : name) uri += c == '%' ? std::string("%25") : std::string(1, c);
     const fs::path file = find_file(*reading.document, uri, "buffers");
@@ -88,14 +88,14 @@ bool read_file(std::vector<unsigned char>* bytes, std::string*, const std::strin
     return true;
 }
 
-/// Keeps the encoded file.
+/// Keeps the encoded file of an image, in place of the library's decoder.
 bool keep_image(tinygltf::Image* image, int, std::string*, std::string*, int, int,
                 const unsigned char* bytes, int size, void*) {
     image->image.assign(bytes, bytes + size);
     return true;
 }
 
-/// The first line of what the library says, in ASCII.
+/// The first line of the library's message, in ASCII.
 std::string first_line(const std::string& text) {
     std::string line = text.substr(0, text.find('\n'));
     for (char& c : line)

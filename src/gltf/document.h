@@ -15,7 +15,7 @@
 
 namespace covtrace::gltf {
 
-/// The parsed file. Indices in it are unchecked: `at` checks them.
+/// A glTF file, parsed. Indices in the model are unchecked: `at` checks them.
 struct Document {
     std::string name;                          ///< as messages call the file
     std::filesystem::path folder;              ///< the file's own
@@ -23,15 +23,15 @@ struct Document {
     tinygltf::Model model;
     uint64_t content_hash = 0;
     uint64_t bytes = 0;                             ///< of the file and its buffers
-    mutable Budget numbers;                         ///< that accessors may still be read as
-    mutable std::set<std::filesystem::path> files;  ///< that were read or found
+    mutable Budget numbers;                         ///< what accessors may still be read as
+    mutable std::set<std::filesystem::path> files;  ///< files that were read or found
 
     /// A place in the document, such as "meshes[2].primitives[0]".
     SourceLocation place(const std::string& path) const;
     [[noreturn]] void refuse(const std::string& path, const std::string& text) const;
 };
 
-/// Reads the file and its buffers, embedded images too. Errors: as read_gltf.
+/// Reads the file and its buffers, embedded images too. Throws the errors of read_gltf.
 Document read_document(const std::filesystem::path& file,
                        const std::vector<std::filesystem::path>& search_paths, WarningLog& log);
 
@@ -40,7 +40,7 @@ Document read_document(const std::filesystem::path& file,
 std::filesystem::path find_file(const Document& document, const std::string& uri,
                                 const std::string& place);
 
-/// "nodes[3]"
+/// Name of an element in messages, such as "nodes[3]".
 std::string element(std::string_view list, size_t index);
 
 /// The element of a list; refuses at `place` an index that is not in it.
@@ -59,7 +59,7 @@ const tinygltf::Value* extension(const tinygltf::ExtensionMap& extensions, const
 /// A number of an extension's object. Refuses other types and values outside [least, most].
 double number(const Document& document, const tinygltf::Value& object, const char* key,
               double otherwise, double least, double most, const std::string& place);
-/// Numbers of a fixed count, at least 0 each.
+/// Several numbers of an extension's object, of a fixed count, each in [least, most].
 template <size_t n>
 std::array<double, n> numbers(const Document& document, const tinygltf::Value& object,
                               const char* key, std::array<double, n> otherwise, double least,

@@ -5,7 +5,7 @@
 
 namespace covtrace::gltf {
 
-/// docs/guide/gltf.md says what becomes of each.
+/// Whether an extension is read; docs/guide/gltf.md says what becomes of each.
 constexpr bool is_supported(std::string_view extension) {
     for (const std::string_view name :
          {"KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",

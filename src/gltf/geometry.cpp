@@ -8,7 +8,7 @@
 namespace covtrace::gltf {
 namespace {
 
-/// Of one primitive: they are counted in 32 bits, with room to spare.
+/// Most vertices of one primitive: they are counted in 32 bits, with room to spare.
 constexpr size_t kMostVertices = size_t{1} << 30;
 
 std::vector<std::array<uint32_t, 3>> triangles(const std::vector<uint32_t>& i, int mode) {
@@ -25,15 +25,15 @@ std::vector<std::array<uint32_t, 3>> triangles(const std::vector<uint32_t>& i, i
             mode == TINYGLTF_MODE_TRIANGLE_FAN
                 ? std::array{i[k + 1], i[k + 2], i[0]}
                 : std::array{i[k], i[k + 1 + k % 2], i[k + 2 - k % 2]};
-        // Strips are joined by triangles without area.
+        // Triangles without area are left out: they only join strips.
         if (t[0] != t[1] && t[1] != t[2] && t[0] != t[2]) result.push_back(t);
     }
     return result;
 }
 
-/// Leaves the vertices out that no triangle uses, where these are the more: files hold primitives
-/// that pick their triangles from the vertices of a whole model. Those that are kept, in order;
-/// empty where all are.
+/// Leaves out the vertices that no triangle uses, where these are the most: files hold primitives
+/// that pick their triangles from the vertices of a whole model. Returns the indices of the
+/// vertices that are kept, in order; empty where all are.
 std::vector<uint32_t> keep_used_vertices(TriangleMesh& mesh) {
     constexpr uint32_t kUnused = ~uint32_t{0};
     std::vector<uint32_t> place(mesh.positions.size(), kUnused);
@@ -102,7 +102,7 @@ TriangleMesh GeometryReader::deformed(int mesh, size_t primitive, int uv_set,
                                       std::span<const Matrix4> joints, const std::string& place) {
     const Deformation& d = deformation(mesh, primitive, uv_set);
     const TriangleMesh& rest = *entry(mesh, primitive, uv_set).mesh;
-    // What is spent for targets and joints bounds the time, too.
+    // The budget counts targets and joints as vertices, so that it bounds the time, too.
     const auto moving = static_cast<size_t>(
         std::count_if(weights.begin(), weights.end(), [](double w) { return w != 0; }));
     spend(rest.positions.size() * (1 + moving + d.influences), rest.triangles.size(), place);

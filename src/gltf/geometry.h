@@ -14,8 +14,7 @@
 
 namespace covtrace::gltf {
 
-/// Converts each primitive once per set of texture coordinates; meshes are shared by what uses
-/// them.
+/// Converts each primitive once per set of texture coordinates; all nodes that use a mesh share it.
 class GeometryReader {
   public:
     GeometryReader(const Document& document, WarningLog& log)
@@ -27,7 +26,8 @@ class GeometryReader {
     /// Error(limit) where all meshes are too large for the file.
     std::shared_ptr<const TriangleMesh> mesh(int mesh, size_t primitive, int uv_set);
 
-    /// The same, which must not be null, with its morph targets and joints at work: as `deform`.
+    /// The primitive that `mesh` gives, which must not be null, deformed by its morph targets and
+    /// joints: see `deform`.
     TriangleMesh deformed(int mesh, size_t primitive, int uv_set, std::span<const double> weights,
                           std::span<const Matrix4> joints, const std::string& place);
     bool has_joints(int mesh, size_t primitive, int uv_set);
@@ -35,15 +35,16 @@ class GeometryReader {
   private:
     struct Entry {
         std::shared_ptr<const TriangleMesh> mesh;
-        size_t count = 0;                        ///< of the file's vertices
-        std::vector<uint32_t> kept;              ///< which of them the mesh has; empty: all
-        std::optional<Deformation> deformation;  ///< once it was asked for
+        size_t count = 0;                        ///< number of the file's vertices
+        std::vector<uint32_t> kept;              ///< indices of those that the mesh has; empty: all
+        std::optional<Deformation> deformation;  ///< set once it was asked for
     };
 
     Entry& entry(int mesh, size_t primitive, int uv_set);
     const Deformation& deformation(int mesh, size_t primitive, int uv_set);
     Entry read(const tinygltf::Primitive& primitive, int uv_set, const std::string& place);
-    /// Errors: Error(limit) where the file's budget of meshes is spent.
+    /// Takes a mesh's bytes from the budget. Errors: Error(limit) where the budget of meshes is
+    /// spent.
     void spend(size_t vertices, size_t triangles, const std::string& place);
     void warn(const std::string& place, const std::string& text) {
         log_.add(document_.place(place), text);
@@ -52,7 +53,7 @@ class GeometryReader {
     const Document& document_;
     WarningLog& log_;
     std::map<std::tuple<int, size_t, int>, Entry> meshes_;
-    Budget bytes_;  ///< that meshes may still take
+    Budget bytes_;  ///< budget of what meshes may still take
 };
 
 }  // namespace covtrace::gltf

@@ -80,8 +80,8 @@ void add_light(const Document& document, const PlacedNode& placed, SceneDescript
 
 namespace {
 
-/// On a surface in the middle of the scene that faces the light. Lamps inside the scene count from
-/// half its radius at least.
+/// Illuminance by a light on a surface in the middle of the scene that faces it. Lamps inside the
+/// scene count from half its radius at least.
 float illuminance(const LightDescription& light, const Bounds3& bounds) {
     const auto from = [&](Vec3 position, Rgb intensity) {
         const float distance = std::max(length(position - bounds.center()), 0.5f * bounds.radius());

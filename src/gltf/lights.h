@@ -1,4 +1,4 @@
-/// Private to this folder: KHR_lights_punctual, and what lights a scene without lights.
+/// Private to this folder: KHR_lights_punctual, and default lights for a scene without any.
 #pragma once
 
 #include "gltf/document.h"
@@ -15,8 +15,8 @@ void add_light(const Document& document, const PlacedNode& placed, SceneDescript
 /// Brings lights in physical units to the scale of emission 1 = white. Viewers, and files made for
 /// them, take candela and lux for the units of the picture; exporters of renderers (Blender's)
 /// write 683 lm/W times what the renderer used. Lights that give the middle of the scene more than
-/// kPhysicalLux together are taken for the latter and divided by kLumensPerWatt, with a warning;
-/// docs/guide/gltf.md.
+/// kPhysicalLux together are taken to be of such exporters and divided by kLumensPerWatt, with a
+/// warning; see docs/guide/gltf.md.
 void scale_lights(const Document& document, const Bounds3& bounds, SceneDescription& scene,
                   WarningLog& log);
 inline constexpr float kPhysicalLux = 100;

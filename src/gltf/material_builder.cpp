@@ -7,7 +7,7 @@ namespace {
 
 using Channel = ImageTexture::Channel;
 
-/// Numbers that the library leaves unchecked.
+/// Checks a number that the library leaves unchecked: refuses it outside of [least, most].
 float in_range(const Document& document, double v, double least, double most,
                const std::string& place) {
     if (!(v >= least && v <= most))
@@ -184,7 +184,7 @@ void MaterialBuilder::read_index() {
         const double ior = number(document_, *e, "ior", 1.5, 0, 100, in("KHR_materials_ior"));
         if (ior > 0 && ior < 1)
             document_.refuse(in("KHR_materials_ior"), "expected an ior of 0 or at least 1");
-        // 0 stands for a border that reflects everything; 100 reflects 96 %.
+        // An ior of 0 stands for a border that reflects everything; 100 reflects 96 %.
         eta_ = static_cast<float>(ior > 0 ? ior : 100);
     }
     const auto* specular = extension(material_.extensions, "KHR_materials_specular");
@@ -195,7 +195,8 @@ void MaterialBuilder::read_index() {
     if (specular->Has("specularTexture") || specular->Has("specularColorTexture") ||
         tint[0] != tint[1] || tint[1] != tint[2])
         warn("KHR_materials_specular: textures and colours are left out, their mean is used");
-    // The border that reflects as much at the normal.
+    // The index is that of a border that reflects as much at the normal as the specular factors
+    // say.
     const float mean = static_cast<float>(factor * (tint[0] + tint[1] + tint[2]) / 3);
     const float at_normal = std::min(sqr((eta_ - 1) / (eta_ + 1)) * mean, 0.96f);
     const float root = std::sqrt(at_normal);

@@ -24,7 +24,8 @@ class MaterialBuilder {
           pbr_(material.pbrMetallicRoughness),
           place_(std::move(place)) {}
 
-    /// Appends what the material consists of; docs/guide/gltf.md has all substitutions.
+    /// Appends the material's models and textures to the scene; docs/guide/gltf.md has all
+    /// substitutions.
     Surface build();
 
   private:
@@ -35,12 +36,13 @@ class MaterialBuilder {
     MaterialId add(decltype(MaterialDescription::value) model);
     MaterialId mix(MaterialId a, MaterialId b, TextureId amount);
 
-    /// One mesh has one set of coordinates: that of the base colour, else of the first texture.
+    /// Chooses the mesh's one set of coordinates: that of the base colour, else of the first
+    /// texture.
     void choose_uv_set();
-    /// The reference, or none where it needs coordinates that the mesh won't have.
+    /// The texture reference `info`, or none where it needs coordinates that the mesh won't have.
     tinygltf::TextureInfo use(const tinygltf::TextureInfo& info);
 
-    /// (factor times channel)^2: glTF's roughness squared is the width alpha of GGX.
+    /// Texture of (factor times channel)^2: glTF's roughness squared is the width alpha of GGX.
     TextureId squared(const tinygltf::TextureInfo& info, ImageTexture::Channel channel,
                       float factor, const std::string& place);
     void read_alpha();
@@ -68,15 +70,17 @@ class MaterialBuilder {
     Coatable metal_surface();
     Coatable opaque_dielectric();
 
-    /// KHR_materials_transmission: a body with a volume refracts, a surface without is a pane.
+    /// Makes the glass of KHR_materials_transmission: a body with a volume refracts, a surface
+    /// without is a pane.
     MaterialId glass();
-    /// Beer's law: transmittance `attenuationColor` after `attenuationDistance`.
+    /// Sets the absorption inside by Beer's law: transmittance `attenuationColor` after
+    /// `attenuationDistance`.
     void read_absorption(const tinygltf::Value& volume);
     Coatable dielectric_surface();
     Coatable metals_and_others(const tinygltf::TextureInfo& texture, float metallic);
     MaterialId with_clearcoat(Coatable surface);
 
-    /// Panes up to this roughness are rendered clear: their blur is below 1/400 radian.
+    /// Largest roughness of panes that are rendered clear: their blur is below 1/400 radian.
     static constexpr double kClearRoughness = 0.05;
 
     const Document& document_;

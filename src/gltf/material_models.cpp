@@ -1,4 +1,5 @@
-/// Which models take the place of glTF's, a mixture of metal and dielectric under a clear coat.
+/// Choice of the models that take the place of glTF's own, which is a mixture of metal and
+/// dielectric under a clear coat.
 #include <algorithm>
 #include <cmath>
 
@@ -113,7 +114,8 @@ MaterialBuilder::Coatable MaterialBuilder::dielectric_surface() {
     if (factor == 0) return opaque_dielectric();
     const auto info = use(texture_info(document_, *e, "transmissionTexture", place));
     const MaterialId clear = glass();
-    const Coatable transmitting{clear, clear};  // its own border shines like the coat
+    // The glass has a border of its own, which shines like a coat.
+    const Coatable transmitting{clear, clear};
     if (factor == 1 && info.index < 0) return transmitting;
     return mixed(opaque_dielectric(), transmitting,
                  textures_.channel(info, Channel::red, static_cast<float>(factor),

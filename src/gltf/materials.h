@@ -10,14 +10,15 @@
 
 namespace covtrace::gltf {
 
-/// What a material makes of a surface.
+/// The material of a surface as the scene has it, with its alpha and the medium inside.
 struct Surface {
     MaterialId material = -1;
     TextureId alpha = -1;
     std::optional<AreaLightDescription> emission;
     MediumId inside = -1;
-    int uv_set = -1;               ///< the texture coordinates of all its textures; -1: it has none
-    bool is_visible = true;        ///< false where its alpha is 0 everywhere
+    /// Texture coordinates that all its textures use; -1: there are none.
+    int uv_set = -1;
+    bool is_visible = true;        ///< false where alpha is 0 everywhere
     bool is_strong_light = false;  ///< emits more than 1, which makes it a lamp
 };
 
@@ -29,7 +30,7 @@ class MaterialReader {
     MaterialReader(const Document& document, SceneDescription& scene, WarningLog& log)
         : document_(document), scene_(scene), log_(log), textures_(document, scene, log) {}
 
-    /// materials[index], each read once; -1: glTF's default material.
+    /// The surface that materials[index] makes, each read once; -1: glTF's default material.
     const Surface& surface(int index, const std::string& place);
 
   private:

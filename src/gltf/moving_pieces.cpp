@@ -15,12 +15,14 @@ namespace {
 using Matrix3 = SquareMatrix<3>;
 using Triangle = std::array<uint32_t, 3>;
 
-/// Joints bend in a few steps each; every piece is an instance that moves.
+/// Most pieces of a mesh. Joints bend in a few steps each; every piece is an instance that moves.
 constexpr size_t kMostPieces = 256;
-/// Square of a share of a piece's extent: directions below a tenth of it hardly stretch. What noise
-/// would make of them turns normals until patches go dark (decision 0057).
+/// Ridge of the regression: square of a share of a piece's extent. Directions below a tenth of the
+/// extent hardly stretch: noise would make of them stretches that turn normals until patches go
+/// dark (docs/decisions/0057).
 constexpr double kRidge = 1e-2;
-/// Of a piece's volume; what is squeezed to nothing can't be undone.
+/// Most that a piece's volume may be stretched or squeezed; a piece that is squeezed to nothing
+/// can't be undone.
 constexpr double kMostStretch = 20;
 
 std::array<double, 3> mean(std::span<const Vec3> points) {
@@ -34,8 +36,9 @@ std::array<double, 3> offset(Vec3 p, const std::array<double, 3>& from) {
     return {double(p.x) - from[0], double(p.y) - from[1], double(p.z) - from[2]};
 }
 
-/// The rotation whose quaternion is the eigenvector of the largest eigenvalue of Horn's matrix.
-/// `s`: sums of products of the start's i and the end's j, both from their means.
+/// The rotation that takes start nearest to end: its quaternion is the eigenvector of the largest
+/// eigenvalue of Horn's matrix. `s`: sums of products of the start's i and the end's j, both from
+/// their means.
 Matrix4 nearest_rotation(const Matrix3& s) {
     const SymmetricEigen<4> e = symmetric_eigen<4>(
         {{{s[0][0] + s[1][1] + s[2][2], s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0]},
@@ -51,7 +54,8 @@ Matrix4 nearest_rotation(const Matrix3& s) {
     return m;
 }
 
-/// `turn` and the least squares stretch of what it leaves: across^T - turn spread over spread.
+/// The rotation `turn` followed by the least squares stretch of what it leaves: across^T - turn
+/// spread over spread.
 Matrix4 stretched(const Matrix4& turn, const Matrix3& across, const Matrix3& spread) {
     const double trace = spread[0][0] + spread[1][1] + spread[2][2];
     if (!(trace > 0)) return turn;
@@ -87,7 +91,7 @@ double distance_after(const Matrix4& m, Vec3 start, Vec3 end) {
     return std::sqrt(sum);
 }
 
-/// Pieces under way: the worst one is halved next.
+/// Cuts a mesh into pieces: the worst one is halved next.
 class Cutter {
   public:
     Cutter(std::span<const Vec3> start, std::span<const Vec3> end,
@@ -118,7 +122,7 @@ class Cutter {
     struct Fitted {
         double left = 0;
         MovingPiece piece;
-        /// What halving it may gain.
+        /// The error that halving the piece may remove.
         double gain() const { return piece.triangles.size() > 1 ? left : 0; }
         /// Ties are broken by place, so that the order is the same everywhere.
         bool operator<(const Fitted& other) const {
@@ -127,8 +131,9 @@ class Cutter {
         }
     };
 
-    /// Triangles that share vertices, or vertices that are at one place at both times: files split
-    /// these at creases and seams. One group where there are more than pieces may be.
+    /// Groups of connected triangles: those that share vertices, or have vertices that are at one
+    /// place at both times, as files split these at creases and seams. One group of all triangles
+    /// where there would be more groups than pieces may be.
     std::vector<std::vector<uint32_t>> connected() const {
         std::vector<uint32_t> parent(start_.size());
         std::iota(parent.begin(), parent.end(), 0);
@@ -182,7 +187,7 @@ class Cutter {
         return fitted;
     }
 
-    /// At the median along the longest side of the middles' box.
+    /// Halves a piece at the median along the longest side of the box of its triangles' middles.
     std::array<std::vector<uint32_t>, 2> halves(std::vector<uint32_t> triangles) const {
         const auto middle = [&](uint32_t t) {
             const Triangle& i = triangles_[t];
@@ -212,7 +217,8 @@ class Cutter {
 
 Matrix4 nearest_motion(std::span<const Vec3> start, std::span<const Vec3> end) {
     const auto from = mean(start), to = mean(end);
-    // Sums of products of start's i with end's j, and with start's j.
+    // Sums of products: `across` of the start's i with the end's j, `spread` of the start's i and
+    // j.
     Matrix3 across{}, spread{};
     for (size_t k = 0; k < start.size(); ++k) {
         const auto a = offset(start[k], from), b = offset(end[k], to);

@@ -98,7 +98,8 @@ class Placer {
         std::vector<bool> known(parents_.size());
         for (const int node : at(document_, model.scenes, scene, "scenes", "scene").nodes) {
             at(document_, model.nodes, node, "nodes", place);
-            // A child among the roots would be there twice; a cycle has no root.
+            // Roots have no parents: a child among them would be there twice, and a cycle has no
+            // root.
             if (parents_[static_cast<size_t>(node)] != kNone || known[static_cast<size_t>(node)])
                 document_.refuse(place, "node " + std::to_string(node) + " is no root");
             known[static_cast<size_t>(node)] = true;
@@ -115,7 +116,7 @@ class Placer {
             copy_checked(document_, node.matrix, columns, place + ".matrix");
             Matrix4 m;
             for (size_t i = 0; i < 16; ++i) m.m[i % 4][i / 4] = columns[i];
-            m.m[3] = {0, 0, 0, 1};  // by the specification, whatever the file says
+            m.m[3] = {0, 0, 0, 1};  // the last row, by the specification, whatever the file says
             return m;
         }
         Pose pose;
@@ -170,7 +171,7 @@ std::vector<double> morph_weights(const Document& document, const Animations& an
     if (values.empty()) values = n.weights;
     if (values.empty())
         values = at(document, document.model.meshes, n.mesh, "meshes", place + ".mesh").weights;
-    // Any number of nodes may have the weights of one mesh.
+    // Weights are counted in the budget, as any number of nodes may have those of one mesh.
     if (!document.numbers.spend(values.size(), 1))
         throw Error(ErrorKind::limit, document.place(place),
                     "its weights and all numbers before are too many for a file of " +

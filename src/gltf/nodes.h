@@ -17,24 +17,25 @@ struct PlacedNode {
     AnimatedTransform transform;  ///< node to world, over the shutter
 };
 
-/// A node's space to the world's at both ends of the shutter; may be singular, as joints are scaled
-/// to nothing to hide what they carry.
+/// Matrices from a node's space to the world's at both ends of the shutter. They may be singular,
+/// as joints are scaled to nothing to hide what they carry.
 using WorldMatrices = std::array<Matrix4, 2>;
 
 struct PlacedNodes {
     std::vector<PlacedNode> nodes;  ///< parents before children, in the file's order
     std::vector<std::optional<WorldMatrices>>
-        worlds;  ///< of the document's; none: not in the scene
+        worlds;  ///< one for each of the document's nodes; none: not in the scene
     Animations animations;
 };
 
-/// Of the morph targets of the node's mesh; missing ones are 0.
+/// Weights of the morph targets of the node's mesh at a time; missing ones are 0.
 std::vector<double> morph_weights(const Document& document, const Animations& animations, int node,
                                   double time);
 
 /// The nodes of the document's default scene (the first one, where none is named; all roots, where
-/// there are no scenes). Refuses nodes with two parents, which cycles are made of. What a scale of
-/// zero hides is left out of the placed ones.
+/// there are no scenes). Refuses nodes with two parents, which cycles are made of. Nodes that a
+/// scale of zero hides are left out of the placed ones.
+///
 /// `shutter`: both ends in seconds; none: at rest, as at time 0 of the animations.
 PlacedNodes place_nodes(const Document& document,
                         const std::optional<std::array<float, 2>>& shutter, WarningLog& log);

@@ -67,13 +67,13 @@ class SceneAssembler {
             scene_.instances.push_back({object, placed.transform, document_.place(place)});
         for (const Part& part : parts_of(node(placed).mesh)) {
             grow(part.bounds, placed.transform);
-            // Emitters are no parts of objects: each is a light of its own.
+            // Emitters are no parts of objects, because each is a light of its own.
             if (object >= 0 && !part.emission) continue;
             add_shape(part, part.shape.geometry, placed.transform);
         }
     }
 
-    /// A mesh of its own for each node: its shape is the node's.
+    /// Adds a deformed mesh, which each node has for itself: its shape is the node's.
     void add_deformed(const PlacedNode& placed) {
         for (const Part& part : parts_of(node(placed).mesh))
             for (MovedMesh& moved : deformed_.meshes(placed, part.primitive, part.uv_set)) {
@@ -84,7 +84,7 @@ class SceneAssembler {
             }
     }
 
-    /// The object of what doesn't emit in a mesh; -1 where there is nothing of that kind.
+    /// The object that holds the parts of a mesh which don't emit; -1 where there are none.
     int object_of(int mesh) {
         const auto [entry, is_new] = objects_.try_emplace(mesh, -1);
         if (!is_new) return entry->second;
@@ -97,17 +97,17 @@ class SceneAssembler {
         return entry->second = static_cast<int>(scene_.objects.size() - 1);
     }
 
-    /// A primitive in the space of its mesh, what it emits, and where it is.
+    /// A primitive in the space of its mesh, its emission, and its bounds there.
     struct Part {
         ShapeDescription shape;
         std::optional<AreaLightDescription> emission;
         bool is_strong_light = false;
         Bounds3 bounds;
-        size_t primitive = 0;  ///< of the mesh's
+        size_t primitive = 0;  ///< index into the mesh's primitives
         int uv_set = -1;
     };
 
-    /// Those with something to see, read once however many nodes place them.
+    /// The visible parts of a mesh, read once however many nodes place it.
     const std::vector<Part>& parts_of(int mesh) {
         const auto [entry, is_new] = parts_.try_emplace(mesh);
         if (!is_new) return entry->second;
@@ -179,7 +179,8 @@ SceneDescription read(const std::filesystem::path& file, const ReadOptions& opti
     check_extensions(document);
     SceneDescription scene;
     scene.name = file.stem().string();
-    // A format for interchange says nothing of quality: enough for glass, and for a clean image.
+    // Depth and samples are ours, as a format for interchange says nothing of quality: enough for
+    // glass, and for a clean image.
     constexpr int kDepth = 12, kSamples = 64;
     scene.max_depth = kDepth;
     scene.samples_per_pixel = kSamples;
@@ -195,7 +196,8 @@ SceneDescription read(const std::filesystem::path& file, const ReadOptions& opti
         const auto [open, close] = *options.shutter;
         scene.camera.shutter_open = open;
         scene.camera.shutter_close = close;
-        // Images are scaled by the time of exposure; here it is to change the blur alone.
+        // The film's speed makes up for the time of exposure, by which images are scaled: here that
+        // is to change the blur alone.
         scene.film.iso = 100 / (close - open);
     }
     scale_lights(document, assembler.bounds(), scene, log);

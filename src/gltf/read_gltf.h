@@ -3,8 +3,8 @@
 /// World space is glTF's: metres, y up. Radiance is in the file's photometric unit, cd/m² (nit):
 /// emissive 1 is a radiance of 1, a light of 1 candela gives 1 lux at a metre, unless the lights
 /// are so strong that they must be physical: then both are divided by 683 lm/W (gltf/lights.h).
-/// What the file asks for and covtrace doesn't render becomes a warning that says what takes its
-/// place. docs/guide/gltf.md has the whole mapping.
+/// Features that the file asks for and covtrace doesn't render become warnings that say what takes
+/// their place. docs/guide/gltf.md has the whole mapping.
 #pragma once
 
 #include <filesystem>
@@ -17,12 +17,13 @@ namespace covtrace {
 /// True for names that end in .gltf or .glb, in any case.
 bool is_gltf(const std::filesystem::path& file);
 
-/// Nodes that animations move are placed where they are at both ends of `options.shutter`, in
-/// seconds of the animations; at time 0 without it. Meshes are read, image files are not.
+/// Reads a scene. Nodes that animations move are placed where they are at both ends of
+/// `options.shutter`, in seconds of the animations; at time 0 without it. Meshes are read, image
+/// files are not.
 ///
-/// Errors: Error(scene) as `file:line:column: …` for what is no JSON, and as `file: place in the
-/// document: what is wrong; what was expected` for the rest; Error(limit) where the scene is too
-/// large. Files are looked for in the scene's folder and the search paths, and nowhere else.
+/// Errors: Error(scene) as `file:line:column: …` for text that is no JSON, and as `file: place in
+/// the document: what is wrong; what was expected` for the rest; Error(limit) where the scene is
+/// too large. Files are looked for in the scene's folder and the search paths, and nowhere else.
 SceneDescription read_gltf(const std::filesystem::path& file, const ReadOptions& options = {});
 
 }  // namespace covtrace

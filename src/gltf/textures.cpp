@@ -21,8 +21,9 @@ Wrap wrap_mode(const Document& document, int mode, const std::string& place) {
     }
 }
 
-/// KHR_texture_transform: (u, v) of the image = offset + R(rotation) scale (u, v), v downwards.
-/// Both meshes and lookups turn v here, v = 1 - v', which turns the sign of the off-diagonal.
+/// The mapping of KHR_texture_transform: (u, v) of the image = offset + R(rotation) scale (u, v), v
+/// downwards. Meshes and lookups both turn v here, v = 1 - v', which turns the sign of the
+/// off-diagonal.
 TextureMapping mapping_of(const Document& document, const tinygltf::TextureInfo& info,
                           const std::string& place) {
     TextureMapping mapping;

@@ -19,14 +19,15 @@ class TextureReader {
     TextureId constant(float value) { return constant(Rgb(value), false); }
     TextureId product(TextureId a, TextureId b, bool is_spectrum);
 
-    /// sRGB image times factor; the factor alone where there is no (usable) image.
+    /// Texture of an sRGB image times factor; the factor alone where there is no (usable) image.
     TextureId colour(const tinygltf::TextureInfo& info, Rgb factor, const std::string& place);
-    /// A linear colour image; -1 where there is none.
+    /// Texture of a linear colour image; -1 where there is none.
     TextureId linear(const tinygltf::TextureInfo& info, const std::string& place);
-    /// One channel of a linear image times factor.
+    /// Texture of one channel of a linear image times factor.
     TextureId channel(const tinygltf::TextureInfo& info, ImageTexture::Channel channel,
                       float factor, const std::string& place);
-    /// 1 where alpha of the image is at least `cutoff`, 0 elsewhere; -1 where there is no image.
+    /// Texture that is 1 where the image's alpha is at least `cutoff`, 0 elsewhere; -1 where there
+    /// is no image.
     TextureId mask(const tinygltf::TextureInfo& info, float cutoff, const std::string& place);
 
     /// The set of texture coordinates of a reference, with its KHR_texture_transform.
@@ -34,7 +35,7 @@ class TextureReader {
                       const std::string& place);
 
   private:
-    /// Empty, with a warning, where the image's format is not supported.
+    /// The image of a reference; empty, with a warning, where its format is not supported.
     std::optional<ImageTexture> image(const tinygltf::TextureInfo& info, const std::string& place);
     TextureId add(TextureDescription texture);
 

@@ -1,4 +1,4 @@
-/// Private to this folder: glTF's units in those of scenes.
+/// Private to this folder: factors from glTF's units to those of scenes.
 #pragma once
 
 #include "core/vec.h"
