@@ -8,7 +8,7 @@ namespace covtrace {
 namespace {
 
 struct Block {
-    size_t place;  ///< row by row
+    size_t place;  ///< index of the block, row by row
     double sum = 0;
     int pixels = 0;
     double mean() const { return sum / pixels; }

@@ -1,4 +1,5 @@
-/// The pixels of an image in ten groups by brightness: measures per group see what is dark.
+/// The pixels of an image in ten groups by brightness, so that measures per group show errors in
+/// the dark.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +11,8 @@
 namespace covtrace {
 
 constexpr size_t kDeciles = 10;
-/// Side in pixels of the blocks that are sorted: sorted one by one, pixels would be told apart by
-/// their noise.
+/// Side, in pixels, of the blocks that are sorted: single pixels would be told apart by their
+/// noise.
 constexpr int kDecileBlock = 8;
 constexpr uint8_t kNoDecile = 255;
 

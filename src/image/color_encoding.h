@@ -6,13 +6,13 @@
 
 namespace covtrace {
 
-/// Display value of a linear one, both 1 at white. Defined for all finite values: linear below the
-/// toe, also for negative ones, and continuing above 1.
+/// Display value (sRGB) of a linear value, both 1 at white. Defined for all finite values: linear
+/// below the toe, also for negative ones, and continuing above 1.
 inline float srgb_encode(float linear) {
     return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
-/// Linear value of a display value; the inverse of `srgb_encode`.
+/// Linear value of a display value (sRGB): the inverse of `srgb_encode`.
 inline float srgb_decode(float encoded) {
     return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }

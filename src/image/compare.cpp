@@ -46,7 +46,7 @@ PixelBounds common_pixels(const Image& image, const Image& reference,
     return common;
 }
 
-/// The root colour of the pixels in `bounds`.
+/// The root colours of the pixels in `bounds`, row by row.
 std::vector<Rgb> root_colors(const Image& image, const PixelBounds& bounds, const char* role) {
     const Channel *r = image.find("R"), *g = image.find("G"), *b = image.find("B");
     if (!r || !g || !b) r = g = b = image.find("Y");
@@ -85,7 +85,7 @@ bool same_bits(const Image& a, const Image& b) {
     });
 }
 
-/// Of every compared pixel: the mean over its channels of (I - R)² / (R² + eps²).
+/// Relative error of every compared pixel: the mean over its channels of (I - R)² / (R² + eps²).
 std::vector<double> relative_errors(const std::vector<Rgb>& image,
                                     const std::vector<Rgb>& reference,
                                     const std::vector<bool>& compared, double eps_squared) {
@@ -103,7 +103,7 @@ std::vector<double> relative_errors(const std::vector<Rgb>& image,
     return errors;
 }
 
-/// What relmse_median adds to the squares of the reference.
+/// The eps² of relmse_median: the square of a tenth of the reference's median luminance.
 double squared_tenth_of_median(const std::vector<Rgb>& reference,
                                const std::vector<bool>& compared) {
     std::vector<double> values;
@@ -137,7 +137,7 @@ std::array<double, kDeciles> decile_ratio(const std::vector<Rgb>& image,
     return ratio;
 }
 
-/// Without the floor(n / 1000) largest.
+/// Mean of the errors without the floor(n / 1000) largest.
 double trimmed_mean(std::vector<double> errors) {
     const size_t kept = errors.size() - errors.size() / 1000;
     std::nth_element(errors.begin(), errors.begin() + ptrdiff_t(kept) - 1, errors.end());
@@ -153,7 +153,8 @@ Rgb clamped(Rgb c) {
 std::vector<float> flip_map(std::vector<Rgb> image, std::vector<Rgb> reference,
                             const std::vector<bool>& compared, const PixelBounds& bounds) {
     for (size_t i = 0; i < image.size(); ++i) {
-        // The eye's filters reach over pixels that are left out: the same value in both images.
+        // Pixels that are left out get the same value in both images, because the eye's filters
+        // reach over them.
         image[i] = compared[i] ? clamped(image[i]) : Rgb();
         reference[i] = compared[i] ? clamped(reference[i]) : Rgb();
     }

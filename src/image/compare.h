@@ -10,16 +10,16 @@
 
 namespace covtrace {
 
-/// I: image, R: reference; root channels R, G, B (or Y for all three), linear. A pixel whose root
-/// colour is not finite in either image is left out of all measures but `nonfinite` and
-/// `identical`; where no pixel is left, they are NaN.
+/// Measures of an image I against a reference R: root channels R, G, B (or Y for all three),
+/// linear. A pixel whose root colour is not finite in either image is left out of all measures but
+/// `nonfinite` and `identical`; where no pixel is left, they are NaN.
 struct Comparison {
     double mse = 0;     ///< mean over pixels and channels of (I - R)²
     double relmse = 0;  ///< mean over pixels and channels of (I - R)² / (R² + 0.01)
-    /// relmse without the floor(n / 1000) of the n pixels whose error, averaged over the channels,
-    /// is largest.
+    /// The relmse without the floor(n / 1000) of the n pixels whose error, averaged over the
+    /// channels, is largest.
     double relmse_trimmed = 0;
-    /// relmse_trimmed at the exposure at which the reference's median is 1, so that dark images
+    /// The relmse_trimmed at the exposure at which the reference's median is 1, so that dark images
     /// count like bright ones: mean of (I - R)² / (R² + (m / 10)²), trimmed alike. m is the median
     /// luminance of R, the upper of two; where it is not above 0 the mean, and where that is not
     /// either, 1.
@@ -28,11 +28,11 @@ struct Comparison {
         0;  ///< dB, of the sRGB-encoded images clamped to [0, 1]; +Inf where they are equal
     double flip = 0;  ///< mean LDR-FLIP of the images clamped to [0, 1], 67 pixels per degree
     std::array<double, 3> mean_ratio{};  ///< sum I / sum R of each channel; 0 / 0 is NaN
-    /// sum I / sum R of the luminances in each decile of R's brightness (brightness_deciles), the
-    /// darkest first; 0 / 0 is NaN, also in the deciles that fewer than ten blocks leave empty.
+    /// Ratio sum I / sum R of the luminances in each decile of R's brightness (brightness_deciles),
+    /// the darkest first; 0 / 0 is NaN, also in the deciles that fewer than ten blocks leave empty.
     std::array<double, kDeciles> decile_ratio{};
     int64_t nonfinite = 0;  ///< values that are not finite, all channels of the image
-    int64_t pixels = 0;     ///< that the measures are taken over
+    int64_t pixels = 0;     ///< pixels that the measures are taken over
     PixelBounds bounds;     ///< the pixels that both images and the crop have
     /// FLIP error of every pixel in `bounds`, row by row; 0 where a pixel is left out.
     std::vector<float> flip_map;

@@ -28,7 +28,7 @@ Rgbe read_rgbe(ByteReader& reader) {
     return {b[0], b[1], b[2], b[3]};
 }
 
-/// New run lengths: the four components one after the other, runs of at most 127.
+/// Reads a row with new run lengths: the four components one after the other, runs of at most 127.
 void read_components(ByteReader& reader, std::vector<Rgbe>& row) {
     for (uint8_t Rgbe::*component : {&Rgbe::r, &Rgbe::g, &Rgbe::b, &Rgbe::e})
         for (size_t x = 0; x < row.size();) {
@@ -42,8 +42,8 @@ void read_components(ByteReader& reader, std::vector<Rgbe>& row) {
         }
 }
 
-/// Flat pixels, and old run lengths: (1, 1, 1, n) repeats the pixel before n times; several of them
-/// in a row are the digits of a longer run, the lowest first.
+/// Reads a row of flat pixels or old run lengths: (1, 1, 1, n) repeats the pixel before n times;
+/// several of them in a row are the digits of a longer run, the lowest first.
 void read_pixels(ByteReader& reader, Rgbe first, std::vector<Rgbe>& row) {
     int shift = 0;
     for (size_t x = 0; x < row.size();) {

@@ -35,7 +35,7 @@ void on_error(j_common_ptr jpeg) {
     std::longjmp(reader->on_failure, 1);
 }
 
-/// Missing data are an error: libjpeg would fill them with grey. Other warnings are harmless.
+/// Treats missing data as an error: libjpeg would fill them with grey. Other warnings are harmless.
 void on_warning(j_common_ptr jpeg, int level) {
     const int code = jpeg->err->msg_code;
     if (level < 0 && (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER)) on_error(jpeg);
@@ -90,7 +90,7 @@ void append_row(PlainImage& image, const JpegReader& reader) {
                            reader.row.begin() + ptrdiff_t(width * channels));
         return;
     }
-    // Adobe's files hold the inks inverted: 255 is none.
+    // CMYK files of Adobe hold the inks inverted: 255 is no ink.
     const auto without_ink = [&](JSAMPLE ink) {
         return unsigned(reader.jpeg.saw_Adobe_marker ? ink : 255 - ink);
     };
@@ -109,7 +109,7 @@ PlainImage decode_jpeg(Bytes bytes) {
     if (!read_header(reader, bytes)) fail();
     const int components = reader.jpeg.num_components;
     const size_t width = reader.jpeg.image_width, height = reader.jpeg.image_height;
-    // Of several scans the library keeps the coefficients of all pixels.
+    // Images of several scans take more memory: the library keeps the coefficients of all pixels.
     const size_t coefficients = jpeg_has_multiple_scans(&reader.jpeg)
                                     ? width * height * size_t(components) * sizeof(JCOEF)
                                     : 0;

@@ -45,7 +45,8 @@ void on_read(png_structp png, png_bytep to, size_t count) {
 bool read_header(PngReader& reader) {
     if (setjmp(png_jmpbuf(reader.png))) return false;
     png_set_read_fn(reader.png, &reader, on_read);
-    // Colour profiles, texts and the like are of no use here, and a way to make a reader work hard.
+    // Unknown chunks (colour profiles, texts and the like) are dropped: they are of no use here,
+    // and a way to make a reader work hard.
     png_set_keep_unknown_chunks(reader.png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
     png_read_info(reader.png, reader.info);
     png_set_expand(reader.png);
@@ -95,7 +96,8 @@ PlainImage decode_png(Bytes bytes) {
         }
         return image;
     }
-    // Every pass changes the whole image: that of 8 bits itself.
+    // Interlaced images are decoded as a whole, because every pass changes all of it; 8-bit ones in
+    // place.
     std::vector<png_byte>& all = image.is_8bit() ? image.bytes : reader.pixels;
     all.resize(row * reader.height);
     for (int pass = 0; pass < reader.passes; ++pass)

@@ -61,7 +61,7 @@ PlainImage decode_integers(ByteReader& reader, int channels) {
     const int largest = read_number<int>(reader);
     if (largest < 1 || largest > 65535) throw DecodeError("its largest value is not in 1 … 65535");
     const bool bytes = largest < 256;
-    // Other steps than those of 8 bits are kept exactly.
+    // Values of other ranges than 0 to 255 become 16-bit ones, so that each step is kept exactly.
     PlainImage image = make_plain_image(width, height, channels, largest == 255 ? 8 : 16);
     const size_t count = size_t(width) * size_t(height) * size_t(channels);
     if (image.is_8bit()) {

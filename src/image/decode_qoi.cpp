@@ -68,7 +68,7 @@ PlainImage decode_qoi(Bytes bytes) {
     reader.take(4);
     const int64_t width = reader.big_u32(), height = reader.big_u32();
     const int channels = reader.u8();
-    // Linear colours are those of a file of floating point: nothing is to be decoded.
+    // Linear colours make the file one of floating point, for which nothing is to be decoded.
     constexpr int kLinear = 1;
     const bool is_linear = reader.u8() == kLinear;
     if (channels != 3 && channels != 4) throw DecodeError("it has neither 3 nor 4 channels");

@@ -7,7 +7,7 @@ namespace covtrace {
 
 namespace {
 
-/// Truevision TGA File Format Specification 2.0, section "TGA file header".
+/// Header of a file (Truevision TGA File Format Specification 2.0, section "TGA file header").
 struct Header {
     int id_length, palette_type, image_type;
     int palette_first, palette_count, palette_bits;
@@ -41,7 +41,7 @@ Header read_header(ByteReader& reader) {
 
 using Pixel = std::array<uint8_t, 4>;
 
-/// Colours are stored as B, G, R, A or as 1 + 5 + 5 + 5 bits.
+/// Reads a colour, which is stored as B, G, R, A or as 1 + 5 + 5 + 5 bits.
 Pixel read_color(ByteReader& reader, int bits) {
     if (bits == 15 || bits == 16) {
         const int packed = reader.little_u16();
@@ -74,7 +74,7 @@ std::vector<Pixel> read_palette(ByteReader& reader, const Header& h) {
 int channel_count(const Header& h) {
     if (h.color_type() == kGrey) return h.pixel_bits == 16 ? 2 : 1;
     const int bits = h.color_type() == kPalette ? h.palette_bits : h.pixel_bits;
-    // Without alpha bits in the descriptor the fourth byte means nothing.
+    // The fourth byte means nothing without alpha bits in the descriptor.
     return bits == 32 && h.alpha_bits() > 0 ? 4 : 3;
 }
 
@@ -112,7 +112,7 @@ class PixelReader {
     const Header& header_;
     std::vector<Pixel> palette_;
     Pixel repeated_{};
-    int left_ = 0;  ///< pixels of the current packet
+    int left_ = 0;  ///< pixels of the current packet that are still to come
     bool repeats_ = false;
 };
 

@@ -12,9 +12,10 @@
 namespace covtrace {
 namespace {
 
-constexpr size_t kLongestName = 255;  // of OpenEXR 2.0 and later
+constexpr size_t kLongestName = 255;  // in bytes; of OpenEXR 2.0 and later
 
-/// Of types whose values OpenEXR reads at their own length, whatever the attribute claims.
+/// Bytes of the types whose values OpenEXR reads at their own length, whatever the attribute
+/// claims.
 const std::map<std::string_view, uint32_t> kSizes{{"box2f", 16},
                                                   {"box2i", 16},
                                                   {"chromaticities", 32},
@@ -40,7 +41,7 @@ const std::map<std::string_view, uint32_t> kSizes{{"box2f", 16},
                                                   {"v3f", 12},
                                                   {"v3i", 12}};
 
-/// Up to a zero byte; none where that does not come.
+/// Reads a name up to its zero byte; empty where that does not come.
 std::optional<std::string> read_name(std::istream& in) {
     std::string name;
     for (char c = 0; in.get(c);) {
@@ -59,7 +60,7 @@ std::optional<uint32_t> read_u32(std::istream& in) {
 
 /// Whether a list of channels ends where its attribute does: OpenEXR reads on to the empty name.
 bool is_channel_list(std::string_view value) {
-    constexpr size_t kRest = 16;  // of a channel, after its name
+    constexpr size_t kRest = 16;  // bytes of a channel after its name
     while (!value.empty() && value[0] != '\0') {
         const size_t name = value.find('\0');
         if (name == value.npos || value.size() - name - 1 < kRest) return false;
@@ -99,9 +100,9 @@ bool is_sound(const std::string& type, std::string_view value) {
 
 }  // namespace
 
-// https://openexr.com/en/latest/OpenEXRFileLayout.html: magic number and version, then per part
-// name, type, size and value of its attributes and an empty name; after the headers of several
-// parts one more empty name.
+// The layout is described at https://openexr.com/en/latest/OpenEXRFileLayout.html: magic number and
+// version, then for each part the name, type, size and value of its attributes and an empty name;
+// after the headers of several parts one more empty name.
 void check_exr_attribute_sizes(const std::filesystem::path& file) {
     const uint64_t length = std::filesystem::file_size(file);
     std::ifstream in(file, std::ios::binary);

@@ -10,9 +10,10 @@ namespace covtrace {
 /// Longest name of a channel or an attribute.
 inline constexpr size_t kExrNameLimit = 255;
 
-/// Attributes that readers interpret with a type of their own (OpenEXR, "Standard Attributes"):
-/// neither read as metadata nor written from it. "name", "type", "version" and "chunkCount" are
-/// reserved for files with several parts, and OpenEXR's own reader refuses them with other types.
+/// Whether an attribute is one that readers interpret with a type of their own (OpenEXR, "Standard
+/// Attributes"): such ones are neither read as metadata nor written from it. "name", "type",
+/// "version" and "chunkCount" are reserved for files with several parts, and OpenEXR's own reader
+/// refuses them with other types.
 constexpr bool is_structural_exr_name(std::string_view name) {
     constexpr std::array<std::string_view, 15> kNames = {"channels",
                                                          "chunkCount",

@@ -43,7 +43,8 @@ bool tells_uncertainty(const std::string& layer) {
     return layer == "variance" || layer == "error";
 }
 
-/// Marks the channel's bad pixels in `is_bad`, which has one entry for each pixel or none yet.
+/// Replaces the channel's bad values and marks their pixels in `is_bad`, which has one entry for
+/// each pixel or none yet. True where there were any.
 bool replace_in(Channel& channel, int width, int height, std::vector<bool>& is_bad) {
     std::vector<float>& values = channel.values;
     const bool nan_is_largest = tells_uncertainty(layer_of(channel.name));

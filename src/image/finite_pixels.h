@@ -10,22 +10,22 @@
 namespace covtrace {
 
 struct ReplacedPixels {
-    int pixels = 0;      ///< that had such a value in any layer
-    int x = 0, y = 0;    ///< the first of them, row by row
+    int pixels = 0;      ///< number of pixels with such a value in any layer
+    int x = 0, y = 0;    ///< the first of these pixels, row by row
     std::string layers;  ///< "image, raw, variance", in the order of the channels
 };
 
-/// Puts numbers in their places: the largest float for infinite values, with their sign, and the
-/// mean of the finite ones among the eight neighbours for NaN, 0 where there are none. In the
+/// Replaces values that are no finite numbers: infinite ones by the largest float, with their sign;
+/// NaN by the mean of the finite ones among the eight neighbours, 0 where there are none. In the
 /// layers "variance" and "error" NaN, too, becomes the largest float: nothing is known there.
 /// Metadata that is not finite is left out. Nothing else changes. Empty where all pixels are
 /// finite; else the metadata tells what was done.
 std::optional<ReplacedPixels> replace_nonfinite(Image& image);
 
-/// What the metadata of an image tell of replaced pixels.
+/// The record of replaced pixels in an image's metadata; empty where there is none.
 std::optional<ReplacedPixels> replaced_pixels(const Metadata& metadata);
 
-/// One line for people, without what goes before it.
+/// One line of text for people, to follow a prefix such as "warning: ".
 std::string describe(const ReplacedPixels& replaced);
 
 }  // namespace covtrace

@@ -10,7 +10,8 @@ namespace covtrace {
 
 namespace {
 
-// Exponents, thresholds and widths, in brackets the paper's symbols.
+// Exponents, thresholds and widths of FLIP; the comments give the symbols of Andersson et al. 2020
+// (see flip.h).
 constexpr float kColorExponent = 0.7f;          // q_c
 constexpr float kColorKnee = 0.4f;              // p_c, as a part of the largest difference
 constexpr float kColorKneeValue = 0.95f;        // p_t
@@ -20,9 +21,10 @@ constexpr float kFeatureExponent = 0.5f;        // q_f
 using Color = std::array<float, 3>;
 using Plane = std::vector<float>;
 
-/// Linear sRGB to CIE XYZ over the white point, so that white is (1, 1, 1).
+/// Converts linear sRGB to CIE XYZ over the white point, so that white is (1, 1, 1).
 Color to_relative_xyz(Rgb c) {
-    // Primaries and D65 white of sRGB as exact fractions of the chromaticities (IEC 61966-2-1).
+    // The matrix has the primaries and D65 white of sRGB as exact fractions of the chromaticities
+    // (IEC 61966-2-1).
     constexpr double kX[3] = {10135552.0 / 24577794, 8788810.0 / 24577794, 4435075.0 / 24577794};
     constexpr double kY[3] = {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897};
     constexpr double kZ[3] = {1425312.0 / 73733382, 8788810.0 / 73733382, 70074185.0 / 73733382};
@@ -58,7 +60,7 @@ Rgb from_relative_xyz(const Color& xyz) {
     return {row(kInverse[0]), row(kInverse[1]), row(kInverse[2])};
 }
 
-/// Opponent space of the eye's filters: a linear version of CIELAB.
+/// Opponent space of the eye's filters (YCxCz): a linear version of CIELAB.
 Color to_ycxcz(Rgb c) {
     const Color xyz = to_relative_xyz(c);
     return {116 * xyz[1] - 16, 500 * (xyz[0] - xyz[1]), 200 * (xyz[1] - xyz[2])};
@@ -85,7 +87,7 @@ float hyab(const Color& a, const Color& b) {
     return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
 }
 
-/// Odd number of weights, the middle one at the pixel itself.
+/// Weights of a filter along one axis; an odd number, the middle one at the pixel itself.
 using Kernel = std::vector<float>;
 
 /// A Gaussian of the eye's contrast sensitivity: a sqrt(pi/b) exp(-pi² x² / b), x in degrees.
@@ -93,7 +95,7 @@ struct SensitivityGaussian {
     double a, b;
 };
 
-/// 1D kernels whose outer products, added up, are the 2D filter; that sums to 1.
+/// Kernels along one axis whose outer products, added up, are the 2D filter; its weights sum to 1.
 std::vector<Kernel> sensitivity_kernels(std::initializer_list<SensitivityGaussian> gaussians,
                                         float pixels_per_degree) {
     constexpr double kWidest = 0.04, kPiD = 3.14159265358979323846;
@@ -122,7 +124,8 @@ struct FeatureKernels {
     Kernel smooth, edge, point;  ///< a Gaussian and its first and second derivative
 };
 
-/// The Gaussian sums to 1; of the derivatives the positive weights to 1 and the negative to -1.
+/// Kernels of the feature detectors. The Gaussian sums to 1; each derivative's positive weights sum
+/// to 1 and its negative ones to -1.
 FeatureKernels feature_kernels(float pixels_per_degree) {
     const double sigma = 0.5 * kFeatureWidthDegrees * pixels_per_degree;
     const int radius = int(std::ceil(3 * sigma));
@@ -172,7 +175,7 @@ Plane convolve(const Plane& in, Size size, const Kernel& horizontal, const Kerne
     return out;
 }
 
-/// What an observer perceives of one image.
+/// Perception of one image by an observer.
 struct Percept {
     std::vector<Color> lab;  ///< blurred by the eye, Hunt-adjusted
     Plane edges, points;     ///< magnitudes of the detected features
@@ -185,7 +188,7 @@ Plane magnitude(const Plane& x, const Plane& y) {
 }
 
 Percept perceive(std::span<const Rgb> image, Size size, float pixels_per_degree) {
-    // The paper's constants for the achromatic, red-green and blue-yellow channel.
+    // The constants of Andersson et al. 2020 for the achromatic, red-green and blue-yellow channel.
     const std::vector<Kernel> filters[3] = {
         sensitivity_kernels({{1, 0.0047}}, pixels_per_degree),
         sensitivity_kernels({{1, 0.0053}}, pixels_per_degree),
@@ -218,7 +221,7 @@ Percept perceive(std::span<const Rgb> image, Size size, float pixels_per_degree)
     return percept;
 }
 
-/// Colour difference mapped to [0, 1]: linear up to a knee, compressed above it.
+/// Maps a colour difference to [0, 1]: linear up to a knee, compressed above it.
 float remap_color_difference(float difference, float largest) {
     const float d = std::pow(difference, kColorExponent);
     const float knee = kColorKnee * largest;
@@ -236,7 +239,8 @@ std::vector<float> flip_error(std::span<const Rgb> image, std::span<const Rgb> r
     const Size size{width, height};
     const Percept a = perceive(image, size, pixels_per_degree);
     const Percept b = perceive(reference, size, pixels_per_degree);
-    // The largest difference that the paper finds in sRGB: between pure green and pure blue.
+    // The largest colour difference in sRGB, according to Andersson et al. 2020: between pure green
+    // and pure blue.
     const float largest =
         std::pow(hyab(to_hunt_lab({0, 1, 0}), to_hunt_lab({0, 0, 1})), kColorExponent);
     std::vector<float> error(image.size());

@@ -15,7 +15,7 @@
 
 namespace covtrace {
 
-/// Pixels [x0, x1) x [y0, y1).
+/// A rectangle of pixels: [x0, x1) x [y0, y1).
 struct PixelBounds {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     constexpr int width() const { return x1 - x0; }
@@ -39,8 +39,8 @@ struct Channel {
 
 using MetadataValue = std::variant<int, float, std::string, std::vector<float>>;
 using Metadata = std::map<std::string, MetadataValue>;
-/// An entry of eight floats, as Chromaticities, that EXR files keep as an attribute of its own
-/// type.
+/// Name of the metadata entry of eight floats, as Chromaticities, that EXR files keep as an
+/// attribute of its own type.
 inline constexpr const char* kChromaticities = "chromaticities";
 
 struct Image {
@@ -59,7 +59,7 @@ struct Image {
     Rgb rgb(size_t pixel, std::string_view prefix = {}) const;
 };
 
-/// The same image with the pixels of `bounds` only, which must lie inside its data window. The
+/// A copy of the image with the pixels of `bounds` only, which must lie inside its data window. The
 /// display window stays.
 Image cropped(const Image& image, const PixelBounds& bounds);
 
@@ -73,30 +73,30 @@ Image cropped(const Image& image, const PixelBounds& bounds);
 /// pixels or would need more than 4 GiB.
 Image read_image(const std::filesystem::path& file);
 
-/// 32-bit float, ZIP-compressed scan lines, one part; values are stored bit by bit. Metadata of 2
-/// and 3 floats is written as a vector, of 9 and 16 as a matrix, of any other number as a list; but
-/// kChromaticities as what it is.
-/// Written beside and renamed (OutputFile). `threads` compress; the bytes do not depend on it.
+/// Writes 32-bit floats, ZIP-compressed scan lines, one part; values are stored bit by bit.
+/// Metadata of 2 and 3 floats is written as a vector, of 9 and 16 as a matrix, of any other number
+/// as a list; but kChromaticities as an attribute of that type. The file is written beside and
+/// renamed (OutputFile). `threads` compress; the bytes do not depend on it.
 ///
 /// Throws Error(io) where the file cannot be written; Error(internal) for an image that is not well
 /// formed: no pixels or channels, channels of the wrong size or with the same name, metadata with a
 /// name that OpenEXR keeps for itself ("version", "type", "name", "compression" …).
 void write_exr(const Image& image, const std::filesystem::path& file, int threads = 1);
 
-/// Tone-mapped for display: exposure 1, sRGB curve, clamped, 8 bits, NaN as black; root channels
-/// R, G, B, or Y. Written beside and renamed. Throws Error(io).
+/// Writes an image tone-mapped for display: exposure 1, sRGB curve, clamped, 8 bits, NaN as black;
+/// root channels R, G, B, or Y. Written beside and renamed. Throws Error(io).
 void write_png(const Image& image, const std::filesystem::path& file);
 
-/// A PNG file's bytes from 8-bit display values as they are: width * height * 3 bytes, row by row
-/// from the top.
+/// The bytes of a PNG file from 8-bit display values as they are: width * height * 3 bytes, row by
+/// row from the top.
 std::string encode_png_rgb8(std::span<const uint8_t> rgb, int width, int height);
 
-/// The same into a file, written beside and renamed. Throws Error(io).
+/// Writes 8-bit display values as a PNG file, beside and renamed. Throws Error(io).
 void write_png_rgb8(std::span<const uint8_t> rgb, int width, int height,
                     const std::filesystem::path& file);
 
-/// Several lines for people: windows, channels by layer with the range of their values and how many
-/// are not finite, metadata.
+/// Describes an image in several lines for people: windows, channels by layer with the range of
+/// their values and how many are not finite, metadata.
 std::string describe(const Image& image);
 
 }  // namespace covtrace

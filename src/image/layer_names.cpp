@@ -7,7 +7,7 @@ namespace covtrace {
 
 namespace {
 
-/// Texts that begin a channel's name, here and elsewhere.
+/// Two texts that begin a channel's name: in our images, and in those of another convention.
 struct Prefix {
     std::string_view ours, theirs;
 };
@@ -15,7 +15,8 @@ struct Prefix {
 constexpr std::array<Prefix, 3> kPbrt{
     Prefix{"albedo.", "Albedo."}, {"N.", "Ns."}, {"variance.", "Variance."}};
 
-// Whole names first: no name may begin with an earlier prefix that means something else.
+// Names are renamed by the first prefix that fits. Whole names come first: no name may begin with
+// an earlier prefix that means something else.
 constexpr std::string_view kViewLayer = "ViewLayer.";
 constexpr std::array<Prefix, 9> kBlender{
     Prefix{"filter.xx", "filter.X"}, {"filter.xy", "filter.Y"},
@@ -23,7 +24,7 @@ constexpr std::array<Prefix, 9> kBlender{
     {"spectrum.xy", "spectrum.Y"},   {"spectrum.yy", "spectrum.Z"},
     {"raw.", "Noisy Image."},        {"albedo.", "Denoising Albedo."},
     {"N.", "Denoising Normal."}};
-/// Single numbers are channel X of their pass.
+/// Layers of a single number, which becomes channel X of its pass.
 constexpr std::array<Prefix, 4> kBlenderNumbers{Prefix{"samples.Y", "Debug Sample Count.X"},
                                                 {"error.Y", "error.X"},
                                                 {"density.Y", "density.X"},

@@ -1,5 +1,4 @@
-/// How the layers of an image are called in files: our own names, or those that tools of other
-/// renderers look for.
+/// Names of an image's layers in files: our own, or those that tools of other renderers look for.
 #pragma once
 
 #include "core/enum_names.h"
@@ -10,7 +9,7 @@ namespace covtrace {
 enum class LayerNames {
     standard,
     /// pbrt-v4's "gbuffer" film: Albedo.R …, Ns.X … (our N is the shading normal), Variance.R …;
-    /// what pbrt has no name for keeps ours.
+    /// layers that pbrt has no name for keep ours.
     pbrt,
     /// Blender's multilayer files, "layer.pass.channel" with one letter for the channel:
     /// ViewLayer.Combined.R, ViewLayer.Depth.Z, "ViewLayer.Denoising Normal.X", "ViewLayer.Noisy
@@ -28,7 +27,7 @@ inline constexpr auto kEnumNames<LayerNames> =
 /// Renames the channels of an image that has our own names.
 void rename_layers(Image& image, LayerNames names);
 
-/// The inverse of rename_layers for either convention, recognised by "Albedo.R" or by
+/// Restores our own names, for images in either convention, which is recognised by "Albedo.R" or by
 /// "….Combined.R"; other images stay as they are.
 void restore_layer_names(Image& image);
 

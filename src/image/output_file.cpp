@@ -34,15 +34,15 @@ std::string host_name() {
     return host;
 }
 
-/// A device, a pipe, a socket.
+/// Whether a file is special: a device, a pipe, a socket.
 bool is_special(const std::filesystem::path& file) {
     struct stat status {};
     return ::stat(file.c_str(), &status) == 0 && !S_ISREG(status.st_mode) &&
            !S_ISDIR(status.st_mode);
 }
 
-/// What /dev/stdout, /dev/stderr and /dev/fd/N name; -1 for other files. A shell that sends
-/// standard output to a file goes on writing there: that file is no name to be replaced.
+/// The descriptor that /dev/stdout, /dev/stderr or /dev/fd/N names; -1 for other files. A shell
+/// that sends standard output to a file goes on writing there: that file is no name to be replaced.
 int open_descriptor(const std::filesystem::path& file) {
     std::filesystem::path name = file;
     std::error_code error;
@@ -58,9 +58,10 @@ int open_descriptor(const std::filesystem::path& file) {
 }  // namespace
 
 std::filesystem::path OutputFile::resolved(const std::filesystem::path& target) {
-    // What is no file of its own keeps its name: links of /proc lead nowhere that has one.
+    // Streams keep their names: links of /proc lead to things that have none.
     if (open_descriptor(target) >= 0 || is_special(target)) return target;
-    // Link by link: a link to a file that is not there yet, or no longer, is one all the same.
+    // Links are followed one by one: a link to a file that is not there yet, or no longer, is one
+    // all the same.
     constexpr int kMostLinks = 40;  // as the system allows
     std::filesystem::path file = target;
     std::error_code error;
@@ -116,7 +117,8 @@ OutputFile::OutputFile(std::filesystem::path target)
         fail(error_number);
     }
     if (exists && !temporary_.empty()) {
-        // Where permissions cannot be carried over, the file is still right.
+        // The result does not matter: where permissions cannot be carried over, the file is still
+        // right.
         [[maybe_unused]] const int result = ::fchmod(descriptor_, status.st_mode & 07777);
     }
     buffer_.reserve(kBufferSize);
@@ -165,16 +167,16 @@ void OutputFile::flush() {
 }
 
 void OutputFile::keep_older(const std::filesystem::path& earlier) {
-    // A second name for the older file first, which then takes the place of the one before it.
-    // Where the file system knows no second names the older file itself is moved: whoever looks for
-    // it must look for `earlier` too.
+    // The older file gets a second name first, which then takes the place of the one before it.
+    // Where the file system knows no second names, the older file itself is moved: programs that
+    // look for it must look for `earlier`, too.
     std::filesystem::path second = earlier;
     second += part_suffix();
     ::unlink(second.c_str());
     if (::link(final_.c_str(), second.c_str()) == 0) {
         const bool renamed = ::rename(second.c_str(), earlier.c_str()) == 0;
-        // Where both are names of one file, as after a process that was killed here, renaming
-        // leaves the second name.
+        // Renaming leaves the second name where both are names of one file, as after a process that
+        // was killed here.
         if (renamed) {
             ::unlink(second.c_str());
             return;
@@ -199,8 +201,8 @@ void OutputFile::commit(const std::filesystem::path& earlier) {
     if (!earlier.empty()) keep_older(earlier);
     if (::rename(temporary_.c_str(), final_.c_str()) != 0) fail(errno);
     temporary_.clear();
-    // Makes the new name last through a power cut; file systems that cannot do it lose nothing
-    // else.
+    // Syncing the directory makes the new name last through a power cut; file systems that cannot
+    // do it lose nothing else.
     const int directory = ::open(directory_of(final_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (directory >= 0) {
         ::fsync(directory);

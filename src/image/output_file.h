@@ -8,19 +8,19 @@
 
 namespace covtrace {
 
-/// Until commit() returns, an older file of the target's name stays as it was; without commit() the
-/// destructor removes what was written. A symbolic link is followed, so that it still is one
-/// afterwards. A device (/dev/null) and what /dev/stdout or /dev/fd/N is open on are streams: they
-/// get all of it in commit(), after what is there.
+/// An output file. Until commit() returns, an older file of the target's name stays as it was;
+/// without commit() the destructor removes what was written. A symbolic link is followed, so that
+/// it still is one afterwards. A device (/dev/null) and the streams behind /dev/stdout or /dev/fd/N
+/// get all bytes in commit(), after what is there.
 ///
 /// All functions throw Error(io) that names the target and the reason of the system; the
 /// constructor Error(usage) for named pipes and sockets, which may never be read.
 class OutputFile {
   public:
-    /// The file that a target stands for: where it is a symbolic link, what that leads to.
+    /// The file that a target stands for: the target of a symbolic link, or the name itself.
     static std::filesystem::path resolved(const std::filesystem::path& target);
-    /// What the names of temporary files have after the target's: ".part-<host>-<process id>", so
-    /// that machines that share a folder know theirs.
+    /// Ending of temporary files' names, after the target's: ".part-<host>-<process id>", so that
+    /// machines that share a folder know theirs.
     static std::string part_suffix();
     /// Whether a name that begins with `target`'s, links resolved, is that of a temporary file
     /// whose process, of this host, is no more.
@@ -35,17 +35,17 @@ class OutputFile {
     void write(const void* bytes, size_t count);
     uint64_t position() const { return position_; }
     void seek(uint64_t position);
-    /// `earlier`: the name under which an older file of the target's name lives on, on the file
-    /// system of resolved(target). There is no moment without a file of the target's name, but
-    /// where the file system has no hard links: there the older one is moved before the newer one
-    /// takes its place.
+    /// Puts the file in the target's place. `earlier`: the name under which an older file of the
+    /// target's name lives on, on the file system of resolved(target). There is no moment without a
+    /// file of the target's name, unless the file system has no hard links: there the older one is
+    /// moved before the newer one takes its place.
     void commit(const std::filesystem::path& earlier = {});
     const std::filesystem::path& target() const { return target_; }
 
   private:
     [[noreturn]] void fail(int error_number);
     void flush();
-    /// Streams can't be sought in: `buffer_` holds all of them.
+    /// Whether the target is a stream, which can't be sought in: `buffer_` holds all of it.
     bool is_stream() const { return temporary_.empty(); }
     void keep_older(const std::filesystem::path& earlier);
 
@@ -55,7 +55,7 @@ class OutputFile {
     std::string buffer_;
     uint64_t position_ = 0;
     int descriptor_ = -1;
-    int error_ = 0;  ///< of the first failure: nothing can be committed after one
+    int error_ = 0;  ///< error number of the first failure, after which nothing can be committed
 };
 
 }  // namespace covtrace

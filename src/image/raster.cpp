@@ -21,7 +21,8 @@ std::vector<std::string> visible_channels(const std::vector<std::string>& names)
     return names.size() == 1 ? names : std::vector<std::string>{};
 }
 
-/// OpenEXR's documentation: without the attribute the primaries are those of Rec.709.
+/// The colour space that an image names; by OpenEXR's documentation the primaries are those of
+/// Rec.709 where the attribute is missing.
 std::optional<ColourSpace> colour_space_of(const Image& image) {
     const auto entry = image.metadata.find(kChromaticities);
     if (entry == image.metadata.end()) return ColourSpace::srgb;
@@ -57,7 +58,7 @@ RasterImage from_exr(const std::filesystem::path& file, const SourceLocation& wh
     return raster;
 }
 
-/// Of pairs the first.
+/// Keeps the first value of each pair.
 template <typename Value>
 void drop_every_second(std::vector<Value>& values) {
     for (size_t i = 0; i < values.size() / 2; ++i) values[i] = values[2 * i];

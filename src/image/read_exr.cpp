@@ -38,7 +38,7 @@ std::vector<float> chromaticities(const Imf::Chromaticities& c) {
     return {c.red.x, c.red.y, c.green.x, c.green.y, c.blue.x, c.blue.y, c.white.x, c.white.y};
 }
 
-/// False for the types that Metadata has no place for.
+/// Converts an attribute; false for the types that Metadata has no place for.
 bool convert(const Imf::Attribute& attribute, MetadataValue& value) {
     if (const auto* i = dynamic_cast<const Imf::IntAttribute*>(&attribute))
         value = i->value();
@@ -100,7 +100,7 @@ class PartReader {
         return count;
     }
 
-    /// The channels of part `index`, in the order of the file; those that are not `wanted` without
+    /// The channels of part `index`, in the order of the file; those that are not `wanted` have no
     /// values.
     std::vector<Channel> read(Imf::MultiPartInputFile& exr, int index,
                               const std::set<std::string>& wanted) const {
@@ -112,7 +112,8 @@ class PartReader {
             const std::string name = name_in_image(header, index, c.name());
             std::vector<float>& values = channels.emplace_back(Channel{name, {}}).values;
             if (!wanted.contains(name)) continue;
-            // Filled band by band, so that a short file costs no more memory than it has pixels.
+            // The values grow band by band, so that a short file costs no more memory than it has
+            // pixels.
             values.reserve(image_.pixel_count());
             frame.insert(c.name(), Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow(),
                                                     sizeof(float), size_t(width) * sizeof(float)));
@@ -131,7 +132,7 @@ class PartReader {
         return channels;
     }
 
-    /// Of further parts with the part's name in front.
+    /// The name of a channel in the image: in further parts it has the part's name in front.
     static std::string name_in_image(const Imf::Header& header, int index,
                                      const std::string& name) {
         if (index == 0 || !header.hasName()) return name;
@@ -143,8 +144,9 @@ class PartReader {
     const Image& image_;
 };
 
-/// The strongest compression (of black PIZ images) stays below this; a file that claims more pixels
-/// has none of them, and would keep the reader busy for long.
+/// Most bytes of pixels that one byte of a file may stand for. The strongest compression (of black
+/// PIZ images) stays below this; a file that claims more pixels has none of them, and would keep
+/// the reader busy for long.
 constexpr int64_t kMostPixelBytesPerByte = int64_t(1) << 20;
 
 /// Largest coordinate of a window, so that sums and differences of coordinates stay in an int.
@@ -192,7 +194,7 @@ Image read_parts(const std::filesystem::path& file, const ChannelChoice& choose)
     return image;
 }
 
-/// OpenEXR prefixes its reason with sentences that name the file.
+/// The reason in OpenEXR's message, without the sentences in front that name the file.
 std::string reason_of(const std::exception& e, const std::filesystem::path& file) {
     const std::string text = e.what();
     const std::string prefix = "\"" + file.string() + "\". ";

@@ -26,7 +26,7 @@ std::string first_bytes(const std::filesystem::path& file, const SourceLocation&
     const auto status = std::filesystem::status(file, error);
     if (error) throw_unopenable(file, where, error.value());
     if (std::filesystem::is_directory(status)) throw_unopenable(file, where, EISDIR);
-    // A pipe or a device would block or never end.
+    // Pipes and devices are refused: they would block or never end.
     if (!std::filesystem::is_regular_file(status))
         throw_unreadable(file, where, "it is not a regular file");
     errno = 0;
@@ -102,7 +102,7 @@ PlainImage decode(Bytes bytes, ImageFormat format) {
     throw DecodeError("EXR is not a plain image");
 }
 
-/// What decoding throws, as an error that names the file.
+/// Runs a decoder and turns its exceptions into errors that name the file.
 template <typename Decode>
 PlainImage with_name(const std::filesystem::path& file, const SourceLocation& where,
                      Decode decode_it) {
@@ -135,7 +135,8 @@ void throw_unreadable(const std::filesystem::path& file, const SourceLocation& w
                       const std::string& reason, ErrorKind kind) {
     constexpr size_t kLongestReason = 300;
     std::string line;
-    // Names in a damaged file may hold any bytes, a terminal and JSON not.
+    // Unprintable bytes are replaced: names in a damaged file may hold any, a terminal and JSON may
+    // not.
     for (const char c : reason.substr(0, kLongestReason))
         if (c >= 0x20 && c <= 0x7e)
             line += c;

@@ -20,27 +20,27 @@ enum class ImageFormat { exr, png, jpeg, targa, hdr, pnm, qoi };
 /// Opens the file and looks at its first bytes.
 ImageFormat detect_image_format(const std::filesystem::path& file, const SourceLocation& where);
 
-/// Every format but EXR.
+/// Reads a file of any format but EXR.
 PlainImage read_plain(const std::filesystem::path& file, ImageFormat format,
                       const SourceLocation& where);
 
-/// The same of a file in memory, which messages call `name`.
+/// Decodes a file in memory, which messages call `name`, of any format but EXR.
 PlainImage decode_plain(std::string_view bytes, const std::filesystem::path& name,
                         const SourceLocation& where);
 
-/// Of the names of an EXR's channels, those that are wanted, in any order.
+/// Chooses among the names of an EXR's channels: returns those that are wanted, in any order.
 using ChannelChoice = std::function<std::vector<std::string>(const std::vector<std::string>&)>;
 
-/// All parts of an EXR, their channels in the order of the file; of those that are not chosen only
-/// the names.
+/// Reads all parts of an EXR, their channels in the order of the file. Channels that are not chosen
+/// have a name and no values.
 Image read_exr(const std::filesystem::path& file, const SourceLocation& where,
                const ChannelChoice& choose = {});
 
-/// "cannot read 'file': reason", the reason on one line of ASCII. Error(limit) for limits.
+/// Throws "cannot read 'file': reason", the reason on one line of ASCII. Error(limit) for limits.
 [[noreturn]] void throw_unreadable(const std::filesystem::path& file, const SourceLocation& where,
                                    const std::string& reason, ErrorKind kind = ErrorKind::scene);
 
-/// "'file' of 3x2 pixels", for what is made of an image.
+/// Text such as "'file' of 3x2 pixels", for what is made of an image.
 std::string in_words(const std::filesystem::path& file, int64_t width, int64_t height);
 
 }  // namespace covtrace

@@ -13,7 +13,8 @@ struct RootColour {
     bool is_grey = false;
 };
 
-/// Throws Error(internal), which names `file`, for an image that has neither R, G, B nor Y.
+/// The root layer's channels. Throws Error(internal), which names `file`, for an image that has
+/// neither R, G, B nor Y.
 RootColour root_colour(const Image& image, const std::filesystem::path& file);
 
 }  // namespace covtrace

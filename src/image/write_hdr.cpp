@@ -16,9 +16,9 @@ namespace {
 constexpr int kBias = 136;
 using Rgbe = std::array<uint8_t, 4>;
 
-/// Rounded to the nearest, so that no picture becomes darker.
+/// A colour as RGBE, its mantissas rounded to the nearest, so that no picture becomes darker.
 Rgbe encoded(std::array<float, 3> rgb) {
-    // The largest value of the format; comparisons are false for what is no number.
+    // Values are cut to the largest of the format; comparisons are false for NaN, which becomes 0.
     const float most = std::ldexp(255.0f, 255 - kBias);
     for (float& v : rgb) v = v > 0 ? std::min(v, most) : 0;
     const float largest = std::max({rgb[0], rgb[1], rgb[2]});
@@ -33,7 +33,7 @@ Rgbe encoded(std::array<float, 3> rgb) {
     return pixel;
 }
 
-/// One component of a row: 128 + n and a byte that stands n times, or n and n bytes.
+/// Appends one component of a row: 128 + n and a byte that stands n times, or n and n bytes.
 void append_runs(std::string& out, const std::vector<Rgbe>& row, size_t component) {
     constexpr size_t kShortestRun = 4, kLongestRun = 127, kMostLiterals = 128;
     const auto run_at = [&](size_t x) {
@@ -64,12 +64,12 @@ void write_hdr(const Image& image, const std::filesystem::path& file) {
     const RootColour colour = root_colour(image, file);
     const auto width = size_t(image.width());
     OutputFile output(file);
-    // Radiance has other primaries where none are given: these are of Rec.709.
+    // The primaries must be given: without them Radiance has others than Rec.709.
     std::string text =
         "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n"
         "PRIMARIES=0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329\n\n-Y " +
         std::to_string(image.height()) + " +X " + std::to_string(width) + "\n";
-    // Rows of other widths cannot be told from pixels where they have run lengths.
+    // Run lengths are for these widths only: in others, readers cannot tell them from pixels.
     const bool has_runs = width >= 8 && width < 32768;
     std::vector<Rgbe> row(width);
     for (size_t y = 0; y < size_t(image.height()); ++y) {

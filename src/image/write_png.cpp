@@ -75,7 +75,7 @@ std::string encode_png_rgb8(std::span<const uint8_t> rgb, int width, int height)
 
 void write_png_rgb8(std::span<const uint8_t> rgb, int width, int height,
                     const std::filesystem::path& file) {
-    // Opened first: a target that cannot be written is no reason to compress.
+    // The target is opened first: if it cannot be written there is no reason to compress.
     OutputFile output(file);
     const std::string encoded = encode_png_rgb8(rgb, width, height);
     output.write(encoded.data(), encoded.size());
