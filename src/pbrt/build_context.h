@@ -1,4 +1,4 @@
-/// What the builders of all kinds of entities share.
+/// Data that the builders of all kinds of entities share.
 #pragma once
 
 #include <string>

@@ -6,8 +6,8 @@ namespace covtrace {
 
 namespace {
 
-/// Determinant over the product of the columns' lengths: 1 for orthogonal axes, 0 for a flattened
-/// space.
+/// Determinant over the product of the columns' lengths: 1 for orthogonal axes, 0 where the matrix
+/// flattens space.
 double relative_determinant(const Matrix4& a) {
     const auto& m = a.m;
     const double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -

@@ -1,5 +1,5 @@
-/// What AttributeBegin saves: the current transforms at two times, and all that shapes and lights
-/// inherit.
+/// The state that AttributeBegin saves: the current transforms at two times, and all that shapes
+/// and lights inherit.
 #pragma once
 
 #include <array>
@@ -25,11 +25,12 @@ struct GraphicsState {
     MaterialReference material;
     int area_light = -1;  ///< into SceneDescription::area_lights
     std::string inside_medium, outside_medium;
-    /// By the target of the `Attribute` directive.
+    /// Parameters of `Attribute` directives, by their target.
     std::map<std::string, std::vector<Parameter>> attributes{
         {"shape", {}}, {"light", {}}, {"material", {}}, {"medium", {}}, {"texture", {}}};
 
-    /// For what stands at `user`. Errors: Error(scene) where the current matrix places nothing.
+    /// The transform of an entity that stands at `user`. Errors: Error(scene) where the current
+    /// matrix places nothing.
     AnimatedTransform object_to_world(const SourceLocation& user) const;
     AnimatedTransform world_to_object(const SourceLocation& user) const;
     /// Multiplies the active transforms from the right; `where` is the directive that asks for it.

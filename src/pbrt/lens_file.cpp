@@ -26,8 +26,8 @@ LensSummary read_lens(std::string_view text, const std::string& name, const Sour
                      " numbers; expected four for each element");
 
     LensSummary lens;
-    // A ray (height, slope times index) through all elements: heights change over a thickness,
-    // slopes at a curved border.
+    // Trace a paraxial ray (height, slope times index) through all elements: its height changes
+    // over a thickness, its slope at a curved border.
     double height = 1, slope = 0, index = 1;
     for (size_t i = 0; i < numbers.size(); i += 4) {
         const double radius = numbers[i], thickness = numbers[i + 1];

@@ -23,8 +23,8 @@ Rgb light_of(Entity& e, std::string_view name, BuildContext& context) {
 }
 
 /// Power or illuminance that the light as a whole is to have. pbrt scales light of luminance 1 to
-/// the given number and then applies the colour and "scale". Empty where it isn't a positive
-/// number, as in pbrt.
+/// the given number and then applies the colour and "scale". Empty where the number isn't positive,
+/// as in pbrt.
 std::optional<float> target(Entity& e, std::string_view name, Rgb colour_and_scale,
                             const BuildContext& context) {
     const auto v = e.parameters.number(name);
@@ -74,7 +74,8 @@ DistantLight distant_light(Entity& e, BuildContext& context) {
     light.radiance = light_of(e, "L", context);
     const Vec3 from = e.parameters.triple("from", {}), to = e.parameters.triple("to", {0, 0, 1});
     light.direction = direction(to, from, e);
-    // Light of luminance 1 already has illuminance 1 on a surface that faces it.
+    // The number itself is the factor: light of luminance 1 has illuminance 1 on a surface that
+    // faces it.
     if (const auto v = e.parameters.number("illuminance"); v && *v > 0)
         light.radiance =
             scaled_light(light.radiance, *v, e.parameters.where("illuminance", e.where), context);

@@ -14,11 +14,11 @@ using Triangle = std::array<uint32_t, 3>;
 struct Edge {
     uint32_t a = 0, b = 0;  ///< a < b
     int faces = 0;
-    Vec3 opposite_sum;  ///< of the first two faces' third corners
+    Vec3 opposite_sum;  ///< sum of the third corners of its first two faces
     bool is_border() const { return faces != 2; }
 };
 
-/// What the rules ask about the neighbours of a vertex.
+/// Neighbours of a vertex, as far as the rules of subdivision need them.
 struct Ring {
     int valence = 0, borders = 0;
     Vec3 sum, border_sum;
@@ -26,7 +26,7 @@ struct Ring {
 
 struct Topology {
     std::vector<Edge> edges;
-    std::vector<Triangle> edge_of;  ///< edge from corner i to corner i + 1 of each triangle
+    std::vector<Triangle> edge_of;  ///< for each triangle, the edges from corner i to corner i + 1
     std::vector<Ring> rings;
 };
 
@@ -70,7 +70,7 @@ float neighbour_weight(int valence) {
     return valence == 3 ? 3.0f / 16 : 3.0f / (8 * static_cast<float>(valence));
 }
 
-/// A vertex moved by weights for its neighbours inside and on a border.
+/// Moves a vertex by weights for its neighbours, one weight inside and one on a border.
 Vec3 moved(Vec3 p, const Ring& r, float inside_weight, float border_weight) {
     if (r.valence == 0) return p;
     if (r.borders == 0)
@@ -140,7 +140,7 @@ class OrderedRings {
     }
 
   private:
-    /// Beyond this, smooth normals are not worth the search.
+    /// Most neighbours of a vertex for which a smooth normal is worth the search.
     static constexpr size_t kLargestFan = 1024;
     struct Link {
         uint32_t from = 0, to = 0;
@@ -157,8 +157,8 @@ class OrderedRings {
 };
 
 /// Cross product of the limit surface's tangents, on the side that pbrt calls outside: the one from
-/// which the corners of triangles are seen clockwise. `ring` in the triangles' order, open at a
-/// border.
+/// which the corners of triangles are seen clockwise. `ring`: the neighbours in the triangles'
+/// order, open at a border.
 Vec3 limit_normal(const std::vector<Vec3>& p, Vec3 centre, const std::vector<uint32_t>& ring,
                   bool is_border) {
     const size_t n = ring.size();
@@ -189,9 +189,9 @@ Vec3 limit_normal(const std::vector<Vec3>& p, Vec3 centre, const std::vector<uin
     return cross(s, t);
 }
 
-/// Limit normals from the control points `p`; where there is no tangent plane, the mean of the
-/// faces of `limit`. Opposite to (p1 - p0) x (p2 - p0), as in pbrt, for which vertex normals decide
-/// which side is outside.
+/// Normals of the limit surface from the control points `p`; where there is no tangent plane, the
+/// mean of the faces of `limit`. They are opposite to (p1 - p0) x (p2 - p0), as in pbrt, for which
+/// vertex normals decide which side is outside.
 std::vector<Vec3> normals(const std::vector<Vec3>& p, const std::vector<Vec3>& limit,
                           const std::vector<Triangle>& triangles, const Topology& m) {
     std::vector<Vec3> face_normals(p.size());

@@ -1,4 +1,4 @@
-/// Loop's subdivision surfaces ("Smooth Subdivision Surfaces Based on Triangles", 1987).
+/// Loop's subdivision surfaces (Loop 1987, "Smooth Subdivision Surfaces Based on Triangles").
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ namespace covtrace {
 /// share an edge, the edge is taken as a border, and vertices with anything but two border edges
 /// stay where they are.
 ///
-/// Weights as in pbrt: 3/16 for valence 3, 3/(8n) otherwise; tangents at borders from Hoppe et al.
-/// 1994. Pre: indices in range.
+/// Weights are pbrt's: 3/16 for valence 3, 3/(8n) otherwise; tangents at borders are from Hoppe et
+/// al. 1994, "Piecewise Smooth Surface Reconstruction". Indices must be in range.
 TriangleMesh loop_subdivide(const std::vector<Vec3>& positions,
                             const std::vector<std::array<uint32_t, 3>>& triangles, int levels,
                             const SourceLocation& where);

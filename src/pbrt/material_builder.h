@@ -1,4 +1,4 @@
-/// Materials out of Material and MakeNamedMaterial.
+/// Makes materials of the directives Material and MakeNamedMaterial.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ class TextureBuilder;
 /// A material that a shape names, by name or by the directive that made it.
 struct MaterialReference {
     std::string name;  ///< empty: `index` counts
-    size_t index = 0;  ///< into the unnamed ones; the default material is 0
+    size_t index = 0;  ///< index into the unnamed materials; 0 is the default material
     SourceLocation where;
 };
 
@@ -22,16 +22,17 @@ struct MaterialReference {
 /// are declared, then builds each one once.
 class MaterialBuilder {
   public:
-    /// Unnamed material 0 is pbrt's default, a diffuse grey.
+    /// Starts with unnamed material 0, pbrt's default, a diffuse grey.
     MaterialBuilder(BuildContext& context, TextureBuilder& textures);
 
-    /// A named material is of the type that its parameter "type" says.
-    /// Errors: Error(scene) where the name is taken or the type is missing.
+    /// Declares a named material, whose type its parameter "type" says. Errors: Error(scene) where
+    /// the name is taken or the type is missing.
     void declare_named(std::string name, Entity entity);
     size_t declare(Entity entity);
-    /// Builds all that was declared, used or not; textures must be built. Errors: Error(scene).
+    /// Builds all materials that were declared, used or not; textures must be built. Errors:
+    /// Error(scene).
     void build_all();
-    /// Errors: Error(scene) where no such material is defined.
+    /// The material of a reference. Errors: Error(scene) where no such material is defined.
     MaterialId find(const MaterialReference& reference);
 
   private:

@@ -24,7 +24,8 @@ struct Builder {
 
     void warn(const std::string& text) const { context.log.add(e.where, text); }
 
-    /// u_roughness, v_roughness: their own parameters, else "roughness", else `otherwise`.
+    /// Sets u_roughness and v_roughness: by their own parameters, else "roughness", else
+    /// `otherwise`.
     template <typename Material>
     void roughness(Material& m, const std::string& prefix = {}, float otherwise = 0) {
         const auto one = [&](const std::string& name) {
@@ -36,12 +37,13 @@ struct Builder {
         m.remap_roughness = p.flag("remaproughness", true);
     }
 
-    /// Roughness given by a single value makes "roughness" beside both of its parts superfluous,
-    /// not unknown.
+    /// Marks the shared roughness as known: a single "roughness" beside both of its parts is
+    /// superfluous, which is no reason for a warning.
     void ignore_shared() { p.ignore({"roughness", "conductor.roughness", "interface.roughness"}); }
 
     DiffuseMaterial diffuse() { return {textures.reflectance(p, "reflectance", Rgb{0.5f})}; }
-    /// `outside`: index of what covers the metal, whose reflectance there its colours are made for.
+    /// A metal's model. `outside`: index of the material that covers the metal; the colours of eta
+    /// and k are made for the metal's reflectance against it.
     ConductorMaterial conductor(const std::string& prefix, float outside);
     DielectricMaterial dielectric();
     CoatedDiffuseMaterial coated_diffuse();
@@ -51,7 +53,8 @@ struct Builder {
     DiffuseMaterial hair();
 };
 
-/// One of "eta" and "k": a texture or colour as it is, a spectrum as its means per channel.
+/// Texture of one of "eta" and "k": a texture or colour as it is, a spectrum as its means per
+/// channel.
 TextureId index_texture(Builder& b, const Parameter& p) {
     if (p.type == ParameterType::texture || p.type == ParameterType::rgb)
         return b.textures.unbounded(b.p, p.name, Rgb{});
@@ -85,7 +88,8 @@ ConductorMaterial Builder::conductor(const std::string& prefix, float outside) {
         if (given->type == ParameterType::rgb) return unbounded_spectrum(rgb_value(*given));
         if (given->type != ParameterType::spectrum) return std::nullopt;
         std::optional<Spectrum> s = spectrum_value(*given, context);
-        // An index of 0 outside of the measured range would make a mirror of it.
+        // The measured range is extended: an index of 0 outside of it would make a mirror of the
+        // metal.
         if (s) s->extends = true;
         return s;
     };
@@ -111,7 +115,7 @@ DielectricMaterial Builder::dielectric() {
     DielectricMaterial m;
     roughness(m);
     m.eta = refractive_index(p, "eta", 1.5f, context);
-    // Ours, not pbrt's: the colour of glass, as exporters of other models need it.
+    // The parameter is ours, not pbrt's: the colour of glass, as exporters of other models need it.
     m.transmittance = textures.reflectance_or_none(p, "transmittance");
     return m;
 }
@@ -126,7 +130,7 @@ CoatedDiffuseMaterial Builder::coated_diffuse() {
     m.eta = refractive_index(p, "eta", 1.5f, context);
     m.max_depth = p.integer("maxdepth", 10);
     m.samples = p.integer("nsamples", 1);
-    // Ours, not pbrt's: diffuse under specular as glTF and Blender have it.
+    // The parameter is ours, not pbrt's: diffuse under specular as glTF and Blender have it.
     m.reflects_through_coat = p.flag("reflectsthroughcoat", false);
     return m;
 }
@@ -152,8 +156,8 @@ DiffuseTransmissionMaterial Builder::diffuse_transmission() {
     return m;
 }
 
-/// Albedo of a semi-infinite medium under diffuse light, by van de Hulst's fit (Multiple Light
-/// Scattering, 1980, vol. 2; the constants as in Kulla and Conty, SIGGRAPH course 2017).
+/// Albedo of a semi-infinite medium under diffuse light, by the fit of van de Hulst 1980, "Multiple
+/// Light Scattering", vol. 2; the constants are as in Kulla and Conty, SIGGRAPH course 2017.
 float medium_albedo(float sigma_a, float sigma_s, float g) {
     const float sigma_t = sigma_a + sigma_s;
     const float single = sigma_t > 0 ? sigma_s / sigma_t : 0;
@@ -167,12 +171,14 @@ CoatedDiffuseMaterial Builder::subsurface() {
         "place");
     CoatedDiffuseMaterial m;
     roughness(m);
-    // What counts of several: the name, then coefficients, then the reflectance, as in pbrt.
+    // The first of several descriptions counts, as in pbrt: the name, then coefficients, then the
+    // reflectance.
     const std::string name = p.text("name");
     const bool has_coefficients = p.has("sigma_a") || p.has("sigma_s");
     if (name.empty() && !has_coefficients)
         m.reflectance = textures.reflectance_or_none(p, "reflectance");
-    // A reflectance is what gets out, reflections on the inside of the surface included.
+    // The reflectance is that of all light that gets out, reflections on the inside of the surface
+    // included.
     m.reflects_through_coat = m.reflectance >= 0;
     if (m.reflectance < 0) {
         Rgb a, s;
@@ -208,15 +214,16 @@ CoatedDiffuseMaterial Builder::subsurface() {
 DiffuseMaterial Builder::hair() {
     warn("material \"hair\" is not supported; \"diffuse\" of the same colour takes its place");
     DiffuseMaterial m;
-    // What counts of several: absorption, then the colour, then the pigments, as in pbrt.
+    // The first of several descriptions counts, as in pbrt: absorption, then the colour, then the
+    // pigments.
     const bool has_absorption = p.has("sigma_a");
     if (!has_absorption) m.reflectance = textures.reflectance_or_none(p, "reflectance");
     if (!has_absorption && m.reflectance < 0)
         m.reflectance = textures.reflectance_or_none(p, "color");
     if (m.reflectance < 0) {
-        // Absorption of the pigments and its relation to the colour of dense hair: Chiang et al.,
-        // "A Practical and Controllable Hair and Fur Model for Production Path Tracing" (2016), for
-        // azimuthal roughness 0.3.
+        // Absorption of the pigments and its relation to the colour of dense hair are from Chiang
+        // et al. 2016, "A Practical and Controllable Hair and Fur Model for Production Path
+        // Tracing", for azimuthal roughness 0.3.
         const bool has_pigment = p.has("eumelanin") || p.has("pheomelanin");
         const float eu = textures.mean(textures.grey(p, "eumelanin", has_pigment ? 0 : 1.3f)).r;
         const float pheo = textures.mean(textures.grey(p, "pheomelanin", 0)).r;
@@ -242,7 +249,7 @@ CoatedDiffuseMaterial measured(Builder& b) {
 NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& context) {
     ParameterList& p = entity.parameters;
     NormalMaps maps;
-    // A constant height turns no normal.
+    // Only a texture counts: a constant height turns no normal.
     if (const Parameter* height =
             p.find("displacement", {ParameterType::texture, ParameterType::floats});
         height && height->type == ParameterType::texture)

@@ -7,12 +7,12 @@ namespace covtrace {
 
 class TextureBuilder;
 
-/// Types that are not rendered are replaced by the nearest one, with a warning.
-/// Errors: Error(scene) for types that pbrt-v4 doesn't have and for values out of range.
+/// Makes the model of a material. Types that are not rendered are replaced by the nearest one, with
+/// a warning. Errors: Error(scene) for types that pbrt-v4 doesn't have and for values out of range.
 decltype(MaterialDescription::value) material_model(Entity& entity, TextureBuilder& textures,
                                                     BuildContext& context);
 
-/// What turns a material's normals: see MaterialDescription; -1 for what isn't given.
+/// Textures that turn a material's normals (see MaterialDescription); -1 where one isn't given.
 struct NormalMaps {
     TextureId displacement = -1, normal_map = -1;
 };

@@ -56,8 +56,8 @@ void homogeneous(MediumDescription& medium, Entity& e, BuildContext& context) {
     p.warn_unused(context.log, "media of type \"homogeneous\"");
 }
 
-/// Mean of the values of one parameter, 1 where it isn't given; `stride` numbers make one value.
-/// Errors: Error(scene) where there are not nx ny nz of them.
+/// Mean of the grid values of one parameter, 1 where it isn't given; `stride` numbers make one
+/// value. Errors: Error(scene) where there are not nx ny nz values.
 Rgb grid_mean(Entity& e, std::string_view name, size_t stride) {
     ParameterList& p = e.parameters;
     const Parameter* given = p.find(name, {ParameterType::floats, ParameterType::rgb});
@@ -77,7 +77,7 @@ Rgb grid_mean(Entity& e, std::string_view name, size_t stride) {
     return {mean(sum[0]), mean(sum[1]), mean(sum[2])};
 }
 
-/// What a grid holds on average, spread evenly.
+/// Makes an even medium with the mean coefficients of a grid.
 void grid(MediumDescription& medium, const std::string& type, Entity& e, BuildContext& context) {
     ParameterList& p = e.parameters;
     const float scale = not_negative(e, "scale");

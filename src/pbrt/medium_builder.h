@@ -1,11 +1,11 @@
-/// Participating media out of MakeNamedMedium.
+/// Makes participating media of the directive MakeNamedMedium.
 #pragma once
 
 #include "pbrt/build_context.h"
 
 namespace covtrace {
 
-/// Errors: Error(scene) for unknown types and coefficients out of range.
+/// Builds a medium. Errors: Error(scene) for unknown types and coefficients out of range.
 MediumDescription build_medium(std::string name, Entity& entity, BuildContext& context);
 
 }  // namespace covtrace

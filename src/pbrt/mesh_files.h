@@ -16,10 +16,10 @@ class MeshFiles {
     size_t add(const std::filesystem::path& file, const SourceLocation& where, int directive);
 
     /// Reads all files; their hashes and warnings count in the order of the numbers. Errors: those
-    /// of read_whole_file and read_ply, of several files that of the first.
+    /// of read_whole_file and read_ply; if several files have errors, that of the first.
     void read_all(SceneFiles& files, WarningLog& log);
 
-    /// After read_all.
+    /// The mesh of a file, after read_all.
     const PlyMesh& operator[](size_t number) const { return entries_[number].mesh; }
 
   private:

@@ -10,13 +10,13 @@
 
 namespace covtrace {
 
-/// Coefficients per millimetre, linear RGB. The measurements are of reduced scattering, which pbrt
-/// takes for sigma_s as it is.
+/// Coefficients of a medium per millimetre, linear RGB. The measurements are of reduced scattering,
+/// which pbrt takes for sigma_s as it is.
 struct NamedMedium {
     Rgb sigma_s, sigma_a;
 };
 
-/// Case counts, as in pbrt. Empty for unknown names.
+/// The medium of a name, whose case counts, as in pbrt. Empty for unknown names.
 std::optional<NamedMedium> named_medium(std::string_view name);
 std::vector<std::string> medium_names();
 

@@ -83,7 +83,8 @@ const Parameter* ParameterList::find(std::string_view name,
             p->looked_up = true;
             return &*p;
         }
-        // An `Attribute` is for all directives of its kind, of which others may take that type.
+        // Inherited parameters are not refused: an `Attribute` is for all directives of its kind,
+        // of which others may take that type.
         if (p->may_be_unused) continue;
         std::string expected;
         for (const ParameterType t : types)

@@ -1,8 +1,9 @@
-/// The parameters of one directive: typed access by name, and a record of what was asked for.
+/// The parameters of one directive: typed access by name, and a record of the names that were asked
+/// for.
 ///
 /// As in pbrt, the last of several parameters of one name counts, and a directive's own parameters
-/// come before those of an earlier `Attribute`. A parameter of its own with the wrong type is an
-/// error; what nobody asked for becomes a warning.
+/// come before those of an earlier `Attribute`. A parameter of the directive's own with the wrong
+/// type is an error; one that nobody asked for becomes a warning.
 #pragma once
 
 #include <initializer_list>
@@ -42,7 +43,8 @@ struct Parameter {
     ColourSpace colour_space = ColourSpace::srgb;
     bool may_be_unused = false;  ///< given by `Attribute`
     bool looked_up = false;
-    /// One of these holds the values; flags are in `integers`, `spectrum` has numbers or strings.
+    /// Values of the parameter, in one of three lists; flags are in `integers`, `spectrum` has
+    /// numbers or strings.
     std::vector<float> numbers;
     std::vector<int> integers;
     std::vector<std::string> strings;
@@ -51,10 +53,11 @@ struct Parameter {
 class ParameterList {
   public:
     ParameterList() = default;
-    /// `inherited` are the parameters of the `Attribute` directives in force.
+    /// Makes a list of a directive's own parameters and of `inherited` ones, those of the
+    /// `Attribute` directives in force.
     ParameterList(std::vector<Parameter> own, const std::vector<Parameter>& inherited);
 
-    /// The one that counts, marked as looked up; null where there is none.
+    /// The parameter of that name which counts, marked as looked up; null where there is none.
     /// Inherited ones of other types than `types` are passed over. Errors: Error(scene) where the
     /// directive's own is of such a type.
     const Parameter* find(std::string_view name, std::initializer_list<ParameterType> types);
@@ -65,7 +68,7 @@ class ParameterList {
     int integer(std::string_view name, int otherwise);
     bool flag(std::string_view name, bool otherwise);
     std::string text(std::string_view name, std::string otherwise = {});
-    /// point3, vector3 or normal3.
+    /// The value of a point3, vector3 or normal3.
     Vec3 triple(std::string_view name, Vec3 otherwise);
 
     std::vector<float> numbers(std::string_view name);
@@ -74,7 +77,7 @@ class ParameterList {
     std::vector<Vec2> pairs(std::string_view name);    ///< point2 or vector2
     std::vector<Vec3> triples(std::string_view name);  ///< point3, vector3 or normal3
 
-    /// Where the parameter stands; `otherwise` where it isn't given.
+    /// The place of a parameter in its file; `otherwise` where it isn't given.
     SourceLocation where(std::string_view name, const SourceLocation& otherwise) const;
     /// Marks parameters that have no effect on the result, so that nothing is said about them.
     void ignore(std::initializer_list<std::string_view> names);

@@ -40,7 +40,7 @@ ParameterType type_named(std::string_view name, const SourceLocation& where) {
     throw Error(ErrorKind::scene, where, unknown_name("parameter type", name, known));
 }
 
-/// Type and name out of "type name", with any blanks around them.
+/// Splits a declaration "type name", with any blanks around the words, into type and name.
 Parameter declaration(const Token& token, ColourSpace colour_space) {
     constexpr std::string_view blanks = " \t";
     const auto word = [&](std::string_view& rest) {

@@ -1,4 +1,4 @@
-/// The header of a PLY file: what elements follow and what each is made of.
+/// The header of a PLY file: which elements follow and which properties each has.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,14 @@ struct PlyProperty {
     std::string name;
     PlyNumber type{};
     bool is_list = false;
-    PlyNumber count_type{};  ///< of lists
+    PlyNumber count_type{};  ///< type of a list's length
 };
 struct PlyElement {
     std::string name;
     uint64_t count = 0;
     std::vector<PlyProperty> properties;
     SourceLocation where;
-    /// The fewest bytes (binary) or characters (ascii) that one of them takes.
+    /// The fewest bytes (binary) or characters (ascii) that one such element takes.
     uint64_t smallest_size(bool ascii) const;
 };
 struct PlyHeader {
@@ -35,7 +35,7 @@ struct PlyHeader {
     int lines = 0;
 };
 
-/// Errors: Error(scene) with the line.
+/// Reads the header at the beginning of a file. Errors: Error(scene) with the line.
 PlyHeader read_ply_header(std::string_view bytes, const std::shared_ptr<const std::string>& file);
 
 }  // namespace covtrace

@@ -16,7 +16,7 @@ namespace covtrace {
 
 namespace {
 
-/// The numbers after the header, one by one, whatever the format.
+/// Reads the numbers after the header, one by one, in any of the formats.
 class NumberReader {
   public:
     NumberReader(std::string_view bytes, const PlyHeader& header,
@@ -99,7 +99,7 @@ class NumberReader {
     std::shared_ptr<const std::string> file_;
 };
 
-/// Where the properties that matter are among those of a vertex.
+/// Indices of the properties that are read among those of a vertex; -1 where one is missing.
 struct VertexLayout {
     std::array<int, 3> position{-1, -1, -1}, normal{-1, -1, -1};
     std::array<int, 2> uv{-1, -1};
@@ -151,7 +151,7 @@ class BodyReader {
     }
 
   private:
-    /// Before anything is allocated by it.
+    /// Refuses a count that the file is too short for, before anything is allocated by it.
     void check_count(const PlyElement& e) const {
         const uint64_t size = e.smallest_size(numbers_.is_ascii());
         const uint64_t room = numbers_.left() + (numbers_.is_ascii() ? 1 : 0);
@@ -206,8 +206,8 @@ class BodyReader {
             const auto triple = [&](const std::array<int, 3>& k) {
                 return Vec3{at(k[0]), at(k[1]), at(k[2])};
             };
-            // As pbrt-v4: where a normal is not a number, as exporters write it at vertices
-            // without area, the face's own takes its place, as for one of zeros.
+            // A normal that is not a number, as exporters write it at vertices without area,
+            // becomes zero: then the face's own takes its place, as in pbrt-v4.
             const auto normal = [&](const std::array<int, 3>& k) {
                 for (const int property : k)
                     if (std::isnan(values[static_cast<size_t>(property)])) return Vec3{};
@@ -242,7 +242,8 @@ class BodyReader {
         }
     }
 
-    /// For triangles, which most files hold only; never for more than the file has bytes for.
+    /// Reserves room for triangles, which most files hold only; never for more than the file has
+    /// bytes for.
     void reserve_faces(const PlyElement& e, const PlyProperty& indices) {
         const size_t bytes =
             numbers_.is_ascii() ? 8 : size_of(indices.count_type) + 3 * size_of(indices.type);

@@ -27,7 +27,8 @@ SceneDescription read(std::string text, const std::string& name, SceneFiles& fil
     return scene;
 }
 
-/// Turns what the standard library throws for sizes beyond reach into the reader's own error.
+/// Runs the reader and turns the exceptions of the standard library for sizes beyond reach into the
+/// reader's own error.
 template <typename Read>
 SceneDescription with_limits(const std::string& name, Read read_it) {
     try {

@@ -12,7 +12,7 @@ namespace {
 constexpr size_t kSidesOfTube = 5;
 constexpr size_t kStepsPerSegment = 5;
 
-/// Two triangles for each cell of a grid of vertices, row after row.
+/// Triangles of a grid of vertices, row after row: two for each cell.
 std::vector<std::array<uint32_t, 3>> grid_triangles(size_t rows, size_t columns) {
     std::vector<std::array<uint32_t, 3>> all;
     for (size_t r = 0; r + 1 < rows; ++r)
@@ -29,7 +29,8 @@ struct CurvePoint {
     Vec3 position, derivative;
 };
 
-/// De Casteljau's or de Boor's scheme on the control points of one segment.
+/// Point and derivative of one segment at t, by de Casteljau's or de Boor's scheme on its control
+/// points.
 CurvePoint evaluate(const CurveDescription& curve, size_t first, float t) {
     const auto degree = static_cast<size_t>(curve.degree);
     std::array<Vec3, 4> p{};
@@ -38,8 +39,8 @@ CurvePoint evaluate(const CurveDescription& curve, size_t first, float t) {
     for (size_t level = degree; level > 0; --level) {
         if (level == 1) derivative = p[1] - p[0];
         for (size_t i = 0; i < level; ++i) {
-            // Knots of a uniform B-spline are 1 apart; those of a Bézier segment coincide at its
-            // ends.
+            // Weights depend on the knots: those of a uniform B-spline are 1 apart, those of a
+            // Bézier segment coincide at its ends.
             const float span = static_cast<float>(level);
             const float w = curve.is_bspline ? (t + span - 1 - static_cast<float>(i)) / span : t;
             p[i] = lerp(w, p[i], p[i + 1]);
@@ -72,7 +73,8 @@ TriangleMesh curve_mesh(const CurveDescription& curve) {
     const size_t segments =
         curve.is_bspline ? curve.points.size() - degree : (curve.points.size() - 1) / degree;
     const size_t rings = segments * kStepsPerSegment + 1;
-    // Seen from all sides, a tube of flat sides is as wide in the mean as a round one.
+    // The widening makes a tube of flat sides as wide, in the mean over all directions, as a round
+    // one.
     const float widening = kPi / (kSidesOfTube * std::sin(kPi / kSidesOfTube));
     TriangleMesh m;
     Vec3 tangent{0, 0, 1}, side;

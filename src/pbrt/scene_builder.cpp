@@ -10,8 +10,8 @@ namespace covtrace {
 
 namespace {
 
-/// Whether the outside of a shape of this type faces its inside. A mirror turns spheres, disks and
-/// cylinders inside out, as in pbrt-v4, and ReverseOrientation turns them back: exporters write
+/// Whether a shape of this type has its outside on the inner side. A mirror turns spheres, disks
+/// and cylinders inside out, as in pbrt-v4, and ReverseOrientation turns them back: exporters write
 /// both. Lamps go by ReverseOrientation alone, as they do for pbrt-v4's samples of lights, though
 /// not for its rays.
 bool is_inside_out(const std::string& type, const ShapeDescription& shape, bool is_reversed) {
@@ -274,7 +274,7 @@ bool SceneBuilder::resolve_alpha(PendingShape& pending) {
     if (pending.alpha->type == ParameterType::texture) return true;
     const float value = textures_.mean(s.alpha).r;
     if (value >= 1) s.alpha = -1;
-    // A light that nothing can see still lights the scene.
+    // An invisible shape is kept where it emits: it still lights the scene.
     return value > 0 || s.area_light >= 0;
 }
 

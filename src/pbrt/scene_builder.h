@@ -27,7 +27,7 @@ class SceneBuilder {
 
     void begin_directive() { context_.log.set_order(++directive_); }
 
-    // Before WorldBegin.
+    // Directives that stand before WorldBegin.
     void camera(Entity entity);
     void film(Entity entity);
     void filter(Entity entity) { view_.filter = std::move(entity); }
@@ -36,7 +36,7 @@ class SceneBuilder {
     void accelerator(Entity entity) { view_.accelerator = std::move(entity); }
     void world_begin();
 
-    // Named things.
+    // Directives that name something.
     void coordinate_system(const std::string& name) { coordinate_systems_[name] = state_.ctm; }
     void use_coordinate_system(const std::string& name, const SourceLocation& where);
     void named_material(std::string name, Entity entity);
@@ -47,7 +47,7 @@ class SceneBuilder {
     void attribute(const std::string& target, std::vector<Parameter> parameters,
                    const SourceLocation& where);
 
-    // The world.
+    // Directives that stand in the world.
     void attribute_begin(const SourceLocation& where);
     void attribute_end(const SourceLocation& where);
     void object_begin(const std::string& name, const SourceLocation& where);
@@ -80,17 +80,17 @@ class SceneBuilder {
         MaterialReference material;
         std::optional<Parameter> alpha;
         std::string inside, outside;
-        std::optional<size_t> mesh_file;  ///< whose geometry it still waits for
+        std::optional<size_t> mesh_file;  ///< file whose geometry it still waits for
         int directive = 0;
     };
 
     void save(Scope scope, const SourceLocation& where);
     void resolve(PendingShape& pending);
-    /// Puts what mesh files hold in the place of the shapes that wait for it.
+    /// Replaces the shapes that wait for mesh files by the geometry of these.
     void place_meshes();
-    /// False where nothing of the shape has any effect.
+    /// Reads a shape's alpha; false where nothing of the shape has any effect.
     bool resolve_alpha(PendingShape& pending);
-    /// For integrators that see no media.
+    /// Leaves out all media, for integrators that see none.
     void drop_media();
     MediumId medium_named(const std::string& name, const SourceLocation& where) const;
 

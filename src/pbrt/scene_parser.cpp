@@ -11,7 +11,7 @@ namespace covtrace {
 
 namespace {
 
-/// Where in a file a directive may stand.
+/// Part of a file in which a directive may stand.
 enum class Place { anywhere, before_world, in_world };
 
 class Parser {
@@ -58,7 +58,8 @@ class Parser {
         it->second.read(*this);
     }
 
-    /// Type and parameters; those of `Attribute "target"` come after the directive's own.
+    /// Reads an entity: type and parameters. Those of `Attribute "target"` come after the
+    /// directive's own.
     Entity entity(const char* attributes = nullptr) {
         Entity e;
         e.where = where_;
@@ -163,7 +164,7 @@ class Parser {
         if (value.kind != Token::Kind::word && value.kind != Token::Kind::string)
             throw Error(ErrorKind::scene, value.where(),
                         "option " + in_quotes(n) + " has no value");
-        // pbrt disregards case and separators in option names.
+        // Option names are compared without case and separators, which pbrt disregards.
         std::string plain;
         for (const char c : n)
             if (c != '_' && c != '-')
@@ -220,7 +221,7 @@ class Parser {
     SceneBuilder& builder_;
     SceneFiles& files_;
     WarningLog& log_;
-    SourceLocation where_;  ///< of the current directive
+    SourceLocation where_;  ///< place of the current directive
 };
 
 const std::unordered_map<std::string_view, Parser::Directive>& Parser::directives() {

@@ -87,7 +87,7 @@ void match_positions(std::vector<Vector>& values, size_t positions, const char* 
     values.clear();
 }
 
-/// P, N and uv, common to all meshes given inline.
+/// Reads P, N and uv, which all meshes given inline have in common.
 template <typename Mesh>
 void vertices(Mesh& mesh, Entity& e, WarningLog& log) {
     mesh.positions = e.parameters.triples("P");
@@ -117,7 +117,8 @@ std::vector<ShapeGeometry> ShapeBuilder::bilinear_mesh(Entity& e) {
     BilinearMesh mesh;
     vertices(mesh, e, context_.log);
     mesh.patches = faces<4>(e, mesh.positions.size(), context_.log);
-    // In pbrt an image of where samples of the light should go; its radiance is the light's own.
+    // The parameter emissionfilename is, in pbrt, an image of where samples of the light should go;
+    // its radiance is the light's own.
     e.parameters.ignore({"emissionfilename", "faceIndices"});
     return {std::make_shared<const BilinearMesh>(std::move(mesh))};
 }

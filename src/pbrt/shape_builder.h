@@ -1,4 +1,4 @@
-/// Geometry out of Shape directives.
+/// Makes geometry of Shape directives.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@ namespace covtrace {
 
 using ShapeGeometry = decltype(ShapeDescription::geometry);
 
-/// What a Shape directive makes: geometry at once, or a mesh file that is read later.
+/// Result of a Shape directive: geometry at once, or a mesh file that is read later.
 struct BuiltShape {
     std::vector<ShapeGeometry> geometry;
     std::optional<size_t> mesh_file;
@@ -22,13 +22,14 @@ class ShapeBuilder {
   public:
     explicit ShapeBuilder(BuildContext& context) : context_(context) {}
 
-    /// What the file calls "alpha" is left to the caller. Errors: Error(scene) with the place in
-    /// the scene.
+    /// Builds a shape; its parameter "alpha" is left to the caller. Errors: Error(scene) with the
+    /// place in the scene.
     BuiltShape build(Entity& entity);
 
     /// Reads all mesh files that shapes have named. Errors: as MeshFiles::read_all.
     void read_mesh_files() { mesh_files_.read_all(context_.files, context_.log); }
-    /// None for an empty mesh, two for a file with triangles and quads. After read_mesh_files.
+    /// Meshes of a file, after read_mesh_files: none for an empty file, two for one with triangles
+    /// and quads.
     std::vector<ShapeGeometry> mesh(size_t file) const;
 
   private:

@@ -29,12 +29,13 @@ Spectrum from_pairs(const std::vector<float>& numbers, const SourceLocation& whe
         s.values.push_back(std::max(0.0f, numbers[i + 1]));
         negative += numbers[i + 1] < 0;
     }
-    // Measured reflectances have such values where they are all but nothing.
+    // Negative values are cut to 0: measured reflectances have such values where they are all but
+    // nothing.
     if (negative > 0) context.log.add(where, "negative values of a spectrum are set to 0");
     return s;
 }
 
-/// A text file of wavelength and value pairs, with "#" comments.
+/// Reads a spectrum from a text file of wavelength and value pairs, with "#" comments.
 Spectrum from_file(const std::string& name, const SourceLocation& where, BuildContext& context) {
     const std::filesystem::path file = context.files.find(name, where);
     const std::string text = context.files.read(file, where);
@@ -52,7 +53,8 @@ constexpr double kHeliumLine = 587.6;
 
 std::optional<Spectrum> spectrum_value(const Parameter& p, BuildContext& context) {
     if (p.type == ParameterType::blackbody) {
-        // Exporters write the scale of version 3, which pbrt-v4 passes over.
+        // A second number is the scale of version 3, which exporters still write and pbrt-v4 passes
+        // over.
         if (p.numbers.size() == 2)
             context.log.add(p.where, "the second number of blackbody " + in_quotes(p.name) +
                                          ", a scale in pbrt-v3, is ignored");

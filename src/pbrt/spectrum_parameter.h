@@ -1,4 +1,4 @@
-/// Colours out of parameters of the types rgb, spectrum and blackbody.
+/// Makes colours of parameters of the types rgb, spectrum and blackbody.
 #pragma once
 
 #include <optional>
@@ -21,8 +21,8 @@ Rgb factor_colour(const Parameter& p, BuildContext& context);
 /// The colour of a light: rgb as it is, anything else at luminance 1 (pbrt's photometric
 /// normalisation); white where the parameter is missing.
 Rgb light_colour(ParameterList& parameters, std::string_view name, BuildContext& context);
-/// `light` times `factor`. Errors: Error(scene) at `where` in case single precision can't hold that
-/// or what the film makes of it.
+/// The product of `light` and `factor`. Errors: Error(scene) at `where` in case single precision
+/// can't hold it, or its product with the film's scale.
 Rgb scaled_light(Rgb light, float factor, const SourceLocation& where, const BuildContext& context);
 
 /// An index of refraction: a number, or a spectrum's value at 587.6 nm with a warning where it

@@ -13,14 +13,15 @@ namespace covtrace {
 
 namespace {
 
-/// Textures refer to textures; a chain longer than this is a mistake.
+/// Longest chain of textures that refer to textures; a longer one is a mistake.
 constexpr int kDeepestChain = 256;
 
 Rgb mean_of(Rgb a, Rgb b) {
     return 0.5f * (a + b);
 }
 
-/// Empty for textures of other types: marble is a colour, the others are numbers.
+/// The kind of noise of a type of texture: marble is a colour, the others are numbers. Empty for
+/// other types.
 std::optional<NoiseTexture::Kind> noise_kind(std::string_view type, bool is_spectrum) {
     using Kind = NoiseTexture::Kind;
     if (is_spectrum) return type == "marble" ? std::optional(Kind::marble) : std::nullopt;
@@ -30,7 +31,7 @@ std::optional<NoiseTexture::Kind> noise_kind(std::string_view type, bool is_spec
     return std::nullopt;
 }
 
-/// As measured of pbrt-v4's noise with its default parameters.
+/// Mean of noise, measured on pbrt-v4's noise with its default parameters.
 Rgb mean_of_noise(NoiseTexture::Kind kind) {
     if (kind == NoiseTexture::Kind::marble) return {0.80f, 0.80f, 0.84f};
     return Rgb{kind == NoiseTexture::Kind::wrinkled ? 0.435f : 0.0f};
@@ -111,8 +112,8 @@ TextureId TextureBuilder::spectrum_or_none(ParameterList& list, std::string_view
     if (p->type == ParameterType::texture) return named(*p, true);
     Rgb c = factor_colour(*p, context_);
     if (is_reflectance && max_component(c) > 1) {
-        // The fit of the colour matching functions lets saturated spectra stray by a few
-        // thousandths.
+        // A warning is due to given colours alone: the fit of the colour matching functions lets
+        // saturated spectra stray by a few thousandths.
         if (p->type == ParameterType::rgb)
             context_.log.add(p->where, "parameter " + in_quotes(p->name) + " is above 1; cut to 1");
         c = {std::min(c.r, 1.0f), std::min(c.g, 1.0f), std::min(c.b, 1.0f)};
@@ -288,8 +289,8 @@ TextureId TextureBuilder::stand_in(Declared& d) {
 }
 
 Rgb TextureBuilder::mean(TextureId id) {
-    // The parts of a texture come before it. Each once: textures of two textures of two textures
-    // ... would take for ever otherwise.
+    // Means are computed in the order of the textures, whose parts come before them, each once:
+    // textures of two textures of two textures would take for ever otherwise.
     while (means_.size() <= static_cast<size_t>(id)) means_.push_back(mean_of_parts(means_.size()));
     return means_[static_cast<size_t>(id)];
 }

@@ -1,4 +1,4 @@
-/// Textures out of Texture directives and out of values given inline.
+/// Makes textures of Texture directives and of values given inline.
 #pragma once
 
 #include <map>
@@ -18,19 +18,19 @@ class TextureBuilder {
   public:
     explicit TextureBuilder(BuildContext& context) : context_(context) {}
 
-    /// Errors: Error(scene) where the name is taken.
+    /// Declares a texture. Errors: Error(scene) where the name is taken.
     void declare(std::string name, bool is_spectrum, Entity entity,
                  const CurrentTransform& texture_to_world);
-    /// Builds all that was declared, used or not. Errors: Error(scene).
+    /// Builds all textures that were declared, used or not. Errors: Error(scene).
     void build_all();
 
     TextureId constant(Rgb value, bool is_spectrum);
     /// The texture of a spectrum parameter (texture, rgb, spectrum, blackbody); `otherwise` where
     /// it is missing. Reflectances above 1 are cut to 1 with a warning.
     TextureId reflectance(ParameterList& p, std::string_view name, Rgb otherwise);
-    /// The same without a limit.
+    /// The texture of a spectrum parameter as `reflectance` makes it, but without a limit.
     TextureId unbounded(ParameterList& p, std::string_view name, Rgb otherwise);
-    /// -1 where the parameter is missing.
+    /// The texture of a reflectance; -1 where the parameter is missing.
     TextureId reflectance_or_none(ParameterList& p, std::string_view name);
     /// The texture of a float parameter (texture, float).
     TextureId grey(ParameterList& p, std::string_view name, float otherwise);
@@ -54,7 +54,7 @@ class TextureBuilder {
     TextureId build(Declared& d);
     TextureId spectrum_or_none(ParameterList& p, std::string_view name, bool is_reflectance);
     TextureId part(Declared& d, std::string_view name, float otherwise);
-    /// A value of a bilerp texture.
+    /// The value of a bilerp texture at one of its corners.
     Rgb corner(Declared& d, std::string_view name, float otherwise);
     CheckerboardTexture checkerboard(Declared& d);
     MixTexture direction_mix(Declared& d);
@@ -67,7 +67,7 @@ class TextureBuilder {
     std::map<std::pair<bool, std::string>, size_t> by_name_;
     std::map<std::tuple<bool, float, float, float>, TextureId> constants_;
     int depth_ = 0;
-    std::vector<Rgb> means_;  ///< of the first textures of the scene
+    std::vector<Rgb> means_;  ///< means of the scene's first textures
 };
 
 }  // namespace covtrace

@@ -28,7 +28,7 @@ void set_encoding(ImageTexture& t, ParameterList& p, const SourceLocation& where
     using Encoding = ImageTexture::Encoding;
     const std::string text = p.text("encoding");
     if (text.empty()) {
-        // pbrt decodes PNG files of any depth as sRGB.
+        // PNG files of any depth are decoded as sRGB, as in pbrt.
         std::string extension = t.file.extension().string();
         if (extension == ".png" || extension == ".PNG") t.encoding = Encoding::srgb;
     } else if (text == "sRGB") {
@@ -104,7 +104,7 @@ ImageTexture image_texture(ParameterList& p, const SourceLocation& where,
     t.scale = p.number("scale", 1);
     t.invert = p.flag("invert", false);
     set_encoding(t, p, where);
-    // A lookup takes about as many texels as this.
+    // The limit bounds the cost: a lookup takes about as many texels as the anisotropy.
     constexpr float kMostAnisotropy = 256;
     t.max_anisotropy = std::min(std::max(1.0f, p.number("maxanisotropy", 8)), kMostAnisotropy);
     return t;

@@ -23,7 +23,7 @@ class TokenStream {
   public:
     static constexpr size_t kDeepestInclude = 64;
 
-    /// Reads from memory; `name` is what messages call it.
+    /// Reads from memory; messages call the text `name`.
     TokenStream(std::string text, std::string name, SceneFiles& files, OpenFiles outer = {});
     /// Opens a file that `outer` names at `where`.
     TokenStream(const std::string& file, const SourceLocation& where, SceneFiles& files,
@@ -32,11 +32,11 @@ class TokenStream {
     /// The next token; its text is valid until the next call. Errors: Error(scene) from files and
     /// tokens.
     Token next();
-    /// The next token, which stays the next one.
+    /// Looks at the next token, which stays the next one.
     const Token& peek();
-    /// A string or an error that names what was expected.
+    /// Reads a string; throws an error that names what was expected where the next token is none.
     std::string expect_string(std::string_view what);
-    /// A finite number, or an error.
+    /// Reads a finite number; throws an error where the next token is none.
     double expect_number(std::string_view what);
     void expect(Token::Kind kind, std::string_view what);
 

@@ -18,7 +18,8 @@ using SharedName = std::shared_ptr<const std::string>;
 struct Token {
     enum class Kind { word, string, open_bracket, close_bracket, end };
     Kind kind = Kind::end;
-    /// Without quotes, escapes decoded. Valid until the tokenizer is asked for the next one.
+    /// The token's text, without quotes, escapes decoded. Valid until the tokenizer is asked for
+    /// the next one.
     std::string_view text;
     int line = 0, column = 0;  ///< from 1; columns count bytes
     SharedName const* file = nullptr;
@@ -29,12 +30,13 @@ struct Token {
 
 class Tokenizer {
   public:
-    /// `text` must outlive the tokenizer.
-    /// Errors: Error(scene) where the text is UTF-16.
+    /// Begins at the start of `text`, which must outlive the tokenizer. Errors: Error(scene) where
+    /// the text is UTF-16.
     Tokenizer(std::string_view text, SharedName file);
     Tokenizer(const Tokenizer&) = delete;
     Tokenizer& operator=(const Tokenizer&) = delete;
-    /// A token of kind `end` after the last one. Errors: Error(scene) for broken strings.
+    /// Reads the next token; one of kind `end` after the last one. Errors: Error(scene) for broken
+    /// strings.
     Token next();
 
   private:

@@ -17,7 +17,7 @@ namespace covtrace {
 
 namespace {
 
-/// Of pbrt-v4, beside "cie1931".
+/// Names of pbrt-v4's sensors, beside "cie1931".
 constexpr std::array<const char*, 17> kSensors{
     "canon_eos_100d", "canon_eos_1dx_mkii", "canon_eos_200d",     "canon_eos_200d_mkii",
     "canon_eos_5d",   "canon_eos_5d_mkii",  "canon_eos_5d_mkiii", "canon_eos_5d_mkiv",
@@ -35,7 +35,7 @@ float positive(Entity& e, std::string_view name, float otherwise) {
     return v;
 }
 
-/// `v`, the value of a parameter or its negative.
+/// Refuses `v`, which is the value of a parameter or its negative, above `most`.
 float at_most(const Entity& e, std::string_view name, float v, float most) {
     if (v <= most) return v;
     std::ostringstream limit;
@@ -44,7 +44,8 @@ float at_most(const Entity& e, std::string_view name, float v, float most) {
     refuse(e, name, limit.str());
 }
 
-/// `v`, the value of a parameter or a difference of values.
+/// Refuses `v`, which is the value of a parameter or a difference of values, outside of [least,
+/// most].
 float within(const Entity& e, std::string_view name, float v, float least, float most) {
     if (v >= least && v <= most) return v;
     std::ostringstream limit;
@@ -53,15 +54,15 @@ float within(const Entity& e, std::string_view name, float v, float least, float
     refuse(e, name, limit.str());
 }
 
-/// A film of such sides still has a size, and its pixels have one.
+/// Least ratio of a film's sides: with it the film still has a size, and its pixels have one.
 constexpr float kFlattest = 1e-6f;
 
 std::string owner(std::string_view kind, const Entity& e) {
     return std::string(kind) + " " + in_quotes(e.type);
 }
 
-/// A thin lens of the same focal length, aperture and distance in focus in place of one of several
-/// elements, and so of the same field of view but for the lens' distortion.
+/// Makes a thin lens in place of one of several elements, with the same focal length, aperture and
+/// distance in focus, and so with the same field of view but for the lens' distortion.
 void thin_lens_camera(Entity& e, Entity& film_entity, BuildContext& context) {
     ParameterList& p = e.parameters;
     CameraDescription& camera = context.scene.camera;
@@ -131,7 +132,7 @@ void build_camera(ViewEntities& view, BuildContext& context) {
         if (e.type == "perspective") camera.fov = p.number("fov", 90);
         if (!(camera.fov > 0 && camera.fov < 180))
             refuse(e, "fov", "parameter \"fov\" must be between 0 and 180 degrees");
-        // Single precision tells no directions apart that are nearer to each other.
+        // The limit is where single precision tells no directions apart any more.
         constexpr float kNarrowest = 1e-6f;
         if (camera.fov < kNarrowest)
             refuse(e, "fov", "parameter \"fov\" is too small; expected at least 1e-6 degrees");
@@ -257,14 +258,16 @@ void build_filter(Entity& e, BuildContext& context) {
     FilterDescription& filter = context.scene.filter;
     filter.kind = it->kind;
     const bool is_sinc = filter.kind == Kind::lanczos_sinc;
-    // Wider than the widest image says nothing; a sinc has to be sampled finer than it swings.
+    // The limits: a filter wider than the widest image says nothing; a sinc has to be sampled finer
+    // than it swings.
     constexpr float kWidest = 65536, kSwings = 128;
     const float widest = is_sinc ? kSwings : kWidest;
     filter.x_radius = at_most(e, "xradius", positive(e, "xradius", it->radius), widest);
     filter.y_radius = at_most(e, "yradius", positive(e, "yradius", it->radius), widest);
     if (filter.kind == Kind::gaussian) filter.sigma = positive(e, "sigma", 0.5f);
     if (filter.kind == Kind::mitchell) {
-        // Beyond, a pixel is the difference of numbers ten times as large and more: noise alone.
+        // Beyond the limit a pixel is the difference of numbers ten times as large and more: noise
+        // alone.
         constexpr float kLargest = 10;
         for (const auto& [name, value] : {std::pair("B", &filter.b), std::pair("C", &filter.c)}) {
             *value = at_most(e, name, e.parameters.number(name, 1.0f / 3), kLargest);

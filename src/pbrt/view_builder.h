@@ -1,4 +1,4 @@
-/// Camera, film, filter, sampler and integrator out of their directives, with pbrt-v4's defaults.
+/// Makes camera, film, filter, sampler and integrator of their directives, with pbrt-v4's defaults.
 #pragma once
 
 #include "core/colour_space.h"
@@ -6,7 +6,7 @@
 
 namespace covtrace {
 
-/// Everything that stands before WorldBegin; the last directive of each kind counts.
+/// Entities that stand before WorldBegin; the last directive of each kind counts.
 struct ViewEntities {
     Entity camera{"perspective", {}, {}, 0};
     Entity film{"rgb", {}, {}, 0};
