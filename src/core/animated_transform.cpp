@@ -83,7 +83,8 @@ Matrix4 AnimatedTransform::rate(float time) const {
     const auto& keys = movement_->keys;
     const double per_time = 1 / (double(end_time_) - start_time_);
     const double t = std::clamp((double(time) - start_time_) * per_time, 0.0, 1.0);
-    // The slerp's weights, sin((1 - t) angle) / sin(angle) and so on, and their derivatives by t.
+    // The slerp has the weights sin((1 - t) angle) / sin(angle) and sin(t angle) / sin(angle);
+    // their derivatives by t come with them.
     const Quaternion& a = keys[0].rotation;
     Quaternion b = keys[1].rotation;
     double c = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
@@ -137,7 +138,8 @@ Vec3 AnimatedTransform::angular_velocity(float time) const {
     if (!movement_ || time < start_time_ || time > end_time_) return {};
     Quaternion a = movement_->keys[0].rotation, b = movement_->keys[1].rotation;
     if (a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w < 0) b = {-b.x, -b.y, -b.z, -b.w};
-    // b a^-1 turns the first key into the second; its axis is fixed in the world during a slerp.
+    // The quaternion b a^-1 turns the first key into the second; its axis is fixed in the world
+    // during a slerp.
     const Quaternion c{-a.x, -a.y, -a.z, a.w};
     const double x = b.w * c.x + b.x * c.w + b.y * c.z - b.z * c.y;
     const double y = b.w * c.y - b.x * c.z + b.y * c.w + b.z * c.x;

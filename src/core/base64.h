@@ -1,4 +1,4 @@
-/// Bytes as text.
+/// Binary data as printable text.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace covtrace {
 
-/// RFC 4648, with padding.
+/// Encodes bytes by RFC 4648, with padding.
 std::string base64(std::span<const uint8_t> bytes);
 
 }  // namespace covtrace

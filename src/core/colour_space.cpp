@@ -10,8 +10,8 @@ namespace {
 
 using Matrix3 = std::array<std::array<float, 3>, 3>;
 
-// From the primaries and white points of ITU-R BT.2020, SMPTE EG 432-1 (P3 with D65) and SMPTE ST
-// 2065-1.
+// Matrices to Rec.709, from the primaries and white points of ITU-R BT.2020, SMPTE EG 432-1 (P3
+// with D65) and SMPTE ST 2065-1.
 constexpr Matrix3 kFromP3{{{1.2249402f, -0.2249402f, 0.0f},
                            {-0.0420570f, 1.0420570f, 0.0f},
                            {-0.0196376f, -0.0786360f, 1.0982736f}}};
@@ -22,7 +22,7 @@ constexpr Matrix3 kFromAces{{{2.5216862f, -1.1341310f, -0.3875552f},
                              {-0.2764799f, 1.3727191f, -0.0962392f},
                              {-0.0153781f, -0.1529753f, 1.1683534f}}};
 
-// The same standards; the white of D60 is SMPTE ST 2065-1's.
+// Chromaticities of the spaces by the standards above; the white of D60 is SMPTE ST 2065-1's.
 struct Definition {
     ColourSpace space;
     Chromaticities chromaticities;

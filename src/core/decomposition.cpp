@@ -21,7 +21,7 @@ Vec3 translation_of(const Matrix4& a) {
             static_cast<float>(a.m[2][3])};
 }
 
-/// Of a rotation matrix.
+/// The unit quaternion of a rotation matrix.
 Quaternion from_matrix(const Matrix3& m) {
     const double trace = m[0][0] + m[1][1] + m[2][2];
     Quaternion q;
@@ -43,7 +43,7 @@ Quaternion from_matrix(const Matrix3& m) {
     return {q.x / n, q.y / n, q.z / n, q.w / n};
 }
 
-/// Rows of the cofactors: the inverse transpose times the determinant.
+/// Matrix of the cofactors: the inverse transpose times the determinant.
 Matrix3 cofactors(const Matrix3& m) {
     Matrix3 c{};
     for (size_t i = 0; i < 3; ++i)
@@ -61,8 +61,8 @@ double norm(const Matrix3& m) {
     return std::sqrt(sum);
 }
 
-/// The orthogonal matrix nearest to `m`, a reflection where `m` mirrors; false where `m` is
-/// singular.
+/// Replaces `m` by the orthogonal matrix nearest to it, a reflection where `m` mirrors; false where
+/// `m` is singular.
 bool make_orthogonal(Matrix3& m) {
     constexpr int kMostSteps = 100;      // as pbrt; a condition of 1e12 takes about ten
     constexpr double kConverged = 1e-9;  // the next step would change its square
@@ -71,7 +71,7 @@ bool make_orthogonal(Matrix3& m) {
         const double determinant = m[0][0] * c[0][0] + m[0][1] * c[0][1] + m[0][2] * c[0][2];
         const double size = norm(m), inverse_size = norm(c) / std::abs(determinant);
         if (!(size > 0) || !(inverse_size > 0) || !std::isfinite(inverse_size)) return false;
-        // Higham's scaling brings distant singular values together in few steps.
+        // Scaling (Higham 1986) brings distant singular values together in few steps.
         const double scale = std::sqrt(inverse_size / size);
         double change = 0;
         for (size_t i = 0; i < 3; ++i)
@@ -98,7 +98,7 @@ Decomposition polar_decomposition(const Matrix4& map) {
     }
     const Matrix3 c = cofactors(r);
     const bool mirrors = r[0][0] * c[0][0] + r[0][1] * c[0][1] + r[0][2] * c[0][2] < 0;
-    // In three dimensions the opposite of a reflection is a rotation.
+    // A reflection is turned into a rotation by the opposite sign, in three dimensions.
     if (mirrors)
         for (auto& row : r)
             for (double& v : row) v = -v;

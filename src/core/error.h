@@ -20,7 +20,7 @@ struct SourceLocation {
     std::string to_string() const;
 };
 
-/// What went wrong; the command line maps each to one exit code (docs/reference/exit-codes.md).
+/// Kinds of errors; the command line maps each to one exit code (docs/reference/exit-codes.md).
 enum class ErrorKind {
     usage,        ///< exit code 2
     scene,        ///< exit code 3: the scene or an input that it names is wrong or missing
@@ -38,7 +38,7 @@ struct OptionName {
 class Error : public std::runtime_error {
   public:
     Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
-    /// The message is prefixed with the location.
+    /// Makes an error whose message is prefixed with the location.
     Error(ErrorKind kind, const SourceLocation& where, const std::string& message);
     /// An option's value is refused; what() begins with "max_spp: ".
     Error(ErrorKind kind, OptionName option, const std::string& message);

@@ -14,7 +14,7 @@ struct SinCos {
     float sin, cos;
 };
 
-/// For |x| <= pi / 4; within 1e-7.
+/// Sine and cosine for |x| <= pi / 4; within 1e-7.
 constexpr SinCos sin_cos_octant(float x) {
     const float z = x * x;
     const float s = -0.16666654943f + z * (0.00833217814f - z * 0.00019517299f);
@@ -22,9 +22,9 @@ constexpr SinCos sin_cos_octant(float x) {
     return {x + x * z * s, 1 - 0.5f * z + z * z * c};
 }
 
-/// For |x| up to some turns; within 2e-7.
+/// Sine and cosine for |x| up to some turns; within 2e-7.
 inline SinCos sin_cos(float x) {
-    // The nearest multiple of pi / 2, taken off in two parts of which the first is exact.
+    // Take off the nearest multiple of pi / 2, in two parts of which the first is exact.
     const float quarter = std::floor(x * (2 / kPi) + 0.5f);
     const float rest = (x - quarter * 1.5703125f) - quarter * 4.83826794897e-4f;
     const SinCos r = sin_cos_octant(rest);

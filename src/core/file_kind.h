@@ -6,9 +6,9 @@
 
 namespace covtrace {
 
-/// The kind of what stands in the place of a regular file, links followed: "a folder", "a named
-/// pipe", "a socket", "a device". Empty for regular files and where there is nothing. Opening a
-/// pipe would wait for its other side, so readers and writers ask before.
+/// The kind of thing that stands in the place of a regular file, links followed: "a folder", "a
+/// named pipe", "a socket", "a device". Empty for regular files and where there is nothing. Opening
+/// a pipe would wait for its other side, so readers and writers ask this first.
 std::string irregular_kind(const std::filesystem::path& file);
 
 }  // namespace covtrace

@@ -6,7 +6,8 @@
 
 namespace covtrace {
 
-/// Finaliser of SplitMix64 (Steele et al. 2014): a bijection on 64 bits.
+/// Finaliser of SplitMix64 (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number
+/// generators"): a bijection on 64 bits.
 constexpr uint64_t mix_bits(uint64_t v) {
     v ^= v >> 30;
     v *= 0xbf58476d1ce4e5b9ull;
@@ -21,9 +22,9 @@ template <typename... More>
 constexpr uint64_t hash_combine(uint64_t a, uint64_t b, More... more) {
     return hash_combine(hash_combine(a, b), static_cast<uint64_t>(more)...);
 }
-/// The largest that `to_unit_float` gives.
+/// Largest number that `to_unit_float` gives.
 inline constexpr float kLargestBelowOne = 1 - 0x1p-24f;
-/// In [0, 1), 24 bits.
+/// A number in [0, 1) made of the upper 24 bits.
 constexpr float to_unit_float(uint32_t bits) {
     return static_cast<float>(bits >> 8) * 0x1p-24f;
 }

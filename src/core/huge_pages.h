@@ -11,7 +11,8 @@
 
 namespace covtrace {
 
-/// For containers. Small ones, and those of systems without such pages, get ordinary memory.
+/// Allocator for containers of large tables. Small ones, and those of systems without such pages,
+/// get ordinary memory.
 template <typename T>
 struct HugePageAllocator {
     using value_type = T;

@@ -26,7 +26,7 @@ size_t machine_bytes() {
     return pages > 0 ? size_t(pages) * size_t(sysconf(_SC_PAGE_SIZE)) : kNone;
 }
 
-/// Whether `bytes` more are within `most`, beside what is held and reserved.
+/// Whether `bytes` more stay within `most`, together with the memory that is held and reserved.
 bool fits(size_t bytes, size_t most) {
     const size_t held = resident_bytes() + reserved_bytes.load();
     return held <= most && bytes <= most - held;
@@ -53,7 +53,7 @@ MemoryLimit::~MemoryLimit() {
 
 MemoryReservation::MemoryReservation(size_t bytes, const std::string& what,
                                      const SourceLocation& where) {
-    // Little is not worth a look at the system's books.
+    // Small amounts are not worth a look at the system's books.
     constexpr size_t kLittle = size_t{1} << 20;
     const size_t own = most_bytes.load(), most = std::min(own, machine_bytes());
     if (bytes > kLittle && !fits(bytes, most)) {

@@ -1,7 +1,8 @@
-/// How much memory the process may hold: asked before room is made for what a file claims to be.
+/// Bound on the memory that the process may hold: asked before room is made for what a file claims
+/// to be.
 ///
-/// A limit is one of the process, as the memory is, and so is this one: files are read far below
-/// those who know of the limit.
+/// The limit belongs to the process, as the memory does, and is no parameter of readers: files are
+/// read far below the functions that know of it.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +16,12 @@ namespace covtrace {
 /// Bytes of the process that are in memory now; 0 where the system does not tell.
 size_t resident_bytes();
 
-/// Gives back to the system what was freed: thousands of small pieces (the text of a scene, its
-/// parameters) otherwise count as held for as long as the process lives.
+/// Gives back to the system the memory that was freed: thousands of small pieces (the text of a
+/// scene, its parameters) otherwise count as held for as long as the process lives.
 void return_freed_memory();
 
-/// While it lives, the process shall hold at most `most` bytes. Without one the bound is what the
-/// machine has. One at a time.
+/// A limit in force while it lives: the process shall hold at most `most` bytes. Without one the
+/// bound is the machine's memory. One at a time.
 class MemoryLimit {
   public:
     explicit MemoryLimit(size_t most);
@@ -29,7 +30,7 @@ class MemoryLimit {
     MemoryLimit& operator=(const MemoryLimit&) = delete;
 };
 
-/// Bytes that are about to be filled. While it lives they count as held.
+/// Memory that is about to be filled; while the reservation lives its bytes count as held.
 class MemoryReservation {
   public:
     MemoryReservation() = default;

@@ -7,9 +7,9 @@
 
 namespace covtrace {
 
-/// Threads that come while the work is under way help with its parallel loops, if they have
-/// nothing else to do, and wait for its end; so it may be asked for inside of parallel loops. Work
-/// that threw is tried again by the next one.
+/// Runs work once. Threads that come while the work is under way help with its parallel loops, if
+/// they have nothing else to do, and wait for its end; so it may be asked for inside of parallel
+/// loops. Work that threw is tried again by the next thread.
 class Once {
   public:
     Once();

@@ -12,10 +12,10 @@
 namespace covtrace {
 namespace {
 
-// What a thread did before `release` happened before what others do after `acquire` of the same
-// address. oneTBB sees to that; the thread sanitizer does not see into it and has to be told. This
-// file is not instrumented itself: oneTBB's templates would be, but not the library that orders
-// what they do.
+// Order of threads, as told to the thread sanitizer: all that a thread did before `release`
+// happened before anything that others do after `acquire` of the same address. oneTBB sees to that;
+// the sanitizer does not see into it and has to be told. This file is not instrumented itself:
+// oneTBB's templates would be, but not the library that orders their work.
 #ifdef COVTRACE_TELL_THREAD_SANITIZER
 void release(void* address) {
     __tsan_release(address);
@@ -49,8 +49,9 @@ int ThreadLimit::current() {
 }
 
 void parallel_for(int64_t count, const std::function<void(int64_t)>& body) {
-    // Without a context of its own a loop would run with the floating-point mode in which the
-    // process first used oneTBB; Embree does that with denormal numbers flushed to zero.
+    // The loop gets a context of its own: without one it would run with the floating-point mode in
+    // which the process first used oneTBB, and Embree does that with denormal numbers flushed to
+    // zero.
     tbb::task_group_context as_the_caller(
         tbb::task_group_context::bound,
         tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);

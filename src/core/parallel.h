@@ -15,7 +15,7 @@ class ThreadLimit {
     ThreadLimit(const ThreadLimit&) = delete;
     ThreadLimit& operator=(const ThreadLimit&) = delete;
     int threads() const;
-    /// What limits the loops now.
+    /// Number of threads that loops may use now.
     static int current();
 
   private:

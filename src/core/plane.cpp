@@ -9,19 +9,20 @@ namespace covtrace {
 
 namespace {
 
-/// What is beyond the image's border.
+/// Values that a blur takes for pixels beyond the image's border.
 enum class Border {
     repeat,  ///< the outermost pixels
-    none,    ///< nothing: the taps inside are scaled to 1
+    none,    ///< nothing: the taps inside are scaled to a sum of 1
     black
 };
 
-/// out(x, y) = sum over k of taps[k] in(x + k - reach, y), then the same along y.
+/// Convolves with `taps` along both axes: out(x, y) = sum over k of taps[k] in(x + k - reach, y),
+/// then likewise along y.
 Plane separable(const Plane& in, const std::vector<float>& taps, Border border) {
     const bool replicate = border == Border::repeat;
     const int reach = int(taps.size()) / 2, w = in.width, h = in.height;
     Plane rows(w, h), out(w, h);
-    // What the taps inside the image add up to.
+    // Sum of the taps that fall inside the image, around the place `at` on an axis.
     const auto inside = [&](int at, int size) {
         float sum = 0;
         for (int k = -reach; k <= reach; ++k)

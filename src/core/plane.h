@@ -20,13 +20,14 @@ struct Plane {
     size_t size() const { return values.size(); }
 };
 
-/// Mean over (2 radius + 1)^2 pixels; the image goes on beyond its border as its outermost pixels.
+/// Mean over (2 radius + 1)^2 pixels; beyond its border the image repeats its outermost pixels.
 Plane box_blur(const Plane& plane, int radius);
 
 /// Gaussian mean with deviation `sigma` pixels, cut at 3 sigma; over the image's own pixels only.
 Plane gaussian_blur(const Plane& plane, float sigma);
 
-/// The same as a sum: the image is black beyond its border, and the kernel stays symmetric there.
+/// Gaussian sum with deviation `sigma` pixels, cut at 3 sigma: the image is black beyond its
+/// border, and the kernel stays symmetric there.
 Plane gaussian_sum(const Plane& plane, float sigma);
 
 }  // namespace covtrace

@@ -18,8 +18,8 @@ constexpr uint32_t reverse_bits(uint32_t v) {
     return ((v & 0x55555555u) << 1) | ((v & 0xaaaaaaaau) >> 1);
 }
 
-/// Laine-Karras permutation with the constants of Vegdahl 2021: each bit is flipped depending on
-/// the lower bits.
+/// Laine-Karras permutation with the constants of Vegdahl 2021: each bit is flipped or not by a
+/// hash of the lower bits.
 constexpr uint32_t laine_karras(uint32_t v, uint32_t seed) {
     v ^= v * 0x3d20adeau;
     v += seed;
@@ -29,7 +29,8 @@ constexpr uint32_t laine_karras(uint32_t v, uint32_t seed) {
     return v;
 }
 
-/// The products of each matrix with every byte of the index, bits reversed: 4 look-ups a number.
+/// Products of each generator matrix with every byte of the index, bits reversed: 4 look-ups a
+/// number.
 constexpr auto kByteTables = [] {
     std::array<std::array<std::array<uint32_t, 256>, 4>, 4> t{};
     for (size_t d = 0; d < 4; ++d)
@@ -52,8 +53,8 @@ uint32_t reversed_sobol(uint32_t index, size_t dimension) {
            t[3][index >> 24];
 }
 
-/// The same for the second dimension without tables, for loops that become vector instructions: its
-/// matrix is Pascal's triangle modulo 2, a product of five shifts.
+/// Reversed Sobol numbers of the second dimension without tables, for loops that become vector
+/// instructions: the matrix is Pascal's triangle modulo 2, a product of five shifts.
 constexpr uint32_t reversed_sobol_1(uint32_t index) {
     index ^= index >> 16;
     index ^= (index >> 8) & 0x00ff00ffu;
@@ -62,7 +63,7 @@ constexpr uint32_t reversed_sobol_1(uint32_t index) {
     return index ^ ((index >> 1) & 0x55555555u);
 }
 
-/// log2 of a tile's width.
+/// Binary logarithm of a tile's width in pixels.
 constexpr uint32_t kTileBits = 4;
 
 constexpr uint32_t reversed_morton_code(int x, int y) {
@@ -73,9 +74,10 @@ constexpr uint32_t reversed_morton_code(int x, int y) {
     return code;
 }
 
-/// What each pixel adds to the index, by its reversed Morton code: a sum of one pattern for each
-/// bit of the code, lowest first. With them, samples 0 to 2^a - 1 of the 2^c pixels of an aligned
-/// block are nearly a net of 2^(a + c) points for all a and c; found by bench/pixel_shifts.cpp.
+/// Shifts of the sample index by pixel: each pixel adds, by its reversed Morton code, a sum of one
+/// pattern for each bit of the code, lowest first. With them, samples 0 to 2^a - 1 of the 2^c
+/// pixels of an aligned block are nearly a net of 2^(a + c) points for all a and c; found by
+/// bench/pixel_shifts.cpp.
 using Patterns = std::array<uint32_t, 2 * kTileBits>;
 constexpr std::array<uint32_t, 1u << 2 * kTileBits> pixel_shifts(const Patterns& patterns) {
     std::array<uint32_t, 1u << 2 * kTileBits> shifts{};
@@ -89,10 +91,10 @@ constexpr auto kPairShifts =
 constexpr auto kCameraShifts =
     pixel_shifts({0x1c57, 0x0ae9, 0x0124, 0x0cdf, 0x1f7d, 0x0d81, 0x01d8, 0x0dcb});
 
-/// Keys of the camera's numbers.
+/// Hash keys of the camera's dimensions: for their index, and the first of their scrambles.
 constexpr uint64_t kCameraIndex = 0x63616d, kCameraScramble = 0x100;
 
-/// A Sobol number, given reversed, scrambled.
+/// A scrambled number in [0, 1) from a Sobol number with reversed bits.
 constexpr float scrambled(uint32_t reversed, uint32_t seed) {
     return to_unit_float(reverse_bits(laine_karras(reversed, seed)));
 }
@@ -105,9 +107,10 @@ Sampler::Sampler(uint64_t seed, int pixel_x, int pixel_y, uint32_t sample_index)
       reversed_index_(reverse_bits(sample_index)),
       pixel_(reversed_morton_code(pixel_x, pixel_y)) {}
 
-/// The place in the sequence. Each pixel takes the numbers of each key in an order of its own, so
-/// that no two keys go together throughout a tile; but the first 2^a samples of all pixels stay
-/// the first 2^a indices. Pixels change places with each other, block by block, likewise.
+/// The place in the sequence of this sample's number for `key`. Each pixel takes the numbers of
+/// each key in an order of its own, so that no two keys go together throughout a tile; but the
+/// first 2^a samples of all pixels stay the first 2^a indices. Pixels change places with each
+/// other, block by block, in the same way.
 uint32_t Sampler::index(uint64_t key, const PixelShifts& shifts) const {
     const uint32_t order = static_cast<uint32_t>(key) + pixel_ * 0x9e3779b1u;
     const uint32_t place = laine_karras(pixel_, static_cast<uint32_t>(key >> 32)) % shifts.size();

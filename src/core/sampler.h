@@ -17,8 +17,8 @@ namespace covtrace {
 /// hash of Laine and Karras 2011. Every prefix of the sample indices is a usable point set.
 ///
 /// Pixels of a tile of 16x16 share their scrambles and shift the sequence by index bits of their
-/// own, so that the points of neighbours fill each other's gaps at any number of samples, and what
-/// a filter makes of several pixels has less noise than theirs would tell
+/// own, so that the points of neighbours fill each other's gaps at any number of samples: a filter
+/// over several pixels has less noise than the pixels' own noise would tell
 /// (docs/decisions/0079-neighbours-fill-each-others-gaps.md).
 class Sampler {
   public:
@@ -33,10 +33,10 @@ class Sampler {
     /// The position on the film alone, at less than half the price.
     Vec2 film() const;
 
-    Vec2 pair(uint32_t number) const;  ///< a fixed one, wherever the stream stands
+    Vec2 pair(uint32_t number) const;  ///< the pair of that number, wherever the stream stands
     float next_1d();                   ///< the first number of a fresh pair
     Vec2 next_2d();                    ///< a fresh pair
-    /// Four fresh pairs, the same as from next_2d, at less than the price of two.
+    /// Four fresh pairs, the same as four calls of next_2d give, at less than the price of two.
     std::array<Vec2, 4> next_four_2d();
     /// Skips to a fixed dimension, so that later events see the same numbers whatever came before.
     void set_dimension(uint32_t pair) { pair_ = pair; }
@@ -48,7 +48,7 @@ class Sampler {
 
     uint64_t key_;
     uint32_t reversed_index_;
-    uint32_t pixel_;  ///< of the tile: bits of its Morton code, reversed
+    uint32_t pixel_;  ///< place in the tile: bits of its Morton code, reversed
     uint32_t pair_ = 0;
 };
 

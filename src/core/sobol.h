@@ -7,11 +7,12 @@
 
 namespace covtrace {
 
-/// [d][b]: what bit b of the index adds to the number of dimension d, a fraction of 2^32.
+/// Generator matrices: [d][b] is what bit b of the index adds to the number of dimension d, a
+/// fraction of 2^32.
 using SobolDirections = std::array<std::array<uint32_t, 32>, 5>;
 
-/// The first dimension is bit reversal, the others follow from primitive polynomials: degree s,
-/// coefficients a, initial direction numbers m.
+/// The matrices of Joe and Kuo. The first dimension is bit reversal, the others follow from
+/// primitive polynomials: degree s, coefficients a, initial direction numbers m.
 constexpr SobolDirections sobol_directions() {
     struct Polynomial {
         uint32_t s, a;

@@ -1,5 +1,5 @@
 /// Eigen-decomposition of small symmetric matrices by Jacobi's method (Golub and Van Loan, "Matrix
-/// Computations", section 8.5), to rounding.
+/// Computations", section 8.5), exact up to rounding.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct SymmetricEigen {
     SquareMatrix<N> vectors{};  ///< unit; vectors[k] belongs to values[k]
 };
 
-/// `a`: symmetric. Finite numbers only.
+/// Eigenvalues and eigenvectors of the symmetric matrix `a`, whose numbers must be finite.
 template <size_t N>
 SymmetricEigen<N> symmetric_eigen(SquareMatrix<N> a) {
     SymmetricEigen<N> e;

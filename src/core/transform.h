@@ -17,7 +17,7 @@ struct Matrix4 {
 };
 Matrix4 operator*(const Matrix4& a, const Matrix4& b);
 Matrix4 transpose(const Matrix4& a);
-/// Empty where the matrix is singular or not finite.
+/// The inverse of a matrix; empty where it is singular or not finite.
 std::optional<Matrix4> inverse(const Matrix4& a);
 
 /// A matrix and its inverse, both at hand in double and applied in float.
@@ -26,13 +26,13 @@ class Transform {
     Transform() = default;
     Transform(const Matrix4& matrix, const Matrix4& inverse_matrix)
         : matrix_(matrix), inverse_(inverse_matrix) {}
-    /// Empty where the matrix can't be inverted.
+    /// Makes a transform of a matrix; empty where that can't be inverted.
     static std::optional<Transform> from_matrix(const Matrix4& matrix);
     static Transform translate(Vec3 d);
-    /// All factors must be non-zero.
+    /// Scales the axes by factors, all of which must be non-zero.
     static Transform scale(double x, double y, double z);
     static Transform rotate(double degrees, Vec3 axis);
-    /// World to camera, x right, y up, z forward, as pbrt's LookAt; empty where the vectors are
+    /// World to camera, x right, y up, z forward, as in pbrt's LookAt; empty where the vectors are
     /// degenerate.
     static std::optional<Transform> look_at(Vec3 eye, Vec3 look, Vec3 up);
 
@@ -51,7 +51,7 @@ class Transform {
 };
 Transform operator*(const Transform& a, const Transform& b);
 
-/// Unit quaternion, w + xi + yj + zk.
+/// A rotation as the unit quaternion w + xi + yj + zk.
 struct Quaternion {
     double x = 0, y = 0, z = 0, w = 1;
 };
@@ -74,10 +74,10 @@ class AnimatedTransform {
     const Transform& start() const { return start_; }
     const Transform& end() const;
     Transform at(float time) const;
-    /// at(time).matrix() without the price of the inverse.
+    /// The matrix of at(time), without the price of the inverse.
     Matrix4 matrix_at(float time) const;
-    /// d/dt of matrix_at, one-sided at the keys; of the movement between them at all other times.
-    /// Zero where nothing moves.
+    /// Derivative of matrix_at by the time; at the keys, and before and after both, that of the
+    /// movement at the nearer key. Zero where nothing moves.
     Matrix4 rate(float time) const;
     /// Velocity at `time` of the material point that is at world position `p` then, per unit of
     /// time. Zero outside the keys and where nothing moves.
@@ -88,7 +88,7 @@ class AnimatedTransform {
     Bounds3 motion_bounds(const Bounds3& b) const;
 
   private:
-    /// Most transforms of a scene rest: what only moving ones need is kept apart, and shared.
+    /// Data of moving transforms, kept apart and shared, as most transforms of a scene rest.
     struct Movement;
     Transform start_;
     float start_time_ = 0, end_time_ = 1;
