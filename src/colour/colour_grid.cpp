@@ -10,13 +10,13 @@ namespace covtrace {
 namespace {
 
 constexpr int kCells = kColourNodes - 1;
-/// What a step along red, green and blue adds to a node.
+/// Steps along red, green and blue from node to node, as differences of node numbers.
 constexpr std::array<size_t, 3> kStrides{kColourNodes * kColourNodes, kColourNodes, 1};
 
 float value_at(size_t i) {
     return sqr(std::sin(0.5f * kPi * static_cast<float>(i) / kCells));
 }
-/// Inverse of value_at().
+/// Position of a value among the nodes of an axis: the inverse of value_at().
 float position_of(float value) {
     return arctangent(std::sqrt(value), std::sqrt(1 - value)) * (2 * kInvPi * kCells);
 }
@@ -43,7 +43,8 @@ ColourCell colour_cell(Rgb colour) {
         rest[i] = x - static_cast<float>(corner);
         node += static_cast<size_t>(corner) * kStrides[i];
     }
-    // From the cell's first corner to its last, one channel after the other.
+    // Walk from the cell's first corner to its last, one channel after the other, the largest rest
+    // first.
     std::array<size_t, 3> order{0, 1, 2};
     if (rest[order[0]] < rest[order[1]]) std::swap(order[0], order[1]);
     if (rest[order[1]] < rest[order[2]]) std::swap(order[1], order[2]);

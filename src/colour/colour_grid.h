@@ -8,15 +8,15 @@
 
 namespace covtrace {
 
-/// Between 0 and 1; what is not a number becomes 0.
+/// A colour with channels cut to [0, 1]; NaN becomes 0.
 Rgb clamp_to_unit(Rgb c);
 
 inline bool is_grey(Rgb c) {
     return c.r == c.g && c.g == c.b;
 }
 
-/// Nodes per axis. They crowd towards black and white, where what is tabulated depends on the
-/// ratios of the channels, or of what the channels lack to 1, alone.
+/// Nodes per axis. They crowd towards black and white, where the tabulated functions depend only on
+/// ratios: of the channels, or of what the channels lack to 1.
 constexpr int kColourNodes = 25;
 constexpr size_t kColourGridSize = size_t{kColourNodes} * kColourNodes * kColourNodes;
 
@@ -28,8 +28,8 @@ struct ColourCell {
     std::array<size_t, 4> nodes{};
     std::array<float, 4> weights{};
 };
-/// Linear in each of six tetrahedra that share the diagonal of a cell, so that between greys all
-/// weight lies on greys. `colour` in the unit cube.
+/// The cell of a colour in the unit cube. Interpolation is linear in each of six tetrahedra that
+/// share the diagonal of a cell, so that between greys all weight lies on greys.
 ColourCell colour_cell(Rgb colour);
 
 }  // namespace covtrace

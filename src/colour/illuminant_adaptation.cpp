@@ -11,7 +11,8 @@ namespace covtrace {
 namespace {
 
 constexpr float kFaintestChannel = 0.05f;
-/// Illuminants whose channels differ by less are white.
+/// Least difference between an illuminant's channels, relative to the largest, with which it is not
+/// white.
 constexpr float kSmallestTint = 1e-3f;
 
 }  // namespace
@@ -23,7 +24,7 @@ IlluminantAdaptation::IlluminantAdaptation(Rgb illuminant) {
     if (std::min({tint.r, tint.g, tint.b}) > 1 - kSmallestTint) return;
     for (int c = 0; c < 3; ++c) tint[c] = std::max(tint[c], kFaintestChannel);
 
-    // pbrt-v4 gives lights the sigmoid of half their colour as well.
+    // The light's spectrum is the sigmoid of half its colour, as pbrt-v4 has it for lights.
     const SigmoidSpectrum light = sigmoid_spectrum(0.5f * tint);
     std::array<double, 3> colour{};
     for (const ObserverSample& s : observer_samples())

@@ -1,4 +1,4 @@
-/// Reflectances for rendering in RGB what is lit by coloured light.
+/// Reflectances for rendering, in RGB, of surfaces under coloured light.
 ///
 /// The product of two colours is not the colour of the product of their spectra. Under white light
 /// little is lost; under strongly coloured light the error grows with every bounce. Spectral
@@ -20,39 +20,39 @@
 
 namespace covtrace {
 
-/// Immutable and thread-safe after construction.
+/// Adapts reflectances to one dominant light. Immutable and thread-safe after construction.
 class IlluminantAdaptation {
   public:
-    /// To white light: changes nothing.
+    /// Adapts to white light, which changes nothing.
     IlluminantAdaptation() = default;
-    /// `illuminant`: linear Rec.709 colour of the dominant light, of any brightness. Black, grey
+    /// Adapts to the light `illuminant`: its linear Rec.709 colour, of any brightness. Black, grey
     /// and non-finite ones count as white. Channels below 1/20 of the largest count as that much:
-    /// what a fainter channel should be multiplied by is ill-defined and hardly seen.
+    /// the factor for a fainter channel is ill-defined and hardly seen.
     explicit IlluminantAdaptation(Rgb illuminant);
 
     bool is_identity() const { return observer_.empty(); }
-    /// As observer_samples(), but under the light: what a factor at a wavelength adds to the colour
-    /// over the light's own.
+    /// Samples as of observer_samples(), but under the light: what a factor at a wavelength adds to
+    /// the colour over the light's own.
     std::span<const ObserverSample> observer() const {
         return is_identity() ? observer_samples() : observer_;
     }
     /// The reflectance (or transmittance) to render with, in [0, 1]; greys stay as they are. Fits a
     /// spectrum, some 10 microseconds: for load time.
     Rgb operator()(Rgb reflectance) const;
-    /// What is added to a reflectance in [0, 1], before the sum is cut to [0, 1].
+    /// The change that adaptation adds to a reflectance in [0, 1], before the sum is cut to [0, 1].
     Rgb change(Rgb reflectance) const;
 
   private:
     std::vector<ObserverSample> observer_;
 };
 
-/// The same by interpolation in a table, for textures: no allocation, some 10 nanoseconds. Within
-/// 0.005 for lights no more colourful than a candle; within 0.025 for saturated reflectances under
-/// the most saturated light. Greys stay as they are here too. Immutable and thread-safe after
-/// construction.
+/// Adaptation by interpolation in a table, for textures: no allocation, some 10 nanoseconds. Within
+/// 0.005 of IlluminantAdaptation for lights no more colourful than a candle; within 0.025 for
+/// saturated reflectances under the most saturated light. Greys stay as they are here too.
+/// Immutable and thread-safe after construction.
 class AdaptationTable {
   public:
-    /// The identity.
+    /// Makes the identity.
     AdaptationTable() = default;
     explicit AdaptationTable(const IlluminantAdaptation& adaptation);
     Rgb operator()(Rgb reflectance) const;

@@ -15,8 +15,9 @@ struct Metal {
     std::array<float, kSamples> values;
 };
 
-// Measured optical constants every 10 nm from 380 to 780 nm, interpolated linearly from the tables
-// that pbrt-v4 distributes (src/pbrt/util/spectrum.cpp), where no nearer source is named.
+// Optical constants, measured every 10 nm from 380 to 780 nm. They are interpolated linearly from
+// the tables that pbrt-v4 distributes (src/pbrt/util/spectrum.cpp), where no nearer source is
+// named.
 constexpr std::array<Metal, 14> kMetals{{
     {"metal-Ag-eta",
      {{0.1986f, 0.1879f, 0.173f,  0.1728f, 0.1669f, 0.1595f, 0.1575f, 0.1517f, 0.1434f,
@@ -94,8 +95,8 @@ struct Glass {
     std::string_view name;
     float index;  // at the helium d line, 587.6 nm
 };
-// From pbrt-v4's tables of refractiveindex.info (CC0); F5, F10 and F11 are Schott's SF5, SF10 and
-// SF11.
+// Glasses from pbrt-v4's tables of refractiveindex.info (CC0); F5, F10 and F11 are Schott's SF5,
+// SF10 and SF11.
 constexpr std::array<Glass, 7> kGlasses{{{"glass-BK7", 1.5168f},
                                          {"glass-BAF10", 1.6700f},
                                          {"glass-FK51A", 1.4866f},
@@ -108,7 +109,7 @@ struct Illuminant {
     std::string_view name;
     double x, y;
 };
-// CIE 1931 chromaticities (CIE 15:2004; ACES white: Academy TB-2018-001).
+// Illuminants by their CIE 1931 chromaticities (CIE 15:2004; ACES white: Academy TB-2018-001).
 constexpr std::array<Illuminant, 16> kIlluminants{{{"stdillum-A", 0.4476, 0.4074},
                                                    {"stdillum-D50", 0.3457, 0.3585},
                                                    {"stdillum-D65", 0.3127, 0.3290},

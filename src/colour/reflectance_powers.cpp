@@ -47,7 +47,7 @@ Rgb sum_of_bounces(const ReflectancePowers& powers, float again, int bounces) {
     float factor = 1;
     const auto known = static_cast<size_t>(std::clamp(bounces, 0, static_cast<int>(kPowers)));
     for (size_t j = 0; j < known; ++j) {
-        // No channel gains light, as it would where a power lies outside Rec.709.
+        // Powers are cut to 1, so that no channel gains light where a power lies outside Rec.709.
         for (int c = 0; c < 3; ++c) sum[c] += factor * std::min(powers[j][c], 1.0f);
         factor *= again;
     }

@@ -1,4 +1,4 @@
-/// What a reflectance becomes where light meets it several times before it leaves, as below a coat.
+/// Reflectances that light meets several times before it leaves, as below a coat.
 ///
 /// The colour of a spectrum's square is not the square of its colour: reflected again, a saturated
 /// colour grows more saturated than its channels tell. A renderer of spectra such as pbrt-v4 has
@@ -14,33 +14,33 @@
 
 namespace covtrace {
 
-/// [j] is the colour, over the light's, of the spectrum to the power of j + 1; the first is the
-/// reflectance to render with. The others may have channels below 0 and above 1, where they lie
-/// outside Rec.709.
+/// Colours of a spectrum's powers: [j] is the colour, over the light's, of the spectrum to the
+/// power of j + 1. The first is the reflectance to render with. The others may have channels below
+/// 0 and above 1, where they lie outside Rec.709.
 using ReflectancePowers = std::array<Rgb, 5>;
 
-/// Of a reflectance, brought into [0, 1], under the light that it is adapted to; those of greys are
-/// exact. Fits a spectrum, some 10 microseconds: for load time.
+/// The powers of a reflectance, brought into [0, 1], under the light that it is adapted to; those
+/// of greys are exact. Fits a spectrum, some 10 microseconds: for load time.
 ReflectancePowers reflectance_powers(Rgb reflectance, const IlluminantAdaptation& light = {});
 
-/// Light that is reflected up to `bounces` times and of which the share `again` comes back after
-/// each: colour of the sum of again^j S^(j + 1) over j < bounces, from 0 to that of white. Past the
-/// last power that is known, each channel goes on by the ratio of the last two; at again = 0.6 the
-/// whole is then within 1.5 % of the largest channel.
+/// Colour of light that is reflected up to `bounces` times and of which the share `again` comes
+/// back after each: the sum of again^j S^(j + 1) over j < bounces, from 0 to that of white. Past
+/// the last power that is known, each channel goes on by the ratio of the last two; at again = 0.6
+/// the whole is then within 1.5 % of the largest channel.
 Rgb sum_of_bounces(const ReflectancePowers& powers, float again, int bounces);
 
-/// reflectance_powers() by interpolation, for textures: no allocation, some 10 nanoseconds.
+/// Interpolates reflectance_powers() in a table, for textures: no allocation, some 10 nanoseconds.
 /// Immutable and thread-safe after construction.
 class ReflectancePowersTable {
   public:
-    /// Per channel, as if light had three wavelengths.
+    /// Takes powers channel by channel, as if light had three wavelengths.
     ReflectancePowersTable() = default;
-    /// Takes some 0.1 seconds.
+    /// Fills the table, which takes some 0.1 seconds.
     explicit ReflectancePowersTable(const IlluminantAdaptation& light);
     ReflectancePowers operator()(Rgb reflectance) const;
 
   private:
-    /// The powers less what they are per channel, at the nodes of colour/colour_grid.h.
+    /// Powers less those taken channel by channel, at the nodes of colour/colour_grid.h.
     std::vector<ReflectancePowers> changes_;
 };
 

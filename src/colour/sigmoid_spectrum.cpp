@@ -11,7 +11,8 @@ namespace {
 using Triple = std::array<double, 3>;
 using Matrix = std::array<Triple, 3>;
 
-/// Sigmoids reach neither 0 nor 1: constant ones end here.
+/// Value of the darkest constant spectrum, and 1 less that of the brightest: sigmoids reach neither
+/// 0 nor 1.
 constexpr double kDarkest = 1e-4;
 
 double position(double wavelength) {
@@ -61,7 +62,7 @@ const std::vector<FourSamples>& four_samples() {
 }
 
 Misfit misfit(const Triple& c, const Triple& target) {
-    std::array<std::array<Four, 4>, 3> sum{};  // of the channels: value, derivatives
+    std::array<std::array<Four, 4>, 3> sum{};  // for each channel: the value, then its derivatives
     for (const FourSamples& samples : four_samples()) {
         const Four t = samples.position, p = (c[2] * t + c[1]) * t + c[0];
         Four root = 1 + p * p;
@@ -89,7 +90,8 @@ double determinant(const Triple& a, const Triple& b, const Triple& c) {
            a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-/// Levenberg-Marquardt: (J^T J + damping diag(J^T J)) step = -J^T misfit, by Cramer's rule.
+/// A Levenberg-Marquardt step: (J^T J + damping diag(J^T J)) step = -J^T misfit, solved by Cramer's
+/// rule.
 Triple damped_step(const Misfit& m, double damping) {
     Matrix a{};
     Triple b{};

@@ -11,7 +11,7 @@
 
 namespace covtrace {
 
-/// Between 0 and 1 at every wavelength; as it is made, 1/2 everywhere.
+/// A spectrum between 0 and 1 at every wavelength; 1/2 everywhere unless coefficients are given.
 struct SigmoidSpectrum {
     std::array<double, 3> coefficients{};
     double at(double wavelength) const;

@@ -39,7 +39,7 @@ Xyz matching(double l) {
             1.217 * lobe(l, 437.0, 11.8, 36.0) + 0.681 * lobe(l, 459.0, 26.0, 13.8)};
 }
 
-/// From the primaries and the white point of ITU-R BT.709.
+/// Converts XYZ to linear Rec.709, from the primaries and the white point of ITU-R BT.709.
 Rgb64 rec709(const Xyz& v) {
     return {{3.2409699419 * v.x - 1.5373831776 * v.y - 0.4986107603 * v.z,
              -0.9692436363 * v.x + 1.8759675015 * v.y + 0.0415550574 * v.z,
@@ -53,7 +53,8 @@ double d65_at(double l) {
     return (1 - t) * kD65[i] + t * kD65[i + 1];
 }
 
-/// What each wavelength adds to the colour of light: a table by nanometres, linear between them.
+/// Response of the observer: the colour that light of each wavelength adds, in a table by
+/// nanometres, linear between them.
 class Response {
   public:
     Response() {
@@ -88,9 +89,9 @@ std::vector<double> pieces(std::initializer_list<const Spectrum*> spectra) {
     return at;
 }
 
-/// Integral of `weight`, a colour of the wavelength, times `factor`, a number. Gauss' rule of two
-/// points is exact for three straight lines multiplied, and never looks at a border, where spectra
-/// that do not extend jump to zero.
+/// Integral of `weight`, a colour that depends on the wavelength, times `factor`, a number that
+/// does. Gauss' rule of two points is exact for three straight lines multiplied, and never looks at
+/// a border, where spectra that do not extend jump to zero.
 template <typename Weight, typename Factor>
 Rgb64 integral(const std::vector<double>& pieces, Weight weight, Factor factor) {
     constexpr double kNode = 0.5773502691896257;  // 1 / sqrt(3)
@@ -128,8 +129,9 @@ Rgb64 quotient(Rgb64 a, const Rgb64& b) {
     return a;
 }
 
-/// Few samples for smooth functions, which are added up often. Each has the weight of the straight
-/// lines on both sides of it, so that sums are the integrals of the lines between the samples.
+/// The observer in few samples, for smooth functions that are added up often. Each sample has the
+/// weight of the straight lines on both sides of it, so that sums are the integrals of the lines
+/// between the samples.
 struct Observer {
     std::array<ObserverSample, kSamples> samples{};
     Observer() {
@@ -157,7 +159,8 @@ Rgb to_rgb(const Rgb64& v) {
 Rgb luminance_one(Rgb64 v) {
     const double y = 0.2126 * v.c[0] + 0.7152 * v.c[1] + 0.0722 * v.c[2];
     if (!(y > 0) || !std::isfinite(y)) return Rgb{0};
-    // Negative light of colours outside Rec.709 is cut off last, as a viewer of pbrt's images does.
+    // Negative components, of colours outside Rec.709, are cut off last, as a viewer of pbrt's
+    // images does.
     for (double& c : v.c) c = std::max(0.0, c / y);
     return to_rgb(v);
 }
@@ -186,7 +189,7 @@ double Spectrum::at(double l) const {
 }
 
 Spectrum blackbody_spectrum(double kelvin) {
-    // The logarithm of Planck's law, which doesn't underflow at low temperatures.
+    // Planck's law is taken as a logarithm, which doesn't underflow at low temperatures.
     const auto log_planck = [kelvin](double nm) {
         constexpr double c2 = 1.438776877e7;  // second radiation constant, nm K
         const double x = c2 / (nm * kelvin);
@@ -209,7 +212,7 @@ Rgb reflectance_colour(const Spectrum& s) {
 
 Rgb emission_colour(const Spectrum& s) {
     const auto light = [](double l) { return response().at(l); };
-    // A single wavelength is a line, whose integral over all others is nothing.
+    // A single wavelength is treated as a line, because its integral over all others is nothing.
     const bool is_line = s.wavelengths.size() == 1 && !s.extends;
     if (is_line) {
         const float l = s.wavelengths[0];
@@ -240,7 +243,8 @@ ConductorColours conductor_colours(const Spectrum& eta, const Spectrum& k, Rgb i
         pieces({&eta, &k}), [&](double l) { return normal_reflectance(eta.at(l), k.at(l)); });
     ConductorColours r{index, Rgb{0}};
     for (int c = 0; c < 3; ++c) {
-        // Saturated metals lie slightly outside of the Rec.709 gamut.
+        // The reflectance is cut to [0, 1), as saturated metals lie slightly outside of the Rec.709
+        // gamut.
         const double f = std::clamp(reflectance.c[static_cast<size_t>(c)], 0.0, 0.9999);
         const double n = r.eta[c];
         const double k_squared = (f * (n + 1) * (n + 1) - (n - 1) * (n - 1)) / (1 - f);

@@ -4,8 +4,7 @@
 /// Integrals use the CIE 1931 colour matching functions in the analytic fit of Wyman, Sloan and
 /// Shirley (JCGT 2013, single- and multi-lobe fits), from 380 to 780 nm. Every colour is divided by
 /// that of D65 through the same functions, so that a white surface is exactly (1, 1, 1). Spectra
-/// are integrated as what they are, straight lines between their wavelengths, however near these
-/// lie.
+/// are integrated exactly as straight lines between their wavelengths, however near these lie.
 #pragma once
 
 #include <array>
@@ -16,24 +15,25 @@
 
 namespace covtrace {
 
-/// Values at increasing wavelengths (nanometres), linear between them.
+/// A spectrum: values at increasing wavelengths (nanometres), linear between them.
 struct Spectrum {
     std::vector<float> wavelengths, values;
     bool extends = false;  ///< the end values go on outside; otherwise zero there
     double at(double wavelength) const;
 };
 
-/// A wavelength (nanometres) and what it adds to a colour; every 5 nm, for functions that are
-/// smooth.
+/// A sample of the observer for smooth functions, one every 5 nm: a wavelength (nanometres) and
+/// what light there adds to a colour.
 struct ObserverSample {
     double wavelength = 0;
     std::array<double, 3> weight{};  ///< red, green, blue
 };
-/// The colour under D65 of a factor f is the sum of f(wavelength) * weight, exact where f is
-/// straight between the wavelengths; of 1 it is white.
+/// All samples of the observer. The colour under D65 of a factor f is the sum of f(wavelength) *
+/// weight, exact where f is straight between the wavelengths; that of f = 1 is white.
 std::span<const ObserverSample> observer_samples();
 
-/// Planck's law at this temperature (kelvin, > 0), largest visible value 1.
+/// Spectrum of a black body at this temperature (kelvin, > 0) by Planck's law, its largest visible
+/// value 1.
 Spectrum blackbody_spectrum(double kelvin);
 
 /// Colour of a surface with this reflectance (or of any other factor) under D65.
@@ -49,10 +49,11 @@ Rgb chromaticity_colour(double x, double y);
 struct ConductorColours {
     Rgb eta{1}, k{0};
 };
-/// eta is `index`; k is chosen so that the reflectance at normal incidence is the colour of the
-/// spectral one. Where no k >= 0 does that, k is 0 and eta is chosen instead.
+/// Colours of a conductor for rendering in RGB. eta is `index`; k is chosen so that the reflectance
+/// at normal incidence is the colour of the spectral one. Where no k >= 0 does that, k is 0 and eta
+/// is chosen instead.
 ConductorColours conductor_colours(const Spectrum& eta, const Spectrum& k, Rgb index);
-/// Mean over the wavelengths that each channel sees (its positive part times D65).
+/// Mean of a spectrum over the wavelengths that each channel sees (its positive part times D65).
 Rgb channel_means(const Spectrum& s);
 
 }  // namespace covtrace

@@ -11,10 +11,10 @@ namespace {
 using Vector = std::array<double, 3>;
 using Matrix = std::array<Vector, 3>;
 
-/// Bradford's cone responses.
+/// Matrix from XYZ to Bradford's cone responses.
 constexpr Matrix kConesFromXyz{
     {{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
-/// Of Rec.709's primaries and D65.
+/// Matrix from linear Rec.709 to XYZ, from the primaries and D65.
 constexpr Matrix kXyzFromRgb{{{0.4123907992659595, 0.3575843393838780, 0.1804807884018343},
                               {0.2126390058715104, 0.7151686787677559, 0.0721923153607337},
                               {0.0193308187155918, 0.1191947797946259, 0.9505321522496606}}};
@@ -45,9 +45,10 @@ Matrix inverse(const Matrix& m) {
     return r;
 }
 
-/// XYZ with Y = 1 of daylight (CIE 15:2004, section 3.1) or of a black body.
+/// White point, as XYZ with Y = 1, of daylight (CIE 15:2004, section 3.1) or of a black body.
 Vector white_of(double kelvin) {
-    // The constant c2 has changed since the illuminants were defined.
+    // The temperature is corrected, because the constant c2 has changed since the illuminants were
+    // defined.
     const double t = kelvin * 1.4388 / 1.4380;
     if (t < 4000) {
         const Rgb c = emission_colour(blackbody_spectrum(t));

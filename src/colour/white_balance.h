@@ -1,13 +1,13 @@
-/// What a camera's white balance does to colours.
+/// White balance of a camera as a matrix on colours.
 #pragma once
 
 #include <array>
 
 namespace covtrace {
 
-/// Linear Rec.709 to linear Rec.709 such that daylight of this correlated colour temperature
-/// (kelvin, > 0; a black body below 4000 K) becomes white: the Bradford adaptation to D65, as
-/// pbrt-v4's sensor "cie1931" applies it.
+/// Matrix from linear Rec.709 to linear Rec.709 such that daylight of this correlated colour
+/// temperature (kelvin, > 0; a black body below 4000 K) becomes white: the Bradford adaptation to
+/// D65, as pbrt-v4's sensor "cie1931" applies it.
 std::array<std::array<float, 3>, 3> white_balance(float kelvin);
 
 }  // namespace covtrace
