@@ -27,7 +27,7 @@ LobeShares lobe_shares(const ThinDielectricBsdf&, Vec3, Vec3, Rgb) {
     return {};
 }
 
-/// Of models that share nothing between both.
+/// Value and density of models whose two computations share nothing.
 template <typename Model>
 BsdfValue eval_and_pdf(const Model& b, Vec3 wo, Vec3 wi) {
     return {eval(b, wo, wi), pdf(b, wo, wi)};
@@ -75,7 +75,7 @@ std::optional<BsdfSample> sample(const InterfaceBsdf&, Vec3 wo, float, Vec2) {
 }
 
 std::optional<BsdfSample> sample(const ThinDielectricBsdf& b, Vec3 wo, float u_lobe, Vec2) {
-    // The geometric series of the light that goes to and fro between both faces.
+    // The reflectance is a geometric series, of the light that goes to and fro between both faces.
     float r = fresnel_dielectric(std::abs(wo.z), b.eta).reflectance;
     if (r < 1) r += sqr(1 - r) * r / (1 - sqr(r));
     if (u_lobe < r)

@@ -48,7 +48,7 @@ struct LobeShare {
     Rgb value;  ///< this lobe's part of eval(wo, wi); for a sampled specular lobe its weight
     float alpha_x = 0, alpha_y = 0;  ///< GGX, along the local x and y; 0 for diffuse and specular
     float eta = 1;                   ///< index on wi's side over the index on wo's side
-    /// The border that reflects a glossy lobe, or that covers a diffuse one: its index over that of
+    /// Border that reflects a glossy lobe, or that covers a diffuse one: its index over that of
     /// wo's side, `border_k` the imaginary part of a conductor's. 0: no Fresnel factor.
     float border_eta = 0, border_k = 0;
 };
@@ -67,19 +67,20 @@ struct ConductorBsdf {
 struct DielectricBsdf {
     float eta = 1.5f;  ///< inside (-z) over outside (+z)
     float alpha_x = 0, alpha_y = 0;
-    Rgb transmittance{1};  ///< multiplies what crosses the border
+    Rgb transmittance{1};  ///< of light that crosses the border
 };
 class CoatTable;  // hemispherical transmission of a rough dielectric coat
 /// Lambertian base below a dielectric coat; two-sided. Made by make_coated_diffuse (coat_table.h).
 struct CoatedDiffuseBsdf {
     Rgb reflectance;  ///< of the base alone
-    Rgb base;         ///< what the base's lobe is beside both transmissions through the coat
+    Rgb base;         ///< of the base's lobe, without both transmissions through the coat
     float eta = 1.5f;
     float alpha_x = 0, alpha_y = 0;
     const CoatTable* table = nullptr;
-    float table_row = 0;          ///< of the mean roughness
+    float table_row = 0;          ///< row of `table` for the mean roughness
     float mean_transmission = 0;  ///< of the coat, at the mean roughness
-    bool is_total = false;        ///< what the coat doesn't reflect enters; see make_coated_total
+    /// Whether all light that the coat doesn't reflect enters; see make_coated_total.
+    bool is_total = false;
 };
 struct DiffuseTransmissionBsdf {
     Rgb reflectance, transmittance;
@@ -91,33 +92,36 @@ struct CoatedConductorBsdf {
     float thickness = 0;  ///< of the gap between them, in optical depths
     int bounces = 5;      ///< most reflections at the metal
     int samples = 1;      ///< walks per evaluation
-    uint32_t place = 0;   ///< of `eval`'s walks: pairs have the same ones where this is the same
+    /// Part of the seed of `eval`'s walks: equal pairs have equal walks where this is the same.
+    uint32_t place = 0;
 };
 /// A pane without thickness; both faces' reflections together.
 struct ThinDielectricBsdf {
     float eta = 1.5f;
     Rgb transmittance{1};  ///< multiplies what passes both faces
 };
-/// Lets everything pass: the border between media.
+/// The border between media, which lets everything pass.
 struct InterfaceBsdf {};
 
 using Bsdf =
     std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, CoatedDiffuseBsdf,
                  DiffuseTransmissionBsdf, CoatedConductorBsdf, ThinDielectricBsdf, InterfaceBsdf>;
 
-/// f(wo, wi) |cos(wi)|, without specular lobes.
+/// The value f(wo, wi) |cos(wi)|, without specular lobes.
 Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
-/// Density of `sample` to return wi for this wo, without specular lobes. Of coated metals, whose
-/// density has no closed form, a function near it: good for weights between strategies, and no
-/// factor of any estimate. Their `weight` is a random walk's, whose expectation is what it says.
+/// Density with which `sample` returns wi for this wo, without specular lobes. Coated metals, whose
+/// density has no closed form, give a function near it: good for weights between strategies, but no
+/// factor of any estimate. Their `weight` is a random walk's, whose expectation is f |cos(wi)| /
+/// pdf.
 float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
-/// Both at once: what light sampling needs, for less than the two apart.
+/// Value and density together, as light sampling needs them, for less than the two apart.
 struct BsdfValue {
     Rgb f;
     float pdf = 0;
 };
 BsdfValue eval_and_pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi);
-/// Empty where sampling failed: the path ends with no contribution. `u_lobe` chooses the lobe.
+/// Samples a direction. Empty where sampling failed: the path ends with no contribution. `u_lobe`
+/// chooses the lobe.
 std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float u_lobe, Vec2 u);
 /// True for models whose lobes are all specular: eval is zero for every pair.
 bool is_specular(const Bsdf& bsdf);
@@ -125,11 +129,11 @@ bool is_specular(const Bsdf& bsdf);
 bool has_diffuse_lobe(const Bsdf& bsdf);
 /// True for models with a lobe that reflects or refracts light about one direction.
 bool has_sharp_lobe(const Bsdf& bsdf);
-/// The larger GGX alpha of that lobe, of both where there are two; 0 where it is specular, infinite
-/// where there is none.
+/// The larger GGX alpha of a model's sharp lobe, of both where there are two; 0 where it is
+/// specular, infinite where there is none.
 float sharp_lobe_roughness(const Bsdf& bsdf);
 /// The parts of `value` = eval(wo, wi), lobe by lobe; their values sum to it. Specular lobes have
-/// no part. Whoever asks has evaluated the pair before, so that nothing is computed twice.
+/// no part. Callers have evaluated the pair before, so that nothing is computed twice.
 LobeShares lobe_shares(const Bsdf& bsdf, Vec3 wo, Vec3 wi, Rgb value);
 /// Directional albedo for this wo, approximate where no closed form exists; for the albedo layer.
 Rgb albedo(const Bsdf& bsdf, Vec3 wo);

@@ -10,14 +10,14 @@ float attenuation(float thickness, float cos_theta) {
     return cos_theta > 0 ? std::exp(-thickness / cos_theta) : 0;
 }
 
-/// Energy that an interface reflects and transmits of light from one direction, each weakened by
-/// the gap where it runs inside.
+/// Shares of the energy from one direction that an interface reflects and transmits, each weakened
+/// by the gap where it runs inside.
 struct InterfaceShares {
     float reflected = 0, transmitted = 0;
 };
 
-/// What lies beyond the interface as seen by the arriving light, and the gap's thickness on either
-/// side.
+/// An interface as seen by the arriving light: the index beyond it relative to this side, and the
+/// gap's thickness on the side of reflection and on that of transmission.
 struct Interface {
     float eta;
     float gap_reflected, gap_transmitted;
@@ -45,8 +45,8 @@ struct Quadrature {
     }
 };
 
-/// Over the square of the visible normals; half of the azimuths, as the plane of incidence is a
-/// mirror.
+/// Nodes over the square of the visible normals, by azimuth and polar angle; azimuths cover one
+/// half, as the plane of incidence is a mirror.
 constexpr int kAzimuths = 12, kPolar = 16;
 
 InterfaceShares rough_shares(const Interface& side, float alpha, float cos_o) {
@@ -100,7 +100,8 @@ float cosine_weighted_mean(float kink, Function g) {
 
 CoatTable::CoatTable(float eta, float thickness) : eta_(eta), thickness_(thickness) {
     const Interface outside{eta, 0, thickness}, inside{1 / eta, thickness, 0};
-    // Where total reflection begins, on the side that has it; any angle on the other.
+    // Kinks lie where total reflection begins, on the side that has it; on the other side any angle
+    // will do.
     const float inside_kink = eta > 1 ? 1 - 1 / sqr(eta) : 0.5f;
     const float outside_kink = eta < 1 ? 1 - sqr(eta) : 0.5f;
     for (int row = 0; row < kRows; ++row) {
@@ -111,7 +112,7 @@ CoatTable::CoatTable(float eta, float thickness) : eta_(eta), thickness_(thickne
             const InterfaceShares s = interface_shares(outside, alpha, x * x);
             nodes[i + 1] = {s.transmitted, s.reflected};
         }
-        // Both are even in sqrt(cos), and go on linearly past the normal.
+        // Both shares are even in sqrt(cos), and go on linearly past the normal.
         nodes[0] = nodes[2];
         const Shares &last = nodes[kNodes], &before = nodes[kNodes - 1];
         nodes[kNodes + 1] = {2 * last.transmission - before.transmission,
@@ -121,7 +122,7 @@ CoatTable::CoatTable(float eta, float thickness) : eta_(eta), thickness_(thickne
                    interface_shares(inside, alpha, cos_theta).reflected;
         });
     }
-    // Between rows the lookup reads the next one too: all must be there.
+    // The rows must all be there, as a lookup between rows reads the next one too.
     for (int row = 0; row < kRows; ++row) {
         mean_transmission_[row] = cosine_weighted_mean(outside_kink, [&](float cos_theta) {
             return row == 0 ? interface_shares(outside, 0, cos_theta).transmitted

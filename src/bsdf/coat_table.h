@@ -1,4 +1,4 @@
-/// What a dielectric coat does to the light that meets a Lambertian base below it.
+/// A dielectric coat over a Lambertian base: the shares of light that it reflects and lets through.
 ///
 /// The model is pbrt-v4's layered walk: a (rough) dielectric interface, a gap of the given
 /// thickness that weakens light by A(w) = exp(-thickness / |w.z|) at each crossing, and a
@@ -34,7 +34,8 @@
 
 namespace covtrace {
 
-/// T, the coat's own albedo and R_int over roughness and angle, for one (eta, thickness).
+/// Tables of T, of the coat's own albedo and of R_int over roughness and angle, for one (eta,
+/// thickness).
 class CoatTable {
   public:
     /// Fills the tables by quadrature; takes about 20 ms. `eta`: coat over outside, > 0.
@@ -47,12 +48,12 @@ class CoatTable {
     /// Coordinate of a roughness alpha among the rows; alphas above 1 are looked up at 1.
     static float row_of(float alpha) { return std::sqrt(clamp01(alpha)) * (kRows - 1); }
 
-    /// What becomes of light from outside.
+    /// Shares of the light that arrives from outside.
     struct Shares {
-        float transmission;  ///< reaches the base: T
-        float reflection;    ///< is reflected by the interface
+        float transmission;  ///< share that reaches the base: T
+        float reflection;    ///< share that the interface reflects
     };
-    /// From a direction with cosine `cos_theta` > 0.
+    /// The shares of light from a direction with cosine `cos_theta` > 0.
     Shares shares(float row, float cos_theta) const;
     /// Share of the base's flux that the coat sends back to it: R_int.
     float internal_reflectance(float row) const { return lookup(internal_reflectance_, row); }
@@ -63,7 +64,8 @@ class CoatTable {
 
   private:
     using PerRow = std::array<float, kRows>;
-    /// Nodes with one more at either end, for the cubic interpolation.
+    /// Shares at the nodes of each row, with one node more at either end for the cubic
+    /// interpolation.
     using PerAngle = std::array<std::array<Shares, kNodes + 2>, kRows>;
     static float lookup(const PerRow& values, float row);
 
@@ -72,16 +74,17 @@ class CoatTable {
     PerRow internal_reflectance_, mean_transmission_, mean_reflection_;
 };
 
-/// glTF's and Blender's diffuse under specular: of the light that the coat doesn't reflect
-/// (1 - E, with E its directional albedo) the share `reflectance` leaves again, whatever goes on
+/// Makes glTF's and Blender's diffuse under specular: of the light that the coat doesn't reflect (1
+/// - E, with E its directional albedo) the share `reflectance` leaves again, whatever goes on
 /// inside. Reciprocal and complete for E(wo) and its cosine-weighted mean,
 ///
 ///    f(wo, wi) = f_coat(wo, wi) + (1 - E(wo)) (1 - E(wi)) reflectance / (pi (1 - mean E))
 ///
-/// (Kelemen and Szirmay-Kalos 2001), so white reflects all light at any roughness. For a smooth
-/// coat without a gap this is the layered model with the base rho = reflectance / (1 - R_int +
-/// R_int reflectance); for a rough one it keeps what single scattering loses. The table's thickness
-/// doesn't count.
+/// (Kelemen and Szirmay-Kalos 2001, "A microfacet based coupled specular-matte BRDF model with
+/// importance sampling"), so white reflects all light at any roughness. For a smooth coat without a
+/// gap this is the layered model with the base rho = reflectance / (1 - R_int + R_int reflectance);
+/// for a rough one it keeps the light that single scattering loses. The table's thickness doesn't
+/// count.
 CoatedDiffuseBsdf make_coated_total(const CoatTable& table, Rgb reflectance, float alpha_x,
                                     float alpha_y);
 
@@ -95,8 +98,8 @@ class CoatTables {
     std::vector<std::unique_ptr<const CoatTable>> tables_;
 };
 
-/// `base`: rho and its powers, each the colour of its spectrum. `bounces`: most reflections at the
-/// base. The alphas are both 0 (a smooth coat) or both > 0.
+/// Makes the layered model. `base`: rho and its powers, each the colour of its spectrum. `bounces`:
+/// most reflections at the base. The alphas are both 0 (a smooth coat) or both > 0.
 CoatedDiffuseBsdf make_coated_diffuse(const CoatTable& table, const ReflectancePowers& base,
                                       float alpha_x, float alpha_y, int bounces);
 
@@ -106,7 +109,7 @@ inline float CoatTable::lookup(const PerRow& values, float row) {
     return values[i] * (1 - t) + values[i + 1] * t;
 }
 
-/// Linear between the rows, Catmull-Rom between the nodes.
+/// Interpolates linearly between the rows, by Catmull-Rom between the nodes.
 inline CoatTable::Shares CoatTable::shares(float row, float cos_theta) const {
     const float x = std::sqrt(clamp01(cos_theta)) * (kNodes - 1);
     const int i = std::min(static_cast<int>(x), kNodes - 2);

@@ -44,19 +44,19 @@ float power_heuristic(float a, float b) {
     return sqr(a) / (sqr(a) + sqr(b));
 }
 
-/// A direction through or off the coat that was sampled without the choice between the two: the
-/// weight holds Fresnel's share, and of refraction no factor 1 / eta^2.
+/// A direction through or off the coat that was sampled without the choice between the two. The
+/// weight holds Fresnel's share; for refraction it has no factor 1 / eta^2.
 struct Crossing {
     Vec3 w;
     float weight = 0;
-    float pdf = 0;  ///< of refraction through a rough coat
+    float pdf = 0;  ///< density of refraction through a rough coat
 };
 
 Ggx coat_ggx(const CoatedConductorBsdf& b) {
     return {b.coat.alpha_x, b.coat.alpha_y};
 }
 
-/// From the outside direction w (w.z > 0) to one inside (z < 0).
+/// Samples a refraction from the outside direction w (w.z > 0) to one inside (z < 0).
 std::optional<Crossing> enter(const CoatedConductorBsdf& b, Vec3 w, Vec2 u) {
     const float eta = b.coat.eta;
     if (is_smooth(b)) {
@@ -77,7 +77,7 @@ std::optional<Crossing> enter(const CoatedConductorBsdf& b, Vec3 w, Vec2 u) {
     return Crossing{in, (1 - f.reflectance) * ggx.g2_over_g1(w, mirror_z(in)), pdf};
 }
 
-/// Density of `enter` on a rough coat.
+/// Density of `enter` on a rough coat to give the direction `in`.
 float enter_pdf(const CoatedConductorBsdf& b, Vec3 w, Vec3 in) {
     const float eta = b.coat.eta;
     const Vec3 half = w + in * eta;
@@ -88,8 +88,8 @@ float enter_pdf(const CoatedConductorBsdf& b, Vec3 w, Vec3 in) {
     return coat_ggx(b).visible_normal_pdf(w, m) * sqr(eta) * std::abs(dot(in, m)) / length2;
 }
 
-/// Off the coat's inside: from w (z < 0, towards where the light is followed to) to another
-/// direction with z < 0.
+/// Samples a reflection off the coat's inside, from w (z < 0, towards where the light is followed
+/// to) to another direction with z < 0.
 std::optional<Crossing> reflect_inside(const CoatedConductorBsdf& b, Vec3 w, Vec2 u) {
     w = mirror_z(w);
     const float eta = 1 / b.coat.eta;
@@ -110,7 +110,7 @@ uint64_t bits_of(Vec3 w) {
                         std::bit_cast<uint32_t>(w.z));
 }
 
-/// One walk's estimate of f - f_coat; both directions are outside, z > 0.
+/// Estimate of f - f_coat by one random walk; both directions are outside, z > 0.
 Rgb walk(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi, Rng& rng) {
     const auto first = enter(b, wo, rng.next_2d());
     const auto last = enter(b, wi, rng.next_2d());
@@ -119,7 +119,7 @@ Rgb walk(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi, Rng& rng) {
     Rgb sum, beta(first->weight / sqr(b.coat.eta) * attenuation(b, first->w));
     Vec3 in = first->w;  // going down
     for (int bounce = 0;; ++bounce) {
-        const Vec3 from = -in;  // as the metal sees it
+        const Vec3 from = -in;  // direction as the metal sees it
         if (last && !smooth_metal) {
             const Vec3 to = -last->w;
             const float share =
@@ -132,7 +132,7 @@ Rgb walk(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi, Rng& rng) {
         if (!s) break;
         const Vec3 up = s->wi;
         beta *= s->weight * attenuation(b, up);
-        const Vec3 below = -up;  // as the coat sees it
+        const Vec3 below = -up;  // direction as the coat sees it
         if (!smooth_coat) {
             const float share = smooth_metal ? 1 : power_heuristic(s->pdf, enter_pdf(b, wi, below));
             sum += beta * eval(b.coat, below, wi) * (share / wi.z);
@@ -165,7 +165,7 @@ Rgb eval_base(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi) {
     return sum * (cos_i / static_cast<float>(b.samples));
 }
 
-/// Reflectance of smooth borders, all bounces together.
+/// Reflectance of smooth borders, with all bounces together.
 Rgb smooth_reflectance(const CoatedConductorBsdf& b, Vec3 wo) {
     const DielectricFresnel f = fresnel_dielectric(wo.z, b.coat.eta);
     if (f.cos_t == 0) return Rgb(1);
@@ -180,8 +180,9 @@ Rgb smooth_reflectance(const CoatedConductorBsdf& b, Vec3 wo) {
     return Rgb(f.reflectance) + sqr(1 - f.reflectance) * once * sum;
 }
 
-/// Roughness inside of a metal alone that spreads light as far as both do together: a ray's slope
-/// inside changes by 2 alpha at the metal and by (1 - 1 / eta) alpha at each crossing of the coat.
+/// A metal alone whose roughness spreads light inside as far as metal and coat do together: a ray's
+/// slope inside changes by 2 alpha at the metal and by (1 - 1 / eta) alpha at each crossing of the
+/// coat.
 ConductorBsdf effective_metal(const CoatedConductorBsdf& b) {
     const float crossing2 = 0.5f * sqr(1 - 1 / b.coat.eta);
     const auto joined = [crossing2](float metal, float coat) {
@@ -216,7 +217,8 @@ float pdf(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi) {
         is_smooth(b) ? 0 : coat_ggx(b).reflection_pdf(wo, normalize(wo + wi)) * o.reflectance;
     if (o.cos_t == 0 || i.cos_t == 0) return coat;
     const Vec3 in_o{wo.x / eta, wo.y / eta, o.cos_t}, in_i{wi.x / eta, wi.y / eta, i.cos_t};
-    // Solid angles outside are eta^2 cos_t / cos times as large. A tenth for what goes to and fro.
+    // Solid angles outside are eta^2 cos_t / cos times as large. A tenth of the density is for
+    // light that goes to and fro.
     const float once = pdf(effective_metal(b), in_o, in_i) * wi.z / (sqr(eta) * i.cos_t);
     return coat + (1 - o.reflectance) * (0.9f * once + 0.1f * cosine_hemisphere_pdf(wi.z));
 }
@@ -259,7 +261,7 @@ std::optional<BsdfSample> sample(const CoatedConductorBsdf& b, Vec3 wo, float u_
     return {};
 }
 
-// Not from the value, which a random walk may have found.
+// The parts are computed anew, not from the value, which a random walk may have found.
 LobeShares lobe_shares(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi, Rgb) {
     if (!same_side(wo, wi) || is_specular(b)) return {};
     wo = to_upper_side(wo);

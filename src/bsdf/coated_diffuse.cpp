@@ -16,7 +16,7 @@ Vec3 to_upper_side(Vec3 w) {
     return {w.x, w.y, std::abs(w.z)};
 }
 
-/// Where the tables hold the coat's roughness towards w.
+/// Row of the tables for the coat's roughness towards w.
 float table_row(const CoatedDiffuseBsdf& b, Vec3 w) {
     if (b.alpha_x == b.alpha_y) return b.table_row;
     const float x2 = sqr(b.alpha_x), y2 = sqr(b.alpha_y);
@@ -24,8 +24,8 @@ float table_row(const CoatedDiffuseBsdf& b, Vec3 w) {
         std::sqrt(x2 * sqr(w.x) + y2 * sqr(w.y) + 0.5f * (x2 + y2) * sqr(w.z)));
 }
 
-/// What the coat does to light along w, for w.z > 0 as in the rest of these helpers: T of
-/// coat_table.h, or all that is not reflected, and the share that it reflects.
+/// Shares of light along w that the coat reflects and lets through, for w.z > 0 as in the rest of
+/// these helpers: T of coat_table.h, or all that is not reflected where the coat is total.
 CoatTable::Shares shares(const CoatedDiffuseBsdf& b, Vec3 w) {
     if (!is_smooth(b)) {
         CoatTable::Shares s = b.table->shares(table_row(b, w), w.z);
@@ -38,7 +38,7 @@ CoatTable::Shares shares(const CoatedDiffuseBsdf& b, Vec3 w) {
     return {(1 - f.reflectance) * kept, f.reflectance};
 }
 
-/// What a pair's value and density need of the side of wo.
+/// Quantities of wo's side that a pair's value and density share.
 struct Outgoing {
     Vec3 wo;
     float transmission;
@@ -60,8 +60,8 @@ Rgb eval_base(const CoatedDiffuseBsdf& b, const Outgoing& out, Vec3 wi) {
     return b.base * (out.transmission * shares(b, wi).transmission * wi.z);
 }
 
-/// The coat's part of the value of a pair above the surface, of all colours alike; `d`: density of
-/// the normals that reflect it, `stretched`: Ggx::stretched_length of wo.
+/// The coat's part of the value of a pair above the surface, the same for all colours; `d`: density
+/// of the normals that reflect it, `stretched`: Ggx::stretched_length of wo.
 struct CoatValue {
     float value = 0, d = 0;
 };
@@ -70,7 +70,7 @@ CoatValue eval_coat(const CoatedDiffuseBsdf& b, Vec3 wo, float stretched, Vec3 w
     const Vec3 m = normalize(wo + wi);
     const float d = ggx.d(m);
     const float masked =
-        2 * wi.z / (stretched * wi.z + ggx.stretched_length(wi) * wo.z);  // over wo.z
+        2 * wi.z / (stretched * wi.z + ggx.stretched_length(wi) * wo.z);  // divided by wo.z
     return {0.25f * fresnel_dielectric(dot(wo, m), b.eta).reflectance * d * masked, d};
 }
 

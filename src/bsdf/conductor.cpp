@@ -1,4 +1,5 @@
-/// A metal: GGX reflection with the Fresnel reflectance of a complex index, one per colour channel.
+/// A metal: reflection by GGX microfacets with the Fresnel reflectance of a complex index, one per
+/// colour channel.
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
 #include "bsdf/models.h"

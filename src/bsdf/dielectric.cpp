@@ -1,5 +1,6 @@
 /// The border of a clear dielectric: reflection and refraction by a smooth surface or by GGX
-/// microfacets (Walter et al. 2007), reflection chosen with the probability of Fresnel.
+/// microfacets (Walter et al. 2007, "Microfacet models for refraction through rough surfaces").
+/// Reflection is chosen with the probability of Fresnel's reflectance.
 ///
 /// Everything is computed as seen from wo's side: wo.z > 0 and eta = index of the far side over
 /// that of wo's side.
@@ -17,10 +18,10 @@ struct Microfacet {
     bool reflects = true;
     Vec3 m;
     float fresnel = 0;
-    float half_length2 = 0;  ///< |eta wi + wo|^2, of refraction
+    float half_length2 = 0;  ///< |eta wi + wo|^2, for refraction
 };
 
-/// Empty for pairs that no microfacet connects.
+/// The microfacet that connects a pair; empty where none does.
 std::optional<Microfacet> connect(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
     if (wo.z * wi.z == 0 || is_specular(b)) return {};
     Microfacet f;
@@ -50,8 +51,8 @@ Rgb eval(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
     const Ggx ggx{b.alpha_x, b.alpha_y};
     const float d_g = ggx.d(f->m) * ggx.g2_over_cos_o(f->wo, f->reflects ? f->wi : mirror_z(f->wi));
     if (f->reflects) return Rgb(0.25f * f->fresnel * d_g);
-    // Equation 21 of Walter et al. with |eta wi + wo|^2 for the denominator and its 1 / eta^2 for
-    // radiance.
+    // Refraction is equation 21 of Walter et al. 2007, with |eta wi + wo|^2 for the denominator and
+    // its 1 / eta^2 for radiance.
     return b.transmittance * ((1 - f->fresnel) * d_g *
                               std::abs(dot(f->wo, f->m) * dot(f->wi, f->m)) / f->half_length2);
 }
@@ -94,7 +95,7 @@ std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe,
     }
     const Vec3 wi = normalize(m * (cos_o / eta - f.cos_t) - wo / eta);
     if (!(wi.z < 0)) return {};
-    // |eta wi + wo| = eta cos_t - cos_o up to sign, both along m.
+    // The half vector's length is |eta wi + wo| = eta cos_t - cos_o up to sign, both along m.
     const float half_length2 = sqr(eta * f.cos_t - cos_o);
     const float density =
         (1 - f.reflectance) * ggx.visible_normal_pdf(wo, m) * sqr(eta) * f.cos_t / half_length2;

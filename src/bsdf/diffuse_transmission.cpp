@@ -1,4 +1,5 @@
-/// Lambertian reflection and Lambertian transmission, chosen by their largest components.
+/// Lambertian reflection and Lambertian transmission, chosen in proportion to their largest
+/// components.
 #include "bsdf/models.h"
 #include "core/warp.h"
 

@@ -12,7 +12,7 @@ struct DielectricFresnel {
     float cos_t = 0;  ///< cosine of the refracted direction, >= 0; 0 where reflection is total
 };
 
-/// The mean of both polarisations from the cosines on both sides, for any scalar type.
+/// Mean reflectance of both polarisations from the cosines on both sides, for any scalar type.
 template <typename S>
 S dielectric_reflectance(const S& cos_i, const S& cos_t, float eta) {
     const S parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
@@ -20,7 +20,8 @@ S dielectric_reflectance(const S& cos_i, const S& cos_t, float eta) {
     return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-/// `cos_i` in [0, 1]; `eta`: index on the far side over the index on the incident side, > 0.
+/// Reflection at a dielectric border. `cos_i` in [0, 1]; `eta`: index on the far side over the
+/// index on the incident side, > 0.
 inline DielectricFresnel fresnel_dielectric(float cos_i, float eta) {
     cos_i = clamp01(cos_i);
     if (eta == 1) return {0, cos_i};  // no border at all, not even by rounding
@@ -30,14 +31,14 @@ inline DielectricFresnel fresnel_dielectric(float cos_i, float eta) {
     return {dielectric_reflectance(cos_i, cos_t, eta), cos_t};
 }
 
-/// Border to a medium with the complex index eta + i k, relative to the incident side; `cos_i` in
-/// [0, 1], of any scalar type. The squared moduli of the complex amplitudes, written out in real
-/// numbers: with a + i b = sqrt((eta + i k)^2 - sin^2), |a + i b|^2 = sqrt((eta^2 - k^2 - sin^2)^2
-/// + 4 eta^2 k^2).
+/// Reflectance of the border to a medium with the complex index eta + i k, relative to the incident
+/// side; `cos_i` in [0, 1], of any scalar type. It is the mean of the squared moduli of the complex
+/// amplitudes, written out in real numbers: with a + i b = sqrt((eta + i k)^2 - sin^2), |a + i b|^2
+/// = sqrt((eta^2 - k^2 - sin^2)^2 + 4 eta^2 k^2).
 template <typename S>
 S conductor_reflectance(const S& cos_i, float eta, float k) {
     using std::sqrt;
-    // Where the indices match, both sides of a quotient vanish at grazing incidence.
+    // Least value of a quotient's sides: where the indices match, both vanish at grazing incidence.
     constexpr float kTiny = 1e-30f;
     const auto above_zero = [](const S& x) { return x > kTiny ? x : S(kTiny); };
     const S cos2 = cos_i * cos_i, sin2 = 1 - cos2;

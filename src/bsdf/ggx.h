@@ -10,8 +10,10 @@
 /// 0.5 and 0.40 for 1; a border of index 1.5 keeps 0.99, 0.96, 0.92, 0.79 from outside and 0.96,
 /// 0.82, 0.69, 0.48 from inside (lower bounds, checked in tests/statistical/bsdf_furnace_test.cpp).
 ///
-/// Source: Walter et al. 2007 (distribution, half vectors), Heitz 2014 (masking), Heitz 2018 and
-/// Dupuy and Benyoub 2023 (sampling of visible normals).
+/// Source: Walter et al. 2007, "Microfacet models for refraction through rough surfaces"
+/// (distribution, half vectors); Heitz 2014, "Understanding the masking-shadowing function in
+/// microfacet-based BRDFs" (masking); Heitz 2018, "Sampling the GGX distribution of visible
+/// normals", and Dupuy and Benyoub 2023, "Sampling visible GGX normals with spherical caps".
 #pragma once
 
 #include <cmath>
@@ -31,14 +33,14 @@ struct Ggx {
         const auto e = x * x + y * y + m.z * m.z;
         return kInvPi / (alpha_x * alpha_y * e * e);
     }
-    /// The same at the normal h / |h|, from h of any length.
+    /// Density d at the normal h / |h|, from h of any length.
     template <typename V, typename S>
     S d_along(const V& h, const S& length_squared) const {
         const S x = h.x / alpha_x, y = h.y / alpha_y;
         const S ratio = length_squared / (x * x + y * y + h.z * h.z);
         return kInvPi / (alpha_x * alpha_y) * (ratio * ratio);
     }
-    /// s(w) of the head of this file: length of w after stretching the surface to roughness one.
+    /// Length s(w) of w after stretching the surface to roughness one; see the head of this file.
     template <typename V>
     auto stretched_length(const V& w) const {
         using std::sqrt;
@@ -47,12 +49,13 @@ struct Ggx {
     }
     /// Share of the microfacets facing w that are visible from w.
     float g1(Vec3 w) const { return 2 * w.z / (w.z + stretched_length(w)); }
-    /// Share visible from both, over wo.z.
+    /// Share of the microfacets visible from both directions, over wo.z.
     template <typename O, typename I>
     auto g2_over_cos_o(const O& wo, const I& wi) const {
         return 2 * wi.z / (stretched_length(wo) * wi.z + stretched_length(wi) * wo.z);
     }
-    /// g2(wo, wi) / g1(wo): what single scattering keeps of a sampled normal.
+    /// The ratio g2(wo, wi) / g1(wo): the share of a sampled normal's light that single scattering
+    /// keeps.
     float g2_over_g1(Vec3 wo, Vec3 wi) const {
         const float so = stretched_length(wo), si = stretched_length(wi);
         return wi.z * (wo.z + so) / (so * wi.z + si * wo.z);

@@ -12,7 +12,7 @@
 
 namespace covtrace {
 
-/// f(x); types that carry derivatives have an overload of their own.
+/// The function f of x; types that carry derivatives have an overload of their own.
 template <typename F>
 auto function_of(const F& f, float x) {
     return f(x);
@@ -22,7 +22,7 @@ auto function_of(const F& f, double x) {
     return f(x);
 }
 
-/// Fresnel's factor for what a border reflects, `cos_i` > 0; 1 without a border.
+/// Fresnel's factor of a lobe's border for light that it reflects, `cos_i` > 0; 1 without a border.
 template <typename S>
 S border_reflectance(const LobeShare& lobe, const S& cos_i) {
     if (!(lobe.border_eta > 0)) return S(1.0f);

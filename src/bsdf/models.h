@@ -1,6 +1,7 @@
 /// The models behind bsdf.h, one overload set each; bsdf.cpp chooses among them.
 ///
-/// Contracts are those of bsdf.h. All models but the dielectric look the same from both sides.
+/// Functions behave as described in bsdf.h. All models but the dielectric look the same from both
+/// sides.
 #pragma once
 
 #include "bsdf/bsdf.h"
@@ -19,7 +20,8 @@ std::optional<BsdfSample> sample(const ConductorBsdf& b, Vec3 wo, float u_lobe, 
 LobeShares lobe_shares(const ConductorBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
 Rgb albedo(const ConductorBsdf& b, Vec3 wo);
 
-/// Transmission carries the radiance factor 1 / eta^2: paths start at the camera.
+/// Value of a dielectric. Transmission carries the radiance factor 1 / eta^2: paths start at the
+/// camera.
 Rgb eval(const DielectricBsdf& b, Vec3 wo, Vec3 wi);
 float pdf(const DielectricBsdf& b, Vec3 wo, Vec3 wi);
 std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
