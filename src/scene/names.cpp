@@ -14,7 +14,7 @@ std::string lower(std::string_view s) {
     return r;
 }
 
-/// Levenshtein's edit distance.
+/// Levenshtein's edit distance between two names.
 size_t edit_distance(const std::string& a, const std::string& b) {
     std::vector<size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), size_t{0});

@@ -1,7 +1,7 @@
-/// What a scene file says, as plain data: the reader fills it, the renderer builds from it.
-/// Everything is checked when it gets here: indices are in range, numbers are finite, references
-/// resolved. Lengths are in scene units, angles in degrees, colours linear Rec.709, `-1` means
-/// "none" for every index.
+/// A scene as plain data: the reader of a file fills it, the renderer builds from it. Everything is
+/// checked when it gets here: indices are in range, numbers are finite, references resolved.
+/// Lengths are in scene units, angles in degrees, colours linear Rec.709, `-1` means "none" for
+/// every index.
 #pragma once
 
 #include <array>
@@ -19,18 +19,18 @@
 
 namespace covtrace {
 
-using TextureId = int;   ///< into SceneDescription::textures
-using MaterialId = int;  ///< into SceneDescription::materials
-using MediumId = int;    ///< into SceneDescription::media
+using TextureId = int;   ///< index into SceneDescription::textures
+using MaterialId = int;  ///< index into SceneDescription::materials
+using MediumId = int;    ///< index into SceneDescription::media
 
 // ---- textures. Float textures are grey: r = g = b.
 
-/// How (u, v) of the surface become (s, t) of the texture.
+/// The map from (u, v) of the surface to (s, t) of the texture.
 struct TextureMapping {
     enum class Kind { uv, spherical, cylindrical, planar };
     Kind kind = Kind::uv;
     float scale_u = 1, scale_v = 1, delta_u = 0, delta_v = 0;
-    float u_per_v = 0, v_per_u = 0;  ///< uv only: what rotates them
+    float u_per_v = 0, v_per_u = 0;  ///< uv only: the off-diagonal, which rotates
     Vec3 v1{1, 0, 0}, v2{0, 1, 0};   ///< planar only
     Transform texture_from_world;    ///< all but uv
 };
@@ -42,12 +42,13 @@ struct ImageTexture {
     enum class Encoding { srgb, linear, gamma };
     enum class Wrap { repeat, black, clamp, octahedral_sphere, mirror };
     enum class Filter { point, bilinear, trilinear, ewa };
-    /// What a float texture reads. Automatic: alpha where there is one, else the mean of R, G, B.
+    /// Channel that a float texture reads. Automatic: alpha where there is one, else the mean of R,
+    /// G, B.
     enum class Channel { automatic, red, green, blue, alpha };
     std::filesystem::path file;
     /// The encoded image, where it is embedded in the scene; `file` is then its name in messages.
     std::shared_ptr<const std::string> content;
-    /// Empty: sRGB for integer files; float files are always linear.
+    /// Encoding of the values; empty: sRGB for integer files; float files are always linear.
     std::optional<Encoding> encoding;
     float gamma = 1;
     Wrap wrap = Wrap::repeat;
@@ -57,7 +58,7 @@ struct ImageTexture {
     float max_anisotropy = 8;  ///< ewa: how much longer than wide a footprint may be, >= 1
     float scale = 1;
     bool invert = false;
-    bool is_colour = true;  ///< of spectrum textures: colours, not directions as of a normal map
+    bool is_colour = true;  ///< spectrum textures: colours, not directions as in a normal map
     TextureMapping mapping;
 };
 struct CheckerboardTexture {
@@ -72,12 +73,12 @@ struct ScaleTexture {
 struct MixTexture {
     TextureId tex1 = -1, tex2 = -1, amount = -1;  ///< (1 - amount) tex1 + amount tex2
 };
-/// 1 where the surface stands along the direction, 0 where it faces it or turns its back: 1 -
-/// |n.direction| of its unit normal. The amount of pbrt's "directionmix".
+/// A value of 1 where the surface stands along the direction, 0 where it faces it or turns its
+/// back: 1 - |n.direction| of its unit normal. The amount of pbrt's "directionmix".
 struct AsideTexture {
     Vec3 direction;  ///< unit, world space
 };
-/// Dots here and there in the cells of (s, t).
+/// Dots in some of the cells of (s, t).
 struct DotsTexture {
     TextureMapping mapping;
     TextureId inside = -1, outside = -1;
@@ -121,7 +122,7 @@ struct DielectricMaterial {
     float eta = 1.5f;
     TextureId u_roughness = -1, v_roughness = -1;
     bool remap_roughness = true;
-    TextureId transmittance = -1;  ///< tints what crosses the border, each time; none: 1
+    TextureId transmittance = -1;  ///< multiplies light at each crossing of the border; none: 1
 };
 /// A diffuse base under a dielectric coat, a thin gap between them.
 struct CoatedDiffuseMaterial {
@@ -132,8 +133,8 @@ struct CoatedDiffuseMaterial {
     float eta = 1.5f;
     bool remap_roughness = true;
     int max_depth = 10, samples = 1;
-    /// `reflectance` is the share that leaves of all light that the coat doesn't reflect: diffuse
-    /// under specular, as in glTF; `thickness` and what follows it don't count.
+    /// Whether `reflectance` is the share that leaves of all light that the coat doesn't reflect:
+    /// diffuse under specular, as in glTF. Then `thickness` and the fields after it don't count.
     bool reflects_through_coat = false;
 };
 struct DiffuseTransmissionMaterial {
@@ -155,7 +156,7 @@ struct ThinDielectricMaterial {
     float eta = 1.5f;
     TextureId transmittance = -1;  ///< of the pane; none: 1
 };
-/// No surface at all: only separates media.
+/// No surface at all: a border that only separates media.
 struct InterfaceMaterial {};
 /// At each point one of two materials, the second one with probability `amount`.
 struct MaterialMix {
@@ -170,13 +171,13 @@ struct MaterialDescription {
         value;
     SourceLocation where;
     std::optional<MaterialMix> mix = {};  ///< in place of `value`
-    /// Float texture: the height that bump mapping adds along the normal, scene units.
+    /// Float texture of the height that bump mapping adds along the normal, scene units.
     TextureId displacement = -1;
-    /// Image of tangent space normals, (n + 1) / 2; counts where both are given.
+    /// Image of tangent space normals, (n + 1) / 2; it counts where there is a displacement, too.
     TextureId normal_map = -1;
     float normal_scale = 1;  ///< of the map's x and y
-    /// The map's y follows increasing v, on mirrored texture coordinates too; else it stands left
-    /// of x on the surface, as in pbrt.
+    /// Whether the map's y follows increasing v, on mirrored texture coordinates too; else it
+    /// stands left of x on the surface, as in pbrt.
     bool normal_map_follows_v = false;
 };
 
@@ -198,7 +199,7 @@ struct TriangleMesh {
     std::vector<Vec2> uvs;      ///< empty or one per position
     std::vector<std::array<uint32_t, 3>> triangles;
 };
-/// Four corners p00, p10, p01, p11 per patch.
+/// Bilinear patches, each of four corners p00, p10, p01, p11.
 struct BilinearMesh {
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;
@@ -229,11 +230,12 @@ struct ShapeDescription {
     AnimatedTransform object_to_world;
     bool reverse_orientation = false;
     MaterialId material = -1;
-    int area_light = -1;  ///< into SceneDescription::area_lights
-    /// Equal for what one directive made, which has the power of its area light together; -1:
-    /// alone.
+    int area_light = -1;  ///< index into SceneDescription::area_lights
+    /// Number of the directive: shapes with the same one have the power of its area light together;
+    /// -1: the shape has it alone.
     int directive = -1;
-    /// Constant 0 on a light that is not seen but lights the scene; other shapes never have that.
+    /// Opacity. Constant 0 on a light that is not seen but lights the scene; other shapes never
+    /// have that.
     TextureId alpha = -1;  ///< opacity, in [0, 1]
     MediumId inside = -1, outside = -1;
     SourceLocation where;
@@ -244,7 +246,7 @@ struct ObjectDescription {
     std::vector<ShapeDescription> shapes;
 };
 struct InstanceDescription {
-    int object = -1;  ///< into SceneDescription::objects
+    int object = -1;  ///< index into SceneDescription::objects
     AnimatedTransform instance_to_world;
     SourceLocation where;
 };
@@ -283,8 +285,8 @@ struct InfiniteLight {
     Rgb radiance{1};  ///< of the uniform light; multiplies the image
     std::optional<std::filesystem::path>
         image;  ///< equal-area octahedral square, or lat-long 2:1 with z as the pole
-    /// On a surface that faces +z of light space; scales the whole light, colour and "scale"
-    /// included.
+    /// Illuminance on a surface that faces +z of light space, which scales the whole light, colour
+    /// and "scale" included.
     std::optional<float> illuminance;
 };
 struct LightDescription {
@@ -299,8 +301,8 @@ struct LightDescription {
 
 struct CameraDescription {
     enum class Kind { perspective, orthographic, spherical };
-    /// What a spherical camera makes of the film, top row first: the equal-area octahedral map, or
-    /// polar angle by azimuth; y is the pole.
+    /// The directions of a spherical camera over the film, top row first: the equal-area octahedral
+    /// map, or polar angle by azimuth; y is the pole.
     enum class Mapping { equal_area, equirectangular };
     Kind kind = Kind::perspective;
     AnimatedTransform camera_to_world;  ///< x right, y up, z forward in camera space
@@ -310,8 +312,8 @@ struct CameraDescription {
     /// Whether the window is stretched over the film; else it is widened to the film's aspect.
     bool window_fills_film = true;
     Mapping mapping = Mapping::equal_area;
-    /// What a radiance of 1 gives in the middle of the film; pi (radius / distance)^2 of real
-    /// lenses.
+    /// Irradiance that a radiance of 1 gives in the middle of the film; pi (radius / distance)^2
+    /// for real lenses.
     float film_irradiance = 1;
     float lens_radius = 0, focal_distance = 1e6f;
     float shutter_open = 0, shutter_close = 1;
@@ -329,7 +331,7 @@ struct FilmDescription {
     std::optional<std::array<int, 4>> pixel_bounds;  ///< x0, x1, y0, y1 in pixels, end exclusive
     std::string filename;                            ///< empty: not given
     float iso = 100;
-    /// Linear Rec.709 to the same as the sensor's white balance shows it.
+    /// Matrix from linear Rec.709 to linear Rec.709 as the sensor's white balance shows it.
     std::array<std::array<float, 3>, 3> white_balance{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     float max_component_value = kInfinity;
     SourceLocation where;
@@ -339,9 +341,9 @@ struct FilterDescription {
     enum class Kind { box, triangle, gaussian, mitchell, lanczos_sinc };
     Kind kind = Kind::gaussian;
     float x_radius = 1.5f, y_radius = 1.5f;
-    float sigma = 0.5f;                ///< gaussian
-    float b = 1.0f / 3, c = 1.0f / 3;  ///< mitchell
-    float tau = 3;                     ///< sinc
+    float sigma = 0.5f;                ///< of Gaussian filters
+    float b = 1.0f / 3, c = 1.0f / 3;  ///< of Mitchell's filter
+    float tau = 3;                     ///< of sinc filters
 };
 
 struct SceneDescription {
@@ -360,11 +362,13 @@ struct SceneDescription {
     std::vector<ShapeDescription> shapes;
     std::vector<ObjectDescription> objects;
     std::vector<InstanceDescription> instances;
-    /// What the file asks for and covtrace replaces or ignores, in file order.
+    /// Warnings of the reader: features of the file that covtrace replaces or ignores, in file
+    /// order.
     Warnings warnings;
-    uint64_t content_hash = 0;  ///< of all bytes read for the description: scene files and meshes
-    /// All files that were read for it or that it names: scenes, meshes, spectra, lenses, buffers,
-    /// images. Each once, by name.
+    /// Hash of all bytes read for the description: scene files and meshes.
+    uint64_t content_hash = 0;
+    /// All files that were read for the scene or that it names: scenes, meshes, spectra, lenses,
+    /// buffers, images. Each once, by name.
     std::vector<std::filesystem::path> files;
 };
 

@@ -46,8 +46,8 @@ std::optional<fs::path> find_without_case(fs::path folder, const fs::path& name)
         for (fs::directory_iterator it(folder.empty() ? "." : folder, failed), end;
              !failed && it != end; it.increment(failed)) {
             const fs::path candidate = it->path().filename();
-            // The smallest of several, so that the choice doesn't depend on the order of the
-            // folder.
+            // The smallest of several matches is taken, so that the choice doesn't depend on the
+            // order of the folder.
             if (same_without_case(candidate.string(), part.string()) &&
                 (!match || candidate < *match))
                 match = candidate;
@@ -59,8 +59,8 @@ std::optional<fs::path> find_without_case(fs::path folder, const fs::path& name)
     return folder;
 }
 
-/// A file that is compressed by more than real meshes and scenes are, and large: a bomb. What
-/// zlib can do at most is 1032.
+/// Ratio of compression beyond that of real meshes and scenes: a large file with more is a bomb.
+/// The most that zlib can do is 1032.
 constexpr uint64_t kMostCompression = 100;
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
 constexpr uint64_t kHarmlessSize = uint64_t(1) << 24;
@@ -163,7 +163,8 @@ fs::path SceneFiles::find(const std::string& name, const SourceLocation& where) 
 }
 
 std::string SceneFiles::read(const fs::path& file, const SourceLocation& where) {
-    // Files that include two others each, and so on, would keep the reader busy for ever.
+    // Reading again is limited: files that include two others each, and so on, would keep the
+    // reader busy for ever.
     constexpr uint64_t kMostReadAgain = uint64_t(1) << 30, kCostOfReading = 1 << 12;
     std::string text = read_whole_file(file, where);
     files_.insert(file.lexically_normal());

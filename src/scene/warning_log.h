@@ -11,8 +11,8 @@ namespace covtrace {
 
 class WarningLog {
   public:
-    /// Warnings of entities that are built late (materials, textures) are sorted to where they were
-    /// declared.
+    /// Sets the directive that the next warnings belong to: those of entities that are built late
+    /// (materials, textures) are sorted to where they were declared.
     void set_order(int directive) { directive_ = directive; }
     void add(const SourceLocation& where, std::string text);
     /// All warnings, sorted by directive; a text that occurred several times names its first place.
