@@ -134,7 +134,8 @@ struct CoatedDiffuseMaterial {
     bool remap_roughness = true;
     int max_depth = 10, samples = 1;
     /// Whether `reflectance` is the share that leaves of all light that the coat doesn't reflect:
-    /// diffuse under specular, as in glTF. Then `thickness` and the fields after it don't count.
+    /// diffuse under specular, as in glTF. Then `thickness`, `g`, `albedo`, `max_depth` and
+    /// `samples` don't count.
     bool reflects_through_coat = false;
 };
 struct DiffuseTransmissionMaterial {

@@ -27,7 +27,8 @@ struct Values {
                              : powers(c.scale * textures.eval(c.texture, at));
     }
     Rgb transmittance() const { return colour(colours.transmittance); }
-    /// In [0, 1]; what is not a number is 0, so that a broken texel can't spread.
+    /// A reflectance or transmittance in [0, 1]; NaN becomes 0, so that a broken texel can't
+    /// spread.
     Rgb colour(const MaterialColour& c) const {
         return c.texture < 0 ? c.fixed : adaptation(c.scale * textures.eval(c.texture, at));
     }
@@ -43,13 +44,14 @@ struct Values {
     }
 };
 
-/// An index of 0 says that the file's spectrum doesn't reach here; pbrt then takes 1.
+/// The index to use: where the file's spectrum doesn't reach the given one is 0, for which pbrt
+/// takes 1.
 float refractive_index(float eta) {
     return eta > 0 ? eta : 1;
 }
 
 constexpr float kDefaultReflectance = 0.5f;
-constexpr float kDefaultTransmission = 0.25f;  // and reflection of what transmits
+constexpr float kDefaultTransmission = 0.25f;  // also the reflectance of what transmits
 constexpr float kDefaultThickness = 0.01f;
 
 Bsdf make(const DiffuseMaterial&, const Values& v, const CoatTable*) {
@@ -60,7 +62,7 @@ Bsdf make(const ConductorMaterial& m, const Values& v, const CoatTable*) {
     const Vec2 alpha = v.alphas(m);
     if (m.reflectance < 0)
         return ConductorBsdf{v.spectrum(m.eta, 1), v.spectrum(m.k, 1), alpha.x, alpha.y};
-    // The k that reflects r at normal incidence where eta = 1.
+    // The metal has eta = 1 and the k that reflects r at normal incidence.
     constexpr float kMost = 0.9999f;
     Rgb r = v.reflectance();
     r = {std::min(r.r, kMost), std::min(r.g, kMost), std::min(r.b, kMost)};
@@ -76,7 +78,8 @@ Bsdf make(const DielectricMaterial& m, const Values& v, const CoatTable*) {
 Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const CoatTable* coat) {
     const Vec2 alpha = v.alphas(m);
     if (m.reflects_through_coat) return make_coated_total(*coat, v.reflectance(), alpha.x, alpha.y);
-    // pbrt's walk meets the base at every second of its steps.
+    // The number of bounces is half of pbrt's depth, whose walk meets the base at every second of
+    // its steps.
     return make_coated_diffuse(*coat, v.powers_of_reflectance(), alpha.x, alpha.y,
                                (m.max_depth + 1) / 2);
 }
@@ -93,7 +96,8 @@ Bsdf make(const CoatedConductorMaterial& m, const Values& v, const CoatTable*) {
     b.metal.eta *= 1 / b.coat.eta;
     b.metal.k *= 1 / b.coat.eta;
     b.thickness = std::max(0.0f, v.number(m.thickness, kDefaultThickness));
-    // pbrt's walk meets the metal at every second of its steps.
+    // The number of bounces is half of pbrt's depth, whose walk meets the metal at every second of
+    // its steps.
     b.bounces = std::max(1, (m.max_depth + 1) / 2);
     b.samples = std::max(1, m.samples);
     return b;
@@ -141,7 +145,7 @@ bool is_constant(const TextureStore&, const InterfaceMaterial&) {
     return true;
 }
 
-/// As the file gives them; `fixed` where it doesn't.
+/// The colours of a model as the file gives them; `fixed` where it gives none.
 MaterialColours colours(const DiffuseMaterial& m) {
     return {{m.reflectance, 1, Rgb(kDefaultReflectance)}, {}};
 }
@@ -168,10 +172,10 @@ MaterialColours colours(const InterfaceMaterial&) {
     return {};
 }
 
-/// The middle of the texture, for parameters that may not vary.
+/// The middle of a texture, where parameters that may not vary are read.
 constexpr TexturePoint kMiddle{{0.5f, 0.5f}, {}, {}};
 
-/// Fixes a colour that no texture varies.
+/// Fixes the value of a colour that no texture varies.
 void settle(MaterialColour& c, const TextureStore& textures) {
     if (c.texture >= 0 && !textures.is_constant(c.texture)) return;
     if (c.texture >= 0) c.fixed = c.scale * textures.eval(c.texture, kMiddle);
@@ -187,7 +191,7 @@ void warn_of_gap(TextureId gap_albedo, const char* type, const SourceLocation& w
                                        "supported; the gap is rendered clear"});
 }
 
-/// Random bits that the same place always has; others for each `key`.
+/// Random bits that are the same whenever a place is met, and others for each `key`.
 uint64_t hash_of_position(const SurfaceHit& hit, uint64_t key) {
     for (const float c : {hit.position.x, hit.position.y, hit.position.z})
         key = hash_combine(key, std::bit_cast<uint32_t>(c));

@@ -15,48 +15,48 @@
 
 namespace covtrace {
 
-/// The local frame of a hit's BSDF, right-handed: z = ns, x = dpdu made orthogonal. alpha_x lies
-/// along x.
+/// The local frame of a hit's BSDF, right-handed: z = ns, x = dpdu made orthogonal to it. alpha_x
+/// lies along x.
 Frame shading_frame(const SurfaceHit& hit);
 
-/// pbrt's GGX widths for a pair of roughnesses: alpha = sqrt(roughness) where they are remapped;
+/// GGX widths for a pair of pbrt's roughnesses: alpha = sqrt(roughness) where they are remapped;
 /// (0, 0), a smooth surface, where both are below 1e-3; at least 1e-4 each otherwise.
 Vec2 ggx_alphas(float u_roughness, float v_roughness, bool remap);
 
 /// A reflectance or transmittance of a material, for the light of the scene.
 struct MaterialColour {
-    TextureId texture = -1;  ///< where it varies
+    TextureId texture = -1;  ///< texture, where the colour varies
     float scale = 1;         ///< of the texture
-    Rgb fixed;               ///< where it doesn't
+    Rgb fixed;               ///< the colour, where it does not vary
 };
 struct MaterialColours {
     MaterialColour reflectance, transmittance;
     ReflectancePowers fixed_powers{};  ///< of a reflectance below a coat that does not vary
 };
 
-/// The textures that modulate what a material's lobes reflect and transmit; -1 where nothing
-/// varies.
+/// The textures that modulate the light that a material's lobes reflect and transmit; -1 where
+/// nothing varies.
 struct MaterialTextures {
     TextureId reflectance = -1, transmittance = -1;
 };
 
-/// Immutable and thread-safe after construction.
+/// All materials of a scene. Immutable and thread-safe after construction.
 class MaterialStore {
   public:
-    /// `textures` must be made from the same scene. `adaptation` to the scene's light is applied to
-    /// all reflectances and transmittances, not to refractive indices.
+    /// Prepares the materials. `textures` must be made from the same scene. `adaptation` to the
+    /// scene's light is applied to all reflectances and transmittances, not to refractive indices.
     MaterialStore(const SceneDescription& scene, const TextureStore& textures,
                   const IlluminantAdaptation& adaptation = {});
     MaterialStore(const MaterialStore&) = delete;
     MaterialStore& operator=(const MaterialStore&) = delete;
 
-    /// The material that stands at a place: of a mix one of its two, chosen by a hash of the
-    /// position, so that the same place always has the same one. What the other functions take.
+    /// The material that stands at a place: for a mix, one of its two, chosen by a hash of the
+    /// position, so that the same place always has the same one. The other functions take the
+    /// result.
     MaterialId at(MaterialId id, const SurfaceHit& hit, const TextureStore& textures) const;
     /// The BSDF at a hit, for directions in `shading_frame(hit)`. Material -1 is pbrt's default:
-    /// diffuse, 0.5.
-    /// Images are filtered over what a pixel covers that sees the place along `w` and is `width`
-    /// wide there; 0: not at all.
+    /// diffuse, 0.5. Images are filtered over the footprint of a pixel that sees the place along
+    /// `w` and is `width` wide there; 0: they are not filtered.
     Bsdf bsdf(MaterialId id, const SurfaceHit& hit, const TextureStore& textures, Vec3 w = {},
               float width = 0) const;
     MaterialTextures textures(MaterialId id) const;
@@ -66,7 +66,7 @@ class MaterialStore {
     const MaterialDescription& description(MaterialId id) const {
         return materials_[static_cast<size_t>(id)].description;
     }
-    /// What the scene asks of its materials and is rendered otherwise.
+    /// Warnings of materials that are not rendered as the scene asks.
     const Warnings& warnings() const { return warnings_; }
 
   private:
@@ -78,8 +78,8 @@ class MaterialStore {
         Bsdf constant;  ///< where no texture varies
     };
     std::vector<Material> materials_;
-    AdaptationTable adaptation_;     ///< of textures that vary
-    ReflectancePowersTable powers_;  ///< of those below a coat
+    AdaptationTable adaptation_;     ///< for textures that vary
+    ReflectancePowersTable powers_;  ///< for textures that vary below a coat
     CoatTables coats_;
     Warnings warnings_;
 };

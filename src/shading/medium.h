@@ -1,5 +1,5 @@
-/// Homogeneous participating media: transmittance, emission, and the choice of where light
-/// scatters.
+/// Homogeneous participating media: transmittance, emission, and the choice of the place where
+/// light scatters.
 #pragma once
 
 #include "core/vec.h"
@@ -17,16 +17,17 @@ struct Medium {
     bool scatters() const { return !is_black(scattering); }
 };
 
-/// exp(-extinction * distance); 1 where a channel has no extinction, whatever the distance.
+/// Transmittance exp(-extinction * distance); 1 where a channel has no extinction, whatever the
+/// distance.
 Rgb transmittance(const Medium& medium, float distance);
 
 /// Radiance that the medium emits along a ray of the given length and that reaches its start:
 /// absorption * emission * (1 - transmittance) / extinction, in closed form.
 Rgb emitted_along(const Medium& medium, float distance);
 
-/// How a ray goes through a piece of medium.
+/// The way of a ray through a piece of medium: it scatters in it, or leaves.
 struct MediumEvent {
-    bool scatters = false;  ///< inside, at `distance`; false: it leaves at the far end
+    bool scatters = false;  ///< at `distance`; false: the ray leaves at the far end
     float distance = 0;
     /// Transmittance (times scattering coefficient) over the density of the event in all channels
     /// together.
@@ -37,10 +38,10 @@ struct MediumEvent {
 ///
 /// One of the channels, in proportion to `throughput`, draws the distance from its own exponential,
 /// or goes through where the draw is an absorption; the weight divides by the mean density of all
-/// channels (the balance heuristic over a single sample, Veach 1995). So it is unbiased for any
-/// colours, and
-/// throughput * weight stays below the sum of the throughput's channels. Media that don't scatter
-/// need no random numbers: weight = transmittance. `u` in [0, 1)^2.
+/// channels (the balance heuristic over a single sample, Veach and Guibas 1995, "Optimally
+/// combining sampling techniques for Monte Carlo rendering"). So it is unbiased for any colours,
+/// and throughput * weight stays below the sum of the throughput's channels. Media that don't
+/// scatter need no random numbers: weight = transmittance. `u` in [0, 1)^2.
 MediumEvent sample_event(const Medium& medium, float length, Rgb throughput, Vec2 u);
 
 }  // namespace covtrace

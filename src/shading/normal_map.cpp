@@ -6,7 +6,7 @@ namespace covtrace {
 
 namespace {
 
-/// Change of the normal along the tangent vector `t`.
+/// Change of the unmapped normal along the tangent vector `t`.
 Vec3 normal_change(const DifferentialGeometry& g, Vec3 t) {
     const float a = dot(t, g.tangent.x), b = dot(t, g.tangent.y);
     return g.tangent.x * (g.k11 * a + g.k12 * b) + g.tangent.y * (g.k12 * a + g.k22 * b);
@@ -18,14 +18,14 @@ bool has_vertex_normals(const ShapeDescription& shape) {
     return mesh && !(*mesh)->normals.empty();
 }
 
-/// v, turned by the smallest rotation that takes the unit vector `from` to `to`.
+/// The vector v, turned by the smallest rotation that takes the unit vector `from` to `to`.
 Vec3 turned(Vec3 v, Vec3 from, Vec3 to) {
     const Vec3 axis = cross(from, to), across = cross(axis, v);
     return v + across + cross(axis, across) / (1 + dot(from, to));
 }
 
-/// A step of `footprint` along a tangent, in its parameter; not so small that the parameter's
-/// rounding shows.
+/// Step of a parameter that moves by `footprint` along its tangent; not so small that the
+/// parameter's rounding shows.
 float step(float footprint, Vec3 tangent, float parameter) {
     constexpr float kRoundings = 64 * 0x1p-23f;
     const float wanted = footprint / length(tangent);
@@ -46,7 +46,7 @@ NormalMap::NormalMap(const MaterialDescription& material, const TextureStore& te
       dpdv_(hit.dpdv) {
     if (material.normal_map_follows_v && dot(cross(hit.dpdu, hit.dpdv), hit.ns) < 0) y_sign_ = -1;
     if (has_vertex_normals<BilinearMesh>(shape.description)) {
-        // pbrt's shading tangents of patches: the parameters' own, turned as the normal is.
+        // Patches have pbrt's shading tangents: the parameters' own, turned as the normal is.
         Vec3 flat = cross(hit.dpdu, hit.dpdv);
         if (dot(flat, hit.ns) < 0) flat = -flat;
         if (length_squared(flat) > 0 && is_finite(normalize(flat))) {
@@ -55,8 +55,8 @@ NormalMap::NormalMap(const MaterialDescription& material, const TextureStore& te
         }
     }
     if (has_vertex_normals<TriangleMesh>(shape.description)) {
-        // pbrt's shading tangents of such meshes: orthogonal to the normal and to each other, both
-        // as long as dp/du.
+        // Meshes with vertex normals have pbrt's shading tangents: orthogonal to the normal and to
+        // each other, both as long as dp/du.
         const Vec3 t = cross(hit.ns, hit.dpdu);
         if (length_squared(t) > 0) {
             dpdv_ = t;

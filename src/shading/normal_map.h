@@ -1,6 +1,6 @@
 /// Bump and normal maps: the shading frame that they give a surface, and how fast it turns.
 ///
-/// As in pbrt-v4: a displacement d along the shading normal n turns the tangents into
+/// In pbrt-v4, and so here, a displacement d along the shading normal n turns the tangents into
 ///
 ///   dp'/du = dp/du + (dd/du) n + d dn/du,   dp'/dv = dp/dv + (dd/dv) n + d dn/dv,
 ///
@@ -14,16 +14,18 @@
 
 namespace covtrace {
 
-/// A material's map at a point of a surface. All references must outlive it.
+/// A material's map at a point of a surface. All references must outlive the object.
 class NormalMap {
   public:
-    /// `base`: of the unmapped surface at `hit`. `footprint`: what differences are taken over,
-    /// scene units, > 0. The material must have one of both maps.
+    /// Prepares a map. `base`: geometry of the unmapped surface at `hit`. `footprint`: distance
+    /// over which differences are taken, scene units, > 0. The material must have a bump or a
+    /// normal map.
     NormalMap(const MaterialDescription& material, const TextureStore& textures,
               const PlacedShape& shape, const SurfaceHit& hit, const DifferentialGeometry& base,
               float footprint);
 
-    /// z: the new shading normal, in the hemisphere of hit.ng; x along the new dp/du.
+    /// The mapped frame. z: the new shading normal, in the hemisphere of hit.ng; x along the new
+    /// dp/du.
     Frame frame() const { return frame_at({}); }
     /// Shape operator that the map adds to the base's, in (t1, t2) that span its tangent plane:
     /// k11, k12, k22, 1 / scene unit.
