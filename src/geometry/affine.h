@@ -1,5 +1,5 @@
-/// Affine maps and points in double, for what has to be more exact than the float of the scene: hit
-/// points far from the origin, analytic intersection, inverse maps.
+/// Affine maps and points in double, for computations that have to be more exact than the scene's
+/// single precision: hit points far from the origin, analytic intersection, inverse maps.
 #pragma once
 
 #include <cmath>
@@ -45,7 +45,7 @@ inline Vec3d normalize(Vec3d a) {
     return l > 0 ? a * (1 / l) : a;
 }
 
-/// p -> L p + t, the linear part held as its rows.
+/// An affine map p -> L p + t, the linear part held as its rows.
 struct Affine {
     Vec3d row[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     Vec3d translation;
@@ -58,18 +58,19 @@ struct Affine {
     }
     Vec3d vector(Vec3d v) const { return {dot(row[0], v), dot(row[1], v), dot(row[2], v)}; }
     Vec3d point(Vec3d p) const { return vector(p) + translation; }
-    /// By the transpose of the linear part: covectors pulled back, or normals under the inverse
-    /// map.
+    /// The vector v under the transpose of the linear part: covectors pulled back, or normals under
+    /// the inverse map.
     Vec3d transposed(Vec3d v) const { return row[0] * v.x + row[1] * v.y + row[2] * v.z; }
     double determinant() const { return dot(row[0], cross(row[1], row[2])); }
-    /// Normals by the inverse transpose up to a positive factor: no inverse is needed.
+    /// The normal n under the map, by the inverse transpose up to a positive factor: no inverse is
+    /// needed.
     Vec3d normal(Vec3d n) const {
         const Vec3d c0 = cross(row[1], row[2]), c1 = cross(row[2], row[0]),
                     c2 = cross(row[0], row[1]);
         const double sign = dot(row[0], c0) < 0 ? -1 : 1;
         return Vec3d{dot(c0, n), dot(c1, n), dot(c2, n)} * sign;
     }
-    /// The linear part must be regular.
+    /// The inverse map; the linear part must be regular.
     Affine inverse() const {
         const Vec3d c0 = cross(row[1], row[2]), c1 = cross(row[2], row[0]),
                     c2 = cross(row[0], row[1]);
@@ -81,13 +82,13 @@ struct Affine {
         r.translation = r.vector(translation) * -1.0;
         return r;
     }
-    /// Largest |L v| can grow per axis: |L| |v| with absolute values throughout.
+    /// Bound on the components of L v: |L| |v| with absolute values throughout.
     Vec3d absolute(Vec3d v) const {
         return {dot(abs(row[0]), v), dot(abs(row[1]), v), dot(abs(row[2]), v)};
     }
 };
 
-/// a after b.
+/// The product of two maps: a after b.
 inline Affine operator*(const Affine& a, const Affine& b) {
     Affine r;
     for (int i = 0; i < 3; ++i) r.row[i] = b.transposed(a.row[i]);

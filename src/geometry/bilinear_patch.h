@@ -13,7 +13,7 @@ struct BilinearPatch {
     }
     Vec3d du(double v) const { return (p10 - p00) * (1 - v) + (p11 - p01) * v; }
     Vec3d dv(double u) const { return (p01 - p00) * (1 - u) + (p11 - p10) * u; }
-    /// The mixed second derivative; zero for parallelograms.
+    /// The mixed second derivative d^2 p / du dv; zero for parallelograms.
     Vec3d twist() const { return p00 - p10 - p01 + p11; }
 };
 

@@ -40,8 +40,8 @@ DifferentialGeometry Geometry::differential(const SurfaceHit& hit, const Frame& 
         d.dndb = map->normal(d.dndb);
     }
 
-    // Displacements in the tangent plane, dq = P (da, db), and the change of the unit normal that
-    // goes with them, dn = N (da, db): the shape operator is N P^-1.
+    // The shape operator is N P^-1, from displacements in the tangent plane, dq = P (da, db), and
+    // the change of the unit normal that goes with them, dn = N (da, db).
     const double p11 = dot(d.dpda, t1), p21 = dot(d.dpda, t2), p12 = dot(d.dpdb, t1),
                  p22 = dot(d.dpdb, t2);
     const double determinant = p11 * p22 - p12 * p21;
@@ -56,8 +56,8 @@ DifferentialGeometry Geometry::differential(const SurfaceHit& hit, const Frame& 
         const double n11 = dot(na, t1), n21 = dot(na, t2), n12 = dot(nb, t1), n22 = dot(nb, t2);
         out.k11 = finite(n11 * i11 + n12 * i21);
         out.k22 = finite(n21 * i12 + n22 * i22);
-        // Interpolated normals need not be those of a surface; its closest one has the symmetric
-        // part.
+        // The operator is made symmetric: interpolated normals need not be those of a surface, and
+        // the closest one has the symmetric part.
         out.k12 = finite(0.5 * (n11 * i12 + n12 * i22 + n21 * i11 + n22 * i21));
     }
 
@@ -69,7 +69,7 @@ DifferentialGeometry Geometry::differential(const SurfaceHit& hit, const Frame& 
     if (instance && instance->moves) {
         const Affine rate = instance->motion.rate(hit.time, impl_->clock);
         out.velocity = rate.point(near).to_float();
-        // Half the curl of the velocity field x -> rate(map^-1(x)).
+        // The angular velocity is half the curl of the velocity field x -> rate(map^-1(x)).
         const Affine local = map->inverse();
         Vec3d gradient[3];
         for (int i = 0; i < 3; ++i) gradient[i] = local.transposed(rate.row[i]);

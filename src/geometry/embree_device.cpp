@@ -6,7 +6,8 @@ namespace covtrace {
 
 namespace {
 
-/// What Embree chose by itself, told from the widest packets that it traces natively.
+/// The instruction set that Embree chose by itself, told from the widest packets that it traces
+/// natively.
 std::string chosen_isa(RTCDevice device) {
     if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return "avx512";
     if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED))

@@ -34,11 +34,12 @@ class EmbreeDevice {
     EmbreeDevice& operator=(const EmbreeDevice&) = delete;
 
     RTCDevice get() const { return device_; }
-    /// An empty scene for a static or moving hierarchy.
+    /// Makes an empty scene for a static or moving hierarchy.
     SceneHandle new_scene() const;
     /// Builds the hierarchy of `scene`.
     void commit(RTCScene scene) const;
-    /// Throws what Embree has reported since the last call: Error(limit) where memory ran out.
+    /// Throws the error that Embree has reported since the last call, if any: Error(limit) where
+    /// memory ran out.
     void check() const;
     /// Most bytes that Embree has held at a time, temporary ones of building included.
     size_t most_bytes() const { return static_cast<size_t>(most_bytes_.load()); }

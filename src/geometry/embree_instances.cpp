@@ -13,12 +13,15 @@ namespace covtrace {
 namespace {
 
 constexpr unsigned kMostSteps = 128;          ///< Embree's limit is 129 keys
-constexpr double kInterpolationError = 5e-6;  ///< of the extent, at the tested times
-/// Embree bounds what turns by searching for extremes between any two keys, in 0.1 ms per key and
-/// instance; straight lines cost it nothing, but are off by the square of the angle between keys.
+constexpr double kInterpolationError = 5e-6;  ///< part of the extent, at the tested times
+/// Most steps, in each segment of the clock, that are tried with decompositions before straight
+/// lines are. Embree bounds what turns by searching for extremes between any two keys, in 0.1 ms
+/// per key and instance; straight lines cost it nothing, but are off by the square of the angle
+/// between keys.
 constexpr unsigned kFewSteps = 8;
-/// Of the extent. Chords of an angle a between keys miss the circle by a^2 / 8 of its radius: 128
-/// of them do it for a turn of 60 degrees.
+/// Largest error of straight lines between keys, as a part of the extent. Chords of an angle a
+/// between keys miss the circle by a^2 / 8 of its radius: 128 of them do it for a turn of 60
+/// degrees.
 constexpr double kStraightError = 1e-5;
 
 GeometryHandle new_instance(const EmbreeDevice& device, RTCScene scene) {
@@ -29,8 +32,8 @@ GeometryHandle new_instance(const EmbreeDevice& device, RTCScene scene) {
     return instance;
 }
 
-/// What Embree interpolates. Between two poses it does not always go the way of AnimatedTransform,
-/// whose stretch is symmetric.
+/// The key that Embree interpolates for a pose. Between two poses Embree does not always go the way
+/// of AnimatedTransform, whose stretch is symmetric.
 RTCQuaternionDecomposition decompose(const Transform& map) {
     const Decomposition key = triangular_decomposition(map.matrix());
     const auto number = [](double v) { return static_cast<float>(v); };
@@ -52,7 +55,7 @@ std::array<float, 12> rows_of(const Transform& map) {
     return rows;
 }
 
-/// How Embree goes from key to key: by decompositions, or element by element.
+/// Embree's way from key to key: by decompositions, or element by element.
 enum class Between { turning, straight };
 
 void set_keys(const EmbreeDevice& device, RTCGeometry instance, const Motion& motion,
@@ -72,8 +75,8 @@ void set_keys(const EmbreeDevice& device, RTCGeometry instance, const Motion& mo
     device.check();
 }
 
-/// Largest distance between the corners of `box` as Embree and as `motion` place them, less what
-/// rounding the coordinates to float costs; relative to the placed box's diagonal.
+/// Largest distance between the corners of `box` as Embree and as `motion` place them, relative to
+/// the placed box's diagonal, less the cost of rounding the coordinates to single precision.
 double interpolation_error(RTCGeometry instance, const RTCBounds& box, const Motion& motion,
                            const ShutterClock& clock, unsigned steps) {
     double worst = 0;
@@ -116,7 +119,8 @@ GeometryHandle new_moving_instance(const EmbreeDevice& device, RTCScene scene, c
     const auto error = [&](const GeometryHandle& instance, unsigned steps) {
         return interpolation_error(instance.get(), box, motion, clock, steps);
     };
-    // Sets 2, 4, ... times as many keys until what is left is below `enough`; returns that.
+    // Sets 2, 4, ... times as many keys until the error is below `enough`, or keys are as many as
+    // `most`; returns the error.
     const auto refine = [&](const GeometryHandle& instance, Between between, unsigned first,
                             unsigned most, double enough) {
         for (unsigned steps = first;; steps *= 2) {

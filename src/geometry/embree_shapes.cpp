@@ -9,7 +9,7 @@ namespace covtrace {
 
 namespace {
 
-// Only single rays are traced, so every callback gets N = 1.
+// Callbacks always get N = 1, because only single rays are traced.
 
 Vec3d origin_of(const RTCRay& ray) {
     return {ray.org_x, ray.org_y, ray.org_z};
@@ -102,7 +102,8 @@ GeometryHandle build(RTCDevice device, const PatchShape& shape) {
         set_user(geometry.get(), shape, patches.size(), &patch_bounds_callback);
         return geometry;
     }
-    // Embree's quads go round; their (u, v) is the bilinear one on parallelograms.
+    // The corners are reordered, as Embree's quads go round; their (u, v) is the bilinear one on
+    // parallelograms.
     GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD));
     set_positions(geometry.get(), shape.positions);
     auto* corners = static_cast<std::array<uint32_t, 4>*>(

@@ -6,8 +6,8 @@
 
 namespace covtrace {
 
-/// Ray masks: interface surfaces are seen by `intersect` and not by `occluded`; those with alpha
-/// are solid where they are opaque.
+/// Ray masks by the kind of surface. Interface surfaces are seen by `intersect` and not by
+/// `occluded`; surfaces with alpha are solid where they are opaque.
 inline constexpr unsigned kSolidMask = 1, kInterfaceMask = 2, kAlphaMask = 4, kEveryMask = 7;
 
 /// A committed geometry that refers to `shape`, which must stay where it is; null where the shape

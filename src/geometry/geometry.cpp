@@ -13,10 +13,10 @@ namespace covtrace {
 
 namespace {
 
-/// A ray caught between coincident surfaces that it passes must end.
+/// Most surfaces that a ray passes: one that is caught between coincident surfaces must end.
 constexpr int kMostLayers = 1000;
 
-/// In [0, 1), of all bits of origin, direction and time.
+/// A hash in [0, 1) of all bits of a ray's origin, direction and time.
 float ray_hash(const Ray& ray) {
     uint64_t h = std::bit_cast<uint32_t>(ray.time);
     for (const Vec3 v : {ray.origin, ray.direction})
@@ -24,7 +24,7 @@ float ray_hash(const Ray& ray) {
     return to_unit_float(static_cast<uint32_t>(h >> 32));
 }
 
-/// The float above or below a finite one: std::nextafter without the call.
+/// The next float above or below a finite one: std::nextafter without the call.
 float next_float(float v, bool above) {
     if (v == 0)
         return above ? std::numeric_limits<float>::denorm_min()
@@ -53,7 +53,7 @@ double instance_error(const Affine& world_from_local, const Affine& local_from_w
     return 6 * kHalfUlp * length(world_from_local.absolute(local));
 }
 
-/// `point` of the local space of an instance in the world.
+/// Moves `point` from the local space of an instance to the world.
 void place(SurfacePoint& point, const Affine& world_from_local, const Affine& local_from_world) {
     const Affine& map = world_from_local;
     point.error *= std::sqrt(std::max(
@@ -67,7 +67,7 @@ void place(SurfacePoint& point, const Affine& world_from_local, const Affine& lo
     point.dpdv = map.vector(point.dpdv);
 }
 
-/// `point` in the world.
+/// Writes `point`, which is in the world, into a hit.
 void fill_hit(const SurfacePoint& point, SurfaceHit& hit) {
     hit.position = point.position.to_float();
     hit.ng = point.ng.to_float();
@@ -79,17 +79,17 @@ void fill_hit(const SurfacePoint& point, SurfaceHit& hit) {
     hit.position_error = static_cast<float>(point.error + rounding);
 }
 
-/// Whether a surface holds a point for all that floats can tell: the distance of the point to the
-/// plane of the hit is within the roundings of both. The point's own count four times: it was
-/// written down with so many digits and has gone through the camera's matrix.
+/// Whether a surface holds a point for all that single precision can tell: the distance of the
+/// point to the plane of the hit is within the roundings of both. The point's own roundings count
+/// four times: it was written down with so many digits and has gone through the camera's matrix.
 bool lies_in(Vec3 point, const SurfaceHit& hit) {
     const Vec3d ng(hit.ng), origin(point);
     const double rounding = double(hit.position_error) + 4 * kHalfUlp * dot(abs(ng), abs(origin));
     return std::abs(dot(ng, origin - Vec3d(hit.position))) <= rounding;
 }
 
-/// Nearest hit, as `find(ray, hit)` tells it, at which `stops(ray, hit)` says that the ray ends; it
-/// goes on behind all others.
+/// Finds the nearest hit, by `find(ray, hit)`, at which `stops(ray, hit)` says that the ray ends;
+/// the ray goes on behind all other hits.
 template <typename Find, typename Stops>
 bool first_that_stops(Ray ray, SurfaceHit& hit, const Find& find, const Stops& stops) {
     float passed = 0;

@@ -14,7 +14,7 @@ namespace covtrace {
 
 /// A shape as it stands in the scene.
 struct PlacedShape {
-    /// Its object_to_world is where it is over time. Objects of instances keep their
+    /// The shape, whose object_to_world places it over time. Objects of instances keep their
     /// object-to-instance transform there; the instance's comes on top (SurfaceHit::instance).
     ShapeDescription description;
     bool flip_normal = false;  ///< reverse orientation xor mirrored transform
@@ -31,24 +31,25 @@ using AlphaLookup = std::function<float(TextureId, Vec2 uv, Vec3 position)>;
 
 class Geometry {
   public:
-    /// Builds the acceleration structures. `isa`: empty, or one of sse2, avx, avx2, avx512.
-    /// Throws Error(limit) where memory runs out.
+    /// Builds the acceleration structures. `isa`: empty, or one of sse2, avx, avx2, avx512. Throws
+    /// Error(limit) where memory runs out.
     explicit Geometry(const SceneDescription& scene, const std::string& isa = {});
     ~Geometry();
     Geometry(const Geometry&) = delete;
     Geometry& operator=(const Geometry&) = delete;
 
-    /// Tells what alpha textures say; without it they count as opaque. `lookup` must be
+    /// Sets the opacity of alpha textures; without it they count as opaque. `lookup` must be
     /// thread-safe.
     void set_alpha(AlphaLookup lookup);
 
+    /// Finds the nearest hit in (0, ray.t_max); false where there is none. Thread-safe.
+    ///
     /// Where alpha is between 0 and 1, a hash of the ray decides whether it passes, so the same ray
     /// always does the same.
-    ///
-    /// Nearest hit in (0, ray.t_max); false where there is none. Thread-safe.
     bool intersect(const Ray& ray, SurfaceHit& hit) const;
-    /// The same for a camera ray: surfaces that hold its origin are seen edge on, which is not at
-    /// all. A camera may stand on the plane of a floor or of a wall.
+    /// Finds the nearest hit of a camera ray, as `intersect` does, but without surfaces that hold
+    /// the ray's origin: these are seen edge on, which is not at all. A camera may stand on the
+    /// plane of a floor or of a wall.
     bool intersect_seen(const Ray& ray, SurfaceHit& hit) const;
     /// Whether anything but interface surfaces lies in (0, ray.t_max). Thread-safe.
     bool occluded(const Ray& ray) const;
@@ -57,26 +58,26 @@ class Geometry {
     static Vec3 offset_origin(const SurfaceHit& hit, Vec3 direction);
 
     DifferentialGeometry differential(const SurfaceHit& hit) const;
-    /// The same where the frame of hit.ns and hit.dpdu is known.
+    /// Second-order geometry at a hit, where the frame of hit.ns and hit.dpdu is known.
     DifferentialGeometry differential(const SurfaceHit& hit, const Frame& tangent) const;
 
     const std::vector<PlacedShape>& shapes() const;
-    /// Of a mesh's triangle (or of a patch: halves 2i and 2i+1), at `time`. Not for instanced
-    /// shapes.
+    /// Corners of a mesh's triangle (or of half a patch: halves 2i and 2i+1 of patch i), at `time`.
+    /// Not for instanced shapes.
     WorldTriangle world_triangle(uint32_t shape, uint32_t triangle, float time) const;
     /// The instruction set that rays are traced with: as asked for, or what Embree chose ("sse2" to
     /// "avx512").
     const std::string& isa() const;
     /// Whether any shape is, or by its mix may be, no surface but a border between media.
     bool has_interfaces() const;
-    /// Over the whole shutter. Empty scene: a unit box about the origin.
+    /// Box around all shapes over the whole shutter. Empty scene: a unit box about the origin.
     Bounds3 bounds() const;
     /// Bytes held by the shapes; neither Embree's nor meshes of the description are counted.
     size_t memory() const;
-    /// Most bytes that Embree has held: its hierarchies, and what building them took.
+    /// Most bytes that Embree has held: its hierarchies, and the memory that building them took.
     size_t embree_memory() const;
 
-    /// For this folder and src/occluders: placed_scene.h.
+    /// Tables of the placed shapes, for this folder and src/occluders; see placed_scene.h.
     struct Impl;
     const Impl& impl() const { return *impl_; }
 

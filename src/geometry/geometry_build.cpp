@@ -13,8 +13,9 @@ bool has_interface_material(const SceneDescription& scene, const ShapeDescriptio
                                       scene.materials[static_cast<size_t>(shape.material)].value);
 }
 
-/// For each material, whether it may turn out to be no surface at all, by being mixed with one.
-/// A mix comes after what it mixes, so each is looked at once however deep they nest.
+/// For each material, whether it may turn out to be no surface at all, by being mixed with an
+/// interface. A mix comes after its parts, so each material is looked at once however deep they
+/// nest.
 std::vector<bool> may_be_interface(const SceneDescription& scene) {
     std::vector<bool> may;
     may.reserve(scene.materials.size());
@@ -28,7 +29,8 @@ std::vector<bool> may_be_interface(const SceneDescription& scene) {
     return may;
 }
 
-/// Whether alpha hides all of the shape: a light that can't be seen, for no other shape is kept.
+/// Whether alpha hides all of the shape. Such a shape is a light that can't be seen: no other one
+/// is kept.
 bool is_hidden(const SceneDescription& scene, const ShapeDescription& shape) {
     if (shape.alpha < 0) return false;
     const auto* constant =
@@ -36,7 +38,7 @@ bool is_hidden(const SceneDescription& scene, const ShapeDescription& shape) {
     return constant && constant->value.r <= 0;
 }
 
-/// An interface between nothing and nothing has no effect on any path.
+/// Whether a shape has no effect on any path: hidden, or an interface between nothing and nothing.
 bool is_left_out(const SceneDescription& scene, const ShapeDescription& shape) {
     if (is_hidden(scene, shape)) return true;
     return has_interface_material(scene, shape) && shape.inside < 0 && shape.outside < 0 &&
@@ -60,7 +62,7 @@ std::vector<float> key_times(const SceneDescription& scene) {
 struct Geometry::Impl::Builder {
     Impl& g;
     const SceneDescription& scene;
-    const std::vector<bool> may_be_interface;  ///< by material
+    const std::vector<bool> may_be_interface;  ///< by material: whether it may be an interface
 
     void place(const ShapeDescription& shape, bool is_instanced) {
         const bool flip =
@@ -77,7 +79,8 @@ struct Geometry::Impl::Builder {
 
     void add(ShapeScene& target, uint32_t shape) const {
         const bool has_alpha = g.placed[shape].description.alpha >= 0;
-        // What may be an interface in places is asked for its material there by `visibility`.
+        // A shape that may be an interface in places is asked for its material there by
+        // `visibility`.
         const MaterialId material = g.placed[shape].description.material;
         const bool may_pass = material >= 0 && may_be_interface[static_cast<size_t>(material)];
         const unsigned mask = may_pass ? kInterfaceMask : has_alpha ? kAlphaMask : kSolidMask;
@@ -93,14 +96,14 @@ struct Geometry::Impl::Builder {
         target.shape_of_geometry.push_back(shape);
     }
 
-    /// Keeps `part` as a scene to be instanced; its index.
+    /// Keeps `part` as a scene to be instanced; returns its index.
     uint32_t keep(ShapeScene part) const {
         g.device.commit(part.scene.get());
         g.scenes.push_back(std::move(part));
         return static_cast<uint32_t>(g.scenes.size() - 1);
     }
 
-    /// Lets rays start only where Embree can carry them into this instance.
+    /// Limits where rays may start, so that Embree can carry them into this instance.
     void limit_origins(RTCGeometry instance, bool moves, const SourceLocation& where) const {
         const unsigned steps = moves ? 32 : 0;
         for (unsigned i = 0; i <= steps; ++i) {
@@ -143,7 +146,8 @@ struct Geometry::Impl::Builder {
         return keep(std::move(part));
     }
 
-    /// An object: its still shapes as one scene, each of its moving shapes as one of its own.
+    /// The scenes of an object: its still shapes as one, each of its moving shapes as one of its
+    /// own.
     struct ObjectScenes {
         std::vector<std::pair<uint32_t, const AnimatedTransform*>> parts;
     };

@@ -1,4 +1,4 @@
-/// Rays and what they hit.
+/// A ray, and the surface point that it hits.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,10 @@ struct SurfaceHit {
     Vec3 ng;  ///< unit geometric normal on the shape's outside (emitting) side; not turned to the
               ///< viewer
     Vec3 ns;  ///< unit shading normal in the hemisphere of ng
-    Vec3 dpdu, dpdv;  ///< of the surface parameterisation that `uv` uses
+    Vec3 dpdu, dpdv;  ///< derivatives of the position by `uv`
     Vec2 uv;
     float time = 0;
-    uint32_t shape = 0;      ///< into Geometry::shapes()
+    uint32_t shape = 0;      ///< index into Geometry::shapes()
     uint32_t primitive = 0;  ///< triangle or patch of the shape; 0 for spheres and disks
     uint32_t instance = 0;   ///< Embree instance, 0 where there is none: Geometry's own business
     Vec2 barycentric;        ///< Embree's (u, v) in the primitive
@@ -40,8 +40,9 @@ struct DifferentialGeometry {
     /// positive where convex seen from ns.
     float k11 = 0, k12 = 0, k22 = 0;
     Vec3 velocity;          ///< of the material point, scene units per unit of time
-    Vec3 angular_velocity;  ///< of its neighbourhood, radians per unit of time
-    /// d(u, v)/d(tangent.x, tangent.y): uv_from_tangent[i][j] = d uv_i / d s_j, 1 / scene unit
+    Vec3 angular_velocity;  ///< rotation of its neighbourhood, radians per unit of time
+    /// Texture coordinates by place: uv_from_tangent[i][j] = d uv_i / d s_j, with s = (tangent.x,
+    /// tangent.y), 1 / scene unit.
     float uv_from_tangent[2][2] = {{0, 0}, {0, 0}};
 };
 

@@ -42,7 +42,7 @@ bool Motion::moves(float begin, float end) const {
 }
 
 Affine Motion::rate(float time, const ShutterClock& clock) const {
-    // The segment between two breaks that holds `time`, without an allocation.
+    // Find the segment between two breaks that holds `time`, without an allocation.
     float lo = clock.open(), hi = clock.close();
     for (const AnimatedTransform* t : {outer, inner}) {
         if (!t || !t->is_animated()) continue;
@@ -52,7 +52,7 @@ Affine Motion::rate(float time, const ShutterClock& clock) const {
         }
     }
     if (time >= clock.close()) {
-        // The last instant belongs to the movement that it ends.
+        // The shutter's last instant belongs to the movement that it ends.
         lo = clock.open();
         for (const AnimatedTransform* t : {outer, inner})
             if (t && t->is_animated())
@@ -64,7 +64,7 @@ Affine Motion::rate(float time, const ShutterClock& clock) const {
     if (!moves(lo, hi)) return zero;
     if (!outer) return Affine::from_matrix(inner->rate(time));
     if (!inner) return Affine::from_matrix(outer->rate(time));
-    // (A B)' = A' B + A B'; the fourth row of a rate is zero.
+    // The product rule gives (A B)' = A' B + A B'; the fourth row of a rate is zero.
     Affine r = zero;
     const auto add = [&r](const Matrix4& a, const Matrix4& b) {
         const Affine product = Affine::from_matrix(a * b);

@@ -1,5 +1,4 @@
-/// Where a shape is over time: up to two animated transforms, one on top of the other, within a
-/// shutter.
+/// Motion of a shape: up to two animated transforms, one on top of the other, within a shutter.
 #pragma once
 
 #include <vector>
@@ -15,16 +14,17 @@ namespace covtrace {
 /// but then loses hits where ranges differ.)
 class ShutterClock {
   public:
-    /// `close` may equal `open`. Throws Error(limit) for more than 128 different key times within.
+    /// Makes a clock; `close` may equal `open`. Throws Error(limit) for more than 128 different key
+    /// times within the shutter.
     ShutterClock(float open, float close, const std::vector<float>& key_times);
 
     float open() const { return breaks_.front(); }
     float close() const { return breaks_.back(); }
-    /// Stretches of time between starts and stops, at least 1.
+    /// Number of the stretches of time between starts and stops, at least 1.
     unsigned segments() const { return static_cast<unsigned>(breaks_.size()) - 1; }
-    /// Scene time to the parameter; clamped to the shutter.
+    /// The parameter of a scene time, which is clamped to the shutter.
     float parameter(float time) const;
-    /// Scene time of key `i` of `count`, which is a multiple of segments().
+    /// The scene time of key `i` of `count`, which is a multiple of segments().
     float key_time(unsigned i, unsigned count) const;
 
   private:
@@ -40,7 +40,8 @@ inline float ShutterClock::parameter(float time) const {
     return (static_cast<float>(i) + f) / static_cast<float>(segments());
 }
 
-/// `outer` after `inner`; null stands for the identity. Does not own the transforms.
+/// The map `outer` after `inner`, over time; null stands for the identity. Does not own the
+/// transforms.
 struct Motion {
     const AnimatedTransform* outer = nullptr;
     const AnimatedTransform* inner = nullptr;
@@ -48,8 +49,8 @@ struct Motion {
     Transform at(float time) const;
     /// Whether anything moves between `begin` and `end`.
     bool moves(float begin, float end) const;
-    /// d/dt of the map at `time`, per unit of scene time; one-sided at the ends of a movement.
-    /// Zero where the motion rests at `time`.
+    /// Derivative of the map by scene time at `time`; one-sided at the ends of a movement. Zero
+    /// where the motion rests at `time`.
     Affine rate(float time, const ShutterClock& clock) const;
 };
 

@@ -15,7 +15,7 @@ double largest_coordinate(const BilinearPatch& p) {
     return std::max({largest(p.p00), largest(p.p10), largest(p.p01), largest(p.p11)});
 }
 
-/// Value and derivatives of what is given at the four corners.
+/// Value and derivatives, by (u, v), of a quantity that is given at the four corners.
 template <class T>
 struct Bilinear {
     T value, du, dv, duv;
@@ -79,7 +79,7 @@ SurfacePoint patch_point(const PatchShape& shape, uint32_t primitive, Vec2 baryc
     point.error = 4 * kHalfUlp * std::max(largest(du), largest(dv));
     point.ng = normalize(cross(du, dv));
     if (dot(point.ng, point.ng) < 0.5) {
-        // A collapsed edge: the normal next to it, towards the middle of the patch.
+        // A collapsed edge gets the normal next to it, towards the middle of the patch.
         const double e = 1e-3;
         point.ng = normalize(cross(p.du(v + e * (0.5 - v)), p.dv(u + e * (0.5 - u))));
     }
@@ -109,7 +109,8 @@ SurfaceDerivatives patch_derivatives(const PatchShape& shape, uint32_t primitive
     d.duvda = to_vec2(uv.du);
     d.duvdb = to_vec2(uv.dv);
     if (shape.mesh->normals.empty()) {
-        // d(pu x pv): the pure second derivatives of a bilinear patch vanish.
+        // The derivatives of pu x pv need the twist alone: the pure second derivatives of a
+        // bilinear patch vanish.
         d.n = cross(d.dpda, d.dpdb);
         if (!shape.parallelograms) {
             d.dnda = cross(d.dpda, p.twist());

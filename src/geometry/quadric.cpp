@@ -44,8 +44,8 @@ bool inside_part(const Quadric& q, Vec3d p) {
     return q.phi_max >= kTwoPi || azimuth(p) <= q.phi_max;
 }
 
-/// The closest point of the whole surface in object space, kept off the axis, where azimuth and
-/// tangents would be lost.
+/// The closest point of the whole surface to a local point, in object space. It is kept off the
+/// axis, where azimuth and tangents would be lost.
 Vec3d project(const Quadric& q, Vec3d near_local) {
     Vec3d p = q.object_from_local.point(near_local);
     const double tiny = 1e-5 * q.radius;
@@ -120,7 +120,7 @@ bool intersect_quadric(const Quadric& q, Vec3d origin, Vec3d direction, double t
         return true;
     };
     if (q.kind == Quadric::Kind::disk) return d.z != 0 && accept((q.height - o.z) / d.z);
-    // From the point of the ray closest to the centre, which loses no digits far away.
+    // Intersect from the point of the ray closest to the centre, which loses no digits far away.
     const double a = dot(d, d), middle = -dot(o, d) / a;
     const Vec3d closest = o + d * middle;
     const double h2 = q.radius * q.radius - dot(closest, closest);
@@ -182,7 +182,8 @@ SurfaceDerivatives quadric_derivatives(const Quadric& q, Vec3d near) {
     const Vec3d p = project(q, near);
     const Parameters s = parameters(q, p);
     const Vec3d n = object_normal(q, p);
-    // Along an orthonormal tangent pair of object space: (u, v) has poles, the surface has none.
+    // Derivatives are along an orthonormal tangent pair of object space: (u, v) has poles, the
+    // surface has none.
     const Frame frame = Frame::from_z(n.to_float());
     const Vec3d a(frame.x), b(frame.y);
     SurfaceDerivatives d;

@@ -13,7 +13,7 @@ Quadric make_quadric(const Disk& disk, const Transform& local_from_object, bool 
 /// may have any length.
 bool intersect_quadric(const Quadric& quadric, Vec3d origin, Vec3d direction, double t_min,
                        double t_max, double& t);
-/// Local box that holds the quadric, rounded outwards.
+/// Box in local space that holds the quadric, rounded outwards.
 Bounds3 quadric_bounds(const Quadric& quadric);
 /// Point on the surface in object space for pbrt's (u, v) in [0, 1]^2.
 Vec3d quadric_object_point(const Quadric& quadric, double u, double v);

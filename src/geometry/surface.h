@@ -13,14 +13,14 @@
 
 namespace covtrace {
 
-/// Half a unit in the last place, relative: what one rounding to float costs.
+/// Half a unit in the last place of single precision, relative: the error of one rounding.
 inline constexpr double kHalfUlp = 5.9604644775390625e-8;
 
 struct TriangleShape {
     std::shared_ptr<const TriangleMesh> mesh;
     std::vector<Vec3> positions;  ///< local; one spare element, for Embree's wide loads
-    Affine normal_map;  ///< of the mesh's normals to local ones; turned where the orientation is
-                        ///< reversed
+    /// Maps the mesh's normals to local ones; turned where the orientation is reversed.
+    Affine normal_map;
     bool flip = false;  ///< whether the outside is opposite to (p1 - p0) x (p2 - p0)
 };
 
@@ -29,7 +29,7 @@ struct PatchShape {
     std::vector<Vec3> positions;
     Affine normal_map;
     bool flip = false;            ///< whether the outside is opposite to dp/du x dp/dv
-    bool parallelograms = false;  ///< all patches are, up to rounding
+    bool parallelograms = false;  ///< whether all patches are parallelograms, up to rounding
     BilinearPatch patch(uint32_t i) const;
 };
 
@@ -38,8 +38,8 @@ struct Quadric {
     enum class Kind { sphere, disk };
     Kind kind = Kind::sphere;
     double radius = 1;
-    double z_min = -1, z_max = 1;         ///< sphere
-    double height = 0, inner_radius = 0;  ///< disk
+    double z_min = -1, z_max = 1;         ///< of spheres
+    double height = 0, inner_radius = 0;  ///< of disks
     double phi_max = 6.283185307179586;   ///< radians
     Affine local_from_object, object_from_local;
     bool reverse = false;
@@ -47,47 +47,47 @@ struct Quadric {
 
 using LocalShape = std::variant<TriangleShape, PatchShape, Quadric>;
 
-/// `description` moved to local space; vertices in parallel.
+/// Moves a described shape to local space; vertices in parallel.
 LocalShape make_local_shape(const ShapeDescription& description,
                             const Transform& local_from_object);
 
-/// First order, in local space.
+/// A point of a surface with its tangents, in local space.
 struct SurfacePoint {
     Vec3d position;
-    double error = 0;  ///< bound along the normal on what intersection in float may be off by
+    double error = 0;  ///< bound on the error of intersection in single precision, along the normal
     Vec3d ng;          ///< unit, on the outside
     Vec3d ns;          ///< unit, in the hemisphere of ng
     Vec3d dpdu, dpdv;
     Vec2 uv;
 };
 
-/// Derivatives after two parameters (a, b) of the shape's own choice, in local space.
+/// Derivatives at a point by two parameters (a, b) of the shape's own choice, in local space.
 struct SurfaceDerivatives {
     Vec3d dpda, dpdb;
     Vec2 duvda, duvdb;
-    /// A normal field that need not be of unit length, and its derivatives; left alone where the
+    /// Normal field, which need not be of unit length, and its derivatives; left alone where the
     /// normal is the same everywhere.
     Vec3d n, dnda, dndb;
     bool is_flat = false;
 };
 
-/// `barycentric` as Embree gives it; quadrics use `near` instead, a local point close to the
-/// surface.
+/// Point and derivatives of a shape at a hit. `barycentric`: as Embree gives it; quadrics use
+/// `near` instead, a local point close to the surface.
 SurfacePoint surface_point(const LocalShape& shape, uint32_t primitive, Vec2 barycentric,
                            Vec3d near);
 SurfaceDerivatives surface_derivatives(const LocalShape& shape, uint32_t primitive,
                                        Vec2 barycentric, Vec3d near);
 
-/// Tangents dp/ds, dp/dt of the coordinates (s, t) whose derivatives after the parameters of dp are
+/// Tangents dp/ds, dp/dt of the coordinates (s, t), whose derivatives by the parameters of dp are
 /// given; an orthonormal pair about `normal` where (s, t) is degenerate.
 void solve_tangents(Vec3d dpda, Vec3d dpdb, Vec2 duvda, Vec2 duvdb, Vec3d normal, Vec3d& dpdu,
                     Vec3d& dpdv);
 
-/// `positions` under `map`, in parallel, with `spare` elements appended.
+/// Maps `positions` in parallel and appends `spare` elements.
 std::vector<Vec3> transform_points(const std::vector<Vec3>& positions, const Transform& map,
                                    size_t spare);
 
-// ---- one per shape, in triangle_shape.cpp and patch_shape.cpp
+// ---- functions of one kind of shape each, in triangle_shape.cpp and patch_shape.cpp
 TriangleShape make_triangle_shape(const std::shared_ptr<const TriangleMesh>& mesh,
                                   const Transform& local_from_object, bool reverse);
 SurfacePoint triangle_point(const TriangleShape& shape, uint32_t primitive, Vec2 barycentric);

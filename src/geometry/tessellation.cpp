@@ -42,7 +42,8 @@ Tessellation::Tessellation(const LocalShape& shape, double piece, double scale) 
 
 Tessellation::Tessellation(const LocalShape& shape, double piece, double scale,
                            const Opacity& opacity, int most) {
-    // Small pieces of large triangles would outgrow memory; holes of a 64th of a triangle do.
+    // The number of pieces is bounded: small pieces of large triangles would outgrow memory, and
+    // holes of a 64th of a triangle do.
     const auto count = [&](double edge) { return std::min(most, pieces(scale * edge, piece, 1)); };
     if (const auto* mesh = std::get_if<TriangleShape>(&shape)) {
         for (uint32_t i = 0; i < mesh->mesh->triangles.size(); ++i) {

@@ -1,4 +1,4 @@
-/// Any local shape as triangles of bounded size error, for what needs no exact surface.
+/// Triangles in place of any local shape, with bounded error, for uses that need no exact surface.
 #pragma once
 
 #include <array>
@@ -9,19 +9,19 @@
 
 namespace covtrace {
 
-/// Triangles over positions; both may belong to the shape itself, which must outlive this.
+/// Triangles over positions; either list may belong to the shape itself, which must outlive this.
 class Tessellation {
   public:
     using Opacity = std::function<float(Vec2 uv, Vec3 local_position)>;
 
-    /// Curved shapes are cut into pieces of about `piece` scene units, at most 512 along a
-    /// parameter; `scale` is how much longer a local unit may be in the scene.
+    /// Cuts curved shapes into pieces of about `piece` scene units, at most 512 along a parameter;
+    /// `scale` is how much longer a local unit may be in the scene.
     Tessellation(const LocalShape& shape, double piece, double scale);
 
-    /// The same, as a surface with holes: cut into pieces of about `piece` everywhere, of which
-    /// those that `opacity` makes opaque are kept, a part of those that are partly so. `opacity`
-    /// gets the surface's (u, v) and a local position. A primitive has at most `most` pieces along
-    /// an edge.
+    /// Makes a surface with holes: the shape is cut into pieces of about `piece` everywhere. Pieces
+    /// that `opacity` makes opaque are kept, and a part of those that are partly so. `opacity` gets
+    /// the surface's (u, v) and a local position. A primitive has at most `most` pieces along an
+    /// edge.
     Tessellation(const LocalShape& shape, double piece, double scale, const Opacity& opacity,
                  int most = 64);
 
@@ -42,7 +42,7 @@ class Tessellation {
     template <class PointAt>
     void add_opaque(int nu, int nv, bool is_triangle, PointAt&& point_at, const Opacity& opacity);
 
-    uint64_t considered_ = 0;  ///< pieces looked at, of a shape with holes
+    uint64_t considered_ = 0;  ///< pieces that were looked at, for a shape with holes
     const TriangleShape* mesh_ = nullptr;
     std::vector<Vec3> positions_;
     std::vector<std::array<uint32_t, 3>> triangles_;

@@ -54,7 +54,8 @@ SurfacePoint triangle_point(const TriangleShape& shape, uint32_t primitive, Vec2
     const double b1 = barycentric.x, b2 = barycentric.y;
     SurfacePoint point;
     point.position = c.p0 + c.e1 * b1 + c.e2 * b2;
-    // Embree's tests work with corners relative to the origin of the ray, in float.
+    // The bound on the error comes from Embree's tests, which work with corners relative to the
+    // origin of the ray, in single precision.
     point.error = 4 * kHalfUlp * std::max(largest(c.e1), largest(c.e2));
     point.ng = normalize(cross(c.e1, c.e2));
     if (shape.flip) point.ng = point.ng * -1.0;
@@ -65,7 +66,7 @@ SurfacePoint triangle_point(const TriangleShape& shape, uint32_t primitive, Vec2
                            Vec3d(n[c.index[2]]) * b2;
         const Vec3d ns = normalize(shape.normal_map.vector(mean));
         if (dot(ns, ns) > 0.5) {
-            // As in pbrt, vertex normals decide which side is outside.
+            // The outside is the side of the vertex normals, as in pbrt.
             point.ns = ns;
             if (dot(point.ng, ns) < 0) point.ng = point.ng * -1.0;
         }
