@@ -1,7 +1,7 @@
 // Nanoseconds per operation, each on 1024 different light fields, the fastest of many rounds:
 //   c++ -std=c++20 -O2 -I include bench/operators.cpp -o operators && ./operators
-// With -D OTHER -I <CovarianceTracing>/include the same of Belcour's Covariance4D (github.com/
-// belcour/CovarianceTracing), which has no time axis, side by side.
+// With -D OTHER -I <CovarianceTracing>/include it also times Belcour's Covariance4D
+// (github.com/belcour/CovarianceTracing), which has no time axis, side by side.
 #include <chrono>
 #include <covariance/covariance.hpp>
 #include <cstdio>
@@ -17,7 +17,7 @@ using Vec = cov::Vec3<double>;
 
 constexpr std::size_t fields = 1024;
 
-/// Keeps a value that nobody reads, and what it was computed from.
+/// Keeps the compiler from dropping a value that nobody reads, and the work that made it.
 template <typename T>
 void keep(T& value) {
     asm volatile("" : : "r"(&value) : "memory");
@@ -60,7 +60,7 @@ std::vector<Case> make_cases() {
     return cases;
 }
 
-/// The fastest of `rounds` runs over all cases, per case.
+/// Time per case of the fastest of `rounds` runs over all cases.
 template <typename Cases, typename Operation>
 double nanoseconds(const Cases& cases, const Operation& operation) {
     double best = 1e30;

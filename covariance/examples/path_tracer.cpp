@@ -1,7 +1,7 @@
 // A small path tracer that filters its image by covariances, from the headers alone:
 //   c++ -std=c++20 -O2 -I include examples/path_tracer.cpp -o path_tracer && ./path_tracer
 // It traces as path tracers do, remembers the vertices of some paths, and walks those back from the
-// light to the camera (`covariance_of`, the part to read first). What comes of it says how many
+// light to the camera (`covariance_of`, the part to read first). The covariances say how many
 // samples each pixel gets and how each pixel is filtered. Pictures: plain.png (the same number of
 // samples, evenly), filtered.png, reference.png, density.png, filters.png.
 #include <covariance/renderer.hpp>
@@ -16,8 +16,8 @@ namespace {
 constexpr int width = 256, height = 144;
 constexpr std::size_t pixels = std::size_t(width) * height;
 constexpr int samples = 8;             // per pixel, on average
-constexpr int first_samples = 2;       // of these: even, with covariances
-constexpr int reference_samples = 96;  // twice
+constexpr int first_samples = 2;       // of `samples`: evenly spread, with covariances
+constexpr int reference_samples = 96;  // in each of two halves
 
 struct Camera {
     Vec eye{0.1, 1.5, 4.6};
@@ -32,7 +32,8 @@ struct Camera {
         lens.pixels_x = lens.pixels_y = 253;
         lens.shutter = 1.0 / 24;
     }
-    /// Through a point of the image (pixels from its corner) and of the unit disc.
+    /// The ray through a point of the image (pixels from its corner) and of the lens (the unit
+    /// disc).
     void ray(double x, double y, double l1, double l2, Vec& origin, Vec& direction) const {
         const double u = (x - width / 2.0) / lens.pixels_x, v = (y - height / 2.0) / lens.pixels_y;
         const Vec focus = lens.focus_distance * (lens.e3 + u * lens.e1 + v * lens.e2);
@@ -42,7 +43,7 @@ struct Camera {
     }
 };
 
-/// What a path leaves behind for the walk back.
+/// A vertex of a path, with all that the walk back needs of it.
 struct Vertex {
     Hit hit;
     Vec to_camera;      ///< unit, to the next vertex towards the camera
@@ -56,14 +57,14 @@ struct Path {
     double found = 0;     ///< mean radiance at the pixel of the lamp or the sky at the end
     bool is_sky = false;  ///< the end is the sky, in the direction `escape`
     Vec escape;
-    Vec color;             ///< of all of it
+    Vec color;             ///< radiance that the whole path brings
     bool in_view = false;  ///< no diffuse surface stands between the end and the camera
 };
 
 class Tracer {
   public:
     Tracer() : scene_(make_scene()) {
-        // Everything that casts shadows or has an outline, the lamp too.
+        // The grid gets everything that casts shadows or has an outline, the lamp too.
         for (const Quad& q : scene_.quads) {
             const Vec a = q.corner, b = a + q.side_1, c = b + q.side_2, d = a + q.side_2;
             grid_.add_triangle(a, b, c);
@@ -74,8 +75,8 @@ class Tracer {
     }
     const Camera& camera() const { return camera_; }
 
-    /// An ordinary path: lamp sampled at diffuse surfaces, sky found by chance. Caustics of the
-    /// lamp are left out, as small path tracers do.
+    /// Traces an ordinary path: lamp sampled at diffuse surfaces, sky found by chance. Caustics of
+    /// the lamp are left out, as in small path tracers.
     Path trace(int x, int y, Random& random) const {
         Path path;
         path.time = (random.next() - 0.5) * camera_.lens.shutter;
@@ -121,7 +122,8 @@ class Tracer {
         return path;
     }
 
-    /// The walk back: the covariance of a path's light at the sensor, and the radiance it weighs.
+    /// Walks back along a path: the covariance of its light at the sensor, and the radiance it
+    /// weighs.
     std::pair<cov::SymmetricMatrix5<double>, double> covariance_of(const Path& path) const {
         std::size_t i = path.vertices.size();
         const auto at = [&](std::size_t k) {
@@ -154,7 +156,7 @@ class Tracer {
                 weight += v.direct;
             }
             if (!(weight > 0)) continue;
-            // What the light of all directions has in common: texture, surface, motion, the way.
+            // Texture, surface, motion and the way are the same for light of all directions.
             light = cov::add_texture(light, texture(v, surface, length(at(i) - at(i - 1))));
             light = cov::surface_exit(light, surface);
             light = cov::motion_exit(light, motion);
@@ -210,14 +212,15 @@ class Tracer {
                 cov::Sym2<double>::diagonal(h.curvature, h.curvature)};
     }
 
-    /// The sharpness with which vertex i (counted from 1) sees what is beside its light.
+    /// The sharpness with which vertex i (counted from 1) sees occluders beside its light.
     static double window(const Path& path, std::size_t i) {
         const Material& m = *path.vertices[i - 1].hit.material;
         if (m.kind == Kind::mirror) return cov::mirror_receiver<double>;
         return m.kind == Kind::fuzzy ? cov::fuzz_cov(m.fuzz).xx : cov::diffuse_receiver<double>;
     }
 
-    /// From a vertex to the one before it, or to the camera where `to` is 0, past occluders.
+    /// Carries light from a vertex to the one before it, or to the camera where `to` is 0, past
+    /// occluders.
     cov::LightField<double> carry(const Path& path, const cov::LightField<double>& light,
                                   const Vec& from, std::size_t to) const {
         if (to == 0)
@@ -241,7 +244,7 @@ class Tracer {
         }
     }
 
-    /// Of the colour at a vertex that the camera sees from `distance` away.
+    /// Covariance of the texture's colour at a vertex that the camera sees from `distance` away.
     cov::Sym2<double> texture(const Vertex& v, const cov::Surface<double>& surface,
                               double distance) const {
         const Material& m = *v.hit.material;
@@ -259,7 +262,7 @@ class Tracer {
     cov::OccluderGrid<double> grid_;
 };
 
-/// Sums of the colours of samples, apart for what is in view.
+/// Sums of the colours of samples, for scattered light and for light in view.
 struct Film {
     std::vector<Vec> scattered = std::vector<Vec>(pixels), in_view = scattered;
     std::vector<std::uint32_t> count = std::vector<std::uint32_t>(pixels);
@@ -288,8 +291,8 @@ void trace_evenly(const Tracer& tracer, Film& film, int per_pixel, std::uint64_t
         }
 }
 
-/// Mean of (error / reference)^2. The noise of the reference falls out, as its halves are
-/// independent.
+/// Relative error of an image: mean of (error / reference)^2. The noise of the reference falls out,
+/// as its halves `a` and `b` are independent.
 double relative_error(const std::vector<Vec>& image, const std::vector<Vec>& a,
                       const std::vector<Vec>& b) {
     double sum = 0;
@@ -339,7 +342,7 @@ int main(int argc, char** argv) {
         cov::gather(film.mean_of(film.scattered), film.mean_of(film.in_view), film.count, filters);
     const std::vector<Vec> filtered(gathered.begin(), gathered.end());
 
-    // Beside plain path tracing of as many samples.
+    // For comparison, plain path tracing of as many samples, and a reference in two halves.
     Film plain, half_1, half_2;
     trace_evenly(tracer, plain, samples, 2);
     trace_evenly(tracer, half_1, reference_samples, 3);

@@ -1,6 +1,7 @@
-// The scene of path_tracer.cpp as any small path tracer has it: spheres and parallelograms, three
-// materials, two textures, one lamp under an even sky, a camera with lens and shutter, and a writer
-// of PNG files. Nothing in here is about covariances but the namespace of the vector.
+// A scene of the kind that any small path tracer has, for path_tracer.cpp: spheres and
+// parallelograms, three materials, two textures, one lamp under an even sky, a camera with lens and
+// shutter, and a writer of PNG files. Nothing in here is about covariances but the namespace of the
+// vector.
 #pragma once
 
 #include <array>
@@ -20,7 +21,8 @@ inline double mean(const Vec& color) {
     return (color.x + color.y + color.z) / 3;
 }
 
-/// Numbers that follow from pixel, sample and pass alone, so that every run gives the same bits.
+/// Random numbers that follow from pixel, sample and pass alone, so that every run gives the same
+/// bits.
 struct Random {
     std::uint64_t state;
     Random(std::uint64_t pixel, std::uint64_t sample, std::uint64_t pass)

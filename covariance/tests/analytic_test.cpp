@@ -110,7 +110,7 @@ TEST(Closed, FlatMirrorUnfoldsThePath) {
 }
 
 /// A concave mirror of radius R images at R/2: light from a far point, one focal length behind the
-/// mirror, has all its frequencies in the angle... and none that pair with position.
+/// mirror, has all its frequencies in the angle, and none that pair with position.
 TEST(Closed, ConcaveMirrorFocusesAtHalfItsRadius) {
     const double radius = 2;
     const Surface hit{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1 / radius, 0, -1 / radius}};
@@ -129,8 +129,8 @@ RC_GTEST_PROP(Closed, PhysicalLensAgreesWithTheDirectMap, ()) {
     const double focus = draw(1, 5), f = draw(0.1, 0.8), radius = draw(0.01, 0.2);
     const double behind = 1 / (1 / f - 1 / focus), pixels = draw(10, 100);
     const Matrix direct = sensor(Field{s, kToCamera}, camera_on_axis(focus, radius, pixels, 1));
-    // (x_sensor, u_sensor) of a ray from lens point l to the film point -d_s p; in pixels and lens
-    // radii.
+    // The film's coordinates (x_sensor, u_sensor) of a ray from lens point l to the film point -d_s
+    // p, in pixels and lens radii.
     Dense film = Dense::identity();
     for (std::size_t k = 0; k < 2; ++k) {
         film(k, k) = -behind / pixels;

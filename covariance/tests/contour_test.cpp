@@ -1,5 +1,5 @@
-// Where a curved surface turns away from a ray: against the outlines of spheres, cylinders and
-// ellipsoids, which are known.
+// Contours, where a curved surface turns away from a ray, against the outlines of spheres,
+// cylinders and ellipsoids, which are known.
 #include "support.h"
 
 namespace support {
@@ -12,7 +12,8 @@ Surface ellipsoid_at(const Vec3& q, const Vec3& r) {
     const Vec3 g{q.x / (r.x * r.x), q.y / (r.y * r.y), q.z / (r.z * r.z)};
     const double size = length(g);
     const Frame f = draw_frame((1 / size) * g);
-    // dn = (H - n n^T H) dq / |g| with H = diag(1 / r^2), seen along the tangents.
+    // The normal changes by dn = (H - n n^T H) dq / |g| with H = diag(1 / r^2), seen along the
+    // tangents.
     const auto form = [&](const Vec3& a, const Vec3& b) {
         return (a.x * b.x / (r.x * r.x) + a.y * b.y / (r.y * r.y) + a.z * b.z / (r.z * r.z)) / size;
     };
@@ -55,7 +56,7 @@ RC_GTEST_PROP(Contour, OfASphereIsExact, ()) {
 }
 
 RC_GTEST_PROP(Contour, OfACylinderIsExact, ()) {
-    // About the x axis, seen at z = radius.
+    // The cylinder is about the x axis, seen at z = radius.
     const double radius = draw(0.1, 5);
     const double turn = draw(-0.6, 0.6), lean = draw(-1.2, 1.2);  // to the outline; along the axis
     const Vec3 o{std::sin(lean), -std::cos(turn) * std::cos(lean), std::sin(turn) * std::cos(lean)};
@@ -66,7 +67,7 @@ RC_GTEST_PROP(Contour, OfACylinderIsExact, ()) {
     RC_ASSERT(found.has_value());
     RC_ASSERT(std::abs(found->distance - radius * (1 - std::cos(turn))) < 1e-9 * radius);
     RC_ASSERT(length(found->direction - m) < 1e-9);
-    // On the outline, and no farther along it than needed to be beside the ray.
+    // The point is on the outline, and no farther along it than needed to be beside the ray.
     const Vec3 p = found->offset + Vec3{0, 0, radius};
     RC_ASSERT(std::abs(p.y - radius * m.y) + std::abs(p.z - radius * m.z) < 1e-9 * radius);
     const Vec3 beside = found->offset - dot(found->offset, o) * o;
@@ -107,7 +108,7 @@ RC_GTEST_PROP(Contour, EndsLightAsAnOccluderAtItsPlace, ()) {
     const auto found = contour<double>(ball, field.frame.z);
     RC_ASSERT(found.has_value());
     const Field ended = end_at_contour(field, *found, 1e-3, motion);
-    // A point that moves with the ball, where the outline touches it.
+    // The velocity is that of a point that moves with the ball, where the outline touches it.
     const Vec3 velocity = motion.velocity + cross(motion.angular_velocity, found->offset);
     const double ahead = dot(found->offset, field.frame.z);
     const Vec3 offset = std::max(found->distance, 1e-3) * found->direction;

@@ -1,4 +1,4 @@
-// What the library promises beside its mathematics: values only, no allocation, no exceptions, any
+// Promises of the library beside its mathematics: values only, no allocation, no exceptions, any
 // vector type, both precisions, compile time where nothing forbids it.
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ struct RendererVec {
 static_assert(Vec3Like<RendererVec>);
 static_assert(!Vec3Like<int>);
 
-/// One that asks by functions.
+/// A vector type whose coordinates are functions.
 struct PrivateVec {
     constexpr double x() const { return 1; }
     constexpr double y() const { return 2; }
@@ -48,7 +48,7 @@ static_assert(sizeof(SymmetricMatrix5<float>) == 15 * sizeof(float));
 static_assert(sizeof(LightField<float>) == 24 * sizeof(float));
 static_assert(std::is_nothrow_default_constructible_v<Accumulator<double>>);
 
-// At compile time.
+// Operators that are evaluated at compile time.
 constexpr SymmetricMatrix5<double> kTravelled =
     travel(SymmetricMatrix5<double>::diagonal(4, 1, 0, 0, 0), 0.5);
 static_assert(kTravelled(0, 2) == -2 && kTravelled(2, 2) == 1 && kTravelled(2, 0) == -2);

@@ -27,8 +27,8 @@ struct Setting {
     }
 };
 
-/// The size of the second derivative that a Gaussian window sees whose deviation is half the
-/// result's, root mean square with the third one, along x or y: by quadrature and iteration.
+/// Second derivative that a Gaussian window sees whose deviation is half the result's, root mean
+/// square with the third one, along x or y: by quadrature and iteration.
 double windowed_bandwidth(const Setting& s, bool along_x) {
     constexpr int kSteps = 40;
     double f[2] = {4, 4};
@@ -125,7 +125,8 @@ RC_GTEST_PROP(NearEmitter, IsPositiveSemiDefiniteWithoutAngles, ()) {
         for (std::size_t j = 0; j < 5; ++j) RC_ASSERT(left.sigma(i, j) == 0);
 }
 
-/// The lobe (1 + r^2)^-2 blurred by a Gaussian light of variance s2: -Hess/value at its centre.
+/// The curvature -Hess/value, at its centre, of the lobe (1 + r^2)^-2 blurred by a Gaussian light
+/// of variance s2.
 double blurred_lobe(double s2) {
     double value = 0, second = 0;
     constexpr int kSteps = 4000;
@@ -143,7 +144,7 @@ TEST(TailedLobe, FollowsALightOfAnySize) {
     for (const double s2 : {0.01, 0.03, 0.0625, 0.125, 0.25, 0.5, 1.0, 2.0}) {
         const double light = 1 / (kFourPiSq * s2);
         const double c = tailed_lobe(lobe, Sym2::diagonal(light, light)).xx;
-        // Convolution: inverses add.
+        // In a convolution inverses add.
         const double ratio = std::sqrt(1 / (1 / c + 1 / light) * kFourPiSq / blurred_lobe(s2));
         EXPECT_GT(ratio, 0.98) << s2;
         EXPECT_LT(ratio, s2 <= 0.25 ? 1.02 : 1.06) << s2;

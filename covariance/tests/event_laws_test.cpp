@@ -34,7 +34,7 @@ RC_GTEST_PROP(Inverses, NormalMapExitUndoesEnter, ()) {
 }
 
 RC_GTEST_PROP(Inverses, RefractionBackIsNothing, ()) {
-    // Into the medium and out again by the same border: a slab without thickness.
+    // Light goes into the medium and out again by the same border: a slab without thickness.
     const Field field{draw_psd(), draw_frame(draw_direction())};
     const Surface s = draw_surface(field.frame.z);
     const double n1 = 1, n2 = draw(1.1, 2), eta = n1 / n2;
@@ -76,7 +76,7 @@ RC_GTEST_PROP(Invariance, TangentBasisOfAMappedSurface, ()) {
 }
 
 RC_GTEST_PROP(Volume, MappedMirrorsKeepItAtTheMirrorAngle, ()) {
-    // Of the geometry's own normal: both cosines are the same, and shears keep the volume.
+    // At the geometry's own normal both cosines are the same, and shears keep the volume.
     const Field field{draw_pd(), draw_frame(draw_direction())};
     const Surface s = draw_surface(field.frame.z);
     MapSlopes<double> map = draw_map();

@@ -119,9 +119,10 @@ RC_GTEST_PROP(Inverses, RotateToAndBack, ()) {
     RC_ASSERT(distance(flip_y(field).sigma, rotate_to(field, flip_y(field).frame).sigma) < kExact);
 }
 
-// ---- what must not depend on the description
+// ---- results that must not depend on the description
 
-/// Everything that can happen to a path between two segments, in the frame that the field has.
+/// Sends light through all events that a path can have between two segments, in the frame that the
+/// field has.
 Field follow(Field f, const Surface& hit, const Vec3& leaving, const Motion& m, const Sym2& micro) {
     f = travel(f, 0.7);
     f = occlude(f, Vec3{0.3, -0.2, 0.1}, 1e-3, Vec3{1, 2, -1});
@@ -229,7 +230,7 @@ RC_GTEST_PROP(Definiteness, EveryChangeOfCoordinatesKeepsIt, ()) {
 RC_GTEST_PROP(Sensor, IsTheTransformByTheCamerasMatrix, ()) {
     const Matrix s = draw_psd();
     const Frame eye = draw_frame(draw_direction());
-    // Up to 53 degrees off the axis, in a frame that is turned and of either handedness.
+    // The ray is up to 53 degrees off the axis, in a frame that is turned and of either handedness.
     const double off = draw(0, 0.8), phi = draw(0, 6.28);
     const Vec3 to_eye =
         std::sqrt(1 - off * off) * eye.z + off * (std::cos(phi) * eye.x + std::sin(phi) * eye.y);

@@ -59,7 +59,7 @@ TEST(Gather, WidensABlobByItsOwnFilterAndNoMore) {
         for (int x = 0; x < n; ++x)
             image[std::size_t(y * n + x)] = {filter_weight(q, x - n / 2, y - n / 2), 1, 0};
     const auto out = gather(image, std::vector<std::uint32_t>(n * n, 1), field);
-    // As the filters are cut at three deviations, within 2 %.
+    // The tolerance is 2 %, as the filters are cut at three deviations.
     const double peak = std::sqrt(det(blob) / det((1 + 1 / 4.0) * blob));
     EXPECT_NEAR(out[(n / 2) * n + n / 2].x, peak, 0.02 * peak);
     EXPECT_NEAR(out[(n / 2) * n + n / 2].y, 1, 1e-12);
@@ -113,7 +113,8 @@ TEST(CovarianceImage, OfNoPixelsStandsForNoLight) {
     }
 }
 
-/// A part without pixels means what one of the same size without light does, in filters and image.
+/// A part without pixels means the same, in filters and image, as one of the same size without
+/// light.
 TEST(FilterField, PartsWithoutPixelsAreWithoutLight) {
     const CovarianceImage<float> none(0, 0), dark(21, 1);
     CovarianceImage<float> image(21, 1);
@@ -176,7 +177,7 @@ RC_GTEST_PROP(Budget, IsSpentToTheLastSampleInProportion, ()) {
     for (const std::uint32_t c : allocate(density, 300, taken, 8)) RC_ASSERT(c >= 4 && c <= 8);
 }
 
-/// The multiple of the density that pixels between the limits got.
+/// The factor is the multiple of the density that pixels between the limits got.
 TEST(Budget, TellsTheFactorThatItMakes) {
     const std::vector<double> density{0.5, 1, 2, 40};
     const std::vector<std::uint32_t> least{4, 0, 0, 0};
@@ -198,8 +199,8 @@ TEST(Budget, GivesBackTheFactorOfAnyMean) {
     }
 }
 
-/// sqrt|S + W| in cycles per pixel, aperture and shutter. A radius is 1/sqrt(pi) of the side of a
-/// square aperture of the same area.
+/// The count is sqrt|S + W| in cycles per pixel, aperture and shutter. A radius is 1/sqrt(pi) of
+/// the side of a square aperture of the same area.
 TEST(Budget, CountsOfTheHypercubeAreTheWholeDeterminant) {
     CovarianceImage<double> image(1, 1);
     Matrix s = Matrix::diagonal(0.01, 0.02, 3, 5, 7);

@@ -1,5 +1,5 @@
 // Lobes at the actual pair of directions: jets against finite differences, closed forms, limits,
-// and what the local lobe is for: a scale on which the lobe may be smoothed, everywhere on it.
+// and the purpose of local lobes: a scale on which the lobe may be smoothed, everywhere on it.
 #include <functional>
 
 #include "support.h"
@@ -15,7 +15,7 @@ constexpr double kFourPiSq = four_pi_sq<double>;
 
 // ---- derivatives
 
-/// Smooth, positive, and made of everything a jet knows.
+/// A function that is smooth, positive, and made of everything a jet knows.
 template <typename S>
 S everything(const S& u, const S& v) {
     using std::exp, std::log, std::pow, std::sqrt, std::abs;
@@ -64,7 +64,7 @@ struct Rough {
     }
     template <typename V>
     auto operator()(const V& wi, const V& wo) const {
-        const V h = wo + wi;  // the distribution does not ask for its length
+        const V h = wo + wi;  // of any length: the distribution does not ask for it
         const auto x = h.x / (ax * h.z), y = h.y / (ay * h.z);
         const auto e = 1.0 + x * x + y * y;
         const auto cos2 = h.z * h.z / dot(h, h);

@@ -22,8 +22,8 @@ std::optional<double> nearest(const std::vector<Outline<double>>& all) {
     return r;
 }
 
-/// Spheres of any place and motion beside a segment: the nearest outline is what geometry says, as
-/// long as it is within a cell.
+/// Spheres of any place and motion beside a segment have their nearest outline where geometry says,
+/// as long as it is within a cell.
 RC_GTEST_PROP(OccluderGrid, FindsSpheresThatMoveBesideASegment, ()) {
     OccluderGrid<double> grid(8);
     grid.add_sphere({-5, -5, -5}, 0.01);
@@ -114,7 +114,7 @@ TEST(OccluderGrid, TheSphereThatLightLeavesEndsAtItsContour) {
     EXPECT_NEAR(leaving[0].distance, of_surface->distance, 1e-12);
     EXPECT_NEAR(dot(leaving[0].direction, of_surface->direction), 1, 1e-12);
     EXPECT_NEAR(leaving[0].ahead, of_surface->offset.z, 1e-12);
-    // Light that arrives there, and light within, has none.
+    // Light that arrives at the sphere, and light within, has no outline.
     EXPECT_TRUE(outlines(grid, n + Vec3{0, 0, 2}, n).empty());
     EXPECT_TRUE(outlines(grid, n, -1.0 * n).empty());
 }

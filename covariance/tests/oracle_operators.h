@@ -1,4 +1,4 @@
-// How the operations named in a file of test vectors map to the operators of the library.
+// The map from operations named in a file of test vectors to the operators of the library.
 #pragma once
 
 #include <covariance/covariance.hpp>
@@ -26,7 +26,7 @@ struct Result {
     std::optional<covariance::Matrix5<double>> old_from_new;
 };
 
-/// One step of a chain: what the file calls it, and the covariance after it.
+/// One step of a chain: its name in the file, and the covariance after it.
 struct Step {
     std::string name;
     Matrix sigma;

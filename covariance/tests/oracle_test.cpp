@@ -22,7 +22,7 @@ std::string oracle_path() {
     return path != nullptr && *path != '\0' ? path : COVTRACE_BUNDLED_ORACLE;
 }
 
-/// What the file holds; `error` says why it holds nothing.
+/// Content of the file; `error` says why it has none.
 struct Oracle {
     Json content;
     std::vector<Json> vectors;
@@ -58,7 +58,7 @@ void expect_close(const Numbers& ours, const Numbers& stated, double tolerance,
                   const std::string& what) {
     ASSERT_EQ(ours.size(), stated.size()) << what;
     for (std::size_t i = 0; i < ours.size(); ++i)
-        // Written so that a NaN on either side fails.
+        // The condition is written so that a NaN on either side fails.
         EXPECT_TRUE(std::abs(ours[i] - stated[i]) <= tolerance)
             << what << ", entry " << i << ": " << ours[i] << ", stated " << stated[i]
             << ", tolerance " << tolerance;

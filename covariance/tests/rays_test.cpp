@@ -1,6 +1,6 @@
-// Against exact ray geometry: real rays are traced beside the central one, and their finite
-// differences compared with the matrices of the operators. No formula of the library is used to
-// trace.
+// Operators against exact ray geometry: real rays are traced beside the central one, and their
+// finite differences compared with the matrices of the operators. No formula of the library is used
+// to trace.
 #include <functional>
 
 #include "support.h"
@@ -29,7 +29,7 @@ Coordinates coordinates(const Frame& f, const Vec3& centre, const Ray& ray) {
     return {dot(at, f.x), dot(at, f.y), dot(d, f.x), dot(d, f.y)};
 }
 
-/// d(old)/d(new) by central differences, as the space and angle part of a 5x5.
+/// Jacobian d(old)/d(new) by central differences, as the space and angle part of a 5x5.
 Dense jacobian(const std::function<Coordinates(const Coordinates&)>& old_from_new) {
     Dense a = Dense::identity();
     const double step = 1e-5;
@@ -61,8 +61,8 @@ Vec3 reflected(const Vec3& d, const Vec3& n) {
     return d - 2 * dot(d, n) * n;
 }
 
-/// Where a ray meets the sphere of radius 1/k that touches the plane z = 0 at the origin from
-/// below.
+/// The point where a ray meets the sphere of radius 1/k that touches the plane z = 0 at the origin
+/// from below.
 Vec3 hit_sphere(const Ray& ray, double k) {
     const double radius = 1 / k;
     const Vec3 centre{0, 0, -radius}, o = ray.origin - centre, d = unit(ray.direction);
@@ -70,8 +70,8 @@ Vec3 hit_sphere(const Ray& ray, double k) {
     return ray.origin + (radius > 0 ? -b - root : -b + root) * d;
 }
 
-/// Light that leaves is traced back to the light that arrived: by reversibility, with both
-/// reversed.
+/// Events at a sphere by reversibility: light that leaves is traced back to the light that arrived,
+/// with both reversed.
 class SphereEvent : public testing::TestWithParam<double> {
   protected:
     Surface surface() const {
@@ -91,7 +91,8 @@ class SphereEvent : public testing::TestWithParam<double> {
                 const std::function<Vec3(const Vec3& direction, const Vec3& normal)>& bend) const {
         return jacobian([&](const Coordinates& p) {
             const Ray leaving = neighbour(out, {}, p);
-            // From the side where the light goes: step out along it, come back to the sphere.
+            // The start is on the side where the light goes: step out along it, come back to the
+            // sphere.
             const Ray reversed{leaving.origin + 0.4 * unit(leaving.direction), -leaving.direction};
             const bool outside = dot(leaving.direction, Vec3{0, 0, 1}) > 0;
             const Vec3 at = outside ? hit_sphere(reversed, GetParam()) : far_hit(reversed);

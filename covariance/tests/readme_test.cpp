@@ -28,7 +28,7 @@ cov::OccluderGrid<double> grid_of_scene() {
     return grid;
 }
 
-/// What a path has of each vertex, counted from 1; asked for what it has not it throws.
+/// Values of a path's vertices, counted from 1; asked for a vertex that is not there it throws.
 template <typename T>
 struct OfVertices {
     std::vector<T> values;

@@ -1,5 +1,5 @@
-// The rules of RULES.md for what a path meets beside plain surfaces: mapped normals, sheets and
-// masks, media. Against exact rays, closed forms and quadrature.
+// The rules of RULES.md for events beside plain surfaces: mapped normals, sheets and masks, media.
+// Against exact rays, closed forms and quadrature.
 #include <functional>
 
 #include "support.h"
@@ -111,7 +111,7 @@ RC_GTEST_PROP(Sheet, IsEnterTextureExit, ()) {
     RC_ASSERT(through.frame == field.frame);
     RC_ASSERT(is_psd(through.sigma - field.sigma, trace(through.sigma)));
     RC_ASSERT(pass_through(field, s, Sym2{}) == field);
-    // The other side's normal, other tangents: the same sheet.
+    // The same sheet described by the other side's normal and other tangents.
     const Frame other = draw_frame(-s.n);
     const Sym2 turned = congruence(
         t, Mat2{dot(s.t1, other.x), dot(s.t1, other.y), dot(s.t2, other.x), dot(s.t2, other.y)});
@@ -137,7 +137,7 @@ TEST(Sheet, VisibilityIsThatOfAnImageTexture) {
     EXPECT_EQ(edge_visibility(0.0), 1);
     EXPECT_EQ(edge_visibility(1.0), 0);
     EXPECT_DOUBLE_EQ(edge_visibility(0.9), (0.1 / 1.9) / 0.1);
-    // Half of the area at each level: deviation over mean of 1 and t.
+    // Both levels have half of the area: deviation over mean of 1 and t.
     const double mean = 0.95, deviation = 0.05;
     EXPECT_DOUBLE_EQ(edge_visibility(0.9), deviation / mean / 0.1);
     // A mask of mean 0.8 and deviation 0.2 lets 0.2 pass.
@@ -153,7 +153,7 @@ RC_GTEST_PROP(Absorption, SlabGradientIsThatOfExactLengths, ()) {
     const auto depth = [&](std::size_t j, double step) {
         std::array<double, 4> p{};
         p[j] = step;
-        // Relative to the point of the central ray on the second border.
+        // Offsets are relative to the point of the central ray on the second border.
         const Vec3 o = p[0] * f.x + p[1] * f.y, w = f.z + p[2] * f.x + p[3] * f.y;
         const double first = dot(-d * f.z - o, n_in) / dot(w, n_in);
         const double second = -dot(o, n_out) / dot(w, n_out);
@@ -163,7 +163,7 @@ RC_GTEST_PROP(Absorption, SlabGradientIsThatOfExactLengths, ()) {
     for (std::size_t j = 0; j < 4; ++j)
         RC_ASSERT(std::abs(g[j] - (depth(j, 1e-5) - depth(j, -1e-5)) / 2e-5) < 1e-6);
     RC_ASSERT(g[4] == 0.0);
-    // Rank one, positive; planes across the ray do nothing.
+    // The result has rank one and is positive; planes across the ray do nothing.
     RC_ASSERT(is_psd(absorb(Matrix{}, g)));
     const auto across = slab_gradient(f, f.z, -f.z, d, extinction);
     RC_ASSERT(largest(absorb(Matrix{}, across)) < 1e-25);
@@ -198,8 +198,8 @@ TEST(Volume, SeesNoDetailAlongTheWayTheLightCame) {
     EXPECT_NEAR(turned.sigma(1, 1), 9, 1e-12);
 }
 
-/// -Hess log L/(4 pi^2) of the light that leaves a point of a medium, by quadrature over the
-/// arriving slopes and finite differences: nothing of the library but the frames.
+/// Curvature -Hess log L/(4 pi^2) of the light that leaves a point of a medium, by quadrature over
+/// the arriving slopes and finite differences: nothing of the library but the frames.
 Sym2 scattered_angular(double s, double g, double deflection) {
     const Vec3 in{0, 0, 1}, out{std::sin(deflection), 0, std::cos(deflection)};
     const Vec3 out_x{std::cos(deflection), 0, -std::sin(deflection)}, out_y{0, 1, 0};

@@ -1,5 +1,5 @@
-// Laws of what multiplies or convolves the light: lobes, windows, textures, occluders, sources,
-// sums.
+// Laws of operators that multiply or convolve the light: lobes, windows, textures, occluders,
+// sources, sums.
 #include "support.h"
 
 namespace support {
@@ -7,7 +7,7 @@ namespace {
 
 using namespace covariance;
 
-/// C^-1 placed in the rows and columns u, v.
+/// The inverse C^-1 placed in the rows and columns u, v.
 Matrix angular_inverse(const Sym2& c) {
     Matrix m;
     m.set_angular(inverse(c));
@@ -54,7 +54,7 @@ RC_GTEST_PROP(Convolution, SharpLobeChangesNothing, ()) {
 }
 
 TEST(Convolution, KeepsTheAngleOfAPointLightFarAway) {
-    // Very high frequencies arrive; what leaves is the lobe's, not rounding noise.
+    // Very high frequencies arrive; those that leave are the lobe's, not rounding noise.
     const Field far = travel(point_source(Frame{}, 1e-4), 500);
     const Matrix after = convolve_angular(far.sigma, Sym2::diagonal(0.2, 0.3));
     EXPECT_NEAR(after(2, 2), 0.2, 1e-6);
@@ -257,7 +257,7 @@ RC_GTEST_PROP(Occlusion, WorldFormProjectsOntoTheRay, ()) {
     RC_ASSERT(is_psd(seen.sigma));
     const Field tensor = occlude(field, Sym3<double>{}.add_outer(across, 2.5), r, velocity);
     RC_ASSERT(distance(tensor.sigma, seen.sigma) < 1e-11);
-    // Centred on the ray: no direction, a finite amount.
+    // An occluder centred on the ray has no direction, and adds a finite amount.
     const Field centred = occlude(field, Vec3{}, 0.1);
     RC_ASSERT(std::abs(centred.sigma(0, 0) - field.sigma(0, 0) - 0.5 * edge_variance(0.1)) < 1e-9);
 }
@@ -277,7 +277,8 @@ TEST(Texture, CheckerboardUsesTheDistanceOfBothAxes) {
 RC_GTEST_PROP(Sources, RectangleIsTwoTriangles, ()) {
     const double a = draw(0.1, 3), b = draw(0.1, 3);
     const Vec3 p{0, 0, 0}, q{a, 0, 0}, r{a, b, 0}, s{0, b, 0}, x{1, 0, 0}, y{0, 1, 0};
-    // Each triangle about its own centroid, and the centroids about the centre.
+    // The moments are those of each triangle about its own centroid, and of the centroids about the
+    // centre.
     const Sym2 one = triangle_moments(p, q, r, x, y), two = triangle_moments(p, r, s, x, y);
     const double dx = a / 6, dy = b / 6;
     const Sym2 apart{dx * dx, -dx * dy, dy * dy};

@@ -110,7 +110,7 @@ TEST(Counts, DensitiesAndClamps) {
     const Sym2 spectrum{0.04, 0, 0.01};
     EXPECT_DOUBLE_EQ(image_density(spectrum), 0.02);
     EXPECT_DOUBLE_EQ(thesis_density(spectrum, 50), 1.0);
-    // pi sqrt(det W_rr), W_rr of a disc and a box shutter.
+    // The factor is pi sqrt(det W_rr), with W_rr of a disc and a box shutter.
     EXPECT_DOUBLE_EQ(hypercube_density(spectrum, 50),
                      pi<double> * disc_lens_window<double> * std::sqrt(box_shutter_window<double>));
     EXPECT_DOUBLE_EQ(tempered_density(spectrum, 50), std::sqrt(0.08));

@@ -24,8 +24,8 @@ TEST(LightFromInfinity, OtherLightHasNoAnswerThere) {
     EXPECT_FALSE(is_finite(travel(lamp, kInfinity).sigma));
 }
 
-/// -Hess g/(4 pi^2 g) at 0 by central differences: the covariance of a signal with a positive
-/// spectrum on a plane.
+/// Covariance of a signal with a positive spectrum on a plane: -Hess g/(4 pi^2 g) at 0 by central
+/// differences.
 template <typename Signal>
 Sym2 measured(const Signal& g, double h) {
     const double at = g(0, 0);
@@ -83,8 +83,8 @@ TEST(SolidTexture, ChecksOnAFloorAreACheckerboard) {
               checkerboard_texture(0.1, 0.2, 0.01));
 }
 
-/// Gaussian light off a fuzzy mirror: variances of directions add. 400 000 draws of the same seed;
-/// the tolerance is 5 standard deviations of a variance.
+/// Gaussian light off a fuzzy mirror: variances of directions add. The mirror draws 400 000
+/// directions from a fixed seed; the tolerance is 5 standard deviations of a variance.
 TEST(FuzzyMirror, VarianceOfItsLobeIsThatOfTheDrawnDirections) {
     const double fuzz = 0.05, light = 0.02;  // standard deviation of the light's slopes
     std::mt19937 random(2);
@@ -126,7 +126,7 @@ TEST(LampInView, ItsBorderReachesTheCameraThroughAMirror) {
                border = rectangle_border(2.0, 2.0, 0.9, 0.0, 1e-4);
     const Matrix with = seen(area_source_in_view(moments, border, down)),
                  without = seen(area_source(moments, down));
-    // Pinhole: the deviation in slopes is 1/(2 pi sqrt(Suu)), the border 0.1/3 away.
+    // A pinhole sees the deviation in slopes 1/(2 pi sqrt(Suu)); the border is 0.1/3 away.
     EXPECT_LT(1 / (2 * M_PI * std::sqrt(with(2, 2))), 0.5 * 0.1 / 3);
     EXPECT_GT(1 / (2 * M_PI * std::sqrt(without(2, 2))), 0.1 / 3);
 }

@@ -1,5 +1,5 @@
-// What the tests share: random matrices, frames and surfaces, and plain 5x5 algebra to compare
-// with.
+// Tools that the tests share: random matrices, frames and surfaces, and plain 5x5 algebra to
+// compare with.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -106,8 +106,8 @@ inline double largest(const Matrix& s) {
     return most;
 }
 
-/// max|a - b| relative to the largest entry of either and of `scale` (an input whose rounding
-/// carries over).
+/// Distance max|a - b| of two matrices, relative to the largest entry of either and of `scale` (an
+/// input whose rounding carries over).
 inline double distance(const Matrix& a, const Matrix& b, double scale = 0) {
     const double size = std::max({largest(a), largest(b), scale});
     const double difference = largest(a - b);

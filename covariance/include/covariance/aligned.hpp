@@ -8,7 +8,7 @@
 
 namespace covariance {
 
-/// Old from new coordinates, ray to tangent plane: x_old = cos x.
+/// Old from new coordinates for `project_aligned`, from ray to tangent plane: x_old = cos x.
 template <std::floating_point T>
 [[nodiscard]] constexpr Matrix5<T> project_aligned_matrix(T cosine) noexcept {
     Matrix5<T> a = Matrix5<T>::identity();
@@ -16,7 +16,7 @@ template <std::floating_point T>
     return a;
 }
 
-/// From ray to tangent coordinates: Sxx' = cos^2 Sxx, Sxu' = cos Sxu.
+/// Projects from ray to tangent coordinates: Sxx' = cos^2 Sxx, Sxu' = cos Sxu.
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> project_aligned(SymmetricMatrix5<T> s,
                                                             NonDeduced<T> cosine) noexcept {
@@ -25,22 +25,23 @@ template <std::floating_point T>
     return s;
 }
 
-/// From tangent to ray coordinates, the inverse of `project_aligned`. Pre: cosine is not 0.
+/// Projects from tangent to ray coordinates, the inverse of `project_aligned`. Pre: cosine is not
+/// 0.
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> unproject_aligned(const SymmetricMatrix5<T>& s,
                                                               NonDeduced<T> cosine) noexcept {
     return project_aligned(s, 1 / cosine);
 }
 
-/// G of one half step of curvature: -[k11 k12; cos k12 cos k22]. Across the plane of incidence the
-/// angle carries the cosine.
+/// Slope matrix G of one half step of curvature: -[k11, k12; cos k12, cos k22]. Across the plane of
+/// incidence the angle carries the cosine.
 template <std::floating_point T>
 [[nodiscard]] constexpr Mat2<T> curvature_aligned_slope(const Sym2<T>& k, T cosine) noexcept {
     return {-k.xx, -k.xy, -cosine * k.xy, -cosine * k.yy};
 }
 
-/// Entering the turning frame of a curved surface, in tangent coordinates (and, with the outgoing
-/// cosine, leaving it in the mirrored frame): W_x' = W_x - k11 W_u - cos k12 W_v.
+/// Enters the turning frame of a curved surface, in tangent coordinates (and, with the outgoing
+/// cosine, leaves it in the mirrored frame): W_x' = W_x - k11 W_u - cos k12 W_v.
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> curvature_aligned(const SymmetricMatrix5<T>& s,
                                                               const Sym2<NonDeduced<T>>& curvature,
@@ -48,8 +49,8 @@ template <std::floating_point T>
     return change_positions(s, Mat2<T>::identity(), curvature_aligned_slope<T>(curvature, cosine));
 }
 
-/// G of a whole curved mirror in ray coordinates: -[2 k11/cos  2 k12; 2 k12  2 cos k22],
-/// Coddington's tangential 2/(R cos) and sagittal 2 cos/R.
+/// Slope matrix G of a whole curved mirror in ray coordinates: -[2 k11/cos, 2 k12; 2 k12, 2 cos
+/// k22], Coddington's tangential 2/(R cos) and sagittal 2 cos/R.
 template <std::floating_point T>
 [[nodiscard]] constexpr Mat2<T> mirror_aligned_slope(const Sym2<T>& k, T cosine) noexcept {
     return {-2 * k.xx / cosine, -2 * k.xy, -2 * k.xy, -2 * cosine * k.yy};

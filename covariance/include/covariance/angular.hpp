@@ -1,5 +1,5 @@
-// What a surface does to slopes alone: windows (a product of signals adds covariances), convolution
-// with a lobe (a product of spectra), and linear maps of the slopes.
+// Operations of a surface on slopes alone: windows (a product of signals adds covariances),
+// convolution with a lobe (a product of spectra), and linear maps of the slopes.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ template <std::floating_point T>
     return s;
 }
 
-/// The same on a light field, whose frame stays.
+/// Multiplies a light field by an angular window; its frame stays.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> add_angular_window(
     const LightField<T>& field, const Sym2<NonDeduced<T>>& window) noexcept {
@@ -37,7 +37,7 @@ template <std::size_t P, std::size_t Q, std::floating_point T>
 struct AngularPivots {
     T inv1, l, inv2;
 
-    /// Pre: B(P, P) > 0.
+    /// Pivots of B. Pre: B(P, P) > 0.
     explicit constexpr AngularPivots(const Sym2<T>& b) noexcept {
         const T bq = along<Q>(b);
         inv1 = 1 / along<P>(b);
@@ -45,13 +45,13 @@ struct AngularPivots {
         const T d2 = multiply_add(-l, b.xy, bq);
         inv2 = d2 <= noise_level<T> * bq ? T(0) : 1 / d2;
     }
-    /// The diagonal entry of axis I.
+    /// Diagonal entry of `b` along axis I.
     template <std::size_t I>
     [[nodiscard]] static constexpr T along(const Sym2<T>& b) noexcept {
         return I == axis::u ? b.xx : b.yy;
     }
 
-    /// A row of R: L^-1 r, and that over the pivots.
+    /// One row r of R as the elimination needs it: L^-1 r, and that over the pivots.
     struct Row {
         T r1, r2, over1, over2;
     };
@@ -63,11 +63,11 @@ struct AngularPivots {
         return row(s(i, P), s(i, Q));
     }
 
-    /// a - r B^-1 s^T.
+    /// The entry that the elimination leaves of `a`: a - r B^-1 s^T.
     [[nodiscard]] static constexpr T rest(T a, const Row& r, const Row& s) noexcept {
         return multiply_add(-r.over1, s.r1, multiply_add(-r.over2, s.r2, a));
     }
-    /// The position and time block of `s` less R^T B^-1 R, written to `to`.
+    /// Writes to `to` the position and time block of `s` less R^T B^-1 R.
     static constexpr void eliminate(SymmetricMatrix5<T>& to, const SymmetricMatrix5<T>& s,
                                     const Row& x, const Row& y, const Row& t) noexcept {
         to(0, 0) = rest(s(0, 0), x, x);
@@ -78,7 +78,7 @@ struct AngularPivots {
         to(4, 4) = rest(s(4, 4), t, t);
     }
 
-    /// Sets to zero what of `s` only rounding has left in `to`.
+    /// Sets to zero those variances in `to` that are only rounding noise beside those of `s`.
     static constexpr void drop_noise(SymmetricMatrix5<T>& to,
                                      const SymmetricMatrix5<T>& s) noexcept {
         constexpr T noise = 16 * std::numeric_limits<T>::epsilon();
@@ -87,7 +87,7 @@ struct AngularPivots {
                 for (std::size_t j = 0; j < 5; ++j) to(i, j) = 0;
     }
 
-    /// `slice_angular`.
+    /// The covariance after integration over all directions; see `slice_angular`.
     [[nodiscard]] constexpr SymmetricMatrix5<T> slice(const SymmetricMatrix5<T>& s) const noexcept {
         SymmetricMatrix5<T> r;
         eliminate(r, s, row(s, 0), row(s, 1), row(s, 4));
@@ -95,7 +95,7 @@ struct AngularPivots {
         return r;
     }
 
-    /// `convolve_angular`.
+    /// The covariance after convolution with a kernel; see `convolve_angular`.
     [[nodiscard]] constexpr SymmetricMatrix5<T> convolve(const SymmetricMatrix5<T>& s,
                                                          const Sym2<T>& kernel) const noexcept {
         // Rows u and v are R^T B^-1 C, a form in which nothing cancels.
@@ -125,21 +125,21 @@ struct AngularPivots {
 }  // namespace detail
 
 /// Integrates over all directions, the angular slice Sigma' = Sigma - R^T R_uv^+ R with R = rows u,
-/// v: `convolve_angular` with a kernel that is constant. Rows u and v become exactly zero.
-/// `b`: the angular block, with windows by which the light is to be multiplied first.
+/// v: `convolve_angular` with a kernel that is constant. Rows u and v become exactly zero. `b`: the
+/// angular block, with windows by which the light is to be multiplied first.
 ///
 /// Post     positive semi-definite; variances that are only rounding noise are set to zero.
 /// Errors   none; NaN in gives NaN out. Exact for Gaussians.
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> slice_angular(const SymmetricMatrix5<T>& s,
                                                           const Sym2<NonDeduced<T>>& b) noexcept {
-    // The larger pivot first.
+    // Eliminate the axis with the larger pivot first.
     if (std::max(b.xx, b.yy) <= 0) return s;  // no angular content: the rows are zero already
     if (b.xx >= b.yy) return detail::AngularPivots<axis::u, axis::v, T>(b).slice(s);
     return detail::AngularPivots<axis::v, axis::u, T>(b).slice(s);
 }
 
-/// The same of light as it is.
+/// Integrates light over all directions, without windows.
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> slice_angular(const SymmetricMatrix5<T>& s) noexcept {
     return slice_angular(s, s.angular());
@@ -166,7 +166,7 @@ template <std::floating_point T>
     return detail::AngularPivots<axis::v, axis::u, T>(b).convolve(s, kernel);
 }
 
-/// The same on a light field, whose frame stays.
+/// Convolves a light field with an angular kernel; its frame stays.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> convolve_angular(const LightField<T>& field,
                                                        const Sym2<NonDeduced<T>>& kernel) noexcept {

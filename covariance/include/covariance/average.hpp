@@ -41,7 +41,7 @@ class Accumulator {
     /// Sum of weight * matrix, for storing an unfinished state.
     [[nodiscard]] constexpr const SymmetricMatrix5<T>& sum() const noexcept { return sum_; }
 
-    /// Continues from a stored state.
+    /// Makes an accumulator that continues from a stored state.
     [[nodiscard]] static constexpr Accumulator from_sum(const SymmetricMatrix5<T>& sum,
                                                         T weight) noexcept {
         Accumulator a;
@@ -76,15 +76,15 @@ template <std::floating_point T>
     return {(1 - share) * a.sigma + share * other, a.frame};
 }
 
-/// (S1^-1 + S2^-1)^-1: the covariance of the convolution of two signals, exact for Gaussians.
+/// Covariance of the convolution of two signals, (S1^-1 + S2^-1)^-1; exact for Gaussians.
 ///
 /// Computed as S1 - S1 (S1 + S2)^-1 S1, which holds for singular matrices too. Symmetric in its
 /// arguments up to rounding. Errors: none.
 template <std::floating_point T>
 [[nodiscard]] SymmetricMatrix5<T> harmonic_sum(SymmetricMatrix5<T> s1,
                                                const SymmetricMatrix5<NonDeduced<T>>& s2) noexcept {
-    // Eliminates, one pivot at a time and the largest first, the five rows of the enlarged matrix
-    // [S1 + S2, S1; S1, S1]; what remains of its last block is the result.
+    // Eliminate, one pivot at a time and the largest first, the five rows of the enlarged matrix
+    // [S1 + S2, S1; S1, S1]; the result is the remainder of its last block.
     SymmetricMatrix5<T> b = s1 + s2;
     const SymmetricMatrix5<T> original = b;
     std::array<std::array<T, 5>, 5> r{};  // upper right block, row = axis of b

@@ -1,5 +1,5 @@
-// Lobes and windows of surface scattering, as 2x2 covariances in 1/rad^2: what reflection.hpp and
-// refraction.hpp convolve the light with or multiply it by.
+// Lobes and windows of surface scattering, as 2x2 covariances in 1/rad^2: reflection.hpp and
+// refraction.hpp convolve the light with lobes and multiply it by windows.
 //
 // All lobes have positive spectra, for which Sigma = -Hess f / (4 pi^2 f) at the peak.
 #pragma once
@@ -29,8 +29,9 @@ template <std::floating_point T>
     return Sym2<T>::diagonal(exponent / four_pi_sq<T>, exponent / four_pi_sq<T>);
 }
 
-/// A Phong lobe cos^e about the mirror direction: C = e/(4 pi^2) I, in outgoing slopes.
-/// Source: Belcour 2012 thesis, whose B is the inverse, 4 pi^2/e.
+/// A Phong lobe cos^e about the mirror direction: C = e/(4 pi^2) I, in outgoing slopes. Source:
+/// Belcour 2012, "A Frequency Analysis of Light Transport: From Theory to Implementation", whose B
+/// is the inverse, 4 pi^2/e.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> phong_cov(T exponent) noexcept {
     return micro_blinn(exponent);
@@ -86,7 +87,7 @@ template <std::floating_point T>
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> tailed_lobe(const Sym2<T>& c,
                                             const Sym2<NonDeduced<T>>& light) noexcept {
-    // The parallel sum A - A (A + B)^-1 A of A = C and B = C + light.
+    // The parallel sum A - A (A + B)^-1 A, with A = C and B = C + light, is the result.
     return c - congruence(inverse(2 * c + light), Mat2<T>(c));
 }
 
@@ -115,7 +116,7 @@ template <std::floating_point T>
     return {across + excess * nx * nx, excess * nx * ny, across + excess * ny * ny};
 }
 
-/// The same from the normal in the scene.
+/// The window of Lambert's cosine, from the normal in the scene.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> cosine_window(const Frame<T>& incoming,
                                     const Vec3<NonDeduced<T>>& n) noexcept {

@@ -1,5 +1,6 @@
-// Samples for every pixel out of one budget, in proportion to a density such as that of the
-// thesis, N = k sqrt|Sigma|. Allocates: one of the headers for whole images, see renderer.hpp.
+// Samples for every pixel out of one budget, in proportion to a density such as N = k sqrt|Sigma|
+// (Belcour 2012, "A Frequency Analysis of Light Transport: From Theory to Implementation", section
+// 5.1). Allocates: one of the headers for whole images, see renderer.hpp.
 #pragma once
 
 #include <cstdint>
@@ -18,16 +19,16 @@ template <typename Densities>
 concept DensityRange = std::ranges::contiguous_range<Densities> &&
     std::floating_point<std::ranges::range_value_t<Densities>>;
 
-/// What a pixel gets samples for.
+/// Rules for a pixel's density of samples, from its spectrum S2D and N_int.
 enum class DensityRule {
     tempered,  ///< n ~ sqrt( sqrt(det S2D) min(N_int, 4) ), a tenth of it shared out evenly
-    thesis     ///< n ~ sqrt(det S2D) N_int, equation 5.3 of the thesis read as a Schur complement
+    thesis     ///< Belcour 2012, equation 5.3 as a Schur complement: n ~ sqrt(det S2D) N_int
 };
 
 namespace detail {
 
-/// `density(spectrum, N_int)` of every pixel, with spectra that filters can use; 0 where not
-/// finite.
+/// Densities `density(spectrum, N_int)` of all pixels, with spectra limited to those that filters
+/// can use; 0 where not finite.
 template <std::floating_point T, typename Density>
 [[nodiscard]] std::vector<T> usable_densities(const Prediction<T>& prediction, T c,
                                               const FilterLimits<T>& limits,
@@ -57,15 +58,15 @@ template <std::floating_point T>
         });
 }
 
-/// The thesis' N = k sqrt|S| for k = 1, samples per pixel (`hypercube_density`), from spectra that
-/// are limited in the same way; 0 where not finite.
+/// Samples per pixel by N = k sqrt|S| for k = 1 (Belcour 2012, section 5.1; see
+/// `hypercube_density`), from spectra limited as in `densities`; 0 where not finite.
 template <std::floating_point T>
 [[nodiscard]] std::vector<T> hypercube_counts(const Prediction<T>& prediction, NonDeduced<T> c,
                                               const FilterLimits<NonDeduced<T>>& limits) {
     return detail::usable_densities<T>(prediction, c, limits, hypercube_density<T>);
 }
 
-/// The same with mean 1; the tempered rule shares a tenth out evenly.
+/// Densities by a rule, scaled to mean 1; the tempered rule shares a tenth out evenly.
 template <std::floating_point T>
 [[nodiscard]] std::vector<T> relative_density(const Prediction<T>& prediction, DensityRule rule,
                                               NonDeduced<T> c,
@@ -81,9 +82,10 @@ template <std::floating_point T>
 
 namespace detail {
 
-/// The level in [lo, hi] at which the sum of `wanted(i, level)`, which grows with it, is `total`:
-/// by regula falsi whose kept end counts half (the Illinois method: Dowell and Jarratt, BIT 11,
-/// 1971), and every third time by halves. The end that comes nearest where no level does.
+/// The level in [lo, hi] at which the sum of `wanted(i, level)`, which grows with it, is `total`;
+/// the end that comes nearest where no level does. By regula falsi whose kept end counts half (the
+/// Illinois method: Dowell and Jarratt 1971, "A modified regula falsi method for computing the root
+/// of an equation", BIT 11), and every third time by halves.
 template <typename Wanted>
 double level_of(std::size_t n, std::int64_t total, const Wanted& wanted, double lo, double hi) {
     const auto excess = [&](double level) {
@@ -94,7 +96,7 @@ double level_of(std::size_t n, std::int64_t total, const Wanted& wanted, double 
     double at_lo = excess(lo), at_hi = excess(hi);
     if (at_hi <= 0) return hi;
     if (at_lo >= 0) return lo;
-    // Far below what a pixel's fraction resolves.
+    // The tolerance is far below what a pixel's fraction resolves.
     const double tolerance = 1e-12 * double(total);
     int side = 0;
     for (int k = 0; k < 100; ++k) {
@@ -115,7 +117,7 @@ double level_of(std::size_t n, std::int64_t total, const Wanted& wanted, double 
     return hi;
 }
 
-/// Whole counts near `wanted(i, level)`; fractions are carried along.
+/// Whole counts near `wanted(i, level)`; fractions are carried along from pixel to pixel.
 template <typename Wanted>
 std::vector<std::uint32_t> counts_of(std::size_t n, const Wanted& wanted, double level) {
     constexpr int fraction_bits = 20;
@@ -155,7 +157,7 @@ struct Multiple {
     }
 };
 
-/// With the same limit everywhere, of densities in float or double.
+/// Multiples of densities in float or double, with the same upper limit everywhere.
 template <DensityRange Densities>
 auto multiple_below(const Densities& density, std::span<const std::uint32_t> at_least,
                     std::uint32_t at_most) {
@@ -187,8 +189,8 @@ template <DensityRange Densities>
 }
 
 /// The multiple of the density that `allocate` gives with the same arguments, wherever the limits
-/// leave a pixel free: the k of the thesis where the density is `hypercube_counts`. None where the
-/// limits keep every multiple below the total.
+/// leave a pixel free: the k of Belcour 2012, section 5.1, where the density is `hypercube_counts`.
+/// None where the limits keep every multiple below the total.
 template <DensityRange Densities>
 [[nodiscard]] std::optional<double> density_factor(const Densities& density, std::int64_t total,
                                                    std::span<const std::uint32_t> at_least,
@@ -200,8 +202,8 @@ template <DensityRange Densities>
     return factor;
 }
 
-/// The average count of `factor` times the density between the same limits: what `density_factor`
-/// takes back to the factor.
+/// The average count of `factor` times the density between the same limits; `density_factor` is the
+/// inverse, from that count to the factor.
 template <DensityRange Densities>
 [[nodiscard]] double mean_count(const Densities& density, double factor,
                                 std::span<const std::uint32_t> at_least, std::uint32_t at_most) {

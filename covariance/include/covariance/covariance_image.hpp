@@ -1,6 +1,6 @@
 // The covariances of a whole image: one 5x5 and its weight per pixel, their mean over neighbours,
-// and what follows after the integral over lens and shutter (a Schur complement): the spectrum of
-// every pixel's image. Allocates: one of the headers for whole images, see renderer.hpp.
+// and the spectrum of every pixel's image after the integral over lens and shutter (a Schur
+// complement). Allocates: one of the headers for whole images, see renderer.hpp.
 #pragma once
 
 #include <algorithm>
@@ -27,9 +27,9 @@ struct CovarianceImage {
     std::vector<SymmetricMatrix5<T>> covariance;
     std::vector<T> weight;
 
-    /// Adds a path: what `sensor` returned, weighted by the radiance (one number, say the mean of
-    /// the colour) that it adds to the pixel. What is not finite or carries nothing is left out;
-    /// returns whether it was added. One owner per pixel, in a fixed order, gives fixed bits.
+    /// Adds a path: the result of `sensor`, weighted by the radiance (one number, say the mean of
+    /// the colour) that it adds to the pixel. A path that is not finite or carries nothing is left
+    /// out; returns whether it was added. One owner per pixel, in a fixed order, gives fixed bits.
     template <std::floating_point S>
     bool add(int x, int y, const SymmetricMatrix5<S>& sigma, NonDeduced<S> radiance) {
         const SymmetricMatrix5<T> s = cast<T>(sigma);
@@ -57,7 +57,8 @@ template <std::floating_point T>
     return result;
 }
 
-/// What every pixel needs, seen from its covariance.
+/// Prediction for every pixel: its image's spectrum, and how much its light varies over lens and
+/// shutter.
 template <std::floating_point T = float>
 struct Prediction {
     int width = 0, height = 0;
@@ -95,7 +96,7 @@ void sweep_neighbours(int width, int height, const Relax& relax) {
 
 }  // namespace detail
 
-/// One row of `preintegrate`. Rows may run in parallel.
+/// Computes one row of `preintegrate`. Rows may run in parallel.
 template <std::floating_point T>
 void preintegrate_row(const CovarianceImage<T>& image, int y, Prediction<T>& result) {
     const std::size_t begin = std::size_t(y) * std::size_t(image.width);
@@ -107,7 +108,7 @@ void preintegrate_row(const CovarianceImage<T>& image, int y, Prediction<T>& res
 }
 
 /// For every pixel the index of a nearest pixel with a weight; its own where no pixel has one.
-/// Linear in time whatever the holes: steps of 5 and 7.
+/// Takes time in proportion to the pixels, whatever the holes: by steps of length 5 and 7.
 template <std::floating_point T>
 std::vector<std::size_t> nearest_with_weight(std::span<const T> weight, int width, int height) {
     constexpr int far = std::numeric_limits<int>::max() / 2;
@@ -117,7 +118,8 @@ std::vector<std::size_t> nearest_with_weight(std::span<const T> weight, int widt
         nearest[i] = i;
         if (weight[i] > 0) distance[i] = 0;
     }
-    // The first pass leaves what it cannot reach at "far" and its own index; the second reaches it.
+    // The first pass leaves pixels that it cannot reach at "far" with their own index; the second
+    // reaches them.
     detail::sweep_neighbours(width, height, [&](std::size_t i, std::size_t j, bool diagonal) {
         const int step = diagonal ? 7 : 5;
         if (distance[j] + step >= distance[i]) return;
@@ -127,7 +129,7 @@ std::vector<std::size_t> nearest_with_weight(std::span<const T> weight, int widt
     return nearest;
 }
 
-/// One row of `smooth`. Rows may run in parallel.
+/// Computes one row of `smooth`. Rows may run in parallel.
 template <std::floating_point T>
 void smooth_row(const CovarianceImage<T>& image, std::span<const std::size_t> nearest, int y,
                 CovarianceImage<T>& result) {

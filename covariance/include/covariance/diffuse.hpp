@@ -19,10 +19,10 @@
 
 namespace covariance {
 
-/// Where arriving light was sent out, as far as it changes how fast the light falls off: the lamp
-/// that was sampled, or that a path found by chance. In a flat mirror the lamp's mirror image
-/// counts, with its normal mirrored and the distance along the whole way; behind curved mirrors and
-/// glass leave both members as they are.
+/// The place where arriving light was sent out, as far as it changes how fast the light falls off:
+/// the lamp that was sampled, or that a path found by chance. In a flat mirror the lamp's mirror
+/// image counts, with its normal mirrored and the distance along the whole way; behind curved
+/// mirrors and glass leave both members as they are.
 template <std::floating_point T = double>
 struct Emitter {
     /// Unit normal of a Lambertian emitter, on either side; zero for one that shines evenly.
@@ -31,15 +31,15 @@ struct Emitter {
     T distance = std::numeric_limits<T>::infinity();
 };
 
-/// -Hess E / E right below a small emitter at the unit distance: 4 for a Lambertian one, 3 for one
-/// that shines evenly.
+/// Peak of -Hess E / E, right below a small emitter at the unit distance: 4 for a Lambertian one, 3
+/// for one that shines evenly.
 template <std::floating_point T>
 [[nodiscard]] constexpr T falloff_peak(const Vec3<T>& emitter_normal) noexcept {
     return dot(emitter_normal, emitter_normal) > 0 ? T(4) : T(3);
 }
 
-/// 4 pi^2 times the squared bandwidth, on the tangent plane, of the light that a small emitter at
-/// the unit distance casts; `falloff_peak` right below the emitter.
+/// Squared bandwidth, times 4 pi^2, on the tangent plane, of the light that a small emitter at the
+/// unit distance casts; `falloff_peak` right below the emitter.
 ///
 /// Along the direction in which H = Hess E / E is highest it is
 ///
@@ -59,14 +59,15 @@ template <std::floating_point T>
     const bool even = !(dot(emitter_normal, emitter_normal) > 0);
     const T peak = falloff_peak<T>(emitter_normal);
     const T a1 = dot(incoming.z, receiver.t1), a2 = dot(incoming.z, receiver.t2);
-    T b1 = 0, b2 = 0;  // of the emission cosine, 1 + b.s
+    T b1 = 0, b2 = 0;  // gradient of the emission cosine, 1 + b.s
     if (!even) {
         const T c = dot(emitter_normal, incoming.z);
         const T scale = 1 / std::copysign(std::max(std::abs(c), min_window_cosine<T>), c);
         b1 = scale * dot(emitter_normal, receiver.t1);
         b2 = scale * dot(emitter_normal, receiver.t2);
     }
-    // |p - d|^-2n with n = 2 or 3/2: gradient -2n a, Hessian 4n(n + 1) a a^T - 2n I.
+    // The factor |p - d|^-2n, n = 2 or 3/2, has the gradient -2n a and the Hessian 4n(n + 1) a a^T
+    // - 2n I.
     const T second = peak * (peak + 2);
     const Sym2<T> hessian{second * a1 * a1 - peak - 2 * peak * a1 * b1,
                           second * a1 * a2 - peak * (a1 * b2 + a2 * b1),
@@ -74,7 +75,8 @@ template <std::floating_point T>
     const Eigen2<T> e = eigen(hessian);
     const T sin_sq = std::min(a1 * a1 + a2 * a2, T(1));
     const T high = std::max(std::max(peak * (1 - sin_sq / 2), -e.high), T(1.5) * (e.high - peak));
-    // Third derivative, twice across and once along: 4n(n + 1) a, and the Hessian's part times b.
+    // The third derivative, twice across and once along, is 4n(n + 1) a and the Hessian's part
+    // times b.
     const T along_a = e.x * a1 + e.y * a2, along_b = e.x * b1 + e.y * b2;
     const T third = second * along_a - peak * along_b;
     const T across = std::max(peak, -e.low);
@@ -83,8 +85,8 @@ template <std::floating_point T>
             high * e.y * e.y + low * e.x * e.x};
 }
 
-/// The angular window of diffuse reflection for light from an emitter: what `cosine_window` is
-/// where nothing but the direction of the light is known.
+/// The angular window of diffuse reflection for light from an emitter, in place of `cosine_window`,
+/// which knows nothing but the direction of the light.
 ///
 /// Frames   incoming: of the arriving light; `light`: its angular covariance there, between
 /// `surface_enter` and the slice. The weight of a direction, (1 + u^2 + v^2)^-2, has the tails of

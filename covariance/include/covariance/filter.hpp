@@ -18,7 +18,8 @@ struct FilterLimits {
     T s_max = 15;
 };
 
-/// c(n) = 2 (n/16)^(1/6) for n samples per pixel on average: the more samples, the narrower.
+/// Width factor of filters, c(n) = 2 (n/16)^(1/6) for n samples per pixel on average: the more
+/// samples, the narrower.
 ///
 /// c = 2 keeps 88 % of a sinusoid at the edge of the spectrum; a fixed c leaves a bias that more
 /// samples never remove.
@@ -27,7 +28,8 @@ template <std::floating_point T>
     return 2 * std::pow(samples_per_pixel / 16, T(1) / 6);
 }
 
-/// Q = 4 pi^2 c^2 Sigma_2D with its eigenvalues brought into [1/s_max^2, 1/s_min^2].
+/// Quadratic form of a filter: Q = 4 pi^2 c^2 Sigma_2D with its eigenvalues brought into
+/// [1/s_max^2, 1/s_min^2].
 ///
 /// Units    spectrum in (cycles/pixel)^2, Q in 1/pixel^2. Errors: none.
 template <std::floating_point T>
@@ -37,10 +39,10 @@ template <std::floating_point T>
                              1 / (limits.s_min * limits.s_min));
 }
 
-/// Q = 2 pi Sigma_2D, the filter A exp(-pi p^T Sigma p) as printed in the thesis.
+/// Quadratic form Q = 2 pi Sigma_2D: the filter A exp(-pi p^T Sigma p) as printed in Belcour 2012,
+/// "A Frequency Analysis of Light Transport: From Theory to Implementation", equation 5.7.
 ///
 /// With a true covariance this is c^2 = 1/(2 pi), a kernel 2.5 times wider than c = 1.
-/// Source   Belcour 2012 thesis, equation 5.7.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> thesis_filter_quadratic(
     const Sym2<T>& spectrum, const FilterLimits<NonDeduced<T>>& limits = {}) noexcept {
@@ -48,32 +50,32 @@ template <std::floating_point T>
                              1 / (limits.s_min * limits.s_min));
 }
 
-/// S_h = Q^-1, the covariance of the filter in pixels^2.
+/// Covariance of a filter in pixels^2: S_h = Q^-1.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> filter_covariance(const Sym2<T>& quadratic) noexcept {
     return inverse(quadratic);
 }
 
-/// h(p) = exp(-p^T Q p / 2), 1 at the centre.
+/// Weight of a filter at an offset in pixels: h(p) = exp(-p^T Q p / 2), 1 at the centre.
 template <std::floating_point T>
 [[nodiscard]] T filter_weight(const Sym2<T>& q, NonDeduced<T> px, NonDeduced<T> py) noexcept {
     return std::exp(-(q.xx * px * px + 2 * q.xy * px * py + q.yy * py * py) / 2);
 }
 
-/// 4 pi N sqrt det(S_h): the samples that a filter effectively averages at N per pixel.
+/// Number of samples that a filter effectively averages at N per pixel: 4 pi N sqrt det(S_h).
 template <std::floating_point T>
 [[nodiscard]] T effective_samples(const Sym2<T>& filter_cov,
                                   NonDeduced<T> samples_per_pixel) noexcept {
     return 4 * pi<T> * samples_per_pixel * std::sqrt(det(filter_cov));
 }
 
-/// s = det(S_h)^(1/4), the size of a filter as one length in pixels.
+/// Size of a filter as one length in pixels: s = det(S_h)^(1/4).
 template <std::floating_point T>
 [[nodiscard]] T filter_size(const Sym2<T>& filter_cov) noexcept {
     return std::sqrt(std::sqrt(det(filter_cov)));
 }
 
-/// S_h scaled to another size, its eigenvalues clamped again: S_h (s'/s)^2.
+/// A filter scaled to another size, its eigenvalues clamped again: S_h (s'/s)^2.
 ///
 /// For limiting each filter by its sharper neighbours, s'(p) = min over q of s(q) + kappa |p - q|,
 /// with kappa = edge_beta / c: what an edge at that distance asks for.

@@ -36,11 +36,11 @@ template <std::floating_point T = float>
     return s;
 }
 
-/// The same for light from emitters in view (directly, or by mirrors and clear glass alone): with
-/// no floor to speak of, since such light has no noise but at its border and what the tail of a
-/// filter carries over it is seen; and half as wide in variance, since out of focus it shows the
-/// hard border of the aperture, whose spectrum reaches further than the Gaussian's with the same
-/// moments.
+/// The settings for light from emitters in view (directly, or by mirrors and clear glass alone).
+/// Their filters have no floor to speak of, since such light has no noise but at its border, and
+/// the part that the tail of a filter carries over it is seen. They are half as wide in variance,
+/// since out of focus such light shows the hard border of the aperture, whose spectrum reaches
+/// further than the Gaussian's with the same moments.
 template <std::floating_point T = float>
 [[nodiscard]] FilterSettings<T> filter_settings_in_view(double samples_per_pixel) {
     FilterSettings<T> s = filter_settings<T>(samples_per_pixel);
@@ -49,14 +49,15 @@ template <std::floating_point T = float>
     return s;
 }
 
-/// Primal covariances S_h of the filters exp(-p^T S_h^-1 p / 2), pixels^2, row by row.
+/// Filters exp(-p^T S_h^-1 p / 2) of an image by their covariances S_h, pixels^2, row by row.
 template <std::floating_point T = float>
 struct FilterField {
     int width = 0, height = 0;
     std::vector<Sym2<T>> covariance;
 };
 
-/// Q^-1; the narrowest filter where that is not finite, as for spectra beyond the range of T.
+/// Covariance of a filter, Q^-1; the narrowest filter where that is not finite, as for spectra
+/// beyond the range of T.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> finite_filter_covariance(const Sym2<T>& quadratic,
                                                const FilterLimits<NonDeduced<T>>& limits) noexcept {
@@ -65,7 +66,7 @@ template <std::floating_point T>
     return Sym2<T>::diagonal(limits.s_min * limits.s_min, limits.s_min * limits.s_min);
 }
 
-/// S_h = (4 pi^2 c^2 S2D)^-1 with eigenvalues in [s_min^2, s_max^2], for every pixel.
+/// Filters of all pixels: S_h = (4 pi^2 c^2 S2D)^-1 with eigenvalues in [s_min^2, s_max^2].
 template <std::floating_point T>
 [[nodiscard]] FilterField<T> filter_field(const Prediction<T>& prediction,
                                           const FilterSettings<NonDeduced<T>>& settings) {
@@ -79,8 +80,9 @@ template <std::floating_point T>
 
 namespace detail {
 
-/// What is left of sizes of `width` columns that may grow by `slope` a pixel from a smaller one.
-/// Chamfer distance transform with steps 1 and sqrt 2: one pass down, one pass up.
+/// Limits sizes, in rows of `width`: each may exceed a smaller one by no more than `slope` a pixel
+/// of their distance. Chamfer distance transform with steps 1 and sqrt 2: one pass down, one pass
+/// up.
 template <std::floating_point T>
 void limit_growth(std::vector<T>& sizes, int width, int height, T slope) {
     const T diagonal_slope = slope * std::sqrt(T(2));
@@ -108,8 +110,9 @@ void limit_by_neighbours(FilterField<T>& field, const FilterSettings<NonDeduced<
             field.covariance[i] = resize_filter(field.covariance[i], limit[i], settings.limits);
 }
 
-/// The same for each filter's longer deviation alone, which the size s of a thin filter hides:
-/// along a straight border it would reach as far as a lamp that stands at the border.
+/// Limits each filter's longer deviation alone, as `limit_by_neighbours` does for its size s, which
+/// hides the length of a thin filter: along a straight border it would reach as far as a lamp that
+/// stands at the border.
 template <std::floating_point T>
 void limit_lengths_by_neighbours(FilterField<T>& field,
                                  const FilterSettings<NonDeduced<T>>& settings) {
@@ -123,10 +126,10 @@ void limit_lengths_by_neighbours(FilterField<T>& field,
             field.covariance[i] = clamp_eigenvalues(field.covariance[i], T(0), limit[i] * limit[i]);
 }
 
-/// Where no path met the light (`known` is false; one per pixel), its directions are those of light
-/// from afar, and a long filter that has them would reach beyond all that its size was limited by.
-/// Such filters become round, as narrow as neighbours that know their light are across: their short
-/// side is the border that a round filter would reach over.
+/// Makes filters round where no path met the light (`known` is false; one per pixel): there a
+/// filter's directions are those of light from afar, and a long filter that has them would reach
+/// beyond all that its size was limited by. They become as narrow as neighbours that know their
+/// light are across: the short side of these is the border that a round filter would reach over.
 template <std::floating_point T>
 void make_round_where_unknown(FilterField<T>& field, const std::vector<bool>& known,
                               const FilterSettings<NonDeduced<T>>& settings) {
@@ -151,7 +154,7 @@ template <std::floating_point T>
     return sizes;
 }
 
-/// Filters of the two parts of the light: what surfaces sent on, and emitters in view.
+/// Filters of both parts of the light: scattered by surfaces, and of emitters in view.
 template <std::floating_point T = float>
 struct PartFilters {
     FilterField<T> scattered, in_view;
@@ -189,8 +192,8 @@ template <std::floating_point T>
     return known;
 }
 
-/// The filters of an image whose light is kept in two parts, from covariances to limits: what the
-/// gather needs, in one call.
+/// The filters of an image whose light is kept in two parts, from covariances to limits: all that
+/// the gather needs, in one call.
 ///
 /// `scattered`: of light that a surface sent on; `in_view`: of emitters seen directly or through
 /// mirrors and clear glass alone. Both have one size; where there is no light of a part, leave its
@@ -214,7 +217,7 @@ template <std::floating_point T>
                             bright = filter_settings_in_view<T>(samples_per_pixel);
     PartFilters<T> filters{filter_field(preintegrate(smooth(scattered)), settings),
                            filter_field(preintegrate(smooth(in_view)), bright)};
-    // Pixels beside one with light take its covariance in `smooth`.
+    // Pixels beside one with light are known, too: they take its covariance in `smooth`.
     limit_parts<T>(filters.scattered, filters.in_view,
                    known_within(scattered, std::max(1, scattered_radius)),
                    known_within<T>(in_view, 1), settings, bright);

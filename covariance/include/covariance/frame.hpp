@@ -25,14 +25,14 @@ struct Frame {
 /// Some right-handed frame with the given unit direction as Z.
 template <std::floating_point T = double>
 [[nodiscard]] Frame<T> frame_along(const Vec3<NonDeduced<T>>& z) noexcept {
-    // The smaller of two denominators is avoided by choosing the pole away from z.
+    // The pole is chosen away from z, which avoids the smaller of two denominators.
     const T sign = std::copysign(T(1), z.z);
     const T a = -1 / (sign + z.z);
     const T b = z.x * z.y * a;
     return {{1 + sign * z.x * z.x * a, sign * b, -sign * z.x}, {b, sign + z.y * z.y * a, -z.y}, z};
 }
 
-/// All three axes reflected in the plane orthogonal to the unit vector `h`: (I - 2 h h^T) X, Y, Z.
+/// The frame reflected in the plane orthogonal to the unit vector `h`: (I - 2 h h^T) X, Y, Z.
 template <std::floating_point T>
 [[nodiscard]] constexpr Frame<T> mirrored(const Frame<T>& f,
                                           const Vec3<NonDeduced<T>>& h) noexcept {
@@ -48,7 +48,7 @@ template <std::floating_point T>
     return {rotate_between<T>(f.z, z, f.x), rotate_between<T>(f.z, z, f.y), z};
 }
 
-/// [X.a X.b; Y.a Y.b]: coordinates in the frame of the vectors a and b.
+/// Coordinates of the vectors a and b in the frame: [X.a X.b; Y.a Y.b].
 template <std::floating_point T>
 [[nodiscard]] constexpr Mat2<T> projection(const Frame<T>& f, const Vec3<NonDeduced<T>>& a,
                                            const Vec3<NonDeduced<T>>& b) noexcept {

@@ -34,7 +34,7 @@ std::pair<Vec3<double>, double> gaussian_mean(std::span<const Color> mean,
     Vec3<double> sum;
     double all = 0;
     for (int py = std::max(0, y - reach); py <= std::min(field.height - 1, y + reach); ++py) {
-        // The row's chord of the ellipse q.xx x^2 + 2 q.xy x dy + q.yy dy^2 <= cut.
+        // The row's chord of the ellipse is q.xx x^2 + 2 q.xy x dy + q.yy dy^2 <= cut.
         const double dy = py - y, middle = x - q.xy * dy / q.xx;
         const double half = std::sqrt(std::max(0.0, (cut - dy * dy / s.yy) / q.xx));
         const int first = int(std::ceil(std::max(middle - half, 0.0)));
@@ -81,7 +81,7 @@ template <Vec3Like Color, std::floating_point T>
     return image;
 }
 
-/// The same for a vector of colours.
+/// Gathers an image that is a vector of colours.
 template <Vec3Like Color, std::floating_point T>
 [[nodiscard]] std::vector<Vec3<T>> gather(const std::vector<Color>& mean,
                                           const std::vector<std::uint32_t>& count,
@@ -89,8 +89,8 @@ template <Vec3Like Color, std::floating_point T>
     return gather(std::span<const Color>(mean), std::span<const std::uint32_t>(count), field);
 }
 
-/// Both parts of the light, each through its filters, and their sum. A part without light may be
-/// an empty vector.
+/// Gathers both parts of the light, each through its filters, and adds them. A part without light
+/// may be an empty vector.
 template <Vec3Like Color, std::floating_point T>
 [[nodiscard]] std::vector<Vec3<T>> gather(const std::vector<Color>& scattered,
                                           const std::vector<Color>& in_view,

@@ -8,8 +8,9 @@
 
 namespace covariance {
 
-/// f(u, v) to second order about (0, 0). Arithmetic on jets follows the rules of differentiation,
-/// so that a formula in jets gives its own gradient and Hessian without a step width.
+/// Values of f(u, v) to second order about (0, 0). Arithmetic on jets follows the rules of
+/// differentiation, so that a formula in jets gives its own gradient and Hessian without a step
+/// width.
 ///
 /// Comparisons look at the value alone: branches and clamps behave as they do on plain numbers.
 /// Units    of `value`, per unit of u and v, and per its square.
@@ -20,7 +21,7 @@ struct Jet {
     T uu = 0, uv = 0, vv = 0;  ///< second derivatives
 
     constexpr Jet() noexcept = default;
-    /// A constant.
+    /// Makes a constant, whose derivatives are zero.
     constexpr Jet(T constant) noexcept : value(constant) {}  // NOLINT(google-explicit-constructor)
     constexpr Jet(T value_, T u_, T v_, T uu_ = 0, T uv_ = 0, T vv_ = 0) noexcept
         : value(value_), u(u_), v(v_), uu(uu_), uv(uv_), vv(vv_) {}
@@ -44,7 +45,7 @@ struct Jet {
         const T i = 1 / b.value;
         return a * compose(b, i, -i * i, 2 * i * i * i);
     }
-    // With constants, which have no derivatives to carry along.
+    // Operations with constants, which have no derivatives to carry along.
     friend constexpr Jet operator+(Jet a, T c) noexcept {
         a.value += c;
         return a;
@@ -66,7 +67,7 @@ struct Jet {
     }
     friend constexpr bool operator>(const Jet& a, const Jet& b) noexcept { return b < a; }
 
-    /// g(a) from the value and the first two derivatives of g at a.value.
+    /// The jet of g(a), from the value and the first two derivatives of g at a.value.
     friend constexpr Jet compose(const Jet& a, T g, T g1, T g2) noexcept {
         return {g,
                 g1 * a.u,
@@ -103,7 +104,7 @@ struct Taylor {
     T value = 0, first = 0, second = 0;
 
     constexpr Taylor() noexcept = default;
-    /// A constant.
+    /// Makes a constant, whose derivatives are zero.
     constexpr Taylor(T constant) noexcept
         : value(constant) {}  // NOLINT(google-explicit-constructor)
     constexpr Taylor(T value_, T first_, T second_) noexcept
@@ -121,7 +122,7 @@ struct Taylor {
                 a.second * b.value + 2 * a.first * b.first + a.value * b.second};
     }
     friend constexpr Taylor operator/(const Taylor& a, const Taylor& b) noexcept {
-        // a = q b, differentiated twice.
+        // Differentiate a = q b twice.
         const T i = 1 / b.value, q = a.value * i, q1 = (a.first - q * b.first) * i;
         return {q, q1, (a.second - 2 * q1 * b.first - q * b.second) * i};
     }
@@ -131,21 +132,21 @@ struct Taylor {
     friend constexpr bool operator>(const Taylor& a, const Taylor& b) noexcept { return b < a; }
     /// The square root. Derivatives are infinite at 0.
     friend Taylor sqrt(const Taylor& a) noexcept {
-        // a = r^2, differentiated twice.
+        // Differentiate a = r^2 twice.
         const T r = std::sqrt(a.value), i = 1 / (2 * r), r1 = a.first * i;
         return {r, r1, (a.second - 2 * r1 * r1) * i};
     }
 };
 
-/// f(x) for a function that is written once for every scalar type: by the chain rule from its
-/// derivatives at x.value, which takes fewer operations than f in jets.
+/// The jet of f(x) for a function that is written once for every scalar type: by the chain rule
+/// from its derivatives at x.value, which takes fewer operations than f in jets.
 template <std::floating_point T, typename F>
 [[nodiscard]] Jet<T> function_of(const F& f, const Jet<T>& x) noexcept {
     const Taylor<T> g = f(Taylor<T>{x.value, 1, 0});
     return compose(x, g.value, g.first, g.second);
 }
 
-/// The same of one variable: the derivatives are carried through.
+/// The value f(x) for a Taylor expansion in one variable: the derivatives are carried through.
 template <std::floating_point T, typename F>
 [[nodiscard]] Taylor<T> function_of(const F& f, const Taylor<T>& x) noexcept {
     return f(x);
@@ -181,19 +182,19 @@ struct JetVec3 {
 template <std::floating_point T>
 [[nodiscard]] constexpr JetVec3<T> jet_direction(const Vec3<T>& x, const Vec3<NonDeduced<T>>& y,
                                                  const Vec3<NonDeduced<T>>& z) noexcept {
-    // (1 + u^2 + v^2)^(-1/2) = 1 - (u^2 + v^2)/2 + ...
+    // The normalisation is (1 + u^2 + v^2)^(-1/2) = 1 - (u^2 + v^2)/2 + ...
     return {{z.x, x.x, y.x, -z.x, 0, -z.x},
             {z.y, x.y, y.y, -z.y, 0, -z.y},
             {z.z, x.z, y.z, -z.z, 0, -z.z}};
 }
 
-/// A direction that does not depend on the slopes.
+/// A direction that does not depend on the slopes, as jets.
 template <std::floating_point T>
 [[nodiscard]] constexpr JetVec3<T> jet_constant(const Vec3<T>& w) noexcept {
     return {w.x, w.y, w.z};
 }
 
-/// (1 + u^2 + v^2)^(-3/2): solid angle per area of slopes.
+/// Solid angle per area of slopes: (1 + u^2 + v^2)^(-3/2).
 template <std::floating_point T>
 [[nodiscard]] constexpr Jet<T> jet_solid_angle() noexcept {
     return {1, 0, 0, -3, 0, -3};

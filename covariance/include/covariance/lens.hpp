@@ -100,7 +100,8 @@ template <std::floating_point T>
 
 namespace detail {
 
-/// In focus the lens frequencies cancel; what rounding leaves of them must not be negative.
+/// Sets negative variances to zero: in focus the lens frequencies cancel, and rounding may leave a
+/// little below zero.
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> without_negative_axes(SymmetricMatrix5<T> s) noexcept {
     for (std::size_t i = 0; i < 5; ++i)
@@ -109,8 +110,8 @@ template <std::floating_point T>
     return s;
 }
 
-/// The axes of the camera's pixels, from positions or from slopes that are already along e1, e2:
-/// diag(fx, fy) times block, cross (with the frequencies of the lens) and drift (with time).
+/// Writes the axes of the camera's pixels, from positions or from slopes that are already along e1,
+/// e2: diag(fx, fy) times block, cross (with the frequencies of the lens) and drift (with time).
 template <std::floating_point T>
 constexpr void set_pixels(SymmetricMatrix5<T>& r, const Sym2<T>& block, const Mat2<T>& cross, T at,
                           T bt, T fx, T fy) noexcept {
@@ -120,7 +121,8 @@ constexpr void set_pixels(SymmetricMatrix5<T>& r, const Sym2<T>& block, const Ma
     r(1, 4) = fy * bt;
 }
 
-/// The axes of the lens, W_l = R (W_x + k W_u), of light along e1, e2, and of time in shutters.
+/// Writes the axes of the lens, W_l = R (W_x + k W_u), of light along e1, e2, and of time in
+/// shutters.
 template <std::floating_point T>
 constexpr void set_lens(SymmetricMatrix5<T>& r, const SymmetricMatrix5<T>& s, T radius, T k,
                         T shutter) noexcept {
@@ -140,7 +142,7 @@ constexpr void set_lens(SymmetricMatrix5<T>& r, const SymmetricMatrix5<T>& s, T 
 
 }  // namespace detail
 
-/// From the arriving ray to sensor coordinates (pixel, pixel, lens radius, lens radius, shutter).
+/// Maps the arriving ray to sensor coordinates (pixel, pixel, lens radius, lens radius, shutter).
 ///
 /// On axis W_pixel = -W_u/fpx, W_lens = R (W_x + W_u/z_f), W_tau = T W_t: a texture in focus has no
 /// frequency over the lens. With a pinhole rows and columns 2, 3 are zero.
@@ -163,7 +165,7 @@ template <std::floating_point T>
         return detail::without_negative_axes(r);
     }
     const auto a = change_transverse(s, p);
-    // Pixels turn the ray: slopes with the lens' R (positions + k slopes).
+    // Pixels turn the ray, so they take slopes, with the lens' R (positions + k slopes).
     const Mat2<T> lens = radius * (transpose(a.cross()) + k * Mat2<T>(a.angular()));
     detail::set_pixels<T>(r, a.angular(), lens, shutter * a(2, 4), shutter * a(3, 4),
                           -c / camera.pixels_x, -c / camera.pixels_y);
@@ -171,7 +173,7 @@ template <std::floating_point T>
     return detail::without_negative_axes(r);
 }
 
-/// The same for an orthographic camera.
+/// Maps the arriving ray to the sensor of an orthographic camera.
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> sensor(
     const SymmetricMatrix5<T>& s, const Frame<NonDeduced<T>>& arriving,
@@ -180,7 +182,7 @@ template <std::floating_point T>
     const T radius = camera.lens_radius, shutter = camera.shutter;
     const T k = -dot(arriving.z, camera.e3) / camera.focus_distance;
     SymmetricMatrix5<T> r;
-    // Pixels move the ray: positions with the lens' R (positions + k slopes).
+    // Pixels move the ray, so they take positions, with the lens' R (positions + k slopes).
     const Mat2<T> lens = radius * (Mat2<T>(a.spatial()) + k * a.cross());
     detail::set_pixels<T>(r, a.spatial(), lens, shutter * a(0, 4), shutter * a(1, 4),
                           1 / camera.pixels_x, 1 / camera.pixels_y);
@@ -188,7 +190,7 @@ template <std::floating_point T>
     return detail::without_negative_axes(r);
 }
 
-/// The same for any other camera.
+/// Maps the arriving ray to the sensor of any other camera.
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> sensor(
     const SymmetricMatrix5<T>& s, const Frame<NonDeduced<T>>& arriving,
@@ -196,14 +198,15 @@ template <std::floating_point T>
     return detail::without_negative_axes(transform(s, sensor_matrix<T>(arriving, camera)));
 }
 
-/// The same on a light field; the result has left its frame for the sensor's axes.
+/// Maps a light field to the sensor; the result has left its frame for the sensor's axes.
 template <std::floating_point T, typename Camera>
 [[nodiscard]] constexpr SymmetricMatrix5<T> sensor(const LightField<T>& field,
                                                    const Camera& camera) noexcept {
     return sensor(field.sigma, field.frame, camera);
 }
 
-/// A thin lens of focal length f in the plane of the light field, axis along Z: u_old = u + x/f.
+/// Applies a thin lens of focal length f in the plane of the light field, axis along Z: u_old = u +
+/// x/f.
 ///
 /// For cameras that trace through their lens, with `travel` before and behind it.
 /// Travel d and then the lens gives the diagonal (1 - d/f, 1 - d/f, 1, 1, 1) of the official
@@ -211,7 +214,8 @@ template <std::floating_point T, typename Camera>
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> lens(SymmetricMatrix5<T> s,
                                                  NonDeduced<T> focal_length) noexcept {
-    // The shear of `travel` with the roles of positions and slopes exchanged: W_x' = W_x + W_u/f.
+    // The lens is the shear of `travel` with the roles of positions and slopes exchanged: W_x' =
+    // W_x + W_u/f.
     const T p = 1 / focal_length;
     s(0, 0) += p * (2 * s(0, 2) + p * s(2, 2));
     s(0, 1) += p * (s(0, 3) + s(1, 2) + p * s(2, 3));
@@ -225,7 +229,7 @@ template <std::floating_point T>
     return s;
 }
 
-/// The same on a light field, whose frame stays.
+/// Applies a thin lens to a light field, whose frame stays.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> lens(const LightField<T>& field,
                                            NonDeduced<T> focal_length) noexcept {

@@ -1,6 +1,7 @@
-// The lobe of a BRDF at the actual pair of directions instead of at its peak: what a global
-// covariance per BRDF (the first limitation that Belcour's thesis names) over-estimates far from
-// the highlight. `docs` of the derivation: covariance/RULES.md.
+// The lobe of a BRDF at the actual pair of directions instead of at its peak. A single covariance
+// per BRDF over-estimates the bandwidth far from the highlight, the first limitation that Belcour
+// 2012, "A Frequency Analysis of Light Transport: From Theory to Implementation", names. Derived in
+// covariance/RULES.md.
 //
 // Around a pair of directions f cos = exp(l), l a function of the slopes of both. Along the leaving
 // slopes the spectrum of exp(l) has the covariance
@@ -26,48 +27,47 @@ template <std::floating_point T>
     if (!(det(limit) > 0)) return limit;
     const auto is_positive = [](const Sym2<T>& m) { return det(m) >= 0 && trace(m) >= 0; };
     if (is_positive(limit - a) && is_positive(a)) return a;
-    // With limit = L L^T: L^-1 a L^-T has eigenvalues at most 1.
+    // With limit = L L^T, L^-1 a L^-T has eigenvalues of at most 1 after the cut.
     const T l00 = std::sqrt(limit.xx), l10 = limit.xy / l00, l11 = std::sqrt(det(limit)) / l00;
     const Mat2<T> to_limit{1 / l00, -l10 / (l00 * l11), 0, 1 / l11};  // L^-T
     const Sym2<T> relative = clamp_eigenvalues(congruence(a, to_limit), T(0), T(1));
     return congruence(relative, Mat2<T>{l00, l10, 0, l11});
 }
 
-/// The negative part of a matrix removed: eigenvalues below 0 become 0.
+/// The positive part of a matrix: eigenvalues below 0 become 0.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> positive_part(const Sym2<T>& a) noexcept {
     if (det(a) > 0) return a.xx > 0 ? a : Sym2<T>{};  // both of one sign
     return map_eigenvalues(a, [](T l) { return std::max(l, T(0)); });
 }
 
-/// The same matrix with the sizes of its eigenvalues.
+/// The matrix with the eigenvectors of `a` and the absolute values of its eigenvalues.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> absolute(const Sym2<T>& a) noexcept {
     if (det(a) > 0) return a.xx > 0 ? a : T(-1) * a;
     return map_eigenvalues(a, [](T l) { return std::abs(l); });
 }
 
-/// The derivatives of log f; its value, of which nothing here depends, is left 0.
+/// The derivatives of log f; its value, on which nothing here depends, is left 0.
 template <std::floating_point T>
 [[nodiscard]] constexpr Jet<T> log_derivatives(const Jet<T>& f) noexcept {
     const T i = 1 / f.value, gu = f.u * i, gv = f.v * i;
     return {0, gu, gv, f.uu * i - gu * gu, f.uv * i - gu * gv, f.vv * i - gv * gv};
 }
 
-/// -Hess l / (4 pi^2) with f = exp(l), of either sign: the covariance of the Gaussian that touches
-/// f.
+/// Covariance of the Gaussian that touches f = exp(l): -Hess l / (4 pi^2), of either sign.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> curvature_of_log(const Jet<T>& l) noexcept {
     return (-1 / four_pi_sq<T>)*Sym2<T>{l.uu, l.uv, l.vv};
 }
 
-/// The same from f itself.
+/// Covariance of the Gaussian that touches f, from f itself.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> log_curvature(const Jet<T>& f) noexcept {
     return curvature_of_log(log_derivatives(f));
 }
 
-/// `local_lobe` of f = exp(l), from the derivatives of l.
+/// The lobe `local_lobe` of f = exp(l), from the derivatives of l.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> local_lobe_of_log(const Jet<T>& l, const Sym2<NonDeduced<T>>& peak) noexcept {
     const Sym2<T> steep = (1 / four_pi_sq<T>)*Sym2<T>{l.u * l.u, l.u * l.v, l.v * l.v};
@@ -75,19 +75,19 @@ template <std::floating_point T>
     return std::isfinite(trace(local)) ? limited_by(local, peak) : peak;
 }
 
-/// C of a lobe f at the actual pair: (|Hess log f| + grad log f grad log f^T) / (4 pi^2), at most
-/// `peak`.
+/// Covariance C of a lobe f at the actual pair: (|Hess log f| + grad log f grad log f^T) / (4
+/// pi^2), at most `peak`.
 ///
 /// Shapes   f: BRDF * cos as a jet in the leaving slopes; any constant factor cancels.
 ///          peak: the global covariance in the same axes, for instance `glossy_lobe`.
 /// Units    1/rad^2. Errors: where f is not positive or not finite the peak is returned.
-/// Source   the idea is in Belcour's 2016 course notes; the form is derived in RULES.md.
+/// Source   the idea is in Belcour's course notes of 2016; the form is derived in RULES.md.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> local_lobe(const Jet<T>& f, const Sym2<NonDeduced<T>>& peak) noexcept {
     return f.value > 0 ? local_lobe_of_log(log_derivatives(f), peak) : peak;
 }
 
-/// What a BRDF does around one pair of directions.
+/// The effect of a BRDF on light around one pair of directions.
 template <std::floating_point T = double>
 struct LocalLobe {
     Sym2<T> window;      ///< factor on the arriving light, in arriving slopes
@@ -124,7 +124,7 @@ template <std::floating_point T, typename F, typename ToLocal>
     return local;
 }
 
-/// Reflection or refraction by a local lobe: window, map of the slopes, convolution.
+/// Reflects or refracts light by a local lobe: window, map of the slopes, convolution.
 ///
 /// Between `surface_enter` and `surface_exit`; `lobe` made with the frame of `field`.
 template <std::floating_point T>

@@ -38,7 +38,8 @@ struct Matrix5 {
         return *this;
     }
 
-    /// A1 * A2 is the change of coordinates of event 1 (nearer the light) followed by event 2.
+    /// The product A1 * A2 is the change of coordinates of event 1 (nearer the light) followed by
+    /// event 2.
     friend constexpr Matrix5 operator*(const Matrix5& a, const Matrix5& b) noexcept {
         Matrix5 c;
         for (std::size_t i = 0; i < 5; ++i)

@@ -40,7 +40,7 @@ template <std::floating_point T>
     return {velocity, cross(normal, normal_derivative)};
 }
 
-/// (V.X, V.Y, (Omega x Z).X, (Omega x Z).Y): how fast x, y, u and v of a fixed ray drift.
+/// Drift of a fixed ray's x, y, u and v: (V.X, V.Y, (Omega x Z).X, (Omega x Z).Y).
 template <std::floating_point T>
 [[nodiscard]] constexpr std::array<T, 4> drift(const Frame<T>& f,
                                                const Motion<NonDeduced<T>>& m) noexcept {
@@ -48,7 +48,7 @@ template <std::floating_point T>
     return {dot(m.velocity, f.x), dot(m.velocity, f.y), dot(turn, f.x), dot(turn, f.y)};
 }
 
-/// Old from new coordinates for p_old = p + a t in x, y, u, v.
+/// Old from new coordinates of a drift, p_old = p + a t in x, y, u, v.
 template <std::floating_point T>
 [[nodiscard]] constexpr Matrix5<T> drift_matrix(const std::array<T, 4>& a) noexcept {
     Matrix5<T> m = Matrix5<T>::identity();
@@ -68,7 +68,8 @@ template <std::floating_point T>
     return s;
 }
 
-/// Into the rest frame of a moving body: x_old = x + (V.X) t, u_old = u + ((Omega x Z).X) t, ...
+/// Goes into the rest frame of a moving body: x_old = x + (V.X) t, u_old = u + ((Omega x Z).X) t,
+/// ...
 ///
 /// Frame    that of the arriving ray; call it before `surface_enter`, and for a moving camera right
 ///          before the sensor map. Undone by `motion_exit` with the same frame.
@@ -80,14 +81,14 @@ template <std::floating_point T>
     return motion.at_rest() ? s : change_time(s, drift<T>(incoming, motion));
 }
 
-/// The same on a light field, with its own frame as the arriving one.
+/// Brings a light field into the rest frame, with its own frame as the arriving one.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> motion_enter(const LightField<T>& field,
                                                    const Motion<NonDeduced<T>>& motion) noexcept {
     return {motion_enter(field.sigma, field.frame, motion), field.frame};
 }
 
-/// Out of the rest frame of a moving body: the drift of `motion_enter` with the opposite sign.
+/// Goes out of the rest frame of a moving body: the drift of `motion_enter` with the opposite sign.
 ///
 /// Frame    that of the leaving ray; call it after `surface_exit`.
 template <std::floating_point T>
@@ -97,7 +98,7 @@ template <std::floating_point T>
     return motion_enter(s, outgoing, {-motion.velocity, -motion.angular_velocity});
 }
 
-/// The same on a light field, with its own frame as the leaving one.
+/// Brings a light field out of the rest frame, with its own frame as the leaving one.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> motion_exit(const LightField<T>& field,
                                                   const Motion<NonDeduced<T>>& motion) noexcept {

@@ -50,8 +50,8 @@ template <std::floating_point T>
             rotate_between<T>(s.n, normals.n, s.t2), s.curvature};
 }
 
-/// `surface_enter` where the normals are those of a map: positions on the geometry, slopes in axes
-/// that turn with the mapped normal.
+/// Enters a surface whose normals are those of a map: positions on the geometry, slopes in axes
+/// that turn with the mapped normal. See `surface_enter`.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> surface_enter(
     const LightField<T>& field, const Surface<NonDeduced<T>>& surface,
@@ -61,7 +61,8 @@ template <std::floating_point T>
             field.frame};
 }
 
-/// `surface_exit` where the normals are those of a map; the same surface and normals as at entry.
+/// Leaves a surface whose normals are those of a map; the same surface and normals as at entry. See
+/// `surface_exit`.
 template <std::floating_point T>
 [[nodiscard]] LightField<T> surface_exit(const LightField<T>& field,
                                          const Surface<NonDeduced<T>>& surface,

@@ -1,7 +1,7 @@
-// Who stands beside a ray: a grid of cells that a renderer fills with its triangles and spheres,
-// and that is asked for the outlines near a segment. Cells only tell what to look at; where an
-// outline is follows from the shapes themselves, so that no result has the grid's resolution but
-// the reach: one cell on either side of the ray.
+// Occluders beside a ray: a grid of cells that a renderer fills with its triangles and spheres, and
+// that is asked for the outlines near a segment. Cells only tell which shapes to look at; the place
+// of an outline follows from the shapes themselves. So no result has the grid's resolution but the
+// reach: one cell on either side of the ray.
 //
 //   OccluderGrid<double> grid;
 //   grid.add_triangle(a, b, c);  grid.add_sphere(center, radius, velocity);  ...
@@ -13,11 +13,12 @@
 // crease, as where two walls meet, is one for the light that leaves a wall beside it, which ends
 // there and goes on with another brightness.
 //
-// The renderer beside this library has its own search (src/occluders/query.h): a hierarchy
-// of boxes with cones of blind directions, for millions of edges, instances and holes of alpha
-// textures, which needs its scene; and voxels (voxel_grid.h) as the thesis has them, with another
-// answer than outlines. Sharing would mean to take either of them along.
-// Allocates while it is built: one of the headers for whole scenes, see renderer.hpp.
+// The renderer beside this library has its own search (src/occluders/query.h): a hierarchy of boxes
+// with cones of blind directions, for millions of edges, instances and holes of alpha textures,
+// which needs its scene; and voxels (voxel_grid.h) as in Belcour 2012, "A Frequency Analysis of
+// Light Transport: From Theory to Implementation", section 5.1, with another answer than outlines.
+// Sharing would mean to take either of them along. Allocates while it is built: one of the headers
+// for whole scenes, see renderer.hpp.
 #pragma once
 
 #include <array>
@@ -88,8 +89,8 @@ class OccluderGrid {
     /// Extent that stands for a point: 1e-4 of the scene's radius, scene units.
     [[nodiscard]] T smallest() const noexcept { return T(0.5e-4) * length(high_ - low_); }
 
-    /// Where light from infinity that arrives at `point` comes into the scene: the segment from
-    /// there on has the occluders that matter. `towards`: unit, from the point to the light.
+    /// Place where light from infinity that arrives at `point` comes into the scene: the segment
+    /// from there on has the occluders that matter. `towards`: unit, from the point to the light.
     [[nodiscard]] Vec3<T> entry(const Vec3<T>& point, const Vec3<T>& towards) const noexcept {
         T leave = std::numeric_limits<T>::infinity();
         for (int k = 0; k < 3; ++k) {
@@ -179,7 +180,7 @@ class OccluderGrid {
             n_[std::size_t(k)] = static_cast<int>(component(extent, k) / size_) + 3;
     }
 
-    /// The number of a point's cell; what is outside of all gets a number beyond the last.
+    /// The number of a point's cell; a point outside of all cells gets a number beyond the last.
     [[nodiscard]] std::size_t cell_of(const Vec3<T>& p) const noexcept {
         std::size_t cell = 0;
         for (int k = 2; k >= 0; --k) {
@@ -249,7 +250,7 @@ class OccluderGrid {
             is_outline = dot(to_0, across) * dot(to_1, across) > 0;
             if (!is_outline && !is_crease(cross(ab, to_0), cross(to_1, ab))) return;
         }
-        // As the ray sees it: without the parts along the ray, cut where the segment ends.
+        // Look along the ray: leave out the parts along it, cut the edge where the segment ends.
         const Vec3<T> a = edge.a + time * edge.velocity - from;
         const T at_a = dot(a, d), slope = dot(ab, d);
         const Vec3<T> flat_a = a - at_a * d, flat = ab - slope * d;
@@ -261,7 +262,8 @@ class OccluderGrid {
         const T k = squared > 0 ? std::clamp(-dot(flat_a, flat) / squared, low, high) : low;
         const Vec3<T> offset = flat_a + k * flat;
         const T r = length(offset), ahead = at_a + k * slope;
-        // The border of what the light has just left lies beside its start, on one side behind it.
+        // The border of the surface that light has just left lies beside its start, on one side
+        // behind it.
         if (!(r > 0) || !(ahead > -2 * r) || (!is_outline && ahead > 2 * r)) return;
         visit(Outline<T>{ahead, offset / r, r, edge.velocity});
     }
@@ -289,11 +291,12 @@ class OccluderGrid {
     int cells_;
     std::vector<Edge> edges_;
     std::vector<Sphere> spheres_, huge_;
-    std::map<std::array<std::array<T, 3>, 2>, std::uint32_t> index_;  ///< of edges, by corners
+    /// Numbers of the edges, by their corners.
+    std::map<std::array<std::array<T, 3>, 2>, std::uint32_t> index_;
     Vec3<T> low_, high_, corner_;
     T size_ = 1;
     std::array<int, 3> n_{};
-    std::vector<std::uint32_t> first_, shapes_;  ///< of every cell the first of its shapes
+    std::vector<std::uint32_t> first_, shapes_;  ///< for every cell, the first of its shapes
 };
 
 }  // namespace covariance

@@ -80,8 +80,8 @@ template <std::floating_point T>
         f};
 }
 
-/// 1/(2 pi sqrt(lambda_min)) of the spatial block: the widest extent, as a standard deviation in
-/// scene units, of the local light field across the ray; infinite where nothing limits it.
+/// Widest extent, as a standard deviation in scene units, of the local light field across the ray:
+/// 1/(2 pi sqrt(lambda_min)) of the spatial block; infinite where nothing limits it.
 ///
 /// Occluders farther away than a few of these do not matter; `limit_curvature` asks for it too.
 template <std::floating_point T>

@@ -4,8 +4,9 @@
 //   shutter)
 //
 // A window multiplies, so its covariance adds; integrating slices the spectrum at zero, which for a
-// Gaussian is the Schur complement (how the thesis' equation 5.3 must be read: Belcour 2012
-// thesis). It is not the block B_ss: that is the image of a pinhole camera at one instant.
+// Gaussian is the Schur complement. (Equation 5.3 of Belcour 2012, "A Frequency Analysis of Light
+// Transport: From Theory to Implementation", must be read so.) It is not the block B_ss: that is
+// the image of a pinhole camera at one instant.
 #pragma once
 
 #include <cmath>
@@ -14,25 +15,25 @@
 
 namespace covariance {
 
-/// Covariance 1/(4 pi^2 variance) of a window with the given variance.
+/// Spectral covariance 1/(4 pi^2 variance) of a window with the given variance.
 template <std::floating_point T>
 [[nodiscard]] constexpr T window_variance(T primal_variance) noexcept {
     return 1 / (four_pi_sq<T> * primal_variance);
 }
 
-/// A disc aperture in units of its radius (variance 1/4): 1/pi^2 per axis.
+/// Window of a disc aperture in units of its radius (variance 1/4): 1/pi^2 per axis.
 template <std::floating_point T = double>
 inline constexpr T disc_lens_window = 1 / (pi<T> * pi<T>);
 
-/// A square aperture [-1, 1]^2 (variance 1/3): 3/(4 pi^2) per axis.
+/// Window of a square aperture [-1, 1]^2 (variance 1/3): 3/(4 pi^2) per axis.
 template <std::floating_point T = double>
 inline constexpr T square_lens_window = 3 / four_pi_sq<T>;
 
-/// A shutter that opens and closes at once, over [0, 1] (variance 1/12): 3/pi^2.
+/// Window of a shutter that opens and closes at once, over [0, 1] (variance 1/12): 3/pi^2.
 template <std::floating_point T = double>
 inline constexpr T box_shutter_window = 3 / (pi<T> * pi<T>);
 
-/// W = diag(0, 0, lens, lens, shutter), for sensor coordinates.
+/// Window of lens and shutter for sensor coordinates: W = diag(0, 0, lens, lens, shutter).
 template <std::floating_point T = double>
 [[nodiscard]] constexpr SymmetricMatrix5<T> sensor_window(
     T lens = disc_lens_window<T>, NonDeduced<T> shutter = box_shutter_window<T>) noexcept {
@@ -41,18 +42,18 @@ template <std::floating_point T = double>
 
 namespace detail {
 
-/// What eliminating the axes u, v, t from S + W leaves.
+/// Result of eliminating the axes u, v, t from S + W.
 template <std::floating_point T>
 struct Elimination {
-    Sym2<T> schur;         ///< of x, y
+    Sym2<T> schur;         ///< the Schur complement over x, y
     T ratio = 1;           ///< det (S + W)_rr / det W_rr over u, v, t
     bool windowed = true;  ///< whether W_rr is positive definite, so that the ratio means something
 };
 
-/// Gaussian elimination with the largest pivot first. W is eliminated beside S + W: its pivots
-/// bound the others from below, so that no rounding brings the ratio under 1. Without a window,
-/// pivots that are rounding noise are left out, which for a positive semi-definite matrix is a
-/// generalised inverse.
+/// Eliminates u, v, t by Gauss' method with the largest pivot first. W is eliminated beside S + W:
+/// its pivots bound the others from below, so that no rounding brings the ratio under 1. Without a
+/// window, pivots that are rounding noise are left out, which for a positive semi-definite matrix
+/// is a generalised inverse.
 template <std::floating_point T>
 [[nodiscard]] constexpr Elimination<T> eliminate_uvt(const SymmetricMatrix5<T>& s,
                                                      SymmetricMatrix5<T> w) noexcept {
@@ -103,8 +104,8 @@ template <std::floating_point T>
     return detail::eliminate_uvt(s, window).schur;
 }
 
-/// Fixes lens point and time instead of integrating: the upper left block. A pinhole at one
-/// instant.
+/// Fixes lens point and time instead of integrating, which leaves the upper left block: the image
+/// of a pinhole at one instant.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> project2(const SymmetricMatrix5<T>& s) noexcept {
     return s.spatial();

@@ -11,8 +11,8 @@
 
 namespace covariance {
 
-/// h = (Zo - Zi)/|Zo - Zi|, the normal of the mirror that takes the direction `incoming` into
-/// `outgoing`; `fallback` where the two agree.
+/// Half vector h = (Zo - Zi)/|Zo - Zi|: the normal of the mirror that takes the direction
+/// `incoming` into `outgoing`; `fallback` where the two agree.
 template <std::floating_point T>
 [[nodiscard]] Vec3<T> half_vector(const Vec3<T>& incoming, const Vec3<NonDeduced<T>>& outgoing,
                                   const Vec3<NonDeduced<T>>& fallback) noexcept {
@@ -27,9 +27,10 @@ template <std::floating_point T>
     return {to, rotate_between<T>(s.n, to, s.t1), rotate_between<T>(s.n, to, s.t2), s.curvature};
 }
 
-/// Perfect mirror, and the change of frame of every other reflection: the axes are reflected in the
-/// plane orthogonal to the half vector, and with these axes the covariance stays as it is, also for
-/// directions off the mirror direction. The new frame has the other handedness.
+/// Reflects light by a perfect mirror; every other reflection changes its frame in this way, too.
+/// The axes are reflected in the plane orthogonal to the half vector, and with these axes the
+/// covariance stays as it is, also for directions off the mirror direction. The new frame has the
+/// other handedness.
 template <std::floating_point T>
 [[nodiscard]] LightField<T> reflect_specular(const LightField<T>& field,
                                              const Surface<NonDeduced<T>>& surface,
@@ -56,8 +57,8 @@ template <std::floating_point T>
                                   const Sym2<NonDeduced<T>>& micro) noexcept {
     const T cos_h = std::max(std::abs(dot(h, reflected.z)), min_surface_cosine<T>);
     if (micro.xx == micro.yy && micro.xy == 0) {
-        // All tangents alike: with P^T P of those of h, I minus the outer product of what h has of
-        // X and Y.
+        // All tangents are alike: with P^T P of h's own, it is I minus the outer product of h's
+        // components along X and Y.
         const T scale = micro.xx / (4 * cos_h * cos_h);
         const T x = dot(reflected.x, h), y = dot(reflected.y, h);
         return {scale * (1 - x * x), -scale * x * y, scale * (1 - y * y)};
@@ -74,7 +75,8 @@ struct GlossyPair {
     Sym2<T> lobe;
 };
 
-/// The pair of a reflection: mirrored frame, no map, lobe P_h Cm P_h^T / (4 (h.Zo)^2).
+/// The pair of directions of a reflection: mirrored frame, no map, lobe P_h Cm P_h^T / (4
+/// (h.Zo)^2).
 ///
 /// Shapes   micro: slope covariance in surface.t1, t2, from `micro_beckmann`, `micro_ggx`, ...
 /// Errors   none; |h.Zo| below 0.02 counts as 0.02. The lobe's own error against the true
@@ -105,8 +107,9 @@ template <std::floating_point T>
     return scatter(field, reflection_pair(field.frame, surface, outgoing, micro));
 }
 
-/// A fuzzy mirror (brushed metal as in small path tracers): the mirror direction plus a random
-/// vector from the ball of radius `fuzz`; see `fuzz_cov`. For microfacets use `reflect_glossy`.
+/// Reflects light by a fuzzy mirror (brushed metal as in small path tracers): the mirror direction
+/// plus a random vector from the ball of radius `fuzz`; see `fuzz_cov`. For microfacets use
+/// `reflect_glossy`.
 ///
 /// Errors   none; without fuzz it is `reflect_specular`.
 template <std::floating_point T>

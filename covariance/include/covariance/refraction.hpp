@@ -43,8 +43,9 @@ template <std::floating_point T>
     return refract_to(field, surface, turned_to(field.frame, outgoing), n1, n2);
 }
 
-/// The pair of a refraction by a rough surface: the map about the microfacet that refracts one
-/// direction into the other, h along n1 Zi - n2 Zo, and the lobe (n2/Gamma)^2 P_h Cm P_h^T.
+/// The pair of directions of a refraction by a rough surface: the map about the microfacet that
+/// refracts one direction into the other, h along n1 Zi - n2 Zo, and the lobe (n2/Gamma)^2 P_h Cm
+/// P_h^T.
 ///
 /// Shapes   micro: slope covariance in surface.t1, t2.
 /// Units    refractive indices n1 on the side of the arriving light, n2 of the leaving light.

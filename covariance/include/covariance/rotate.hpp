@@ -30,7 +30,7 @@ template <std::floating_point T>
     return s;
 }
 
-/// Q of a rotation by alpha: X' = cos X + sin Y, Y' = -sin X + cos Y; alpha in radians.
+/// Matrix Q of a rotation by alpha: X' = cos X + sin Y, Y' = -sin X + cos Y; alpha in radians.
 template <std::floating_point T>
 [[nodiscard]] Mat2<T> rotation(T alpha) noexcept {
     const T c = std::cos(alpha), s = std::sin(alpha);
@@ -46,7 +46,7 @@ template <std::floating_point T>
     return change_transverse(s, rotation<T>(alpha));
 }
 
-/// The same on a light field, whose frame turns along.
+/// Rotates the axes of a light field, whose frame turns along.
 template <std::floating_point T>
 [[nodiscard]] LightField<T> rotate(const LightField<T>& field, NonDeduced<T> alpha) noexcept {
     const T c = std::cos(alpha), s = std::sin(alpha);
@@ -64,7 +64,7 @@ template <std::floating_point T>
     return s;
 }
 
-/// The same on a light field, whose Y axis is reversed along.
+/// Reverses Y of a light field and of its frame.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> flip_y(const LightField<T>& field) noexcept {
     return {flip_y(field.sigma), {field.frame.x, -field.frame.y, field.frame.z}};

@@ -1,6 +1,7 @@
-// How many samples a pixel needs. The thesis' count is N = k sqrt(det Sigma) per unit of pixel,
-// lens and shutter; it vanishes as soon as one axis is constant. With the windowed matrix B = Sigma
-// + W it splits:
+// Number of samples that a pixel needs. Belcour 2012, "A Frequency Analysis of Light Transport:
+// From Theory to Implementation", section 5.1, has the count N = k sqrt(det Sigma) per unit of
+// pixel, lens and shutter; it vanishes as soon as one axis is constant. With the windowed matrix B
+// = Sigma + W it splits:
 //
 //   sqrt det(Sigma + W) = sqrt det(Sigma_2D) * sqrt det(Sigma_rr + W_rr)
 //   N_int = sqrt( det(Sigma_rr + W_rr) / det W_rr ) >= 1,      N = k_img sqrt det(Sigma_2D) N_int
@@ -15,17 +16,17 @@
 
 namespace covariance {
 
-/// What one elimination of lens and shutter from S + W gives.
+/// Result of one elimination of lens and shutter from S + W.
 template <std::floating_point T = double>
 struct SensorIntegral {
     Sym2<T> spectrum;   ///< `preintegrate()`
     T integration = 1;  ///< `integration_count()`
 };
 
-/// Both at the cost of one.
+/// Integrates over lens and shutter: spectrum and count together, at the cost of one.
 ///
 /// Shapes   s, window: sensor coordinates, `sensor_window()`.
-/// Errors   none; as of the two functions.
+/// Errors   none; limits are those of `preintegrate` and `integration_count`.
 template <std::floating_point T>
 [[nodiscard]] SensorIntegral<T> integrate_over_sensor(
     const SymmetricMatrix5<T>& s,
@@ -34,7 +35,7 @@ template <std::floating_point T>
     return {e.schur, e.windowed ? std::sqrt(e.ratio) : T(1)};
 }
 
-/// N_int: samples needed for the integral over lens and shutter at one point of the image.
+/// Number N_int of samples for the integral over lens and shutter at one point of the image.
 ///
 /// kappa N_int samples give a relative standard deviation of at most 1/sqrt(kappa), for Gaussians.
 /// Post     at least 1, and 1 where nothing varies over lens and shutter.
@@ -46,20 +47,20 @@ template <std::floating_point T>
     return integrate_over_sensor(s, window).integration;
 }
 
-/// sqrt det of a 2x2 spectrum: samples per pixel of its image, up to the factor k_img.
+/// Density sqrt det of a 2x2 spectrum: samples per pixel of its image, up to the factor k_img.
 template <std::floating_point T>
 [[nodiscard]] T image_density(const Sym2<T>& spectrum) noexcept {
     const T d = det(spectrum);
     return d < 0 ? T(0) : std::sqrt(d);
 }
 
-/// k_img = pi c^2 kappa: with it a filter of width factor c averages kappa N_int samples.
+/// Factor k_img = pi c^2 kappa: with it a filter of width factor c averages kappa N_int samples.
 template <std::floating_point T>
 [[nodiscard]] constexpr T image_factor(T c, NonDeduced<T> kappa) noexcept {
     return pi<T> * c * c * kappa;
 }
 
-/// k = m^5 of the thesis' N = k sqrt(det Sigma): a lattice of spacing 1/(m sigma_f) per axis, whose
+/// Factor k = m^5 of N = k sqrt(det Sigma) for a lattice of spacing 1/(m sigma_f) per axis, whose
 /// mean is wrong by 2 exp(-m^2/2): 8.8 % for m = 2.5, 2.2 % for m = 3.
 template <std::floating_point T>
 [[nodiscard]] constexpr T lattice_factor(T m) noexcept {
@@ -83,7 +84,7 @@ struct SampleCount {
     T integration = 1;  ///< N_int
 };
 
-/// N = k_img sqrt det(Sigma_2D) N_int for one pixel, without any clamp.
+/// Predicted samples of one pixel, N = k_img sqrt det(Sigma_2D) N_int, without any clamp.
 template <std::floating_point T>
 [[nodiscard]] SampleCount<T> sample_count(const SymmetricMatrix5<T>& s,
                                           const SymmetricMatrix5<NonDeduced<T>>& window,
@@ -93,27 +94,28 @@ template <std::floating_point T>
     return {image * integration, image, integration};
 }
 
-/// The thesis' density g = sqrt det(Sigma_2D) N_int; counts are budget * g / mean(g), clamped.
-/// Source: Belcour 2012 thesis, section 5.1. Its long tail takes the budget from sharp regions.
+/// Density g = sqrt det(Sigma_2D) N_int of Belcour 2012, section 5.1; counts are budget * g /
+/// mean(g), clamped. Its long tail takes the budget from sharp regions.
 template <std::floating_point T>
 [[nodiscard]] T thesis_density(const Sym2<T>& spectrum, NonDeduced<T> integration) noexcept {
     return image_density(spectrum) * integration;
 }
 
-/// The thesis' N for k = 1: sqrt det(S + W) per unit hypercube, which is one pixel, the whole
-/// aperture and the whole shutter interval. So k times this is a count per pixel.
+/// Count N of Belcour 2012, section 5.1, for k = 1: sqrt det(S + W) per unit hypercube, which is
+/// one pixel, the whole aperture and the whole shutter interval. So k times this is a count per
+/// pixel; for a lattice k is `lattice_factor()`.
 ///
 /// An aperture of unit area has the radius 1/sqrt(pi): lengths in radii shrink by sqrt(pi) on two
-/// axes, and sqrt det(S + W), of cycles per radius, grows by pi. With `sensor_window()` W has
-/// pi sqrt(det W_rr) = sqrt(3)/pi^2. The windows stand for the "small quantities" that the thesis
-/// adds to the diagonal lest one constant axis make the determinant vanish.
-/// Source   Belcour 2012 thesis, section 5.1; with a lattice k is `lattice_factor()`.
+/// axes, and sqrt det(S + W), of cycles per radius, grows by pi. With `sensor_window()` W has pi
+/// sqrt(det W_rr) = sqrt(3)/pi^2. The windows stand for the "small quantities" that Belcour adds to
+/// the diagonal lest one constant axis make the determinant vanish.
 template <std::floating_point T>
 [[nodiscard]] T hypercube_density(const Sym2<T>& spectrum, NonDeduced<T> integration) noexcept {
     return std::numbers::sqrt3_v<T> / (pi<T> * pi<T>)*thesis_density(spectrum, integration);
 }
 
-/// clamp(round(N), n_min, n_max), the thesis' count for one pixel. A NaN counts as n_max.
+/// Whole count of one pixel by Belcour 2012, section 5.1: clamp(round(N), n_min, n_max). A NaN
+/// counts as n_max.
 template <std::floating_point T>
 [[nodiscard]] T thesis_count(T n, NonDeduced<T> n_min, NonDeduced<T> n_max) noexcept {
     return n < n_max ? std::max(std::round(n), n_min) : n_max;
@@ -133,8 +135,9 @@ template <std::floating_point T>
     return standard_deviation * std::sqrt(image_density(spectrum)) / radiance;
 }
 
-/// Samples of one pixel out of an average budget: budget ((1 - even) g / mean_g + even), the share
-/// `even` going to all pixels alike. Where all densities are zero every pixel gets the budget.
+/// Samples of one pixel out of an average budget: budget ((1 - even) g / mean_g + even), with the
+/// share `even` going to all pixels alike. Where all densities are zero every pixel gets the
+/// budget.
 template <std::floating_point T>
 [[nodiscard]] constexpr T share_of_budget(T density, NonDeduced<T> mean_density,
                                           NonDeduced<T> budget,

@@ -3,7 +3,7 @@
 
 #if __cplusplus < 202002L && (!defined(_MSVC_LANG) || _MSVC_LANG < 202002L)
 #error "covariance needs C++20: compile with -std=c++20 (MSVC: /std:c++20) or newer"
-// A file that is not there ends the compilation; thousands of errors would follow the one above.
+// The missing file ends the compilation; thousands of errors would follow the one above.
 #include "covariance_needs_cxx20"
 #endif
 
@@ -35,9 +35,9 @@ using NonDeduced = std::type_identity_t<T>;
 template <std::floating_point T>
 inline constexpr T noise_level = std::max(T(1e-13), 16 * std::numeric_limits<T>::epsilon());
 
-/// a b + c, rounded once where the processor does both in one instruction, which is also half of
-/// the work. Which of the two is decided when the code is compiled, so that the same program always
-/// gives the same bits, inlined or not.
+/// The value a b + c, rounded once where the processor does both in one instruction, which is also
+/// half of the work. Which of the two is decided when the code is compiled, so that the same
+/// program always gives the same bits, inlined or not.
 template <std::floating_point T>
 [[nodiscard]] constexpr T multiply_add(T a, NonDeduced<T> b, NonDeduced<T> c) noexcept {
 #ifdef __FMA__
@@ -46,7 +46,7 @@ template <std::floating_point T>
     return a * b + c;
 }
 
-/// a b + c d.
+/// The value a b + c d.
 template <std::floating_point T>
 [[nodiscard]] constexpr T sum_of_products(T a, NonDeduced<T> b, NonDeduced<T> c,
                                           NonDeduced<T> d) noexcept {

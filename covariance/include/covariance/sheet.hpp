@@ -1,6 +1,6 @@
-// What lets light pass without bending it: thin sheets, alpha masks, borders between media, veils.
-// Derived in RULES.md. A sheet that scatters is `reflect_diffuse` with the outgoing direction on
-// its other side.
+// Sheets that let light pass without bending it: thin sheets, alpha masks, borders between media,
+// veils. Derived in RULES.md. A sheet that scatters is `reflect_diffuse` with the outgoing
+// direction on its other side.
 #pragma once
 
 #include "covariance/occlusion.hpp"
@@ -11,8 +11,8 @@ namespace covariance {
 /// Passes straight through a surface whose transmittance varies with position: the light keeps its
 /// frame and its slopes, and Sigma_xy += P^-T T P^-1.
 ///
-/// The same as surface_enter, add_texture, surface_exit, in one step: what curvature does on the
-/// way in it undoes on the way out. Called in ray coordinates, without enter and exit.
+/// It equals surface_enter, add_texture, surface_exit, in one step: curvature undoes on the way out
+/// what it does on the way in. Called in ray coordinates, without enter and exit.
 /// Shapes   texture: in surface.t1, t2, 1/m^2, of the transmittance (for an alpha mask of 1 -
 ///          alpha); zero for a plain sheet or a border between media, which change nothing.
 /// Errors   none; |cos| below 0.02 counts as 0.02.
@@ -26,20 +26,20 @@ template <std::floating_point T>
     return out;
 }
 
-/// How much an edge counts beyond which only the share `transmittance` of the light arrives:
-/// min(1, m/0.1) with m = (1 - t)/(1 + t), deviation over mean of the two levels.
+/// Visibility of an edge beyond which only the share `transmittance` of the light arrives: min(1,
+/// m/0.1) with m = (1 - t)/(1 + t), deviation over mean of the two levels.
 ///
-/// 1 for an opaque edge and for every contrast that can be seen, 0 for none: the same threshold as
-/// for textures, `image_texture`.
+/// It is 1 for an opaque edge and for every contrast that can be seen, 0 for none: the same
+/// threshold as for textures, `image_texture`.
 template <std::floating_point T>
 [[nodiscard]] constexpr T edge_visibility(T transmittance) noexcept {
     return std::min(T(1), (1 - transmittance) / ((1 + transmittance) * T(0.1)));
 }
 
-/// The edge of something that darkens without hiding: the border of an absorbing medium, of a veil,
-/// of a half-transparent mask.
+/// Adds the edge of something that darkens without hiding: the border of an absorbing medium, of a
+/// veil, of a half-transparent mask.
 ///
-/// As `occlude` with the covariance scaled by `edge_visibility(transmittance)`.
+/// The covariance is that of `occlude`, scaled by `edge_visibility(transmittance)`.
 template <std::floating_point T>
 [[nodiscard]] LightField<T> occlude_partly(const LightField<T>& field,
                                            const Vec3<NonDeduced<T>>& offset,

@@ -1,5 +1,5 @@
-// Where the light starts. Area lights are replaced by the Gaussian emitter with the same second
-// moments, Sigma_xy = (4 pi^2 S_e)^-1: what later integrates over the light (a soft shadow, a
+// Sources of light. Area lights are replaced by the Gaussian emitter with the same second moments,
+// Sigma_xy = (4 pi^2 S_e)^-1: an event that later integrates over the light (a soft shadow, a
 // glossy reflection) then converges to the exact frequency. An emitter that is seen sharply, which
 // is directly or through any number of mirrors and clear glass, shows its outline:
 // `area_source_in_view` adds the distance to its border. An outline that `OccluderGrid` finds needs
@@ -60,7 +60,7 @@ template <std::floating_point T>
     return rest.xx > 0 && det(rest) > T(1e-3) * rest.xx * rest.yy;
 }
 
-/// (4 pi^2 S)^-1, with no eigenvalue above `cap`: the spectrum of a Gaussian of covariance S.
+/// Spectrum of a Gaussian of covariance S: (4 pi^2 S)^-1, with no eigenvalue above `cap`.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> spectrum_of_moments(const Sym2<T>& moments, NonDeduced<T> cap) noexcept {
     if (is_spectrum_below(moments, cap)) return inverse(four_pi_sq<T> * moments);
@@ -73,7 +73,8 @@ template <std::floating_point T>
 template <std::floating_point T>
 inline constexpr T max_source_variance = T(1e8);
 
-/// A Lambertian area light, in tangent coordinates of its surface; `surface_exit` must follow.
+/// Starts light at a Lambertian area light, in tangent coordinates of its surface; `surface_exit`
+/// must follow.
 ///
 ///     field = surface_exit(area_source(disc_moments(r), frame), surface);
 ///
@@ -86,8 +87,8 @@ template <std::floating_point T>
     return field;
 }
 
-/// What the border of a rectangle with sides a along t1 and b along t2 adds where its light is seen
-/// at (s1, s2) from the centre: per axis `edge_variance` of the distance to the nearer side.
+/// Covariance of the border of a rectangle with sides a along t1 and b along t2, for light that is
+/// seen at (s1, s2) from the centre: per axis `edge_variance` of the distance to the nearer side.
 ///
 /// Units    scene units; distances below distance_min (above 0) count as distance_min.
 template <std::floating_point T>
@@ -99,7 +100,8 @@ template <std::floating_point T>
                              edge_variance<T>(std::max(to_2, distance_min)));
 }
 
-/// The same for a disc: along the radius through (s1, s2); in the centre in all directions.
+/// Covariance of the border of a disc, for light that is seen at (s1, s2) from the centre: along
+/// the radius through that point; in the centre in all directions.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> disc_border(T radius, NonDeduced<T> s1, NonDeduced<T> s2,
                                   NonDeduced<T> distance_min) noexcept {
@@ -110,8 +112,8 @@ template <std::floating_point T>
     return {q * c * c, q * c * s, q * s * s};
 }
 
-/// An area light that is seen sharply: by the camera, or through mirrors and clear glass alone.
-/// Without its border a lamp's image, and that of its reflection, is smeared.
+/// Starts light at an area light that is seen sharply: by the camera, or through mirrors and clear
+/// glass alone. Without its border a lamp's image, and that of its reflection, is smeared.
 ///
 /// Shapes   border: in surface.t1, t2, from `rectangle_border`, `disc_border`, or your own with
 ///          `edge_variance`. For a sphere none is needed: `end_at_contour` after `surface_exit`.
@@ -122,9 +124,9 @@ template <std::floating_point T>
     return add_texture(area_source(moments, frame, cap), border);
 }
 
-/// A point or spot light, in ray coordinates: Sxx = Syy = 1/(2 pi r_min)^2, a cap.
+/// Starts light at a point or spot light, in ray coordinates: Sxx = Syy = 1/(2 pi r_min)^2, a cap.
 ///
-/// Units    r_min in scene units, about 1e-4 of the scene's radius. What follows saturates
+/// Units    r_min in scene units, about 1e-4 of the scene's radius. Later operators saturate
 /// gracefully.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> point_source(const Frame<T>& frame,
@@ -141,8 +143,8 @@ template <std::floating_point T>
     return Sym2<T>::diagonal(w, w);
 }
 
-/// Light from far away with angular content only: Sxx = 0, the given block of u, v along the X, Y
-/// of the frame. For an environment map: the local covariance of its mean-free luminance per
+/// Starts light from far away with angular content only: Sxx = 0, the given block of u, v along the
+/// X, Y of the frame. For an environment map: the local covariance of its mean-free luminance per
 /// radian.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> distant_source(const Frame<T>& frame,
@@ -152,14 +154,15 @@ template <std::floating_point T>
     return field;
 }
 
-/// A directional light without extent: Suu = Svv = cap, in 1/rad^2.
+/// Starts directional light without extent: Suu = Svv = cap, in 1/rad^2.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> directional_source(
     const Frame<T>& frame, NonDeduced<T> cap = max_source_variance<T>) noexcept {
     return distant_source(frame, Sym2<T>::diagonal(cap, cap));
 }
 
-/// A distant disc such as the sun, of angular radius a in radians: Suu = Svv = 1/(pi^2 a^2).
+/// Starts light of a distant disc such as the sun, of angular radius a in radians: Suu = Svv =
+/// 1/(pi^2 a^2).
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> sun_source(const Frame<T>& frame,
                                                  NonDeduced<T> angular_radius) noexcept {

@@ -20,8 +20,8 @@ struct Surface {
     Vec3<T> n{0, 0, 1};   ///< unit normal, on either side
     Vec3<T> t1{1, 0, 0};  ///< with t2 an orthonormal basis of the tangent plane
     Vec3<T> t2{0, 1, 0};
-    /// dn = curvature * dq, in the basis t1, t2, in 1/scene unit. Convex as seen from the side of n
-    /// is positive: +1/R for a sphere whose normal points outwards.
+    /// Shape operator: dn = curvature * dq, in the basis t1, t2, in 1/scene unit. Convex as seen
+    /// from the side of n is positive: +1/R for a sphere whose normal points outwards.
     Sym2<T> curvature{};
 };
 
@@ -29,22 +29,23 @@ struct Surface {
 template <std::floating_point T>
 inline constexpr T min_surface_cosine = T(0.02);
 
-/// P = [X.T1 X.T2; Y.T1 Y.T2]; its determinant is +-cos theta.
+/// Projection P = [X.T1 X.T2; Y.T1 Y.T2] of the tangent plane; its determinant is +-cos theta.
 template <std::floating_point T>
 [[nodiscard]] constexpr Mat2<T> surface_projection(const Frame<T>& f,
                                                    const Surface<NonDeduced<T>>& s) noexcept {
     return projection(f, s.t1, s.t2);
 }
 
-/// P^-1, with |cos theta| raised to `min_surface_cosine` at grazing angles.
+/// Inverse P^-1 of the projection, with |cos theta| raised to `min_surface_cosine` at grazing
+/// angles.
 template <std::floating_point T>
 [[nodiscard]] Mat2<T> inverse_projection(const Frame<T>& f,
                                          const Surface<NonDeduced<T>>& surface) noexcept {
     Mat2<T> p = surface_projection(f, surface);
     const T c = dot(f.z, surface.n);
     if (std::abs(c) < min_surface_cosine<T>) {
-        // P has the singular values 1 and |c|. The second belongs to the tangent direction `along`
-        // the ray and its image b, P along = c b; only that one is replaced.
+        // The singular values of P are 1 and |c|. The second belongs to the tangent direction
+        // `along` the ray and its image b, P along = c b; only that one is replaced.
         const Vec3<T> along = normalized_or(f.z - c * surface.n, surface.t1);
         const Vec3<T> b = c * along - std::sqrt(1 - c * c) * surface.n;
         const T lift = std::copysign(min_surface_cosine<T>, c) - c;
@@ -75,12 +76,12 @@ template <std::floating_point T>
             s.curvature.xy * s.t1 + s.curvature.yy * s.t2};
 }
 
-/// G: change of slope per tangent displacement between world axes and axes that turn with n.
+/// Change of slope G, per tangent displacement, between world axes and axes that turn with n.
 template <std::floating_point T>
 [[nodiscard]] constexpr Mat2<T> surface_curvature(
     const Frame<T>& f, const NormalField<NonDeduced<T>>& normals) noexcept {
     if (normals.is_flat()) return {};
-    // (n x d) x Z = d (n.Z) - n (d.Z)
+    // The double product is (n x d) x Z = d (n.Z) - n (d.Z).
     const Vec3<T>&n = normals.n, &d1 = normals.d1, &d2 = normals.d2;
     const T nx = dot(f.x, n), ny = dot(f.y, n), nz = dot(f.z, n);
     const T z1 = dot(f.z, d1), z2 = dot(f.z, d2);
@@ -88,7 +89,7 @@ template <std::floating_point T>
             nz * dot(f.y, d1) - z1 * ny, nz * dot(f.y, d2) - z2 * ny};
 }
 
-/// The same for the normals of the geometry, in 1/scene unit.
+/// Change of slope G for the normals of the geometry, in 1/scene unit.
 template <std::floating_point T>
 [[nodiscard]] constexpr Mat2<T> surface_curvature(const Frame<T>& f,
                                                   const Surface<NonDeduced<T>>& s) noexcept {
@@ -104,13 +105,13 @@ template <std::floating_point T>
     return clamp_eigenvalues(curvature, -limit, limit);
 }
 
-/// Old from new coordinates of the shape [P 0 0; G I 0; 0 0 1].
+/// Old from new coordinates of a change of positions, [P 0 0; G I 0; 0 0 1].
 template <std::floating_point T>
 [[nodiscard]] constexpr Matrix5<T> position_matrix(const Mat2<T>& p, const Mat2<T>& g) noexcept {
     return Matrix5<T>::identity().set_block(0, 0, p).set_block(2, 0, g);
 }
 
-/// Applies x_old = P x: what entering and leaving a flat surface share.
+/// Applies x_old = P x, which is both entering and leaving a flat surface.
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> change_positions(
     const SymmetricMatrix5<T>& old, const Mat2<NonDeduced<T>>& p) noexcept {
@@ -123,16 +124,16 @@ template <std::floating_point T>
     return s;
 }
 
-/// Applies x_old = P x, u_old = u + G x: the shape that entering and leaving a surface share.
+/// Applies x_old = P x, u_old = u + G x, which is both entering and leaving a surface.
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> change_positions(
     const SymmetricMatrix5<T>& old, const Mat2<NonDeduced<T>>& p,
     const Mat2<NonDeduced<T>>& g) noexcept {
     SymmetricMatrix5<T> s = change_positions(old, p);
     const Sym2<T> angular = s.angular();
-    // Without slopes (after a slice, at a source) there is nothing to follow the curvature.
+    // Light without slopes (after a slice, at a source) has nothing to follow the curvature.
     if ((angular.xx == 0 && angular.yy == 0) || g == Mat2<T>{}) return s;
-    // Xu' = P^T Xu + G^T Uu;   Xx' = P^T Xx P + (P^T Xu) G + G^T Xu'^T
+    // The new blocks are Xu' = P^T Xu + G^T Uu and Xx' = P^T Xx P + (P^T Xu) G + G^T Xu'^T.
     const Mat2<T> projected = s.cross(), both = projected + transpose(g) * Mat2<T>(angular),
                   sum = projected + both;
     const Sym2<T> xx = s.spatial();
@@ -163,7 +164,7 @@ template <std::floating_point T>
     return position_matrix(inv, T(-1) * (surface_curvature(outgoing, surface) * inv));
 }
 
-/// From ray coordinates to local surface coordinates.
+/// Goes from ray coordinates to local surface coordinates.
 ///
 /// Afterwards x, y are tangent positions along t1, t2, and u, v slopes relative to the incoming X,
 /// Y as they turn with the normal. Undone by `surface_exit` with the same frame. Frame    that of
@@ -178,14 +179,14 @@ template <std::floating_point T>
                             surface_curvature(incoming, surface));
 }
 
-/// The same on a light field; its frame, to which u and v still refer, is unchanged.
+/// Enters a surface with a light field; its frame, to which u and v still refer, is unchanged.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> surface_enter(
     const LightField<T>& field, const Surface<NonDeduced<T>>& surface) noexcept {
     return {surface_enter(field.sigma, field.frame, surface), field.frame};
 }
 
-/// From local surface coordinates to coordinates of the ray that leaves along `outgoing.z`.
+/// Goes from local surface coordinates to coordinates of the ray that leaves along `outgoing.z`.
 ///
 /// Frame    u and v must be relative to the X, Y of `outgoing`.
 /// Errors   none; |cos| of the leaving ray below 0.02 is treated as 0.02.
@@ -198,16 +199,16 @@ template <std::floating_point T>
     return change_positions(s, inv, T(-1) * (surface_curvature(outgoing, surface) * inv));
 }
 
-/// The same on a light field whose frame is the outgoing one, as every reflection and refraction
-/// operator of this library leaves it.
+/// Leaves a surface with a light field whose frame is the outgoing one, as every reflection and
+/// refraction operator of this library leaves it.
 template <std::floating_point T>
 [[nodiscard]] LightField<T> surface_exit(const LightField<T>& field,
                                          const Surface<NonDeduced<T>>& surface) noexcept {
     return {surface_exit(field.sigma, field.frame, surface), field.frame};
 }
 
-/// The same with an outgoing frame of the caller's choice: for light without angular content (after
-/// a diffuse reflection, at a source), where u and v are zero and any X, Y will do.
+/// Leaves a surface with an outgoing frame of the caller's choice: for light without angular
+/// content (after a diffuse reflection, at a source), where u and v are zero and any X, Y will do.
 template <std::floating_point T>
 [[nodiscard]] LightField<T> surface_exit(const LightField<T>& field,
                                          const Surface<NonDeduced<T>>& surface,

@@ -76,13 +76,13 @@ template <std::floating_point T>
     return a.xx * a.yy - a.xy * a.xy;
 }
 
-/// The sum of the diagonal: of both eigenvalues.
+/// The trace: the sum of the diagonal and of both eigenvalues.
 template <std::floating_point T>
 [[nodiscard]] constexpr T trace(const Sym2<T>& a) noexcept {
     return a.xx + a.yy;
 }
 
-/// M^T S M: the covariance S seen in coordinates q with p = M q.
+/// The covariance S seen in coordinates q with p = M q: M^T S M.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> congruence(const Sym2<T>& s, const Mat2<T>& m) noexcept {
     const Mat2<T> sm = Mat2<T>(s) * m;
@@ -120,8 +120,8 @@ template <std::floating_point T>
 [[nodiscard]] Eigen2<T> eigen(const Sym2<T>& a) noexcept {
     const T mean = (a.xx + a.yy) / 2;
     const T half = (a.xx - a.yy) / 2;
-    // hypot, written out: squares of entries this library meets may leave the range of float, their
-    // ratio does not.
+    // The radius is a hypot, written out: squares of entries this library meets may leave the range
+    // of float, their ratio does not.
     const T longer = std::max(std::abs(half), std::abs(a.xy));
     const T shorter = std::min(std::abs(half), std::abs(a.xy));
     if (!(longer > 0)) return {mean, mean, 1, 0};
@@ -136,7 +136,7 @@ template <std::floating_point T>
         y = std::sqrt((1 - cos2) / 2);
         x = sin2 / (2 * y);
     }
-    // The eigenvalue of smaller size from the product of both: mean - radius would cancel.
+    // The eigenvalue of smaller size follows from the product of both: mean - radius would cancel.
     const T large = mean < 0 ? mean - radius : mean + radius;
     const T small = det(a) / large;
     return {std::max(large, small), std::min(large, small), x, y};
@@ -151,7 +151,7 @@ template <std::floating_point T, typename F>
             high * e.y * e.y + low * e.x * e.x};
 }
 
-/// `a` with its eigenvalues brought into [low, high].
+/// The matrix `a` with its eigenvalues brought into [low, high].
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> clamp_eigenvalues(const Sym2<T>& a, NonDeduced<T> low,
                                         NonDeduced<T> high) noexcept {
@@ -180,7 +180,7 @@ struct Sym3 {
     friend constexpr bool operator==(const Sym3&, const Sym3&) noexcept = default;
 };
 
-/// B^T N B with B = [a b]: the tensor seen in the plane of two unit vectors.
+/// The tensor N seen in the plane of two unit vectors: B^T N B with B = [a b].
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> restrict_to(const Sym3<T>& n, const Vec3<NonDeduced<T>>& a,
                                             const Vec3<NonDeduced<T>>& b) noexcept {

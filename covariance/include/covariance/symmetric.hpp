@@ -50,7 +50,7 @@ struct SymmetricMatrix5 {
     [[nodiscard]] constexpr Sym2<T> angular() const noexcept {
         return {values[9], values[10], values[12]};
     }
-    /// The block between them, rows x, y and columns u, v.
+    /// The block between positions and slopes, rows x, y and columns u, v.
     [[nodiscard]] constexpr Mat2<T> cross() const noexcept {
         return {values[2], values[3], values[6], values[7]};
     }
@@ -100,13 +100,13 @@ template <std::floating_point T>
 /// Whether every entry is a finite number. Give a path whose matrix is not the weight 0.
 template <std::floating_point T>
 [[nodiscard]] bool is_finite(const SymmetricMatrix5<T>& s) noexcept {
-    // 0 times what is not finite is not a number.
+    // A product with 0 is not a number where a value is not finite.
     bool finite = true;
     for (const T v : s.values) finite &= v * 0 == 0;
     return finite;
 }
 
-/// The same matrix in another precision, for example to keep floats in a pixel buffer.
+/// The matrix in another precision, for example to keep floats in a pixel buffer.
 template <std::floating_point To, std::floating_point From>
 [[nodiscard]] constexpr SymmetricMatrix5<To> cast(const SymmetricMatrix5<From>& s) noexcept {
     SymmetricMatrix5<To> result;

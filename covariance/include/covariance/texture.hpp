@@ -17,7 +17,7 @@ namespace covariance {
 template <std::floating_point T>
 inline constexpr T edge_beta = T(0.5);
 
-/// 1/(4 pi^2 beta^2 r^2): the variance that a hard edge at the distance r contributes along the
+/// Variance 1/(4 pi^2 beta^2 r^2) that a hard edge at the distance r contributes along the
 /// direction to it. An edge has no finite second moment; this is the window that stays clear of it.
 template <std::floating_point T>
 [[nodiscard]] constexpr T edge_variance(T distance, NonDeduced<T> beta = edge_beta<T>) noexcept {
@@ -36,25 +36,26 @@ template <std::floating_point T>
     return s;
 }
 
-/// The same on a light field, whose frame stays.
+/// Multiplies a light field by a texture; its frame stays.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> add_texture(const LightField<T>& field,
                                                   const Sym2<NonDeduced<T>>& texture) noexcept {
     return {add_texture(field.sigma, texture), field.frame};
 }
 
-/// From texture to tangent coordinates: T2 = D^T T_uv D with D = d(tex u, tex v)/d(s1, s2).
+/// Covariance of a texture in tangent coordinates: T2 = D^T T_uv D with D = d(tex u, tex v)/d(s1,
+/// s2).
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> texture_on_surface(const Sym2<T>& texture,
                                                    const Mat2<NonDeduced<T>>& d_uv) noexcept {
     return congruence(texture, d_uv);
 }
 
-/// Checkerboard, or any texture whose edges run along its own axes: per axis a
+/// Covariance of a checkerboard, or of any texture whose edges run along its own axes: per axis a
 /// T_aa = 1/(4 pi^2 beta^2 max(e_a, e_min)^2), e_a the distance to the nearest edge along that
 /// axis.
 ///
-/// Always both axes: the nearest edge alone leaves stars along the lines.
+/// Both axes count always: the nearest edge alone leaves stars along the lines.
 /// Units    distances in texture coordinates; e_min about half a pixel's footprint, above 0.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> checkerboard_texture(T edge_u, NonDeduced<T> edge_v,
@@ -64,10 +65,11 @@ template <std::floating_point T>
                              edge_variance(std::max(edge_v, edge_min), beta));
 }
 
-/// Texture seen through one window of an image: J/(2 pi^2) min(1, m/0.1), with J = <grad grad^T>
-/// over the variance in the window and m = standard deviation over mean.
+/// Covariance of a texture seen through one window of an image: J/(2 pi^2) min(1, m/0.1), with J =
+/// <grad grad^T> over the variance in the window and m = standard deviation over mean.
 ///
-/// 2 pi^2 (not 4 pi^2) turns the power of a noise-like texture into an amplitude covariance.
+/// The factor 2 pi^2 (not 4 pi^2) turns the power of a noise-like texture into an amplitude
+/// covariance.
 /// Units    J in 1/(texture unit)^2. Errors: none; a window without contrast gives zero.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> image_texture(const Sym2<T>& structure,
@@ -75,7 +77,8 @@ template <std::floating_point T>
     return (std::min(T(1), contrast / T(0.1)) / (2 * pi<T> * pi<T>)) * structure;
 }
 
-/// A solid (three-dimensional) texture on a surface that cuts through it: B^T T B, B = [t1 t2].
+/// Covariance of a solid (three-dimensional) texture on a surface that cuts through it: B^T T B, B
+/// = [t1 t2].
 ///
 /// Restricting a signal to a plane projects its spectrum onto that plane, so its second moments are
 /// the block of the two tangents; frequencies along the normal are not seen. Exact for any
@@ -87,8 +90,8 @@ template <std::floating_point T>
     return restrict_to(solid, surface.t1, surface.t2);
 }
 
-/// A solid checkerboard of axes x, y, z: per axis `edge_variance` of the distance to the nearest
-/// face of its cells along that axis.
+/// Covariance of a solid checkerboard of axes x, y, z: per axis `edge_variance` of the distance to
+/// the nearest face of its cells along that axis.
 ///
 /// Units    scene units; e_min about half a pixel's footprint, above 0.
 template <std::floating_point T>
@@ -102,9 +105,9 @@ template <std::floating_point T>
             edge_variance(std::max(edges.z, e_min), beta)};
 }
 
-/// Solid noise without preferred direction whose frequencies have the mean square f^2 in all, as a
-/// sum of waves in random directions: f^2/3 along every axis. Octaves: the mean of their squares,
-/// by amplitude.
+/// Covariance of solid noise without preferred direction whose frequencies have the mean square f^2
+/// in all, as a sum of waves in random directions: f^2/3 along every axis. For octaves, f^2 is the
+/// mean of their squares, by amplitude.
 ///
 /// Units    frequency in cycles/scene unit.
 template <std::floating_point T>
@@ -113,7 +116,7 @@ template <std::floating_point T>
     return {along, 0, 0, along, 0, along};
 }
 
-/// Of two textures (levels of a pyramid of windows) the one with the greater trace.
+/// The sharper of two textures (levels of a pyramid of windows): the one with the greater trace.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> sharper(const Sym2<T>& a, const Sym2<T>& b) noexcept {
     return trace(b) > trace(a) ? b : a;

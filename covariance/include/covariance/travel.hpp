@@ -54,7 +54,7 @@ template <std::floating_point T>
     return s;
 }
 
-/// The same on a light field; the frame is unchanged.
+/// Carries a light field over a distance; its frame is unchanged.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> travel(const LightField<T>& field,
                                              NonDeduced<T> distance) noexcept {

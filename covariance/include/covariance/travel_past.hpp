@@ -1,14 +1,14 @@
-// Travel past what stands beside the way: of the outlines that an OccluderGrid finds near a
+// Travel past occluders beside the way: among the outlines that an OccluderGrid finds near a
 // segment the few that matter where the light arrives, each added at its distance (occlusion.hpp).
 //
-// How much an outline matters: with the light's covariance M over (x, u) at the end of the segment,
-// an edge q w w^T with w = (1, -z) raises the Schur complement by q h / (Muu + q z^2),
-// h = w^T adj(M) w. Its inverse is the squared width of the shadow edge,
+// The weight of an outline: with the light's covariance M over (x, u) at the end of the segment, an
+// edge q w w^T with w = (1, -z) raises the Schur complement by q h / (Muu + q z^2), h = w^T adj(M)
+// w. Its inverse is the squared width of the shadow edge,
 //
 //   width^2 = (z^2/(4 pi^2 Muu) + beta^2 r^2) / (1 + 2 z Mxu/Muu + z^2 Mxx/Muu)
 //
-// r the outline's distance from the ray, z from the end. At a camera the width is a slope, beside
-// the circle of confusion of its lens.
+// with r the outline's distance from the ray and z its distance from the end. At a camera the width
+// is a slope, beside the circle of confusion of its lens.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@
 
 namespace covariance {
 
-/// Width of the edge that an outline makes where the light arrives, squared:
-/// ((a0 + a1 z)^2 + beta^2 r^2) / (h0 + h1 z + h2 z^2), z the distance from the end of the segment.
+/// Squared width of the edge that an outline makes where the light arrives: ((a0 + a1 z)^2 + beta^2
+/// r^2) / (h0 + h1 z + h2 z^2), z the distance from the end of the segment.
 template <std::floating_point T = double>
 struct EdgeMeasure {
     T a0 = 0, a1 = 0, h0 = 1, h1 = 0, h2 = 0;
@@ -32,14 +32,14 @@ struct EdgeMeasure {
     }
 };
 
-/// Angular windows of what light may meet at the end of a segment, 1/rad^2.
+/// Angular windows of receivers that light may meet at the end of a segment, 1/rad^2.
 template <std::floating_point T>
 inline constexpr T diffuse_receiver = 1 / (pi<T> * pi<T>);
 template <std::floating_point T>
-inline constexpr T mirror_receiver = T(1e6);  ///< and clear glass
+inline constexpr T mirror_receiver = T(1e6);  ///< of mirrors and clear glass
 
-/// At a surface whose sharpest lobe has the angular covariance `window` (per axis, in outgoing
-/// slopes): `diffuse_receiver<T>`, `mirror_receiver<T>`, or that of a glossy lobe.
+/// The measure at a surface whose sharpest lobe has the angular covariance `window` (per axis, in
+/// outgoing slopes): `diffuse_receiver<T>`, `mirror_receiver<T>`, or that of a glossy lobe.
 template <std::floating_point T>
 [[nodiscard]] EdgeMeasure<T> edge_measure_at_surface(const SymmetricMatrix5<T>& leaving,
                                                      NonDeduced<T> whole,
@@ -49,7 +49,7 @@ template <std::floating_point T>
     return {0, 1 / (2 * pi<T> * std::sqrt(uu)), 1, 2 * xu / uu, xx / uu};
 }
 
-/// At a camera.
+/// The measure at a camera.
 template <std::floating_point T>
 [[nodiscard]] EdgeMeasure<T> edge_measure_at_camera(const ThinLens<T>& camera) noexcept {
     return {camera.lens_radius / 2, -camera.lens_radius / (2 * camera.focus_distance), 0, 0, 1};
@@ -57,7 +57,7 @@ template <std::floating_point T>
 
 namespace detail {
 
-/// The narrowest outline of each quarter of the directions.
+/// Keeps the narrowest outline of each quarter of the directions.
 template <std::floating_point T>
 class NarrowestOutlines {
   public:
@@ -74,8 +74,8 @@ class NarrowestOutlines {
         }
     }
 
-    /// Those that matter, from the beginning of the segment on: none four times as wide as the
-    /// narrowest, none that repeats the direction of a narrower one. Returns how many.
+    /// Writes the outlines that matter, from the beginning of the segment on: none four times as
+    /// wide as the narrowest, none that repeats the direction of a narrower one. Returns how many.
     std::size_t sorted(std::array<Outline<T>, 4>& result) noexcept {
         std::array<std::size_t, 4> order{0, 1, 2, 3};
         std::sort(order.begin(), order.end(),
@@ -134,7 +134,7 @@ template <std::floating_point T>
     return travel(past, whole - at);
 }
 
-/// The same to a surface: `window` as of `edge_measure_at_surface`.
+/// Carries light to a surface, past outlines; `window` as in `edge_measure_at_surface`.
 template <std::floating_point T>
 [[nodiscard]] LightField<T> travel_past(const OccluderGrid<T>& grid, const LightField<T>& field,
                                         const Vec3<NonDeduced<T>>& from,
@@ -146,7 +146,7 @@ template <std::floating_point T>
                        time);
 }
 
-/// The same to the camera.
+/// Carries light to the camera, past outlines.
 template <std::floating_point T>
 [[nodiscard]] LightField<T> travel_past(const OccluderGrid<T>& grid, const LightField<T>& field,
                                         const Vec3<NonDeduced<T>>& from,
@@ -156,8 +156,8 @@ template <std::floating_point T>
     return travel_past(grid, field, from, to, edge_measure_at_camera<T>(camera), time);
 }
 
-/// The same for light from infinity (a sky, a sun), which begins to meet occluders where it comes
-/// into the scene. Without occluders it would arrive as it left.
+/// Carries light from infinity (a sky, a sun) to a surface: it begins to meet occluders where it
+/// comes into the scene. Without occluders it would arrive as it left.
 template <std::floating_point T>
 [[nodiscard]] LightField<T> arrive_from_infinity(const OccluderGrid<T>& grid,
                                                  const LightField<T>& field,
@@ -167,7 +167,7 @@ template <std::floating_point T>
     return travel_past(grid, field, grid.entry(to, -field.frame.z), to, window, time);
 }
 
-/// The same for light from infinity that the camera sees without a surface between.
+/// Carries light from infinity to a camera that sees it without a surface between.
 template <std::floating_point T>
 [[nodiscard]] LightField<T> arrive_from_infinity(const OccluderGrid<T>& grid,
                                                  const LightField<T>& field,

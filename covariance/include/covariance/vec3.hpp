@@ -69,7 +69,7 @@ template <std::floating_point T>
     return multiply_add(a.x, b.x, multiply_add(a.y, b.y, a.z * b.z));
 }
 
-/// a + s b.
+/// The sum a + s b.
 template <std::floating_point T>
 [[nodiscard]] constexpr Vec3<T> add_scaled(const Vec3<T>& a, NonDeduced<T> s,
                                            const Vec3<NonDeduced<T>>& b) noexcept {
@@ -114,7 +114,8 @@ template <std::floating_point T>
         const Vec3<T> axis = normalized_or(cross(from, other), Vec3<T>{0, 0, 1});
         return 2 * dot(axis, v) * axis - v;
     }
-    // Rodrigues' formula with sin^2/(1 - cos) = 1 + cos, so that nothing is divided by the sine.
+    // The form is Rodrigues' with sin^2/(1 - cos) = 1 + cos, so that nothing is divided by the
+    // sine.
     const Vec3<T> k = cross(from, to);
     return c * v + cross(k, v) + (dot(k, v) / (1 + c)) * k;
 }

@@ -1,6 +1,6 @@
 // Participating media: absorption along a ray and scattering at a point of a volume. Derived in
-// RULES.md; Belcour, Bala and Soler 2014 have operators for the power spectrum, these are for
-// amplitude.
+// RULES.md. Belcour, Bala and Soler 2014, "A local frequency analysis of light scattering and
+// absorption", have operators for the power spectrum; these are for amplitude.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ namespace covariance {
 template <std::floating_point T>
 using DepthGradient = std::array<T, 5>;
 
-/// Multiplies the light by exp(-tau) where the optical depth tau changes over the neighbours:
-/// Sigma += g g^T/(4 pi^2), g = grad tau. The scale on which the light changes, as for lobes.
+/// Multiplies the light by exp(-tau) where the optical depth tau changes over the neighbours: Sigma
+/// += g g^T/(4 pi^2), g = grad tau. This is the scale on which the light changes, as for lobes.
 ///
 /// A depth that is the same for all neighbours changes nothing: absorption alone has no frequency.
 template <std::floating_point T>
@@ -49,7 +49,7 @@ template <std::floating_point T>
             -distance * in_y, 0};
 }
 
-/// The phase function of Henyey and Greenstein without its factor (1 - g^2)/(4 pi), for any scalar
+/// Phase function of Henyey and Greenstein without its factor (1 - g^2)/(4 pi), for any scalar
 /// type: (1 + g^2 - 2 g mu)^(-3/2), mu the cosine of the deflection.
 template <std::floating_point T, typename S>
 [[nodiscard]] S henyey_greenstein(const S& mu, T g) noexcept {
@@ -57,14 +57,15 @@ template <std::floating_point T, typename S>
     return pow(S(1 + g * g) - S(2 * g) * mu, T(-1.5));
 }
 
-/// Peak of the lobe of Henyey and Greenstein: 3 |g|/(1 - |g|)^2/(4 pi^2) per axis, 1/rad^2.
+/// Covariance of Henyey and Greenstein's lobe at its peak: 3 |g|/(1 - |g|)^2/(4 pi^2) per axis,
+/// 1/rad^2.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> henyey_greenstein_peak(T g) noexcept {
     const T a = g < 0 ? -g : g, c = 3 * a / ((1 - a) * (1 - a) * four_pi_sq<T>);
     return Sym2<T>::diagonal(c, c);
 }
 
-/// Scattering at a point of a volume, by a phase function p(mu) given for jets.
+/// Scatters light at a point of a volume, by a phase function p(mu) given for jets.
 ///
 /// Positions: a neighbour of the leaving ray starts at x X_o + y Y_o, which the arriving light
 /// crosses at P (x, y), P = [X_i.X_o X_i.Y_o; Y_i.X_o Y_i.Y_o]: no detail along the way the light
@@ -89,7 +90,7 @@ template <std::floating_point T, typename F>
     return scatter(LightField<T>{moved, in}, lobe);
 }
 
-/// Scattering by Henyey and Greenstein's phase function of mean cosine g in (-1, 1).
+/// Scatters light by Henyey and Greenstein's phase function of mean cosine g in (-1, 1).
 template <std::floating_point T>
 [[nodiscard]] LightField<T> scatter_in_volume(const LightField<T>& field,
                                               const Vec3<NonDeduced<T>>& outgoing,
