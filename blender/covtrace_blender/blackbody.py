@@ -10,7 +10,7 @@ def temperature_of(node):
 
 
 def blackbody_temperature(socket):
-    """Of the Blackbody node with a fixed temperature that feeds a socket; None where none does."""
+    """Temperature of the Blackbody node that feeds a socket, where it is fixed; None where there is no such node."""
     node = socket.links[0].from_node if socket.is_linked else None
     return temperature_of(node) if node is not None and node.type == "BLACKBODY" else None
 

@@ -45,7 +45,7 @@ def write_lamp(out, lamp, transform, warn):
 
 
 def _shader_colour(lamp, warn):
-    """What the lamp's nodes multiply its power by."""
+    """Colour by which the lamp's nodes multiply its power."""
     if not lamp.use_nodes or not lamp.node_tree:
         return (1, 1, 1)
     output = lamp.node_tree.get_output_node("CYCLES")
@@ -89,7 +89,7 @@ def _write_area(out, lamp, colour):
 
 
 def area_scale(lamp, matrix):
-    """What a scaled object makes of its lamp's radiance: the power stays, the area grows."""
+    """Factor on a lamp's radiance where its object is scaled: the power stays, the area grows."""
     return 1 / max(abs(matrix.col[0].xyz.length * matrix.col[1].xyz.length), 1e-12) if lamp.type == "AREA" else 1
 
 

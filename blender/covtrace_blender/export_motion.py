@@ -17,15 +17,16 @@ LEAST_TURN = 0.01
 # normals until patches go dark (decision 0057).
 RIDGE = 1e-2
 
-# Of a piece's volume; what is squeezed to nothing can't be undone.
+# Most that a piece's volume may be stretched or squeezed; a piece that is squeezed to nothing can't be undone.
 MOST_STRETCH = 20.0
 
 # Joints bend in a few steps each; every piece is an instance that moves.
 MOST_PIECES = 256
 
-# Of the way that vertices go: where pieces meet, gaps of this size open until the shutter closes.
+# Largest distance that vertices may be off, as a share of their way: where pieces meet, gaps of this size open until the
+# shutter closes.
 LEFT = 0.01
-# More than this is told.
+# Largest distance off, as a share of the way, that needs no warning.
 MOST_LEFT_SILENTLY = 0.05
 
 
@@ -100,7 +101,7 @@ def motions(start, end, triangles):
     def add(members):
         used = np.unique(triangles[members])
         matrix, left = motion(start[used], end[used])
-        # What can't be halved comes last; ties are broken by place.
+        # Pieces that can't be halved come last; ties are broken by place.
         heapq.heappush(queue, (-left if len(members) > 1 else 0.0, int(members.min()), left, members, matrix))
 
     piece = connected(len(start), triangles)

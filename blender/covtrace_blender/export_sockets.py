@@ -1,4 +1,4 @@
-"""What feeds a socket of a shader node: constants, and images with their place and treatment."""
+"""Inputs of a shader node's sockets: constants, and images with their place and treatment."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from .blackbody import blackbody, temperature_of
 
 
 class Value:
-    """What a socket gives: a constant, or an image with a treatment."""
+    """Value of a socket: a constant, or an image with a treatment."""
 
     def __init__(self, constant=None, image=None, mapping=None, channel=None, scale=1.0, offset=0.0, filter="bilinear",
                  wrap="repeat"):

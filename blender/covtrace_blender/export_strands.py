@@ -50,7 +50,7 @@ def _many(groups):
 
 
 def _radii(settings, n):
-    """Of a strand's points, by the particle settings, as Cycles has them."""
+    """Radii of a strand's points, by the particle settings, as Cycles has them."""
     rest = 1 - np.linspace(0, 1, n)
     shape = settings.shape
     rest = rest ** (1 + shape if shape < 0 else 1 / max(1 - shape, 1e-3))
@@ -77,7 +77,7 @@ def particle_systems(obj, is_render):
         first = parents if settings.child_type != "NONE" and children else 0
         points = np.array([system.co_hair(object=obj, particle_no=i, step=k)
                            for i in range(first, parents + children) for k in range(n)]).reshape(-1, n, 3)
-        # What grows nowhere has all of its points in one.
+        # Strands that grow nowhere have all of their points in one; they are left out.
         points = points[np.abs(points - points[:, :1]).max((1, 2)) > 0]
         if len(points):
             points = points @ to_object[:3, :3].T + to_object[:3, 3]

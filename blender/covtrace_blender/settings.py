@@ -1,4 +1,4 @@
-"""What the user chooses: the program (add-on preferences) and how to render (a panel of the scene)."""
+"""Choices of the user: the program (add-on preferences) and how to render (a panel of the scene)."""
 
 import os
 import shutil

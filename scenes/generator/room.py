@@ -44,7 +44,7 @@ def _box(x, low, high):
 
 
 def _outdoors(a, z):
-    """What a window shows: a bright hazy sky over trees."""
+    """View through a window: a bright hazy sky over trees."""
     sky = mix((9.5, 10.5, 12.0), (6.0, 8.6, 13.5), smoothstep(0.2, 2.0, z))
     crown = 0.35 + 0.22 * sin(2.3 * a) + 0.12 * sin(5.1 * a + 1) + 0.06 * sin(13 * a)
     return mix((0.5, 0.75, 0.30), sky, smoothstep(crown - 0.12, crown + 0.12, z))

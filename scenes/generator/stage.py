@@ -1,4 +1,4 @@
-"""What most scenes have: options before the world, quads that are lit or shine, materials."""
+"""Parts that most scenes have: options before the world, quads that are lit or shine, materials."""
 
 from .camera import cross, dot, normalize, subtract
 from .files import write_ply
