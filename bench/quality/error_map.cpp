@@ -11,8 +11,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "false_colour.h"
 #include "image/image.h"
+#include "support/false_colour.h"
 
 using namespace covtrace;
 

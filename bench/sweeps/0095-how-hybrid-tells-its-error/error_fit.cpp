@@ -19,10 +19,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "error_bins.h"
-#include "hybrid_samples.h"
 #include "image/image.h"
 #include "reconstruction/outliers.h"
+#include "support/error_bins.h"
+#include "support/hybrid_samples.h"
 
 using namespace covtrace;
 

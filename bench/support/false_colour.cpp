@@ -1,4 +1,4 @@
-#include "false_colour.h"
+#include "support/false_colour.h"
 
 #include <fmt/format.h>
 

@@ -6,8 +6,8 @@
 /// The film is that of `covtrace render --method hybrid --checkpoint FILM`.
 #include <fmt/format.h>
 
-#include "hybrid_samples.h"
 #include "image/image.h"
+#include "support/hybrid_samples.h"
 
 using namespace covtrace;
 

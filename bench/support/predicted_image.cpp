@@ -1,4 +1,4 @@
-#include "predicted_image.h"
+#include "support/predicted_image.h"
 
 #include <fmt/format.h>
 

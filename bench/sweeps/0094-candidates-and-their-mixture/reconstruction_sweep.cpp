@@ -14,10 +14,10 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "error_bins.h"
-#include "hybrid_samples.h"
 #include "image/compare.h"
 #include "reconstruction/selector.h"
+#include "support/error_bins.h"
+#include "support/hybrid_samples.h"
 
 using namespace covtrace;
 

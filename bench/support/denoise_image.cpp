@@ -12,8 +12,8 @@
 #include <chrono>
 
 #include "core/error.h"
-#include "hybrid_samples.h"
 #include "image/image.h"
+#include "support/hybrid_samples.h"
 
 using namespace covtrace;
 

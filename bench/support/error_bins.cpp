@@ -1,4 +1,4 @@
-#include "error_bins.h"
+#include "support/error_bins.h"
 
 #include <algorithm>
 

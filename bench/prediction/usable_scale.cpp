@@ -35,10 +35,10 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "false_colour.h"
 #include "laboratory/deconvolution.h"
-#include "predicted_image.h"
 #include "reconstruction/filter_field.h"
+#include "support/false_colour.h"
+#include "support/predicted_image.h"
 
 using namespace covtrace;
 

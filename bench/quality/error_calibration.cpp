@@ -16,9 +16,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "error_bins.h"
 #include "image/brightness_deciles.h"
 #include "image/image.h"
+#include "support/error_bins.h"
 
 using namespace covtrace;
 

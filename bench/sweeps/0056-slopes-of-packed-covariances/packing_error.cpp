@@ -14,9 +14,9 @@
 
 #include "core/parallel.h"
 #include "frequency/replay.h"
-#include "load_scene.h"
 #include "prediction/covariance_buffer.h"
 #include "render/pass.h"
+#include "support/load_scene.h"
 
 namespace {
 

@@ -20,8 +20,8 @@
 
 #include "core/parallel.h"
 #include "frequency/replay.h"
-#include "load_scene.h"
 #include "render/pass.h"
+#include "support/load_scene.h"
 
 namespace {
 

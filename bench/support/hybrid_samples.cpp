@@ -1,4 +1,4 @@
-#include "hybrid_samples.h"
+#include "support/hybrid_samples.h"
 
 #include "denoiser/find_denoiser.h"
 #include "prediction/covariance_buffer.h"

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "image/compare.h"
-#include "predicted_image.h"
 #include "reconstruction/gather.h"
+#include "support/predicted_image.h"
 
 using namespace covtrace;
 
