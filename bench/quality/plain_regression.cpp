@@ -1,5 +1,5 @@
 /// What first-order regression alone makes of the samples (NFOR; Bitterli et al. 2016), for
-/// `bench/quality --columns nfor`.
+/// `bench/quality/gain --columns nfor`.
 ///
 ///     plain_regression FILM OUT.exr
 ///

@@ -1,8 +1,8 @@
-"""Scenes that are made in Blender for both sides of bench/peers. By a Python that has `bpy`, or inside Blender
+"""Scenes that are made in Blender for both sides of bench/speed/peers. Run by a Python that has `bpy`, or inside Blender
 (`blender --background --factory-startup -noaudio --python` instead of `python`):
 
-    python bench/blender_scene.py -- make SCENE FOLDER WxH
-    python bench/blender_scene.py -- render FOLDER/scene.blend SPP SEED THREADS IMAGE.exr [THRESHOLD]
+    python bench/speed/blender_scene.py -- make SCENE FOLDER WxH
+    python bench/speed/blender_scene.py -- render FOLDER/scene.blend SPP SEED THREADS IMAGE.exr [THRESHOLD]
 
 `make` writes FOLDER/scene.blend and, by the add-on's exporter, FOLDER/scene.pbrt with the same meshes, materials, lights,
 camera, motion and most bounces; it prints Blender's version. `render` is Cycles' render of the .blend: with a noise THRESHOLD
@@ -16,9 +16,12 @@ import pathlib
 import sys
 import time
 
+if "--help" in sys.argv:  # before what only Blender has
+    print(__doc__)
+    sys.exit()
 import bpy
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 MOST_BOUNCES = 5
 SHUTTER = 1.0  # in frames, half of it before the frame
 

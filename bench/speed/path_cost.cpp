@@ -1,5 +1,5 @@
 /// What a covariance path costs beside a radiance path: traces every k-th pixel of every k-th row
-/// in each way. bench/path_cost reads what it leaves.
+/// in each way. bench/speed/path_cost reads what it leaves.
 ///
 ///     valgrind --tool=callgrind --instr-atstart=no path_cost SCENE WIDTH HEIGHT EVERY PATHS ROUNDS
 ///     KIND ...

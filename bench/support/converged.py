@@ -6,7 +6,7 @@ import re
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("COVTRACE_BUILD", ROOT / "build/release"))
 SHARED = pathlib.Path(os.environ.get("COVTRACE_SHARED", ROOT.parent / "shared"))
 COVTRACE = BUILD / "covtrace"
@@ -75,13 +75,6 @@ class Scene:
         image = self.out / f"{self.label}-{tag}.exr"
         if not image.exists():
             subprocess.run([str(tool("converged_pixels")), "--every", str(every), "--spp", str(spp), str(self.path), str(like), str(image)], check=True)
-        return image
-
-    def reference(self, spp):
-        """The mean of the halves."""
-        halves = self.halves(spp)
-        image = self.out / f"{self.label}-reference-{self.resolution}-{spp}.exr"
-        subprocess.run([str(tool("mean_image")), str(image), *map(str, halves)], check=True)
         return image
 
 

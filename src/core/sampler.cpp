@@ -77,7 +77,7 @@ constexpr uint32_t reversed_morton_code(int x, int y) {
 /// Shifts of the sample index by pixel: each pixel adds, by its reversed Morton code, a sum of one
 /// pattern for each bit of the code, lowest first. With them, samples 0 to 2^a - 1 of the 2^c
 /// pixels of an aligned block are nearly a net of 2^(a + c) points for all a and c; found by
-/// bench/pixel_shifts.cpp.
+/// pixel_shifts (bench/sweeps, docs/decisions/0079).
 using Patterns = std::array<uint32_t, 2 * kTileBits>;
 constexpr std::array<uint32_t, 1u << 2 * kTileBits> pixel_shifts(const Patterns& patterns) {
     std::array<uint32_t, 1u << 2 * kTileBits> shifts{};

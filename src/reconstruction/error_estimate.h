@@ -8,8 +8,8 @@
 namespace covtrace {
 
 /// What the terms of the estimate count. The defaults fit the true errors of a set of scenes best:
-/// `bench/error_fit` makes them, `bench/error_calibration` measures how well they do
-/// (docs/decisions/0095).
+/// error_fit (bench/sweeps, docs/decisions/0095) makes them, bench/quality/error_calibration
+/// measures how well they do.
 struct ErrorFactors {
     float noise = 1.31f, noise_of_few = 3.1f;
     float spread = 1.39f, returned = 0.37f, cut = 0.002f, sights = 0;

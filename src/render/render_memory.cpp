@@ -10,7 +10,7 @@ namespace covtrace {
 
 namespace {
 
-/// Layers and the buffers of the reconstruction, bytes per pixel: `bench/film_cost memory`.
+/// Layers and the buffers of the reconstruction, bytes per pixel: `bench/speed/film_cost memory`.
 size_t image_bytes(Method method) {
     return method == Method::uniform ? 68 : method == Method::covariance ? 396 : 488;
 }

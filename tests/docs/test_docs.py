@@ -140,7 +140,7 @@ class Documents(unittest.TestCase):
             script = ROOT / SCRIPT.match(name)[1]
             if not script.is_file():
                 return f"{where}: there is no {name}"
-            text = help_of(str(script)) if os.access(script, os.X_OK) and "bench" in script.parts else None
+            text = help_of(str(script)) if os.access(script, os.X_OK) and "bench" in script.relative_to(ROOT).parts else None
             text = text or text_of(script)  # those that have no help, or not with this Python, hold their options as text
         elif BENCHMARK.match(name):
             if not list((ROOT / "bench").rglob(BENCHMARK.match(name)[1] + ".cpp")):

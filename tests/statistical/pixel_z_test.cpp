@@ -3,7 +3,8 @@
 // are known.
 //
 // The tests alarm falsely with probability 0.01 each, on fixed seeds; how often the z-test alarms
-// on other seeds is a test of its own (bench/pixel_z_rates measures it on more of them).
+// on other seeds is a test of its own (pixel_z_rates of bench/sweeps measures it on more of them,
+// docs/decisions/0032).
 #include "pixel_z.h"
 
 #include <gtest/gtest.h>
