@@ -1,4 +1,5 @@
-/// Converges some pixels of an image much further than a whole image could be.
+/// Converges some pixels of an image much further than a whole image could be; usable_scale
+/// measures filters at them.
 ///
 ///     converged_pixels [--every N] [--spp N] [--accuracy F] SCENE.pbrt LIKE.exr OUT.exr
 ///

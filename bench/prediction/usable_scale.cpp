@@ -1,19 +1,20 @@
-/// What the prediction is for, measured: how far each pixel's predicted filter may be scaled.
+/// The usable scale of each pixel's predicted filter: how far it may be widened without changing
+/// the pixel. A measure of how good the prediction is.
 ///
 ///     usable_scale [--no-neighbours] [--map MAP.png] IMAGE.exr PIXELS.exr CONVERGED.exr ...
 ///
-/// IMAGE is by `render --method covariance --spp 16` with the layers that predicted_image.h names;
-/// of it only the prediction is used. PIXELS is what converged_pixels wrote: the pixels that are
-/// measured. CONVERGED are images by
-/// `--method uniform --layers variance,inview` with different seeds; their mean is what the
-/// filters find around those pixels. The filter of a pixel is the renderer's at 16 samples per
-/// pixel: (4 pi^2 c^2 Sigma_2D)^-1, c = 2, deviations in [0.5, 15] pixels, limited by narrower
-/// neighbours unless --no-neighbours is given; emitters in view have filters of their own. The
-/// usable scale of a pixel is the largest factor on the deviations up to which all of these filters
-/// change the pixel's luminance Y by at most 2 % of Y + 0.01, in steps of a quarter octave from 1/8
-/// to 8. A perfect prediction has the same scale everywhere; one far below the typical value blurs.
+/// IMAGE is by `render --method covariance --spp 16` with the layers that predicted_image.h names,
+/// of which only the prediction is used. PIXELS is written by converged_pixels and holds the pixels
+/// that are measured. CONVERGED are images by `--method uniform --layers variance,inview` with
+/// different seeds; the filters find their mean around those pixels. The filter of a pixel is the
+/// renderer's at 16 samples per pixel: (4 pi^2 c^2 Sigma_2D)^-1, c = 2, deviations in [0.5, 15]
+/// pixels, limited by narrower neighbours unless --no-neighbours is given; emitters in view have
+/// filters of their own. The usable scale of a pixel is the largest factor on the deviations up to
+/// which all of these filters change the pixel's luminance Y by at most 2 % of Y + 0.01, in steps
+/// of a quarter octave from 1/8 to 8. A perfect prediction has the same scale everywhere; one far
+/// below the typical value blurs.
 ///
-/// What noise is left must not count as a change: the standard deviation of each change follows
+/// Noise that is left must not count as a change: the standard deviation of each change follows
 /// from the variances of the images and of the pixel. Two results are printed: "change > 2 %" takes
 /// the change as it is, so its scales are a little too small; "significant" asks for a change
 /// beyond 2 % by two standard deviations, so its scales are a little too large. What no noise would
@@ -24,7 +25,7 @@
 /// Prints a row of a Markdown table for each. MAP shows the converged image, the deviation of the
 /// filter of the larger part of the light (fourth root of det S_h, pixels) and the usable scale
 /// (significant), a measured pixel standing for its block; pixels with the narrowest filter are
-/// greyed.
+/// greyed. docs/internals/prediction.md has results.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -104,8 +105,8 @@ struct Change {
     float value = 0, noise = 0;  ///< of the luminance: change, and its standard deviation
 };
 
-/// What the Gaussian with the covariance `s` does to the pixel, cut at 3 standard deviations as the
-/// gather does.
+/// The change of the pixel by the Gaussian with the covariance `s`, cut at 3 standard deviations as
+/// the gather does.
 Change change_by(const std::vector<float>& values, const std::vector<float>& variances, int width,
                  int height, const MeasuredPixel& p, float value,
                  const covariance::Sym2<float>& s) {

@@ -1,4 +1,4 @@
-/// Whether the layer `error` tells the error that is measured.
+/// The layer `error` beside the error that is measured.
 ///
 ///     error_calibration REFERENCE.exr REFERENCE2.exr IMAGE.exr ...
 ///

@@ -1,4 +1,4 @@
-/// Where the error of images is.
+/// A map of where the error of images is.
 ///
 ///     error_map MAP.png REFERENCE.exr IMAGE.exr ...
 ///

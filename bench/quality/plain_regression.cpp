@@ -1,4 +1,4 @@
-/// What first-order regression alone makes of the samples (NFOR; Bitterli et al. 2016), for
+/// First-order regression alone (NFOR; Bitterli et al. 2016) of the samples of a film, for
 /// `bench/quality/gain --columns nfor`.
 ///
 ///     plain_regression FILM OUT.exr

@@ -66,7 +66,7 @@ def with_material(material):
 
 
 def move(moved, path, by):
-    """Along `by` between opening and closing of the shutter, evenly; starts where it is."""
+    """Moves along `by` between opening and closing of the shutter, evenly; starts where it is."""
     at = getattr(moved, path).copy()
     for frame, share in ((0, -0.5), (2, 1.5)):  # the shutter is from frame 0.5 to 1.5
         setattr(moved, path, [a + share * b for a, b in zip(at, by)])
@@ -74,7 +74,7 @@ def move(moved, path, by):
 
 
 def room():
-    """Open to the camera and to the sky, whose colour and strength are returned."""
+    """A room that is open to the camera and to the sky, whose colour and strength are returned."""
     grey, red, blue = (matt("grey", (0.7, 0.7, 0.7)), matt("red", (0.6, 0.1, 0.1)), matt("blue", (0.1, 0.2, 0.6)))
     for name, material, location, size in (
             ("floor", grey, (0, 0, -0.05), (6, 6, 0.1)), ("back", grey, (0, 3, 2), (6, 0.1, 4)),
@@ -111,7 +111,7 @@ def moving_box():
 
 
 def many_lamps():
-    """By night: small lamps in view, some of them behind pillars."""
+    """A night with small lamps in view, some of them behind pillars."""
     room()["Strength"].default_value = 0.02
     for k in range(5):
         block(matt(f"pillar {k}", (0.7, 0.7 - 0.1 * k, 0.3 + 0.1 * k)), (-2.4 + 1.2 * k, 0.6, 1), (0.25, 0.25, 2))
@@ -171,7 +171,7 @@ def make(name, folder, resolution):
     bpy.ops.wm.save_as_mainfile(filepath=str(folder / "scene.blend"))
 
     class Engine:
-        """What the exporter asks of a render."""
+        """The part of a render engine that the exporter asks for."""
         frame_set = staticmethod(lambda frame, subframe: scene.frame_set(frame, subframe=subframe))
 
     exporter = export_scene.SceneExporter(Engine, bpy.context.evaluated_depsgraph_get(), str(folder))

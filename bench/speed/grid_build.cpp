@@ -1,4 +1,4 @@
-/// What building the voxel grid and the outlines takes, on a compact mesh and on scattered
+/// Time and memory of building the voxel grid and the outlines, on a compact mesh and on scattered
 /// triangles.
 ///
 ///     grid_build [TRIANGLES [WIDTH ...]]
@@ -20,14 +20,14 @@ namespace {
 
 using namespace covtrace;
 
-/// Of the whole process so far, MiB.
+/// The peak of the whole process so far, MiB.
 double peak_memory() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-/// Of the clock on the wall, and of all processors together.
+/// Seconds of the clock on the wall, and of all processors together.
 struct Seconds {
     double wall = 0, processors = 0;
 };

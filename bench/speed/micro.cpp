@@ -1,5 +1,5 @@
-/// Micro-benchmarks of what a path calls most (Google Benchmark): `build/release/bench/micro`.
-/// Arguments are drawn beforehand, so that branches are taken as in a render; each iteration uses
+/// Micro-benchmarks of the functions that a path calls most (Google Benchmark). Arguments are drawn
+/// beforehand, so that branches are taken as in a render; each iteration uses
 /// the next of them.
 #include <benchmark/benchmark.h>
 
@@ -84,7 +84,7 @@ void film_add(benchmark::State& state) {
 }
 BENCHMARK(film_add);
 
-/// `state.range(0)` lamps in a cube.
+/// A choice among `state.range(0)` lamps in a cube.
 void light_tree_sample(benchmark::State& state) {
     Rng rng(2);
     std::vector<LightBounds> lights(static_cast<size_t>(state.range(0)));

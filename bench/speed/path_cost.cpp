@@ -1,12 +1,12 @@
-/// What a covariance path costs beside a radiance path: traces every k-th pixel of every k-th row
-/// in each way. bench/speed/path_cost reads what it leaves.
+/// The cost of a covariance path beside a radiance path: traces every k-th pixel of every k-th row
+/// in each way. The script path_cost beside this file reads the output.
 ///
 ///     valgrind --tool=callgrind --instr-atstart=no path_cost SCENE WIDTH HEIGHT EVERY PATHS ROUNDS
 ///     KIND ...
 ///
-/// KIND: uniform, none, query, or the width of a grid. Under callgrind: one dump per kind, in this
-/// order, with the counters on for the paths alone. Without it prints for every round, in which the
-/// kinds are traced in turn, the CPU seconds of each.
+/// KIND: uniform, none, query, or the width of a grid. Under callgrind the program leaves one dump
+/// per kind, in this order, with the counters on for the paths alone. Without callgrind it prints
+/// for every round, in which the kinds are traced in turn, the CPU seconds of each.
 #include <valgrind/callgrind.h>
 
 #include <cmath>
@@ -39,7 +39,7 @@ class Way {
           context_{.scene = scene, .seed = 1, .max_depth = scene.description.max_depth} {}
     const std::string& kind() const { return kind_; }
 
-    /// A sum over all paths.
+    /// Traces all paths and returns a sum over them, so that nothing is optimised away.
     double trace(int every, uint32_t paths) {
         const PixelBounds region = render_region(context_.scene.description.film);
         double sum = 0;

@@ -1,6 +1,6 @@
-// What people do today: the root colours of an image through Open Image Denoise at high quality,
-// with the image's own albedo and normal, freed of their noise before (`cleanAux`): the layers
-// featurealbedo and featureN, or albedo and N where it has none:
+// Open Image Denoise as most renderers use it: takes the root colours of an image at high quality,
+// guided by albedo and normal that are freed of their noise before (`cleanAux`). These are the
+// layers featurealbedo and featureN, or albedo and N of an image that has none.
 //
 //     denoise_image IMAGE.exr DENOISED.exr
 //

@@ -1,4 +1,4 @@
-/// Whether estimated errors are those that are measured, over the tiles of images.
+/// Estimated errors beside measured ones, in sums over the tiles of images.
 #pragma once
 
 #include <array>
@@ -21,13 +21,13 @@ struct ErrorTile {
     double ratio() const { return real / estimated; }
 };
 
-/// 16 pixels; 8 where that makes fewer than 200 tiles of an image.
+/// The side of a tile: 16 pixels; 8 where that makes fewer than 200 tiles of an image.
 int tile_side(int width, int height);
 
 /// The sums of a plane's tiles of `side` pixels, row by row.
 std::vector<double> tile_sums(const Plane& plane, int side);
 
-/// The tiles of one image.
+/// The tiles of one image from its planes of squared errors.
 std::vector<ErrorTile> error_tiles(const Plane& estimated, const Plane& real, int side);
 
 constexpr size_t kErrorBins = 20;

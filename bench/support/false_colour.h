@@ -23,13 +23,13 @@ struct LogColours {
     Rgb operator()(float value) const;
 };
 
-/// All panels have the same size in pixels and are magnified alike.
+/// A row of panels, which have the same size in pixels and are magnified alike.
 class PanelPicture {
   public:
     PanelPicture(int width, int height) : width_(width), height_(height) {}
-    /// `colours`: width * height linear colours.
+    /// Adds a panel of width * height linear colours.
     void add(std::vector<Rgb> colours) { panels_.push_back({std::move(colours), {}, {}}); }
-    /// With a legend below that shows `scale` and the numbers `ticks`.
+    /// Adds a panel with a legend below that shows `scale` and the numbers `ticks`.
     void add(std::vector<Rgb> colours, LogColours scale, std::vector<float> ticks) {
         panels_.push_back({std::move(colours), std::move(scale), std::move(ticks)});
     }

@@ -15,7 +15,7 @@ HybridSamples read_hybrid_samples(const std::filesystem::path& film) {
 }
 
 std::shared_ptr<const Denoiser> required_denoiser() {
-    // Tools are in a folder beside the program, whose folder is beside the library's.
+    // Tools are in build/PRESET/bench, the library in build/denoiser.
     const std::filesystem::path folder =
         std::filesystem::read_symlink("/proc/self/exe").parent_path();
     return find_denoiser({DenoiserChoice::oidn, {}, {folder / "../../denoiser"}}).denoiser;

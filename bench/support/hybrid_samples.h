@@ -10,7 +10,7 @@
 
 namespace covtrace {
 
-/// What reconstruct() needs.
+/// The input of reconstruct().
 struct HybridSamples {
     PixelBounds region;
     double mean_count;  ///< samples per pixel
@@ -18,15 +18,16 @@ struct HybridSamples {
     std::vector<Covariance2> spectrum;
 };
 
-/// Of `covtrace render --method hybrid --checkpoint FILM`. Throws Error for other films.
+/// Reads a film of `covtrace render --method hybrid --checkpoint FILM`. Throws Error for other
+/// films.
 HybridSamples read_hybrid_samples(const std::filesystem::path& film);
 
 /// The denoiser that the built program finds. Throws Error(usage) where there is none.
 std::shared_ptr<const Denoiser> required_denoiser();
 
-/// First-order regression alone, as NFOR (Bitterli et al. 2016) has it: plain windows of two
-/// tolerances, explained by filtered features, of each pixel the better one (or the raw pixel) by
-/// the errors that the other half shows.
+/// Settings of first-order regression alone, as in NFOR (Bitterli et al. 2016): plain windows of
+/// two tolerances, explained by filtered features; each pixel takes the better one (or the raw
+/// pixel) by the errors that the other half shows.
 HybridSettings plain_regression();
 
 }  // namespace covtrace

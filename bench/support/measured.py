@@ -15,7 +15,7 @@ SCENES = ["cornell-box", "living-room", "staircase2", "material-testball", "snoo
 
 
 def output(command):
-    """What a program prints."""
+    """Runs a program and returns what it prints."""
     done = subprocess.run([str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     if done.returncode != 0:
         raise SystemExit(f"{' '.join(map(str, command))}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
@@ -40,7 +40,7 @@ def machine():
 
 
 def commit():
-    """Of the tree; `+` where it is not clean."""
+    """The commit of the tree; `+` where it is not clean."""
     done = subprocess.run(["git", "-C", str(converged.ROOT), "describe", "--always", "--dirty=+"],
                           capture_output=True, text=True)
     return done.stdout.strip()
@@ -51,7 +51,7 @@ def read_json(path):
 
 
 def write_json(path, name, seed, results):
-    """Results with what they depend on."""
+    """Writes results with machine, commit and seed, on which they depend."""
     path.parent.mkdir(parents=True, exist_ok=True)
     text = json.dumps({"benchmark": name, "machine": machine(), "commit": commit(), "seed": seed, "results": results},
                       indent=1)
@@ -61,7 +61,7 @@ def write_json(path, name, seed, results):
 
 
 def spread(values):
-    """Median, smallest and largest."""
+    """The median, the smallest and the largest of values."""
     return {"median": statistics.median(values), "least": min(values), "most": max(values)}
 
 

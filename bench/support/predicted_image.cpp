@@ -38,7 +38,7 @@ PredictedImage read_predicted_image(const std::filesystem::path& file) {
         p.in_view.push_back(p.image.rgb(i, "inview."));
         p.scattered.push_back(p.image.rgb(i, "raw.") - p.in_view.back());
         p.count.push_back(uint32_t(samples[i]));
-        // Their weights add up to that of all light.
+        // The weights of emitters and of scattered light add up to that of all light.
         p.shows_emitter.push_back(emitters && weight[i] > (1 + 1e-6f) * buffer.weight[i]);
         const auto filter = [&](const std::string& layer) {
             return covariance::Sym2<float>{channel(layer + ".xx")[i], channel(layer + ".xy")[i],

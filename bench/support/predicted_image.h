@@ -11,19 +11,20 @@
 
 namespace covtrace {
 
-/// Row by row, image.width() * image.height() entries each.
+/// The parts of the render, row by row, image.width() * image.height() entries each.
 struct PredictedImage {
     Image image;
     Prediction prediction;  ///< of scattered light, smoothed, as the renderer's filters use it
     std::vector<Rgb> scattered,
         in_view;  ///< means of each pixel's own samples, which they add up to
-    /// As the renderer applied them; those of emitters in view the narrowest where there are none.
+    /// Filters as the renderer applied them; those of emitters in view are the narrowest where
+    /// there is no emitter.
     FilterField filters, in_view_filters;
     std::vector<bool> shows_emitter;  ///< some covariance path of the pixel met one in view
     std::vector<uint32_t> count;
 };
 
-/// What must be asked for when the image is rendered.
+/// The layers that the image must be rendered with.
 constexpr const char* kPredictedLayers = "all,inview,inviewfilter,scatteredcov,scatteredcovweight";
 
 /// Throws Error(usage) where a layer is missing, Error(scene) where the file can't be read.

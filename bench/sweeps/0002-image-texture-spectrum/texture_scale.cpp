@@ -1,4 +1,4 @@
-/// How well the spectrum of an image predicts the filter that it bears.
+/// The filters that the spectrum of an image predicts, beside those that the image bears.
 ///
 ///     texture_scale [--texels N] IMAGE ...
 ///

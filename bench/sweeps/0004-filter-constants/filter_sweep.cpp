@@ -26,13 +26,14 @@ struct Case {
     Image reference;
 };
 
-/// What a pixel's c follows, beside the settings: (its samples over the average)^own_count, its
-/// N_int^interior.
+/// Exponents by which a pixel's c follows the pixel, beside the settings: (its samples over the
+/// average)^own_count, its N_int^interior.
 struct OwnWidth {
     float own_count = 0, interior = 0;
 };
 
-/// Samples per pixel that the variance of a filtered pixel has, of those under the filter.
+/// The samples per pixel that would give a filtered pixel its variance, from the counts under the
+/// filter.
 std::vector<float> effective_counts(const PredictedImage& r, FilterField field) {
     std::vector<Rgb> inverse(r.count.size());
     for (size_t i = 0; i < inverse.size(); ++i)

@@ -1,7 +1,7 @@
-// How often the per-pixel z-test of tests/statistical alarms on renders that are right, by scene
-// and level, beside the numbers of alarms that a right test exceeds in either direction with
-// probability 0.01 in all (Šidák over scenes and levels); and the largest skewness and the mean
-// excess kurtosis of the pixels' means, which are 0 where these are normal.
+// The rate of false alarms of the per-pixel z-test of tests/statistical, by scene and level, beside
+// the numbers of alarms that a right test exceeds in either direction with probability 0.01 in all
+// (Šidák over scenes and levels); and the largest skewness and the mean excess kurtosis of the
+// pixels' means, which are 0 where these are normal.
 //
 //   pixel_z_rates [SPP [REFERENCES [SEEDS [FIRST [SCENE]]]]]      256, 1000, 1000, 1, all by
 //   default

@@ -1,5 +1,5 @@
-/// What packing does to the prediction: traces covariance paths and keeps their mean both as
-/// doubles and as the film does, packed again after every path.
+/// The error that packing brings into the prediction: traces covariance paths and keeps their mean
+/// both as doubles and as the film does, packed again after every path.
 ///
 ///     packing_error SCENE WIDTH HEIGHT PATHS
 ///

@@ -25,11 +25,11 @@ using covtrace::kSobolDirections;
 namespace {
 
 constexpr int kPatterns = 8, kMostSampleBits = 7;
-/// Dependent columns count by how often films have that many samples in a half of a pixel, 2^a, ...
+/// Dependent columns count by how often films have 2^a samples in a half of a pixel.
 constexpr std::array<double, kMostSampleBits + 1> kSampleWeights{.3, .7, 1.2, 2, 1.5, 1, .5, .2};
-/// ... and more in small blocks, which filters do not cut, 2^c.
+/// Small blocks of 2^c pixels count more, as filters do not cut them.
 constexpr std::array<double, kPatterns + 1> kBlockWeights{0, 2, 2.5, 2, 2, 1.5, 1, .7, .5};
-/// Of the worst r1 beside the mean over all.
+/// The worst r1 counts by this beside the mean over all.
 constexpr double kWorstWeight = 0.2;
 
 uint32_t sobol(size_t dimension, uint32_t index) {

@@ -31,7 +31,7 @@ struct Case {
     double raw = 0;
 
     double error(const ColorPlanes& color) const;
-    /// Of every pixel, over I^2 + 0.01, without the references' noise.
+    /// The squared error of every pixel over I^2 + 0.01, without the references' noise.
     Plane true_error(const ColorPlanes& color) const;
 };
 

@@ -61,7 +61,7 @@ struct Truth {
     }
 };
 
-/// What makes squared errors relative: 1 / (I^2 + eps), I the mean of the references.
+/// The factor that makes squared errors relative: 1 / (I^2 + eps), I the mean of the references.
 float error_scale(float a, float b) {
     return 1 / (sqr(0.5f * (a + b)) + kDarkSquared);
 }
@@ -144,7 +144,7 @@ Factors solve(const double (&a)[kFactors][kFactors], const Factors& b) {
     }
 }
 
-/// Over all cases but those of the reference `without`.
+/// The factors that fit all cases but those of the reference `without`.
 Factors fit(const std::vector<Case>& cases, const std::string& without) {
     Factors f{1, 10, 1, 0.5, 0.005, 1};
     // The weights follow the estimate, so it is done again until nothing changes.
@@ -155,7 +155,7 @@ Factors fit(const std::vector<Case>& cases, const std::string& without) {
             if (c.reference == without) continue;
             for (const Tiles* t : c.all())
                 for (size_t i = 0; i < t->real.size(); ++i) {
-                    // Below this error, relative or of light that is 1, nobody sees anything.
+                    // An error below this, relative or of light that is 1, is seen by nobody.
                     constexpr double kLeast = 1e-6 * 256;
                     const double weight =
                         1 / ((sqr(t->estimate(i, f)) + t->variance[i] + sqr(kLeast)) *
@@ -173,7 +173,7 @@ Factors fit(const std::vector<Case>& cases, const std::string& without) {
     return f;
 }
 
-/// In how many bins the ratio may be right, given the truth's own noise.
+/// The number of bins in which the ratio may be right, given the truth's own noise.
 int may_be_good(const Tiles& tiles, const Factors& f) {
     std::vector<size_t> order(tiles.real.size());
     for (size_t i = 0; i < order.size(); ++i) order[i] = i;
