@@ -1,6 +1,5 @@
 /// Micro-benchmarks of the functions that a path calls most (Google Benchmark). Arguments are drawn
-/// beforehand, so that branches are taken as in a render; each iteration uses
-/// the next of them.
+/// beforehand, so that branches are taken as in a render; each iteration uses the next of them.
 #include <benchmark/benchmark.h>
 
 #include <vector>
