@@ -5,6 +5,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
 
+#include <algorithm>
+
 #ifdef COVTRACE_TELL_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
 #endif
@@ -66,6 +68,15 @@ void parallel_for(int64_t count, const std::function<void(int64_t)>& body) {
         },
         tbb::simple_partitioner{}, as_the_caller);
     acquire(&done);
+}
+
+void parallel_for_row_ranges(int width, int height, const std::function<void(int, int)>& body) {
+    // A task costs as much as some hundred of the cheapest pixels.
+    constexpr int64_t kLeastPixels = 256;
+    const int64_t rows = std::max<int64_t>(1, kLeastPixels / std::max(1, width));
+    parallel_for((height + rows - 1) / rows, [&](int64_t i) {
+        body(int(i * rows), int(std::min<int64_t>(height, (i + 1) * rows)));
+    });
 }
 
 }  // namespace covtrace

@@ -27,4 +27,16 @@ class ThreadLimit {
 /// by a body ends the loop and is thrown to the caller.
 void parallel_for(int64_t count, const std::function<void(int64_t)>& body);
 
+/// The same for the rows [0, height) of an image: body(first, end) for ranges of them that have
+/// enough pixels, one row or more, so that narrow images do not make a task of every one.
+void parallel_for_row_ranges(int width, int height, const std::function<void(int, int)>& body);
+
+/// Calls body(y) for all rows, in such ranges.
+template <typename Body>
+void parallel_for_rows(int width, int height, const Body& body) {
+    parallel_for_row_ranges(width, height, [&](int first, int end) {
+        for (int y = first; y < end; ++y) body(y);
+    });
+}
+
 }  // namespace covtrace

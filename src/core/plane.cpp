@@ -22,6 +22,7 @@ Plane separable(const Plane& in, const std::vector<float>& taps, Border border) 
     const bool replicate = border == Border::repeat;
     const int reach = int(taps.size()) / 2, w = in.width, h = in.height;
     Plane rows(w, h), out(w, h);
+    const auto row_of = [w](auto& plane, int y) { return &plane.values[size_t(y) * size_t(w)]; };
     // Sum of the taps that fall inside the image, around the place `at` on an axis.
     const auto inside = [&](int at, int size) {
         float sum = 0;
@@ -29,24 +30,27 @@ Plane separable(const Plane& in, const std::vector<float>& taps, Border border) 
             if (at + k >= 0 && at + k < size) sum += taps[size_t(k + reach)];
         return sum;
     };
-    parallel_for(h, [&](int64_t row) {
+    std::vector<float> inside_row(size_t(w), 1.0f);
+    for (int x = 0; x < w; ++x)
+        if (x < reach || x >= w - reach) inside_row[size_t(x)] = inside(x, w);
+    parallel_for_row_ranges(w, h, [&](int first, int end) {
         std::vector<float> padded(size_t(w + 2 * reach), 0.0f);
-        const float* source = &in.values[size_t(row) * size_t(w)];
-        std::copy(source, source + w, padded.begin() + reach);
-        if (replicate) {
-            std::fill(padded.begin(), padded.begin() + reach, source[0]);
-            std::fill(padded.end() - reach, padded.end(), source[w - 1]);
+        for (int y = first; y < end; ++y) {
+            const float* source = row_of(in, y);
+            std::copy(source, source + w, padded.begin() + reach);
+            if (replicate) {
+                std::fill(padded.begin(), padded.begin() + reach, source[0]);
+                std::fill(padded.end() - reach, padded.end(), source[w - 1]);
+            }
+            float* target = row_of(rows, y);
+            for (size_t k = 0; k < taps.size(); ++k)
+                for (int x = 0; x < w; ++x) target[x] += taps[k] * padded[size_t(x) + k];
+            if (border != Border::none) continue;
+            for (int x = 0; x < w; ++x) target[x] /= inside_row[size_t(x)];
         }
-        float* target = &rows.values[size_t(row) * size_t(w)];
-        for (size_t k = 0; k < taps.size(); ++k)
-            for (int x = 0; x < w; ++x) target[x] += taps[k] * padded[size_t(x) + k];
-        if (border != Border::none) return;
-        for (int x = 0; x < w; ++x)
-            if (x < reach || x >= w - reach) target[x] /= inside(x, w);
     });
-    parallel_for(h, [&](int64_t row) {
-        const int y = int(row);
-        float* target = &out.values[size_t(row) * size_t(w)];
+    parallel_for_rows(w, h, [&](int y) {
+        float* target = row_of(out, y);
         for (int k = -reach; k <= reach; ++k) {
             int from = y + k;
             if (from < 0 || from >= h) {
@@ -54,7 +58,7 @@ Plane separable(const Plane& in, const std::vector<float>& taps, Border border) 
                 from = std::clamp(from, 0, h - 1);
             }
             const float tap = taps[size_t(k + reach)];
-            const float* source = &rows.values[size_t(from) * size_t(w)];
+            const float* source = row_of(rows, from);
             for (int x = 0; x < w; ++x) target[x] += tap * source[x];
         }
         if (border != Border::none || (y >= reach && y < h - reach)) return;

@@ -18,8 +18,7 @@ void bilateral_blur(std::span<Plane* const> planes, const Plane& weight, const P
         return plane.values.data() + ptrdiff_t(y) * w;
     };
     std::vector<Plane> result(planes.size(), Plane(w, h));
-    parallel_for(h, [&](int64_t row) {
-        const int y = int(row);
+    parallel_for_rows(w, h, [&](int y) {
         std::vector<float> kernel(size_t(w), 0.0f), total(size_t(w), 0.0f);
         const float* const own = row_of(guide, y);
         for (int v = std::max(0, y - radius); v <= std::min(h - 1, y + radius); ++v)
@@ -27,6 +26,7 @@ void bilateral_blur(std::span<Plane* const> planes, const Plane& weight, const P
                 const float near =
                     gaussian[size_t(std::abs(v - y))] * gaussian[size_t(std::abs(dx))];
                 const int first = std::max(0, -dx), end = std::min(w, w - dx);
+                if (first >= end) continue;
                 const float *const other = row_of(guide, v), *const known = row_of(weight, v);
                 for (int x = first; x < end; ++x) {
                     const float alike = std::max(0.0f, 1 - narrow * sqr(own[x] - other[x + dx]));

@@ -37,8 +37,7 @@ Plane own_share(const BlendInput& input, const Denoised& denoised, const Likenes
             }
     }
     Plane share(w, h, kPriorShare);
-    parallel_for(h, [&](int64_t row) {
-        const int y = int(row);
+    parallel_for_rows(w, h, [&](int y) {
         for (int x = 0; x < w; ++x) {
             Likeness::Window weights;
             likeness.weigh(x, y, weights);

@@ -79,7 +79,7 @@ ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> ca
     // Holes are filled, and the halves still differ.
     const Plane known = known_by_both(halves).value_or(Plane(w, h, 1));
     ErrorEstimate error{Plane(w, h), Plane(w, h)};
-    parallel_for(h, [&](int64_t row) {
+    parallel_for_rows(w, h, [&](int row) {
         for (size_t i = size_t(row) * size_t(w), end = i + size_t(w); i < end; ++i) {
             const Signals ma = signals(selection.half[0], i), mb = signals(selection.half[1], i),
                           m = signals(selection.half, i), delivered = signals(image, i),

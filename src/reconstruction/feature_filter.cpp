@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/parallel.h"
+#include "reconstruction/lanes.h"
 #include "reconstruction/patch_distance.h"
 
 namespace covtrace {
@@ -37,22 +38,24 @@ void filter(const HalfBuffer& half, const HalfBuffer& guide, size_t first, size_
                     for (int x = x0; x < x1; ++x) out[f](x, y) = half.feature[f](x, y);
             return;
         }
-        std::array<float, kBlock * kBlock> d;
+        std::array<float, kBlock * kBlock> d{};
         std::array<std::array<float, kBlock * kBlock>, 4> total{};
+        const auto add = [](const Lanes& value, float* to) { store(load(to) + value, to); };
         for (int dy = -kReach; dy <= kReach; ++dy)
             for (int dx = -kReach; dx <= kReach; ++dx) {
+                // What is outside the image has no weight.
+                if (!distance.reaches(x0, y0, dx, dy)) continue;
                 distance.block(x0, y0, dx, dy, d.data());
-                for (int y = 0; y < kBlock; ++y) {
-                    std::array<float, kBlock> weight;
+                for (int y = 0; y < y1 - y0; ++y) {
                     const float* mask = inside.at(x0 + dx, y0 + y + dy);
-                    for (size_t x = 0; x < kBlock; ++x)
-                        weight[x] = mask[x] * patch_weight(d[size_t(y) * kBlock + x]);
-                    for (size_t x = 0; x < kBlock; ++x)
-                        total[3][size_t(y) * kBlock + x] += weight[x];
-                    for (size_t f = 0; f < n; ++f) {
-                        const float* value = source[f].at(x0 + dx, y0 + y + dy);
-                        float* to = &total[f][size_t(y) * kBlock];
-                        for (size_t x = 0; x < kBlock; ++x) to[x] += weight[x] * value[x];
+                    std::array<const float*, 3> value{};
+                    for (size_t f = 0; f < n; ++f) value[f] = source[f].at(x0 + dx, y0 + y + dy);
+                    for (int x = 0; x < x1 - x0; x += int(kLanes)) {
+                        const size_t i = size_t(y) * kBlock + size_t(x);
+                        const Lanes weight = load(mask + x) * patch_weight(load(&d[i]));
+                        add(weight, &total[3][i]);
+                        for (size_t f = 0; f < n; ++f)
+                            add(weight * load(value[f] + x), &total[f][i]);
                     }
                 }
             }

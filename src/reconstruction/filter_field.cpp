@@ -19,7 +19,7 @@ covariance::Sym2<float> quadratic(const covariance::Sym2<float>& spectrum, Filte
 FilterField filter_field(std::span<const covariance::Sym2<float>> spectrum, int width, int height,
                          FilterRule rule, const FilterSettings& settings) {
     FilterField f{width, height, std::vector<covariance::Sym2<float>>(spectrum.size())};
-    parallel_for(f.height, [&](int64_t row) {
+    parallel_for_rows(f.width, f.height, [&](int row) {
         for (size_t i = size_t(row) * size_t(f.width), end = i + size_t(f.width); i < end; ++i) {
             f.covariance[i] = covariance::finite_filter_covariance(
                 quadratic(spectrum[i], rule, settings), settings.limits);

@@ -29,8 +29,7 @@ struct Level {
 template <size_t N>
 Level<N> halve(const Level<N>& fine) {
     Level<N> coarse((fine.width + 1) / 2, (fine.height + 1) / 2);
-    parallel_for(coarse.height, [&](int64_t row) {
-        const int y = int(row);
+    parallel_for_rows(coarse.width, coarse.height, [&](int y) {
         for (size_t k = 0; k < N; ++k)
             for (int x = 0; x < coarse.width; ++x) {
                 float& sum = coarse.sums[k][coarse.index(x, y)];
@@ -129,13 +128,12 @@ GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
         }
     const Pyramid<kSums> pyramid = pyramid_over(std::move(base));
     GatheredImage result{std::vector<Rgb>(mean.size()), std::vector<float>(mean.size())};
-    parallel_for(field.height, [&](int64_t row) {
+    parallel_for_rows(field.width, field.height, [&](int y) {
         for (int x = 0; x < field.width; ++x) {
-            const size_t i = size_t(row) * size_t(field.width) + size_t(x);
+            const size_t i = size_t(y) * size_t(field.width) + size_t(x);
             Sym2 s = field.covariance[i];
             for (int attempt = 0; attempt < kAttempts; ++attempt, s = kFourTimesAsWide * s) {
-                const std::array<float, kSums> sum =
-                    sums_around<kVariance>(pyramid, x, int(row), s);
+                const std::array<float, kSums> sum = sums_around<kVariance>(pyramid, x, y, s);
                 const float all = sum[kWeight];
                 if (!(all > 0)) continue;
                 result.color[i] = Rgb(sum[0], sum[1], sum[2]) / all;
@@ -164,10 +162,9 @@ std::array<ColorPlanes, 2> gather(const Halves& halves, const FilterField& field
             }
     }
     const Pyramid<kSums> pyramid = pyramid_over(std::move(base));
-    parallel_for(field.height, [&](int64_t row) {
-        const int y = int(row);
+    parallel_for_rows(field.width, field.height, [&](int y) {
         for (int x = 0; x < field.width; ++x) {
-            Sym2 s = field.covariance[size_t(row) * size_t(field.width) + size_t(x)];
+            Sym2 s = field.covariance[size_t(y) * size_t(field.width) + size_t(x)];
             std::array<bool, 2> done{};
             for (int attempt = 0; attempt < kAttempts && !(done[0] && done[1]);
                  ++attempt, s = kFourTimesAsWide * s) {

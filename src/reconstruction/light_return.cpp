@@ -85,8 +85,7 @@ ColorPlanes lacking(const Likeness& likeness, const ColorPlanes& e, const Plane&
         variances{MarginPlane(variance)};
     ColorPlanes times;
     times.fill(Plane(w, h));
-    parallel_for(h, [&](int64_t row) {
-        const int y = int(row);
+    parallel_for_rows(w, h, [&](int y) {
         for (int x = 0; x < w; ++x) {
             Likeness::Window weights;
             likeness.weigh(x, y, weights);
@@ -108,8 +107,7 @@ Plane light_around(const Plane& light) {
     const Plane means = block_means(light, size);
     const std::vector<MarginPlane> planes{MarginPlane(means)};
     Plane sum(means.width, means.height), around(light.width, light.height);
-    parallel_for(sum.height, [&](int64_t row) {
-        const int y = int(row);
+    parallel_for_rows(sum.width, sum.height, [&](int y) {
         for (int x = 0; x < sum.width; ++x) {
             Likeness::Window weights;
             everything.weigh(x, y, weights);
@@ -203,8 +201,7 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
         for (float& v : variance.values) v /= sqr(float(blocks(level)));
         const ColorPlanes times =
             lacking(likeness_of(level, light), e, block_means(light, side(level)), variance);
-        parallel_for(h, [&](int64_t row) {
-            const int y = int(row);
+        parallel_for_rows(w, h, [&](int y) {
             for (int x = 0; x < w; ++x)
                 for (size_t c = 0; c < 3; ++c) {
                     float& v = color[c](x, y);

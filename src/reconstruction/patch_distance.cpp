@@ -1,6 +1,5 @@
 #include "reconstruction/patch_distance.h"
 
-#include <algorithm>
 #include <array>
 
 #include "reconstruction/lanes.h"
@@ -9,31 +8,32 @@ namespace covtrace {
 
 PaddedPlane::PaddedPlane(const Plane& plane, int width_of_border)
     : border(width_of_border),
-      stride(plane.width + 2 * border + kLongestPatchRow),
-      values(size_t(stride) * size_t(plane.height + 2 * border + kLargestPatchBlock)) {
-    // Beyond the border one more block, so that the last block of a row may be a whole one.
-    for (int y = -border; y < plane.height + border + kLargestPatchBlock; ++y) {
+      stride(plane.width + 2 * border + int(kLanes)),
+      values(size_t(stride) * size_t(plane.height + 2 * border)) {
+    for (int y = -border; y < plane.height + border; ++y) {
         const float* source =
             &plane.values[size_t(std::clamp(y, 0, plane.height - 1)) * size_t(plane.width)];
         float* row = &values[size_t(y + border) * size_t(stride)];
-        for (int x = 0; x < stride; ++x)
-            row[x] = source[std::clamp(x - border, 0, plane.width - 1)];
+        std::fill_n(row, border, source[0]);
+        std::copy_n(source, plane.width, row + border);
+        std::fill(row + border + plane.width, row + stride, source[plane.width - 1]);
     }
 }
 
 PaddedPlane::PaddedPlane(const Plane& plane, int width_of_border, float outside)
     : PaddedPlane(plane, width_of_border) {
-    const int rows = int(values.size()) / stride;
-    for (int y = 0; y < rows; ++y)
-        for (int x = 0; x < stride; ++x)
-            if (x < border || x >= border + plane.width || y < border || y >= border + plane.height)
-                values[size_t(y) * size_t(stride) + size_t(x)] = outside;
+    for (int y = -border; y < plane.height + border; ++y) {
+        float* row = &values[size_t(y + border) * size_t(stride)];
+        const bool inside = y >= 0 && y < plane.height;
+        std::fill_n(row, inside ? border : stride, outside);
+        if (inside) std::fill(row + border + plane.width, row + stride, outside);
+    }
 }
 
 template <int Radius, int Step, int Side>
 PatchDistance<Radius, Step, Side>::PatchDistance(std::span<const Plane> values,
                                                  std::span<const Plane> variances, int reach)
-    : reach_(reach) {
+    : reach_(reach), width_(values[0].width), height_(values[0].height) {
     const int border = reach + Radius + 1;
     Plane noise(values[0].width, values[0].height);
     for (const Plane& p : values) values_.emplace_back(p, border);
@@ -42,7 +42,8 @@ PatchDistance<Radius, Step, Side>::PatchDistance(std::span<const Plane> values,
     noise_ = PaddedPlane(noise, border);
 }
 
-/// The distances of the single pixels that the patches of a block cover, kRow in a row.
+/// The distances of the single pixels that the patches of a block cover where they are those of
+/// pixels in the image, kRow in a row.
 template <int Radius, int Step, int Side>
 template <size_t Planes>
 void PatchDistance<Radius, Step, Side>::differences(int x0, int y0, int dx, int dy,
@@ -50,8 +51,8 @@ void PatchDistance<Radius, Step, Side>::differences(int x0, int y0, int dx, int 
     // Differences beyond this say "not alike" however much larger they are; without the limit one
     // of them would drown the rounding of the sums.
     constexpr float kMost = 1e4f;
-    const int px = x0 - Radius;
-    for (int y = 0; y < kCovered; ++y, out += kRow) {
+    const int px = x0 - Radius, end_x = covered(columns(x0)), end_y = covered(rows(y0));
+    for (int y = 0; y < end_y; ++y, out += kRow) {
         const int py = y0 - Radius + y;
         std::array<const float*, Planes> u_p, u_q;
         for (size_t c = 0; c < Planes; ++c) {
@@ -59,7 +60,7 @@ void PatchDistance<Radius, Step, Side>::differences(int x0, int y0, int dx, int 
             u_q[c] = values_[c].at(px + dx, py + dy);
         }
         const float *n_p = noise_.at(px, py), *n_q = noise_.at(px + dx, py + dy);
-        for (int x = 0; x < kRow; x += int(kLanes)) {
+        for (int x = 0; x < end_x; x += int(kLanes)) {
             const Lanes noise = load(n_p + x), other = load(n_q + x);
             Lanes above = -noise - smaller(noise, other);
             for (size_t c = 0; c < Planes; ++c) {
@@ -83,27 +84,30 @@ void PatchDistance<Radius, Step, Side>::block(int x0, int y0, int dx, int dy, fl
     // Vectors of the last means reach beyond the row.
     std::array<float, size_t(kRow) + kLanes> column{};
     std::array<float, kBlock> mean;
-    for (int y = 0; y < kBlock; y += Step) {
-        for (int x = 0; x < kRow; x += int(kLanes)) {
+    const int width = columns(x0), height = rows(y0), end = covered(width);
+    for (int y = 0; y < height; y += Step) {
+        for (int x = 0; x < end; x += int(kLanes)) {
             Lanes sum{};
             for (int k = 0; k < kSide; ++k) sum += load(&d[size_t(y + k) * kRow + size_t(x)]);
             store(sum, &column[size_t(x)]);
         }
-        for (int x = 0; x < kBlock; x += int(kLanes)) {
+        for (int x = 0; x < width; x += int(kLanes)) {
             Lanes sum{};
             for (int k = 0; k < kSide; ++k) sum += load(&column[size_t(x + k)]);
             store(sum * kScale, &mean[size_t(x)]);
         }
-        for (int x = 0; x < kBlock; x += Step, out += stride) *out = mean[size_t(x)];
+        float* row = out + size_t(y / Step) * kPatches * stride;
+        for (int x = 0; x < width; x += Step, row += stride) *row = mean[size_t(x)];
     }
 }
 
 template <int Radius, int Step, int Side>
 bool PatchDistance<Radius, Step, Side>::is_without_noise(int x0, int y0) const {
-    const int margin = reach_ + Radius, covered = kBlock + 2 * margin;
-    for (int y = y0 - margin; y < y0 - margin + covered; ++y) {
+    const int margin = reach_ + Radius, end_y = std::min(y0 + kBlock, height_) + margin;
+    for (int y = y0 - margin; y < end_y; ++y) {
         const float* row = noise_.at(x0 - margin, y);
-        if (std::any_of(row, row + covered, [](float v) { return v != 0; })) return false;
+        if (std::any_of(row, row + columns(x0) + 2 * margin, [](float v) { return v != 0; }))
+            return false;
     }
     return true;
 }

@@ -1,6 +1,7 @@
 /// How unlike the neighbourhoods of two pixels are, in units of their noise.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -8,12 +9,9 @@
 
 namespace covtrace {
 
-/// The most pixels along a side of the blocks that patches are compared in, and of a row that such
-/// a block's patches cover.
-constexpr int kLargestPatchBlock = 48, kLongestPatchRow = 56;
-
 /// A plane with a border on all sides that repeats its outermost pixels (or holds `outside`), so
-/// that windows need no bounds.
+/// that windows need no bounds, and one vector more on the right, where the last one of a row may
+/// begin.
 struct PaddedPlane {
     PaddedPlane() = default;
     PaddedPlane(const Plane& plane, int border);
@@ -42,8 +40,18 @@ class PatchDistance {
     /// One plane, or three of one size. `reach`: largest offset along an axis.
     PatchDistance(std::span<const Plane> values, std::span<const Plane> variances, int reach);
 
+    /// Pixels of the block from (x0, y0) that are in the image, along a row and along a column.
+    int columns(int x0) const { return std::min(kBlock, width_ - x0); }
+    int rows(int y0) const { return std::min(kBlock, height_ - y0); }
+
+    /// Whether any p + (dx, dy) of the block is in the image.
+    bool reaches(int x0, int y0, int dx, int dy) const {
+        return x0 + dx < width_ && x0 + columns(x0) + dx > 0 && y0 + dy < height_ &&
+               y0 + rows(y0) + dy > 0;
+    }
+
     /// Sets out[k stride] to d(p, p + (dx, dy)) of the k-th patch, row by row, of the block from
-    /// (x0, y0). Pixels outside the image get some value.
+    /// (x0, y0). Those of pixels p outside the image get some value or stay as they were.
     void block(int x0, int y0, int dx, int dy, float* out, size_t stride = 1) const;
 
     /// Whether nothing has noise in the patches of a block and in those that it is compared with.
@@ -53,13 +61,15 @@ class PatchDistance {
     /// Pixels of a row, and rows, that the block's patches cover; rows in whole vectors.
     static constexpr int kCovered = kBlock - Step + 1 + 2 * Radius;
     static constexpr int kRow = (kCovered + 7) / 8 * 8;
-    static_assert(kBlock % Step == 0 && kBlock % 8 == 0 && kBlock <= kLargestPatchBlock &&
-                  kRow <= kLongestPatchRow);
+    static_assert(kBlock % Step == 0 && kBlock % 8 == 0);
+
+    /// Pixels that the patches of the first `size` pixels along an axis cover.
+    static constexpr int covered(int size) { return (size - 1) / Step * Step + 1 + 2 * Radius; }
 
     template <size_t Planes>
     void differences(int x0, int y0, int dx, int dy, float* out) const;
 
-    int reach_;
+    int reach_, width_, height_;
     std::vector<PaddedPlane> values_;
     PaddedPlane noise_;  // the sum of the variances
 };

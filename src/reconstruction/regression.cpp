@@ -18,13 +18,20 @@ constexpr int kStride = 3;  // from centre to centre
 using Patches = PatchDistance<1, kStride, 48>;
 constexpr int kBlock = Patches::kBlock;
 constexpr size_t kCells = FitWindow::kCells, kCentresPerSide = Patches::kPatches;
-constexpr size_t kCentres = kCentresPerSide * kCentresPerSide;
-constexpr int kHaloSide = kBlock + 2 * kReach;
 
 using Cells = FitWindow::Cells;
 
-/// What one block of centres adds to the pixels it reaches: weighted colours and weights.
-using Contribution = std::array<std::vector<float>, 4>;
+/// What one block of centres adds to the pixels it reaches: weighted colours and weights. The
+/// first of its pixels is kReach to the left of the block and above it.
+struct Contribution {
+    void clear(int columns, int rows) {
+        stride = size_t(columns) + 2 * kReach;
+        const size_t size = stride * (size_t(rows) + 2 * kReach) + kLanes;
+        for (std::vector<float>& sum : sums) sum.assign(size, 0.0f);
+    }
+    size_t stride = 0;
+    std::array<std::vector<float>, 4> sums;
+};
 
 /// The patches of the half that guides, by their colours and by their light.
 struct PatchDistances {
@@ -77,17 +84,13 @@ struct PatchDistances {
 /// All centres of one block, for every window.
 class Block {
   public:
-    Block(const RegressionInputs& in, const HalfBuffer& half, const PatchDistances& distance,
+    Block(const RegressionInputs& in, const PatchDistances& distance,
           std::span<const RegressionWindow> windows)
-        : in_(in),
-          width_(half.count.width),
-          height_(half.count.height),
-          distance_(distance),
-          windows_(windows) {}
+        : in_(in), distance_(distance), windows_(windows) {}
 
     void run(int x0, int y0, std::span<Contribution> out) {
-        for (Contribution& c : out)
-            for (auto& plane : c) plane.assign(size_t(kHaloSide) * kHaloSide + kLanes, 0.0f);
+        const int columns = distance_.color.columns(x0), rows = distance_.color.rows(y0);
+        for (Contribution& c : out) c.clear(columns, rows);
         collect_distances(distance_.color, x0, y0, distances_[size_t(PatchesOf::colors)]);
         std::vector<float>& either = distances_[size_t(PatchesOf::colors_or_light)];
         const std::vector<float>& color = distances_[size_t(PatchesOf::colors)];
@@ -95,8 +98,8 @@ class Block {
             collect_distances(*distance_.light, x0, y0, either);
             for (size_t i = 0; i < either.size(); ++i) either[i] = std::min(either[i], color[i]);
         }
-        for (int y = 0; y < kBlock && y0 + y < height_; y += kStride)
-            for (int x = 0; x < kBlock && x0 + x < width_; x += kStride) {
+        for (int y = 0; y < rows; y += kStride)
+            for (int x = 0; x < columns; x += kStride) {
                 window_.move_to(in_, x0 + x, y0 + y);
                 const size_t first =
                     (size_t(y / kStride) * kCentresPerSide + size_t(x / kStride)) * kCells;
@@ -113,17 +116,19 @@ class Block {
   private:
     static void collect_distances(const Patches& distance, int x0, int y0,
                                   std::vector<float>& distances) {
-        distances.resize(kCentres * kCells);
+        const size_t centres_down = size_t(distance.rows(y0) + kStride - 1) / kStride;
+        distances.resize(centres_down * kCentresPerSide * kCells);
         float* out = distances.data();
         for (int dy = -kReach; dy <= kReach; ++dy)
             for (int dx = -kReach; dx <= kReach; ++dx, ++out)
-                distance.block(x0, y0, dx, dy, out, kCells);
+                if (distance.reaches(x0, y0, dx, dy))  // else there is no weight either
+                    distance.block(x0, y0, dx, dy, out, kCells);
     }
 
     void add(int x, int y, Contribution& out) const {
         constexpr size_t kWhole = kSide / kLanes * kLanes;
-        for (int row = 0; row < kSide; ++row) {
-            const size_t to = size_t(y + row) * kHaloSide + size_t(x), from = size_t(row) * kSide;
+        for (int row = window_.first_row(); row < window_.end_row(); ++row) {
+            const size_t to = size_t(y + row) * out.stride + size_t(x), from = size_t(row) * kSide;
             for (size_t k = 0; k < kSide; k += kLanes) {
                 Lanes w = load(&weight_[from + k]);
                 if (k == kWhole)  // the next row of the window follows
@@ -131,14 +136,13 @@ class Block {
                 const auto add_to = [&](std::vector<float>& sums, const Lanes& value) {
                     store(multiply_add(w, value, load(&sums[to + k])), &sums[to + k]);
                 };
-                for (size_t c = 0; c < 3; ++c) add_to(out[c], load(&fitted_[c][from + k]));
-                add_to(out[3], 1 - Lanes{});
+                for (size_t c = 0; c < 3; ++c) add_to(out.sums[c], load(&fitted_[c][from + k]));
+                add_to(out.sums[3], 1 - Lanes{});
             }
         }
     }
 
     const RegressionInputs& in_;
-    const int width_, height_;
     const PatchDistances& distance_;
     std::span<const RegressionWindow> windows_;
     FitWindow window_;
@@ -166,7 +170,7 @@ std::vector<ColorPlanes> regress(const HalfBuffer& half, const HalfBuffer& guide
             const int64_t b = first + i;
             auto& part = contributions[size_t(b)];
             part.resize(windows.size());
-            Block(in, half, distance, windows)
+            Block(in, distance, windows)
                 .run(int(b % blocks_x) * kBlock, int(b / blocks_x) * kBlock, part);
         });
     };
@@ -182,11 +186,11 @@ std::vector<ColorPlanes> regress(const HalfBuffer& half, const HalfBuffer& guide
                      by <= std::min(blocks_y - 1, (y + kReach) / kBlock); ++by)
                     for (int bx = std::max(0, (x - kReach) / kBlock);
                          bx <= std::min(blocks_x - 1, (x + kReach) / kBlock); ++bx) {
-                        const size_t at = size_t(y - by * kBlock + kReach) * kHaloSide +
-                                          size_t(x - bx * kBlock + kReach);
                         const Contribution& part =
                             contributions[size_t(by) * size_t(blocks_x) + size_t(bx)][k];
-                        for (size_t c = 0; c < 4; ++c) sum[c] += part[c][at];
+                        const size_t at = size_t(y - by * kBlock + kReach) * part.stride +
+                                          size_t(x - bx * kBlock + kReach);
+                        for (size_t c = 0; c < 4; ++c) sum[c] += part.sums[c][at];
                     }
                 for (size_t c = 0; c < 3; ++c)
                     result[k][c](x, y) = sum[3] > 0 ? sum[c] / sum[3] : half.color[c](x, y);
@@ -199,7 +203,7 @@ std::vector<ColorPlanes> regress(const HalfBuffer& half, const HalfBuffer& guide
         fit_rows(fitted, needed);
         fitted = needed;
         const int first_y = row * kBlock, end_y = std::min(end * kBlock, h);
-        parallel_for(end_y - first_y, [&](int64_t y) { add_up(first_y + int(y)); });
+        parallel_for_rows(w, end_y - first_y, [&](int y) { add_up(first_y + y); });
         for (int done = std::max(0, row - 1); done < end - 1; ++done)
             for (int bx = 0; bx < blocks_x; ++bx)
                 contributions[size_t(done) * size_t(blocks_x) + size_t(bx)] = {};

@@ -7,22 +7,23 @@ namespace covtrace {
 
 namespace {
 
-void cut_out(const PaddedPlane& plane, int x, int y, FitWindow::Cells& out) {
+/// The rows [begin, end) of the window around a pixel.
+void cut_out(const PaddedPlane& plane, int x, int y, int begin, int end, FitWindow::Cells& out) {
     constexpr int kReach = FitWindow::kReach, kSide = FitWindow::kSide;
-    for (int dy = -kReach; dy <= kReach; ++dy) {
-        const float* row = plane.at(x - kReach, y + dy);
-        std::memcpy(&out[size_t(dy + kReach) * kSide], row, kSide * sizeof(float));
+    for (int k = begin; k < end; ++k) {
+        const float* row = plane.at(x - kReach, y + k - kReach);
+        std::memcpy(&out[size_t(k) * kSide], row, kSide * sizeof(float));
     }
 }
 
 /// The same of a plane without a border: its outermost pixels are repeated.
-void cut_out(const Plane& plane, int x, int y, FitWindow::Cells& out) {
+void cut_out(const Plane& plane, int x, int y, int begin, int end, FitWindow::Cells& out) {
     constexpr int kReach = FitWindow::kReach, kSide = FitWindow::kSide;
     const bool inside = x >= kReach && x + kReach < plane.width;
-    float* to = out.data();
-    for (int dy = -kReach; dy <= kReach; ++dy, to += kSide) {
+    float* to = &out[size_t(begin) * kSide];
+    for (int v = y - kReach + begin; v < y - kReach + end; ++v, to += kSide) {
         const float* row =
-            &plane.values[size_t(std::clamp(y + dy, 0, plane.height - 1)) * size_t(plane.width)];
+            &plane.values[size_t(std::clamp(v, 0, plane.height - 1)) * size_t(plane.width)];
         if (inside) {
             std::memcpy(to, row + (x - kReach), kSide * sizeof(float));
             continue;
@@ -61,26 +62,31 @@ FitWindow::FitWindow() {
 }
 
 void FitWindow::move_to(const RegressionInputs& in, int x, int y) {
+    first_row_ = std::max(0, kReach - y);
+    end_row_ = std::min(kSide, in.noisy[0].height - y + kReach);
+    first_ = size_t(first_row_) * kSide / kLanes * kLanes;
+    end_ = (size_t(end_row_) * kSide + kLanes - 1) / kLanes * kLanes;
+    const int begin = int(first_) / kSide, end = std::min(kSide, int(end_ + kSide - 1) / kSide);
     const auto explain_by = [&](FeatureNoise noise, const auto& planes) {
         Basis& basis = basis_[size_t(noise)];
         basis.size = kPositions;
         for (const auto& plane : planes) {
             Cells& feature = basis.feature[basis.size - kPositions];
-            cut_out(plane, x, y, feature);
+            cut_out(plane, x, y, begin, end, feature);
             if (centre(feature)) ++basis.size;
         }
     };
     explain_by(FeatureNoise::filtered, in.filtered);
     explain_by(FeatureNoise::kept, in.noisy);
-    for (size_t c = 0; c < 3; ++c) cut_out(in.color[c], x, y, color_[c]);
-    cut_out(in.inside, x, y, inside_);
-    cut_out(in.sampled, x, y, sampled_);
+    for (size_t c = 0; c < 3; ++c) cut_out(in.color[c], x, y, begin, end, color_[c]);
+    cut_out(in.inside, x, y, begin, end, inside_);
+    cut_out(in.sampled, x, y, begin, end, sampled_);
 }
 
 void FitWindow::set_weights(const RegressionWindow& window, const float* distance, int x, int y,
                             Cells& weight) const {
     const float scale = 1 / (window.k * window.k);
-    for (size_t o = 0; o < kCells; o += kLanes)
+    for (size_t o = first_; o < end_; o += kLanes)
         store(load(&inside_[o]) * patch_weight(scale * load(distance + o)), &weight[o]);
     if (!window.shape) return;
     const FilterField& field = *window.shape;
@@ -88,7 +94,7 @@ void FitWindow::set_weights(const RegressionWindow& window, const float* distanc
     const float norm =
         -0.5f * kReach * kReach / ((s.xx * s.yy - s.xy * s.xy) * window.widen * window.widen);
     const float qxx = s.yy * norm, qxy = -2 * s.xy * norm, qyy = s.xx * norm;
-    for (size_t o = 0; o < kCells; o += kLanes) {
+    for (size_t o = first_; o < end_; o += kLanes) {
         const Lanes dx = load(&x_[o]), dy = load(&y_[o]);
         const Lanes power = multiply_add(dx, qxx * dx + qxy * dy, qyy * (dy * dy));
         store(load(&weight[o]) * exp_of_negative(power), &weight[o]);
@@ -99,7 +105,7 @@ bool FitWindow::fit(FeatureNoise noise, const Cells& weight, std::array<Cells, 3
     const Basis& basis = basis_[size_t(noise)];
     solve_normal_equations(basis, weight);
     if (!(total_ > 0)) return false;
-    for (size_t o = 0; o < kCells; o += kLanes) {
+    for (size_t o = first_; o < end_; o += kLanes) {
         Lanes sum[3];
         for (size_t c = 0; c < 3; ++c) sum[c] = coefficient_[c][0] - Lanes{};
         for (size_t i = 1; i < basis.size; ++i) {
@@ -114,12 +120,12 @@ bool FitWindow::fit(FeatureNoise noise, const Cells& weight, std::array<Cells, 3
 
 /// Subtracts the centre's value. False where the feature is as good as constant: what varies by
 /// less is given next to nothing by the ridge.
-bool FitWindow::centre(Cells& feature) {
+bool FitWindow::centre(Cells& feature) const {
     constexpr float kConstant = 3e-4f;
     const float value = feature[kOffsets / 2];
     std::fill(feature.begin() + kOffsets, feature.end(), value);
     Lanes most{};
-    for (size_t o = 0; o < kCells; o += kLanes) {
+    for (size_t o = first_; o < end_; o += kLanes) {
         const Lanes difference = load(&feature[o]) - value;
         const Lanes size = difference < 0.0f ? -difference : difference;
         most = most < size ? size : most;
@@ -134,25 +140,27 @@ void FitWindow::solve_normal_equations(const Basis& basis, const Cells& weight) 
     const size_t n = basis.size;
     // The first function is 1: its products with the weights are the weights.
     Cells& w = weighted_[0];
-    for (size_t o = 0; o < kCells; o += kLanes) store(load(&weight[o]) * load(&sampled_[o]), &w[o]);
+    for (size_t o = first_; o < end_; o += kLanes)
+        store(load(&weight[o]) * load(&sampled_[o]), &w[o]);
     for (size_t i = 1; i < n; ++i) {
         const Cells& x = *basis.function[i];
-        for (size_t o = 0; o < kCells; o += kLanes)
+        for (size_t o = first_; o < end_; o += kLanes)
             store(load(&w[o]) * load(&x[o]), &weighted_[i][o]);
     }
     // Columns beyond the basis: the colours.
     std::array<const float*, kBasis + 3> column{};
-    for (size_t i = 0; i < n; ++i) column[i] = basis.function[i]->data();
-    for (size_t c = 0; c < 3; ++c) column[n + c] = color_[c].data();
+    for (size_t i = 0; i < n; ++i) column[i] = basis.function[i]->data() + first_;
+    for (size_t c = 0; c < 3; ++c) column[n + c] = color_[c].data() + first_;
     double a[kBasis][kBasis + 3] = {};
     for (size_t i = 0; i < n; i += 2) {
         const size_t next = std::min(i + 1, n - 1);
-        const float* const rows[2] = {weighted_[i].data(), weighted_[next].data()};
+        const float* const rows[2] = {weighted_[i].data() + first_,
+                                      weighted_[next].data() + first_};
         const auto multiply = [&]<size_t Columns>(size_t j) {
             const float* columns[Columns];
             std::copy_n(&column[j], Columns, columns);
             float sums[2][Columns];
-            products<2, Columns>(rows, columns, kCells, sums);
+            products<2, Columns>(rows, columns, end_ - first_, sums);
             for (size_t k = 0; k < Columns; ++k) {
                 a[i][j + k] = double(sums[0][k]);
                 a[next][j + k] = double(sums[1][k]);

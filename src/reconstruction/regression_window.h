@@ -44,6 +44,11 @@ class FitWindow {
     /// False where there is nothing to fit.
     bool fit(FeatureNoise noise, const Cells& weight, std::array<Cells, 3>& fitted);
 
+    /// Rows of the window that are in the image. Nothing is told of the others, where weights
+    /// would be 0.
+    int first_row() const { return first_row_; }
+    int end_row() const { return end_row_; }
+
   private:
     static constexpr size_t kPositions = 3;                   // 1, x, y
     static constexpr size_t kBasis = kPositions + kFeatures;  // and the features
@@ -55,12 +60,14 @@ class FitWindow {
         size_t size = kPositions;
     };
 
-    static bool centre(Cells& feature);
+    bool centre(Cells& feature) const;
     void solve_normal_equations(const Basis& basis, const Cells& weight);
     void eliminate(size_t n, double (&a)[kBasis][kBasis + 3]);
 
-    Cells one_{}, x_{}, y_{};       // positions relative to the centre, in units of the reach
-    std::array<Basis, 2> basis_{};  // by FeatureNoise
+    int first_row_ = 0, end_row_ = kSide;
+    size_t first_ = 0, end_ = kCells;  // cells of whole vectors that hold those rows
+    Cells one_{}, x_{}, y_{};          // positions relative to the centre, in units of the reach
+    std::array<Basis, 2> basis_{};     // by FeatureNoise
     std::array<Cells, 3> color_{};
     Cells inside_{}, sampled_{};
     std::array<Cells, kBasis> weighted_{};

@@ -76,13 +76,13 @@ void for_pairs(size_t n, const OfPair& of_pair) {
 /// v)` holds with the nearest done ones, `set` for the others. On all threads.
 template <typename Set, typename Alike, typename Between>
 void coarse_to_fine(int w, int h, const Set& set, const Alike& alike, const Between& between) {
-    parallel_for((h + kCoarsest - 1) / kCoarsest, [&](int64_t row) {
-        for (int x = 0; x < w; x += kCoarsest) set(x, int(row) * kCoarsest);
+    parallel_for_rows(w / kCoarsest, (h + kCoarsest - 1) / kCoarsest, [&](int row) {
+        for (int x = 0; x < w; x += kCoarsest) set(x, row * kCoarsest);
     });
     for (int step = kCoarsest; step > 1; step /= 2) {
         const int half = step / 2;
-        parallel_for((h + half - 1) / half, [&](int64_t row) {
-            const int y = int(row) * half;
+        parallel_for_rows(w / half, (h + half - 1) / half, [&](int row) {
+            const int y = row * half;
             const bool some_done = y % step == 0;
             for (int x = some_done ? half : 0; x < w; x += some_done ? step : half) {
                 const int left = x - x % step, top = y - y % step,

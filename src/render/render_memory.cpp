@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "prediction/packed_covariance.h"
-#include "reconstruction/patch_distance.h"
 #include "render/overrides.h"
 
 namespace covtrace {
@@ -15,20 +14,19 @@ size_t image_bytes(Method method) {
     return method == Method::uniform ? 68 : method == Method::covariance ? 396 : 488;
 }
 
-/// The reconstruction's planes go on beyond the image, by the reach of its filters and by whole
-/// blocks of patches: bytes, measured on images of one row and of one column, where they are most
-/// of it.
+/// The reconstruction's planes go on beyond the image, by the reach of its filters and by a
+/// vector of eight: bytes, measured on images of one row and of one column, where they are most of
+/// it.
 size_t border_bytes(Method method, const PixelBounds& region) {
     if (method != Method::hybrid) return 0;
     constexpr size_t kReach = 2 * 13, kBytes = 160;
     const size_t width = size_t(region.width()), height = size_t(region.height());
-    const size_t all = (width + kReach + size_t(kLongestPatchRow)) *
-                       (height + kReach + size_t(kLargestPatchBlock));
+    const size_t all = (width + kReach + 8) * (height + kReach);
     return kBytes * (all - width * height);
 }
 
-/// What a denoiser adds to that. While it works the candidates are not there, of which only its own
-/// stays.
+/// A denoiser's bytes beyond image_bytes: while it works, the other candidates are not there yet,
+/// and of its own memory only its candidate stays.
 size_t denoiser_bytes(const Denoiser& denoiser, size_t pixels) {
     constexpr size_t kMeanwhile = 310, kCandidate = 36;
     const size_t peak = denoiser.memory(pixels) + kMeanwhile * pixels,

@@ -6,7 +6,6 @@
 #include <new>
 #include <utility>
 
-#include "reconstruction/patch_distance.h"
 #include "render/job.h"
 #include "render/methods/covariance.h"
 #include "render/methods/hybrid.h"

@@ -38,6 +38,18 @@ class LinearTime(CliTest):
             seconds.append(self.cpu_seconds("info", "many.pbrt"))
         self.assert_linear(*seconds, 5)
 
+    def test_narrow_images(self):
+        """The reconstruction of one row or one column took ten times that of a square."""
+        header = HEADER.replace('"float fov" 40', '"float fov" 40 "float lensradius" .3 "float focaldistance" 6')
+        self.write("plain.pbrt", header + 'WorldBegin\nLightSource "infinite"\nShape "sphere"\n')
+        seconds = {}
+        for size in ("256x256", "65536x1", "1x65536"):
+            seconds[size] = self.cpu_seconds("render", "plain.pbrt", "-o", "out.exr", "--spp", "4", "--resolution", size,
+                                             "--threads", "1")
+        for size in ("65536x1", "1x65536"):
+            # Centres of fits are three pixels apart, in rows and in columns: a row has three times as many.
+            self.assertLess(seconds[size], 2 * seconds["256x256"] + SLOWER, seconds)
+
     def test_outlines_among_instances(self):
         """A cloud of 40,000 in front of a wall: the search took five seconds."""
         side = 34
