@@ -20,7 +20,7 @@ int exit_code(ErrorKind kind) {
         case scene:
             return 3;
         case limit:
-            return 4;
+            return kLimitExitCode;
         case io:
             return 5;
         case interrupted:

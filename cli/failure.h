@@ -10,5 +10,7 @@ int report_failure(const std::exception_ptr& failure);
 
 /// The exit code of a command line that cannot be understood.
 inline constexpr int kUsageExitCode = 2;
+/// The exit code where this machine does not suffice.
+inline constexpr int kLimitExitCode = 4;
 
 }  // namespace covtrace::cli

@@ -12,6 +12,9 @@ operators of the covariance library on arrays.
 
 try:
     import numpy as _numpy  # that all modules need
+    from ._processor import missing_instructions as _missing_instructions
+    if _missing_instructions is not None:
+        raise ImportError(f"covtrace: {_missing_instructions}")
     from ._covtrace import __version__
 except ModuleNotFoundError as missing:
     import pathlib as _pathlib
