@@ -3,7 +3,7 @@
 bl_info = {
     "name": "covtrace",
     "author": "The covtrace authors",
-    "version": (0, 1, 0),
+    "version": (1, 0, 0),
     "blender": (3, 4, 0),
     "location": "Render Properties > Render Engine",
     "description": "Covariance tracing renderer",
