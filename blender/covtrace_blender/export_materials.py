@@ -12,10 +12,20 @@ def numbers(values):
     return " ".join(f"{v:.9g}" for v in values)
 
 
-def eta_of_specular(specular):
-    """Principled's Specular: reflects 8 % of it at the normal."""
-    root = math.sqrt(min(0.08 * max(specular, 0.0), 0.9))
+def eta_of_reflectance(reflectance):
+    """The index of refraction of what reflects so much at the normal."""
+    root = math.sqrt(min(max(reflectance, 0.0), 0.9))
     return (1 + root) / (1 - root)
+
+
+def either(inputs, *names):
+    """The socket by the first of its names that this Blender has: version 4.0 renamed some."""
+    return next((inputs[name] for name in names if name in inputs), None)
+
+
+# Of Principled, what is left out: names of the socket, and the value at which it changes nothing.
+LEFT_OUT = ((("Subsurface Weight", "Subsurface"), 0), (("Sheen Weight", "Sheen"), 0), (("Coat Weight", "Clearcoat"), 0),
+            (("Anisotropic",), 0), (("Diffuse Roughness",), 0), (("Thin Film Thickness",), 0))
 
 
 class Emission:
@@ -173,7 +183,7 @@ class MaterialExporter(SocketReader):
         return self._make("diffuse", ['"rgb reflectance" [0 0 0]'])
 
     def _mix_shader(self, node):
-        amount = self._value(node.inputs["Fac"], True)
+        amount = self._value(node.inputs[0], True)
         first, second = (self._linked(node.inputs[i])[0] for i in (1, 2))
         if first and first.type == "BSDF_TRANSPARENT":
             self.alpha = self._number("alpha", amount)
@@ -198,15 +208,34 @@ class MaterialExporter(SocketReader):
         self.warn(f"material '{self.name}': a sum of two surfaces is rendered as their mean")
         return self._mix(self._shader(others[0]), self._shader(others[1]), Value(0.5))
 
+    def _tell_left_out(self, inputs):
+        """Of Principled."""
+        left_out = [(either(inputs, *names), without) for names, without in LEFT_OUT]
+        tint = inputs["Specular Tint"]  # a colour since Blender 4.0, and white without effect
+        left_out.append((tint, 1 if hasattr(tint.default_value, "__len__") else 0))
+        for socket, without in left_out:
+            if socket is None:
+                continue
+            values = np.ravel(socket.default_value)[:3]
+            if socket.is_linked or any(value != without for value in values):
+                self.warn(f"material '{self.name}': Principled's {socket.name} is not supported and left out")
+
+    def _reflectance(self, inputs):
+        """What Principled's coat reflects at the normal."""
+        if "Specular" in inputs:
+            return 0.08 * self._plain(inputs["Specular"])
+        # Since Blender 4.0 the index tells it, and this twice its half: 0.5 changes nothing.
+        eta = max(self._plain(inputs["IOR"]), 1e-3)
+        return ((eta - 1) / (eta + 1)) ** 2 * 2 * self._plain(inputs["Specular IOR Level"])
+
     def _principled(self, node):
         get = node.inputs
         base, roughness = self._value(get["Base Color"]), self._value(get["Roughness"], True)
-        metallic, transmission = self._value(get["Metallic"], True), self._value(get["Transmission"], True)
+        metallic = self._value(get["Metallic"], True)
+        transmission = self._value(either(get, "Transmission Weight", "Transmission"), True)
         normal = self._normal_map(node)
-        for name in ("Subsurface", "Sheen", "Clearcoat", "Anisotropic", "Specular Tint"):
-            if get[name].is_linked or get[name].default_value > 0:
-                self.warn(f"material '{self.name}': Principled's {name} is not supported and left out")
-        self._emit(self._value(get["Emission"]), self._plain(get["Emission Strength"]))
+        self._tell_left_out(get)
+        self._emit(self._value(either(get, "Emission Color", "Emission")), self._plain(get["Emission Strength"]))
         alpha = self._value(get["Alpha"], True)
         if alpha.image or alpha.constant < 1:
             self.alpha = self._number("alpha", alpha)
@@ -219,7 +248,7 @@ class MaterialExporter(SocketReader):
             if is_constant(transmission, 1):
                 parts.append(self._clear(base, roughness, self._plain(get["IOR"]), normal))
             else:
-                eta = eta_of_specular(self._plain(get["Specular"]))
+                eta = eta_of_reflectance(self._reflectance(get))
                 coated = self._make("coateddiffuse", [
                     self._colour("reflectance", base), *self._roughness(roughness),
                     f'"float eta" {max(eta, 1.0001):.9g}', '"bool reflectsthroughcoat" true', *normal])

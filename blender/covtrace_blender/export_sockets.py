@@ -105,8 +105,8 @@ class SocketReader:
                 return source
         if node.type == "MATH" and grey and node.operation == "SUBTRACT" and not node.inputs[0].is_linked:
             return self._value(node.inputs[1], True).inverse(node.inputs[0].default_value)
-        if node.type == "INVERT" and not node.inputs["Fac"].is_linked and node.inputs["Fac"].default_value == 1:
-            return self._value(node.inputs["Color"], grey).inverse()
+        if node.type == "INVERT" and not node.inputs[0].is_linked and node.inputs[0].default_value == 1:
+            return self._value(node.inputs[1], grey).inverse()
         return None
 
     def _is_uv(self, node, output):
