@@ -4,10 +4,20 @@ set(CPACK_PACKAGE_NAME covtrace)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_CONTACT "covtrace maintainers <maintainers@covtrace.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "path tracer that predicts the samples and the filter of every pixel")
+# What a processor has to have, which a package's architecture does not say.
+set(processor "any x86-64 processor")
+if(COVTRACE_MARCH STREQUAL x86-64-v3)
+    set(processor "a processor with AVX2, FMA and BMI2 (x86-64-v3, most since 2013)\nand refuses to start on others")
+elseif(COVTRACE_MARCH AND NOT COVTRACE_MARCH STREQUAL x86-64)
+    set(processor "a processor like the one that it was built for (-march=${COVTRACE_MARCH})")
+endif()
 set(CPACK_PACKAGE_DESCRIPTION
-"covtrace renders scenes of the format pbrt-v4. From the covariance of the local light field's spectrum it predicts
-how many samples every pixel needs and how wide and in which direction it may be smoothed. The package also holds
-the covariance operators as a header-only library for other renderers.")
+"covtrace renders scenes of the formats pbrt-v4 and glTF. From the covariance
+of the local light field's spectrum it predicts how many samples every pixel
+needs and how wide and in which direction it may be smoothed.
+The package also holds the module covtrace for Debian's python3, and the
+covariance operators as a header-only library for other renderers.
+It needs ${processor}.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -16,6 +26,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # Two packages: the module for mpirun needs OpenMPI, and nothing else does.
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_MAIN_PACKAGE_NAME covtrace)
+set(CPACK_DEBIAN_MAIN_DESCRIPTION "${CPACK_PACKAGE_DESCRIPTION}")
 set(CPACK_DEBIAN_MAIN_PACKAGE_RECOMMENDS "python3-numpy")
 set(CPACK_DEBIAN_MAIN_PACKAGE_SUGGESTS "covtrace-mpi")
 set(CPACK_DEBIAN_MPI_PACKAGE_NAME covtrace-mpi)

@@ -77,6 +77,7 @@ class Package(unittest.TestCase):
         for library in ("libembree3", "libtbb", "libopenexr", "libc6"):
             self.assertIn(library, fields)
         self.assertNotIn("libopenmpi", fields)
+        self.assertRegex(" ".join(fields.split()), "covtrace renders scenes .* It needs .*processor")
 
         root = self.folder / "root"
         for folder in ("info", "updates", "triggers"):
