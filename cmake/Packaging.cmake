@@ -40,3 +40,11 @@ cpack_add_component_group(main)
 if(TARGET covtrace_mpi)
     cpack_add_component(mpi DESCRIPTION "the module with which covtrace renders under mpirun")
 endif()
+
+# What the packages hold, for scripts/release: cpack builds nothing itself.
+add_custom_target(covtrace_packaged)
+foreach(target covtrace_program covtrace_python_package covtrace_mpi)
+    if(TARGET ${target})
+        add_dependencies(covtrace_packaged ${target})
+    endif()
+endforeach()
