@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "frequency/double4.h"
+#include "frequency/axes4.h"
 #include "frequency/fresnel_derivatives.h"
 
 namespace covtrace {
@@ -107,17 +107,17 @@ RoundReflection round_reflection(const LobeShare& lobe, const cov::Frame<double>
     const double up = co + ci, ih = 1 / cov::dot(h, h);
     const Vec across = cov::add_scaled(h, -side * up, n);
     const double iq = 1 / sum_of_products(narrow, cov::dot(across, across), up, up);
-    const Double4 ah = add_product4(axes.dot(across), narrow, normal * all4(up));
+    const Double4 ah = multiply_add(axes.dot(across), narrow, normal * all4(up));
     const double bend = sum_of_products(narrow, cov::dot(wi, across), ci, up);
     const LogMasking leaving(alpha2, co, so, ci, si, i);
-    const Double4 slope = add_product4(towards, multiply_add(4.0, ih, fresnel.slope),
-                                       add_product4(ah, -4 * iq, normal * all4(leaving.slope)));
+    const Double4 slope = multiply_add(towards, multiply_add(4.0, ih, fresnel.slope),
+                                       multiply_add(ah, -4 * iq, normal * all4(leaving.slope)));
     const double level =
         1 + leaving.level + fresnel.level + 4 * (ih * (1 + cov::dot(h, wi)) - iq * (narrow + bend));
     const Double4 second =
-        add_product4(square4(towards), multiply_add(-8 * ih, ih, fresnel.square),
-                     add_product4(square4(ah), 8 * iq * iq,
-                                  add_product4(square4(normal),
+        multiply_add(square4(towards), multiply_add(-8 * ih, ih, fresnel.square),
+                     multiply_add(square4(ah), 8 * iq * iq,
+                                  multiply_add(square4(normal),
                                                multiply_add(-4 * iq, 1 - narrow, leaving.square),
                                                Double4{level, 0, level, 0})));
     result.lobe = cov::local_lobe_of_log<double>(

@@ -19,8 +19,8 @@ struct BlindCones {
     /// The boxes in which no edge is an outline; `middle`: their middles, seen from the viewer.
     Mask8 hide(const Vec3x8& middle) const {
         const Float8 along = abs8(dot8(middle, axis));
-        const Float8 across2 = max8(less_product8(along, along, dot8(middle, middle)), Float8{});
-        const Float8 inside = add_product8(along, cosine, -radius);
+        const Float8 across2 = max8(subtract_product(along, along, dot8(middle, middle)), Float8{});
+        const Float8 inside = multiply_add(along, cosine, -radius);
         // The inequality is `inside > across sine`, squared on both sides with the sign of the left
         // one.
         return inside * abs8(inside) > across2 * sine2;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/vec.h"
-#include "occluders/float8.h"
+#include "occluders/vec3x8.h"
 
 namespace covtrace {
 

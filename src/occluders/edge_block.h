@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "occluders/float8.h"
 #include "occluders/fold_edges.h"
+#include "occluders/vec3x8.h"
 
 namespace covtrace {
 

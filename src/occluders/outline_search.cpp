@@ -57,33 +57,33 @@ inline OutlineSearch::Nearest OutlineSearch::nearest(const Vec3x8& from,
     // right angles to the segment have no such part or, by infinities, are kept whole.
     const Float8 ta = (all8(lo_) - za) / dz, tb = (all8(hi_) - za) / dz;
     const Float8 t0 = max8(min8(ta, tb), Float8{}), t1 = min8(max8(ta, tb), all8(1));
-    const Vec3x8 p = less_product8(axis, za, from), dp = less_product8(axis, dz, along);
+    const Vec3x8 p = subtract_product(axis, za, from), dp = subtract_product(axis, dz, along);
     // Expand the width's numerator and denominator along the edge as polynomials in t.
     const Float8 a1 = all8(m.a1), b = all8(m.b), h2 = all8(m.h2);
-    const Float8 blur = add_product8(a1, za, all8(m.a0)), slope = a1 * dz;
+    const Float8 blur = multiply_add(a1, za, all8(m.a0)), slope = a1 * dz;
     const Float8 p2 = dot8(p, p), pdp = dot8(p, dp), dp2 = dot8(dp, dp);
-    const Float8 n0 = add_product8(blur, blur, b * p2), n1 = 2 * add_product8(blur, slope, b * pdp),
-                 n2 = add_product8(slope, slope, b * dp2);
+    const Float8 n0 = multiply_add(blur, blur, b * p2), n1 = 2 * multiply_add(blur, slope, b * pdp),
+                 n2 = multiply_add(slope, slope, b * dp2);
     const Float8 least = all8(least_);
     const Float8 bend = h2 * dz;
-    const Float8 d0 = max8(add_product8(add_product8(h2, za, all8(m.h1)), za, all8(m.h0)), least),
-                 d1 = add_product8(2 * za, bend, m.h1 * dz), d2 = bend * dz;
+    const Float8 d0 = max8(multiply_add(multiply_add(h2, za, all8(m.h1)), za, all8(m.h0)), least),
+                 d1 = multiply_add(2 * za, bend, m.h1 * dz), d2 = bend * dz;
     // Find the least width: the quotient's derivative has the sign of a quadratic, qa t^2 + 2 qb t
     // + qc, and the quotient is least where that crosses zero upwards.
-    const Float8 qa = less_product8(n1, d2, n2 * d1), qb = less_product8(n0, d2, n2 * d0),
-                 qc = less_product8(n0, d1, n1 * d0);
-    const Float8 root = sqrt8(less_product8(qa, qc, qb * qb));
+    const Float8 qa = subtract_product(n1, d2, n2 * d1), qb = subtract_product(n0, d2, n2 * d0),
+                 qc = subtract_product(n0, d1, n1 * d0);
+    const Float8 root = sqrt8(subtract_product(qa, qc, qb * qb));
     const Mask8 rises = qb > Float8{};
     const Float8 valley = (rises ? -qc : root - qb) / (rises ? qb + root : qa);
     const Float8 t2 = min8(max8(valley, t0), t1);
     // Evaluate the width anew at t: the polynomials would leave of points near the axis only
     // rounding.
     const auto width2 = [&](const Float8& t) {
-        const Float8 z = add_product8(t, dz, za);
-        const Vec3x8 q = add_product8(dp, t, p);
-        const Float8 a = add_product8(a1, z, all8(m.a0));
-        const Float8 h = add_product8(add_product8(h2, z, all8(m.h1)), z, all8(m.h0));
-        return add_product8(a, a, b * dot8(q, q)) / max8(h, least);
+        const Float8 z = multiply_add(t, dz, za);
+        const Vec3x8 q = multiply_add(dp, t, p);
+        const Float8 a = multiply_add(a1, z, all8(m.a0));
+        const Float8 h = multiply_add(multiply_add(h2, z, all8(m.h1)), z, all8(m.h0));
+        return multiply_add(a, a, b * dot8(q, q)) / max8(h, least);
     };
     const Float8 w0 = width2(t0), w1 = width2(t1), w2 = width2(t2);
     const Float8 ends = min8(w0, w1), best = min8(ends, w2);
@@ -113,7 +113,7 @@ inline void OutlineSearch::meet(const Mask8& outlines, const Vec3x8& from, const
     unsigned left = bits8(outlines & (nearest.width2 < all8(limit_)));
     if (left == 0) return;
     const unsigned inside = bits8(nearest.inside);
-    const Vec3x8 point = add_product8(along, nearest.t, from);
+    const Vec3x8 point = multiply_add(along, nearest.t, from);
     for (; left != 0; left &= left - 1) {
         const auto k = static_cast<size_t>(std::countr_zero(left));
         keep(nearest.width2[k], {point.x[k], point.y[k], point.z[k]},

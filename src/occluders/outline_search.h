@@ -117,15 +117,15 @@ inline BoxHierarchy::Met OutlineSearch::may_matter(const Vec3x8& middle, const V
     // the way to its middle, at beyond / |p|. Both sides of the comparison are multiplied by what a
     // quotient would divide by; equal ones count, as both vanish where their products become too
     // small.
-    const Vec3x8 p = less_product8(axis, along, middle);
+    const Vec3x8 p = subtract_product(axis, along, middle);
     const Float8 p2 = dot8(p, p);
     const Float8 beyond = max8(p2 - dot8(half, abs8(p)), Float8{});
     const Float8 scale = p2 + 1e-20f;
-    const Float8 blur = add_product8(all8(m.a1), min8(max8(all8(sharp_), z0), z1), all8(m.a0));
-    const Float8 numerator = add_product8(beyond * beyond, all8(m.b), blur * blur * scale);
+    const Float8 blur = multiply_add(all8(m.a1), min8(max8(all8(sharp_), z0), z1), all8(m.a0));
+    const Float8 numerator = multiply_add(beyond * beyond, all8(m.b), blur * blur * scale);
     const Float8 h0 = all8(m.h0), h1 = all8(m.h1), h2 = all8(m.h2);
-    const Float8 at0 = add_product8(add_product8(h2, z0, h1), z0, h0),
-                 at1 = add_product8(add_product8(h2, z1, h1), z1, h0),
+    const Float8 at0 = multiply_add(multiply_add(h2, z0, h1), z0, h0),
+                 at1 = multiply_add(multiply_add(h2, z1, h1), z1, h0),
                  denominator = max8(max8(at0, at1), all8(least_)) * scale;
     return {bits8((z0 <= z1) & (numerator <= all8(limit_) * denominator)), numerator, denominator};
 }

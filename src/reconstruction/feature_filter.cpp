@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/parallel.h"
-#include "reconstruction/lanes.h"
+#include "core/simd.h"
 #include "reconstruction/patch_distance.h"
 
 namespace covtrace {
@@ -40,7 +40,7 @@ void filter(const HalfBuffer& half, const HalfBuffer& guide, size_t first, size_
         }
         std::array<float, kBlock * kBlock> d{};
         std::array<std::array<float, kBlock * kBlock>, 4> total{};
-        const auto add = [](const Lanes& value, float* to) { store(load(to) + value, to); };
+        const auto add = [](const Float8& value, float* to) { store8(load8(to) + value, to); };
         for (int dy = -kReach; dy <= kReach; ++dy)
             for (int dx = -kReach; dx <= kReach; ++dx) {
                 // What is outside the image has no weight.
@@ -52,10 +52,10 @@ void filter(const HalfBuffer& half, const HalfBuffer& guide, size_t first, size_
                     for (size_t f = 0; f < n; ++f) value[f] = source[f].at(x0 + dx, y0 + y + dy);
                     for (int x = 0; x < x1 - x0; x += int(kLanes)) {
                         const size_t i = size_t(y) * kBlock + size_t(x);
-                        const Lanes weight = load(mask + x) * patch_weight(load(&d[i]));
+                        const Float8 weight = load8(mask + x) * patch_weight(load8(&d[i]));
                         add(weight, &total[3][i]);
                         for (size_t f = 0; f < n; ++f)
-                            add(weight * load(value[f] + x), &total[f][i]);
+                            add(weight * load8(value[f] + x), &total[f][i]);
                     }
                 }
             }

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "reconstruction/lanes.h"
+#include "core/simd.h"
 
 namespace covtrace {
 
@@ -65,9 +65,9 @@ std::array<float, N> gaussian_sums(const Level<N>& level, float cx, float cy, co
     const float reach_y = std::sqrt(kCut * s.yy);
     const int y0 = std::max(0, int(std::ceil(cy - reach_y)));
     const int y1 = std::min(level.height - 1, int(std::floor(cy + reach_y)));
-    Lanes lane;
+    Float8 lane;
     for (size_t k = 0; k < kLanes; ++k) lane[k] = float(k);
-    std::array<Lanes, N> sum{};
+    std::array<Float8, N> sum{};
     for (int y = y0; y <= y1; ++y) {
         // The row's chord of the ellipse: qxx x^2 + 2 qxy x dy + qyy dy^2 <= cut.
         const float dy = float(y) - cy;
@@ -77,17 +77,17 @@ std::array<float, N> gaussian_sums(const Level<N>& level, float cx, float cy, co
         const int x0 = std::max(0, int(std::ceil(cx + centre - half)));
         const int x1 = std::min(level.width - 1, int(std::floor(cx + centre + half)));
         for (int x = x0; x <= x1; x += int(kLanes)) {
-            const Lanes dx = lane + (float(x) - cx);
-            const Lanes power =
-                multiply_add(-0.5f * dx, qxx * dx + 2 * qxy * dy, -0.5f * qyy * dy * dy - Lanes{});
-            const Lanes h = lane <= float(x1 - x) ? exp_of_negative(power) : Lanes{};
+            const Float8 dx = lane + (float(x) - cx);
+            const Float8 power =
+                multiply_add(-0.5f * dx, qxx * dx + 2 * qxy * dy, -0.5f * qyy * dy * dy - Float8{});
+            const Float8 h = lane <= float(x1 - x) ? exp_of_negative(power) : Float8{};
             const size_t at = level.index(x, y);
             for (size_t k = 0; k < N; ++k)
-                sum[k] = multiply_add(k == Squared ? h * h : h, load(&level.sums[k][at]), sum[k]);
+                sum[k] = multiply_add(k == Squared ? h * h : h, load8(&level.sums[k][at]), sum[k]);
         }
     }
     std::array<float, N> result;
-    for (size_t k = 0; k < N; ++k) result[k] = total(sum[k]);
+    for (size_t k = 0; k < N; ++k) result[k] = sum8(sum[k]);
     return result;
 }
 

@@ -5,7 +5,6 @@
 
 #include "core/vec.h"
 #include "reconstruction/luminance.h"
-#include "reconstruction/selector.h"
 
 namespace covtrace {
 

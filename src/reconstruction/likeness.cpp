@@ -25,16 +25,16 @@ Likeness::Likeness(const LikenessSettings& settings) : any_(settings.any) {
 void Likeness::weigh(int x, int y, Window& weights) const {
     for (size_t row = 0; row < kRows; ++row)
         for (size_t column = 0; column < kColumns; column += kLanes) {
-            Lanes squared{};
+            Float8 squared{};
             for (const MarginPlane& guide : guides_) {
-                const Lanes difference =
-                    load(guide.at(x - kReach + int(column), y - kReach + int(row))) -
+                const Float8 difference =
+                    load8(guide.at(x - kReach + int(column), y - kReach + int(row))) -
                     *guide.at(x, y);
                 squared = multiply_add(difference, difference, squared);
             }
             const size_t i = row * kColumns + column;
-            store(load(&gaussian_[i]) * (any_ + (1 - any_) * exp_of_negative(-0.5f * squared)),
-                  &weights[i]);
+            store8(load8(&gaussian_[i]) * (any_ + (1 - any_) * exp_of_negative(-0.5f * squared)),
+                   &weights[i]);
         }
 }
 
@@ -50,18 +50,18 @@ void weighted_sums(std::span<const MarginPlane> planes, const Likeness::Window& 
     constexpr size_t kAtOnce = 4;  // share the weights that were read
     for (size_t first = 0; first < planes.size(); first += kAtOnce) {
         const size_t n = std::min(kAtOnce, planes.size() - first);
-        Lanes sum[kAtOnce] = {};
+        Float8 sum[kAtOnce] = {};
         for (size_t row = 0; row < Likeness::kRows; ++row) {
             const float* from[kAtOnce];
             for (size_t k = 0; k < kAtOnce; ++k)
                 from[k] = planes[first + std::min(k, n - 1)].at(x - kReach, y - kReach + int(row));
             for (size_t column = 0; column < Likeness::kColumns; column += kLanes) {
-                const Lanes weight = load(&weights[row * Likeness::kColumns + column]);
+                const Float8 weight = load8(&weights[row * Likeness::kColumns + column]);
                 for (size_t k = 0; k < kAtOnce; ++k)
-                    sum[k] = multiply_add(weight, load(from[k] + column), sum[k]);
+                    sum[k] = multiply_add(weight, load8(from[k] + column), sum[k]);
             }
         }
-        for (size_t k = 0; k < n; ++k) *sums++ = total(sum[k]);
+        for (size_t k = 0; k < n; ++k) *sums++ = sum8(sum[k]);
     }
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/plane.h"
-#include "reconstruction/lanes.h"
+#include "core/simd.h"
 
 namespace covtrace {
 

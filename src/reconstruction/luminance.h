@@ -1,10 +1,13 @@
-/// The luminance of planes of colours.
+/// The luminance of planes of colours, and from where on errors are relative to it.
 #pragma once
 
 #include "core/vec.h"
 #include "reconstruction/half_buffer.h"
 
 namespace covtrace {
+
+/// The eps of relMSE: the errors of pixels darker than a tenth count as they are.
+constexpr float kDarkSquared = 0.01f;
 
 inline Plane luminance(const ColorPlanes& color) {
     Plane y(color[0].width, color[0].height);

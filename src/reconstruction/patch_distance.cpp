@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "reconstruction/lanes.h"
+#include "core/simd.h"
 
 namespace covtrace {
 
@@ -61,14 +61,14 @@ void PatchDistance<Radius, Step, Side>::differences(int x0, int y0, int dx, int 
         }
         const float *n_p = noise_.at(px, py), *n_q = noise_.at(px + dx, py + dy);
         for (int x = 0; x < end_x; x += int(kLanes)) {
-            const Lanes noise = load(n_p + x), other = load(n_q + x);
-            Lanes above = -noise - smaller(noise, other);
+            const Float8 noise = load8(n_p + x), other = load8(n_q + x);
+            Float8 above = -noise - min8(noise, other);
             for (size_t c = 0; c < Planes; ++c) {
-                const Lanes difference = load(u_p[c] + x) - load(u_q[c] + x);
+                const Float8 difference = load8(u_p[c] + x) - load8(u_q[c] + x);
                 above = multiply_add(difference, difference, above);
             }
-            const Lanes below = 1e-10f + noise + other;
-            store(smaller(above / below, kMost - Lanes{}), out + x);
+            const Float8 below = 1e-10f + noise + other;
+            store8(min8(above / below, kMost - Float8{}), out + x);
         }
     }
 }
@@ -87,14 +87,14 @@ void PatchDistance<Radius, Step, Side>::block(int x0, int y0, int dx, int dy, fl
     const int width = columns(x0), height = rows(y0), end = covered(width);
     for (int y = 0; y < height; y += Step) {
         for (int x = 0; x < end; x += int(kLanes)) {
-            Lanes sum{};
-            for (int k = 0; k < kSide; ++k) sum += load(&d[size_t(y + k) * kRow + size_t(x)]);
-            store(sum, &column[size_t(x)]);
+            Float8 sum{};
+            for (int k = 0; k < kSide; ++k) sum += load8(&d[size_t(y + k) * kRow + size_t(x)]);
+            store8(sum, &column[size_t(x)]);
         }
         for (int x = 0; x < width; x += int(kLanes)) {
-            Lanes sum{};
-            for (int k = 0; k < kSide; ++k) sum += load(&column[size_t(x + k)]);
-            store(sum * kScale, &mean[size_t(x)]);
+            Float8 sum{};
+            for (int k = 0; k < kSide; ++k) sum += load8(&column[size_t(x + k)]);
+            store8(sum * kScale, &mean[size_t(x)]);
         }
         float* row = out + size_t(y / Step) * kPatches * stride;
         for (int x = 0; x < width; x += Step, row += stride) *row = mean[size_t(x)];

@@ -74,7 +74,7 @@ class PatchDistance {
     PaddedPlane noise_;  // the sum of the variances
 };
 
-/// 1 at d <= 0, falls as exp(-d), 0 from d = 4 on: (1 - d/4)^4. Numbers or Lanes.
+/// 1 at d <= 0, falls as exp(-d), 0 from d = 4 on: (1 - d/4)^4. Numbers or Float8.
 template <typename T>
 T patch_weight(const T& d) {
     const T clipped = d > 0.0f ? d : T{};

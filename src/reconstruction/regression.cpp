@@ -130,14 +130,14 @@ class Block {
         for (int row = window_.first_row(); row < window_.end_row(); ++row) {
             const size_t to = size_t(y + row) * out.stride + size_t(x), from = size_t(row) * kSide;
             for (size_t k = 0; k < kSide; k += kLanes) {
-                Lanes w = load(&weight_[from + k]);
+                Float8 w = load8(&weight_[from + k]);
                 if (k == kWhole)  // the next row of the window follows
                     for (size_t lane = kSide - kWhole; lane < kLanes; ++lane) w[lane] = 0;
-                const auto add_to = [&](std::vector<float>& sums, const Lanes& value) {
-                    store(multiply_add(w, value, load(&sums[to + k])), &sums[to + k]);
+                const auto add_to = [&](std::vector<float>& sums, const Float8& value) {
+                    store8(multiply_add(w, value, load8(&sums[to + k])), &sums[to + k]);
                 };
-                for (size_t c = 0; c < 3; ++c) add_to(out.sums[c], load(&fitted_[c][from + k]));
-                add_to(out.sums[3], 1 - Lanes{});
+                for (size_t c = 0; c < 3; ++c) add_to(out.sums[c], load8(&fitted_[c][from + k]));
+                add_to(out.sums[3], 1 - Float8{});
             }
         }
     }

@@ -1,4 +1,5 @@
 #include "reconstruction/regression_window.h"
+#include "reconstruction/products.h"
 
 #include <algorithm>
 #include <cstring>
@@ -87,7 +88,7 @@ void FitWindow::set_weights(const RegressionWindow& window, const float* distanc
                             Cells& weight) const {
     const float scale = 1 / (window.k * window.k);
     for (size_t o = first_; o < end_; o += kLanes)
-        store(load(&inside_[o]) * patch_weight(scale * load(distance + o)), &weight[o]);
+        store8(load8(&inside_[o]) * patch_weight(scale * load8(distance + o)), &weight[o]);
     if (!window.shape) return;
     const FilterField& field = *window.shape;
     const auto& s = field.covariance[size_t(y) * size_t(field.width) + size_t(x)];
@@ -95,9 +96,9 @@ void FitWindow::set_weights(const RegressionWindow& window, const float* distanc
         -0.5f * kReach * kReach / ((s.xx * s.yy - s.xy * s.xy) * window.widen * window.widen);
     const float qxx = s.yy * norm, qxy = -2 * s.xy * norm, qyy = s.xx * norm;
     for (size_t o = first_; o < end_; o += kLanes) {
-        const Lanes dx = load(&x_[o]), dy = load(&y_[o]);
-        const Lanes power = multiply_add(dx, qxx * dx + qxy * dy, qyy * (dy * dy));
-        store(load(&weight[o]) * exp_of_negative(power), &weight[o]);
+        const Float8 dx = load8(&x_[o]), dy = load8(&y_[o]);
+        const Float8 power = multiply_add(dx, qxx * dx + qxy * dy, qyy * (dy * dy));
+        store8(load8(&weight[o]) * exp_of_negative(power), &weight[o]);
     }
 }
 
@@ -106,14 +107,14 @@ bool FitWindow::fit(FeatureNoise noise, const Cells& weight, std::array<Cells, 3
     solve_normal_equations(basis, weight);
     if (!(total_ > 0)) return false;
     for (size_t o = first_; o < end_; o += kLanes) {
-        Lanes sum[3];
-        for (size_t c = 0; c < 3; ++c) sum[c] = coefficient_[c][0] - Lanes{};
+        Float8 sum[3];
+        for (size_t c = 0; c < 3; ++c) sum[c] = coefficient_[c][0] - Float8{};
         for (size_t i = 1; i < basis.size; ++i) {
-            const Lanes x = load(&(*basis.function[i])[o]);
+            const Float8 x = load8(&(*basis.function[i])[o]);
             for (size_t c = 0; c < 3; ++c)
-                sum[c] = multiply_add(coefficient_[c][i] - Lanes{}, x, sum[c]);
+                sum[c] = multiply_add(coefficient_[c][i] - Float8{}, x, sum[c]);
         }
-        for (size_t c = 0; c < 3; ++c) store(sum[c], &fitted[c][o]);
+        for (size_t c = 0; c < 3; ++c) store8(sum[c], &fitted[c][o]);
     }
     return true;
 }
@@ -124,12 +125,12 @@ bool FitWindow::centre(Cells& feature) const {
     constexpr float kConstant = 3e-4f;
     const float value = feature[kOffsets / 2];
     std::fill(feature.begin() + kOffsets, feature.end(), value);
-    Lanes most{};
+    Float8 most{};
     for (size_t o = first_; o < end_; o += kLanes) {
-        const Lanes difference = load(&feature[o]) - value;
-        const Lanes size = difference < 0.0f ? -difference : difference;
+        const Float8 difference = load8(&feature[o]) - value;
+        const Float8 size = difference < 0.0f ? -difference : difference;
         most = most < size ? size : most;
-        store(difference, &feature[o]);
+        store8(difference, &feature[o]);
     }
     for (size_t k = 0; k < kLanes; ++k)
         if (most[k] > kConstant) return true;
@@ -141,11 +142,11 @@ void FitWindow::solve_normal_equations(const Basis& basis, const Cells& weight) 
     // The first function is 1: its products with the weights are the weights.
     Cells& w = weighted_[0];
     for (size_t o = first_; o < end_; o += kLanes)
-        store(load(&weight[o]) * load(&sampled_[o]), &w[o]);
+        store8(load8(&weight[o]) * load8(&sampled_[o]), &w[o]);
     for (size_t i = 1; i < n; ++i) {
         const Cells& x = *basis.function[i];
         for (size_t o = first_; o < end_; o += kLanes)
-            store(load(&w[o]) * load(&x[o]), &weighted_[i][o]);
+            store8(load8(&w[o]) * load8(&x[o]), &weighted_[i][o]);
     }
     // Columns beyond the basis: the colours.
     std::array<const float*, kBasis + 3> column{};

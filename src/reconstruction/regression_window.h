@@ -3,8 +3,8 @@
 
 #include <array>
 
+#include "core/simd.h"
 #include "reconstruction/filter_field.h"
-#include "reconstruction/lanes.h"
 #include "reconstruction/patch_distance.h"
 #include "reconstruction/regression.h"
 
@@ -27,7 +27,7 @@ class FitWindow {
     static constexpr size_t kCells = (kOffsets + kLanes - 1) / kLanes * kLanes;
     /// One number per pixel of the window, row by row; the padding is 0. Aligned, or every second
     /// vector of them would lie across two lines of the cache.
-    struct alignas(sizeof(Lanes)) Cells : std::array<float, kCells> {};
+    struct alignas(sizeof(Float8)) Cells : std::array<float, kCells> {};
 
     FitWindow();
     FitWindow(const FitWindow&) = delete;

@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "core/vec.h"
+#include "reconstruction/luminance.h"
 
 namespace covtrace {
 

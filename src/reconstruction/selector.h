@@ -9,9 +9,6 @@
 
 namespace covtrace {
 
-/// eps of relMSE: the errors of pixels darker than a tenth count as they are.
-constexpr float kDarkSquared = 0.01f;
-
 /// g = 1 / (I^2 + eps) per channel, what squared errors count; 0 where neither half has samples,
 /// and everywhere if one of them has none at all. A hole of one half judges with what fills it:
 /// judged at the other half's holes alone, candidates that keep the noise of their own sample

@@ -43,6 +43,9 @@ template <>
 inline constexpr auto kEnumNames<TextureBandwidth> = enum_names<TextureBandwidth>(
     {{TextureBandwidth::own, "own"}, {TextureBandwidth::highest, "highest"}});
 
+/// No limit: textures take as much memory as their files ask for.
+inline constexpr size_t kNoTextureLimit = std::numeric_limits<size_t>::max();
+
 /// All textures of a scene, images loaded once per file, encoding and wrap mode. Thread-safe once
 /// constructed and, where covariances are wanted, prepared.
 ///
@@ -50,9 +53,6 @@ inline constexpr auto kEnumNames<TextureBandwidth> = enum_names<TextureBandwidth
 /// float texture of a colour image is the mean of R, G and B, or alpha where the image has one that
 /// isn't 1 everywhere. Images are read from mip levels by the footprint and the filter that the
 /// file names (TextureImage::color); checkerboards aren't filtered.
-/// No limit: textures take as much memory as their files ask for.
-inline constexpr size_t kNoTextureLimit = std::numeric_limits<size_t>::max();
-
 class TextureStore {
   public:
     /// Loads every image. Missing or broken files throw Error(scene) with the place in the scene

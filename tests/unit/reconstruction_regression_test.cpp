@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "reconstruction/lanes.h"
+#include "core/simd.h"
 #include "reconstruction_fixtures.h"
 
 namespace covtrace {
@@ -147,7 +147,7 @@ TEST(Regression, LightTellsPatchesApartOnlyWhereNoiseDoesNot) {
 TEST(Regression, ExponentialIsExact) {
     for (int i = 0; i < 1000; ++i) {
         const float x = -0.09f * float(i);
-        const Lanes y = exp_of_negative(x - Lanes{});
+        const Float8 y = exp_of_negative(x - Float8{});
         const float expected = std::exp(std::max(x, -80.0f));
         for (size_t k = 0; k < kLanes; ++k) EXPECT_NEAR(y[k] / expected, 1, 5e-6f) << x;
     }

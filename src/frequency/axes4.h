@@ -1,0 +1,35 @@
+/// A frame whose axes are computed with together.
+#pragma once
+
+#include "core/simd.h"
+#include "covariance/covariance.hpp"
+
+namespace covtrace {
+
+/// The axes x, y, z of a frame side by side: the first three of each component.
+struct Axes4 {
+    Double4 x, y, z;
+
+    explicit Axes4(const covariance::Frame<double>& f)
+        : x{f.x.x, f.y.x, f.z.x, 0}, y{f.x.y, f.y.y, f.z.y, 0}, z{f.x.z, f.y.z, f.z.z, 0} {}
+    /// Of each axis with v.
+    Double4 dot(const covariance::Vec3<double>& v) const {
+        return multiply_add(x, v.x, multiply_add(y, v.y, z * all4(v.z)));
+    }
+    /// Each axis plus its part of `s` times v.
+    void add(const Double4& s, const covariance::Vec3<double>& v) {
+        x = multiply_add(s, v.x, x);
+        y = multiply_add(s, v.y, y);
+        z = multiply_add(s, v.z, z);
+    }
+    covariance::Frame<double> frame() const {
+        return {{x[0], y[0], z[0]}, {x[1], y[1], z[1]}, {x[2], y[2], z[2]}};
+    }
+};
+
+/// (a0 a0, a0 a1, a1 a1): the square a a^T of the first two.
+inline Double4 square4(const Double4& a) {
+    return __builtin_shufflevector(a, a, 0, 0, 1, 1) * __builtin_shufflevector(a, a, 0, 1, 1, 1);
+}
+
+}  // namespace covtrace
