@@ -202,6 +202,21 @@ class Documents(unittest.TestCase):
                 faults.append(f"{file.relative_to(ROOT)}:{line.number}: {len(line.text)} columns (tests/docs/wrap_prose.py wraps)")
         self.report(faults)
 
+    def test_tables_have_heads(self):
+        """Without a first row above its line of dashes a table is shown as text."""
+        faults, tables = [], 0
+        for file in documents():
+            lines = markdown.lines(text_of(file))
+            for above, line, below in zip(lines, lines[1:], lines[2:]):
+                if line.kind != "table" or above.kind == "table":
+                    continue
+                tables += 1
+                cells = len(re.findall(r"(?<!\\)\|", line.text))
+                if not re.fullmatch(r" *\|(?: *:?-+:? *\|)+ *", below.text) or below.text.count("|") != cells:
+                    faults.append(f"{file.relative_to(ROOT)}:{line.number}: the table has no head, or its second line no dashes")
+        self.report(faults)
+        self.assertGreater(tables, 50)
+
     def test_readme_is_short(self):
         self.assertLessEqual(len(text_of(ROOT / "README.md").splitlines()), 70)
 
