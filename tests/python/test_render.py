@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -313,6 +314,22 @@ class Package(unittest.TestCase):
             present = {n for n in vars(getattr(_covtrace, name)) if not n.startswith("_")}
             self.assertEqual(declared, present)
         self.assertTrue(pathlib.Path(covtrace.__file__).with_name("py.typed").exists())
+
+    def test_keywords_are_the_options_of_the_program(self):
+        """All that change the image; files, messages and terminals are the program's alone."""
+        import inspect
+        of_program_alone = {
+            "checkpoint", "debug_pixel", "every", "film", "help", "layer_names", "layers",
+            "max_memory", "output", "png", "quiet", "reproducible", "resume", "shard", "stats",
+            "tev", "tev_layers"}
+        text = subprocess.run([os.environ["COVTRACE"], "render", "--help"], capture_output=True,
+                              text=True, check=True).stdout
+        options = {name.replace("-", "_") for name in re.findall(r"(?<=[ ,])--([a-z][a-z-]*)", text)}
+        self.assertLess(of_program_alone, options)
+        parameters = inspect.signature(covtrace.render).parameters.values()
+        keywords = {p.name for p in parameters if p.kind is p.KEYWORD_ONLY}
+        keywords = keywords - {"cancel", "search_paths"} | {"search_path"}
+        self.assertEqual(keywords, options - of_program_alone)
 
     def test_everything_public_is_typed_and_described(self):
         import inspect
