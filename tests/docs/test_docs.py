@@ -193,6 +193,27 @@ class Documents(unittest.TestCase):
         self.report(faults)
         self.assertGreater(len(rows), 40)
 
+    def test_names_stand_in_the_files_beside_them(self):
+        """Where a row or paragraph on the inside names a function or type and links files, one of these has it."""
+        faults, looked_for = [], 0
+        everything = "\n".join(text_of(f) for f in sources() if f.suffix in {".h", ".hpp", ".cpp", ".py"})
+        for document in ("architecture", "follow-one-sample", "follow-one-covariance", "hybrid", "prediction"):
+            file = ROOT / f"docs/internals/{document}.md"
+            for block in re.split(r"\n(?=\||- |\d+\. |#|\n)", markdown.prose(text_of(file))):
+                targets = [(file.parent / target.partition("#")[0]).resolve() for _, target in markdown.links(block)
+                           if not re.match(r"[a-z]+:", target)]
+                files = [f for target in targets for f in (target.glob("*.*") if target.is_dir() else [target])
+                         if f.suffix in {".h", ".hpp", ".cpp", ".py"}]
+                text = "\n".join(map(text_of, files)) or everything
+                for _, code in markdown.code_spans(block):
+                    if not re.fullmatch(r"[A-Za-z]\w*(?:[A-Z_]|::)\w*", code) or re.fullmatch(r"[A-Z_]+", code):
+                        continue  # methods, layers, variables of the environment
+                    looked_for += 1
+                    if not all(re.search(rf"\b{part}\b", text) for part in code.split("::")):
+                        faults.append(f"{file.name}: {code} stands in none of {', '.join(f.name for f in files) or 'the sources'}")
+        self.report(faults)
+        self.assertGreater(looked_for, 90)
+
     def test_prose_is_wrapped(self):
         faults = []
         for file in documents():
