@@ -1,4 +1,4 @@
-/// What the program says of an exception that ends it, and its exit code.
+/// The exit code of an exception that ends the program, and what is said of it.
 #pragma once
 
 #include <exception>

@@ -1,4 +1,5 @@
-/// The option --max-memory.
+/// The option --max-memory: the estimate of render/render_memory.h against the limit. While files
+/// are read, core/memory_limit.h keeps to it.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-/// The options of `covtrace render`.
+/// The options of `covtrace render`. All places that a new one touches, Python's among them:
+/// docs/internals/architecture.md, "To add".
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,7 +1,8 @@
 /// Scattering at a surface point: a closed set of models behind sample / eval / pdf.
 ///
 /// Directions are unit vectors in the local shading frame (z = shading normal) and point away from
-/// the surface. `eval` includes the factor |cos(wi)|; densities are per solid angle of wi.
+/// the surface. `eval` includes the factor |cos(wi)|; densities are per solid angle of wi. All
+/// places that a new model touches: docs/internals/architecture.md, "To add".
 #pragma once
 
 #include <array>

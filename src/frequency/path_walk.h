@@ -1,4 +1,5 @@
-/// One walk over a recorded path, from its far end to the sensor. Only for replay.cpp.
+/// One walk over a recorded path, from its far end to the sensor: the order of all operators. Only
+/// for replay.cpp.
 #pragma once
 
 #include <array>

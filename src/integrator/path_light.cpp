@@ -1,3 +1,5 @@
+/// The light that a path finds: sampled at a vertex (`add_direct`), emitted where it hits, from the
+/// sky where it leaves the scene.
 #include <cmath>
 
 #include "integrator/path_tracer.h"

@@ -1,4 +1,5 @@
-/// What a render is asked to do. The defaults are those of the command line.
+/// The options of a render. The defaults are those of the command line. All places that a new one
+/// touches: docs/internals/architecture.md, "To add".
 #pragma once
 
 #include <array>

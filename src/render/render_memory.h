@@ -1,4 +1,5 @@
-/// What a render takes of memory beside its scene, told before it begins.
+/// The estimate behind --max-memory: bytes that a render takes beside its scene, told before it
+/// begins. cli/memory_limit.h holds it against the option.
 #pragma once
 
 #include <cstddef>
