@@ -19,7 +19,7 @@ std::string stage_name(const RenderState& s) {
     return "a round";
 }
 
-/// Where the render stands, and what comes next.
+/// Words for how far the render is, and what comes next.
 std::string standing(const RenderState& s) {
     std::ostringstream out;
     out << s.mean_count() << " samples per pixel taken";

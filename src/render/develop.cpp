@@ -25,14 +25,14 @@ std::vector<bool> light_known(const std::vector<PackedCovariance>& covariances) 
     return known;
 }
 
-/// What the last plan wanted; before the first one what all pixels have.
+/// The layer `density`: what the last plan asked for; before the first plan, the mean count.
 std::vector<float> density_layer(const RenderState& state) {
     if (!state.density.empty()) return state.density;
     return std::vector<float>(state.pixels(), float(state.mean_count()));
 }
 
-/// Both parts of the light through their filters. `in_view_filters`: null where nothing is known of
-/// emitters, which stay as they are.
+/// Gathers both parts of the light through their filters. `in_view_filters` is null where nothing
+/// is known of emitters, which then stay as they are.
 GatheredImage gathered(const Film& film, const FilterField& filters,
                        const FilterField* in_view_filters) {
     std::vector<Rgb> scattered(film.pixels.size());
@@ -95,7 +95,8 @@ Image mixed_image(const RenderState& state, const CovarianceBuffer& all,
                        CovarianceLayers{all, raw, density_layer(state), field, delivered});
 }
 
-/// Every image of a render comes from here: what leaves is finite.
+/// Completes an image with the state's metadata. Every image of a render passes here, so that all
+/// are finite.
 Image completed(Image image, const RenderState& state) {
     image.metadata.insert(state.metadata.begin(), state.metadata.end());
     image.metadata["spp"] = static_cast<float>(state.mean_count());

@@ -1,4 +1,4 @@
-/// The image of a film: nothing but the render's state goes into it.
+/// Making the image of a film: nothing but the render's state goes into it.
 #pragma once
 
 #include "image/image.h"
@@ -8,19 +8,21 @@
 
 namespace covtrace {
 
-/// All samples as one film.
+/// The samples of all the state's films, as one film.
 Film whole_film(const RenderState& state);
 
-/// What the halves and covariances of a `hybrid` render give.
+/// The reconstruction of a `hybrid` render: the image that halves and covariances give, and the
+/// prediction behind it.
 struct Reconstructed {
     const HybridImage& image;
     const Prediction& prediction;  ///< of the smoothed covariances
 };
 
-/// The image with all layers of the method, also of an unfinished render, and the metadata that the
-/// state knows. `denoiser`: of `hybrid`, null: none; the metadata name it, or say why it failed.
+/// Makes the image with all layers of the method, also of an unfinished render, and the metadata
+/// that the state knows. `denoiser` is for `hybrid`, null for none; the metadata name it, or say
+/// why it failed.
 Image develop(const RenderState& state, const Denoiser* denoiser = nullptr);
-/// The same of a `hybrid` render where the reconstruction is known already.
+/// Makes the image of a `hybrid` render whose reconstruction is known already.
 Image develop(const RenderState& state, const Denoiser* denoiser,
               const Reconstructed& reconstructed);
 

@@ -4,7 +4,7 @@ namespace covtrace {
 
 namespace {
 
-/// The weight of a pixel's sample number `count`, from 1.
+/// The filter weight that counts for a pixel's sample number `count`, from 1.
 float weight_in(const FilmSample& s, uint32_t count) {
     return count > 1 ? s.weight : 1.0f;
 }
@@ -16,7 +16,8 @@ void FilmPixel::add(const FilmSample& s) {
     const float share = 1.0f / static_cast<float>(count);
     const Rgb step = (s.radiance - mean) * weight_in(s, count);
     mean += step * share;
-    // The first deviation counts nothing; where its square is no float that would not be 0.
+    // The first deviation counts nothing: it is left out, as 0 times a square that overflows would
+    // not be 0.
     if (count > 1) squares += step * step * (1 - share);
     albedo += (s.albedo - albedo) * share;
     normal += (s.normal - normal) * share;

@@ -1,5 +1,5 @@
-/// The film: everything the samples of each pixel left behind. It is the state; images are views of
-/// it.
+/// The film: everything the samples of each pixel left behind. The film is the state; images are
+/// views of it.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace covtrace {
 
-/// What one sample adds to its pixel.
+/// One sample, as it is added to its pixel.
 struct FilmSample {
-    uint32_t rays = 0;  ///< traced for it, shadow rays included: what it cost
+    uint32_t rays = 0;  ///< rays traced for the sample, shadow rays included: its cost
     Rgb radiance;       ///< imaging scale applied; finite
-    Rgb in_view;        ///< the part of it from emitters in view (PathResult::in_view)
-    float weight = 1;   ///< of the pixel filter: 1, or of either sign with expectation 1
+    Rgb in_view;        ///< part of the radiance from emitters in view (PathResult::in_view)
+    float weight = 1;   ///< weight of the pixel filter: 1, or of either sign with expectation 1
     Rgb albedo;
     Vec3 normal;
     float depth = 0;
@@ -33,7 +33,7 @@ struct FilmSample {
 /// first sample has no m and counts as it is: of its lobes' part of the image 1/n is missing.
 struct FilmPixel {
     uint32_t count = 0;  ///< samples taken; the next sample has this index
-    Rgb mean;            ///< of the weighted radiance: the raw pixel
+    Rgb mean;            ///< mean of the weighted radiance: the raw pixel
     Rgb squares;         ///< sum of squared deviations from the mean
     Rgb albedo;
     Vec3 normal;
@@ -48,14 +48,14 @@ struct FilmPixel {
 /// Sums of squared deviations of the features from their means. 20 bytes.
 struct FeatureSquares {
     Rgb albedo;
-    float normal = 0;  ///< of all three components together
+    float normal = 0;  ///< the three components together
     float depth = 0;
 };
 
-/// What a film keeps beside its pixels.
+/// Records that a film keeps beside its pixels.
 struct FilmParts {
     bool in_view = false;   ///< the light of emitters in view
-    bool features = false;  ///< their means and deviations, and rays
+    bool features = false;  ///< means and deviations of the features, and the rays
     bool operator==(const FilmParts&) const = default;
 };
 
@@ -71,13 +71,14 @@ struct Film {
     }
     PixelBounds bounds;
     std::vector<FilmPixel> pixels;
-    // As `pixels`, or empty:
-    std::vector<Rgb> in_view;            ///< mean of FilmSample::in_view
-    std::vector<PathFeatures> features;  ///< means, that of the depth over the samples that hit
+    // Each of the following arrays is as long as `pixels`, or empty.
+    std::vector<Rgb> in_view;  ///< mean of FilmSample::in_view
+    /// Means; the depth's is over the samples that hit something.
+    std::vector<PathFeatures> features;
     std::vector<FeatureSquares> feature_squares;
-    std::vector<uint32_t> rays;  ///< of all samples of a pixel
+    std::vector<uint32_t> rays;  ///< rays of all samples of a pixel
 
-    /// Where x, y in [bounds.x0, bounds.x1) x [bounds.y0, bounds.y1) stands in `pixels`.
+    /// Index of the pixel (x, y), in [bounds.x0, bounds.x1) x [bounds.y0, bounds.y1), in `pixels`.
     size_t index(int x, int y) const {
         return size_t(y - bounds.y0) * size_t(bounds.width()) + size_t(x - bounds.x0);
     }

@@ -10,7 +10,7 @@
 
 namespace covtrace {
 
-/// One record per pixel, row by row.
+/// An array of the film: one record per pixel, row by row.
 struct FilmArray {
     std::string name;
     void* records = nullptr;
@@ -18,7 +18,7 @@ struct FilmArray {
     size_t count = 0;
 };
 
-/// Those that the state has, as it is.
+/// The arrays that the state has; they point into it.
 inline std::vector<FilmArray> film_arrays(RenderState& state) {
     std::vector<FilmArray> arrays;
     const auto add = [&](const std::string& name, auto& values) {

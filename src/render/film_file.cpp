@@ -29,11 +29,12 @@ constexpr std::array<char, 8> kMagic{'\x89', 'C', 'V', 'F', '\r', '\n', '\x1a', 
 constexpr std::array<char, 8> kEnd{'c', 'v', 'f', ' ', 'e', 'n', 'd', '\n'};
 constexpr uint32_t kMostHeader = 1 << 20;  // bytes
 constexpr size_t kBlockRecords = 1 << 16;  // pixels in a block
-constexpr size_t kBlocksAtOnce = 32;       // in memory, compressed or being so
-constexpr int kLevel = 1;                  // noise does not compress better at any other
+constexpr size_t kBlocksAtOnce = 32;       // blocks in memory, compressed or being so
+constexpr int kLevel = 1;  // fast: noise does not compress better at any other level
 
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
-constexpr bool kChecksums = false;  // else damaged bytes would hardly ever get behind them
+// Otherwise damaged bytes would hardly ever get past the checksums.
+constexpr bool kChecksums = false;
 #else
 constexpr bool kChecksums = true;
 #endif
@@ -45,7 +46,7 @@ struct BlockHead {
 };
 static_assert(sizeof(BlockHead) == 16);
 
-/// A piece of an array.
+/// A piece of an array, compressed as a whole.
 struct Block {
     char* records;
     size_t record_size, count;
@@ -61,8 +62,8 @@ std::vector<Block> blocks_of(const std::vector<FilmArray>& arrays) {
     return blocks;
 }
 
-/// Puts the first bytes of all records together, then the second ones …: signs and exponents of
-/// neighbours are alike.
+/// Puts the first bytes of all records together, then the second ones, and so on: signs and
+/// exponents of neighbours are alike.
 void shuffle(const Block& b, char* out) {
     for (size_t byte = 0; byte < b.record_size; ++byte)
         for (size_t i = 0; i < b.count; ++i) *out++ = b.records[i * b.record_size + byte];
@@ -140,7 +141,7 @@ class FilmReader {
 
     RenderState parsed(const std::string& header, uint32_t format) const {
         const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
-        // Of a block nothing but zeros may be left, yet its head is there.
+        // A block may compress to nothing but zeros, yet its head is there: heads bound the pixels.
         const double plausible = double(left_) / double(sizeof(BlockHead)) * double(kBlockRecords) *
                                  double(sizeof(PathFeatures) + 2 * sizeof(FilmPixel));
         try {
@@ -278,7 +279,7 @@ FoundFilm find_film(const fs::path& file) {
     try {
         return {read_film(file), {}};
     } catch (const FilmOfOtherVersion&) {
-        throw;  // it is whole: whoever has that version goes on from it
+        throw;  // the film is whole: whoever has its version goes on from it
     } catch (const Error& e) {
         if (e.kind() != ErrorKind::scene || !has_earlier) throw;
         return {read_film(earlier), e.what()};
@@ -286,7 +287,7 @@ FoundFilm find_film(const fs::path& file) {
 }
 
 fs::path set_aside(const fs::path& file) {
-    const fs::path target = OutputFile::resolved(file);  // a link stays
+    const fs::path target = OutputFile::resolved(file);  // a link stays a link
     fs::path damaged = target;
     damaged += ".damaged";
     std::error_code error;

@@ -1,5 +1,5 @@
-/// Films of format 3, which had no features of what is seen in mirrors: they are read as if those
-/// were the mirrors' own.
+/// Films of format 3, which had no features of what is seen in mirrors: the features of the mirrors
+/// themselves take their place.
 #pragma once
 
 #include <array>
@@ -9,17 +9,18 @@
 
 namespace covtrace {
 
-/// Where a film of format 3 is read to.
+/// The place that a film of format 3 is read to.
 class FilmFormat3 {
   public:
     /// Bytes of a record of the array `filmK.feature_squares`.
     static constexpr size_t kSquaresSize = 28;
 
-    /// `state`: as its header says, with films that have no features. Must outlive this.
+    /// Prepares the arrays for `state`, which is as the film's header says, with films that have no
+    /// features. The state must outlive this object.
     explicit FilmFormat3(RenderState& state);
-    /// What the file holds, in its order.
+    /// The arrays that the file holds, in its order.
     const std::vector<FilmArray>& arrays() const { return arrays_; }
-    /// Makes the features of the state from what was read into the arrays.
+    /// Makes the features of the state from the arrays, once they are read.
     void make_features();
 
   private:

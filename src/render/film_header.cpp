@@ -31,7 +31,7 @@ json to_json(const std::optional<double>& v) {
     throw Error(ErrorKind::scene, "the header of the film is wrong: " + what);
 }
 
-/// The JSON library would cut any number to one that fits.
+/// Reads an integer and refuses one that does not fit: the JSON library would cut it.
 template <std::integral Integer>
 Integer integer(const json& j) {
     if (j.is_number_unsigned() && std::in_range<Integer>(j.get<uint64_t>()))
@@ -72,7 +72,7 @@ std::optional<double> number(const json& j) {
     return j.is_null() ? std::nullopt : std::optional(j.get<double>());
 }
 
-/// A value by its name. `what`: what messages call it.
+/// Reads the value of an enum by its name. Messages call it `what`.
 template <NamedEnum Enum>
 Enum named(const json& j, const char* what) {
     const auto name = j.get<std::string>();
@@ -80,7 +80,7 @@ Enum named(const json& j, const char* what) {
     refuse(std::string("the ") + what + " '" + name + "'");
 }
 
-/// Gives a state all arrays that the header names.
+/// Adds all arrays that the header names to a state.
 void add_arrays(RenderState& s, const json& arrays, uint32_t format) {
     const auto has = [&](const std::string& name) {
         return std::any_of(arrays.begin(), arrays.end(),
@@ -103,7 +103,7 @@ void add_arrays(RenderState& s, const json& arrays, uint32_t format) {
     if (has("density")) s.density.resize(s.pixels());
 }
 
-/// Bytes that every pixel needs. Refuses arrays that are not those of the method.
+/// Bytes that every pixel needs. Refuses arrays that are not those of the method and stage.
 size_t bytes_per_pixel(RenderState s, const json& arrays, uint32_t format) {
     s.region = {0, 0, 1, 1};
     add_arrays(s, arrays, format);
@@ -119,7 +119,8 @@ size_t bytes_per_pixel(RenderState s, const json& arrays, uint32_t format) {
     return sum;
 }
 
-/// Which shards a film is of: each once, in their order; none where it has all pixels.
+/// Refuses a list of shards that is wrong: each must be there once, in order, and none where the
+/// film has all pixels.
 void check_shards(const RenderState& s) {
     if (s.shards < 1) refuse("the number of shards");
     if (s.present.empty() != (s.shards == 1)) refuse("the shards");

@@ -9,15 +9,16 @@ namespace covtrace {
 
 std::string film_header(const RenderState& state);
 
-/// Of film files: the one that is written, and the first one that is still read.
+/// Formats of film files: the one that is written, and the oldest one that is still read.
 constexpr uint32_t kFilmFormat = 4, kOldestFilmFormat = 3;
 
-/// The version that wrote the film: that of the program and its commit. Empty where the text does
-/// not tell.
+/// The version of the program, with its commit, that wrote the film. Empty where the text does not
+/// tell.
 std::string version_of_film(const std::string& header);
 
-/// A state with arrays of the right size, filled with zeros. `most_bytes` limits them; `format`:
-/// of the file. Throws Error(scene) for text that is no header, Error(limit) beyond the limit.
+/// Reads a header into a state with arrays of the right size, filled with zeros. `most_bytes`
+/// limits the arrays; `format` is that of the file. Throws Error(scene) for text that is no header,
+/// Error(limit) beyond the limit.
 RenderState parse_film_header(const std::string& text, size_t most_bytes,
                               uint32_t format = kFilmFormat);
 

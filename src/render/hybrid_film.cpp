@@ -14,7 +14,7 @@ uint64_t hybrid_seed(uint64_t seed) {
 }
 
 uint32_t place_in_sequence(uint32_t half, uint32_t index) {
-    // The first two samples, then as many as there are.
+    // Blocks have 2 samples at first, then as many as came before.
     const uint32_t size = std::max(2u, std::bit_floor(index));
     const uint32_t within = index < 2 ? index : index - size, begin = index < 2 ? 0 : 2 * size;
     return half == 0 ? begin + within : begin + 2 * size - 1 - within;
@@ -34,7 +34,7 @@ Film merged(std::span<const Film> half) {
         p.count = a.count + b.count;
         p.mean = 0.5f * (a.mean + b.mean);
         const float n = float(p.count);
-        // Of a mean with weights 1/2 each; as the squares that give it.
+        // The squares are those that give the variance of a mean with weights 1/2 each.
         p.squares = 0.25f * (a.variance_of_mean() + b.variance_of_mean()) * (n * (n - 1));
         p.albedo = 0.5f * (a.albedo + b.albedo);
         p.normal = 0.5f * (a.normal + b.normal);
@@ -55,8 +55,8 @@ Film merged(std::span<const Film> half) {
 namespace {
 
 /// Variances of the mean from sums of squared deviations. A pixel with a single sample knows
-/// nothing of its own spread: the spread of the 7 x 7 pixels around it stands in, as one more
-/// sample does for all.
+/// nothing of its own spread: the spread of the 7 x 7 pixels around it stands in, and counts in
+/// every pixel as one more sample.
 class PooledVariance {
   public:
     explicit PooledVariance(const Film& film)
@@ -65,7 +65,7 @@ class PooledVariance {
             freedom_[i] = film.pixels[i].count > 1 ? float(film.pixels[i].count - 1) : 0.0f;
         around_ = box_blur(freedom_, kReach);
     }
-    /// squares(i): of pixel i.
+    /// The variances, from squares(i), the sum of squared deviations of pixel i.
     template <typename Squares>
     Plane operator()(const Squares& squares) const {
         Plane sum(freedom_.width, freedom_.height);
@@ -111,7 +111,7 @@ void fill(HalfBuffer& out, const Film& film) {
     out.feature_variance[4] = out.feature_variance[5] = out.feature_variance[3];
     out.feature_variance[6] = variance([&](size_t i) {
         const float z = features[i].depth;
-        return z > 0 ? squares[i].depth / (z * z) : 0.0f;  // of the logarithm
+        return z > 0 ? squares[i].depth / (z * z) : 0.0f;  // variance of the logarithm
     });
 }
 
@@ -126,7 +126,8 @@ Halves halves_of(std::span<const Film> film) {
                            [](const FilmPixel& p) { return p.count > 1; });
     };
     if (!repeated(film[0]) || !repeated(film[1])) {
-        for (HalfBuffer& half : halves) fill_holes(half);  // black would not be what is missing
+        // A black hole would count as a difference.
+        for (HalfBuffer& half : halves) fill_holes(half);
         set_variance_from_difference(halves);
     }
     return halves;

@@ -1,4 +1,4 @@
-/// What the image files of a scene hold, as one number.
+/// A hash of the contents of a scene's image files.
 #pragma once
 
 #include <filesystem>
@@ -9,13 +9,13 @@
 
 namespace covtrace {
 
-/// All textures' and lights' image files, every file once, in the order of the names. An image that
-/// lies within a scene's file has none: the hash of that file covers it.
+/// The image files of all textures and lights, every file once, in the order of the names. An image
+/// that lies within a scene's file is not listed: the hash of that file covers it.
 std::vector<std::filesystem::path> image_files(const SceneDescription& scene);
 
 /// Hash of the contents of all textures' and lights' image files, read in parallel: 16 hexadecimal
-/// digits. The content hash of the description does not know them, but those that are embedded.
-/// Throws Error(scene) where a file can't be read.
+/// digits. The content hash of the description covers embedded images alone. Throws Error(scene)
+/// where a file can't be read.
 std::string image_hash(const SceneDescription& scene);
 
 }  // namespace covtrace

@@ -36,7 +36,7 @@ PassContext half_context(const PassContext& whole, uint32_t k) {
 
 namespace {
 
-/// What must be the same in all processes of a render before they share pixels.
+/// Hash of all that must be the same in all processes of a render before they share pixels.
 double start_of(const RenderState& s) {
     std::ostringstream out;
     out << std::setprecision(17) << int(s.stage) << ' ' << s.taken << ' ' << s.target << ' '
@@ -58,7 +58,8 @@ void require_same_start(const Ranks& ranks, const RenderState& s) {
 RenderState initial_state(const RenderScene& scene, const RenderOptions& options,
                           const FilmKeeping& keeping) {
     RenderState fresh(scene, options);
-    // Only who keeps a film, or goes on from one, has to know.
+    // Images are read and hashed only where a film is kept, or goes on: for others the time would
+    // be lost.
     const bool kept = keeping.from || keeping.keep;
     if (keeping.ranks ? keeping.ranks->any(kept) : kept)
         fresh.identity["images"] = image_hash(scene.description);
@@ -172,7 +173,8 @@ bool RenderJob::begin_round(double target, std::vector<std::vector<uint32_t>> pl
 std::vector<uint32_t> RenderJob::even_counts(double spp) const {
     const int64_t total = std::llround(spp * double(pixels()));
     std::vector<uint32_t> counts(state.pixels());
-    int64_t carried = pixels() / 2;  // in parts of a sample, as many as there are pixels
+    // Remainder carried from pixel to pixel, in units of 1/pixels() of a sample.
+    int64_t carried = pixels() / 2;
     for (uint32_t& count : counts) {
         carried += total;
         count = uint32_t(carried / pixels());

@@ -1,4 +1,4 @@
-/// What the methods share: the scene, the budget, the clock and the progress of one render.
+/// The part of a render that all methods share: the scene, the budget, the clock and the progress.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,15 @@
 
 namespace covtrace {
 
-/// What the passes of a render share.
+/// The context that all passes of a render share.
 PassContext pass_context(const RenderScene& scene, const RenderOptions& options);
-/// The same for half k of `hybrid`.
+/// The context of the passes of half k of `hybrid`.
 PassContext half_context(const PassContext& whole, uint32_t k);
 
 class RenderJob {
   public:
-    /// Throws Error(usage) where `keeping` holds a film of another render.
+    /// Begins the render, or goes on from the film that `keeping` holds. Throws Error(usage) where
+    /// that is a film of another render.
     RenderJob(RenderScene& scene, const RenderOptions& options, Monitor& monitor,
               FilmKeeping keeping = {});
 
@@ -29,9 +30,10 @@ class RenderJob {
     const PixelBounds region;  ///< the pixels to render
     PassContext context;
     RenderResult result;
-    const std::optional<double> target_spp;  ///< none: time or error alone decide
-    /// The average at which the error, or every pixel's count, will be as asked for, by what is
-    /// known of it.
+    /// Average count asked for; none: time or error alone decide.
+    const std::optional<double> target_spp;
+    /// The average count at which the error, or every pixel's count, will be as asked for, as far
+    /// as is known yet.
     std::optional<double> enough;
 
     /// The tiles that this process traces.
@@ -46,35 +48,36 @@ class RenderJob {
     /// Share of the tracing that is done at an average of `spp`, in [0, kTracingShare].
     double fraction(double spp) const;
 
-    /// The average to trace up to next, given where the round would end; what is taken already
-    /// where the budget is spent.
+    /// The average count to trace up to next, given where the round would end; the count that is
+    /// taken already where the budget is spent.
     double plan_round(double round_end) const;
-    /// When tracing must end for the rest to be done in time; infinite without a budget of time.
+    /// The second at which tracing must end for the rest to be done in time; infinite without a
+    /// budget of time.
     double tracing_end() const;
-    /// When a round ends that takes longer than was planned, or that was not planned by the clock:
-    /// the first ones, which an image needs.
+    /// The second at which a round ends that takes longer than was planned, or that was not planned
+    /// by the clock, as the first rounds, which an image needs.
     double latest_end() const;
-    /// Whether what takes no samples has to end now.
+    /// Whether work that takes no samples has to end now.
     bool out_of_time() const { return monitor.cancelled() || monitor.elapsed() >= latest_end(); }
     /// The most samples of any pixel in a round up to an average of `target`.
     double most_samples(double target) const;
-    /// Begins a round: how many samples each pixel, of each film, has at its end. False, and no
-    /// round, where all have them already.
+    /// Begins a round. `plan`: for each film, the samples that each pixel has at the round's end.
+    /// Returns false, and begins none, where all pixels have them already.
     bool begin_round(double target, std::vector<std::vector<uint32_t>> plan);
-    /// The same count, as near as whole samples allow, in every pixel.
+    /// Counts that are the same in every pixel, as near as whole samples allow.
     std::vector<uint32_t> even_counts(double spp) const;
-    /// Adds what a pass counted to the sums of its kind.
+    /// Adds the counters of a pass to the sums of its kind.
     void counted(PassStatistics& sum, const PassStatistics& pass);
-    /// Puts what the state holds now into the statistics, where that is the most it ever held.
+    /// Puts the memory of the state into the statistics, where that is the most it ever held.
     void note_memory();
-    /// Seconds to keep for all that follows the last sample, beside the writing.
+    /// Keeps `seconds` for all that follows the last sample, beside the writing.
     void reserve(double seconds) { reserve_ = kWriteSeconds + seconds; }
 
-    /// Of the progress bar; the rest is reconstruction and output.
+    /// Share of tracing in the progress bar; the rest is reconstruction and output.
     static constexpr double kTracingShare = 0.97;
 
   private:
-    /// About what the last writing of the film takes.
+    /// Rough seconds that the last writing of the film takes.
     double keeping_seconds() const;
 
     static constexpr double kWriteSeconds = 0.1;

@@ -1,4 +1,4 @@
-/// What becomes of the film of a render: where it begins, and when it is kept.
+/// Keeping a film: where a render begins, and when its film is written.
 #pragma once
 
 #include <functional>
@@ -21,9 +21,9 @@ enum class KeepReason {
 };
 
 struct FilmKeeping {
-    std::shared_ptr<const RenderState> from;  ///< goes on from here; null: from the start
-    std::string name;                         ///< of the file that it is from, for messages
-    /// Keeps the film, where there is one.
+    std::shared_ptr<const RenderState> from;  ///< film to go on from; null: from the start
+    std::string name;                         ///< name of the file of `from`, for messages
+    /// Writes the film; empty where no film is kept.
     std::function<void(const RenderState&, KeepReason)> keep;
     /// Seconds between checkpoints; they are further apart where keeping would take more than
     /// `most_share` of the time.
@@ -31,7 +31,7 @@ struct FilmKeeping {
     double most_share = 1;
     Shard shard;                   ///< the tiles to trace
     const Ranks* ranks = nullptr;  ///< other processes that trace tiles of the same render
-    /// What this shard has of the round already, if it is of this round; null: nothing.
+    /// The film that this shard has of the round already, if it is of this round; null: none.
     std::shared_ptr<const RenderState> part;
 };
 

@@ -40,8 +40,8 @@ Image make_layers(const Film& film, PixelBounds display, bool has_holes,
     image.display = display;
     const auto& pixels = film.pixels;
     const auto luminance_variance = [&](size_t i) {
-        // The channels of one sample vary together: the luminance of the deviations, not of the
-        // variances.
+        // The channels of one sample vary together, so that the luminance is of the deviations, not
+        // of the variances.
         const Rgb v = pixels[i].variance_of_mean();
         return sqr(luminance({std::sqrt(v.r), std::sqrt(v.g), std::sqrt(v.b)}));
     };

@@ -1,4 +1,4 @@
-/// The film and what was computed from it as named image layers.
+/// Image layers, made of the film and of what was computed from it.
 #pragma once
 
 #include <optional>
@@ -11,22 +11,22 @@
 
 namespace covtrace {
 
-/// What the covariance method knows beyond the film, for its layers.
+/// Data of the covariance method beyond the film, for its layers.
 struct CovarianceLayers {
     const CovarianceBuffer& buffer;  ///< of all light
     const Prediction& prediction;    ///< of all light, before smoothing and clamps
     std::vector<float> density;      ///< samples per pixel that the plan asked for
     const FilterField& filter;       ///< as applied to scattered light
     const GatheredImage& gathered;   ///< the delivered image
-    /// Where emitters are in view, else null: covariances of scattered light alone, and the filters
-    /// as applied to the emitters.
+    /// Covariances of scattered light alone, and the filters as applied to the emitters; null where
+    /// no emitters are in view.
     const std::vector<PackedCovariance>* scattered = nullptr;
     const FilterField* in_view_filter = nullptr;
 };
 
-/// Root R G B (A where `has_holes`): the gathered image, or the raw film without `covariance`;
-/// then raw, inview where the film knows it, albedo, N, Z, variance, error, samples, and the layers
-/// of `covariance`.
+/// Makes the layers. Root R G B (A where `has_holes`): the gathered image, or the raw film without
+/// `covariance`; then raw, inview where the film knows it, albedo, N, Z, variance, error, samples,
+/// and the layers of `covariance` (docs/reference/layers.md).
 Image make_layers(const Film& film, PixelBounds display, bool has_holes,
                   const std::optional<CovarianceLayers>& covariance);
 

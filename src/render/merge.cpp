@@ -51,7 +51,7 @@ void copy_pixels(RenderState& to, RenderState& from) {
     }
 }
 
-/// The sample that comes first in the image.
+/// Whether a sample comes before another one in the image.
 bool before(const RejectedSample& a, const RejectedSample& b) {
     return std::tuple(a.y, a.x, a.sample) < std::tuple(b.y, b.x, b.sample);
 }
@@ -88,7 +88,7 @@ void FilmMerge::add(const std::string& name, RenderState film) {
     std::sort(sum.first_rejected.begin(), sum.first_rejected.end(), before);
     if (sum.first_rejected.size() > PassStatistics::kMostRejectedKept)
         sum.first_rejected.resize(PassStatistics::kMostRejectedKept);
-    // Sums of times would depend on the order; those of the first shard stand for all.
+    // Times of the first shard stand for all: sums of them would depend on the order.
     if (film.present.front() < sum.present.front()) {
         sum.seconds = film.seconds;
         sum.seconds_spp = film.seconds_spp;

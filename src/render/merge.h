@@ -10,12 +10,12 @@ namespace covtrace {
 /// Collects the films of the shards of one render, in any order, with the same result for all.
 class FilmMerge {
   public:
-    /// `name`: of the film, for messages. Throws Error(usage) for a film of another render, of
+    /// Adds a film, called `name` in messages. Throws Error(usage) for a film of another render, of
     /// another round, or with a shard that is there already.
     void add(const std::string& name, RenderState film);
 
-    /// Of all that were added, at least one. Where every shard is there it is the film that one
-    /// machine would have made, and the round is finished.
+    /// The sum of all films that were added, at least one. Where every shard is there it is the
+    /// film that one machine would have made, and the round is finished.
     RenderState result() &&;
 
   private:

@@ -21,7 +21,7 @@ namespace covtrace {
 
 enum class Method {
     uniform,     ///< the plain path tracer: every pixel the same count, the scene's filter
-    covariance,  ///< the thesis' method: prediction, counts, Gaussian gather
+    covariance,  ///< the method of Belcour 2012, section 5.1: prediction, counts, Gaussian gather
     hybrid       ///< prediction and samples together: adaptive counts, candidates, selection
 };
 
@@ -30,11 +30,11 @@ inline constexpr auto kEnumNames<Method> = enum_names<Method>({{Method::uniform,
                                                                {Method::covariance, "covariance"},
                                                                {Method::hybrid, "hybrid"}});
 
-/// Where the frequency analysis learns of what stands beside a ray.
+/// Source from which the frequency analysis learns of occluders beside a ray.
 enum class Occlusion {
-    none,
+    none,    ///< no occluders
     grid,    ///< a voxel grid of the scene, whose voxels tell of edges at their distance
-    voxels,  ///< the same grid as the thesis asks it: each occupied voxel on the way occludes
+    voxels,  ///< the grid as in Belcour 2012: each occupied voxel on the way occludes
     query    ///< the outlines of the geometry itself
 };
 
@@ -57,7 +57,8 @@ struct RenderOptions {
     /// Covariance paths per pixel, below 1 in so many of the pixels; default 2, hybrid: 1.
     std::optional<double> cov_spp;
     DensityRule density = DensityRule::tempered;
-    /// covariance with DensityRule::thesis: k of N = k sqrt|S|, a budget that no average bounds.
+    /// Factor k of N = k sqrt|S|, a budget that no average bounds; covariance with
+    /// DensityRule::thesis.
     std::optional<double> density_factor;
     Occlusion occlusion = Occlusion::query;
     int voxels = 200;  ///< width of the grid
@@ -66,15 +67,15 @@ struct RenderOptions {
     FilterRule filter = FilterRule::verified;
     std::optional<int> max_spp;    ///< most samples in any pixel; default 16 times the average
     std::optional<int> max_depth;  ///< default: the scene's
-    /// covariance: each round samples on demand, where the noise of the samples so far asks for it,
-    /// and `max_spp` limits what a pixel gets in one round, not in all.
+    /// Samples on demand, covariance only: each round samples where the noise of the samples so far
+    /// asks for it, and `max_spp` limits the samples of a pixel in one round, not in all.
     bool progressive = false;
-    /// hybrid: one more candidate; null: none. Has no influence on the samples but on when `error`
-    /// and `seconds` end them.
+    /// Denoiser whose image is one more candidate, hybrid only; null: none. Has no influence on the
+    /// samples but on when `error` and `seconds` end them.
     std::shared_ptr<const Denoiser> denoiser;
     bool even_counts = false;     ///< hybrid: every pixel the same count, for comparisons
     bool emitters_apart = false;  ///< uniform: keeps the light of emitters in view apart
-    bool features = false;        ///< keeps what denoisers are told of each pixel for the layers
+    bool features = false;        ///< keeps what denoisers are told of each pixel, for the layers
     uint64_t seed = 0;
 };
 

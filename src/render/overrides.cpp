@@ -11,7 +11,8 @@ namespace covtrace {
 
 void apply(const SceneOverrides& overrides, SceneDescription& scene) {
     if (overrides.resolution) {
-        // The same picture with other pixels: a crop given in pixels keeps its place in the frame.
+        // Another resolution shows the same picture: a crop given in pixels keeps its place in the
+        // frame.
         FilmDescription& film = scene.film;
         if (film.pixel_bounds) {
             const auto& b = *film.pixel_bounds;
@@ -42,7 +43,8 @@ void apply(const SceneOverrides& overrides, SceneDescription& scene) {
     }
     if (overrides.focal_distance) scene.camera.focal_distance = *overrides.focal_distance;
     if (overrides.f_number) {
-        // A full-frame sensor, 24 mm high: focal length from the field of view, in metres.
+        // The lens is that of a full-frame sensor, 24 mm high: focal length from the field of view,
+        // in metres.
         const float focal_length = 0.012f / std::tan(scene.camera.fov * kPi / 360);
         scene.camera.lens_radius = focal_length / (2 * *overrides.f_number);
     }

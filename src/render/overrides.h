@@ -1,4 +1,4 @@
-/// What the command line and Python change in a scene before it is built.
+/// Changes that the command line and Python make to a scene before it is built.
 #pragma once
 
 #include <array>
@@ -9,14 +9,15 @@
 
 namespace covtrace {
 
-/// Changes to a scene before it is built.
+/// Values that take the place of the scene's own, where they are given.
 struct SceneOverrides {
     std::optional<std::array<int, 2>> resolution;
     std::optional<PixelBounds> crop;  ///< pixels, end exclusive
     std::optional<std::array<float, 2>> shutter;
     std::optional<float> focal_distance;
     std::optional<float> f_number;
-    /// Focal distances and f-numbers below this ask for lenses that single precision cannot hold.
+    /// Least focal distance and f-number: smaller ones ask for lenses that single precision cannot
+    /// hold.
     static constexpr double kLeastOfLens = 1e-9;
 };
 

@@ -12,7 +12,7 @@ namespace covtrace {
 
 namespace {
 
-/// Adds the seconds that a scope took.
+/// Adds the seconds that a scope took to `total`.
 class Stopwatch {
   public:
     explicit Stopwatch(double& total) : total_(total), start_(Clock::now()) {}
@@ -26,12 +26,12 @@ class Stopwatch {
     const Clock::time_point start_;
 };
 
-/// When a pass has to stop before its end.
+/// Tells a pass when it has to stop before its end.
 class Stop {
   public:
     explicit Stop(const Monitor& monitor) : monitor_(monitor) {}
-    /// Only a pass that took a sample may pause: a render must get on, however short the time
-    /// between its checkpoints.
+    /// Whether to stop now. Only a pass that took a sample may pause: a render must get on, however
+    /// short the time between its checkpoints.
     bool operator()() const {
         return monitor_.cancelled() ||
                (taken_.load(std::memory_order_relaxed) && paused_.load(std::memory_order_relaxed));
@@ -52,7 +52,8 @@ template <typename Take>
 PassStatistics take_samples(const PassContext& context, const Film& film,
                             std::span<const uint32_t> counts, const Monitor& monitor,
                             const PassProgress& progress, const Take& take) {
-    // Between looks at the clock: a sample is one ray at least, and thousands beyond interfaces.
+    // Rays between looks at the clock: a sample is one ray at least, and thousands beyond
+    // interfaces.
     constexpr uint64_t kRaysBetweenLooks = 256;
     const Tiles tiles(film.bounds);
     std::vector<PassStatistics> per_tile(static_cast<size_t>(tiles.count()));
@@ -101,7 +102,7 @@ void sample_pixel(const PassContext& context, Film& film, size_t pixel, int x, i
             statistics.first_rejected.push_back({x, y, context.sample_name(index)});
         s.radiance = s.in_view = Rgb(0);
     }
-    // Filters that are led by features would spread what is no number.
+    // Features that are not numbers become 0: filters that are led by features would spread them.
     for (Rgb* albedo : {&s.albedo, &s.features.albedo})
         if (!is_finite(*albedo)) *albedo = Rgb(0);
     for (Vec3* normal : {&s.normal, &s.features.normal})

@@ -21,7 +21,7 @@
 
 namespace covtrace {
 
-/// A sample whose value was not a finite number; it counted as black.
+/// A sample whose value was not a finite number; it counts as black.
 struct RejectedSample {
     int x = 0, y = 0;
     uint64_t sample = 0;  ///< as PassContext::sample_name
@@ -32,20 +32,20 @@ struct PassStatistics {
     static constexpr size_t kLengths = 33, kMostRejectedKept = 8;
     uint64_t samples = 0, vertices = 0;
     RayCounts rays;
-    /// Paths by their number of vertices, emitters at the end included; the last counts all that
-    /// are as long or longer.
+    /// Number of paths by their number of vertices, emitters at the end included; the last entry
+    /// counts all paths that are as long or longer.
     std::array<uint64_t, kLengths> lengths{};
-    uint64_t black_paths = 0;  ///< without any light
+    uint64_t black_paths = 0;  ///< paths without any light
     uint64_t rejected = 0;
     std::vector<RejectedSample> first_rejected;  ///< at most a few, in image order
-    /// Of all threads together: on samples and all that is made of them, and of these on the
-    /// replay of recorded paths.
+    /// Time of all threads together: `seconds` on samples and all that is made of them, and
+    /// `replay_seconds`, a part of it, on the replay of recorded paths.
     double seconds = 0, replay_seconds = 0;
     void add(const PassStatistics& other);
 };
 
-/// What every pass shares. `imaging_scale` and `max_component` turn radiance into film values as
-/// pbrt does: exposure time times iso / 100, then a limit on the largest component.
+/// Settings that every pass shares. `imaging_scale` and `max_component` turn radiance into film
+/// values as pbrt does: exposure time times iso / 100, then a limit on the largest component.
 struct PassContext {
     const RenderScene& scene;
     uint64_t seed = 0;
@@ -55,15 +55,16 @@ struct PassContext {
     Shard shard = {};  ///< the tiles to trace
     uint32_t half = 0, halves = 1;
 
-    /// How people name a sample: the halves take turns, so that one number finds it again.
+    /// Number by which people name a sample: the halves take turns, so that one number finds it
+    /// again.
     uint64_t sample_name(uint32_t index) const { return uint64_t(index) * halves + half; }
-    /// Where a sample stands in the sequence of its pixel.
+    /// Index of a sample in the sequence of its pixel.
     uint32_t sequence_index(uint32_t index) const {
         return halves == 1 ? index : place_in_sequence(half, index);
     }
 };
 
-/// Called from worker threads with the share of the pass that is done.
+/// Progress of a pass: called from worker threads with the share that is done.
 using PassProgress = std::function<void(double)>;
 
 /// Takes samples up to `counts`, one number per pixel, in every pixel of the context's tiles. One
@@ -78,11 +79,11 @@ PassStatistics radiance_pass(const PassContext& context, Film& film,
 struct CovarianceTarget {
     CovarianceBuffers& buffers;         ///< means over the paths so far
     std::span<const uint32_t> earlier;  ///< paths of each pixel that other films took; may be empty
-    double weight_limit = kInfinity;    ///< of scattered light, see limit_weights
+    double weight_limit = kInfinity;    ///< limit for scattered light, see limit_weights
 };
 
-/// The same with paths that also leave their covariances. All samples that the film has so far are
-/// such paths.
+/// Takes samples as radiance_pass does, by paths that also leave their covariances. All samples
+/// that the film has so far are such paths.
 PassStatistics covariance_pass(const PassContext& context, const Occluders& occluders,
                                BrdfCovariance rule, Film& film, std::span<const uint32_t> counts,
                                const CovarianceTarget& target, const Monitor& monitor,

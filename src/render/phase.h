@@ -10,18 +10,18 @@ namespace covtrace {
 
 enum class Phase {
     load,            ///< reads the scene's files
-    build,           ///< makes of the description what rays are traced in
-    grid,            ///< voxels of what occludes, for the frequency analysis
-    outlines,        ///< silhouettes in a hierarchy, in place of the grid
-    spectra,         ///< of the textures
-    covariance,      ///< paths that leave covariances
-    plan,            ///< covariances and variances to sample counts
-    radiance,        ///< paths that leave radiance alone
-    reconstruction,  ///< samples to the image, without `denoise`
-    denoise,         ///< the denoiser among the candidates of the reconstruction
+    build,           ///< makes the traceable scene out of the description
+    grid,            ///< makes the voxel grid of occluders, for the frequency analysis
+    outlines,        ///< makes the hierarchy of silhouettes, in place of the grid
+    spectra,         ///< measures the spectra of the textures
+    covariance,      ///< traces the paths that leave covariances
+    plan,            ///< turns covariances and variances into sample counts
+    radiance,        ///< traces the paths that leave radiance alone
+    reconstruction,  ///< makes the image of the samples, without `denoise`
+    denoise,         ///< runs the denoiser among the candidates of the reconstruction
     checkpoint,      ///< writes films in between
     write,           ///< writes the image
-    done             ///< all files are there
+    done             ///< all files are written
 };
 
 template <>
@@ -40,10 +40,10 @@ inline constexpr auto kEnumNames<Phase> = enum_names<Phase>({{Phase::load, "load
                                                              {Phase::write, "write"},
                                                              {Phase::done, "done"}});
 
-/// Seconds of the wall clock. A phase that did not take place is missing.
+/// Seconds of the wall clock by phase. A phase that did not take place is missing.
 using PhaseSeconds = std::map<Phase, double>;
 
-/// The same by name, for JSON and Python.
+/// Seconds by the names of the phases, for JSON and Python.
 inline std::map<std::string, double> named(const PhaseSeconds& seconds) {
     std::map<std::string, double> by_name;
     for (const auto& [phase, value] : seconds) by_name.emplace(name_of(phase), value);

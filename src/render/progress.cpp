@@ -12,9 +12,10 @@ double Monitor::elapsed() const {
     return std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
-/// From the speed since the first report: what came before it (reading the scene) comes only once.
+/// Remaining seconds, from the speed since the first report: the time before it (reading the scene)
+/// comes only once.
 double Monitor::remaining(double now, double fraction) {
-    constexpr double kLeast = 0.01;  // of the render: before, the estimate is a guess
+    constexpr double kLeast = 0.01;  // share of the render before which the estimate is a guess
     if (begin_fraction_ < 0) {
         begin_ = now;
         begin_fraction_ = fraction;

@@ -1,4 +1,4 @@
-/// How a render tells what it is doing, and how it is told to stop.
+/// Progress of a render, and the way to stop it.
 #pragma once
 
 #include <atomic>
@@ -24,32 +24,33 @@ struct Progress {
                                    ///< nobody has told it
 };
 
-/// Shared by a session and its caller; all members may be used from any thread.
+/// Link between a render and its caller; all members may be used from any thread.
 class Monitor {
   public:
     using Clock = std::chrono::steady_clock;
-    /// `report` is called at most every `interval` seconds, by one thread at a time.
+    /// Makes a monitor that calls `report` at most every `interval` seconds, from one thread at a
+    /// time.
     explicit Monitor(std::function<void(const Progress&)> report = {}, double interval = 0.1,
                      Clock::time_point start = Clock::now());
 
     /// Asks the render to stop soon with a usable image.
     void cancel() { cancelled_ = true; }
     bool cancelled() const { return cancelled_ || (interrupted && *interrupted); }
-    /// To be set before the render: cancels it, too, once it is true. What sets it, such as a
-    /// signal handler, need not know which render runs.
+    /// Flag that cancels the render, too, once it is true; to be set before the render. Whoever
+    /// raises it, such as a signal handler, need not know which render runs.
     const std::atomic<bool>* interrupted = nullptr;
     double elapsed() const;
     /// Asks passes to return early from `elapsed` seconds on, so that the film can be kept.
     void pause_at(double elapsed) { pause_at_ = elapsed; }
     bool pause_is_due() const { return elapsed() >= pause_at_; }
-    /// Reports, unless the last report is too fresh or another thread is reporting.
+    /// Reports, unless the last report is too recent or another thread is reporting.
     void update(Phase phase, double fraction, double samples_per_pixel);
-    /// What the following reports say of the error.
+    /// Sets the error that the following reports tell.
     void set_error(double error) { error_ = error; }
     double error() const { return error_; }
 
-    /// To be set before the render: called between rounds, by one thread, with the image so far. It
-    /// must not take long.
+    /// Callback for the image so far, called between rounds by one thread; to be set before the
+    /// render. It must not take long.
     std::function<void(Image)> watcher;
     bool watched() const { return bool(watcher); }
     void show(Image image) const { watcher(std::move(image)); }

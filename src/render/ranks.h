@@ -8,12 +8,12 @@ namespace covtrace {
 
 struct RenderState;
 
-/// What the processes of a render tell each other. All functions are to be called by all of them,
+/// Communication between the processes of a render. Each function is to be called by all processes,
 /// in the same order.
 class Ranks {
   public:
     virtual ~Ranks() = default;
-    virtual int index() const = 0;  ///< of this process, from 0
+    virtual int index() const = 0;  ///< index of this process, from 0
     virtual int count() const = 0;
     /// The value of the first process, for all.
     virtual double of_first(double value) const = 0;

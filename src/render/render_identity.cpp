@@ -10,7 +10,8 @@ namespace covtrace {
 
 namespace {
 
-/// Some values are "given" and "not given", which "A, not B" would say the wrong way round.
+/// Words for two values that differ. Some values are "given" and "not given", which "A, not B"
+/// would say the wrong way round.
 std::string contrast(const std::string& is, const std::string& expected) {
     if (is.starts_with("not ") || expected.starts_with("not "))
         return is + " there, " + expected + " here";
@@ -19,7 +20,7 @@ std::string contrast(const std::string& is, const std::string& expected) {
 
 std::string text(double v) {
     std::ostringstream out;
-    out << std::setprecision(9) << v;  // tells any two floats apart
+    out << std::setprecision(9) << v;  // enough digits to tell any two floats apart
     return out.str();
 }
 std::string text(const PixelBounds& b) {
@@ -79,7 +80,7 @@ std::string program_version() {
 }
 
 std::optional<std::string> difference(const RenderIdentity& is, const RenderIdentity& expected) {
-    // What was asked for comes first: it explains the rest.
+    // The properties that explain the rest come first.
     for (const char* first : {"version", "scene", "images", "--method", "--resolution"})
         if (is.count(first) && expected.count(first) && is.at(first) != expected.at(first))
             return std::string(first) + ": " + contrast(is.at(first), expected.at(first));

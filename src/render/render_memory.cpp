@@ -9,14 +9,14 @@ namespace covtrace {
 
 namespace {
 
-/// Layers and the buffers of the reconstruction, bytes per pixel: `bench/speed/film_cost memory`.
+/// Bytes per pixel of layers and reconstruction, as `bench/speed/film_cost memory` measures them.
 size_t image_bytes(Method method) {
     return method == Method::uniform ? 68 : method == Method::covariance ? 396 : 488;
 }
 
-/// The reconstruction's planes go on beyond the image, by the reach of its filters and by a
-/// vector of eight: bytes, measured on images of one row and of one column, where they are most of
-/// it.
+/// Bytes of the reconstruction's planes beyond the image, where they go on by the reach of its
+/// filters and by a vector of eight. Measured on images of one row and of one column, where borders
+/// are most of the memory.
 size_t border_bytes(Method method, const PixelBounds& region) {
     if (method != Method::hybrid) return 0;
     constexpr size_t kReach = 2 * 13, kBytes = 160;
@@ -25,7 +25,7 @@ size_t border_bytes(Method method, const PixelBounds& region) {
     return kBytes * (all - width * height);
 }
 
-/// A denoiser's bytes beyond image_bytes: while it works, the other candidates are not there yet,
+/// Bytes of a denoiser beyond image_bytes: while it works, the other candidates are not there yet,
 /// and of its own memory only its candidate stays.
 size_t denoiser_bytes(const Denoiser& denoiser, size_t pixels) {
     constexpr size_t kMeanwhile = 310, kCandidate = 36;
@@ -51,7 +51,7 @@ size_t film_bytes_per_pixel(Method method, FilmParts uniform_parts) {
             break;
     }
     const size_t half = sizeof(FilmPixel) + kFeatureRecords + kPlan;
-    // Up to the end of the pilot both parts of the light; then their sum, and densities.
+    // Both parts of the light are kept up to the end of the pilot; then their sum, and densities.
     return 2 * half + std::max(2 * kCovariance, kCovariance + kDensity);
 }
 

@@ -11,8 +11,8 @@
 
 namespace covtrace {
 
-/// Bytes that a render keeps for each pixel, plan and prediction included, where they are most.
-/// `uniform_parts`: what `uniform` keeps beside its pixels.
+/// Bytes that a render keeps for each pixel, plan and prediction included, at the moment when they
+/// are most. `uniform_parts`: the records that `uniform` keeps beside its pixels.
 size_t film_bytes_per_pixel(Method method, FilmParts uniform_parts = {});
 
 /// Bytes that a render takes beside its scene: "film", with plan and prediction, and "image": the

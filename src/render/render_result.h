@@ -1,4 +1,4 @@
-/// What a render leaves: the image and what it cost.
+/// The result of a render: the image and what it cost.
 #pragma once
 
 #include <cstdint>
@@ -19,19 +19,20 @@ struct RenderStatistics {
     /// Bytes: "film" and "plan"; "prediction" and "occluders" with covariance tracing.
     std::map<std::string, size_t> memory;
     double samples_per_pixel = 0;  ///< average taken
-    /// With DensityRule::thesis: k of N = k sqrt|S|, as asked for or as the budget made it; none
-    /// where the budget ended before the first plan.
+    /// The factor k of N = k sqrt|S|, with DensityRule::thesis: as asked for or as the budget made
+    /// it; none where the budget ended before the first plan.
     std::optional<double> density_factor;
-    uint64_t rejected = 0;  ///< of all samples of the film, also those of earlier processes
+    uint64_t rejected = 0;  ///< rejected samples of the whole film, also those of earlier processes
     std::vector<RejectedSample> first_rejected;
 };
 
 struct RenderResult {
-    /// All layers of the method; of the metadata what the film knows. Empty for a shard.
+    /// The image with all layers of the method and the metadata that the film knows. Empty for a
+    /// shard.
     Image image;
     RenderStatistics statistics;
     bool complete = false;  ///< false: cancelled, or not all samples taken
-    /// The time was over before all pixels had the samples that an image is made of.
+    /// Whether the time was over before all pixels had the samples that an image is made of.
     bool is_below_least = false;
 };
 

@@ -11,14 +11,14 @@ namespace covtrace {
 namespace {
 
 std::vector<float> flat(const Matrix4& m) {
-    // OpenEXR's convention: row vectors times matrix.
+    // OpenEXR's convention is row vectors times matrix: the values go column by column.
     std::vector<float> v;
     for (size_t c = 0; c < 4; ++c)
         for (size_t r = 0; r < 4; ++r) v.push_back(static_cast<float>(m.m[r][c]));
     return v;
 }
 
-/// What any image of the render says of its scene.
+/// Metadata that any image of the render has: version, options and camera.
 Metadata scene_metadata(const RenderScene& scene, const RenderOptions& options) {
     Metadata m;
     m["covtrace:version"] = std::string(kVersion);
@@ -32,10 +32,10 @@ Metadata scene_metadata(const RenderScene& scene, const RenderOptions& options) 
     return m;
 }
 
-/// Covariance paths per pixel.
+/// Number of covariance paths per pixel.
 double covariance_paths(const RenderOptions& options, std::optional<double> spp) {
-    // More change nothing for `hybrid` (decision 0040) and narrow the filters of `covariance`
-    // without need (0045).
+    // Further paths change nothing for `hybrid` (docs/decisions/0040) and narrow the filters of
+    // `covariance` without need (docs/decisions/0045).
     constexpr double kHybrid = 1, kCovariance = 2;
     if (options.method == Method::uniform) return 0;
     double paths = options.method == Method::covariance ? kCovariance : kHybrid;

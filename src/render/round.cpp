@@ -8,7 +8,7 @@
 namespace covtrace {
 
 double estimated_error(const Film& film) {
-    constexpr double kFloor = 0.01;  // of relMSE
+    constexpr double kFloor = 0.01;  // constant in the denominator of relMSE
     double sum = 0;
     size_t known = 0;
     for (const FilmPixel& p : film.pixels) {

@@ -1,4 +1,4 @@
-/// What a render tells at the end of a round: how far it is from done, and how the image looks.
+/// Reports at the end of a round: how far the render is from done, and how the image looks.
 #pragma once
 
 #include "render/film.h"
@@ -11,7 +11,7 @@ namespace covtrace {
 /// two samples.
 double estimated_error(const Film& film);
 
-/// Shows who watches the image as it is without reconstruction.
+/// Shows the image, without reconstruction, to whoever watches the render.
 void show_round(const Monitor& monitor, const Film& film, const PixelBounds& display,
                 bool has_holes);
 

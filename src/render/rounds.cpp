@@ -11,11 +11,11 @@ namespace covtrace {
 
 namespace {
 
-/// Keeps the film when it is time, and sees to it that passes end for it.
+/// Keeps the film when it is time, and makes passes end for it.
 class Checkpoints {
   public:
-    /// A round that another process began was not planned for this one's time: it ends early where
-    /// that is over.
+    /// Begins with the round in progress, if there is one. A round that another process began was
+    /// not planned for this process's time: it ends early where that time is over.
     explicit Checkpoints(RenderJob& job)
         : job_(job), deadline_(job.state.in_round() ? job.tracing_end() : kInfinity) {
         schedule(0);
@@ -42,7 +42,8 @@ class Checkpoints {
   private:
     void schedule(double cost) {
         double wait = std::max(job_.keeping.interval, cost / job_.keeping.most_share);
-        // The first one writes for all, and alone knows the cost; all are to pause together.
+        // The first process writes for all, and alone knows the cost; all processes are to pause
+        // together.
         if (const Ranks* ranks = job_.keeping.ranks) wait = ranks->of_first(wait);
         job_.monitor.pause_at(std::min(deadline_, job_.monitor.elapsed() + wait));
     }
@@ -50,14 +51,15 @@ class Checkpoints {
     double deadline_;
 };
 
-/// Whether a film is what another process left of the same round of the same shard.
+/// Whether a film is the part of this round and shard that another process left.
 bool is_same_part(const RenderState& part, const RenderState& s) {
     return !difference(part.identity, s.identity) && part.shards == s.shards &&
            part.present == s.present && part.stage == s.stage && part.taken == s.taken &&
            part.target == s.target && part.plan == s.plan;
 }
 
-/// Once the plan is made, from all pixels, a shard needs its own ones alone.
+/// Drops the pixels of other shards: once the plan is made, from all pixels, a shard needs its own
+/// alone.
 void begin_shard(RenderJob& job) {
     const Shard& shard = job.keeping.shard;
     if (shard.is_all()) return;
@@ -65,12 +67,12 @@ void begin_shard(RenderJob& job) {
     s.shards = shard.count;
     s.present = {shard.index};
     s.keep_only(shard);
-    if (shard.index > 0) {  // what was counted before counts once
+    if (shard.index > 0) {  // the samples counted before the shards count once
         s.rejected = 0;
         s.first_rejected.clear();
     }
     if (s.in_round() && job.keeping.part && is_same_part(*job.keeping.part, s)) {
-        const std::optional<double> budget = s.spp;  // may have grown since
+        const std::optional<double> budget = s.spp;  // the budget may have grown since
         s = *job.keeping.part;
         s.spp = budget;
     }
@@ -82,7 +84,8 @@ void report(RenderJob& job) {
         job.monitor.set_error(estimated_error(s.films[0]));
         if (job.monitor.watched()) show_round(job.monitor, s.films[0], s.display, s.has_holes);
     } else if (job.monitor.watched()) {
-        // Of an image that comes from halves the raw pixels' error says nothing.
+        // Raw pixels are shown, but their error is not told: it says nothing of an image made from
+        // halves.
         show_round(job.monitor, whole_film(s), s.display, s.has_holes);
     }
 }
@@ -124,6 +127,7 @@ void trace_rounds(RenderJob& job, const Rounds& rounds) {
     Checkpoints checkpoints(job);
     if (s.in_round()) begin_shard(job);
     while (true) {
+        // Plan the next round
         if (!s.in_round()) {
             if (for_any(job.monitor.cancelled())) break;
             s.complete = !rounds.plan();
@@ -131,6 +135,7 @@ void trace_rounds(RenderJob& job, const Rounds& rounds) {
             if (s.complete) break;
             checkpoints.round_begins();
         }
+        // Take its samples; a pause keeps the film, and the round goes on
         trace(job, rounds);
         if (!s.reached(job.keeping.shard)) {
             s.complete = for_any(checkpoints.out_of_time());
@@ -139,13 +144,14 @@ void trace_rounds(RenderJob& job, const Rounds& rounds) {
             checkpoints.keep(KeepReason::checkpoint);
             continue;
         }
+        // Draw the conclusions of a whole round
         job.note_memory();
         if (!job.keeping.shard.is_all()) break;
         const bool of_rounds = s.stage == Stage::rounds;
         finish_round(s);
         if (of_rounds) report(job);
     }
-    // An older film is worth more than one without samples.
+    // Keep the film, unless it has no samples: an older film is worth more.
     if (!job.monitor.cancelled() || s.mean_count() > 0)
         checkpoints.keep(job.monitor.cancelled() && !s.complete ? KeepReason::interrupted
                                                                 : KeepReason::done);

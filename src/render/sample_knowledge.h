@@ -1,4 +1,4 @@
-/// What the samples of a film tell the planner.
+/// The planner's knowledge of a pixel, from the samples of a film.
 #pragma once
 
 #include "planner/adaptive.h"
@@ -6,8 +6,8 @@
 
 namespace covtrace {
 
-/// `spectrum`: as predicted; kept by reference. Samples of a film that does not count rays cost the
-/// same everywhere.
+/// Makes the knowledge that the planner works with. `spectrum` is the predicted one, kept by
+/// reference. The samples of a film that does not count rays cost the same everywhere.
 SampleKnowledge knowledge_from(const Film& film, std::span<const covariance::Sym2<float>> spectrum);
 
 }  // namespace covtrace

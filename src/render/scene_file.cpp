@@ -14,7 +14,7 @@ namespace covtrace {
 
 namespace {
 
-/// Scenes that people have and that are not read, by their endings.
+/// A format of scenes that people have and that is not read, known by the ending of its files.
 struct ForeignFormat {
     std::string_view ending, name;
 };

@@ -1,4 +1,4 @@
-/// Scene files of all formats that are known.
+/// Reading scene files of all formats that are known.
 #pragma once
 
 #include <filesystem>
@@ -8,12 +8,12 @@
 
 namespace covtrace {
 
-/// True for the names of scenes: .pbrt, .pbrt.gz, .gltf, .glb, and those of formats that other
-/// programs read (.blend, .usd, .xml …), for which read_scene_file says what to do.
+/// Whether a file has the name of a scene: .pbrt, .pbrt.gz, .gltf, .glb, and those of formats that
+/// other programs read (.blend, .usd, .xml …), for which read_scene_file says what to do.
 bool is_scene_file(const std::filesystem::path& file);
 
-/// glTF 2.0 where the name ends in .gltf or .glb, pbrt-v4 otherwise. Errors: as both readers, and
-/// Error(scene) for formats that are known to be others.
+/// Reads a scene: glTF 2.0 where the name ends in .gltf or .glb, pbrt-v4 otherwise. Throws as both
+/// readers do, and Error(scene) for formats that are known but not read.
 SceneDescription read_scene_file(const std::filesystem::path& file,
                                  const ReadOptions& options = {});
 

@@ -10,11 +10,11 @@
 
 namespace covtrace {
 
-/// What the frequency analysis learns of occluders from, as the options ask.
+/// Owner of the source that the options choose for what the frequency analysis learns of occluders.
 class SceneOccluders {
   public:
     explicit SceneOccluders(RenderJob& job);
-    /// Valid while this lives.
+    /// The occluders, valid while this object lives.
     Occluders view() const {
         return {grid_ ? &*grid_ : nullptr, query_ ? &*query_ : nullptr, every_voxel_};
     }

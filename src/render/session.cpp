@@ -37,8 +37,8 @@ RenderResult render(RenderScene& scene, const RenderOptions& options, Monitor& m
     const Error too_large(ErrorKind::limit, "not enough memory for an image of " +
                                                 std::to_string(region.width()) + "x" +
                                                 std::to_string(region.height()) + " pixels");
-    // A system that promises more memory than it has would end the process in the middle of the
-    // render.
+    // Images that need more memory than there is are refused: a system that promises more than it
+    // has would end the process in the middle of the render.
     double needed = 0;
     for (const auto& [name, bytes] : render_memory(scene.description.film, options))
         needed += double(bytes);

@@ -9,8 +9,8 @@
 
 namespace covtrace {
 
-/// Renders. Calls scene.prepare_spectra() where the method needs it. Throws Error(limit) where
-/// memory runs out, Error(usage) where `keeping` asks for what cannot be.
+/// Renders a scene. Calls scene.prepare_spectra() where the method needs it. Throws Error(limit)
+/// where memory runs out, Error(usage) where `keeping` asks for what cannot be.
 RenderResult render(RenderScene& scene, const RenderOptions& options, Monitor& monitor,
                     FilmKeeping keeping = {});
 

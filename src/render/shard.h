@@ -15,8 +15,8 @@ struct Shard {
     bool is_all() const { return count == 1; }
 };
 
-/// Squares of 16x16 pixels that cover a region row by row, those at its right and lower border cut
-/// off.
+/// Tiles: squares of 16x16 pixels that cover a region row by row, those at its right and lower
+/// border cut off.
 class Tiles {
   public:
     explicit Tiles(const PixelBounds& region)
@@ -27,13 +27,14 @@ class Tiles {
         const int x0 = region_.x0 + column(tile) * kSize, y0 = region_.y0 + row(tile) * kSize;
         return {x0, y0, std::min(x0 + kSize, region_.x1), std::min(y0 + kSize, region_.y1)};
     }
-    /// Shares run diagonally over the image, so that each has something of all its parts.
+    /// Whether a tile belongs to a shard. Shards run diagonally over the image, so that each has
+    /// something of all its parts.
     bool belongs_to(int64_t tile, const Shard& shard) const {
         return owner(tile, shard.count) == shard.index;
     }
-    /// The index of the shard, of `shards`, that a tile belongs to.
+    /// Index of the shard, of `shards` in all, that a tile belongs to.
     int owner(int64_t tile, int shards) const { return (column(tile) + row(tile)) % shards; }
-    /// Tiles of one share.
+    /// Number of tiles in one shard.
     int64_t count(const Shard& shard) const {
         int64_t n = 0;
         for (int64_t tile = 0; tile < count(); ++tile) n += belongs_to(tile, shard);

@@ -1,4 +1,4 @@
-/// What a denoiser takes of a render's time.
+/// Timing of a denoiser within a render.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace covtrace {
 
-/// Another denoiser, whose seconds are added up, and taken from those of the phase around it. All
-/// of its arguments must outlive it.
+/// Wrapper around a denoiser that adds its seconds up, and takes them from those of the phase
+/// around it. All of the constructor's arguments must outlive it.
 class TimedDenoiser : public Denoiser {
   public:
     TimedDenoiser(const Denoiser& denoiser, const Monitor& monitor, double& seconds, double& around)

@@ -9,22 +9,23 @@ namespace covtrace {
 
 namespace {
 
-/// After so many expected hits the samples themselves tell how much they differ: the number that
-/// was met is within a quarter of it, and all are missed once in e^16 times.
+/// Expected hits after which the samples themselves tell how much they differ: the number that was
+/// met is within a quarter of it, and all are missed once in e^16 times.
 constexpr double kKnownAfter = 16;
-/// An emitter that covers more of a pixel is met by the 16 samples that an error is told after: all
-/// of them miss it once in a hundred times.
+/// Share of a pixel up to which an emitter is small. A larger one is met by the 16 samples that an
+/// error is told after: all of them miss it once in a hundred times.
 constexpr float kSmallest = 0.25f;
 
 /// A ray's way between two vertices of a path, or out of the scene.
 struct Segment {
     Vec3 origin, direction;
     float length = 0;     ///< infinite where the path leaves the scene
-    float travelled = 0;  ///< from the camera to the origin
-    float carried = 1;    ///< luminance of what the mirrors before let through
+    float travelled = 0;  ///< distance from the camera to the origin
+    float carried = 1;    ///< luminance that the mirrors before it let through
 };
 
-/// The ways from the camera to the first vertex that scatters by another than a specular lobe.
+/// Visits the ways from the camera to the first vertex that scatters by another than a specular
+/// lobe.
 template <typename Visit>
 void for_each_segment_in_view(const PathRecord& path, const Visit& visit) {
     Segment s{path.camera_ray.origin, path.camera_ray.direction, kInfinity, 0, 1};
@@ -45,13 +46,13 @@ struct Moments {
     float mean = 0, square = 0;
 };
 
-/// The light of `emitter` in one path, widened to the pixel that it is seen in.
+/// Moments of the light of `emitter` in one path, widened to the pixel that it is seen in.
 Moments widened(const Segment& s, const DistantView& emitter, const Camera& camera) {
     const Vec3 centre = emitter.box.center();
     const float along = dot(centre - s.origin, s.direction);
     const float radius = emitter.box.radius();
     if (!(along > 0) || along - radius > s.length) return {};
-    // A disk as large as the pixel there.
+    // Widen the emitter to a disk as large as the pixel there
     const float half = camera.half_pixel(s.travelled + along);
     const float pixel_area = 4 * half * half;
     const Vec3 beside = centre - s.origin - along * s.direction;
@@ -62,13 +63,14 @@ Moments widened(const Segment& s, const DistantView& emitter, const Camera& came
     return {s.carried * mean, s.carried * s.carried * mean * emitter.radiance};
 }
 
-/// Emitters that may be small in view; their distance along mirrors is not known, but at least that
-/// from the camera.
+/// Emitters that may be small in view. Their distance along mirrors is not known, but it is at
+/// least that from the camera.
 std::vector<DistantView> small_emitters(const RenderScene& scene) {
     std::vector<DistantView> emitters = scene.lights.distant_views();
     const Vec3 eye = scene.camera.generate_ray({}, {}, 0).origin;
     const Bounds3 bounds = scene.geometry.bounds();
-    // Once across the scene and back by a mirror; what is farther along more mirrors is left out.
+    // Distances reach once across the scene and back by a mirror; an emitter that is farther along
+    // more mirrors is left out.
     const float farthest = 4 * bounds.radius() + distance(eye, bounds.center());
     const float half = scene.camera.half_pixel(farthest);
     std::erase_if(emitters, [&](const DistantView& e) {
@@ -116,7 +118,8 @@ float UnmetEmitters::variance(size_t i, double count) const {
 float UnmetEmitters::squared_error(size_t i, double count, float brightness) const {
     const float of_one = variance(i, count);
     if (!(of_one > 0)) return 0;
-    // Unseen it is missing altogether, and by chance it counts too much.
+    // An unseen emitter is missing altogether, one met by chance counts too much: the smaller error
+    // holds.
     const double square = std::min(double(sqr(mean_[i])), double(of_one) / std::max(count, 1.0));
     return float(square / (double(sqr(brightness)) + 0.01));
 }

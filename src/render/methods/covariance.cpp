@@ -16,10 +16,11 @@ namespace covtrace {
 
 namespace {
 
-/// Of the samples on demand, spread evenly.
+/// Share of the samples on demand that is spread evenly.
 constexpr float kEvenShare = 0.1f;
 
-/// What films and images call the factor of the thesis' density.
+/// Name, in films and images, of the factor k of the density N = k sqrt|S| (Belcour 2012, section
+/// 5.1, equation 5.3).
 constexpr auto kFactorName = "covtrace:k";
 
 class CovarianceRender {
@@ -45,6 +46,7 @@ class CovarianceRender {
   private:
     bool plan() {
         if (s_.stage != Stage::rounds) {
+            // Plan covariance paths: one per pixel first, then the rest
             std::vector<uint32_t> counts = job_.even_counts(s_.covariance_spp);
             if (s_.stage == Stage::first_paths)
                 for (uint32_t& c : counts) c = std::min(c, 1u);
@@ -53,15 +55,18 @@ class CovarianceRender {
                                                        : s_.covariance_spp;
             return true;
         }
+        // Predict the image's spectrum, once all covariance paths are there
         if (!prediction_) {
             const PhaseTimer timer(job_.monitor, job_.seconds(Phase::plan));
             const double start = job_.monitor.elapsed();
             prediction_ = preintegrated(smoothed(merge(s_.parts())));
             job_.reserve(6 * (job_.monitor.elapsed() - start));
         }
+        // Choose how far the next round goes
         if (has_enough()) return false;
         const double end = round_end(s_.taken);
-        // The filters that the whole round leads to: a budget must not change what it begins with.
+        // The filters are those that the whole round leads to: a budget must not change what it
+        // begins with.
         const FilterSettings settings = covariance::filter_settings(end);
         std::vector<uint32_t> have(s_.pixels());
         for (size_t i = 0; i < have.size(); ++i) have[i] = s_.films[0].pixels[i].count;
@@ -69,6 +74,7 @@ class CovarianceRender {
         const double target = job_.plan_round(std::min(end, enough));
         if (target >= enough) tell_factor(settings, *job_.options.density_factor);
         if (!(target > s_.taken)) return false;
+        // Share the round's samples among the pixels
         const PhaseTimer timer(job_.monitor, job_.seconds(Phase::plan));
         std::vector<float> density = relative_counts(settings);
         const int64_t total = std::llround(target * double(job_.pixels()));
@@ -90,14 +96,15 @@ class CovarianceRender {
         return true;
     }
 
-    /// Keeps what the thesis' density asks for, and by which factor.
+    /// Keeps the density k N of the plan, N as in Belcour 2012, equation 5.3, and its factor k.
     void tell_factor(const FilterSettings& settings, double k) {
         s_.density = hypercube_counts(*prediction_, settings.c, settings.limits);
         for (float& d : s_.density) d *= float(k);
         s_.metadata[kFactorName] = float(k);
     }
 
-    /// Whether counts are multiples of the thesis' N.
+    /// Whether counts are multiples of the N of Belcour 2012, equation 5.3, so that there is a
+    /// factor.
     bool has_factor() const {
         return job_.options.density == DensityRule::thesis && !job_.options.progressive;
     }
@@ -106,27 +113,31 @@ class CovarianceRender {
         return uint32_t(std::clamp(job_.most_samples(target), 1.0, 4e9));
     }
 
-    /// Whether the last plan had the factor that was asked for. Counts are whole, so that another
-    /// one would find pixels that lack a part of a sample.
+    /// Whether the last plan had the factor that was asked for. Counts are whole numbers, so that
+    /// another plan would find pixels that lack a part of a sample.
     bool has_enough() const {
-        constexpr double kRounding = 1e-5;  // of the factor in single precision, and of the total
+        // Rounding of the factor in single precision, and of the total.
+        constexpr double kRounding = 1e-5;
         const auto k = factor();
         return job_.options.density_factor && k &&
                *k >= *job_.options.density_factor * (1 - kRounding);
     }
 
-    /// Of the last plan.
+    /// The factor k of the last plan; none before the first one.
     std::optional<double> factor() const {
         const auto k = s_.metadata.find(kFactorName);
         if (k == s_.metadata.end()) return std::nullopt;
-        const float* value = std::get_if<float>(&k->second);  // films may have been changed
+        // A changed film may hold another type.
+        const float* value = std::get_if<float>(&k->second);
         return value ? std::optional(double(*value)) : std::nullopt;
     }
 
-    /// The average at which every pixel has the count that the factor which was asked for gives it.
+    /// The average count at which every pixel has the samples that the factor which was asked for
+    /// gives it.
     double enough_samples(const FilterSettings& settings, std::span<const uint32_t> have) {
         if (!job_.options.density_factor) return kInfinity;
-        // The limit does not depend on the average where there is a factor.
+        // The limit of 0 stands for any average: where there is a factor, the limit does not depend
+        // on it.
         job_.enough = mean_count(hypercube_counts(*prediction_, settings.c, settings.limits),
                                  *job_.options.density_factor, have, most_samples(0));
         return *job_.enough;
@@ -162,8 +173,8 @@ class CovarianceRender {
 
     RenderJob& job_;
     RenderState& s_;
-    std::optional<SceneOccluders> occluders_;  // while covariance paths are traced
-    std::optional<Prediction> prediction_;     // from their end on
+    std::optional<SceneOccluders> occluders_;  // there while covariance paths are traced
+    std::optional<Prediction> prediction_;     // there from the end of the covariance paths on
 };
 
 }  // namespace

@@ -6,7 +6,8 @@
 
 namespace covtrace {
 
-/// Leaves the image, unless it is only a shard's, and statistics in the job's result.
+/// Renders the job by covariance tracing; leaves the image, unless it is only a shard's, and
+/// statistics in the job's result.
 void render_covariance(RenderJob& job);
 
 }  // namespace covtrace

@@ -21,8 +21,8 @@ namespace {
 
 /// Samples per pixel of the pilot, both halves together.
 constexpr double kPilot = 4;
-/// Fewer cannot tell that an error is small: paths that carry much light and are rare have not been
-/// met yet.
+/// Least samples per pixel before an error is believed: fewer cannot tell that it is small, as
+/// paths that carry much light and are rare have not been met yet.
 constexpr double kLeastForError = 16;
 
 class HybridRender {
@@ -45,7 +45,7 @@ class HybridRender {
         trace_rounds(job_, {[this] { return plan(); }, [this] { trace_round(); }});
     }
 
-    /// The image, made from the samples.
+    /// Reconstructs the image from the samples and makes its layers.
     void deliver() {
         if (!job_.delivers()) return;
         reconstruct_image(true);
@@ -74,12 +74,13 @@ class HybridRender {
         return std::min({kPilot, most, job_.target_spp.value_or(kPilot)});
     }
 
-    /// The same count in every pixel, `spp` for both halves together. Odd samples go to the halves
-    /// in turn, along rows and from row to row: like a checkerboard where all pixels have one.
+    /// Counts of half k that give every pixel `spp` samples of both halves together. Odd samples go
+    /// to the halves in turn, along rows and from row to row: like a checkerboard where all pixels
+    /// have one.
     std::vector<uint32_t> share_between_halves(size_t k, double spp) const {
         std::vector<uint32_t> counts = job_.even_counts(spp);
         const size_t w = size_t(job_.region.width());
-        size_t rows = 0;  // that have odd samples
+        size_t rows = 0;  // rows with odd samples so far
         for (size_t begin = 0; begin < counts.size(); begin += w) {
             size_t turn = rows;
             for (size_t i = begin; i < begin + w; ++i) {
@@ -92,7 +93,7 @@ class HybridRender {
         return counts;
     }
 
-    /// Covariance paths of a half. They are samples, too: the odd one goes to the half for which
+    /// Covariance paths of half k. They are samples, too: the odd one goes to the half for which
     /// the pilot plans more.
     std::vector<uint32_t> paths_of(size_t k) const {
         std::vector<uint32_t> counts = share_between_halves(k, s_.covariance_spp);
@@ -128,7 +129,7 @@ class HybridRender {
         return target > s_.taken && plan_samples(target);
     }
 
-    /// What the covariances say.
+    /// Predicts the image's spectrum from the covariances, once.
     void predict() {
         if (prediction_) return;
         const PhaseTimer timer(job_.monitor, job_.seconds(Phase::plan));
@@ -136,7 +137,7 @@ class HybridRender {
     }
 
     void trace_round() {
-        image_.reset();  // of fewer samples
+        image_.reset();  // the image was of fewer samples
         if (s_.stage == Stage::first_paths) {
             trace_covariance(0, s_.plan[0], {});
             return;
@@ -144,7 +145,8 @@ class HybridRender {
         if (s_.stage == Stage::pilot) {
             const std::array<std::vector<uint32_t>, 2> paths{paths_of(0), paths_of(1)};
             trace_covariance(0, paths[0], {});
-            // The paths of a pixel count in their order: all of the first half come before.
+            // Paths of a pixel count in their order: those of the first half come before any of the
+            // second.
             if (!s_.has(0, paths[0], job_.tiles())) return;
             trace_covariance(1, paths[1], paths[0]);
             if (!s_.has(1, paths[1], job_.tiles())) return;
@@ -174,7 +176,7 @@ class HybridRender {
                                    reporter(Phase::radiance, k)));
     }
 
-    /// What the planner may know for one half: the samples of the other one.
+    /// The density for one half, as the planner makes it of `film`, the samples of the other half.
     std::vector<float> density_from(const Film& film) const {
         SampleKnowledge known = knowledge_from(film, prediction_->spectrum);
         for (size_t i = 0; i < size(); ++i)
@@ -186,11 +188,13 @@ class HybridRender {
     bool plan_samples(double target) {
         const PhaseTimer timer(job_.monitor, job_.seconds(Phase::plan));
         const double most = std::clamp(0.5 * job_.most_samples(target), 1.0, 4e9);
+        // Each half's density comes from the other half's samples
         std::array<std::vector<float>, 2> density{density_from(s_.films[1]),
                                                   density_from(s_.films[0])};
         const float even_samples = even_share(density[0], density[1]);
         for (std::vector<float>& d : density) spread_evenly(d, even_samples);
         const std::vector<float> even(size(), 1.0f);
+        // Share the samples of both halves among the pixels
         std::vector<std::vector<uint32_t>> counts;
         for (size_t k = 0; k < 2; ++k) {
             std::vector<uint32_t> have(size());
@@ -200,13 +204,15 @@ class HybridRender {
                                       uint32_t(most)));
         }
         if (!job_.begin_round(target, std::move(counts))) return false;
+        // Keep the mean of both densities for the layer
         s_.density.resize(size());
         for (size_t i = 0; i < size(); ++i)
             s_.density[i] = 0.5f * (density[0][i] + density[1][i]) * float(target);
         return true;
     }
 
-    /// `last`: no sample follows, and the film was kept.
+    /// Reconstructs the image, unless that of these samples is there. `last`: no sample follows,
+    /// and the film was kept.
     void reconstruct_image(bool last = false) {
         if (image_) return;
         predict();
@@ -214,7 +220,8 @@ class HybridRender {
         job_.monitor.update(Phase::reconstruction, job_.fraction(count), count);
         const PhaseTimer timer(job_.monitor, job_.seconds(Phase::reconstruction));
         Halves halves = halves_of(s_.films);
-        // The layers of the image have no need of what only weights and plans are made of.
+        // Features that the layers do not show, squares and rays serve weights and plans alone:
+        // free them.
         if (last)
             for (Film& film : s_.films) {
                 if (!job_.options.features) film.features = std::vector<PathFeatures>();
@@ -224,12 +231,12 @@ class HybridRender {
         image_ = reconstruct(std::move(halves), prediction_->spectrum, settings());
     }
 
-    /// The average count at which the image will be as good as was asked for; what is taken where
-    /// it is, by its own estimate.
+    /// The average count at which the image will be as good as was asked for; the count that is
+    /// taken already where it is so by its own estimate.
     double enough_samples() {
         if (!job_.options.error) return kInfinity;
         reconstruct_image();
-        // Light beyond what squares can hold has no error that could be told.
+        // Pixels brighter than squares can hold have no error that could be told, and are left out.
         double sum = 0, known = 0;
         const Plane brightness = luminance(image_->color);
         for (size_t i = 0; i < size(); ++i) {
@@ -247,8 +254,8 @@ class HybridRender {
         return *job_.enough;
     }
 
-    /// Keeps time for the reconstruction, without the denoiser where there is too little time for
-    /// one with it.
+    /// Keeps time for the reconstruction. The denoiser is given up where there is too little time
+    /// for a reconstruction with it.
     void reserve_time() {
         double seconds = reconstruction_time();
         if (denoiser_ && seconds > job_.tracing_end() - job_.monitor.elapsed()) {
@@ -259,8 +266,8 @@ class HybridRender {
         job_.reserve(seconds);
     }
 
-    /// Seconds that the reconstruction of this image will take, by that of a part of it. It decides
-    /// when to stop and nothing else.
+    /// Seconds that the reconstruction of this image will take, by that of a part of it. They
+    /// decide when to stop and nothing else.
     double reconstruction_time() {
         constexpr int kSide = 96;
         const PixelBounds all = job_.region;
@@ -268,6 +275,7 @@ class HybridRender {
                                std::min(all.y1, all.y0 + kSide)};
         const PhaseTimer timer(job_.monitor, job_.seconds(Phase::reconstruction));
         const double start = job_.monitor.elapsed();
+        // Copy the upper left corner of films and prediction
         std::vector<Film> films(2, Film(part, film_parts(Method::hybrid)));
         std::vector<Covariance2> spectrum;
         for (int y = part.y0; y < part.y1; ++y)
@@ -281,6 +289,7 @@ class HybridRender {
                 }
                 spectrum.push_back(prediction_->spectrum[from]);
             }
+        // Time its reconstruction
         reconstruct(halves_of(films), spectrum, settings());
         return (job_.monitor.elapsed() - start) * double(size()) / double(spectrum.size());
     }
@@ -290,10 +299,11 @@ class HybridRender {
     std::vector<PassContext> contexts_;
     std::optional<TimedDenoiser> denoiser_;
     bool is_denoiser_too_slow_ = false;
-    std::optional<SceneOccluders> occluders_;  // while covariance paths are traced
-    std::optional<Prediction> prediction_;     // smoothed, from their end on
-    std::optional<HybridImage> image_;         // of the film as it is
-    UnmetEmitters unmet_;                      // where an error is asked for
+    std::optional<SceneOccluders> occluders_;  // there while covariance paths are traced
+    // Smoothed; there from the end of the covariance paths on.
+    std::optional<Prediction> prediction_;
+    std::optional<HybridImage> image_;  // image of the film as it is
+    UnmetEmitters unmet_;               // filled where an error is asked for
 };
 
 }  // namespace

@@ -13,7 +13,8 @@ namespace covtrace {
 
 namespace {
 
-/// Every pixel gets the same: rounds only serve those who watch, and budgets of time and error.
+/// The count at which the next round ends. Every pixel gets the same: rounds only serve those who
+/// watch, and budgets of time and error.
 double next_round(double taken) {
     return std::max(taken + 1, std::floor(taken * 1.5));
 }
@@ -24,7 +25,7 @@ bool plan_uniform(RenderJob& job) {
     if (job.options.error) {
         const double error = estimated_error(film);
         if (error < *job.options.error) return false;
-        // Not a number as long as the error is not known.
+        // The estimate is not a number as long as the error is not known.
         if (const double enough = s.taken * sqr(error / *job.options.error); enough > 0)
             job.enough = enough;
     }

@@ -5,7 +5,8 @@
 
 namespace covtrace {
 
-/// Leaves the image, unless it is only a shard's, and statistics in the job's result.
+/// Renders the job by path tracing alone; leaves the image, unless it is only a shard's, and
+/// statistics in the job's result.
 void render_uniform(RenderJob& job);
 
 }  // namespace covtrace
