@@ -98,13 +98,14 @@ inline unsigned bits8(const Mask8& mask) {
 #endif
 }
 
-/// The sum of all eight, in a fixed order.
+/// The sum of all eight lanes, in a fixed order.
 inline float sum8(const Float8& s) {
     return ((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7]));
 }
 
-/// exp(x) for x <= 0, to 5e-6 of it; below -80 it stays that of -80: nothing. 2^x is the power of
-/// its nearest integer, put into the exponent's bits, times a polynomial of the rest.
+/// The exponential exp(x) for x <= 0, with a relative error of 5e-6; below -80 it stays exp(-80),
+/// which is nothing. 2^x is the power of its nearest integer, put into the exponent's bits, times a
+/// polynomial of the rest.
 inline Float8 exp_of_negative(const Float8& x) {
     using Integers = uint32_t __attribute__((vector_size(sizeof(Float8))));
     constexpr float kLog2E = 1.44269504f, kRounder = 12582912.0f;  // 1.5 * 2^23
@@ -115,7 +116,7 @@ inline Float8 exp_of_negative(const Float8& x) {
     bits = (bits + 127) << 23;
     Float8 scale;
     std::memcpy(&scale, &bits, sizeof scale);
-    // Taylor's of 2^rest, |rest| <= 1/2.
+    // Evaluate Taylor's polynomial of 2^rest, |rest| <= 1/2
     Float8 sum = 1.5403530e-4f - Float8{};
     for (float c :
          {1.3333558e-3f, 9.6181291e-3f, 5.5504109e-2f, 2.4022651e-1f, 6.9314718e-1f, 1.0f})

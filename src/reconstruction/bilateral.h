@@ -1,4 +1,4 @@
-/// Means over the pixels around that a guide says are alike.
+/// Bilateral means: over the pixels around that a guide says are alike.
 #pragma once
 
 #include <span>

@@ -11,7 +11,7 @@ namespace covtrace {
 
 namespace {
 
-/// The windows of regressions reach this many times as far as the predicted filters.
+/// Factor by which the windows of regressions reach further than the predicted filters.
 constexpr float kWindowWidening = 2.5f;
 
 /// The predicted Gaussians, `scale` times as wide as with c = 2.
@@ -32,7 +32,7 @@ std::vector<Candidate> make_candidates(const Halves& halves,
                                        const CandidateSettings& settings) {
     const int w = halves[0].count.width, h = halves[0].count.height;
     std::vector<Candidate> candidates{{halves[0].color, halves[1].color}};
-    // The last one is the windows'.
+    // The scales are those of the Gaussians and, last, that of the regressions' windows.
     std::vector<float> scales = settings.gaussians;
     scales.push_back(1);
     std::vector<FilterField> fields(scales.size());
@@ -42,7 +42,7 @@ std::vector<Candidate> make_candidates(const Halves& halves,
     const FilterField& shape = fields.back();
     for (size_t k = 0; k < settings.gaussians.size(); ++k) {
         candidates.push_back(gather(halves, fields[k]));
-        fields[k] = {};  // large, not needed
+        fields[k] = {};  // free it: it is large and not needed any more
     }
     std::vector<RegressionWindow> windows;
     for (const auto& fit : settings.fits)

@@ -1,4 +1,4 @@
-/// The ways to reconstruct that the hybrid method chooses among.
+/// The candidates: ways to reconstruct, among which the hybrid method chooses.
 #pragma once
 
 #include <span>
@@ -10,16 +10,17 @@
 
 namespace covtrace {
 
-/// One way to reconstruct: each half by itself, from the samples of that half.
+/// A candidate: one way to reconstruct, applied to each half by itself, from that half's samples.
 using Candidate = std::array<ColorPlanes, 2>;
 
-/// The candidates beside the raw pixels. What each gives: docs/decisions/0094.
+/// Settings of the candidates beside the raw pixels. What each candidate gains:
+/// docs/decisions/0094.
 struct CandidateSettings {
-    /// Scales of the predicted Gaussians; 1: the width factor c = 2.
+    /// Scales of the predicted Gaussians; 1 stands for the width factor c = 2.
     std::vector<float> gaussians{0.5f, 1.0f};
-    /// First-order regressions: tolerance of the colours' patches, whether the window also falls
+    /// A first-order regression: tolerance of the colours' patches, whether the window also falls
     /// off as the predicted Gaussian, 2.5 times as wide, the features that explain the colours, and
-    /// what tells patches apart.
+    /// the patches that are compared.
     struct Fit {
         float k;
         bool shaped = false;
@@ -32,10 +33,10 @@ struct CandidateSettings {
                           {4.0f, true, FeatureNoise::filtered, PatchesOf::colors_or_light}};
 };
 
-/// The raw pixels, the Gaussians, the fits, in this order. `spectrum`: the predicted ones after the
-/// integral over lens and shutter, (cycles/pixel)^2, one per pixel. The variances of the halves are
-/// smoothed: ones that know of their own pixel's mean would let bright pixels accept dark ones and
-/// not the other way round.
+/// Makes the candidates: the raw pixels, the Gaussians, the fits, in this order. `spectrum`: the
+/// predicted spectra after the integral over lens and shutter, (cycles/pixel)^2, one per pixel. The
+/// variances of the halves are smoothed: variances that know of their own pixel's mean would let
+/// bright pixels accept dark ones and not the other way round.
 std::vector<Candidate> make_candidates(const Halves& halves,
                                        std::span<const covariance::Sym2<float>> spectrum,
                                        const CandidateSettings& settings);

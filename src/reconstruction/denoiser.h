@@ -1,4 +1,4 @@
-/// A denoiser that somebody else wrote, as the reconstruction sees it.
+/// The interface to a denoiser that somebody else wrote, as the reconstruction sees it.
 #pragma once
 
 #include <array>
@@ -10,33 +10,36 @@
 
 namespace covtrace {
 
-/// What tells a denoiser of surfaces: albedo in [0, 1], normals in [-1, 1], with the noise of lens
-/// and shutter.
+/// Features of the surfaces that a denoiser is told of: albedo in [0, 1], normals in [-1, 1], with
+/// the noise of lens and shutter.
 struct NoisyFeatures {
     std::array<Plane, 3> albedo, normal;
-    /// Freed of their noise in about a third of the time, and a little less well.
+    /// Whether the features are freed of their noise in about a third of the time, and a little
+    /// less well.
     bool draft = false;
 };
 
 struct NoisyImage {
     ColorPlanes color;  ///< linear, without an upper limit
-    /// The denoiser sees it upside down, and what it makes of it is turned back. A network errs in
-    /// another way then, and the mean of both results errs less than either
+    /// Whether the denoiser sees the image upside down; its result is turned back. A network errs
+    /// in another way then, and the mean of both results errs less than either
     /// (docs/decisions/0085).
     bool turned = false;
-    /// In about a third of the time, to judge by and not to look at.
+    /// Whether it is denoised in about a third of the time, to judge by and not to look at.
     bool draft = false;
 };
 
 class Denoiser {
   public:
     virtual ~Denoiser() = default;
-    /// With its version.
+    /// Name of the denoiser, with its version.
     virtual std::string name() const = 0;
-    /// Bytes that it has at once for images of so many pixels, beside what it gets and gives.
+    /// Bytes that the denoiser holds at once for images of so many pixels, beside its arguments and
+    /// results.
     virtual size_t memory(size_t pixels) const = 0;
-    /// `images` of what `features` tell of, denoised one by one; all planes have the same size.
-    /// Depends on nothing else, and on no number of threads. Throws Error(limit) where it fails.
+    /// Denoises `images`, which show what `features` tell of, one by one; all planes have the same
+    /// size. The result depends on nothing else, and on no number of threads. Throws Error(limit)
+    /// where the denoiser fails.
     virtual std::vector<ColorPlanes> denoise(const NoisyFeatures& features,
                                              std::vector<NoisyImage> images) const = 0;
 };

@@ -10,14 +10,15 @@ namespace covtrace {
 
 namespace {
 
+// The constants p, r and c of own_share (docs/decisions/0085).
 constexpr float kPriorShare = 0.2f, kPriorWeight = 0.1f, kLostWeight = 100;
-constexpr float kSmoothing = 4;  ///< of what was cut off, pixels
+constexpr float kSmoothing = 4;  ///< smoothing of the light that was cut off, pixels
 
 }  // namespace
 
 Plane own_share(const BlendInput& input, const Denoised& denoised, const Likeness& likeness) {
     const int w = input.g[0].width, h = input.g[0].height;
-    // The minimum is the ratio of two sums.
+    // The minimum of own_share is the ratio of two sums, collected here.
     std::vector<MarginPlane> sums(2, MarginPlane(w, h));
     for (size_t k = 0; k < 3; ++k) {
         const Plane lost = gaussian_blur(input.lost[k], kSmoothing);

@@ -15,10 +15,10 @@ namespace covtrace {
 namespace {
 
 constexpr float kSmoothing = 3;  // pixels
-/// Terms of a bright pixel say nothing of a dark one beside it: only pixels whose
-/// brightness differs by less than this factor are averaged.
+/// Largest difference in brightness, as a logarithm, between pixels that are averaged: terms of a
+/// bright pixel say nothing of a dark one beside it.
 const float kAlike = std::log(1.5f);
-/// Red, green, blue, luminance.
+/// Signals whose errors are estimated: red, green, blue, luminance.
 constexpr size_t kSignals = 4;
 using Signals = std::array<float, kSignals>;
 
@@ -27,7 +27,7 @@ Signals signals(const ColorPlanes& color, size_t i) {
     return {c.r, c.g, c.b, luminance(c)};
 }
 
-/// The mean of both halves.
+/// The signals of the mean of both halves.
 Signals signals(const std::array<ColorPlanes, 2>& halves, size_t i) {
     Signals a = signals(halves[0], i);
     const Signals b = signals(halves[1], i);
@@ -42,14 +42,15 @@ float samples_per_pixel(const Halves& halves) {
     return float(sum / double(halves[0].count.size()));
 }
 
-/// Half the logarithm of Y^2 + eps: differences are ratios of brightness, but in the dark.
+/// The brightness as half the logarithm of Y^2 + eps: differences are ratios, except in the dark.
 Plane log_brightness(const Plane& bright) {
     Plane result = bright;
     for (float& v : result.values) v = 0.5f * std::log(sqr(v) + kDarkSquared);
     return result;
 }
 
-/// 1 where both halves have samples; nothing if that is nowhere, as with one sample per pixel.
+/// A plane that is 1 where both halves have samples; none if that is nowhere, as with one sample
+/// per pixel.
 std::optional<Plane> known_by_both(const Halves& halves) {
     const Plane &a = halves[0].count, &b = halves[1].count;
     Plane known(a.width, a.height);
@@ -61,7 +62,7 @@ std::optional<Plane> known_by_both(const Halves& halves) {
     return any ? std::optional(known) : std::nullopt;
 }
 
-/// A squared error over I^2 + 0.01.
+/// The squared error relative to the brightness I: over I^2 + 0.01.
 float relative(float square, float brightness) {
     return square / (sqr(brightness) + kDarkSquared);
 }
@@ -76,7 +77,8 @@ ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> ca
     const Plane bright = luminance(brightness);
     const float noise =
         factors.noise + factors.noise_of_few / std::max(1.0f, samples_per_pixel(halves));
-    // Holes are filled, and the halves still differ.
+    // Pixels that one half has not seen count only where no pixel was seen by both: holes are
+    // filled, and the halves still differ.
     const Plane known = known_by_both(halves).value_or(Plane(w, h, 1));
     ErrorEstimate error{Plane(w, h), Plane(w, h)};
     parallel_for_rows(w, h, [&](int row) {

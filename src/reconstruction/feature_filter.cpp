@@ -11,7 +11,7 @@ namespace covtrace {
 
 namespace {
 
-/// The sums of a block of 32 stay in the first cache; with 48 they do not, and take longer.
+/// Blocks of 32 pixels keep their sums in the first cache; blocks of 48 do not, and take longer.
 using Patches = PatchDistance<3, 1, 32>;
 constexpr int kReach = 5, kBlock = Patches::kBlock;
 
@@ -31,8 +31,8 @@ void filter(const HalfBuffer& half, const HalfBuffer& guide, size_t first, size_
         const int x0 = int(block % blocks_x) * kBlock, y0 = int(block / blocks_x) * kBlock;
         const int x1 = std::min(x0 + kBlock, w), y1 = std::min(y0 + kBlock, h);
         if (distance.is_without_noise(x0, y0)) {
-            // Only equal pixels are alike, whose mean is the pixel but for what the guide has not
-            // seen at all.
+            // Copy the pixels: without noise only equal pixels are alike, and their mean is the
+            // pixel but for details that the guide has not seen at all
             for (size_t f = first; f < first + n; ++f)
                 for (int y = y0; y < y1; ++y)
                     for (int x = x0; x < x1; ++x) out[f](x, y) = half.feature[f](x, y);
@@ -43,7 +43,7 @@ void filter(const HalfBuffer& half, const HalfBuffer& guide, size_t first, size_
         const auto add = [](const Float8& value, float* to) { store8(load8(to) + value, to); };
         for (int dy = -kReach; dy <= kReach; ++dy)
             for (int dx = -kReach; dx <= kReach; ++dx) {
-                // What is outside the image has no weight.
+                // Pixels outside the image have no weight.
                 if (!distance.reaches(x0, y0, dx, dy)) continue;
                 distance.block(x0, y0, dx, dy, d.data());
                 for (int y = 0; y < y1 - y0; ++y) {
@@ -62,7 +62,7 @@ void filter(const HalfBuffer& half, const HalfBuffer& guide, size_t first, size_
         for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x) {
                 const size_t i = size_t(y - y0) * kBlock + size_t(x - x0);
-                // The pixel itself always has the weight 1.
+                // The sum of weights is never 0: the pixel itself has the weight 1.
                 for (size_t f = 0; f < n; ++f) out[first + f](x, y) = total[f][i] / total[3][i];
             }
     });

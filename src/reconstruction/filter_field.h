@@ -1,6 +1,6 @@
-/// The anisotropic Gaussian of every pixel, from the predicted spectra: the covariance library's
-/// filter fields (covariance/filter_field.hpp), which have the limits by neighbours, and the choice
-/// between its rule and the thesis'.
+/// Filter fields: the anisotropic Gaussian of every pixel, from the predicted spectra. They are
+/// those of the covariance library (covariance/filter_field.hpp), which have the limits by
+/// neighbours, with the choice between its rule and that of Belcour 2012.
 #pragma once
 
 #include <span>
@@ -11,12 +11,12 @@
 
 namespace covtrace {
 
-/// How spectra become filters exp(-2 pi^2 c^2 p^T S p). All but `verified` know no limit by
+/// Rules by which spectra become filters exp(-2 pi^2 c^2 p^T S p). Only `verified` has a limit by
 /// neighbours.
 enum class FilterRule {
     verified,  ///< c grows with the count, so that a signal with the predicted spectrum is kept
     matched,   ///< c = 1: the filter's spectrum has the signal's own covariance
-    thesis     ///< exp(-pi p^T S p), equation 5.7 of the thesis as printed: c^2 = 1/(2 pi)
+    thesis     ///< exp(-pi p^T S p), Belcour 2012, equation 5.7 as printed: c^2 = 1/(2 pi)
 };
 
 template <>
@@ -25,14 +25,14 @@ inline constexpr auto kEnumNames<FilterRule> =
                             {FilterRule::matched, "matched"},
                             {FilterRule::thesis, "thesis"}});
 
-/// c, 1/s_min and the slope follow the samples (docs/decisions/0004, 0047), for emitters in view
-/// with other constants (docs/decisions/0012).
+/// Settings of filters: c, 1/s_min and the slope follow the samples (docs/decisions/0004, 0047),
+/// for emitters in view with other constants (docs/decisions/0012).
 using FilterSettings = covariance::FilterSettings<float>;
 using FilterField = covariance::FilterField<float>;
 
-/// Primal covariances (pixels^2), row by row: S_h = (4 pi^2 c^2 S2D)^-1 with eigenvalues in
-/// [s_min^2, s_max^2]. `spectrum`: width * height predicted spectra after the integral over lens
-/// and shutter, (cycles/pixel)^2.
+/// Makes a field of primal covariances (pixels^2), row by row: S_h = (4 pi^2 c^2 S2D)^-1 with
+/// eigenvalues in [s_min^2, s_max^2]. `spectrum`: width * height predicted spectra after the
+/// integral over lens and shutter, (cycles/pixel)^2.
 FilterField filter_field(std::span<const covariance::Sym2<float>> spectrum, int width, int height,
                          FilterRule rule, const FilterSettings& settings);
 

@@ -91,14 +91,15 @@ std::array<float, N> gaussian_sums(const Level<N>& level, float cx, float cy, co
     return result;
 }
 
-/// The same around a pixel of the image, `s` in its pixels^2, from the level that suits it.
+/// Sums as gaussian_sums gives them around a pixel of the image, with `s` in the image's pixels^2,
+/// from the level that suits the filter.
 template <size_t Squared, size_t N>
 std::array<float, N> sums_around(const Pyramid<N>& pyramid, int x, int y, const Sym2& s) {
     const float narrow = std::sqrt(std::max(0.0f, covariance::eigen(s).low));
     size_t level = 0;
     while (level + 1 < pyramid.size() && float(2 << level) <= 0.5f * narrow) ++level;
     const float size = float(1 << level);
-    // A box of that size has blurred already: (size^2 - 1) / 12 beside single pixels.
+    // Boxes of this size have blurred already, by (size^2 - 1) / 12 compared with single pixels.
     const float blurred = (size * size - 1) / 12;
     const Sym2 rest{(s.xx - blurred) / (size * size), s.xy / (size * size),
                     (s.yy - blurred) / (size * size)};
@@ -106,7 +107,7 @@ std::array<float, N> sums_around(const Pyramid<N>& pyramid, int x, int y, const 
                                   (float(y) + 0.5f) / size - 0.5f, rest);
 }
 
-/// Where the weights are less than this nothing is near: the filter is made four times as wide (its
+/// Least sum of weights: below it nothing is near, and the filter is made four times as wide (its
 /// covariance 16 times).
 constexpr float kLeastWeight = 1e-3f, kFourTimesAsWide = 16;
 constexpr int kAttempts = 6;
@@ -115,7 +116,7 @@ constexpr int kAttempts = 6;
 
 GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
                      std::span<const uint32_t> count, const FilterField& field) {
-    // Red, green, blue, the variance of the luminance, and whether a pixel has samples.
+    // Sums of red, green, blue, the variance of the luminance, and whether a pixel has samples.
     constexpr size_t kVariance = 3, kWeight = 4, kSums = 5;
     Level<kSums> base(field.width, field.height);
     for (int y = 0; y < base.height; ++y)
@@ -146,7 +147,7 @@ GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
 }
 
 std::array<ColorPlanes, 2> gather(const Halves& halves, const FilterField& field) {
-    // Of each half red, green, blue, and whether a pixel has samples.
+    // Sums of each half: red, green, blue, and whether a pixel has samples.
     constexpr size_t kWeight = 3, kOfHalf = 4, kSums = 2 * kOfHalf;
     Level<kSums> base(field.width, field.height);
     std::array<ColorPlanes, 2> result;

@@ -11,23 +11,24 @@
 
 namespace covtrace {
 
-/// I(p) = sum_i h_p(i - p) m_i / sum_i h_p(i - p) over the pixel means m_i, h_p the Gaussian of
-/// pixel p cut at 3 standard deviations. Pixels without samples (count 0) and non-finite means take
-/// no part; a pixel with nothing to gather from gets a wider filter until it has. Wide filters read
-/// box-averaged copies of the image whose pixels are at most half of the narrow axis' deviation
-/// wide.
+/// The gathered image I(p) = sum_i h_p(i - p) m_i / sum_i h_p(i - p) over the pixel means m_i, h_p
+/// the Gaussian of pixel p cut at 3 standard deviations. Pixels without samples (count 0) and
+/// non-finite means take no part; a pixel with nothing to gather from gets a wider filter until it
+/// has. Wide filters read box-averaged copies of the image whose pixels are at most half of the
+/// narrow axis' deviation wide.
 ///
-/// `mean`, `variance` (of the mean's luminance) and `count`: field.width * field.height entries.
-/// A gather, never a splat: no result depends on threads.
+/// `mean`, `variance` (of the mean's luminance) and `count` have field.width * field.height
+/// entries. Pixels gather, they never splat: no result depends on threads.
 struct GatheredImage {
     std::vector<Rgb> color;
     std::vector<float>
-        variance;  ///< of the luminance, by propagation: sum h^2 var / (sum h)^2, without bias
+        /// Variance of the luminance, by propagation: sum h^2 var / (sum h)^2, without bias.
+        variance;
 };
 GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
                      std::span<const uint32_t> count, const FilterField& field);
 
-/// The same of the colours of both halves, which share the filters and so their weights.
+/// Gathers the colours of both halves, which share the filters and so their weights.
 std::array<ColorPlanes, 2> gather(const Halves& halves, const FilterField& field);
 
 }  // namespace covtrace

@@ -10,10 +10,10 @@ namespace covtrace {
 
 namespace {
 
-/// Samples' own noise should not tell pixels apart.
+/// Smoothing that keeps the samples' own noise from telling pixels apart, pixels.
 constexpr float kSmoothing = 1;
-/// What counts as a difference. 0.7 and 1.4 times as much of light and noise, and half of what
-/// features have, change the error by less than 1 % (docs/decisions/0094).
+/// Units of the guides: a step that counts as a difference. 0.7 and 1.4 times as much of light and
+/// noise, and half of those of features, change the error by less than 1 % (docs/decisions/0094).
 constexpr float kAlbedo = 0.3f, kNormal = 0.5f, kLogDepth = 0.3f, kLogLight = 0.35f,
                 kLogNoise = 0.35f;
 /// Light and squared relative noise below which nothing is told apart: they keep the logarithms

@@ -1,4 +1,4 @@
-/// What tells which pixels should be reconstructed alike.
+/// Guides: planes that tell which pixels should be reconstructed alike.
 #pragma once
 
 #include "reconstruction/half_buffer.h"
@@ -6,17 +6,18 @@
 
 namespace covtrace {
 
-/// Feature `f` of both halves, its noise smoothed, in units in which pixels that differ by 1 are
-/// not alike.
+/// The guide by feature `f` of both halves, its noise smoothed, in units in which pixels that
+/// differ by 1 are not alike.
 Plane feature_guide(const Halves& halves, size_t f);
 
-/// The same of light: the logarithm of luminances.
+/// The guide by light: the logarithm of smoothed luminances, in such units, too.
 Plane light_guide(const Plane& luminance);
 
-/// Albedo, normal and depth.
+/// Adds the guides by albedo, normal and depth.
 void add_features(const Halves& halves, Likeness& likeness);
 
-/// The logarithms of the light of `guess`, a first image, and of its pixels' noise relative to it.
+/// Adds the guides by the light of `guess`, a first image, and by its pixels' noise relative to it,
+/// both as logarithms.
 void add_light_and_noise(const Halves& halves, const ColorPlanes& guess, Likeness& likeness);
 
 }  // namespace covtrace

@@ -24,7 +24,7 @@ void fill_holes(HalfBuffer& half) {
         all = all && filled[i] > 0;
     }
     if (!any || all) return;
-    // Ever wider means until no hole is left.
+    // Take ever wider means until no hole is left
     for (float sigma = 1; !all; sigma *= 2) {
         const Plane weight = gaussian_blur(filled, sigma);
         const auto fill = [&](Plane& p) {
@@ -48,10 +48,12 @@ void fill_holes(HalfBuffer& half) {
 
 void set_variance_from_difference(Halves& halves) {
     constexpr int kColorReach = 6;
-    // Two samples that see the same surface by chance do not say that there is no other.
+    // Reach of the features' means is small: two samples that see the same surface by chance do not
+    // say that there is no other.
     constexpr int kFeatureReach = 3;
-    // A filled hole differs by edges and textures, too, and its own noise is small. With 1/2 the
-    // error is 3 % larger, with 1 9 to 12 % (13 scenes at 0.5 and 1 samples per pixel).
+    // Weight of a filled hole in the colours' variance: it differs by edges and textures, too, and
+    // its own noise is small. With 1/2 the error is 3 % larger, with 1 9 to 12 % (13 scenes at 0.5
+    // and 1 samples per pixel).
     constexpr float kColorOfFilled = 0.25f;
     const Plane &first = halves[0].count, &second = halves[1].count;
     Plane known(first.width, first.height);

@@ -1,4 +1,4 @@
-/// What the reconstruction sees of the film: two halves of the samples, as planes.
+/// The film as the reconstruction sees it: two halves of the samples, as planes.
 #pragma once
 
 #include <array>
@@ -7,15 +7,15 @@
 
 namespace covtrace {
 
-/// Red, green, blue.
+/// Planes of red, green and blue.
 using ColorPlanes = std::array<Plane, 3>;
 
-/// Albedo r g b, normal x y z, logarithm of the depth (its steps do not depend on how far things
-/// are).
+/// Number of features: albedo r g b, normal x y z, logarithm of the depth (its steps do not depend
+/// on how far things are).
 constexpr size_t kFeatures = 7;
 using FeaturePlanes = std::array<Plane, kFeatures>;
 
-/// Half of the samples: means per pixel and the variances of these means.
+/// One half of the samples: means per pixel and the variances of these means.
 struct HalfBuffer {
     HalfBuffer(int w, int h);
     ColorPlanes color, color_variance;
@@ -25,16 +25,16 @@ struct HalfBuffer {
 
 using Halves = std::array<HalfBuffer, 2>;
 
-/// No pixel has samples.
+/// Whether no pixel has samples.
 bool is_empty(const HalfBuffer& half);
 
-/// Gives every pixel without samples the mean of what is around it, colours and features alike; its
-/// count stays 0.
+/// Gives every pixel without samples the mean of the pixels around it, colours and features alike;
+/// its count stays 0.
 void fill_holes(HalfBuffer& half);
 
-/// Where no pixel has two samples their spread is unknown: sets the variances of both halves to
-/// what the difference of the halves says, box13((A - B)^2) / 2; of the features over 7 x 7 pixels.
-/// Holes are to be filled before; pixels that neither half has seen say nothing.
+/// Sets the variances of both halves to those that their difference suggests, box13((A - B)^2) / 2;
+/// of the features over 7 x 7 pixels. To be used where no pixel has two samples, so that their
+/// spread is unknown. Holes are to be filled before; pixels that neither half has seen say nothing.
 void set_variance_from_difference(Halves& halves);
 
 }  // namespace covtrace

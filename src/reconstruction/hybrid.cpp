@@ -18,7 +18,7 @@ namespace covtrace {
 
 namespace {
 
-/// The light of the samples themselves: where one half has none, that of the other.
+/// The light of the samples themselves: where one half has no samples, that of the other.
 ColorPlanes mean_of(const Halves& halves) {
     ColorPlanes mean = halves[0].color;
     const Plane &a = halves[0].count, &b = halves[1].count;
@@ -30,13 +30,14 @@ ColorPlanes mean_of(const Halves& halves) {
     return mean;
 }
 
-/// What a render that was interrupted at its start leaves: a half without samples is not black.
+/// Gives a half without any samples the pixels of the other one: an empty half, as a render that
+/// was interrupted at its start leaves it, is not black.
 void replace_empty_half(Halves& halves) {
     for (size_t k = 0; k < 2; ++k)
         if (is_empty(halves[k])) {
             const Plane none = halves[k].count;
             halves[k] = halves[1 - k];
-            halves[k].count = none;  // it judges nothing
+            halves[k].count = none;  // without samples it judges nothing
         }
 }
 
@@ -54,8 +55,8 @@ ColorPlanes common_brightness(std::span<const Candidate> candidates) {
     return {sum, sum, sum};
 }
 
-/// A fit may leave the range of its colours: light is never negative, but beside lamps under a
-/// pixel filter with negative lobes, which the samples tell of.
+/// Cuts off light below 0, to which fits may lead. Light is never negative, except beside lamps
+/// under a pixel filter with negative lobes; then the samples are negative somewhere, too.
 ColorPlanes without_undershoot(ColorPlanes color, const ColorPlanes& samples) {
     const auto negative = [](const Plane& p) {
         return std::any_of(p.values.begin(), p.values.end(), [](float v) { return v < 0; });
@@ -78,8 +79,8 @@ ColorPlanes mean_of(const Selection& s) {
 }
 
 /// Gives our own mixture the share `own` of every pixel and the denoiser the rest, as one more
-/// candidate of the selection. In the image it is all samples denoised together, which are cleaner
-/// than the mean of the denoised halves.
+/// candidate of the selection. The denoiser's part of the image is that of all samples denoised
+/// together, which are cleaner than the mean of the denoised halves.
 void blend(const Plane& own, const Denoised& clean, Selection& s, ColorPlanes& image) {
     const auto mix = [&](Plane& ours, const Plane& theirs) {
         for (size_t i = 0; i < own.size(); ++i)
@@ -95,12 +96,12 @@ void blend(const Plane& own, const Denoised& clean, Selection& s, ColorPlanes& i
     }
 }
 
-/// Both halves and all samples, denoised; nothing where the denoiser fails, `failure` says why.
+/// Denoises both halves and all samples; none where the denoiser fails, and `failure` says why.
 std::optional<Denoised> denoised(const Denoiser* denoiser, const Halves& halves,
                                  const ColorPlanes& all, std::string& failure) {
     if (!denoiser) return std::nullopt;
     NoisyFeatures features;
-    features.draft = true;  // the image errs 0.7 % more, in a third less time (decision 0085)
+    features.draft = true;  // the image errs 0.7 % more, in a third less time (docs/decisions/0085)
     for (size_t k = 0; k < 3; ++k) {
         features.albedo[k] = mean_of(halves[0].feature[k], halves[1].feature[k]);
         features.normal[k] = mean_of(halves[0].feature[3 + k], halves[1].feature[3 + k]);
@@ -131,36 +132,41 @@ std::optional<Denoised> denoised(const Denoiser* denoiser, const Halves& halves,
 
 HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> spectrum,
                         const HybridSettings& settings) {
+    // Fill holes, then denoise what the samples give
     for (HalfBuffer& half : halves) fill_holes(half);
     replace_empty_half(halves);
     const ColorPlanes all = mean_of(halves);
     HybridImage image;
     const std::optional<Denoised> clean =
         denoised(settings.denoiser, halves, all, image.denoiser_failure);
-    std::array<ColorPlanes, 2> samples, variance;  // before anything is cut off
+    std::array<ColorPlanes, 2> samples, variance;  // the halves before anything is cut off
     if (clean)
         for (size_t k = 0; k < 2; ++k) {
             samples[k] = halves[k].color;
             variance[k] = halves[k].color_variance;
         }
+    // Limit rare bright paths; light_return knows the halves as they were
     const LightReturn light_return(halves);
     limit_outliers(halves);
-    // Variances that know of their own pixel's mean would let bright pixels accept dark ones and
-    // not the other way round.
+    // Smooth the variances: those that know of their own pixel's mean would let bright pixels
+    // accept dark ones and not the other way round
     for (HalfBuffer& half : halves)
         for (Plane& v : half.color_variance) v = box_blur(v, 1);
+    // Make the candidates and the guides that tell which pixels are alike
     std::vector<Candidate> candidates = make_candidates(halves, spectrum, settings.candidates);
     Likeness likeness(settings.likeness);
     add_features(halves, likeness);
-    for (HalfBuffer& half : halves) half.feature = half.feature_variance = {};  // large, not needed
-    // Twice, as candidates that spread highlights also lift the first guess of what is dark, which
-    // hides their errors there; and as the guess tells which pixels are alike.
+    // Free them: they are large and not needed any more.
+    for (HalfBuffer& half : halves) half.feature = half.feature_variance = {};
+    // Select twice, as candidates that spread highlights also lift the first guess of dark pixels,
+    // which hides their errors there, and as the guess tells which pixels are alike
     const ColorPlanes first_guess = without_undershoot(common_brightness(candidates), all);
     const ColorPlanes guess =
         without_undershoot(mean_of(select(halves, candidates, error_weights(halves, first_guess),
                                           settings.sigma, settings.mix)),
                            all);
     add_light_and_noise(halves, guess, likeness);
+    // Mix the candidates, then our own mixture with the denoiser's image
     const ColorPlanes g = error_weights(halves, guess);
     Selection s = select(halves, candidates, g, likeness, settings.mix);
     image.color = mean_of(s);
@@ -174,10 +180,11 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
         candidates.push_back(clean->half);
     }
 
-    // The image itself is negative only where the samples are, and no darker than they.
+    // Keep the image from being negative but where the samples are, and from being darker than they
     for (size_t k = 0; k < 3; ++k)
         for (size_t i = 0; i < all[k].size(); ++i)
             image.color[k][i] = std::max(std::min(0.0f, all[k][i]), image.color[k][i]);
+    // Give light back, and estimate the error of what is delivered
     light_return.give_back(all, image.color);
     ErrorEstimate error = estimate_error(halves, candidates, s, image.color, all, guess,
                                          clean ? &clean->difference : nullptr,

@@ -15,11 +15,11 @@ namespace covtrace {
 
 struct HybridSettings {
     CandidateSettings candidates;
-    ErrorFactors error, error_denoised = kDenoisedError;  ///< without and with a denoiser
-    float sigma = 4;            ///< of the neighbourhood by which a first mixture is judged, pixels
-    LikenessSettings likeness;  ///< of the pixels by which the final one is
-    bool mix = true;            ///< false: the best single candidate, for comparisons
-    const Denoiser* denoiser = nullptr;  ///< one more candidate; null: none
+    ErrorFactors error, error_denoised = kDenoisedError;  ///< factors without and with a denoiser
+    float sigma = 4;  ///< deviation of the neighbourhood that judges a first mixture, pixels
+    LikenessSettings likeness;           ///< likeness of the pixels that judge the final mixture
+    bool mix = true;                     ///< false: the best single candidate, for comparisons
+    const Denoiser* denoiser = nullptr;  ///< the denoiser that gives one more candidate; null: none
 };
 
 struct HybridImage {
@@ -28,15 +28,16 @@ struct HybridImage {
     /// estimates the relMSE.
     Plane relative_error;
     Plane variance;            ///< estimated absolute squared error of the luminance
-    std::vector<Plane> share;  ///< of each candidate: raw, Gaussians, fits, the denoiser's
-    /// Why the denoiser's candidate is missing; empty where it is not, or where there is none.
+    std::vector<Plane> share;  ///< shares of the candidates: raw, Gaussians, fits, the denoiser's
+    /// Reason why the denoiser's candidate is missing; empty where it is there, or where none was
+    /// asked for.
     std::string denoiser_failure;
 };
 
-/// `halves`: with the variances that their samples have; `spectrum`: the predicted ones after the
-/// integral over lens and shutter, (cycles/pixel)^2, one per pixel. The result depends on nothing
-/// else, and on no number of threads. With many samples it becomes the mean of the halves, wherever
-/// the candidates are off by more than the noise of the raw pixels.
+/// Reconstructs the image. `halves` have the variances of their samples; `spectrum`: the predicted
+/// spectra after the integral over lens and shutter, (cycles/pixel)^2, one per pixel. The result
+/// depends on nothing else, and on no number of threads. With many samples it becomes the mean of
+/// the halves, wherever the candidates are off by more than the noise of the raw pixels.
 HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> spectrum,
                         const HybridSettings& settings = {});
 

@@ -13,25 +13,27 @@ namespace covtrace {
 
 namespace {
 
-/// A level has one value for so many pixels in x and in y; each the factor times the one before.
+/// Sizes of levels: the finest has one value for 2 x 2 pixels, each other one for blocks 4 times as
+/// wide and high as those of the level before.
 constexpr int kFinest = 2, kFactor = 4, kLevels = 3;
-/// Blocks of the finest level in one of another, in x and in y.
+/// Number of blocks of the finest level in one block of `level`, along x or y.
 constexpr int blocks(int level) {
     int n = 1;
     for (int k = 0; k < level; ++k) n *= kFactor;
     return n;
 }
-/// Pixels in a block.
+/// Width of a block, pixels.
 constexpr int side(int level) {
     return kFinest * blocks(level);
 }
-/// k, and that of the whole image, whose samples are far more even than their spread tells: what it
-/// lacks is mostly real. With 0 the error is 1 % larger at 4 samples per pixel.
+/// Factors k of the noise: that of the levels, and that of the whole image, whose samples are far
+/// more even than their spread tells: the light that it lacks is mostly real. With 0 the error is 1
+/// % larger at 4 samples per pixel.
 constexpr float kNoise = 1, kNoiseOfAll = 0.1f;
-/// A place may become so many times as bright, but no darker than a tenth.
+/// Factor by which a place may become brighter at most; it may become darker by the same factor.
 constexpr float kMostTimes = 10;
 
-/// The means of blocks of `size` x `size` pixels; those at the border are smaller.
+/// The means of blocks of `size` x `size` pixels; blocks at the border are smaller.
 Plane block_means(const Plane& p, int size) {
     Plane mean((p.width + size - 1) / size, (p.height + size - 1) / size);
     for (int y = 0; y < mean.height; ++y)
@@ -46,13 +48,14 @@ Plane block_means(const Plane& p, int size) {
     return mean;
 }
 
-/// What covers a few pixels of the image, within this reach, is one thing: a small lamp in view.
+/// Reach within which light is one thing, pixels: a small lamp in view covers a few of them.
 constexpr int kTogether = 3;
-/// How much brighter than all light around one thing may make it. What is more would be seen as a
-/// glow over the whole image, and stays where it is.
+/// Share of all light around by which one thing may make it brighter. More would be seen as a glow
+/// over the whole image, and stays where it is.
 constexpr float kMostOfOneThing = 0.065f;
 
-/// Between the middles of the blocks linear, beyond the outermost constant.
+/// The value of blocks at a pixel: linear between the middles of the blocks, constant beyond the
+/// outermost ones.
 float interpolated(const Plane& p, int x, int y, int size) {
     const auto place = [size](int pixel, int count) {
         return std::clamp((float(pixel) + 0.5f) / float(size) - 0.5f, 0.0f, float(count - 1));
@@ -65,18 +68,19 @@ float interpolated(const Plane& p, int x, int y, int size) {
            v * ((1 - u) * p(x0, y1) + u * p(x1, y1));
 }
 
-/// How many times its luminance a place lacks of each channel, by sums over what is alike: of what
-/// is lacking, of luminance and of the variance of the former.
+/// The light that a place lacks in each channel, as multiples of its luminance. The arguments are
+/// sums over the pixels that are alike: of the lacking light, of luminance and of the variance of
+/// the lacking light.
 Rgb times_lacking(Rgb lacking, float light, float variance, float noise) {
     const float certain = 1 - noise * variance / sqr(luminance(lacking));
-    if (!(light > 0) || !(certain > 0)) return Rgb(0);  // also what is no number
+    if (!(light > 0) || !(certain > 0)) return Rgb(0);  // also where a sum is not a number
     Rgb times;
     for (int c = 0; c < 3; ++c)
         times[c] = std::clamp(certain * lacking[c] / light, 1 / kMostTimes - 1, kMostTimes - 1);
     return times;
 }
 
-/// The same of every block.
+/// The light that each block lacks, as multiples of its luminance (times_lacking).
 ColorPlanes lacking(const Likeness& likeness, const ColorPlanes& e, const Plane& light,
                     const Plane& variance) {
     const int w = light.width, h = light.height;
@@ -120,7 +124,8 @@ Plane light_around(const Plane& light) {
     return around;
 }
 
-/// Adds to `color` the part of e of things that are too bright for their surroundings.
+/// Adds to `color` the part of e that stays in place: things that are too bright for their
+/// surroundings.
 void keep_in_place(const Plane& around, const ColorPlanes& e, ColorPlanes& color) {
     Plane together = luminance(e);
     for (float& v : together.values) v = std::abs(v);
@@ -151,7 +156,8 @@ LightReturn::LightReturn(const Halves& halves) {
 }
 
 Likeness LightReturn::likeness_of(int level, const Plane& light) const {
-    // A window that counted in a wall's sums for a twentieth would outshine the wall.
+    // No share counts whatever is unlike: a window that counted in a wall's sums for a twentieth
+    // would outshine the wall.
     Likeness likeness({.any = 0});
     for (const Plane& feature : features_) likeness.add(block_means(feature, blocks(level)));
     likeness.add(block_means(light_guide(light), side(level)));
@@ -185,11 +191,12 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
             for (size_t i = 0; i < e[c].size(); ++i) e[c][i] -= color[c][i];
         return e;
     };
-    // What stays in its pixels beside what is given to all.
+    // Find the light that stays in its pixels, and is not given to all
     ColorPlanes in_place = color;
     keep_in_place(light_around(luminance(color)), difference(), in_place);
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < color[c].size(); ++i) in_place[c][i] -= color[c][i];
+    // Give the rest back, level by level, to blocks that are alike
     for (int level = 0; level < kLevels; ++level) {
         const Plane light = luminance(color);
         ColorPlanes e = difference();
@@ -210,6 +217,7 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
                 }
         });
     }
+    // Give what is still lacking to the whole image
     give_to_all(difference(), in_place, color);
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < color[c].size(); ++i) color[c][i] += in_place[c][i];

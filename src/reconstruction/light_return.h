@@ -1,4 +1,4 @@
-/// Gives the image the light of its samples back where the filters lost it.
+/// Return of light: gives the image the light of its samples back where the filters lost it.
 #pragma once
 
 #include <vector>
@@ -8,35 +8,39 @@
 
 namespace covtrace {
 
-/// Filters, limits for outliers and networks take light from where it is rare, and judges of few
-/// samples do not see it. What an image lacks of the samples is
+/// Returns lost light. Filters, limits for outliers and networks take light from where it is rare,
+/// and judges of few samples do not see it. The light that an image lacks of the samples is
 ///     e(p) = raw(p) - color(p),
-/// whose mean over many pixels p is known better than that of any one. Around every pixel, over
-/// those that are alike in features and light, color becomes
+/// whose mean over many pixels p is known better than that of any one. Around every pixel, over the
+/// pixels that are alike in features and light, color becomes
 ///     color + (1 - k s^2 / ((sum w e)^2 + s^2))_+ (sum w e / sum w Y) Y,   s^2 = sum w^2 V,
-/// Y its luminance and V the variance of raw: as many times as bright, as the samples around say,
-/// where they say more than their noise could (James and Stein's factor). First with w of a
-/// deviation of 12 pixels, then 48, then 192 (k = 1), then once over the whole image, where nearly
-/// everything counts (k = 0.1), so that it has the light of the samples. Light goes to what is
-/// alike, so none leaves a dark wall for a bright window beside it. What alone would make all
-/// around it a fifteenth brighter, as a small lamp that one half saw, stays in its pixels.
-/// docs/decisions/0085.
+/// Y its luminance and V the variance of raw: as many times as bright as the samples around say,
+/// where they say more than their noise could (James and Stein's factor). This is done first with w
+/// of a deviation of 12 pixels, then 48, then 192 (k = 1), then once over the whole image, where
+/// nearly everything counts (k = 0.1), so that the image has the light of the samples. Light goes
+/// to pixels that are alike, so none leaves a dark wall for a bright window beside it. Light of one
+/// place that alone would make all around it a fifteenth brighter, as a small lamp that one half
+/// saw, stays in its pixels (docs/decisions/0085).
 class LightReturn {
   public:
-    /// Keeps what it needs of the halves, with their holes filled, before outliers are limited.
+    /// Keeps features and variances of the halves, with their holes filled, before outliers are
+    /// limited.
     explicit LightReturn(const Halves& halves);
 
-    /// `raw`: the mean of the samples. Nothing becomes negative that is not already.
+    /// Gives light back to `color`; `raw` is the mean of the samples. No pixel becomes negative
+    /// that is not so already.
     void give_back(const ColorPlanes& raw, ColorPlanes& color) const;
 
   private:
-    /// How alike the blocks of a level are, `light`: of the image.
+    /// The likeness of the blocks of a level; `light` is the image's.
     Likeness likeness_of(int level, const Plane& light) const;
-    /// The last step. `e`: what is lacking, with `in_place`, what stays in its pixels.
+    /// Gives light to the whole image, as the last step. `e` is the lacking light, which includes
+    /// `in_place`, the light that stays in its pixels.
     void give_to_all(const ColorPlanes& e, const ColorPlanes& in_place, ColorPlanes& color) const;
 
-    std::vector<Plane> features_;  ///< of the finest level, in units that tell pixels apart
-    Plane variance_;               ///< of raw's luminance, of the finest level
+    /// Features of the finest level, in units that tell pixels apart.
+    std::vector<Plane> features_;
+    Plane variance_;  ///< variance of raw's luminance, on the finest level
 };
 
 }  // namespace covtrace

@@ -47,7 +47,7 @@ float Likeness::difference(int px, int py, int qx, int qy) const {
 void weighted_sums(std::span<const MarginPlane> planes, const Likeness::Window& weights, int x,
                    int y, float* sums) {
     constexpr int kReach = Likeness::kReach;
-    constexpr size_t kAtOnce = 4;  // share the weights that were read
+    constexpr size_t kAtOnce = 4;  // planes at once, which share the weights that were read
     for (size_t first = 0; first < planes.size(); first += kAtOnce) {
         const size_t n = std::min(kAtOnce, planes.size() - first);
         Float8 sum[kAtOnce] = {};

@@ -1,4 +1,5 @@
-/// How alike pixels are to those around them: sums over what should be reconstructed in one way.
+/// Likeness of pixels to those around them: sums over pixels that should be reconstructed in one
+/// way.
 #pragma once
 
 #include <array>
@@ -19,7 +20,7 @@ class MarginPlane {
           values_(stride_ * (size_t(height) + 2 * kMargin)) {}
     explicit MarginPlane(const Plane& plane);
 
-    /// Pixels up to kMargin outside the image may be read.
+    /// Pointer to a pixel's value; pixels up to kMargin outside the image may be read.
     const float* at(int x, int y) const { return values_.data() + index(x, y); }
     float& operator()(int x, int y) { return values_[index(x, y)]; }
 
@@ -29,10 +30,11 @@ class MarginPlane {
     std::vector<float> values_;
 };
 
-/// Both from the sweep in docs/decisions/0094-candidates-and-their-mixture.md.
+/// Settings of Likeness, both from the sweep in
+/// docs/decisions/0094-candidates-and-their-mixture.md.
 struct LikenessSettings {
-    float sigma = 6;    ///< of the Gaussian G, pixels
-    float any = 0.05f;  ///< the share that everything around has, alike or not
+    float sigma = 6;    ///< deviation of the Gaussian G, pixels
+    float any = 0.05f;  ///< share that everything around has, alike or not
 };
 
 /// Weights of the pixels q around p, up to kReach pixels away in x and in y:
@@ -41,17 +43,17 @@ class Likeness {
   public:
     static constexpr int kReach = 11;  ///< as far as three vectors of a row go
     static constexpr size_t kRows = 2 * kReach + 1, kColumns = 3 * kLanes;
-    /// Row by row from the upper left; what is right of the window has no weight.
+    /// Weights of a window, row by row from the upper left; those right of the window are not used.
     using Window = std::array<float, kRows * kColumns>;
 
     explicit Likeness(const LikenessSettings& settings);
 
-    /// `guide`: in units in which pixels that differ by 1 are not alike.
+    /// Adds a guide, in units in which pixels that differ by 1 are not alike.
     void add(const Plane& guide) { guides_.emplace_back(guide); }
 
     void weigh(int x, int y, Window& weights) const;
 
-    /// sum_k (guide_k(p) - guide_k(q))^2 of two pixels of the image.
+    /// The squared difference sum_k (guide_k(p) - guide_k(q))^2 of two pixels of the image.
     float difference(int px, int py, int qx, int qy) const;
 
   private:
@@ -60,8 +62,8 @@ class Likeness {
     float any_;
 };
 
-/// Of every plane the sum of its values times the weights around a pixel; nothing is beyond the
-/// image.
+/// Sets sums[k] to the sum of plane k's values times the weights around a pixel; beyond the image
+/// all values are 0.
 void weighted_sums(std::span<const MarginPlane> planes, const Likeness::Window& weights, int x,
                    int y, float* sums);
 

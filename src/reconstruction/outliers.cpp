@@ -9,7 +9,7 @@ namespace covtrace {
 
 namespace {
 
-/// How many times brighter than all that the other half saw around it a pixel may be.
+/// Factor by which a pixel may be brighter than all that the other half saw around it.
 constexpr float kMostTimes = 2;
 
 /// Largest value within 3 x 3 pixels.
@@ -34,7 +34,8 @@ Plane absolute(Plane p) {
 }  // namespace
 
 void limit_outliers(Halves& halves) {
-    // Pixel filters with negative lobes make rare light negative, too.
+    // Absolute values are compared: pixel filters with negative lobes make rare light negative,
+    // too.
     const std::array<Plane, 2> bright{absolute(luminance(halves[0].color)),
                                       absolute(luminance(halves[1].color))};
     for (size_t k = 0; k < 2; ++k) {
@@ -45,7 +46,8 @@ void limit_outliers(Halves& halves) {
             const float keep = most / bright[k][i];
             for (size_t c = 0; c < 3; ++c) {
                 halves[k].color[c][i] *= keep;
-                // The rare path made the variance too; what is left of the pixel varies less.
+                // The rare path made the variance, too: the part of the pixel that is left varies
+                // less.
                 halves[k].color_variance[c][i] *= keep * keep;
             }
         }

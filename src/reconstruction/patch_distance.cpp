@@ -42,14 +42,14 @@ PatchDistance<Radius, Step, Side>::PatchDistance(std::span<const Plane> values,
     noise_ = PaddedPlane(noise, border);
 }
 
-/// The distances of the single pixels that the patches of a block cover where they are those of
-/// pixels in the image, kRow in a row.
+/// Writes the distances of single pixels, kRow in a row, for the pixels that the patches of a block
+/// cover whose centres are in the image.
 template <int Radius, int Step, int Side>
 template <size_t Planes>
 void PatchDistance<Radius, Step, Side>::differences(int x0, int y0, int dx, int dy,
                                                     float* out) const {
-    // Differences beyond this say "not alike" however much larger they are; without the limit one
-    // of them would drown the rounding of the sums.
+    // Largest difference that counts: beyond it pixels are not alike, however much larger it is;
+    // without the limit one large difference would drown the rounding of the sums.
     constexpr float kMost = 1e4f;
     const int px = x0 - Radius, end_x = covered(columns(x0)), end_y = covered(rows(y0));
     for (int y = 0; y < end_y; ++y, out += kRow) {
@@ -81,7 +81,7 @@ void PatchDistance<Radius, Step, Side>::block(int x0, int y0, int dx, int dy, fl
                         : differences<3>(x0, y0, dx, dy, d.data());
     constexpr int kSide = 2 * Radius + 1;
     constexpr float kScale = 1 / float(kSide * kSide);
-    // Vectors of the last means reach beyond the row.
+    // The row of sums is longer than it looks: vectors of the last means reach beyond it.
     std::array<float, size_t(kRow) + kLanes> column{};
     std::array<float, kBlock> mean;
     const int width = columns(x0), height = rows(y0), end = covered(width);

@@ -1,4 +1,4 @@
-/// How unlike the neighbourhoods of two pixels are, in units of their noise.
+/// Distances between the neighbourhoods of two pixels, in units of their noise.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 namespace covtrace {
 
 /// A plane with a border on all sides that repeats its outermost pixels (or holds `outside`), so
-/// that windows need no bounds, and one vector more on the right, where the last one of a row may
-/// begin.
+/// that windows need no bounds. Each row has one vector more on its right, for loads that begin at
+/// its last pixels.
 struct PaddedPlane {
     PaddedPlane() = default;
     PaddedPlane(const Plane& plane, int border);
@@ -34,13 +34,15 @@ template <int Radius, int Step, int Side>
 class PatchDistance {
   public:
     static constexpr int kBlock = Side;
-    /// Patches of a block along a row.
+    /// Number of patches of a block along a row.
     static constexpr int kPatches = kBlock / Step;
 
-    /// One plane, or three of one size. `reach`: largest offset along an axis.
+    /// Prepares the comparison of one plane, or of three of one size. `reach`: largest offset along
+    /// an axis.
     PatchDistance(std::span<const Plane> values, std::span<const Plane> variances, int reach);
 
-    /// Pixels of the block from (x0, y0) that are in the image, along a row and along a column.
+    /// Number of pixels of the block from (x0, y0) that are in the image, along a row and along a
+    /// column.
     int columns(int x0) const { return std::min(kBlock, width_ - x0); }
     int rows(int y0) const { return std::min(kBlock, height_ - y0); }
 
@@ -51,19 +53,20 @@ class PatchDistance {
     }
 
     /// Sets out[k stride] to d(p, p + (dx, dy)) of the k-th patch, row by row, of the block from
-    /// (x0, y0). Those of pixels p outside the image get some value or stay as they were.
+    /// (x0, y0). Entries of pixels p outside the image get some value or stay as they were.
     void block(int x0, int y0, int dx, int dy, float* out, size_t stride = 1) const;
 
     /// Whether nothing has noise in the patches of a block and in those that it is compared with.
     bool is_without_noise(int x0, int y0) const;
 
   private:
-    /// Pixels of a row, and rows, that the block's patches cover; rows in whole vectors.
+    /// Number of pixels in a row, and of rows, that the block's patches cover; rows are rounded up
+    /// to whole vectors.
     static constexpr int kCovered = kBlock - Step + 1 + 2 * Radius;
     static constexpr int kRow = (kCovered + 7) / 8 * 8;
     static_assert(kBlock % Step == 0 && kBlock % 8 == 0);
 
-    /// Pixels that the patches of the first `size` pixels along an axis cover.
+    /// Number of pixels that the patches of the first `size` pixels along an axis cover.
     static constexpr int covered(int size) { return (size - 1) / Step * Step + 1 + 2 * Radius; }
 
     template <size_t Planes>
@@ -74,7 +77,8 @@ class PatchDistance {
     PaddedPlane noise_;  // the sum of the variances
 };
 
-/// 1 at d <= 0, falls as exp(-d), 0 from d = 4 on: (1 - d/4)^4. Numbers or Float8.
+/// Weight of a patch at the distance d: 1 at d <= 0, falls as exp(-d), 0 from d = 4 on: (1 -
+/// d/4)^4. T is a number or Float8.
 template <typename T>
 T patch_weight(const T& d) {
     const T clipped = d > 0.0f ? d : T{};

@@ -7,7 +7,7 @@
 
 namespace covtrace {
 
-/// result[i][j] = sum over k < n of a[i][k] b[j][k]; n a multiple of kLanes.
+/// Sets result[i][j] to the sum over k < n of a[i][k] b[j][k]; n is a multiple of kLanes.
 template <size_t Rows, size_t Columns>
 inline void products(const float* const (&a)[Rows], const float* const (&b)[Columns], size_t n,
                      float (&result)[Rows][Columns]) {

@@ -14,15 +14,15 @@ namespace covtrace {
 namespace {
 
 constexpr int kReach = FitWindow::kReach, kSide = FitWindow::kSide;
-constexpr int kStride = 3;  // from centre to centre
+constexpr int kStride = 3;  // pixels from centre to centre
 using Patches = PatchDistance<1, kStride, 48>;
 constexpr int kBlock = Patches::kBlock;
 constexpr size_t kCells = FitWindow::kCells, kCentresPerSide = Patches::kPatches;
 
 using Cells = FitWindow::Cells;
 
-/// What one block of centres adds to the pixels it reaches: weighted colours and weights. The
-/// first of its pixels is kReach to the left of the block and above it.
+/// The sums that one block of centres adds to the pixels it reaches: weighted colours and weights.
+/// The first of its pixels is kReach to the left of the block and above it.
 struct Contribution {
     void clear(int columns, int rows) {
         stride = size_t(columns) + 2 * kReach;
@@ -41,7 +41,7 @@ struct PatchDistances {
         if (noise < kTellingNoise) light = light_of(guide, noise);
     }
     Patches color;
-    std::optional<Patches> light;  ///< where it tells more than the colours do
+    std::optional<Patches> light;  ///< there where it tells more than the colours do
 
   private:
     /// Median of the colours' noise over their brightness.
@@ -61,7 +61,8 @@ struct PatchDistances {
     }
 
     static Patches light_of(const HalfBuffer& guide, float noise) {
-        // What reflects less than the noise is, shows other light: highlights, what lies behind.
+        // The quotient is limited by the noise: pixels that reflect less than it show other light,
+        // as highlights or objects behind them.
         const float least = std::max(kLeastAlbedo, noise);
         ColorPlanes light = guide.color, variance = guide.color_variance;
         for (size_t c = 0; c < 3; ++c)
@@ -73,11 +74,12 @@ struct PatchDistances {
         return {light, variance, kReach};
     }
 
-    /// Keep quotients finite where there is no light and where nothing reflects: the first in the
-    /// range of sqrt(kDarkSquared), below which errors are no longer relative, either.
+    /// Constants that keep quotients finite where there is no light and where nothing reflects.
+    /// kDark is in the range of sqrt(kDarkSquared), below which errors are no longer relative,
+    /// either.
     static constexpr float kDark = 0.05f, kLeastAlbedo = 0.01f;
-    /// With more noise textures are hardly told apart, and light by patches of its own gains less
-    /// than its time is worth (docs/decisions/0094).
+    /// Noise up to which patches of light are compared: with more, textures are hardly told apart,
+    /// and these patches gain less than their time is worth (docs/decisions/0094).
     static constexpr float kTellingNoise = 0.1f;
 };
 
@@ -89,6 +91,7 @@ class Block {
         : in_(in), distance_(distance), windows_(windows) {}
 
     void run(int x0, int y0, std::span<Contribution> out) {
+        // Compare the patches, by colours and, where it tells more, by light
         const int columns = distance_.color.columns(x0), rows = distance_.color.rows(y0);
         for (Contribution& c : out) c.clear(columns, rows);
         collect_distances(distance_.color, x0, y0, distances_[size_t(PatchesOf::colors)]);
@@ -98,6 +101,7 @@ class Block {
             collect_distances(*distance_.light, x0, y0, either);
             for (size_t i = 0; i < either.size(); ++i) either[i] = std::min(either[i], color[i]);
         }
+        // Fit around every centre, once for each window
         for (int y = 0; y < rows; y += kStride)
             for (int x = 0; x < columns; x += kStride) {
                 window_.move_to(in_, x0 + x, y0 + y);
@@ -148,7 +152,8 @@ class Block {
     FitWindow window_;
     Cells weight_{};
     std::array<Cells, 3> fitted_{};
-    std::array<std::vector<float>, 2> distances_;  // by PatchesOf; centre by centre
+    // One list by PatchesOf; distances centre by centre.
+    std::array<std::vector<float>, 2> distances_;
 };
 
 }  // namespace
@@ -161,7 +166,7 @@ std::vector<ColorPlanes> regress(const HalfBuffer& half, const HalfBuffer& guide
     const PatchDistances distance(guide);
 
     const int blocks_x = (w + kBlock - 1) / kBlock, blocks_y = (h + kBlock - 1) / kBlock;
-    // Rows of blocks; those above and below a pixel's own reach it too, and no others.
+    // A pixel is reached by its own row of blocks and by those above and below, and by no others.
     static_assert(kReach < kBlock);
     std::vector<std::vector<Contribution>> contributions(size_t(blocks_x) * size_t(blocks_y));
     const auto fit_rows = [&](int begin, int end) {
@@ -180,7 +185,7 @@ std::vector<ColorPlanes> regress(const HalfBuffer& half, const HalfBuffer& guide
     const auto add_up = [&](int y) {
         for (size_t k = 0; k < windows.size(); ++k)
             for (int x = 0; x < w; ++x) {
-                // The blocks that reach this pixel, in a fixed order.
+                // Add up the blocks that reach this pixel, in a fixed order
                 std::array<float, 4> sum{};
                 for (int by = std::max(0, (y - kReach) / kBlock);
                      by <= std::min(blocks_y - 1, (y + kReach) / kBlock); ++by)
@@ -196,7 +201,8 @@ std::vector<ColorPlanes> regress(const HalfBuffer& half, const HalfBuffer& guide
                     result[k][c](x, y) = sum[3] > 0 ? sum[c] / sum[3] : half.color[c](x, y);
             }
     };
-    // What blocks contribute is several times the image: a few rows of them are kept at a time.
+    // Fit and add up a few rows of blocks at a time: all contributions together are several times
+    // the image
     constexpr int kRowsAtOnce = 4;
     for (int row = 0, fitted = 0; row < blocks_y; row += kRowsAtOnce) {
         const int end = std::min(row + kRowsAtOnce, blocks_y), needed = std::min(end + 1, blocks_y);

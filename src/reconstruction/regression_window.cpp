@@ -8,7 +8,7 @@ namespace covtrace {
 
 namespace {
 
-/// The rows [begin, end) of the window around a pixel.
+/// Copies the rows [begin, end) of the window around a pixel.
 void cut_out(const PaddedPlane& plane, int x, int y, int begin, int end, FitWindow::Cells& out) {
     constexpr int kReach = FitWindow::kReach, kSide = FitWindow::kSide;
     for (int k = begin; k < end; ++k) {
@@ -17,7 +17,7 @@ void cut_out(const PaddedPlane& plane, int x, int y, int begin, int end, FitWind
     }
 }
 
-/// The same of a plane without a border: its outermost pixels are repeated.
+/// Copies the rows of a window from a plane without a border: its outermost pixels are repeated.
 void cut_out(const Plane& plane, int x, int y, int begin, int end, FitWindow::Cells& out) {
     constexpr int kReach = FitWindow::kReach, kSide = FitWindow::kSide;
     const bool inside = x >= kReach && x + kReach < plane.width;
@@ -119,8 +119,8 @@ bool FitWindow::fit(FeatureNoise noise, const Cells& weight, std::array<Cells, 3
     return true;
 }
 
-/// Subtracts the centre's value. False where the feature is as good as constant: what varies by
-/// less is given next to nothing by the ridge.
+/// Subtracts the value at the centre. False where the feature is as good as constant: one that
+/// varies by less than kConstant gets next to nothing from the ridge.
 bool FitWindow::centre(Cells& feature) const {
     constexpr float kConstant = 3e-4f;
     const float value = feature[kOffsets / 2];
@@ -139,7 +139,7 @@ bool FitWindow::centre(Cells& feature) const {
 
 void FitWindow::solve_normal_equations(const Basis& basis, const Cells& weight) {
     const size_t n = basis.size;
-    // The first function is 1: its products with the weights are the weights.
+    // Weight the functions. The first one is 1: its products with the weights are the weights
     Cells& w = weighted_[0];
     for (size_t o = first_; o < end_; o += kLanes)
         store8(load8(&weight[o]) * load8(&sampled_[o]), &w[o]);
@@ -148,7 +148,7 @@ void FitWindow::solve_normal_equations(const Basis& basis, const Cells& weight) 
         for (size_t o = first_; o < end_; o += kLanes)
             store8(load8(&w[o]) * load8(&x[o]), &weighted_[i][o]);
     }
-    // Columns beyond the basis: the colours.
+    // Multiply the weighted functions with all columns: the functions and, after them, the colours
     std::array<const float*, kBasis + 3> column{};
     for (size_t i = 0; i < n; ++i) column[i] = basis.function[i]->data() + first_;
     for (size_t c = 0; c < 3; ++c) column[n + c] = color_[c].data() + first_;
@@ -185,14 +185,14 @@ void FitWindow::solve_normal_equations(const Basis& basis, const Cells& weight) 
     }
     total_ = float(a[0][0]);
     if (!(total_ > 0)) return;
-    // The ridge, relative to each function's own spread, and a floor below which a feature
-    // counts as constant: what differs by less is rounding and left-over noise.
+    // Add the ridge, relative to each function's own spread, and a floor below which a feature
+    // counts as constant: smaller differences are rounding and left-over noise
     constexpr double kRidge = 1e-3, kFloor = 1e-5;
     for (size_t i = 1; i < n; ++i) a[i][i] += kRidge * a[i][i] + kFloor * a[0][0];
     eliminate(n, a);
 }
 
-/// Gauss elimination of the symmetric positive definite system; only its upper half is read.
+/// Solves the symmetric positive definite system by Gauss elimination; only its upper half is read.
 void FitWindow::eliminate(size_t n, double (&a)[kBasis][kBasis + 3]) {
     for (size_t i = 0; i < n; ++i) {
         const double inverse = 1 / a[i][i];

@@ -1,4 +1,4 @@
-/// The window of one regression: what is around a centre, its weights, and the fit.
+/// The window of one regression: pixels around a centre, their weights, and the fit.
 #pragma once
 
 #include <array>
@@ -10,7 +10,8 @@
 
 namespace covtrace {
 
-/// What windows are cut from, with borders as wide as they reach. `half` must outlive it.
+/// Planes that windows are cut from, with borders as wide as windows reach. `half` must outlive
+/// them.
 struct RegressionInputs {
     RegressionInputs(const HalfBuffer& half, const FeaturePlanes& features);
     std::array<PaddedPlane, kFeatures> filtered;
@@ -25,27 +26,28 @@ class FitWindow {
     static constexpr int kReach = kRegressionReach, kSide = 2 * kReach + 1;
     static constexpr size_t kOffsets = size_t(kSide) * kSide;
     static constexpr size_t kCells = (kOffsets + kLanes - 1) / kLanes * kLanes;
-    /// One number per pixel of the window, row by row; the padding is 0. Aligned, or every second
-    /// vector of them would lie across two lines of the cache.
+    /// One number per pixel of the window, row by row; the padding is 0. Cells are aligned, or
+    /// every second vector of them would lie across two lines of the cache.
     struct alignas(sizeof(Float8)) Cells : std::array<float, kCells> {};
 
     FitWindow();
     FitWindow(const FitWindow&) = delete;
     FitWindow& operator=(const FitWindow&) = delete;
 
-    /// Moves it to the centre (x, y).
+    /// Moves the window to the centre (x, y).
     void move_to(const RegressionInputs& in, int x, int y);
 
-    /// The weights of all pixels. `distance`: of their patches from the centre's, kCells of them.
+    /// Sets the weights of all pixels. `distance`: kCells distances of their patches from the
+    /// centre's.
     void set_weights(const RegressionWindow& window, const float* distance, int x, int y,
                      Cells& weight) const;
 
     /// Fits the colours with these features and weights and writes the fit's value at every pixel.
-    /// False where there is nothing to fit.
+    /// Returns false where there is nothing to fit.
     bool fit(FeatureNoise noise, const Cells& weight, std::array<Cells, 3>& fitted);
 
-    /// Rows of the window that are in the image. Nothing is told of the others, where weights
-    /// would be 0.
+    /// Rows of the window that are in the image. The fit's values are not set in others, where
+    /// weights would be 0.
     int first_row() const { return first_row_; }
     int end_row() const { return end_row_; }
 
@@ -53,7 +55,7 @@ class FitWindow {
     static constexpr size_t kPositions = 3;                   // 1, x, y
     static constexpr size_t kBasis = kPositions + kFeatures;  // and the features
 
-    /// What the colours are explained by.
+    /// Functions that the colours are explained by: 1, x, y and features.
     struct Basis {
         std::array<Cells, kFeatures> feature{};  // those that vary come first
         std::array<const Cells*, kBasis> function{};
@@ -65,9 +67,9 @@ class FitWindow {
     void eliminate(size_t n, double (&a)[kBasis][kBasis + 3]);
 
     int first_row_ = 0, end_row_ = kSide;
-    size_t first_ = 0, end_ = kCells;  // cells of whole vectors that hold those rows
+    size_t first_ = 0, end_ = kCells;  // cells, in whole vectors, that hold the rows in the image
     Cells one_{}, x_{}, y_{};          // positions relative to the centre, in units of the reach
-    std::array<Basis, 2> basis_{};     // by FeatureNoise
+    std::array<Basis, 2> basis_{};     // bases by FeatureNoise
     std::array<Cells, 3> color_{};
     Cells inside_{}, sampled_{};
     std::array<Cells, kBasis> weighted_{};

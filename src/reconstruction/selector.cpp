@@ -11,22 +11,23 @@ namespace covtrace {
 
 namespace {
 
-constexpr size_t kMost = 12;  // candidates
-/// Shares are judged at every so many pixels, and where pixels differ from those around them by
-/// this sum of squared differences of the guides (docs/decisions/0094).
+constexpr size_t kMost = 12;  // most candidates
+/// Step between pixels whose shares are always judged; between them, pixels are judged that differ
+/// from those around them by kAlike, as sum of squared differences of the guides
+/// (docs/decisions/0094).
 constexpr int kCoarsest = 4;
 constexpr float kAlike = 0.5f;
-constexpr int kSteps = 24;          // of the minimisation; more change nothing
-constexpr float kSmoothing = 0.5f;  // of the shares, pixels
+constexpr int kSteps = 24;          // steps of the minimisation; more change nothing
+constexpr float kSmoothing = 0.5f;  // smoothing of the shares, pixels
 
 /// Index of G_cd, c <= d, in the list of planes.
 size_t entry(size_t c, size_t d) {
     return d * (d + 1) / 2 + c;
 }
 
-/// Minimises w^T G w over the simplex: the best single candidate, then steps that move weight from
-/// the worst to the best one (pairwise Frank-Wolfe; Lacoste-Julien and Jaggi 2015). Stopping early
-/// keeps it near that candidate.
+/// Minimises w^T G w over the simplex: begins with the best single candidate, then moves weight
+/// from the worst candidate to the best one step by step (pairwise Frank-Wolfe; Lacoste-Julien and
+/// Jaggi 2015). Stopping early keeps the minimum near that candidate.
 void minimise(const float (&g)[kMost][kMost], size_t n, int steps, float (&w)[kMost]) {
     size_t best = 0;
     for (size_t c = 1; c < n; ++c)
@@ -51,7 +52,7 @@ void minimise(const float (&g)[kMost][kMost], size_t n, int steps, float (&w)[kM
     }
 }
 
-/// What pixel i adds to G_cd.
+/// The product of errors that pixel i adds to G_cd.
 float product_of_errors(const Halves& halves, const Candidate& c, const Candidate& d,
                         const ColorPlanes& g, size_t i) {
     float sum = 0;
@@ -73,8 +74,8 @@ void for_pairs(size_t n, const OfPair& of_pair) {
 }
 
 /// Calls `set(x, y)` for every kCoarsest-th pixel in x and in y, then halves the step until all
-/// pixels are done: `between(x, y, left, top, right, bottom)` for those of which `alike(x, y, u,
-/// v)` holds with the nearest done ones, `set` for the others. On all threads.
+/// pixels are done: `between(x, y, left, top, right, bottom)` for pixels that are `alike(x, y, u,
+/// v)` to all of the nearest done ones, `set` for the others. Runs on all threads.
 template <typename Set, typename Alike, typename Between>
 void coarse_to_fine(int w, int h, const Set& set, const Alike& alike, const Between& between) {
     parallel_for_rows(w / kCoarsest, (h + kCoarsest - 1) / kCoarsest, [&](int row) {
@@ -100,8 +101,8 @@ void coarse_to_fine(int w, int h, const Set& set, const Alike& alike, const Betw
     }
 }
 
-/// Shares from G, which `gram(x, y, entries)` tells of a pixel. Pixels of which `alike` tells that
-/// they are like those around them have the mean of their shares.
+/// Mixes the candidates with shares from G, whose entries `gram(x, y, entries)` gives for a pixel.
+/// Pixels that are `alike` to those around them have the mean of their shares.
 template <typename Gram, typename Alike>
 Selection mixed(std::span<const Candidate> candidates, int w, int h, bool mix, const Gram& gram,
                 const Alike& alike) {
@@ -121,7 +122,7 @@ Selection mixed(std::span<const Candidate> candidates, int w, int h, bool mix, c
             share(x, y) = 0.25f * ((share(left, top) + share(right, top)) +
                                    (share(left, bottom) + share(right, bottom)));
     });
-    // Shares that jump from pixel to pixel would show as noise.
+    // Smooth the shares: jumps from pixel to pixel would show as noise
     for (Plane& p : s.share) p = gaussian_blur(p, kSmoothing);
     for (size_t k = 0; k < 2; ++k) {
         s.half[k].fill(Plane(w, h));
@@ -160,7 +161,8 @@ Selection select(const Halves& halves, std::span<const Candidate> candidates, co
     const auto sums = [&](int x, int y, float* entries) {
         for (const Plane& plane : gram) *entries++ = plane(x, y);
     };
-    // What is judged over a Gaussian hardly changes from pixel to pixel.
+    // All pixels between are taken for alike: sums over a Gaussian hardly change from pixel to
+    // pixel.
     return mixed(candidates, w, h, mix, sums, [mix](int, int, int, int) { return mix; });
 }
 
@@ -180,7 +182,7 @@ Selection select(const Halves& halves, std::span<const Candidate> candidates, co
         likeness.weigh(x, y, weights);
         weighted_sums(gram, weights, x, y, entries);
     };
-    // The best single candidates of pixels have no mean.
+    // Means are for mixtures alone: the best single candidates of pixels have none.
     const auto alike = [&](int x, int y, int u, int v) {
         return mix && likeness.difference(x, y, u, v) < kAlike;
     };
