@@ -6,17 +6,17 @@
 
 namespace covtrace {
 
-/// The axes x, y, z of a frame side by side: the first three of each component.
+/// Axes x, y, z of a frame side by side: each component of the three axes, in three of four lanes.
 struct Axes4 {
     Double4 x, y, z;
 
     explicit Axes4(const covariance::Frame<double>& f)
         : x{f.x.x, f.y.x, f.z.x, 0}, y{f.x.y, f.y.y, f.z.y, 0}, z{f.x.z, f.y.z, f.z.z, 0} {}
-    /// Of each axis with v.
+    /// Dot products of the axes with v.
     Double4 dot(const covariance::Vec3<double>& v) const {
         return multiply_add(x, v.x, multiply_add(y, v.y, z * all4(v.z)));
     }
-    /// Each axis plus its part of `s` times v.
+    /// Adds to each axis its lane of `s` times v.
     void add(const Double4& s, const covariance::Vec3<double>& v) {
         x = multiply_add(s, v.x, x);
         y = multiply_add(s, v.y, y);
@@ -27,7 +27,7 @@ struct Axes4 {
     }
 };
 
-/// (a0 a0, a0 a1, a1 a1): the square a a^T of the first two.
+/// The square a a^T of the first two lanes: (a0 a0, a0 a1, a1 a1).
 inline Double4 square4(const Double4& a) {
     return __builtin_shufflevector(a, a, 0, 0, 1, 1) * __builtin_shufflevector(a, a, 0, 1, 1, 1);
 }

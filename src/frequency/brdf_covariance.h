@@ -5,10 +5,10 @@
 
 namespace covtrace {
 
-/// What stands for a BRDF in the frequency analysis.
+/// Description of a BRDF in the frequency analysis.
 enum class BrdfCovariance {
     local,  ///< its lobes as they are at the pair of directions that the path took
-    global  ///< each lobe's peak, as in the thesis
+    global  ///< each lobe's peak, as in Belcour 2012
 };
 
 template <>

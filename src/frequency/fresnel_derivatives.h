@@ -1,5 +1,5 @@
-/// Fresnel's factor of a border with its derivatives in closed form: what `border_reflectance`
-/// gives with cov::Taylor, for a third of the instructions.
+/// Fresnel's factor of a border with its derivatives in closed form: the values that
+/// `border_reflectance` gives with cov::Taylor, for a third of the instructions.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,8 @@
 
 namespace covtrace {
 
-/// What the border of `lobe` reflects as a function of the cosine, at `c` in (0, 1].
+/// Reflectance of the border of `lobe` as a function of the cosine, with derivatives at `c` in (0,
+/// 1].
 ///
 /// Dielectric borders of the index e: with w = sqrt(e^2 - 1 + c^2), w' = c/w,
 ///

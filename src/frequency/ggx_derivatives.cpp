@@ -13,7 +13,7 @@ namespace {
 using Vec = cov::Vec3<double>;
 using Jet = cov::Jet<double>;
 
-/// diag(x, y, 1).
+/// The matrix diag(x, y, 1).
 struct Stretch {
     double x, y;
     Vec operator*(const Vec& v) const { return {x * v.x, y * v.y, v.z}; }
@@ -25,7 +25,7 @@ void upend(LocalAxes& a) {
     a.z.z = -a.z.z;
 }
 
-/// Adds s log g, with g to second order.
+/// Adds s log g to a sum, with g to second order.
 void add_log(Jet& sum, double s, const Jet& g) {
     const double i = 1 / g.value, u = g.u * i, v = g.v * i;
     sum.u += s * u;
@@ -35,8 +35,8 @@ void add_log(Jet& sum, double s, const Jet& g) {
     sum.vv += s * (g.vv * i - v * v);
 }
 
-/// s(W) a + W.z b with W = z + u x + v y and s^2 = W.(S W): the denominator of Smith's masking of
-/// both directions, where lengths cancel against the numerator.
+/// The function s(W) a + W.z b with W = z + u x + v y and s^2 = W.(S W): the denominator of Smith's
+/// masking of both directions, where lengths cancel against the numerator.
 Jet masking(const LocalAxes& w, const Stretch& stretch, double a, double b) {
     const Vec sz = stretch * w.z, sx = stretch * w.x;
     const double s = std::sqrt(dot(w.z, sz)), i = 1 / s;
@@ -58,7 +58,7 @@ std::optional<Jet> log_reflection(const LobeShare& lobe, LocalAxes wo, Vec wi) {
     }
     if (!(wi.z > 0)) return std::nullopt;
     Jet sum;
-    // The distribution at h = W + |W| wi, of any length: twice log |h|^2 / h.(A h).
+    // Add the distribution at h = W + |W| wi, of any length: twice log |h|^2 / h.(A h)
     const Stretch narrow{1 / (double(lobe.alpha_x) * lobe.alpha_x),
                          1 / (double(lobe.alpha_y) * lobe.alpha_y)};
     const Vec h = wo.z + wi, ah = narrow * h, ax = narrow * wo.x;
@@ -68,13 +68,13 @@ std::optional<Jet> log_reflection(const LobeShare& lobe, LocalAxes wo, Vec wi) {
     add_log(sum, -2,
             {dot(h, ah), 2 * dot(wo.x, ah), 2 * dot(wo.y, ah), 2 * dot(wo.x, ax) + bend,
              2 * dot(wo.y, ax), 2 * dot(wo.y, narrow * wo.y) + bend});
-    // Masking, over cos(wo): lengths leave |W|.
+    // Add masking, over cos(wo): lengths leave |W|
     const Stretch wide{double(lobe.alpha_x) * lobe.alpha_x, double(lobe.alpha_y) * lobe.alpha_y};
     add_log(sum, -1, masking(wo, wide, wi.z, std::sqrt(dot(wi, wide * wi))));
     sum.uu += 1;
     sum.vv += 1;
     if (!(lobe.border_eta > 0)) return sum;
-    // Fresnel's factor of x = cos(wo, h), x^2 = (1 + c) / 2 with c = wo.wi.
+    // Add Fresnel's factor of x = cos(wo, h), x^2 = (1 + c) / 2 with c = wo.wi
     const double x = std::sqrt(0.5 * (1 + c)), x1 = 0.25 / x, x2 = -x1 * x1 / x;
     const auto r = reflectance_at(lobe, x);
     if (!(r.value > 0)) return std::nullopt;

@@ -1,8 +1,9 @@
 /// First and second derivatives of the logarithm of a GGX reflection and of its masking, in closed
-/// form: what `lobe_function` and Ggx::g2_over_cos_o give with scalars that carry derivatives, for
-/// less than half of the instructions. The distribution is Trowbridge's and Reitz', the masking
-/// Smith's with correlated heights (Heitz 2014, "Understanding the Masking-Shadowing Function in
-/// Microfacet-Based BRDFs", equations 85 and 99); the derivatives are our own.
+/// form: those that `lobe_function` and Ggx::g2_over_cos_o give with scalars that carry
+/// derivatives, for less than half of the instructions. The distribution is Trowbridge's and
+/// Reitz', the masking Smith's with correlated heights (Heitz 2014, "Understanding the
+/// Masking-Shadowing Function in Microfacet-Based BRDFs", equations 85 and 99); the derivatives are
+/// our own.
 #pragma once
 
 #include <optional>
@@ -12,19 +13,19 @@
 
 namespace covtrace {
 
-/// The axes of a ray in the coordinates of the BSDF: the slopes (u, v) stand for the direction
-/// z + u x + v y, normalised.
+/// Axes of a ray in the coordinates of the BSDF: the slopes (u, v) stand for the direction z + u x
+/// + v y, normalised.
 struct LocalAxes {
     covariance::Vec3<double> x, y, z;
 };
 
-/// log f = log(BRDF * cos) of a glossy reflection about the leaving direction `wo`, up to its value
-/// (left 0); `wi` points towards the light. Empty where the lobe reflects nothing.
+/// Derivatives of log f = log(BRDF * cos) of a glossy reflection about the leaving direction `wo`;
+/// the value is left 0. `wi` points towards the light. Empty where the lobe reflects nothing.
 std::optional<covariance::Jet<double>> log_reflection(const LobeShare& lobe, LocalAxes wo,
                                                       covariance::Vec3<double> wi);
 
-/// The same for masking with its cosine, G2 / cos(wo), times the solid angle per area of slopes,
-/// about the direction `wi` towards the light.
+/// Derivatives of the logarithm of masking with its cosine, G2 / cos(wo), times the solid angle per
+/// area of slopes, about the direction `wi` towards the light.
 covariance::Jet<double> log_masked_cosine(const LobeShare& lobe, covariance::Vec3<double> wo,
                                           LocalAxes wi);
 

@@ -9,13 +9,13 @@ namespace cov = covariance;
 
 namespace {
 
-/// Shows every side about the same disc.
+/// Whether the emitter is a ball, which shows every side about the same disc.
 bool is_ball(const SourceSpectrum& s) {
     return s.kind == SourceSpectrum::Kind::area && s.k11 > 0 && s.k22 > 0;
 }
 
-/// A ball sends out the light of a disc through its centre that faces the receiver: what the
-/// receiver sees changes with its distance from there, not from the point of the surface.
+/// The light of a ball: that of a disc through its centre that faces the receiver. The disc that
+/// the receiver sees changes with its distance from the centre, not from the point of the surface.
 LightField ball_field(const SourceSpectrum& s, Vec3 travel, double cap) {
     const double moment = 0.5 * (double(s.s11) + s.s22);
     const LightField disc = cov::area_source<double>(cov::Sym2<double>::diagonal(moment, moment),
@@ -25,16 +25,17 @@ LightField ball_field(const SourceSpectrum& s, Vec3 travel, double cap) {
     return cov::motion_exit(cov::travel(disc, depth), motion);
 }
 
-/// Light of a flat emitter at rest: what area_source and surface_exit do to its moments S is
-/// (4 pi^2 P S P^T)^-1, the spectrum of the moments as the receiver sees them. Empty where one of
-/// the two has to limit anything.
+/// The light of a flat emitter at rest. Together area_source and surface_exit turn its moments S
+/// into (4 pi^2 P S P^T)^-1, the spectrum of the moments as the receiver sees them. Empty where one
+/// of the two has to limit anything.
 std::optional<LightField> flat_field(const SourceSpectrum& s, Vec3 travel, double cap) {
     const bool is_flat = s.k11 == 0 && s.k12 == 0 && s.k22 == 0;
     if (!is_flat || s.velocity != Vec3{} || s.angular_velocity != Vec3{}) return std::nullopt;
     const cov::Sym2<double> moments{s.s11, s.s12, s.s22};
     const cov::Frame<double> frame = cov::frame_along<double>(travel);
     const auto p = cov::projection<double>(frame, s.tangent.x, s.tangent.y);
-    // surface_exit limits cosines; near that limit the two need not agree on which side they are.
+    // Cosines near the limit of surface_exit are left to it: area_source and surface_exit need not
+    // agree on which side of the limit they are.
     const bool is_grazing = std::abs(cov::det(p)) < 1.01 * cov::min_surface_cosine<double>;
     if (is_grazing || !cov::is_spectrum_below(moments, cap)) return std::nullopt;
     LightField field{{}, frame};
@@ -87,7 +88,7 @@ LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sha
         case SourceSpectrum::Kind::environment:
             break;
     }
-    // The directions of the map are those towards the light, against its travel: both slopes change
+    // Directions of the map are those towards the light, against its travel: both slopes change
     // their signs, which a covariance does not see.
     const cov::Frame<double> frame{source.tangent.x, source.tangent.y, travel};
     return cov::distant_source(frame, {source.a11, source.a12, source.a22});

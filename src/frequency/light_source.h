@@ -1,4 +1,4 @@
-/// Where the light of a path starts: from a light's shape to the covariance of the light that
+/// The light of a path at its start: from a light's shape to the covariance of the light that
 /// leaves it.
 #pragma once
 
@@ -9,16 +9,16 @@ namespace covtrace {
 
 using LightField = covariance::LightField<double>;
 
-/// The light field that leaves a light in the direction `travel` (unit, world).
+/// Makes the light field that leaves a light in the direction `travel` (unit, world).
 ///
-/// Area lights are Gaussian emitters with the moments of the whole shape; where the camera sees
+/// Area lights are Gaussian emitters with the moments of the whole shape. Where the camera sees
 /// them sharply (directly or by specular lobes alone) their border is an image edge and its
-/// distance limits the bandwidth too, as does what varies on the light: `texture`, along source.
-/// tangent's x and y. `smallest` is the extent that stands for a point, in scene units.
+/// distance limits the bandwidth, too, as does any variation on the light: `texture`, along
+/// source.tangent's x and y. `smallest` is the extent that stands for a point, in scene units.
 LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sharply,
                         double smallest, const covariance::Sym2<double>& texture = {});
 
-/// What a diffuse receiver `distance` away (scene units) has to know of the light as an emitter.
+/// The light as an emitter for a diffuse receiver `distance` away (scene units).
 covariance::Emitter<double> emitter_of(const SourceSpectrum& source, double distance);
 
 }  // namespace covtrace

@@ -11,14 +11,14 @@ namespace cov = covariance;
 
 namespace {
 
-/// Pixels. The widest filter has a standard deviation of 15 pixels and passes, at c = 2, no signal
-/// narrower than twice that.
+/// Widest feature that a filter can lose, pixels. The widest filter has a standard deviation of 15
+/// pixels and passes, at c = 2, no signal narrower than twice that.
 constexpr double kWidestFeature = 30;
-/// How many times an edge's distance counts beside its blur when it is looked for, so that edges
-/// farther than 8 pixels are left out: there a filter could by itself be 0.25 * 8 pixels wide, and
-/// those of its neighbours nearer to the edge limit it to half a pixel + 0.1 * 8.
+/// Factor of an edge's distance beside its blur when it is looked for, so that edges farther than 8
+/// pixels are left out: there a filter could by itself be 0.25 * 8 pixels wide, and those of its
+/// neighbours nearer to the edge limit it to half a pixel + 0.1 * 8.
 constexpr double kDistance = kWidestFeature / 8;
-/// Of the angular windows of lobes that are sharp for this purpose, 1/rad^2.
+/// Angular window from which on lobes are sharp for this purpose, 1/rad^2.
 constexpr double kSharpWindow = 1e6;
 constexpr double kDiffuseWindow = 1 / (cov::pi<double> * cov::pi<double>);
 
@@ -39,7 +39,7 @@ double sharpest_window(const LobeShares& lobes) {
                 return kSharpWindow;
             case LobeKind::glossy_reflection:
             case LobeKind::glossy_transmission: {
-                // Of the half vector's slopes; outgoing slopes are twice as wide.
+                // Outgoing slopes are twice as wide as the half vector's.
                 const auto micro = cov::micro_ggx<double>(lobe.alpha_x, lobe.alpha_y);
                 window = std::max(window, 0.25 * std::max(micro.xx, micro.yy));
                 break;
@@ -60,8 +60,8 @@ LightField past_voxels(const VoxelGrid& grid, LightField field,
     while (march.next(float(std::min(cov::footprint_radius(field.sigma), 3.0 * voxel)), e)) {
         field = cov::travel(field, e.s - at);
         at = e.s;
-        // So near that the direction to the centroid is chance: the surface's normals tell where
-        // its edge is.
+        // Touching means so near that the direction to the centroid is chance: the surface's
+        // normals tell where its edge is.
         const bool touches = covtrace::length(e.offset) < 0.5f * voxel;
         const NormalTensor& n = e.normals;
         field = touches ? cov::occlude(field, cov::Sym3<double>{n.xx, n.xy, n.xz, n.yy, n.yz, n.zz},
@@ -71,13 +71,14 @@ LightField past_voxels(const VoxelGrid& grid, LightField field,
     return cov::travel(field, length - at);
 }
 
-/// Voxels of the thesis' grid along the longest side.
+/// Voxels along the longest side of the grid of Belcour 2012.
 constexpr double kThesisWidth = 200;
 
-/// As the thesis has it: an occupied voxel is a thick occluder, which is several planar ones, one
-/// behind the other, whose edges lie across the voxel's normals and wherever the light passes. A
-/// slice is as thick as a voxel of the thesis' own grid, and its edge half of that away, whatever
-/// the grid's width: a coarser one is thicker around the same surfaces, and occludes more.
+/// Carries light past every occupied voxel on its way, as in Belcour 2012: an occupied voxel is a
+/// thick occluder, which is several planar ones, one behind the other, whose edges lie across the
+/// voxel's normals and wherever the light passes. A slice is as thick as a voxel of a grid of that
+/// width, and its edge half of that away, whatever the width of the grid at hand: a coarser grid is
+/// thicker around the same surfaces, and occludes more.
 LightField past_every_voxel(const VoxelGrid& grid, LightField field,
                             const OccluderQuery::Segment& segment, double length) {
     const double slice = double(grid.longest_side()) / kThesisWidth;
@@ -88,14 +89,14 @@ LightField past_every_voxel(const VoxelGrid& grid, LightField field,
         field = cov::travel(field, c.s - at);
         at = c.s;
         const NormalTensor& n = c.voxel->normals;
-        // As much as c.length / slice of them.
+        // The voxel counts as c.length / slice slices.
         field = cov::occlude(field, cov::Sym3<double>{n.xx, n.xy, n.xz, n.yy, n.yz, n.zz},
                              0.5 * slice * std::sqrt(slice / c.length), c.voxel->velocity);
     }
     return cov::travel(field, length - at);
 }
 
-/// Whether an own outline is narrow enough at the end of the segment.
+/// Whether an own outline makes features narrow enough, at the end of the segment, to matter.
 bool matters(const OwnOutline& own, const EdgeMeasure& measure, const cov::Vec3<double>& travel,
              double length) {
     const auto z = static_cast<float>(length - cov::dot(own.contour.offset, travel));
@@ -140,9 +141,9 @@ Visibility next_visibility(const SensorGeometry& camera, const Visibility& neare
 
 EdgeMeasure measure_at_surface(const cov::SymmetricMatrix5<double>& sigma, double length,
                                const Visibility& end) {
-    // The light as it arrives with nothing beside its way, then through the lobe: both axes in one.
-    // With M over (x, u) an edge q w w^T, w = (1, -z), raises the Schur complement by
-    // q h / (Muu + q z^2), h = w^T adj(M) w.
+    // The light arrives as if nothing stood beside its way, then goes through the lobe; both axes
+    // are added up in one. With M over (x, u) an edge q w w^T, w = (1, -z), raises the Schur
+    // complement by q h / (Muu + q z^2), h = w^T adj(M) w.
     const auto arriving = cov::travel(sigma, length);
     const double xx = arriving(0, 0) + arriving(1, 1), xu = arriving(0, 2) + arriving(1, 3),
                  uu = arriving(2, 2) + arriving(3, 3) + 2 * end.window;
@@ -158,7 +159,7 @@ EdgeMeasure measure_at_surface(const cov::SymmetricMatrix5<double>& sigma, doubl
 }
 
 EdgeMeasure measure_at_camera(const SensorGeometry& camera) {
-    // In slopes, beside a circle of confusion; for parallel rays in lengths.
+    // Widths are slopes, beside a circle of confusion; for parallel rays they are lengths.
     EdgeMeasure m;
     m.a0 = 0.5f * camera.lens_radius;
     m.a1 = -m.a0 / camera.focal_distance;

@@ -1,5 +1,5 @@
-/// Travel past what stands beside the way: who is asked, how near an edge must be to matter, and
-/// the operator applied at each.
+/// Travel past occluders beside the way: the search for them, how near an edge must be to matter,
+/// and the operator applied at each.
 #pragma once
 
 #include "covariance/covariance.hpp"
@@ -11,33 +11,33 @@
 
 namespace covtrace {
 
-/// Who knows the occluders: at most one of the two; neither: light travels as if nothing stood
-/// beside its way.
+/// Sources that know the occluders: at most one of grid and query. With neither, light travels as
+/// if nothing stood beside its way.
 struct Occluders {
     const VoxelGrid* grid = nullptr;
     const OccluderQuery* query = nullptr;
-    /// With a grid: every occupied voxel on the way occludes, wherever its surface lies, in place
-    /// of the nearest ones beside the way at their distance.
+    /// Whether every occupied voxel of the grid on the way occludes, wherever its surface lies;
+    /// otherwise the nearest voxels beside the way do, at their distance.
     bool every_voxel = false;
     explicit operator bool() const { return grid || query; }
 };
 
-/// How features of the light that arrives at a vertex are seen by the camera.
+/// The camera's view of features in the light that arrives at a vertex.
 struct Visibility {
     /// Standard deviation of the widest feature at the vertex that may still narrow a filter, scene
-    /// units; 0: none may.
+    /// units; 0 if none may.
     double extent;
     /// Angular variance, 1/rad^2 per axis, of the sharpest lobe by which the vertex sends light on.
     double window;
 };
 
-/// The angular window of the sharpest lobe of a recorded vertex: that of the cosine for diffuse
-/// ones.
+/// The angular window of the sharpest lobe of a recorded vertex; diffuse lobes count with that of
+/// the cosine.
 double sharpest_window(const PathVertex& vertex);
-/// What the camera can see at the path's first vertex, `distance` from it; `window`: the vertex'.
+/// The view of the path's first vertex, `distance` from the camera; `window` is the vertex' own.
 Visibility first_visibility(const SensorGeometry& camera, double distance, double window);
-/// What it can see at the next vertex (away from the camera), `distance` from one where it sees
-/// `nearer`: a rough surface blurs what is far from it.
+/// The view of the next vertex (away from the camera), `distance` from a vertex with the view
+/// `nearer`: a rough surface blurs features that are far from it.
 Visibility next_visibility(const SensorGeometry& camera, const Visibility& nearer, double distance,
                            double window);
 
@@ -46,15 +46,15 @@ EdgeMeasure measure_at_surface(const covariance::SymmetricMatrix5<double>& sigma
                                const Visibility& end);
 EdgeMeasure measure_at_camera(const SensorGeometry& camera);
 
-/// The outline of the surface itself that light has just left. Voxels hold it, outlines that are
-/// asked for do not: it lies at or behind the point where the segment starts.
+/// The outline of the surface itself that light has just left. Voxels contain it; a query does not,
+/// as it lies at or behind the point where the segment starts.
 struct OwnOutline {
     covariance::Contour<double> contour;
-    covariance::Motion<double> motion;  ///< of the point where the segment starts
+    covariance::Motion<double> motion;  ///< motion of the point where the segment starts
 };
 
-/// Carries light along a segment, past the occluders that matter. `own`: null where there is none;
-/// `smallest`: the extent that stands for a point, scene units.
+/// Carries light along a segment, past the occluders that matter. `own` is null where there is no
+/// own outline; `smallest` is the extent that stands for a point, scene units.
 LightField travel_past(const Occluders& occluders, const LightField& field,
                        const OccluderQuery::Segment& segment, const EdgeMeasure& measure,
                        const OwnOutline* own, double smallest);

@@ -10,8 +10,8 @@ namespace cov = covariance;
 
 namespace {
 
-/// What sends light on from a vertex, as a receiver at the given distance sees it. Mirrors show an
-/// emitter that is taken to face the receiver.
+/// The surface or medium at a vertex as an emitter, seen by a receiver at the given distance.
+/// Mirrors show an emitter that is taken to face the receiver.
 cov::Emitter<double> emitter_at(const PathVertex& v, double distance) {
     if (v.medium >= 0) return {{}, distance};  // a medium shines about evenly
     const LobeShares& lobes = v.scatters ? v.next_event.lobes : v.direct_event.lobes;
@@ -27,7 +27,7 @@ std::optional<OwnOutline> own_outline(const cov::Surface<double>& surface,
     return OwnOutline{*contour, motion};
 }
 
-/// `at_rest`: beside a camera that rests.
+/// Light at the sensor, from light as it is beside a camera that rests.
 cov::SymmetricMatrix5<double> to_sensor(const LightField& at_rest, const SensorGeometry& g) {
     if (cov::trace(at_rest.sigma) == 0) return {};
     if (g.orthographic)
@@ -81,7 +81,7 @@ PathCovariance PathWalk::run() {
     return at_sensor();
 }
 
-// The steps of the walk
+// ---- The steps of the walk
 
 double PathWalk::total() const {
     double sum =
@@ -94,7 +94,8 @@ double PathWalk::total() const {
 }
 
 void PathWalk::find_visibilities() {
-    // What can be seen of a vertex shrinks with every rough surface before it.
+    // Follow the path from the camera: the view of a vertex shrinks with every rough surface before
+    // it
     Vec3 previous = record_.camera_ray.origin;
     float travelled = 0;
     for (size_t i = 0; i < size_t(record_.count); ++i) {
@@ -199,7 +200,7 @@ PathCovariance PathWalk::at_sensor() {
     return result;
 }
 
-// Light that comes from elsewhere
+// ---- Light that comes from elsewhere
 
 PathWalk::SampledLight PathWalk::sampled_light(int i, double weight) const {
     const PathVertex& v = vertex(i);
@@ -227,7 +228,7 @@ LightField PathWalk::sky_field(Vec3 w) const {
     return source_field(scene_.lights.environment_spectrum(w), -w, false, context_.smallest);
 }
 
-// The way between two vertices
+// ---- The way between two vertices
 
 void PathWalk::carry(LightField& field, Vec3 from, Owner owner_of_from, int i, double weight,
                      const OwnOutline* own) const {
@@ -258,7 +259,7 @@ LightField PathWalk::to_camera(const LightField& field, const OccluderQuery::Seg
                        context_.smallest);
 }
 
-// The record
+// ---- The record
 
 Vec3 PathWalk::position(int i) const {
     return i < 0 ? record_.camera_ray.origin : vertex(i).hit.position;

@@ -8,11 +8,13 @@ namespace covtrace {
 
 namespace {
 
-/// A contribution or lobe below this part of a path's luminance is not followed: whatever a filter
-/// does to it alone changes a pixel by less than counts as a change (docs/internals/prediction.md).
+/// Share of a path's luminance below which a contribution or lobe is not followed: whatever a
+/// filter does to it alone changes a pixel by less than counts as a change
+/// (docs/internals/prediction.md).
 constexpr double kInvisible = 0.02;
-/// All together they may be as much of a path's light as one contribution may be that is carried
-/// without its occluders; where they are more, every one is followed.
+/// Share of a path's light that must be followed. The contributions left out may together be as
+/// much as one may be that is carried without its occluders; where they are more, every one is
+/// followed.
 constexpr double kLeastFollowed = 1 - kSmallestShare;
 
 }  // namespace

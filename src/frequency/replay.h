@@ -1,4 +1,5 @@
-/// From a recorded path to its covariance at the sensor: the only place that knows both sides.
+/// Replay: from a recorded path to its covariance at the sensor, the only place that knows both
+/// sides.
 #pragma once
 
 #include "covariance/covariance.hpp"
@@ -10,23 +11,23 @@
 
 namespace covtrace {
 
-/// A path's covariance over (pixel x, pixel y, lens, lens, shutter) and its weight, the luminance
+/// Covariance of a path over (pixel x, pixel y, lens, lens, shutter) and its weight, the luminance
 /// of all light that the record holds. Weight 0: no light, or a matrix that is not finite.
 struct PathCovariance {
     covariance::SymmetricMatrix5<double> sigma;
     double weight = 0;
 };
 
-/// Which of a path's light is followed. Emitters in view (PathVertex::in_view) and the light that
-/// they shed on surfaces have spectra, and contrasts, of their own.
+/// Part of a path's light that is followed. Emitters in view (PathVertex::in_view) and the light
+/// that they shed on surfaces have spectra, and contrasts, of their own.
 enum class LightPart { all, in_view, scattered };
 
-/// Light below this part of a path's luminance is carried without a look at its occluders, the
-/// dearest step of the replay: the contrast of its shadow edges is below what the spectra of
+/// Share of a path's luminance below which light is carried without a look at its occluders, the
+/// dearest step of the replay: the contrast of its shadow edges is below that which the spectra of
 /// textures count as visible.
 inline constexpr double kSmallestShare = 0.1;
 
-/// What the replays of all paths of a scene share.
+/// Data that the replays of all paths of a scene share.
 struct ReplayedScene {
     const RenderScene& scene;
     Occluders occluders;
@@ -36,16 +37,17 @@ struct ReplayedScene {
     double smallest;  ///< extent that stands for a point, scene units
 
     ReplayedScene(const RenderScene& scene, const Occluders& occluders, BrdfCovariance rule);
-    /// Where light from infinity, seen from p in the direction w, enters the bounding sphere.
+    /// The point where light from infinity, seen from p in the direction w, enters the bounding
+    /// sphere.
     Vec3 entry(Vec3 p, Vec3 w) const;
 };
 
-/// Walks the path once from its far end to the sensor. At every vertex the light found there (its
-/// own emission, a sampled light) and the light that arrives from further on are merged by
-/// luminance (an incoherent sum, covariance::merge), so that k vertices cost k steps.
+/// Replays paths: walks each once from its far end to the sensor. At every vertex the light found
+/// there (its own emission, a sampled light) and the light that arrives from further on are merged
+/// by luminance (an incoherent sum, covariance::merge), so that k vertices cost k steps.
 class PathReplay {
   public:
-    /// What is given must outlive this.
+    /// Prepares replays of paths in a scene; scene and occluders must outlive this object.
     PathReplay(const RenderScene& scene, const Occluders& occluders, BrdfCovariance rule)
         : context_(scene, occluders, rule) {}
     PathCovariance operator()(const PathRecord& record, LightPart part = LightPart::all) const;

@@ -15,13 +15,14 @@ using Vec = cov::Vec3<double>;
 using cov::multiply_add;
 using cov::sum_of_products;
 
-/// The logarithm of Smith's masking, -log D with D = b s(w) + s_b w.n, about the unit direction w:
-/// its derivatives along the axes of w's ray are slope N and square N N^T + level I, where N holds
-/// what these axes have of the normal.
+/// Logarithm of Smith's masking, -log D with D = b s(w) + s_b w.n, about the unit direction w: its
+/// derivatives along the axes of w's ray are slope N and square N N^T + level I, where N holds the
+/// components of the normal along these axes.
 struct LogMasking {
     double slope, square, level;
 
-    /// `c`, `s`: of the cosine c = w.n; `b`, `sb`: of the other direction. `i`: 1/D.
+    /// Computes the derivatives: `c` and `s` belong to the cosine c = w.n, `b` and `sb` to the
+    /// other direction; `i` is 1/D.
     LogMasking(double alpha2, double c, double s, double b, double sb, double i) {
         const double rest = 1 - alpha2, bi = b * i / s, k = rest * c / s;
         slope = -multiply_add(b, k, sb) * i;
@@ -30,8 +31,8 @@ struct LogMasking {
     }
 };
 
-/// -(level I + square N N^T)/(4 pi^2) without negative parts, at most the cosine's window: both
-/// have the axes along and across N.
+/// The window -(level I + square N N^T)/(4 pi^2) without negative parts, at most the cosine's
+/// window: both have the axes along and across N.
 cov::Sym2<double> window_of(double level, double square, double nx, double ny, double cosine) {
     constexpr double kScale = -1 / cov::four_pi_sq<double>,
                      kAcross = 1 / (cov::pi<double> * cov::pi<double>);
@@ -45,8 +46,8 @@ cov::Sym2<double> window_of(double level, double square, double nx, double ny, d
             multiply_add(rest * ny, ny, across)};
 }
 
-/// The derivatives of the logarithm of Fresnel's factor of x = cos(wo, h), x^2 = (1 + c)/2, with W
-/// what the leaving axes have of wi: slope W and square W W^T + level I.
+/// Derivatives of the logarithm of Fresnel's factor of x = cos(wo, h), x^2 = (1 + c)/2: slope W and
+/// square W W^T + level I, where W holds the components of wi along the leaving axes.
 struct LogFresnel {
     double slope = 0, square = 0, level = 0;
     bool reflects = true;
@@ -67,6 +68,7 @@ struct LogFresnel {
 
 RoundReflection round_reflection(const LobeShare& lobe, const cov::Frame<double>& in,
                                  const Vec& outgoing, const Vec& n) {
+    // Mirror the frame
     const Vec half = cov::half_vector<double>(in.z, outgoing, n);
     Axes4 axes(in);
     const Double4 in_normal = axes.dot(n), in_half = axes.dot(half);
@@ -74,6 +76,7 @@ RoundReflection round_reflection(const LobeShare& lobe, const cov::Frame<double>
     RoundReflection result;
     result.outgoing = axes.frame();
 
+    // Find the window: masking of the arriving light, with the cosine and the solid angle
     const double alpha2 = double(lobe.alpha_x) * lobe.alpha_x, narrow = 1 / alpha2;
     const double side =
         std::copysign(1.0, multiply_add(-2 * in_half[2], cov::dot(half, n), in_normal[2]));
@@ -84,12 +87,12 @@ RoundReflection round_reflection(const LobeShare& lobe, const cov::Frame<double>
     };
     const double so = stretched(co), si = stretched(ci), i = 1 / sum_of_products(ci, so, co, si);
     const LogMasking arriving(alpha2, ci, si, co, so, i);
-    // With the cosine and the solid angle, (1 + u^2 + v^2)^(-3/2).
+    // The solid angle is (1 + u^2 + v^2)^(-3/2).
     result.window = window_of(arriving.level - 3, arriving.square - 1 / (ci * ci), in_normal[0],
                               in_normal[1], ci);
 
-    // The peak: all tangents alike, those of the half vector leave I minus the square of what the
-    // axes have of it.
+    // Find the peak: all tangents are alike, and those of the half vector leave I minus the square
+    // of its components along the axes
     const double cos_h = std::max(std::abs(in_half[2]), cov::min_surface_cosine<double>);
     const double scale = narrow / (cov::four_pi_sq<double> * cos_h * cos_h);
     const cov::Sym2<double> peak{scale * multiply_add(-in_half[0], in_half[0], 1),
@@ -101,9 +104,9 @@ RoundReflection round_reflection(const LobeShare& lobe, const cov::Frame<double>
     const LogFresnel fresnel(lobe, towards[2]);
     if (!(signed_ci > 0) || !fresnel.reflects) return result;
 
-    // The distribution at h = W + |W| wi is twice log |h|^2 / h.(A h), with A = I/alpha^2 along the
-    // surface and 1 along the normal: A h is `across`, what h has along the surface, over alpha^2
-    // and `up`, what it has along the normal.
+    // Find the lobe at this pair of directions. The distribution at h = W + |W| wi is twice log
+    // |h|^2 / h.(A h), with A = I/alpha^2 along the surface and 1 along the normal: A h is
+    // `across`, the part of h along the surface, over alpha^2 and `up`, its part along the normal
     const double up = co + ci, ih = 1 / cov::dot(h, h);
     const Vec across = cov::add_scaled(h, -side * up, n);
     const double iq = 1 / sum_of_products(narrow, cov::dot(across, across), up, up);

@@ -14,24 +14,25 @@ namespace cov = covariance;
 
 namespace {
 
-/// A lobe as wide as this feels the horizon: the cosine limits it as it limits a diffuse surface.
+/// Roughness from which on a lobe is so wide that it feels the horizon: the cosine limits it as it
+/// limits a diffuse surface.
 constexpr float kWideLobe = 0.4f;
 
-/// Above this cosine what a denser coat lets through is even: second derivatives of Fresnel's
+/// Cosine above which a denser coat lets light through evenly: second derivatives of Fresnel's
 /// factor give a window of at most a seventh of the cosine's.
 constexpr double kEvenTransmission = 0.7;
 
-/// Even light that meets a flat surface above this cosine stays even: what the cosine and masking
-/// make of it is at most 1.1 cycles per radian wide, 1/(pi 0.3), and the widest filter, of 15
-/// pixels, passes as much at a hundred pixels per radian.
+/// Cosine above which even light that meets a flat surface stays even: the window of cosine and
+/// masking is at most 1.1 cycles per radian wide, 1/(pi 0.3), and the widest filter, of 15 pixels,
+/// passes as much at a hundred pixels per radian.
 constexpr double kEvenCosine = 0.3;
 
-/// The same from all places and directions, at all times.
+/// Whether light is the same from all places and directions, at all times.
 bool is_even(const LightField& field) {
     return cov::trace(field.sigma) == 0;
 }
 
-/// In the coordinates of the BSDF.
+/// The axes of a frame in the coordinates of the BSDF.
 LocalAxes local_axes(const cov::Frame<double>& shading, const cov::Frame<double>& f) {
     const cov::Vec3<double>&x = shading.x, &y = shading.y, &z = shading.z;
     const auto local = [&](const cov::Vec3<double>& v) -> cov::Vec3<double> {
@@ -40,8 +41,9 @@ LocalAxes local_axes(const cov::Frame<double>& shading, const cov::Frame<double>
     return {local(f.x), local(f.y), local(f.z)};
 }
 
-/// Window of what a coat lets through around the direction of a ray: its transmission T as a
-/// function of the cosine alone, which is c + u x.z + v y.z - c (u^2 + v^2)/2 in the ray's slopes.
+/// Window of the light that a coat lets through around the direction of a ray: its transmission T
+/// as a function of the cosine alone, which is c + u x.z + v y.z - c (u^2 + v^2)/2 in the ray's
+/// slopes.
 cov::Sym2<double> coat_window(const LobeShare& lobe, const ScatterPoint& p,
                               const cov::Frame<double>& f) {
     const cov::Vec3<double>& n = p.facing().n;
@@ -64,13 +66,13 @@ cov::Sym2<double> tailed(const cov::Sym2<double>& lobe, const cov::Sym2<double>&
     return is_peaked ? cov::tailed_lobe(lobe, light) : lobe;
 }
 
-/// Through such a lobe. Reflections do not map slopes.
+/// Reflects light by a lobe of GGX's slopes. Reflections do not map slopes.
 LightField reflect_tailed(const LightField& field, const cov::GlossyPair<double>& pair) {
     return {cov::convolve_angular(field.sigma, tailed(pair.lobe, field.sigma.angular())),
             pair.outgoing};
 }
 
-/// The lobe's covariance at the actual pair of directions.
+/// Covariance of the lobe at the actual pair of directions.
 cov::Sym2<double> local_lobe_at(const LobeShare& lobe, const LocalAxes& in, const LocalAxes& out,
                                 const cov::Sym2<double>& peak) {
     if (lobe.kind == LobeKind::glossy_reflection) {
@@ -81,13 +83,13 @@ cov::Sym2<double> local_lobe_at(const LobeShare& lobe, const LocalAxes& in, cons
         lobe_function(lobe, cov::jet_direction<double>(out.x, out.y, out.z), -in.z), peak);
 }
 
-/// What masking makes of the arriving light, from the derivatives of its logarithm.
+/// Window of masking on the arriving light, from the derivatives of its logarithm.
 cov::Sym2<double> masking_window(const cov::Jet<double>& log_masking,
                                  const cov::Sym2<double>& limit) {
     return cov::limited_by(cov::positive_part(cov::curvature_of_log(log_masking)), limit);
 }
 
-/// A reflection by a lobe of one roughness, whose axes do not matter.
+/// Reflects light by a lobe of one roughness, whose axes do not matter.
 LightField reflect_round(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe) {
     const RoundReflection round = round_reflection(lobe, entered.frame, p.leaving.z, p.facing().n);
     LightField left{entered.sigma, round.outgoing};
@@ -112,7 +114,7 @@ LightField through_glossy(const LightField& entered, const ScatterPoint& p, cons
         const LightField windowed = wide ? cov::add_cosine_window(entered, p.facing()) : entered;
         return reflects ? reflect_tailed(windowed, pair) : cov::scatter(windowed, pair);
     }
-    // Distribution and Fresnel are functions of the half vector: what they do to the arriving
+    // Distribution and Fresnel are functions of the half vector: their effect on the arriving
     // slopes is in the lobe already, and the window is left with masking, at half the price of
     // cov::local_lobe for any BRDF.
     const cov::Frame<double> shading{p.shading.x, p.shading.y, p.shading.z};
@@ -134,8 +136,8 @@ void ScatterSum::add_diffuse(const LightField& entered, bool even,
                              double weight, BrdfCovariance rule) {
     weight_ += weight;
     (is_transmission(lobe.kind) ? transmitted_ : reflected_) += weight;
-    // Below a coat the diffuse lobe is a product: what the coat lets in from each direction, and
-    // what it lets out.
+    // Below a coat the diffuse lobe is a product: the share that the coat lets in from each
+    // direction, and the share that it lets out.
     const bool coated = rule == BrdfCovariance::local && lobe.border_eta > 0;
     if (coated) {
         if (coat_ && coat_->border_eta != lobe.border_eta) add_let_out();
@@ -143,7 +145,7 @@ void ScatterSum::add_diffuse(const LightField& entered, bool even,
         coated_ += weight;
     }
     if (even) return;
-    // cov::reflect_diffuse with the coat's window.
+    // Add cov::reflect_diffuse with the coat's window
     cov::Sym2<double> angular = entered.sigma.angular();
     if (coated) angular = angular + coat_window(lobe, point_, entered.frame);
     const cov::Sym2<double> window =
@@ -176,7 +178,7 @@ void ScatterSum::add_through(const LightField& entered, bool even,
     }
     if (even && rule == BrdfCovariance::local && !point_.normals && !point_.motion &&
         std::abs(cov::dot(entered.frame.z, point_.facing().n)) > kEvenCosine) {
-        weight_ += weight;  // and no variation
+        weight_ += weight;  // the light stays even
         return;
     }
     add(through_glossy(entered, point_, lobe, rule), weight);
@@ -197,6 +199,7 @@ LightField ScatterSum::enter(const LightField& arriving) const {
 
 void ScatterSum::add(const LightField& arriving, const cov::Emitter<double>& emitter,
                      const LobeShares& lobes, double weight, BrdfCovariance rule, double least) {
+    // Leave out faint lobes, and share their light among the others
     double all = 0, most = 0;
     std::array<double, std::tuple_size_v<decltype(lobes.lobes)>> weights;
     for (size_t i = 0; i < size_t(lobes.count); ++i) {
@@ -213,6 +216,7 @@ void ScatterSum::add(const LightField& arriving, const cov::Emitter<double>& emi
         weight_ += weight;
         return;
     }
+    // Send the light through each lobe that is left; even light need not enter the surface
     const double scale = weight / kept;
     const auto add_lobes = [&](const LightField& entered, bool even) {
         for (size_t i = 0; i < size_t(lobes.count); ++i)
@@ -227,7 +231,7 @@ void ScatterSum::add(const LightField& arriving, const cov::Emitter<double>& emi
 
 void ScatterSum::add(const LightField& left, double weight) {
     weight_ += weight;
-    // Positions are along the tangents for all; only slopes have axes of their own.
+    // Positions are along the tangents for all light; only slopes have axes of their own.
     if (takes_slopes_of(left.frame))
         cov::add_scaled(sum_, weight, left.sigma);
     else

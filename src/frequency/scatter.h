@@ -1,4 +1,4 @@
-/// One scattering event: from the light that arrives at a surface to the light that leaves it.
+/// Scattering at one vertex: from the light that arrives at a surface to the light that leaves it.
 #pragma once
 
 #include "covariance/covariance.hpp"
@@ -8,28 +8,29 @@
 
 namespace covtrace {
 
-/// The light that leaves a vertex towards the camera: the sum, by luminance, of what all lobes of
-/// all events there send on. Leaving is linear and the same for all of it, so it is done once.
+/// The light that leaves a vertex towards the camera: the sum, by luminance, over all lobes of all
+/// events there. Leaving is linear and the same for all of the light, so it is done once.
 class ScatterSum {
   public:
-    /// `point` must outlive this.
+    /// Begins with no light; `point` must outlive this object.
     explicit ScatterSum(const ScatterPoint& point) : point_(point), frame_(point.leaving) {}
 
     /// Sends `arriving` (its frame's z is the direction of travel towards the surface) through the
-    /// lobes of an event and adds what comes out of them, `weight` in all. `emitter`: where the
-    /// light was last sent out. Lobes with less than `least` of the event's light are left out, but
-    /// for the brightest. `lobes` must outlive this.
+    /// lobes of an event and adds the result, `weight` in all. `emitter` is the place where the
+    /// light was last sent out. Lobes with less than `least` of the event's light are left out,
+    /// except the brightest. `lobes` must outlive this object.
     void add(const LightField& arriving, const covariance::Emitter<double>& emitter,
              const LobeShares& lobes, double weight, BrdfCovariance rule, double least = 0);
 
     double weight() const { return weight_; }
-    /// Travels along point.leaving.z, in whatever frame. Only where the weight is above 0, and
-    /// once.
+    /// The sum, which travels along point.leaving.z, in whatever frame. Only where the weight is
+    /// above 0, and once.
     LightField leaving();
 
   private:
     LightField enter(const LightField& arriving) const;
-    /// `even`: the light has no variation; it need not have entered then.
+    /// Adds light through one lobe. `even`: the light has no variation; it need not have entered
+    /// then.
     void add_through(const LightField& entered, bool even,
                      const covariance::Emitter<double>& emitter, const LobeShare& lobe,
                      double weight, BrdfCovariance rule);
@@ -37,23 +38,23 @@ class ScatterSum {
                      const covariance::Emitter<double>& emitter, const LobeShare& lobe,
                      double weight, BrdfCovariance rule);
     void add(const LightField& left, double weight);
-    /// What the coat over diffuse lobes lets out.
+    /// Adds the window of the light that the coat over diffuse lobes lets out.
     void add_let_out();
     void add_slopes(const covariance::Sym2<double>& window, const covariance::Frame<double>& frame);
-    /// Whether slopes along this frame are added as they are: the first to come decide.
+    /// Whether slopes along this frame are added as they are: the first frame decides.
     bool takes_slopes_of(const covariance::Frame<double>& frame);
     covariance::Mat2<double> to_own(const covariance::Frame<double>& frame) const;
 
     const ScatterPoint& point_;
-    /// Weighted sum of what leaves, between surface_enter and surface_exit, with slopes along
-    /// `frame_`; without what all light of a diffuse lobe has in common.
+    /// Weighted sum of the leaving light, between surface_enter and surface_exit, with slopes along
+    /// `frame_`; without the spectra that all light of a diffuse lobe has in common.
     covariance::SymmetricMatrix5<double> sum_;
     covariance::Frame<double> frame_;
     bool has_slopes_ = false;
     double weight_ = 0;
-    /// Of diffuse lobes, whose light all has the spectrum of their texture.
+    /// Weights of diffuse lobes, whose light all has the spectrum of their texture.
     double reflected_ = 0, transmitted_ = 0;
-    const LobeShare* coat_ = nullptr;  ///< over those of the weight `coated_`
+    const LobeShare* coat_ = nullptr;  ///< coat over lobes of the weight `coated_`
     double coated_ = 0;
 };
 

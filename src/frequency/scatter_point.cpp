@@ -19,7 +19,7 @@ cov::Sym2<double> texture_spectrum(const RenderScene& scene, TextureId id, const
 }
 
 DifferentialGeometry geometry_at(const RenderScene& scene, const PathVertex& vertex) {
-    // Without a normal map the frame of the BSDF is that of the tangents.
+    // Without a normal map the tangents are already those of the BSDF's frame.
     return scene.materials.has_normal_map(vertex.material)
                ? scene.geometry.differential(vertex.hit)
                : scene.geometry.differential(vertex.hit, vertex.shading);
@@ -29,7 +29,7 @@ constexpr unsigned bit(LobeKind kind) {
     return 1u << static_cast<unsigned>(kind);
 }
 
-/// Bits of the lobes that the recorded events have.
+/// The lobes that the recorded events have, as bits.
 unsigned kinds_of_lobes(const PathVertex& vertex) {
     unsigned kinds = 0;
     const auto collect = [&kinds](const LobeShares& shares) {
@@ -74,7 +74,7 @@ ScatterPoint::ScatterPoint(const RenderScene& scene, const PathVertex& vertex, f
         std::sqrt(0.5f * (sqr(m[0][0]) + sqr(m[0][1]) + sqr(m[1][0]) + sqr(m[1][1])));
     const float footprint_uv = footprint * uv_per_length;
     const MaterialTextures textures = scene.materials.textures(vertex.material);
-    // What alpha lets stand of the surface varies like its reflectance.
+    // The shape's alpha varies the light of the surface as its reflectance does.
     const TextureId alpha = scene.geometry.shapes()[vertex.hit.shape].description.alpha;
     const auto spectrum = [&](TextureId id) {
         return texture_spectrum(scene, id, vertex.hit, uv_from_tangent, footprint_uv);

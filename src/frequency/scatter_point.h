@@ -9,15 +9,15 @@
 
 namespace covtrace {
 
-/// Gathered once for all the light that meets there.
+/// Geometry, motion and textures at a vertex, gathered once for all the light that meets there.
 struct ScatterPoint {
     covariance::Surface<double> surface;  ///< the geometry, on which positions are measured
-    /// Where they change: the normals that the BSDF faces, of the geometry or of a bump or normal
-    /// map over it.
+    /// Normals that the BSDF faces, of the geometry or of a bump or normal map over it; empty where
+    /// they do not change.
     std::optional<covariance::NormalField<double>> normals;
-    /// Where there is such a map: the surface with its tangents turned along.
+    /// The surface with its tangents turned along by a bump or normal map; empty without one.
     std::optional<covariance::Surface<double>> turned;
-    std::optional<covariance::Motion<double>> motion;  ///< where there is any
+    std::optional<covariance::Motion<double>> motion;  ///< empty where nothing moves
     /// Spectra of the textures that scale the diffuse lobes, along surface.t1, t2, 1 / scene
     /// unit^2; zero where the recorded events have no such lobe.
     covariance::Sym2<double> reflectance, transmittance;
@@ -25,11 +25,12 @@ struct ScatterPoint {
     /// The surface as the BSDF sees it.
     const covariance::Surface<double>& facing() const { return turned ? *turned : surface; }
 
-    /// Some axes along the direction in which light leaves towards the camera.
+    /// A frame along the direction in which light leaves towards the camera; its x and y are
+    /// arbitrary.
     covariance::Frame<double> leaving;
 
-    /// `footprint`: half a pixel's extent at the vertex, in scene units; no texture edge counts as
-    /// nearer. `vertex` must outlive this.
+    /// Gathers the data. `footprint`: half a pixel's extent at the vertex, in scene units; no
+    /// texture edge counts as nearer. `vertex` must outlive this object.
     ScatterPoint(const RenderScene& scene, const PathVertex& vertex, float footprint);
 
   private:
@@ -37,8 +38,8 @@ struct ScatterPoint {
                  const DifferentialGeometry& geometry);
 };
 
-/// Spectrum of the image and the alpha of an emitter that was hit, along the axes of `tangent`
-/// (z: its normal), 1 / scene unit^2. `footprint` as above.
+/// Spectrum of the image and the alpha of an emitter that was hit, along the axes of `tangent` (z:
+/// its normal), 1 / scene unit^2. `footprint`: half a pixel's extent, in scene units.
 covariance::Sym2<double> emission_texture(const RenderScene& scene, const PathVertex& vertex,
                                           const Frame& tangent, float footprint);
 
