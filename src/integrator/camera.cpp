@@ -10,7 +10,8 @@ namespace covtrace {
 
 namespace {
 
-/// The equal-area map goes on beyond an edge at the edge's other half.
+/// Coordinates inside the square for ones beyond it: the equal-area map goes on beyond an edge at
+/// the edge's other half.
 Vec2 wrap_equal_area(Vec2 uv) {
     if (uv.x < 0 || uv.x > 1) uv = {uv.x < 0 ? -uv.x : 2 - uv.x, 1 - uv.y};
     if (uv.y < 0 || uv.y > 1) uv = {1 - uv.x, uv.y < 0 ? -uv.y : 2 - uv.y};
@@ -99,7 +100,8 @@ Vec3 Camera::spherical_direction(Vec2 film) const {
     return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
 }
 
-/// A pinhole that looks along the ray, with the map's own scale there.
+/// The sensor of a spherical camera: a pinhole that looks along the ray, with the map's own scale
+/// there.
 SensorGeometry Camera::spherical_sensor(const Ray& ray, const Transform& camera_to_world) const {
     const Vec3 w = normalize(camera_to_world.inverse().vector(ray.direction));
     Vec2 film;
@@ -179,8 +181,8 @@ Matrix4 Camera::world_to_camera() const {
 }
 
 Matrix4 Camera::world_to_ndc() const {
-    // Film fractions in [0, 1], y down, as pbrt and OpenEXR's "worldToNDC" users expect: x' / w',
-    // y' / w'.
+    // Film fractions lie in [0, 1], y down, as pbrt and OpenEXR's "worldToNDC" users expect: x' /
+    // w', y' / w'.
     Matrix4 projection;
     const double width_slope = double(per_pixel_.x) * width_,
                  height_slope = double(per_pixel_.y) * height_;

@@ -1,4 +1,4 @@
-/// Camera rays, and the camera's geometry as the frequency analysis needs it.
+/// The camera: its rays, and its geometry as the frequency analysis needs it.
 #pragma once
 
 #include <optional>
@@ -19,12 +19,12 @@ struct SensorGeometry {
           pixels_per_y = 1;  ///< per unit of slope (perspective) or of length (orthographic)
     float shutter = 1;       ///< length of the shutter interval
     bool orthographic = false;
-    Vec3 velocity, angular_velocity;  ///< of the camera at the ray's lens point and time
+    Vec3 velocity, angular_velocity;  ///< motion of the camera at the ray's lens point and time
 };
 
 class Camera {
   public:
-    /// `width` x `height`: the full frame in pixels.
+    /// Makes a camera whose full frame has `width` x `height` pixels.
     Camera(const CameraDescription& description, int width, int height);
 
     /// The ray through a film position in pixels (y down), a lens position and a shutter position
@@ -32,7 +32,7 @@ class Camera {
     Ray generate_ray(Vec2 film, Vec2 lens, float shutter) const;
     SensorGeometry sensor(const Ray& ray) const;
     bool has_lens() const { return lens_radius_ > 0; }
-    /// What half a pixel covers at a distance from the camera, scene units.
+    /// Extent of half a pixel at a distance from the camera, scene units.
     float half_pixel(float distance) const;
     /// World to camera, and world to normalised device coordinates, at the shutter's opening.
     Matrix4 world_to_camera() const;
@@ -41,11 +41,11 @@ class Camera {
   private:
     const Transform& to_world(float time, Transform& storage) const;
     SensorGeometry sensor_at(const Ray& ray) const;
-    /// Of a spherical camera, in camera space.
+    /// Direction of a film position of a spherical camera, in camera space.
     Vec3 spherical_direction(Vec2 film) const;
     SensorGeometry spherical_sensor(const Ray& ray, const Transform& camera_to_world) const;
 
-    /// The camera's place where it stands still, in float.
+    /// The camera's place where it stands still, in single precision.
     struct Placement {
         Vec3 origin, x, y, z;
         Vec3 point(Vec3 p) const { return origin + vector(p); }
@@ -57,10 +57,10 @@ class Camera {
     Placement still_;
     int width_, height_;
     Vec2 origin_;     // camera-space slope (or position) of film position (0, 0)
-    Vec2 per_pixel_;  // and its change per pixel; y is negative
+    Vec2 per_pixel_;  // change of origin_ per pixel; y is negative
     float lens_radius_ = 0, focal_distance_ = 1;
     float shutter_open_ = 0, shutter_close_ = 1;
-    std::optional<SensorGeometry> sensor_;  // where it is the same for all rays
+    std::optional<SensorGeometry> sensor_;  // set where it is the same for all rays
 };
 
 }  // namespace covtrace

@@ -18,24 +18,24 @@ namespace {
 constexpr int64_t kRoundPaths = 4096, kMostRounds = 16;
 constexpr size_t kEnoughPhotons = 32768;
 constexpr size_t kLeafPhotons = 256;
-constexpr size_t kFewestPhotons = 12;  // of a cluster that is to be trusted
-constexpr int kFits = 3;               // each leaves out what the one before found to be off
+constexpr size_t kFewestPhotons = 12;  // photons of a cluster that is to be trusted
+constexpr int kFits = 3;  // rounds, each without the photons that the one before found to be off
 constexpr int kMostTreeDepth = 24;
-/// Lobes are wider than the photons' spread, so that what lies at their border is not found with a
-/// density that is far too small.
+/// Factor by which lobes are wider than the photons' spread, so that light at their border is not
+/// found with a density that is far too small.
 constexpr float kWidening = 1.5f;
 constexpr float kNarrowest = 1e-3f, kWidest = 0.4f;  // standard deviation, radians
 constexpr uint64_t kProbeKey = 0x70726f6265730000ull;
-constexpr int kProbes = 16;  // paths that measure what a lobe or a leaf is worth
+constexpr int kProbes = 16;  // paths that measure how much light a lobe or a leaf brings
 constexpr int kProbeDepth = 5;
 constexpr float kMostShare = 0.5f, kLeastShare = 0.02f;
 
-/// von Mises-Fisher density about an axis at the cosine `c`; exact for large kappa too.
+/// The von Mises-Fisher density about an axis at the cosine `c`; exact for large kappa, too.
 float fisher_pdf(float kappa, float c) {
     return kappa / (2 * kPi * (1 - std::exp(-2 * kappa))) * std::exp(kappa * (c - 1));
 }
-/// 1 - cos of the angle from the axis, for u in [0, 1) (Jakob 2012, "Numerically stable sampling
-/// of the von Mises-Fisher distribution on S2").
+/// Samples 1 - cos of the angle from the axis, for u in [0, 1) (Jakob 2012, "Numerically stable
+/// sampling of the von Mises-Fisher distribution on S2").
 float fisher_one_minus_cos(float kappa, float u) {
     return std::clamp(-std::log(1 - u + u * std::exp(-2 * kappa)) / kappa, 0.0f, 2.0f);
 }
@@ -46,8 +46,8 @@ Vec3 sample_fisher(Vec3 axis, float kappa, Vec2 u) {
         {sin_theta * std::cos(phi), sin_theta * std::sin(phi), 1 - h}));
 }
 
-/// The point nearest to all lines through `position` along `direction`, by weight; false where
-/// they are parallel.
+/// Finds the point nearest to all lines through `position` along `direction`, by weight; returns
+/// false where they are parallel.
 bool nearest_to_rays(std::span<const CausticPhoton> photons, Vec3& point) {
     double a[3][3] = {}, b[3] = {}, weight = 0;
     for (const CausticPhoton& p : photons) {
@@ -74,13 +74,14 @@ bool nearest_to_rays(std::span<const CausticPhoton> photons, Vec3& point) {
     return true;
 }
 
-/// The direction's squared distance from that to `point` as unit vectors; 4 where it lies behind.
+/// Squared distance between a photon's direction and the direction to `point`, as unit vectors; 4
+/// where the point lies behind.
 float miss(const CausticPhoton& p, Vec3 point) {
     const Vec3 to = point - p.position;
     return dot(to, p.direction) > 0 ? length_squared(normalize(to) - p.direction) : 4.0f;
 }
 
-/// The median of miss: what lies in the long tails of a rough mirror says nothing.
+/// The median of miss: photons in the long tails of a rough mirror do not change it.
 float median_miss(std::span<const CausticPhoton> photons, Vec3 point) {
     std::vector<float> all;
     for (const CausticPhoton& p : photons) all.push_back(miss(p, point));
@@ -89,7 +90,8 @@ float median_miss(std::span<const CausticPhoton> photons, Vec3 point) {
     return *middle;
 }
 
-/// Photons of very large weight say no more about where light comes from than others.
+/// Limits the weights of photons: those of very large weight say no more about where light comes
+/// from than others.
 void limit_weights(std::span<CausticPhoton> photons) {
     double sum = 0;
     for (const CausticPhoton& p : photons) sum += p.weight;
@@ -113,7 +115,7 @@ float GuideMixture::pdf(Vec3 w) const {
     float p = 0;
     for (int i = 0; i < count_; ++i) {
         const Lobe& lobe = lobes_[size_t(i)];
-        // 1 - cos as half the squared distance: exact for narrow lobes.
+        // Half the squared distance is 1 - cos, and exact for narrow lobes.
         const float h = 0.5f * length_squared(w - lobe.direction());
         if (lobe.kappa * h < 60) p += lobe.weight * fisher_pdf(lobe.kappa, 1 - h);
     }
@@ -121,6 +123,7 @@ float GuideMixture::pdf(Vec3 w) const {
 }
 
 CausticGuide::CausticGuide(const LitScene& scene) {
+    // Trace photons until there are enough
     const FilmDescription& film = scene.description.film;
     const int64_t round = std::min(kRoundPaths, int64_t(film.width) * int64_t(film.height));
     std::vector<CausticPhoton> photons;
@@ -130,8 +133,10 @@ CausticGuide::CausticGuide(const LitScene& scene) {
         if (photons.size() < kFewestPhotons) return;
     }
     limit_weights(photons);
+    // Divide them into leaves, with the images that each may see
     std::vector<Region> regions;
     build(photons, {}, 0, regions);
+    // Measure how much light each image brings, and drop images that bring nothing
     parallel_for(int64_t(regions.size()), [&](int64_t i) {
         const auto k = static_cast<size_t>(i);
         leaves_[k].share = measure(scene, regions[k], uint64_t(i));
@@ -154,7 +159,7 @@ uint32_t CausticGuide::build(std::span<CausticPhoton> photons, std::vector<Image
     const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
     if (photons.size() <= kLeafPhotons || depth == kMostTreeDepth || !(size[axis] > 0)) {
         nodes_[index].left = uint32_t(leaves_.size());
-        // Light does not end where the last photon fell.
+        // The leaf is larger than its photons: light does not end where the last one fell.
         const Vec3 margin = size * 0.25f + Vec3{1, 1, 1} * (0.05f * size[axis]);
         leaves_.push_back({{bounds.lo - margin, bounds.hi + margin}, 0, 0, 0});
         regions.push_back({photons, std::move(images)});
@@ -195,7 +200,7 @@ void CausticGuide::refine(std::span<const CausticPhoton> photons, std::vector<Im
 CausticGuide::Image CausticGuide::fit(std::span<const CausticPhoton> cluster) {
     std::vector<CausticPhoton> core(cluster.begin(), cluster.end());
     Vec3 point;
-    float spread = 4;  // median
+    float spread = 4;  // median of miss
     for (int i = 0; i < kFits; ++i) {
         Vec3 position, direction;
         float weight = 0, distance = 0;
@@ -205,8 +210,9 @@ CausticGuide::Image CausticGuide::fit(std::span<const CausticPhoton> cluster) {
             distance += std::min(p.distance, 1e6f) * p.weight;
             weight += p.weight;
         }
-        // Unfolded, the light lies as far along the mean direction as the paths are long; rays
-        // that meet in a nearer point (a curved mirror's focus) say better where.
+        // Unfolded, the light lies as far along the mean direction as the paths are long; where
+        // rays meet in a nearer point (a curved mirror's focus), that point tells better where it
+        // is.
         point = position / weight + normalize(direction) * (distance / weight);
         spread = median_miss(core, point);
         Vec3 focus;
@@ -219,8 +225,8 @@ CausticGuide::Image CausticGuide::fit(std::span<const CausticPhoton> cluster) {
         }
         std::erase_if(core, [&](const CausticPhoton& p) { return miss(p, point) > 9 * spread; });
     }
-    // The median of the squared distance from the centre of a normal distribution in the plane is
-    // 2 ln 2 variances of one axis.
+    // The median of the squared distance from the centre of a normal distribution in the plane is 2
+    // ln 2 variances of one axis.
     const float deviation =
         std::max(kWidening * std::sqrt(spread / (2 * std::log(2.0f))), kNarrowest);
     Image image;
@@ -230,13 +236,13 @@ CausticGuide::Image CausticGuide::fit(std::span<const CausticPhoton> cluster) {
     return image;
 }
 
-/// Paths that measure what a leaf's images and all else bring to its photons' places.
+/// Paths that measure the light which a leaf's images, and all else, bring to its photons' places.
 class CausticGuide::Probes {
   public:
     struct Found {
         Image image;           ///< with its irradiance
-        double second_moment;  ///< of finding it by sampling the cosine
-        bool is_photon_seen;   ///< whether a photon of the leaf came by it
+        double second_moment;  ///< second moment of finding its light by sampling the cosine
+        bool is_photon_seen;   ///< whether a photon of the leaf came by this image
     };
 
     Probes(const LitScene& scene, const Region& region, uint64_t key)
@@ -262,8 +268,8 @@ class CausticGuide::Probes {
         return {image, mean > 0 ? second_moment : double(kInfinity), seen};
     }
 
-    /// Irradiance by all else: by lamps, and by all other paths. Each finds a part of it; the
-    /// larger will do to share samples out.
+    /// Irradiance by all else: by lamps, and by all other paths. Each of the two finds a part of
+    /// it; the larger will do to share samples out.
     double rest() {
         double lamps = 0;
         std::array<float, kProbes> others{};
@@ -276,7 +282,7 @@ class CausticGuide::Probes {
         }
         std::sort(others.begin(), others.end());
         const auto typical =
-            std::span(others).first(kProbes - kProbes / 8);  // rare bright ones left out
+            std::span(others).first(kProbes - kProbes / 8);  // without the rare bright ones
         double rest = 0;
         for (float e : typical) rest += e / double(typical.size());
         return std::max(rest, lamps);
@@ -299,7 +305,7 @@ class CausticGuide::Probes {
             scene_.lights.sample(at.position, at.normal, at.time, u_select, rng_.next_2d());
         if (!light || !(light->pdf > 0)) return 0;
         const Ray shadow{at.position, light->wi, at.time, light->distance * (1 - 1e-3f)};
-        // The part that the cosine finds as well is counted with the other paths.
+        // The part of the light that the cosine finds as well is counted with the other paths.
         const float cosine = std::max(0.0f, dot(at.normal, light->wi));
         const float density = light->pdf + (light->is_delta ? 0.0f : cosine * kInvPi);
         if (scene_.geometry.occluded(shadow)) return 0;
@@ -323,7 +329,7 @@ float CausticGuide::measure(const LitScene& scene, Region& region, uint64_t key)
     }
     const double rest = probes.rest();
 
-    // Only what the surface's own sampling would leave noisy is worth samples.
+    // Only images whose light the surface's own sampling would leave noisy are worth samples.
     double total = rest;
     for (const Probes::Found& f : all) total += f.image.irradiance;
     std::erase_if(all, [total](const Probes::Found& f) { return f.second_moment < total * total; });

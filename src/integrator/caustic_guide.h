@@ -1,4 +1,4 @@
-/// Where to look for light that comes over a mirror or through glass.
+/// A guide to light that comes over a mirror or through glass.
 ///
 /// A diffuse point that is lit by a small lamp over a near-mirror finds that light by chance alone:
 /// neither sampling its own lobe nor sampling the lamp aims at the mirror's image of it. The guide
@@ -26,11 +26,11 @@ class GuideMixture {
 
     GuideMixture() {}  // not `= default`, which would let `{}` clear lobes that nobody reads
 
-    /// Share of the samples that should follow it; 0 where there is nothing to be found.
+    /// Share of the samples that should follow the guide; 0 where there is nothing to be found.
     float share() const { return share_; }
-    /// `u_choice` chooses the lobe.
+    /// Samples a direction; `u_choice` chooses the lobe.
     Vec3 sample(float u_choice, Vec2 u) const;
-    /// Per solid angle.
+    /// Density of `sample`, per solid angle.
     float pdf(Vec3 w) const;
 
   private:
@@ -40,7 +40,7 @@ class GuideMixture {
         float kappa, weight;
         Vec3 direction() const { return {x, y, z}; }
     };
-    std::array<Lobe, kMostLobes> lobes_;  ///< only `count_` of them are set
+    std::array<Lobe, kMostLobes> lobes_;  ///< lobes, of which only `count_` are set
     int count_ = 0;
     float share_ = 0;
 };
@@ -49,36 +49,38 @@ class GuideMixture {
 struct CausticPhoton {
     Vec3 position, normal;  ///< moved off the surface to the lit side; unit, on that side
     float time = 0;
-    Vec3 direction;       ///< unit, towards where it came from
-    float distance = 0;   ///< of the light along the unfolded path; infinite for distant light
+    Vec3 direction;  ///< unit, towards the place where it came from
+    /// Distance of the light along the unfolded path; infinite for distant light.
+    float distance = 0;
     float weight = 0;     ///< luminance
-    uint64_t source = 0;  ///< the light and the last surface on the way
+    uint64_t source = 0;  ///< hash of the light and of the last surface on the way
 };
 
 class CausticGuide {
   public:
-    /// Empty: shares are 0 everywhere.
+    /// Makes an empty guide: shares are 0 everywhere.
     CausticGuide() = default;
-    /// Learns from a scene by paths that no guide leads. Deterministic.
+    /// Learns from a scene by paths that no guide leads. The result is deterministic.
     explicit CausticGuide(const LitScene& scene);
 
-    /// At a point with the normal `n` on the side that is to be lit; zero where light counts from
-    /// both.
+    /// The guide at a point with the normal `n` on the side that is to be lit; n is zero where
+    /// light counts from both sides.
     GuideMixture at(Vec3 position, Vec3 n) const;
 
   private:
-    /// All light of one leaf that came from one light over one surface seems to come from about
-    /// one point: exact for a flat mirror, the nearest point to all its rays else.
+    /// Image of a light, the point that its rays seem to come from. All light of one leaf that came
+    /// from one light over one surface seems to come from about one point: exactly so for a flat
+    /// mirror, from the point nearest to all its rays otherwise.
     struct Image {
         Vec3 point;
-        float kappa = 0;       ///< of directions to it
-        float irradiance = 0;  ///< luminance, on the surfaces there
+        float kappa = 0;       ///< concentration of the directions to the point
+        float irradiance = 0;  ///< luminance of the irradiance on the surfaces of the leaf
         uint64_t source = 0;   ///< CausticPhoton::source
     };
     struct Leaf {
-        Bounds3 bounds;  ///< where it is worth asking
+        Bounds3 bounds;  ///< where the leaf is worth asking
         float share = 0;
-        uint32_t first = 0, count = 0;  ///< into images_
+        uint32_t first = 0, count = 0;  ///< the leaf's images, in images_
     };
     struct Node {
         int axis = -1;  ///< -1: a leaf
@@ -86,7 +88,7 @@ class CausticGuide {
         uint32_t left = 0, right = 0;  ///< nodes; for a leaf `left` is the index into leaves_
     };
 
-    /// A leaf in the making: what lies in it, and what may be seen from it.
+    /// A leaf in the making: its photons, and the images that may be seen from it.
     struct Region {
         std::span<const CausticPhoton> photons;
         std::vector<Image> images;
@@ -97,8 +99,8 @@ class CausticGuide {
     /// Renews those images that the photons suffice for; the others stay as they are.
     static void refine(std::span<const CausticPhoton> photons, std::vector<Image>& images);
     static Image fit(std::span<const CausticPhoton> cluster);
-    /// Measures what is to be found in each image, drops those that are worth nothing, and returns
-    /// the share of the samples for the others.
+    /// Measures how much light there is to be found in each image, drops images that bring nothing,
+    /// and returns the share of the samples for the others.
     static float measure(const LitScene& scene, Region& region, uint64_t key);
 
     std::vector<Node> nodes_;
@@ -107,7 +109,8 @@ class CausticGuide {
 };
 
 /// Sends light over the glossy surfaces that `count` camera paths meet, the first of them number
-/// `first`, and returns where it arrives on surfaces that spread light. Deterministic.
+/// `first`, and returns the photons that arrive on surfaces that spread light. The result is
+/// deterministic.
 std::vector<CausticPhoton> trace_caustic_photons(const LitScene& scene, int64_t first,
                                                  int64_t count);
 

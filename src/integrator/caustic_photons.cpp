@@ -13,10 +13,11 @@ namespace {
 
 constexpr uint64_t kPilotKey = 0x6361757374696373ull;
 constexpr int kPathsPerChunk = 64;
-constexpr int kCameraVertices = 4;  // how far a pilot path goes in search of glossy surfaces
-constexpr int kChainVertices = 8;   // glossy surfaces in a row
+// Vertices that a pilot path visits in search of glossy surfaces.
+constexpr int kCameraVertices = 4;
+constexpr int kChainVertices = 8;  // glossy surfaces in a row
 constexpr int kMostInterfaces = 64;
-constexpr int kLightSamples = 2;  // at every glossy surface found
+constexpr int kLightSamples = 2;  // samples of lights at every glossy surface found
 
 /// A pilot path from the camera, and the light sent over the glossy surfaces that it finds.
 class Pilot {
@@ -51,7 +52,7 @@ class Pilot {
         ray.t_max = kInfinity;
     }
 
-    /// The nearest surface but interfaces.
+    /// Finds the nearest surface that is no interface.
     bool next_surface(Ray& ray, SurfaceHit& hit, Bsdf& bsdf) const {
         for (int i = 0; i < kMostInterfaces; ++i) {
             if (!scene_.geometry.intersect(ray, hit)) return false;
@@ -65,7 +66,8 @@ class Pilot {
         return false;
     }
 
-    /// Light of one sampled lamp, scattered at `hit` by a sharp lobe and on to where it lands.
+    /// Sends light of one sampled lamp to `start`, by a sharp lobe there and on to where it lands.
+    // Sample a lamp
     void send_light(const SurfaceHit& start, const Bsdf& start_bsdf, const Frame& start_frame) {
         const float u_select = rng_.next_float();
         const auto light =
@@ -77,6 +79,7 @@ class Pilot {
         if (std::isfinite(light->distance)) shadow.t_max = light->distance * (1 - 1e-3f);
         if (scene_.geometry.occluded(shadow)) return;
 
+        // Follow its light from one sharp lobe to the next
         float travelled = light->distance;
         // Skies that are seldom drawn, as BSDFs find them, would make photons of any weight.
         const bool is_sky = !light->is_delta && !std::isfinite(light->distance);

@@ -22,8 +22,8 @@ bool anything_moves(const SceneDescription& d) {
            });
 }
 
-/// Of a sphere around the shapes that holds a camera in a medium, too, and what lights it from a
-/// place: their rays must reach each other before the medium ends.
+/// Radius of a sphere around the shapes that, where the camera is in a medium, holds the camera and
+/// all lights with a place, too: their rays must reach each other before the medium ends.
 float radius_of_media(const SceneDescription& d, const Bounds3& shapes) {
     float radius = shapes.radius();
     if (d.camera.medium < 0 || shapes.empty()) return radius;
@@ -74,7 +74,7 @@ std::map<std::string, size_t> LitScene::memory() const {
     const auto mesh_bytes = [&](const auto& mesh, const auto& faces) {
         return bytes(mesh.positions) + bytes(mesh.normals) + bytes(mesh.uvs) + bytes(faces);
     };
-    std::map<const void*, size_t> meshes;  // shapes share them
+    std::map<const void*, size_t> meshes;  // shapes share meshes
     for (const PlacedShape& shape : geometry.shapes()) {
         const auto& g = shape.description.geometry;
         if (const auto* triangles = std::get_if<std::shared_ptr<const TriangleMesh>>(&g))

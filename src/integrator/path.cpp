@@ -30,13 +30,15 @@ const PathResult& PathTracer::run() {
 bool PathTracer::step() {
     SurfaceHit hit;
     ++(depth_ == 0 ? result_.rays.camera : result_.rays.bounce);
-    // The lights' second pair of the vertex to come.
+    // Begin the light sampling of the vertex to come; it uses that vertex' second pair of numbers
     if (draws_ahead_)
         light_draw_ = scene_.lights.begin_draw(
             sampler_.pair(static_cast<uint32_t>(depth_ + 1) * kPairsPerBounce + 1));
+    // Find the nearest surface
     const bool found = depth_ == 0 && passed_interfaces_ == 0
                            ? scene_.geometry.intersect_seen(ray_, hit)
                            : scene_.geometry.intersect(ray_, hit);
+    // Cross the medium, which may scatter the path before it gets there
     if (medium_ >= 0) {
         const float length = found ? hit.t : scene_.unbounded_distance;
         const MediumEvent event = cross_medium(length);
@@ -50,8 +52,9 @@ bool PathTracer::step() {
     const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
     const MaterialId material =
         scene_.materials.at(shape.description.material, hit, scene_.textures);
-    // As pbrt, wherever the path has been: the pixel's width at this distance from the eye, and an
-    // eighth of it, so that the filter of the texture adds nothing to that of the pixel.
+    // Evaluate the BSDF, with textures filtered as in pbrt, wherever the path has been: the pixel's
+    // width at this distance from the eye, and an eighth of it, so that the filter of the texture
+    // adds nothing to that of the pixel
     const Vec3 from_eye = hit.position - camera_origin_;
     const float away = length(from_eye);
     const Bsdf bsdf = away > 0
@@ -60,6 +63,7 @@ bool PathTracer::step() {
                           : scene_.materials.bsdf(material, hit, scene_.textures);
     if (!std::holds_alternative<InterfaceBsdf>(bsdf))
         return meet_surface(hit, shape, material, bsdf);
+    // Pass through an interface
     medium_ = medium_beyond(shape, hit, ray_.direction, medium_);
     ray_.origin = Geometry::offset_origin(hit, ray_.direction);
     return ++passed_interfaces_ <= kMostInterfaces;
@@ -68,23 +72,25 @@ bool PathTracer::step() {
 bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material,
                               const Bsdf& bsdf) {
     const Vec3 wo = -ray_.direction;
+    // Add light that the surface emits
     PathVertex* vertex = begin_vertex(hit, -1, wo);
     if (vertex) vertex->material = material;
     add_emission(hit, wo, vertex);
     const Frame frame = frame_at(hit, shape, material);
     const Surface surface{hit, shape, bsdf, frame, frame.to_local(wo)};
+    // Describe the surface to filters and denoisers
     if (seen_clearly_)
         describe_vertex(hit.position, albedo(bsdf, surface.wo), face_forward(frame.z, wo));
     if (vertex) vertex->shading = frame;
     if (depth_++ == max_depth_) return false;
     sampler_.set_dimension(static_cast<uint32_t>(depth_) * kPairsPerBounce);
     const auto [u_choice, u_light, u_scatter, u_roulette] = sampler_.next_four_2d();
-    // Lights are chosen for the side that can be lit: the viewer's, or both where light
-    // passes through.
+    // Choose the side that lights are sampled for: the viewer's, or both where light passes through
     light_normal_ = transmits(bsdf) ? Vec3{} : face_forward(frame.z, wo);
     guide_ = has_diffuse_lobe(bsdf) && depth_ < max_depth_
                  ? caustic_guide_.at(hit.position, light_normal_)
                  : GuideMixture{};
+    // Sample direct illumination, then the direction in which the path goes on
     if (!is_specular(bsdf)) add_direct(surface, u_choice.x, u_light, vertex);
     return scatter(surface, u_choice.y, u_scatter, vertex) && survives(u_roulette.x);
 }
@@ -92,7 +98,7 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, M
 Frame PathTracer::frame_at(const SurfaceHit& hit, const PlacedShape& shape,
                            MaterialId material) const {
     if (!scene_.materials.has_normal_map(material)) return shading_frame(hit);
-    // A step as pbrt takes it for 64 samples per pixel and more: an eighth of half a pixel.
+    // The step is as long as pbrt's for 64 samples per pixel and more: an eighth of half a pixel.
     const float footprint = scene_.camera.half_pixel(distance(camera_origin_, hit.position)) / 8;
     const DifferentialGeometry base = scene_.geometry.differential(hit);
     return NormalMap(scene_.materials.description(material), scene_.textures, shape, hit, base,
@@ -130,12 +136,13 @@ void PathTracer::describe_vertex(Vec3 position, Rgb albedo, Vec3 normal) {
 }
 
 bool PathTracer::survives(float u) {
-    // Between surfaces that absorb nothing a path would go on for as many bounces as it may: a
-    // scene may allow a million. Beyond a thousand it goes on for a hundred more in the mean.
+    // Long walks end at random: between surfaces that absorb nothing a path would go on for as many
+    // bounces as it may, and a scene may allow a million. Beyond a thousand it goes on for a
+    // hundred more in the mean.
     constexpr int kLongWalk = 1000;
     constexpr float kLeastEnd = 0.01f;
-    // What a path that carries less than this still finds is less than the noise of the ends of
-    // paths that carry more would be (docs/decisions/0075).
+    // Throughput below which paths may end: the light that such a path still finds is less than the
+    // noise of the ends of paths that carry more would be (docs/decisions/0075).
     constexpr float kWorthwhile = 0.25f;
     const float carried = max_component(beta_) * roulette_scale_ / kWorthwhile;
     const float least = depth_ > kLongWalk ? kLeastEnd : 0.0f;

@@ -10,10 +10,10 @@
 
 namespace covtrace {
 
-/// Rays by what they are for. A way through several interfaces counts a ray for each piece.
+/// Rays by their use. A way through several interfaces counts a ray for each piece.
 struct RayCounts {
     uint64_t camera = 0;  ///< up to the first place that scatters
-    uint64_t bounce = 0;  ///< behind it
+    uint64_t bounce = 0;  ///< rays behind that place
     uint64_t shadow = 0;  ///< towards sampled lights
     uint64_t total() const { return camera + bounce + shadow; }
     void add(const RayCounts& other) {
@@ -23,22 +23,24 @@ struct RayCounts {
     }
 };
 
-/// What leads filters and denoisers: of the vertex where the path first leaves by a wide lobe, or
-/// ends. What is seen in mirrors, through glass and in glossy coats has edges of its own there,
-/// which their surfaces know nothing of. A path that leaves the scene behind a mirror tells of the
-/// mirror.
+/// Features that lead filters and denoisers: those of the vertex where the path first leaves by a
+/// wide lobe, or ends. Objects seen in mirrors, through glass and in glossy coats have edges of
+/// their own there, which the surfaces before know nothing of. A path that leaves the scene behind
+/// a mirror tells of the mirror.
 struct PathFeatures {
-    Rgb albedo;       ///< as the viewer sees it: times what the mirrors and panes let through
-    Vec3 normal;      ///< shading normal there, towards where the path comes from; 0 in a medium
+    Rgb albedo;  ///< albedo as the viewer sees it: times what the mirrors and panes let through
+    /// Shading normal there, towards the place where the path comes from; 0 in a medium.
+    Vec3 normal;
     float depth = 0;  ///< length of the path from the camera to there
 };
 
-/// Everything one path says about its pixel. Its first vertex is the first surface, or the first
-/// place in a medium, where it scatters.
+/// The result of a path for its pixel. Its first vertex is the first surface, or the first place in
+/// a medium, where it scatters.
 struct PathResult {
     Rgb radiance;
-    Rgb in_view;      ///< the part of it that comes from emitters in view, see PathVertex::in_view
-    Rgb albedo;       ///< of the first vertex; 0 where the ray leaves the scene
+    /// Part of the radiance that comes from emitters in view, see PathVertex::in_view.
+    Rgb in_view;
+    Rgb albedo;       ///< albedo of the first vertex; 0 where the ray leaves the scene
     Vec3 normal;      ///< shading normal of the first vertex towards the viewer; 0 in a medium
     float depth = 0;  ///< distance of the first vertex from the camera, 0 where there is none
     bool hit = false;
@@ -53,7 +55,7 @@ struct PathResult {
 /// are returned as they are: the caller counts them.
 PathResult trace_path(const LitScene& scene, const CausticGuide& guide, Ray ray, Sampler& sampler,
                       int max_depth, PathRecord* record);
-/// The same, led by what has been learnt of the scene.
+/// Traces one path, led by the guide of the scene.
 inline PathResult trace_path(const RenderScene& scene, Ray ray, Sampler& sampler, int max_depth,
                              PathRecord* record) {
     return trace_path(scene, scene.guide, ray, sampler, max_depth, record);

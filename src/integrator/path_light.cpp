@@ -11,8 +11,10 @@ void PathTracer::escape() {
         record_->escape_direction = ray_.direction;
         record_->escape_glow = glow_;
     }
+    // Add light of the environment
     if (!scene_.lights.has_environment()) return;
     Lights::Sky sky;
+    // Weight it against light sampling, which could not find it by a specular lobe
     float weight = 1;
     if (specular_) {
         sky.radiance = scene_.lights.environment(ray_.direction);
@@ -32,6 +34,7 @@ void PathTracer::escape() {
 void PathTracer::add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex) {
     const Rgb light = scene_.lights.emitted(hit, wo);
     if (is_black(light)) return;
+    // Weight the emission against light sampling, which could not find it by a specular lobe
     float weight = 1;
     if (!specular_) {
         const float p =
@@ -46,13 +49,16 @@ void PathTracer::add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex
 
 void PathTracer::add_direct(const Surface& surface, float u_select, Vec2 u, PathVertex* vertex) {
     const SurfaceHit& hit = surface.hit;
+    // Sample a light
     const auto light =
         scene_.lights.finish_draw(hit.position, light_normal_, hit.time, u_select,
                                   draws_ahead_ ? light_draw_ : Lights::Draw{u, {}, 0});
     if (!light || is_black(light->radiance) || !(light->pdf > 0)) return;
+    // Evaluate the BSDF for its direction
     const Vec3 wi_local = surface.frame.to_local(light->wi);
     const BsdfValue value = eval_direction(surface, wi_local, light->wi);
     if (is_black(value.f)) return;
+    // Trace a shadow ray and add the light
     Ray shadow;
     shadow.origin = Geometry::offset_origin(hit, light->wi);
     shadow.time = hit.time;
@@ -66,7 +72,7 @@ bool PathTracer::add_light(const LightSample& light, const BsdfValue& value, Ray
     if (is_black(light.radiance) || !(light.pdf > 0)) return false;
     shadow.direction = light.wi;
     if (std::isfinite(light.distance)) {
-        // Aim at the light from the moved origin and stop just short of it.
+        // Aim at the light from the moved origin and stop just short of it
         const Vec3 to_light = light.position - shadow.origin;
         const float d = length(to_light);
         if (!(d > 0)) return false;

@@ -7,11 +7,13 @@ namespace covtrace {
 
 MediumEvent PathTracer::cross_medium(float length) {
     const Medium& medium = scene_.media[static_cast<size_t>(medium_)];
+    // Add emission
     if (depth_ < max_depth_ && !is_black(medium.emission)) {
         const Rgb contribution = beta_ * emitted_along(medium, length);
         result_.radiance += contribution;
         if (record_) glow_ += luminance(contribution);
     }
+    // Sample the distance at which the medium scatters
     MediumEvent event{false, length, transmittance(medium, length)};
     if (depth_ < max_depth_ && medium.scatters()) {
         sampler_.set_dimension(kMediumPairs + static_cast<uint32_t>(passed_interfaces_) +
@@ -29,11 +31,13 @@ bool PathTracer::scatter_in_medium(float distance) {
     SurfaceHit place;
     place.position = ray_.origin + ray_.direction * distance;
     place.time = ray_.time;
+    // Begin the vertex
     PathVertex* vertex = begin_vertex(place, medium_, wo);
     if (seen_clearly_) describe_vertex(place.position, medium.albedo(), {});
     ++depth_;
     sampler_.set_dimension(static_cast<uint32_t>(depth_) * kPairsPerBounce);
     const auto [u_choice, u_light, u_phase, u_roulette] = sampler_.next_four_2d();
+    // Sample direct illumination
     light_normal_ = {};
     Ray shadow;
     shadow.origin = place.position;
@@ -43,6 +47,7 @@ bool PathTracer::scatter_in_medium(float distance) {
         const float p = henyey_greenstein(medium.g, -dot(wo, light->wi));
         add_light(*light, {Rgb(p), p}, shadow, medium_, vertex);
     }
+    // Sample the phase function for the next direction
     const Vec3 wi = sample_phase(medium.g, wo, u_phase);
     pdf_ = henyey_greenstein(medium.g, -dot(wo, wi));
     specular_ = sharp_so_far_ = seen_clearly_ = false;

@@ -1,5 +1,5 @@
-/// What a path leaves behind when it is asked to: the events that the frequency analysis replays.
-/// Plain data with a fixed capacity; the integrator writes it and knows nothing of covariances.
+/// The record of a path, made on demand: the events that the frequency analysis replays. Plain data
+/// with a fixed capacity; the integrator writes it and knows nothing of covariances.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace covtrace {
 /// Lobes that take part at a vertex for one pair of directions, with their shares of the scattered
 /// light.
 struct ScatterEvent {
-    Vec3 wi;  ///< unit, world, away from the surface, towards where the light comes from
+    Vec3 wi;  ///< unit, world, away from the surface, towards the place where the light comes from
     LobeShares lobes;
 };
 
@@ -21,7 +21,7 @@ struct ScatterEvent {
 /// and time mean anything and the events have no lobes.
 struct PathVertex {
     SurfaceHit hit;
-    MediumId medium = -1;  ///< of the scattering; -1: on a surface
+    MediumId medium = -1;  ///< medium that scatters; -1: on a surface
     Vec3 wo;               ///< unit, world, towards the previous vertex
     Frame shading;         ///< frame of the BSDF: anisotropic roughness is along its x and y
     MaterialId material = -1;
@@ -29,12 +29,14 @@ struct PathVertex {
     /// Luminance that reaches the sensor from this vertex' own emission, after multiple importance
     /// sampling.
     float emitted = 0;
-    bool seen_sharply = false;  ///< no lobe but specular ones between the camera and this vertex
+    /// Whether all lobes between the camera and this vertex are specular.
+    bool seen_sharply = false;
     /// Luminance that reaches the sensor from the media between this vertex and the previous one.
     float glow = 0;
 
-    /// Seen by specular lobes alone that were all more likely than not: light found here shows the
-    /// emitter itself, almost without noise, in the full contrast of its border.
+    /// Whether the vertex is seen by specular lobes alone that were all more likely than not: light
+    /// found here shows the emitter itself, almost without noise, in the full contrast of its
+    /// border.
     bool in_view = false;
 
     /// Luminance that reaches the sensor by the light sampled here; 0 where there is none.
@@ -42,19 +44,20 @@ struct PathVertex {
     LightSample light;
     ScatterEvent direct_event;
 
-    /// Where the path goes on; `scatters` is false at its last vertex.
+    /// Whether the path goes on from here; false at its last vertex.
     bool scatters = false;
     ScatterEvent next_event;
 };
 
 struct PathRecord {
-    /// Light from beyond this many vertices is left out of the record (not out of the radiance).
+    /// Most vertices in a record. Light from beyond them is left out of the record, not out of the
+    /// radiance.
     static constexpr int kCapacity = 24;
     std::array<PathVertex, kCapacity> vertices;
     int count = 0;
     Ray camera_ray;
-    /// Luminance from the infinite lights where the path left the scene, and the direction it left
-    /// by.
+    /// Luminance from the infinite lights where the path left the scene, and the direction in which
+    /// it left.
     float escaped = 0;
     Vec3 escape_direction;
     float escape_glow = 0;  ///< luminance from the media behind the last vertex

@@ -6,8 +6,8 @@ namespace covtrace {
 
 namespace {
 
-/// GGX alpha below which what lies behind a lobe is told to filters: Cycles' denoising features
-/// draw the line there, too, and a sweep over thirteen scenes found nothing better
+/// GGX alpha below which filters are told of objects behind a lobe: Cycles' denoising features draw
+/// the line there, too, and a sweep over thirteen scenes found nothing better
 /// (docs/decisions/0086).
 constexpr float kSeenThrough = 0.075f;
 
@@ -50,16 +50,18 @@ std::optional<BsdfSample> PathTracer::sample_direction(const Surface& surface, f
     }
     s->pdf = mixed_pdf(own.pdf, wi);
     s->weight = s->pdf > 0 ? own.f * (1 / s->pdf) : Rgb(0);
-    // A throughput that is small because the guide expects much light from there must not end
-    // the path: the roulette judges it as if the BSDF had chosen alone.
+    // Let the roulette judge the path as if the BSDF had chosen alone: a throughput that is small
+    // because the guide expects much light from there must not end the path
     if (own.pdf > 0) roulette_scale_ *= s->pdf / own.pdf;
     return s;
 }
 
 bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, PathVertex* vertex) {
+    // Sample the BSDF or the guide
     const auto s = sample_direction(surface, u_lobe, u);
     if (!s || is_black(s->weight)) return false;
     const Vec3 wi = normalize(surface.frame.to_world(s->wi));
+    // Update the path's throughput and what is known of its lobes
     beta_ *= s->weight;
     pdf_ = s->pdf;
     specular_ = is_specular(s->lobe);
@@ -68,6 +70,7 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, PathVerte
         seen_clearly_ && !is_diffuse(s->lobe) && sharp_lobe_roughness(surface.bsdf) < kSeenThrough;
     sharp_probability_ *= s->pdf;
     if (is_transmission(s->lobe)) roulette_scale_ *= s->eta * s->eta;
+    // Record the event
     if (vertex) {
         vertex->scatters = true;
         vertex->next_event.wi = wi;
@@ -79,6 +82,7 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, PathVerte
                 lobe_shares(surface.bsdf, surface.wo, s->wi, s->weight * s->pdf);
         }
     }
+    // Move the ray to the surface, into the medium beyond
     const SurfaceHit& hit = surface.hit;
     previous_position_ = hit.position;
     previous_normal_ = light_normal_;

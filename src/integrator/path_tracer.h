@@ -1,4 +1,4 @@
-/// The inside of trace_path, for the files path*.cpp of this folder.
+/// The class inside trace_path, for the files path*.cpp of this folder.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@ namespace covtrace {
 inline float power_heuristic(float a, float b) {
     if (std::isinf(a)) return 1;
     if (std::isinf(b)) return 0;
-    // A lamp far away has a density whose square is no float any more.
+    // Squares of large densities, as of a lamp far away, would be no floats any more.
     constexpr float kLargest = 1e18f;
     if (const float largest = std::max(a, b); largest > kLargest) {
         a /= largest;
@@ -21,7 +21,7 @@ inline float power_heuristic(float a, float b) {
     return a2 + b2 > 0 ? a2 / (a2 + b2) : 0;
 }
 
-/// One path in the making. The estimate is  sum over vertices of  beta * (emission + direct light),
+/// A path in the making. The estimate is  sum over vertices of  beta * (emission + direct light),
 /// beta = product of  f |cos| / pdf  and of the weights of media so far; each kind of light is
 /// found by two strategies whose weights add to one.
 class PathTracer {
@@ -43,31 +43,34 @@ class PathTracer {
 
   private:
     static constexpr uint32_t kPairsPerBounce = 4;
-    /// Media draw from dimensions of their own, so that surfaces see the same numbers with or
-    /// without them: one pair for each piece between interfaces.
+    /// First dimension of the media's pairs. Media draw from dimensions of their own, so that
+    /// surfaces see the same numbers with or without them: one pair for each piece between
+    /// interfaces.
     static constexpr uint32_t kMediumPairs = 1u << 20;
 
-    /// A place on a surface and what scatters there.
+    /// A place on a surface with all that scattering there depends on.
     struct Surface {
         const SurfaceHit& hit;
         const PlacedShape& shape;
         const Bsdf& bsdf;
         Frame frame;
-        Vec3 wo;  ///< in the frame
+        Vec3 wo;  ///< direction towards the viewer, in the frame
     };
 
     // ---- path.cpp
-    /// Follows the ray to where it meets something; false where the path ends.
+    /// Follows the ray to the next place where it meets something; returns false where the path
+    /// ends.
     bool step();
     bool meet_surface(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material,
                       const Bsdf& bsdf);
     /// The frame of the BSDF, with the material's bump or normal map.
     Frame frame_at(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material) const;
     PathVertex* begin_vertex(const SurfaceHit& hit, MediumId medium, Vec3 wo);
-    /// The current vertex, if it is the first one or is seen through mirrors and the like.
+    /// Describes the current vertex in the result, if it is the first one or is seen through
+    /// mirrors and the like.
     void describe_vertex(Vec3 position, Rgb albedo, Vec3 normal);
-    /// Russian roulette by the throughput without the factors that refraction and the guide put on
-    /// it.
+    /// Whether the path survives Russian roulette, by the throughput without the factors that
+    /// refraction and the guide put on it.
     bool survives(float u);
     bool in_view() const { return sharp_so_far_ && sharp_probability_ > 0.5f; }
 
@@ -76,23 +79,24 @@ class PathTracer {
     void add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex);
     void add_direct(const Surface& surface, float u_select, Vec2 u, PathVertex* vertex);
     /// Adds the light sampled at a vertex that scatters the part `value.f` of it into the path and
-    /// would have found its direction with density `value.pdf`. False where nothing of it arrives.
+    /// would have found its direction with density `value.pdf`. Returns false where nothing of it
+    /// arrives.
     bool add_light(const LightSample& light, const BsdfValue& value, Ray shadow, MediumId medium,
                    PathVertex* vertex);
 
     // ---- path_scatter.cpp: where the path goes on
-    /// Density of sample_direction to return a direction by other than specular lobes, given that
-    /// of the BSDF.
+    /// Density of sample_direction to return a direction by other than specular lobes, given the
+    /// density of the BSDF.
     float mixed_pdf(float own, Vec3 wi) const;
-    /// Value of a pair, with that density.
+    /// Value of a pair of directions, with the density of mixed_pdf.
     BsdfValue eval_direction(const Surface& surface, Vec3 wi_local, Vec3 wi) const;
-    /// A direction by the BSDF or, for a share of the samples, by the guide. The weight counts
-    /// both, whichever chose.
+    /// Samples a direction by the BSDF or, for a share of the samples, by the guide. The weight
+    /// counts both, whichever chose.
     std::optional<BsdfSample> sample_direction(const Surface& surface, float u_lobe, Vec2 u);
     bool scatter(const Surface& surface, float u_lobe, Vec2 u, PathVertex* vertex);
 
     // ---- path_medium.cpp
-    /// Adds what the medium emits on the way and decides whether the ray gets through.
+    /// Adds the emission of the medium on the way and decides whether the ray gets through.
     MediumEvent cross_medium(float length);
     bool scatter_in_medium(float distance);
 
@@ -105,24 +109,27 @@ class PathTracer {
 
     PathResult result_;
     Rgb beta_{1};
-    float pdf_ = 0;  // of the last sampled direction
+    float pdf_ = 0;  // density of the last sampled direction
     bool specular_ =
         true;  // the last lobe (the camera counts as one): no light sampling could find it
     bool sharp_so_far_ = true;
-    bool seen_clearly_ = true;     // every lobe so far was sharp enough to see through
-    float travelled_ = 0;          // from the camera to the last vertex
-    float sharp_probability_ = 1;  // of the specular lobes that were chosen, while sharp so far
+    bool seen_clearly_ = true;  // every lobe so far was sharp enough to see through
+    float travelled_ = 0;       // length of the path from the camera to the last vertex
+    // Probability of the specular lobes that were chosen, while all were specular.
+    float sharp_probability_ = 1;
     float roulette_scale_ = 1;
     MediumId medium_ = -1;
     int passed_interfaces_ = 0;
-    int depth_ = 0;            ///< scattering events so far
-    float glow_ = 0;           ///< luminance from media since the last vertex, for the record
-    Vec3 camera_origin_;       ///< where the path starts
-    GuideMixture guide_;       // at the current vertex
-    Lights::Draw light_draw_;  // of the next vertex, where the lights can begin before it is known
+    int depth_ = 0;       ///< scattering events so far
+    float glow_ = 0;      ///< luminance from media since the last vertex, for the record
+    Vec3 camera_origin_;  ///< start of the path
+    GuideMixture guide_;  // guide at the current vertex
+    // Draw for the next vertex, where the lights can begin before it is known.
+    Lights::Draw light_draw_;
     const bool draws_ahead_;
-    Vec3 light_normal_;                         // what the lights are told at the current vertex
-    Vec3 previous_position_, previous_normal_;  // and at the last one, for the weights
+    Vec3 light_normal_;  // normal that the lights are told at the current vertex
+    // Place and light normal of the last vertex, for the weights.
+    Vec3 previous_position_, previous_normal_;
 };
 
 }  // namespace covtrace

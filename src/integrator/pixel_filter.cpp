@@ -11,17 +11,17 @@ double sinc(double x) {
     return std::abs(x) < 1e-4 ? 1.0 : std::sin(x) / x;
 }
 
-/// How far from the centre the filter is told from nothing: cells beyond would make the others
-/// coarse.
+/// Distance from the centre beyond which the filter is as good as 0: cells beyond would make the
+/// others coarse.
 double support(const FilterDescription& d, double radius) {
     constexpr double kGaussianEnd = 6;  // deviations, where it is 1.5e-8 of its peak
     const bool is_gaussian = d.kind == FilterDescription::Kind::gaussian;
     return is_gaussian ? std::min(radius, kGaussianEnd * d.sigma) : radius;
 }
 
-/// The one-dimensional factor of the filter at `x` pixels from the centre; scale is free. In
-/// double, since filters much narrower than a pixel are differences of numbers that are all but
-/// the same.
+/// The one-dimensional factor of the filter at `x` pixels from the centre; its scale is free.
+/// Computed in double, since filters much narrower than a pixel are differences of numbers that are
+/// all but equal.
 double evaluate(const FilterDescription& d, double x, double radius) {
     x = std::abs(x);
     if (x > radius) return 0;
@@ -31,12 +31,13 @@ double evaluate(const FilterDescription& d, double x, double radius) {
         case FilterDescription::Kind::triangle:
             return radius - x;
         case FilterDescription::Kind::gaussian: {
-            // exp(a) - exp(b), for a and b near each other, too.
+            // The difference exp(a) - exp(b) is exact for a and b near each other, too.
             const double s = 1 / (2 * double(d.sigma) * d.sigma);
             return -std::exp(-x * x * s) * std::expm1((x - radius) * (x + radius) * s);
         }
         case FilterDescription::Kind::mitchell: {
-            // Mitchell and Netravali 1988, stretched from its support of 2 to the radius.
+            // The filter is that of Mitchell and Netravali 1988, stretched from its support of 2 to
+            // the radius.
             const double v = 2 * x / radius, b = d.b, c = d.c;
             if (v <= 1)
                 return ((12 - 9 * b - 6 * c) * v * v * v + (-18 + 12 * b + 6 * c) * v * v +
@@ -85,7 +86,7 @@ PixelFilter::PixelFilter(const FilterDescription& description) {
 
 std::array<float, 2> PixelFilter::Axis::sample(float u) const {
     size_t cell = first[static_cast<size_t>(u * kCells)];
-    // Mostly none or one step, which nobody could predict; seldom more.
+    // The search takes mostly none or one step, which nobody could predict; seldom more.
     cell += cdf[cell + 1] <= u ? 1 : 0;
     while (cdf[cell + 1] <= u) ++cell;
     const float span = cdf[cell + 1] - cdf[cell];

@@ -18,20 +18,20 @@ class PixelFilter {
         Vec2 offset;       ///< from the pixel's centre, in pixels
         float weight = 1;  ///< 1 for filters without negative lobes; its expectation is 1
     };
-    /// `u` in [0, 1)^2. The filter is separable, and so is the map.
+    /// Maps `u` in [0, 1)^2 to an offset. The filter is separable, and so is the map.
     Sample sample(Vec2 u) const;
     /// Variance of the offset along x and y, in pixels^2 (signed weights included).
     Vec2 variance() const { return variance_; }
 
   private:
-    /// One axis: a finely tabulated |f| and its distribution function.
+    /// One axis of the filter: a finely tabulated |f| and its distribution function.
     struct Axis {
         static constexpr int kCells = 1024;
         float radius = 0.5f;
         float weight = 1;  // integral of |f| over integral of f
         std::array<float, kCells + 1> cdf{};
         std::array<bool, kCells> negative{};
-        /// For each u = k / kCells the first cell that may hold it.
+        /// The first cell that may hold u, for each u = k / kCells.
         std::array<uint16_t, kCells> first{};
         std::array<float, 2> sample(float u) const;  // offset, weight
     };

@@ -1,4 +1,4 @@
-/// Everything that a path needs to find its way: what it may meet, and what has been learnt of it.
+/// The scene that is rendered: all that a path may meet, and the guide that was learnt from it.
 #pragma once
 
 #include "integrator/caustic_guide.h"
@@ -8,7 +8,7 @@ namespace covtrace {
 
 /// A scene and the guide that was learnt from it before anything is rendered.
 struct RenderScene : LitScene {
-    /// Parameters and errors as LitScene's.
+    /// Builds scene and guide. Parameters and errors are LitScene's.
     explicit RenderScene(SceneDescription scene_description, const std::string& isa = {},
                          size_t texture_bytes = kNoTextureLimit);
 

@@ -20,7 +20,8 @@ Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, 
     ++rays;
     if (scene.geometry.occluded(ray)) return Rgb(0);
     if (!scene.has_interfaces) return transmittance(scene, medium, distance);
-    // Nothing but interfaces is left on the way, and mixes that are one in places.
+    // Walk through the rest of the way: it holds only interfaces, and mixes that are interfaces in
+    // places
     Rgb passes(1);
     SurfaceHit hit;
     for (int i = 0; i < kMostInterfaces; ++i) {

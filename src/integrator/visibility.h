@@ -1,11 +1,13 @@
-/// What of a light's radiance reaches a point: occlusion by surfaces, extinction by media.
+/// Visibility: the part of a light's radiance that reaches a point, after occlusion by surfaces and
+/// extinction by media.
 #pragma once
 
 #include "integrator/lit_scene.h"
 
 namespace covtrace {
 
-/// The medium that a ray is in after it leaves `hit` in the direction `w`; `current` before.
+/// The medium that a ray is in after it leaves `hit` in the direction `w`; before, it was in
+/// `current`.
 MediumId medium_beyond(const PlacedShape& shape, const SurfaceHit& hit, Vec3 w, MediumId current);
 
 /// Transmittance over a piece of a medium; infinite lengths count as the scene's
@@ -14,12 +16,12 @@ Rgb transmittance(const LitScene& scene, MediumId medium, float distance);
 
 /// Share of light per channel that comes along `ray` from `distance` away (infinite for lights
 /// without a place), `medium` being around the ray's origin. `ray.t_max` ends just short of the
-/// light; surfaces before it take all light, interfaces let it pass into the next medium. Adds
-/// the rays that it traces to `rays`.
+/// light; surfaces before it take all light, interfaces let it pass into the next medium. The rays
+/// that are traced are added to `rays`.
 Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, uint32_t& rays);
 
-/// More interfaces than this end a path or a look at a light: the ray is caught between coincident
-/// ones.
+/// Most interfaces on a path or on the way to a light: beyond them the ray is caught between
+/// coincident ones.
 inline constexpr int kMostInterfaces = 1000;
 
 }  // namespace covtrace
