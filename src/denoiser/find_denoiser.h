@@ -1,4 +1,4 @@
-/// Which denoiser a render has, by what is asked for and what is found on this machine.
+/// The choice of a render's denoiser, by the options and by the libraries found on this machine.
 #pragma once
 
 #include <filesystem>
@@ -25,21 +25,22 @@ inline constexpr auto kEnumNames<DenoiserChoice> =
 
 struct DenoiserSearch {
     DenoiserChoice choice = DenoiserChoice::automatic;
-    /// This file and no other. Empty: that of the environment's COVTRACE_OIDN_LIBRARY, else
-    /// libOpenImageDenoise.so.2 in the first of the folders that has it, else the system's.
+    /// The library's file, and no other. Empty: that of the environment's COVTRACE_OIDN_LIBRARY,
+    /// else libOpenImageDenoise.so.2 in the first of the folders that has it, else the system's.
     std::filesystem::path library;
     std::vector<std::filesystem::path> folders;
 };
 
 struct FoundDenoiser {
     std::shared_ptr<const Denoiser> denoiser;  ///< null: none
-    std::filesystem::path library;             ///< its file
-    std::string why_none;                      ///< of a null denoiser
-    bool is_unusable = false;                  ///< one was found, `why_none` is a warning's text
+    std::filesystem::path library;             ///< file of the denoiser
+    std::string why_none;                      ///< reason where the denoiser is null
+    /// Whether one was found but cannot be used; `why_none` is then a warning's text.
+    bool is_unusable = false;
 };
 
-/// Loads it, with as many threads as ThreadLimit allows now. Throws Error(usage) where the choice
-/// is `oidn` and it cannot be used; the message names the option --denoiser.
+/// Loads the denoiser, with as many threads as ThreadLimit allows now. Throws Error(usage) where
+/// the choice is `oidn` and it cannot be used; the message names the option --denoiser.
 FoundDenoiser find_denoiser(const DenoiserSearch& search);
 
 }  // namespace covtrace

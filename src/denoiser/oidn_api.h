@@ -14,7 +14,7 @@ enum DeviceType : int { kCpu = 1 };
 enum Format : int { kFloat3 = 3 };
 enum Quality : int { kBalanced = 5, kHigh = 6 };
 
-/// Every pointer is set.
+/// Functions of the library; every pointer is set.
 struct Api {
     Device (*new_device)(DeviceType);
     void (*release_device)(Device);

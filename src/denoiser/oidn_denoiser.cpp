@@ -14,14 +14,14 @@ namespace covtrace {
 
 namespace {
 
-/// For the network's own values, kBytes of them per pixel. Larger images are denoised in tiles that
-/// overlap, to the same bits.
+/// Limit of memory for the network's own values, kBytes of them per pixel. Larger images are
+/// denoised in tiles that overlap, to the same bits.
 constexpr int kMostMegabytes = 2000;
 constexpr size_t kBytes = 700;
-/// The library and its weights.
+/// Memory of the library and its weights.
 constexpr size_t kLibraryBytes = size_t(64) << 20;
 
-/// Three planes as the library has pixels.
+/// Three planes in the layout of the library's pixels.
 class Pixels {
   public:
     Pixels(const std::array<Plane, 3>& planes, const InputRange& range)
@@ -31,7 +31,7 @@ class Pixels {
     size_t width() const { return size_t(planes_[0].width); }
     size_t height() const { return size_t(planes_[0].height); }
     float* data() { return values_.data(); }
-    /// Half a turn of what the library gets or left.
+    /// Turns the library's input or output by half a turn.
     void turn() {
         for (size_t i = 0, j = values_.size(); i + 3 < j; i += 3) {
             j -= 3;
@@ -39,7 +39,8 @@ class Pixels {
         }
         turned_ = !turned_;
     }
-    /// Where the library left what is no number, the pixel is again what it was before.
+    /// Restores pixels for which the library left values that are not finite to what they were
+    /// before.
     void repair() {
         for (size_t i = 0; i < planes_[0].size(); ++i) {
             const float* v = &values_[3 * place(i)];
@@ -78,7 +79,7 @@ struct OidnDenoiser::Impl {
             if (number / 10000 != 2)
                 throw Error(ErrorKind::usage, file.string() + ": is version " + version +
                                                   "; expected Open Image Denoise 2");
-            // Its threads are those of the render, which may share the machine.
+            // The library's threads are those of the render, which may share the machine.
             api.set_device_bool(device, "setAffinity", false);
             api.set_device_int(device, "numThreads", ThreadLimit::current());
             api.commit_device(device);
@@ -153,7 +154,7 @@ std::vector<ColorPlanes> OidnDenoiser::denoise(const NoisyFeatures& features,
     std::vector<ColorPlanes> results;
     for (NoisyImage& image : images) {
         const InputRange light(image.color);
-        if (light.is_dark()) {  // where networks see light that is none
+        if (light.is_dark()) {  // in black images networks see light that is not there
             const Plane black(image.color[0].width, image.color[0].height);
             results.push_back({black, black, black});
             continue;

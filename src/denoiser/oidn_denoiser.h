@@ -15,21 +15,22 @@ namespace covtrace {
 class OidnDenoiser : public Denoiser {
   public:
     /// Loads the library `file`: a path, or a bare name that the dynamic linker looks for. It uses
-    /// as many threads as ThreadLimit allows now. Throws Error(usage) where it cannot be loaded, is
-    /// no version 2 or finds no CPU that it supports; the message says what and why.
+    /// as many threads as ThreadLimit allows now. Throws Error(usage) where the library cannot be
+    /// loaded, is no version 2 or finds no CPU that it supports; the message says what and why.
     explicit OidnDenoiser(const std::filesystem::path& file);
     ~OidnDenoiser() override;
 
-    /// Finite whatever the images hold; all-black images stay black.
+    /// Denoises images, as Denoiser says. Results are finite whatever the images hold; all-black
+    /// images stay black.
     std::vector<ColorPlanes> denoise(const NoisyFeatures& features,
                                      std::vector<NoisyImage> images) const override;
 
-    /// As measured with version 2.5.1.
+    /// Bytes as measured with version 2.5.1.
     size_t memory(size_t pixels) const override;
 
-    /// "Open Image Denoise 2.5.1".
+    /// Name with version: "Open Image Denoise 2.5.1".
     std::string name() const override;
-    /// Where the dynamic linker found it.
+    /// File of the library, where the dynamic linker found it.
     const std::filesystem::path& file() const;
 
   private:

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr int kPrivate = RTLD_NOW | RTLD_LOCAL;
 
-/// The parts of the library beside `file`, and itself, by their names.
+/// Paths of the library's other parts in the folder of `file`, in the order of their names.
 std::vector<fs::path> parts_beside(const fs::path& file) {
     std::vector<fs::path> parts;
     std::error_code error;
@@ -43,7 +43,8 @@ void* load(const fs::path& file) {
     }
     if (void* library = ::dlopen(file.c_str(), kPrivate)) return library;
     std::string why = ::dlerror();
-    // Builds look for their core in a folder `lib`; where it is loaded already it is found.
+    // Load the core first and try again: builds look for their core in a folder `lib`, but find one
+    // that is loaded already
     if (is_path)
         for (const fs::path& part : parts_beside(file))
             if (part.filename().string().find("_core.so") != std::string::npos)

@@ -1,4 +1,4 @@
-/// The library Open Image Denoise in this process.
+/// Loading the library Open Image Denoise into this process.
 #pragma once
 
 #include <filesystem>
@@ -9,13 +9,13 @@ namespace covtrace::oidn {
 
 struct Library {
     Api api;
-    std::filesystem::path file;  ///< where the dynamic linker found it
+    std::filesystem::path file;  ///< file, where the dynamic linker found it
 };
 
 /// Loads `file`: a path, or a bare name that the dynamic linker looks for. The parts of the library
-/// are found beside it, in whatever folder they are. It stays loaded: its own threads may outlive
-/// every use of it. Throws Error(usage), which says what and why, where it cannot be loaded or
-/// lacks a function of version 2.
+/// are found beside it, in whatever folder they are. The library stays loaded: its own threads may
+/// outlive every use of it. Throws Error(usage), which says what and why, where it cannot be loaded
+/// or lacks a function of version 2.
 Library load_library(const std::filesystem::path& file);
 
 }  // namespace covtrace::oidn

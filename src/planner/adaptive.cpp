@@ -7,7 +7,7 @@ namespace covtrace {
 
 std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSettings& settings) {
     constexpr float kSmoothing = 1.5f;
-    // No filter is narrower (deviation, pixels), so spectra beyond it ask for nothing more.
+    // Deviation of the narrowest filter, pixels: spectra beyond it ask for nothing more.
     constexpr float kNarrowest = 0.35f, kSharpness = 2;
     const Plane brightness = gaussian_blur(known.brightness, kSmoothing);
     Plane noise(known.variance.width, known.variance.height);

@@ -1,4 +1,4 @@
-/// Where the next samples lower the error of the reconstructed image most.
+/// Adaptive plans: the next samples go where they lower the error of the reconstructed image most.
 #pragma once
 
 #include <span>
@@ -9,33 +9,33 @@
 
 namespace covtrace {
 
-/// What is known of every pixel, row by row.
+/// Knowledge of every pixel, row by row.
 struct SampleKnowledge {
     Plane brightness;                                   ///< mean luminance
-    Plane variance;                                     ///< of the luminance of one sample
-    Plane cost;                                         ///< of one sample, any unit
-    std::span<const covariance::Sym2<float>> spectrum;  ///< predicted, (cycles/pixel)^2
-    /// What the counts are multiplied with, any unit, beyond what lowers the error of the image
-    /// most; empty: alike.
+    Plane variance;                                     ///< variance of the luminance of one sample
+    Plane cost;                                         ///< cost of one sample, in any unit
+    std::span<const covariance::Sym2<float>> spectrum;  ///< predicted spectrum, (cycles/pixel)^2
+    /// Factor of the counts, in any unit, beside the density that lowers the error of the image
+    /// most; empty: the same for all.
     Plane emphasis;
 };
 
-/// Whose samples a plan is for, and what will be made of them.
+/// Settings of a plan: whose samples it is for, and what will be made of them.
 struct PlanSettings {
     /// Whether the counts are for the very sequence of samples that is known, not for another one.
     bool own;
     float dark_squared;    ///< eps of adaptive_density
-    float widest_filter;   ///< deviation of the widest one that smooths the samples, pixels
-    float spectrum_power;  ///< of |S_2D|
+    float widest_filter;   ///< deviation of the widest filter that smooths the samples, pixels
+    float spectrum_power;  ///< exponent of |S_2D|
 };
 
-/// For the predicted Gaussians: what the derivation below says.
+/// Settings for the predicted Gaussians, as the derivation below gives them.
 constexpr PlanSettings kOwnPlan{true, 0.01f, 15, 0.25f};
-/// For two halves that plan for each other, and regressions, which leave no less noise than a
-/// Gaussian of some 2 pixels does: as found by a sweep (docs/decisions/0093).
+/// Settings for two halves that plan for each other, and regressions, which leave no less noise
+/// than a Gaussian of some 2 pixels does: as found by a sweep (docs/decisions/0093).
 constexpr PlanSettings kHalvesPlan{false, 0.1f, 2, 0.2f};
 
-/// Relative densities with mean 1.
+/// Makes relative densities with mean 1.
 ///
 /// A filter F_p = sum_q a_pq y_q has the variance sum_q a_pq^2 sigma_q^2 / n_q; the counts that
 /// minimise the sum over p of g_p times it, g = 1 / (I^2 + eps), at a given total cost are
@@ -43,18 +43,18 @@ constexpr PlanSettings kHalvesPlan{false, 0.1f, 2, 0.2f};
 /// For the predicted Gaussian, whose squares sum to 1 / (4 pi sqrt|C|) ~ sqrt|S_2D|,
 ///     n ~ sigma |S_2D|^(1/4) / (sqrt(I^2 + eps) sqrt(c)).
 /// Few samples know little of sigma / I: its square is averaged over a few pixels. Where light is
-/// rare, who has seen some gets more samples and sees more; counts that follow their own samples,
-/// or, through several rounds, those of another half that followed them, so make the image too
-/// dark, the more the fewer pixels own the average (docs/decisions/0093). For own samples
-/// sigma / I itself is averaged.
+/// rare, a pixel that has seen some gets more samples and sees more: counts that follow their own
+/// samples, or, through several rounds, those of another half that followed them, make the image
+/// too dark, the more so the fewer pixels the average is over (docs/decisions/0093). For own
+/// samples sigma / I itself is averaged.
 std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSettings& settings);
 
 /// The share of all samples that two densities of the same pixels, made from different samples,
-/// leave to be given out evenly, since nothing that the samples have not seen yet may be starved:
-/// 2 (1 - r), but at least 0.15, r the correlation of their square roots. What counts miss the best
-/// ones by costs, to second order, the squared difference of their roots; of two measurements that
-/// agree by r, 1 - r of the variance is noise. Twice that and the least share are from a sweep
-/// (docs/decisions/0093). Pre: as many of both, none negative.
+/// leave to be given out evenly, since light that the samples have not seen yet must not be
+/// starved: 2 (1 - r), but at least 0.15, r the correlation of their square roots. The loss by
+/// counts that are not the best ones is, to second order, the squared difference of the roots; of
+/// two measurements that agree by r, 1 - r of the variance is noise. Twice that and the least share
+/// are from a sweep (docs/decisions/0093). Pre: as many of both, none negative.
 float even_share(std::span<const float> a, std::span<const float> b);
 
 /// Gives `share` of all samples out evenly. Pre: densities with mean 1.

@@ -1,5 +1,5 @@
-/// How many samples each pixel gets: the library's densities and exact budgets
-/// (covariance/budget.hpp), and what the renderer's rounds need beside them.
+/// Sample counts by density: the densities and exact budgets of the covariance library
+/// (covariance/budget.hpp), and the functions that the renderer's rounds need beside them.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ template <>
 inline constexpr auto kEnumNames<DensityRule> =
     enum_names<DensityRule>({{DensityRule::tempered, "tempered"}, {DensityRule::thesis, "thesis"}});
 
-/// What `rule` asks for beyond the tempered density, (g / g_tempered)^0.7, as a mean over a few
+/// Emphasis of `rule` beyond the tempered density, (g / g_tempered)^0.7, as a mean over a few
 /// pixels since a few paths tell it with much noise: SampleKnowledge::emphasis (docs/decisions/0062
 /// has the sweep of the exponent). One in every pixel for the tempered rule itself.
 Plane emphasis(const Prediction& prediction, DensityRule rule, float c,
@@ -29,9 +29,9 @@ using covariance::allocate;
 using covariance::density_factor;
 using covariance::mean_count;
 
-/// allocate(), but `at_most` is what one call may add to a pixel, so that repeated calls, in
-/// rounds, go beyond it and sample again where the limit of samples left noise: the thesis'
-/// progressive method (section 5.1.3).
+/// Shares samples out as allocate() does, but `at_most` limits what one call adds to a pixel, so
+/// that repeated calls, in rounds, go beyond it and sample again where the limit of samples left
+/// noise: the progressive method of Belcour 2012, section 5.1.3.
 std::vector<uint32_t> allocate_on_demand(std::span<const float> density, int64_t total,
                                          std::span<const uint32_t> have, uint32_t at_most);
 

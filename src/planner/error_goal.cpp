@@ -11,7 +11,8 @@ double ErrorGoal::samples(double now, double is, double wanted) {
     taken = now;
     error = is;
     if (!(is > wanted)) return now;
-    // A little more than just enough, and no step so small that its reconstruction costs more.
+    // The step aims at a little more than just enough, and none is so small that its reconstruction
+    // costs more.
     constexpr double kMargin = 0.97, kLeastStep = 1.1;
     const double factor = std::pow(is / (kMargin * wanted), 1 / power);
     return now * std::clamp(factor, kLeastStep, 1e6);

@@ -1,4 +1,4 @@
-/// One 5x5 covariance and its weight per pixel, and the prediction that follows from them.
+/// Covariance buffers: a 5x5 covariance and its weight per pixel, and the prediction from them.
 #pragma once
 
 #include <span>
@@ -12,13 +12,14 @@ namespace covtrace {
 using Covariance5 = covariance::SymmetricMatrix5<float>;
 using Covariance2 = covariance::Sym2<float>;
 
-/// Radiance-weighted mean covariances of the pixels, and what follows from them: the library's.
+/// Types of the covariance library: radiance-weighted mean covariances of the pixels, and the
+/// prediction that follows from them.
 using CovarianceBuffer = covariance::CovarianceImage<float>;
 using Prediction = covariance::Prediction<float>;
 
-/// The light of a pixel in two parts. An emitter in view outshines what is beside it a hundred
-/// times: in one mean it would decide the spectra around it, and the tails of filters would carry
-/// it over its border. `scattered` is all the light that surfaces sent on.
+/// The covariances of a pixel's light, in two parts. An emitter in view outshines the light beside
+/// it a hundred times: in one mean it would decide the spectra around it, and the tails of filters
+/// would carry it over its border. `scattered` is all the light that surfaces sent on.
 struct CovarianceBuffers {
     CovarianceBuffers(int w, int h)
         : width(w), height(h), scattered(size_t(w) * size_t(h)), in_view(scattered.size()) {}
@@ -30,15 +31,16 @@ struct CovarianceBuffers {
     }
 };
 CovarianceBuffer unpack(std::span<const PackedCovariance> packed, int width, int height);
-/// The covariances of all light: the mean of both parts, weighted by their radiance.
+/// Covariances of all light: the mean of both parts, weighted by their radiance.
 CovarianceBuffer merge(const CovarianceBuffers& buffers);
-/// The same to keep; no rounding to floats comes before the packing.
+/// Covariances of all light, packed to be kept; no rounding to floats comes before the packing.
 std::vector<PackedCovariance> packed_merge(const CovarianceBuffers& buffers);
 
-/// covariance::preintegrate in parallel: every pixel as it is, the `spectrum` layer.
+/// Predicts every pixel as it is, in parallel (covariance::preintegrate): the `spectrum` layer.
 Prediction preintegrated(const CovarianceBuffer& buffer);
 
-/// covariance::smooth in parallel: means over 3x3 pixels, holes filled from the nearest pixel.
+/// Smooths in parallel (covariance::smooth): means over 3x3 pixels, holes filled from the nearest
+/// pixel.
 CovarianceBuffer smoothed(const CovarianceBuffer& buffer);
 
 }  // namespace covtrace

@@ -8,16 +8,17 @@ namespace covtrace {
 
 namespace {
 
-constexpr std::array<size_t, 5> kOrder{2, 3, 4, 0, 1};  // lens, shutter, position
-constexpr size_t kIntegrated = 3;                       // of these axes, the first
+// Order of the axes: lens, shutter, position.
+constexpr std::array<size_t, 5> kOrder{2, 3, 4, 0, 1};
+constexpr size_t kIntegrated = 3;  // number of these axes that are integrated over, the first ones
 
-/// Place of entry (i, j), j <= i, of the factor.
+/// Index of entry (i, j), j <= i, of the factor.
 size_t entry(size_t i, size_t j) {
     return i * (i + 1) / 2 + j;
 }
 
-/// Numbers from 2^-32 to 1/2 in `mantissa` bits after the leading one, as the upper bits of floats;
-/// anything below is 0.
+/// Codes of numbers from 2^-32 to 1/2, with `mantissa` bits after the leading one, as the upper
+/// bits of floats; anything below becomes 0.
 template <int mantissa>
 struct Scaled {
     static constexpr uint32_t kLowest = uint32_t{127 - 32} << 23;
@@ -51,7 +52,8 @@ double decode(size_t i, size_t j, uint16_t code) {
 using Factor = std::array<double, 15>;
 
 Factor cholesky(const covariance::SymmetricMatrix5<double>& s) {
-    // Less than this share of a variance is what the rounding of S left: nothing follows from it.
+    // Share of a variance below which a pivot is what the rounding of S left: nothing follows from
+    // it.
     constexpr double kRounding = 1e-12;
     Factor l{};
     for (size_t j = 0; j < 5; ++j) {
@@ -77,7 +79,8 @@ PackedCovariance::PackedCovariance(const covariance::SymmetricMatrix5<double>& s
                                    float weight_of_it)
     : weight(weight_of_it) {
     const Factor l = cholesky(s);
-    // What rounding made of the diagonal entries: those below follow, which keeps their slopes.
+    // Factors by which rounding changed the diagonal entries: entries below follow them, which
+    // keeps their slopes.
     std::array<double, 5> rounded{1, 1, 1, 1, 1};
     for (size_t i = 0; i < 5; ++i) {
         std::array<double, 5> row{};
@@ -87,7 +90,7 @@ PackedCovariance::PackedCovariance(const covariance::SymmetricMatrix5<double>& s
             largest = std::max(largest, std::abs(row[j]));
         }
         if (!(largest > 0) || !std::isfinite(largest)) continue;
-        // Entries are below 1/2 then.
+        // The exponent is so large that entries are below 1/2.
         exponent[i] = int8_t(std::clamp(std::ilogb(largest) + 2, -120, 120));
         const double scale = std::ldexp(1.0, -exponent[i]);
         for (size_t j = 0; j <= i; ++j)

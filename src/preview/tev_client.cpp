@@ -26,11 +26,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPoll{50};  // how soon a request to stop is seen
+constexpr milliseconds kPoll{50};  // time until a request to stop is seen
 constexpr milliseconds kConnectTimeout{2000};
-constexpr milliseconds kRetry{500};  // between attempts to connect
+constexpr milliseconds kRetry{500};  // time between attempts to connect
 constexpr const char* kNoAnswer = "no answer yet";
-constexpr size_t kMessageBytes = 1 << 20;  // about: rows are sent in bands
+constexpr size_t kMessageBytes = 1 << 20;  // rough size of a message: rows are sent in bands
 
 }  // namespace
 
@@ -41,11 +41,12 @@ struct TevClient::State {
     std::condition_variable changed;
     std::optional<Image> waiting;               ///< the newest image that is not being sent
     std::optional<Clock::time_point> deadline;  ///< set by finish()
-    bool ended = false;                         ///< the thread has
-    bool connected = false;                     ///< has been, once
-    std::optional<std::string> failure;         ///< of the first attempt; empty once it is told
+    bool ended = false;                         ///< whether the thread has ended
+    bool connected = false;                     ///< whether the viewer was ever connected
+    /// Failure of the first attempt; empty text once it is told.
+    std::optional<std::string> failure;
 
-    // Of the thread alone.
+    // The following members belong to the thread alone.
     int socket = -1;
     std::vector<std::string> created;  ///< channels of the image that the viewer has
     std::pair<int, int> created_size;
@@ -59,7 +60,7 @@ struct TevClient::State {
     bool send_image(const Image& image);
     bool send_all(const std::string& bytes);
     bool connect();
-    /// Empty, or why it cannot be done.
+    /// Connects to one address; returns nothing, or the reason why it cannot be done.
     std::string connect_to(const addrinfo& address);
     void fails(const std::string& why) {
         const std::lock_guard lock(mutex);
@@ -193,8 +194,8 @@ bool TevClient::State::peer_is_gone() const {
 
 TevClient::TevClient(std::string host, std::string port, std::string name)
     : state_(std::make_shared<State>(std::move(host), std::move(port), std::move(name))) {
-    // Detached, since a look-up of the host's name can neither be ended nor waited for; finish()
-    // waits for everything else.
+    // The thread is detached, since a look-up of the host's name can neither be ended nor waited
+    // for; finish() waits for everything else.
     std::thread([state = state_] { state->run(); }).detach();
 }
 
@@ -220,7 +221,7 @@ void TevClient::finish(double seconds) {
 
 std::string TevClient::take_failure() {
     const std::lock_guard lock(state_->mutex);
-    // A look-up of the name may still be under way.
+    // A look-up of the name may still be under way: there is no answer yet.
     if (state_->deadline && !state_->connected && !state_->failure) state_->failure = kNoAnswer;
     return state_->failure ? std::exchange(*state_->failure, {}) : std::string();
 }

@@ -1,5 +1,5 @@
-/// Shows images in the viewer tev while they are rendered, and never makes the renderer wait for
-/// it.
+/// The preview: shows images in the viewer tev while they are rendered, and never makes the
+/// renderer wait for it.
 #pragma once
 
 #include <memory>
@@ -9,14 +9,15 @@
 
 namespace covtrace {
 
-/// A thread of its own connects, sends, and connects again. A viewer that is absent, comes late,
-/// hangs, is slow or goes away costs the caller nothing: images wait in one place that the newest
-/// takes.
+/// A connection to the viewer, by a thread of its own that connects, sends, and connects again. A
+/// viewer that is absent, comes late, hangs, is slow or goes away costs the caller nothing: images
+/// wait in one place that the newest takes.
 class TevClient {
   public:
-    /// `host`, `port`: as the system resolves them. `name`: of the image in tev.
+    /// Begins to connect to `host` and `port`, as the system resolves them. `name` is that of the
+    /// image in tev.
     TevClient(std::string host, std::string port, std::string name);
-    /// finish(0).
+    /// Ends the connection at once, as finish(0) does.
     ~TevClient();
     TevClient(const TevClient&) = delete;
     TevClient& operator=(const TevClient&) = delete;
@@ -26,8 +27,9 @@ class TevClient {
     /// Waits for the last image to be sent as long as the viewer keeps taking bytes, but at most
     /// `seconds`; nothing is sent afterwards.
     void finish(double seconds);
-    /// Why the viewer was not there when it was first looked for, or, after finish(), why it never
-    /// was. Told once, in words; empty before, afterwards, and where it was there.
+    /// The reason why the viewer was not there when it was first looked for, or, after finish(),
+    /// why it never was. Told once, in words; empty before, afterwards, and where the viewer was
+    /// there.
     std::string take_failure();
 
   private:

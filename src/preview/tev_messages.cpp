@@ -26,7 +26,7 @@ class MessageWriter {
         message_.append(static_cast<const char*>(from), count);
         return *this;
     }
-    /// The message with its length.
+    /// The message, complete with its length.
     std::string finish() {
         const auto length = uint32_t(message_.size());
         std::memcpy(message_.data(), &length, sizeof length);
@@ -57,7 +57,7 @@ std::string tev_update_image(const std::string& name, const Image& image, int y0
     message.number(int32_t(image.data.x0 - image.display.x0));
     message.number(int32_t(y0 - image.display.y0));
     message.number(int32_t(width)).number(int32_t(y1 - y0));
-    // One channel after the other: offset and stride count in floats.
+    // Channels come one after the other: offset and stride count in floats.
     for (size_t c = 0; c < image.channels.size(); ++c) message.number(int64_t(c * count));
     for (size_t c = 0; c < image.channels.size(); ++c) message.number(int64_t(1));
     for (const Channel& channel : image.channels)

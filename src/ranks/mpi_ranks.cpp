@@ -16,7 +16,7 @@ namespace {
 class MpiRanks : public Ranks {
   public:
     MpiRanks() {
-        // Only the thread that renders calls MPI, while others trace.
+        // One thread alone, the one that renders, calls MPI, while others trace.
         int provided = 0;
         MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
         MPI_Comm_rank(MPI_COMM_WORLD, &index_);
@@ -73,7 +73,8 @@ class MpiRanks : public Ranks {
         return pixels;
     }
 
-    /// The records of all owners one after the other, and back into the array.
+    /// Shares an array: gathers the records of all owners one after the other, and puts them back
+    /// into it.
     void share(const FilmArray& array, const std::vector<std::vector<size_t>>& pixels,
                const std::vector<int>& counts, const std::vector<int>& offsets,
                size_t total) const {
