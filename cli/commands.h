@@ -8,12 +8,13 @@
 
 namespace covtrace::cli {
 
-/// The chosen command; returns the exit code (docs/reference/exit-codes.md).
+/// The chosen command; it returns the exit code (docs/reference/exit-codes.md).
 using Action = std::function<int()>;
 
 struct Invocation {
-    std::chrono::steady_clock::time_point start;  ///< of the process: what --time counts from
-    std::string command_line;                     ///< for the image's metadata
+    /// Start of the process, from which --time counts.
+    std::chrono::steady_clock::time_point start;
+    std::string command_line;  ///< the whole command line, for the image's metadata
     Action action;
 };
 

@@ -27,7 +27,7 @@ struct CompareArguments {
     double smooth = 0;
 };
 
-/// The image after a Gaussian of the given standard deviation in pixels: the baseline that any
+/// Blurs an image by a Gaussian of the given standard deviation in pixels: the baseline that any
 /// renderer can have.
 void smooth_root(Image& image, double deviation) {
     if (!image.find("R") || !image.find("G") || !image.find("B"))
@@ -46,7 +46,7 @@ void smooth_root(Image& image, double deviation) {
                 for (size_t i = 0; i < mean.size(); ++i) c.values[i] = smoothed.color[i][k];
 }
 
-/// Both images side by side, with the FLIP map and the measures.
+/// Writes a page with both images side by side, the FLIP map and the measures.
 void write_comparison(const CompareArguments& a, const Image& image, const Image& reference,
                       const Comparison& c) {
     const auto name = [](const std::string& file) {
@@ -92,7 +92,7 @@ int compare_images(const CompareArguments& a) {
     const Comparison c = compare(image, reference, crop);
     if (!a.report.empty()) write_comparison(a, image, reference, c);
     if (a.json) {
-        // JSON has no infinity: the psnr of equal images is null, and so is 0 / 0.
+        // Infinity is null, as JSON has none: the psnr of equal images, and 0 / 0.
         nlohmann::json j = {
             {"mse", c.mse},
             {"relmse", c.relmse},
@@ -131,7 +131,7 @@ void add_compare(CLI::App& app, Invocation& invocation) {
     c->add_option_function<std::string>(
          "--smooth",
          [a](const std::string& text) {
-             // The least is no blur at all; the squares of much smaller ones are zero.
+             // The least deviation is no blur at all; the squares of much smaller ones are zero.
              constexpr double kLeast = 1e-3, kMost = 1000;
              a->smooth = parse_positive("--smooth", text, kMost, kLeast);
          },

@@ -14,9 +14,9 @@ namespace covtrace::cli {
 namespace {
 
 struct CompletedOption {
-    std::vector<std::string> names;  ///< "--output", "-o"
+    std::vector<std::string> names;  ///< as typed: "--output", "-o"
     std::string help;
-    std::vector<std::string> choices;  ///< of its value, where they are few words
+    std::vector<std::string> choices;  ///< choices of its value, where they are few words
     bool takes_value = false;
     bool takes_file = false;
 };
@@ -26,7 +26,7 @@ struct CompletedCommand {
     std::vector<CompletedOption> options;
 };
 
-/// "a|b|c" as the help shows it.
+/// The choices in a text such as "a|b|c", as the help shows them.
 std::vector<std::string> choices_of(const std::string& text) {
     std::vector<std::string> choices;
     if (text.find('|') == std::string::npos) return choices;
@@ -65,7 +65,7 @@ std::string joined(const std::vector<CompletedCommand>& commands) {
     return names;
 }
 
-/// For a shell's single quotes.
+/// The text in a shell's single quotes.
 std::string quoted(const std::string& text) {
     std::string result = "'";
     for (char c : text) result += c == '\'' ? "'\\''" : std::string(1, c);

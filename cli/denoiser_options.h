@@ -1,4 +1,4 @@
-/// The options that choose a denoiser, and what is said of it.
+/// The options that choose a denoiser, and the warnings about it.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,13 +11,14 @@ namespace covtrace::cli {
 
 struct DenoiserArguments {
     DenoiserChoice choice = DenoiserChoice::automatic;
-    std::string library;  ///< empty: looked for
+    std::string library;  ///< file of the library; empty: looked for
 };
 
-/// Adds them to the command; `arguments` must outlive the parser.
+/// Adds the options to a command; `arguments` must outlive the parser.
 void add_denoiser_options(CLI::App* command, DenoiserArguments& arguments);
 
-/// Looks where the program is, too. Throws Error(usage) where it was asked for and cannot be used.
+/// Finds the denoiser that the options ask for, also in the program's own folder. Throws
+/// Error(usage) where it was asked for and cannot be used.
 FoundDenoiser find(const DenoiserArguments& arguments);
 
 /// Warns of a denoiser that was found and cannot be used.

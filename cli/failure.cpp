@@ -31,7 +31,7 @@ int exit_code(ErrorKind kind) {
     return 7;
 }
 
-/// The message; the option that is refused is spelled as on the command line: "--max-spp: ".
+/// The error's message; an option that is refused is spelled as on the command line: "--max-spp: ".
 std::string message_of(const Error& e) {
     const std::string text = e.what();
     if (e.option().empty()) return text;

@@ -5,7 +5,8 @@
 
 namespace covtrace::cli {
 
-/// Says on standard error what went wrong. Returns the exit code (docs/reference/exit-codes.md).
+/// Says on standard error why the program fails. Returns the exit code
+/// (docs/reference/exit-codes.md).
 int report_failure(const std::exception_ptr& failure);
 
 /// The exit code of a command line that cannot be understood.

@@ -10,8 +10,8 @@ namespace covtrace::cli {
 namespace {
 
 constexpr double kEvery = 60;                     // seconds
-constexpr size_t kSlowBytes = size_t(100) << 20;  // may take more than a second
-constexpr double kMostShare = 0.01;               // of the time, unless --every is given
+constexpr size_t kSlowBytes = size_t(100) << 20;  // films beyond this may take more than a second
+constexpr double kMostShare = 0.01;               // share of the time, unless --every is given
 
 }  // namespace
 
@@ -36,7 +36,7 @@ FilmKeeping FilmFiles::keeping(bool writes) {
     FilmKeeping k;
     const auto& a = arguments_;
     if (a.shard) k.shard = *a.shard;
-    // The checkpoint that shards begin with is written by who joins them.
+    // The checkpoint that shards begin with is written by the process that joins them.
     const bool writes_checkpoint = writes && !a.shard;
     if (writes && !a.film.empty()) remove_leftovers(a.film);
     if (writes_checkpoint && !a.checkpoint.empty()) remove_leftovers(a.checkpoint);

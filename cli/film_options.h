@@ -10,14 +10,14 @@
 namespace covtrace::cli {
 
 struct FilmArguments {
-    std::string film;             ///< where the final film goes; empty: nowhere
-    std::string checkpoint;       ///< likewise, now and then
+    std::string film;             ///< file of the final film; empty: none
+    std::string checkpoint;       ///< file of the film that is kept now and then; empty: none
     std::optional<double> every;  ///< seconds between checkpoints
     std::optional<Shard> shard;
     bool resume = false;
 };
 
-/// Adds them to the command; `arguments` must outlive the parser.
+/// Adds the options to a command; `arguments` must outlive the parser.
 void add_film_options(CLI::App* command, FilmArguments& arguments);
 
 /// Throws Error(usage) for options that need others. Where `film` and `checkpoint` are two

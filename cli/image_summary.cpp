@@ -24,7 +24,7 @@ Distribution distribution_of(std::vector<double> values) {
     return {at(0), at(0.05), at(0.5), at(0.95), at(1), sum / double(values.size())};
 }
 
-/// value(pixel) of every pixel.
+/// The values value(pixel) of all pixels.
 template <typename Value>
 std::vector<double> for_pixels(const Image& image, const Value& value) {
     std::vector<double> values(image.pixel_count());
@@ -83,7 +83,7 @@ std::vector<UncertainPixel> most_uncertain(const Image& image, const std::vector
 void add_errors(ImageSummary& summary, const Image& image) {
     const Channel* error = image.find("error.Y");
     if (!error || !image.find("R") || !image.find("G") || !image.find("B")) return;
-    constexpr double kFloor = 0.01;  // of relMSE
+    constexpr double kFloor = 0.01;  // constant in the denominator of relMSE
     std::vector<double> relative = for_pixels(image, [&](size_t i) {
         const double l = luminance(image.rgb(i)), e = error->values[i];
         const double r = e / std::sqrt(l * l + kFloor);

@@ -1,4 +1,4 @@
-/// What an image's layers say about the whole image: counts, filters, errors, and where to look.
+/// A summary of a whole image, from its layers: counts, filters, errors, and where to look.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace covtrace::cli {
 
-/// Of the finite values of a quantity; all 0 where there is none.
+/// Distribution of the finite values of a quantity; all 0 where there is none.
 struct Distribution {
     double least = 0, low = 0, median = 0, high = 0, most = 0;  ///< low, high: 5 % and 95 %
     double mean = 0;
@@ -28,19 +28,20 @@ struct UncertainPixel {
 };
 
 struct ImageSummary {
-    std::vector<Quantity> quantities;  ///< those whose layers the image has
-    int64_t nonfinite = 0;             ///< values, all channels
-    /// sqrt of the mean of the squared relative errors: what `render --error` compares; 0 without
-    /// the layer `error`.
+    std::vector<Quantity> quantities;  ///< quantities whose layers the image has
+    int64_t nonfinite = 0;             ///< number of such values in all channels
+    /// Square root of the mean of the squared relative errors, which `render --error` compares; 0
+    /// without the layer `error`.
     double estimated_error = 0;
-    std::vector<UncertainPixel> uncertain;  ///< worst first, apart from each other
+    /// The worst pixels, worst first, apart from each other.
+    std::vector<UncertainPixel> uncertain;
 };
 
-/// Reads the layers by the project's own names; sensible (few quantities) on other images.
+/// Summarises the layers that have the project's own names; other images have few quantities.
 ImageSummary summarize(const Image& image);
 
-/// `name`: of the file. Metadata of ours in words, the quantities as a table, the layers with their
-/// ranges.
+/// Text about the image in the file `name`: our own metadata in words, the quantities as a table,
+/// the layers with their ranges.
 std::string to_text(const ImageSummary& summary, const Image& image, const std::string& name);
 nlohmann::json to_json(const ImageSummary& summary, const Image& image, const std::string& name);
 

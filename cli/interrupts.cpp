@@ -10,7 +10,7 @@ std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // a signal handler sets it
 
 extern "C" void on_interrupt(int signal) {
-    // The system and the shell both tell of a terminal that is closed.
+    // A terminal that is closed may send SIGHUP twice, from the system and from the shell.
     if (!interrupted.exchange(true) || signal == SIGHUP) return;
     std::signal(signal, SIG_DFL);
     std::raise(signal);
@@ -22,7 +22,8 @@ InterruptGuard::InterruptGuard() {
     interrupted = false;
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
-    // A terminal that is closed ends a render like Ctrl-C, but not one that runs under nohup.
+    // A terminal that is closed ends a render as Ctrl-C does, but not a render that runs under
+    // nohup.
     if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 

@@ -1,12 +1,12 @@
-/// Ctrl-C, SIGTERM and SIGHUP while renders run.
+/// Interruption by Ctrl-C, SIGTERM and SIGHUP while renders run.
 #pragma once
 
 #include <atomic>
 
 namespace covtrace::cli {
 
-/// While it lives each of the signals sets the flag; a second one, unless it is SIGHUP, ends the
-/// process at once. One at a time.
+/// Guard: while it lives each of the signals sets the flag; a second signal, unless it is SIGHUP,
+/// ends the process at once. Only one guard may live at a time.
 class InterruptGuard {
   public:
     InterruptGuard();

@@ -13,8 +13,8 @@ namespace {
 constexpr std::array<std::string_view, 13> kStandard{
     "A",       "Z",       "raw",    "albedo",   "N",   "variance", "error",
     "samples", "density", "filter", "spectrum", "cov", "covweight"};
-/// What tells emitters in view apart from scattered light, and what is for denoisers alone, must be
-/// asked for by name.
+/// Layers that must be asked for by name: those that tell emitters in view apart from scattered
+/// light, and those for denoisers alone.
 constexpr std::array<std::string_view, 6> kParts{
     "inview", "inviewfilter", "scatteredcov", "scatteredcovweight", "featurealbedo", "featureN"};
 

@@ -18,15 +18,15 @@
 
 namespace {
 
-/// Where a standard stream is closed, the next file to be opened would take its number and its
-/// messages.
+/// Opens standard streams that are closed: the next file to be opened would take their number, and
+/// their messages.
 void fill_standard_streams() {
     int descriptor = 0;
     while (descriptor >= 0 && descriptor <= STDERR_FILENO) descriptor = ::open("/dev/null", O_RDWR);
     if (descriptor >= 0) ::close(descriptor);
 }
 
-/// Throws Error(io) where what standard output got has not arrived.
+/// Throws Error(io) where text for standard output has not arrived.
 void require_written_output() {
     if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout.flush())
         throw covtrace::Error(
@@ -34,7 +34,8 @@ void require_written_output() {
             std::string("cannot write to standard output: ") + std::strerror(errno));
 }
 
-/// Why the command line is wrong; CLI11 itself does not name a command that it does not know.
+/// The reason why the command line is wrong; CLI11 itself does not name a command that it does not
+/// know.
 std::string explain(const CLI::App& app, const CLI::ParseError& e) {
     const std::vector<std::string> unknown = app.remaining();
     if (app.get_subcommands().empty() && !unknown.empty())
@@ -61,7 +62,7 @@ int run(int argc, char** argv) {
     covtrace::cli::add_info(app, invocation);
     covtrace::cli::add_reproduce(app, invocation);
     covtrace::cli::add_completion(app, invocation);
-    // After the commands, which would inherit it.
+    // The footer comes after the commands, which would inherit it.
     app.footer(
         "Examples:\n"
         "  covtrace render scene.pbrt -o image.exr --png image.png --spp 32\n"
@@ -89,8 +90,8 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     fill_standard_streams();
-    // A reader that went away and a file size limit are then errors of the write, reported and
-    // cleaned up after.
+    // Signals are ignored so that a reader that went away and a file size limit are errors of the
+    // write, reported and cleaned up after.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
     try {

@@ -22,7 +22,8 @@ bool is_small() {
            limit.rlim_cur < kStack;
 }
 
-/// Threads that others start, as OpenEXR does, take the limit for the size of their stacks.
+/// Enlarges the stacks of threads: those that others start, as OpenEXR does, take the limit for the
+/// size of their stacks.
 bool enlarge_stacks_of_threads() {
     pthread_attr_t attributes;
     if (pthread_attr_init(&attributes) != 0) return false;

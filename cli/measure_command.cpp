@@ -38,19 +38,19 @@ struct MeasureArguments {
 
 constexpr std::array<const char*, 5> kAxes{"pixel_x", "pixel_y", "lens_x", "lens_y", "shutter"};
 
-/// Prediction and measurement of one pixel, and what both are compared by.
+/// Prediction and measurement of one pixel, and the quantities by which they are compared.
 struct PixelComparison {
     std::array<int, 2> pixel{}, resolution{};
     covariance::SymmetricMatrix5<double> predicted;
-    double luminance = 0;  ///< of the central ray
+    double luminance = 0;  ///< luminance along the central ray
     MeasuredSpectrum measured;
-    /// What the filters that follow from both change.
+    /// Changes of the image by the two filters, which follow from prediction and measurement.
     FilterChange change_predicted, change_measured;
 
     double bandwidth(const covariance::SymmetricMatrix5<double>& s, size_t axis) const {
         return std::sqrt(std::max(0.0, s(axis, axis)));
     }
-    /// Predicted over measured, where the measurement stands out of its noise.
+    /// Predicted over measured bandwidth, where the measurement stands out of its noise.
     std::optional<double> ratio(size_t axis) const {
         const double m = bandwidth(measured.sigma, axis);
         if (!(m > 3 * measured.bandwidth_error[axis])) return std::nullopt;
@@ -139,6 +139,7 @@ void print_table(const PixelComparison& c, const MeasureArguments& a) {
 }
 
 int measure_pixel(MeasureArguments a) {
+    // Read the scene
     const ThreadLimit threads(a.threads);
     if (!a.resolution.empty())
         a.overrides.resolution = parse_resolution("--resolution", a.resolution);
@@ -156,6 +157,7 @@ int measure_pixel(MeasureArguments a) {
         print_warnings(scene.description.warnings);
         print_warnings(scene.materials.warnings());
     }
+    // Prepare the analysis
     scene.prepare_spectra();
     std::optional<VoxelGrid> grid;
     std::optional<OccluderQuery> query;
@@ -164,6 +166,7 @@ int measure_pixel(MeasureArguments a) {
     else if (a.occlusion == Occlusion::query)
         query.emplace(scene.geometry);
 
+    // Predict, measure, and compare by filters
     const SensorRays rays(scene, {float(pixel[0]) + 0.5f, float(pixel[1]) + 0.5f});
     const int depth = a.max_depth.value_or(scene.description.max_depth);
     const PathReplay replay(

@@ -10,8 +10,8 @@
 
 namespace covtrace::cli {
 
-/// Throws Error(limit), with the sum by category, where the process would hold more than `most`
-/// bytes: what it holds now, and `coming`. `scene`: tells what the bytes so far are for.
+/// Throws Error(limit), with the sum by category, where the bytes that the process holds now and
+/// those that are `coming` are more than `most`. `scene` tells the use of the bytes so far.
 void require_memory(size_t most, const std::map<std::string, size_t>& coming,
                     const RenderScene* scene = nullptr);
 

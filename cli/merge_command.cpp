@@ -31,7 +31,7 @@ struct MergeArguments {
     bool quiet = false;
 };
 
-/// Says why the image of a film that is not complete is not.
+/// The reason why the image of a film is not complete.
 std::string missing_part(const RenderState& state) {
     const auto missing = state.shards - int(state.present.size());
     if (state.shards == 1) return "its render has not come to its end";

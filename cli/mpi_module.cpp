@@ -15,7 +15,7 @@ namespace {
 
 using Join = Ranks* (*)();
 
-/// From the module beside the program, or where it is installed.
+/// Loads the function from the module, beside the program or where it is installed.
 Join load_join() {
     namespace fs = std::filesystem;
     std::error_code ignored;
@@ -23,7 +23,7 @@ Join load_join() {
     for (const fs::path& file :
          {folder / "covtrace_mpi.so", folder / "../lib/covtrace/modules/covtrace_mpi.so"}) {
         if (!fs::exists(file, ignored)) continue;
-        // MPI looks for its own parts among the symbols of all.
+        // Symbols are made known to all, among which MPI looks for its own parts.
         void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
         void* join = module ? ::dlsym(module, "covtrace_join_ranks") : nullptr;
         if (join) return reinterpret_cast<Join>(join);

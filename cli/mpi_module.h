@@ -1,4 +1,4 @@
-/// MPI, where mpirun started the program.
+/// MPI for a program that mpirun started.
 #pragma once
 
 #include <memory>
@@ -7,9 +7,9 @@
 
 namespace covtrace::cli {
 
-/// Joins the processes that mpirun started beside this one; null where it did not. MPI is in a
-/// module of its own, so that nothing else needs it. Throws Error(usage) where the module is
-/// missing or does not load, which tells why.
+/// Joins the processes that mpirun started beside this one; null where it did not start any. MPI is
+/// in a module of its own, so that nothing else needs it. Throws Error(usage) where the module is
+/// missing or does not load; the message says why.
 std::unique_ptr<Ranks> join_ranks();
 
 }  // namespace covtrace::cli

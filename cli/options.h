@@ -13,7 +13,7 @@
 
 namespace covtrace::cli {
 
-/// The value that has this name. Errors: Error(usage) that lists all names.
+/// The value that has this name. Throws Error(usage) that lists all names.
 template <NamedEnum Enum>
 Enum choice(const std::string& option, const std::string& text) {
     if (const auto value = value_named<Enum>(text)) return *value;
@@ -21,7 +21,7 @@ Enum choice(const std::string& option, const std::string& text) {
                 option + ": '" + text + "' is none of " + listed_names<Enum>("|"));
 }
 
-/// One of a few names, or none.
+/// Adds an option that takes one of a few names; without it the value stays empty.
 template <NamedEnum Enum>
 void add_choice(CLI::App* c, const std::string& name, std::optional<Enum>& value,
                 const std::string& help) {
@@ -31,7 +31,7 @@ void add_choice(CLI::App* c, const std::string& name, std::optional<Enum>& value
     c->add_option_function<std::string>(name, choose, help)->option_text(listed_names<Enum>("|"));
 }
 
-/// The same with a default.
+/// Adds an option that takes one of a few names; without it the value keeps its default.
 template <NamedEnum Enum>
 void add_choice(CLI::App* c, const std::string& name, Enum& value, const std::string& help) {
     const auto choose = [name, &value](const std::string& text) {
@@ -40,7 +40,7 @@ void add_choice(CLI::App* c, const std::string& name, Enum& value, const std::st
     c->add_option_function<std::string>(name, choose, help)->option_text(listed_names<Enum>("|"));
 }
 
-/// A number above zero, not below `least` and up to `most`.
+/// Adds an option that takes a number above zero, not below `least` and up to `most`.
 template <typename T>
 void add_positive(CLI::App* c, const std::string& name, std::optional<T>& value, double most,
                   const std::string& help, double least = 0) {
@@ -50,7 +50,8 @@ void add_positive(CLI::App* c, const std::string& name, std::optional<T>& value,
     c->add_option_function<std::string>(name, parse, help)->option_text("N");
 }
 
-/// A whole number in [least, most]; T may be optional. CLI11 itself would read 010 as eight.
+/// Adds an option that takes a whole number in [least, most]; T may be optional. CLI11 itself would
+/// read 010 as eight.
 template <typename T>
 void add_whole(CLI::App* c, const std::string& name, T& value, int64_t least, int64_t most,
                const std::string& help) {
@@ -60,7 +61,8 @@ void add_whole(CLI::App* c, const std::string& name, T& value, int64_t least, in
     c->add_option_function<std::string>(name, parse, help)->option_text("N");
 }
 
-/// Of options whose text is parsed later: an unset shell variable is no value.
+/// A check that refuses empty text, as of an unset shell variable, for options that are parsed
+/// later.
 inline CLI::Validator not_empty() {
     const auto check = [](const std::string& text) {
         return text.empty() ? std::string("expected a value") : std::string();

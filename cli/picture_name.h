@@ -1,4 +1,4 @@
-/// Names of images, which say their format.
+/// Checks of the names of images, which say their format.
 #pragma once
 
 #include <filesystem>
@@ -14,10 +14,11 @@ namespace covtrace::cli {
 void require_image_name(const std::string& option, const std::filesystem::path& file,
                         const LayerSelection& layers);
 
-/// The same for a name that says another format than PNG; one without an ending passes.
+/// Throws such an error for a name that says another format than PNG; a name without an ending
+/// passes.
 void require_picture_name(const std::string& option, const std::filesystem::path& file);
 
-/// The same for the name of a page that says the format of an image.
+/// Throws such an error for the name of a page that says the format of an image.
 void require_report_name(const std::string& option, const std::filesystem::path& file);
 
 }  // namespace covtrace::cli

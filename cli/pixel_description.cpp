@@ -15,7 +15,7 @@ namespace {
 
 struct Axis {
     const char *name, *unit;
-    double scale;  ///< from the covariance's unit to `unit`
+    double scale;  ///< factor from the covariance's unit to `unit`
 };
 constexpr std::array<Axis, 5> kAxes{Axis{"image x", "cycles/pixel", 1},
                                     {"image y", "cycles/pixel", 1},
@@ -23,7 +23,7 @@ constexpr std::array<Axis, 5> kAxes{Axis{"image x", "cycles/pixel", 1},
                                     {"lens y", "cycles/aperture", 2},
                                     {"time", "cycles/shutter", 1}};
 
-/// The value of a channel at a place in memory.
+/// The value of a channel at an index of its pixels.
 std::optional<float> find_value(const Image& image, const std::string& channel, size_t index) {
     const Channel* c = image.find(channel);
     return c ? std::optional(c->values[index]) : std::nullopt;
@@ -47,10 +47,10 @@ std::optional<std::array<std::array<float, 5>, 5>> find_covariance(const Image& 
     return matrix;
 }
 
-/// The same words as bandwidthWords in the viewer's covariance.js.
+/// The bandwidth in words, the same as of bandwidthWords in the viewer's covariance.js.
 std::string bandwidth_words(size_t axis, double value) {
-    // Cycles over the whole aperture or shutter: the value changes by less than a third of its
-    // range.
+    // Cycles over the whole aperture or shutter below which nothing varies: the value changes by
+    // less than a third of its range.
     constexpr double kStill = 0.05;
     if (axis < 2) {
         if (value < 0.001) return "does not vary";
@@ -62,7 +62,7 @@ std::string bandwidth_words(size_t axis, double value) {
     return format_number(value) + " periods " + where;
 }
 
-/// As the pixel's own covariance has it, before the plan smooths and limits it.
+/// The count by the pixel's own covariance, before the plan smooths and limits it.
 HypercubeCount hypercube_count(const Image& image,
                                const std::array<std::array<float, 5>, 5>& covariance) {
     covariance::SymmetricMatrix5<double> sigma;
@@ -91,7 +91,7 @@ nlohmann::json to_json(const std::optional<PrincipalAxes>& axes, const char* uni
 
 std::string format_number(double value) {
     if (!std::isfinite(value)) return std::isnan(value) ? "NaN" : (value > 0 ? "inf" : "-inf");
-    if (value == 0) return "0";  // also -0
+    if (value == 0) return "0";  // also for -0
     const double size = std::abs(value);
     const std::string scientific = fmt::format("{:.3e}", value);
     if (size >= 1e5 || size < 1e-4) return scientific;
@@ -104,7 +104,7 @@ PrincipalAxes principal_axes(double xx, double xy, double yy) {
     double angle = radius > 0 ? -std::atan2(xy, (xx - yy) / 2) / 2 * kDegrees : 0;
     if (angle <= -90) angle += 180;
     return {std::sqrt(std::max(0.0, mean + radius)), std::sqrt(std::max(0.0, mean - radius)),
-            angle + 0.0};  // not -0
+            angle + 0.0};  // no -0
 }
 
 PixelDescription describe_pixel(const Image& image, int x, int y) {

@@ -1,4 +1,4 @@
-/// Everything an image knows about one of its pixels, with units and in words.
+/// The description of one pixel by all that an image knows of it, with units and in words.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace covtrace::cli {
 struct PrincipalAxes {
     double major = 0, minor = 0, angle = 0;
 };
-/// `y` points down on the screen.
+/// Finds the axes; `y` points down on the screen.
 PrincipalAxes principal_axes(double xx, double xy, double yy);
 
 /// One axis of the local light field: standard deviation of its spectrum. The lens axes count over
@@ -31,34 +31,34 @@ struct AxisBandwidth {
     std::string words;
 };
 
-/// The thesis' count N = k sqrt|S| of one pixel.
+/// The count N = k sqrt|S| of one pixel (Belcour 2012, section 5.1, equation 5.3).
 struct HypercubeCount {
     double density = 0;       ///< sqrt|S| per unit hypercube: pixel, aperture and shutter as one
-    std::optional<double> k;  ///< absent where the image was not planned by it
+    std::optional<double> k;  ///< absent where the image was not planned by this density
 };
 
 struct PixelDescription {
     int x = 0, y = 0;
     std::vector<std::pair<std::string, float>> values;  ///< all channels but those of cov
-    /// Over (pixel x, pixel y, lens radius x, lens radius y, shutter); absent without the 15
-    /// channels of cov.
+    /// Covariance over (pixel x, pixel y, lens radius x, lens radius y, shutter); absent without
+    /// the 15 channels of cov.
     std::optional<std::array<std::array<float, 5>, 5>> covariance;
-    std::vector<AxisBandwidth> bandwidth;     ///< empty without covariance
-    bool found_light = true;                  ///< false: no path of the analysis did, and cov is 0
+    std::vector<AxisBandwidth> bandwidth;  ///< empty without covariance
+    bool found_light = true;  ///< false: no path of the analysis found any, and cov is 0
     std::optional<PrincipalAxes> spectrum;    ///< cycles/pixel, after lens and shutter
     std::optional<PrincipalAxes> filter;      ///< standard deviations in pixels
     std::optional<HypercubeCount> hypercube;  ///< from `covariance`
     std::optional<float> samples, density, error;
 };
 
-/// Reads the layers by the project's own names. Throws Error(usage) where the pixel is outside the
-/// data window.
+/// Describes a pixel by the layers that have the project's own names. Throws Error(usage) where the
+/// pixel is outside the data window.
 PixelDescription describe_pixel(const Image& image, int x, int y);
 
 std::string to_text(const PixelDescription& pixel);
 nlohmann::json to_json(const PixelDescription& pixel);
 
-/// Four significant digits; powers of ten below 1e-4 and from 1e5 on.
+/// A number with four significant digits; powers of ten below 1e-4 and from 1e5 on.
 std::string format_number(double value);
 
 }  // namespace covtrace::cli

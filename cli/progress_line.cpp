@@ -29,7 +29,7 @@ std::string clock(double seconds) {
                      : fmt::format("{}:{:02}", s / 60, s % 60);
 }
 
-/// Rounded down, and below 100 until done().
+/// Percent that are done, rounded down, and below 100 until done().
 int percent(const Progress& p) {
     return std::clamp(static_cast<int>(100 * p.fraction), 0, 99);
 }
@@ -48,13 +48,13 @@ std::string plain_line(const Progress& p) {
     return text;
 }
 
-/// A line that is longer than the terminal is wide would wrap, and could not be redrawn.
+/// Width of the terminal: a longer line would wrap, and could not be redrawn.
 size_t terminal_width() {
     winsize size{};
     return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-/// As much as fits: percent and phase, details from the left, then the bar.
+/// The line of a bar, with as much as fits: percent and phase, details from the left, then the bar.
 std::string bar_line(const Progress& p, size_t width) {
     constexpr size_t kLeastBar = 8, kMostBar = 32;
     std::string text = fmt::format("{:3}%  {}", percent(p), name_of(p.phase));
@@ -68,7 +68,7 @@ std::string bar_line(const Progress& p, size_t width) {
 }
 
 nlohmann::json number(double value) {
-    // JSON has no NaN: what is unknown is null.
+    // Unknown values are null: JSON has no NaN.
     if (!std::isfinite(value)) return {};
     return std::round(value * 1e4) / 1e4;
 }

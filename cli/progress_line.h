@@ -42,16 +42,16 @@ class ProgressLine {
     ~ProgressLine() { clear(); }
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
-    /// Of the image, for the samples per second.
+    /// Sets the number of the image's pixels, for the samples per second.
     void set_pixels(double pixels) { pixels_ = pixels; }
     /// Tells that the scene is being read.
     void begin();
-    /// For Monitor: what reports, and the seconds between two reports.
+    /// Arguments for Monitor: the function that reports, and the seconds between two reports.
     std::function<void(const Progress&)> reporter();
     double interval() const;
     /// Removes the bar, if there is one, so that messages can be written.
     void clear();
-    /// All files are there: the only 100 %. `error`: as told last.
+    /// Tells that all files are there: the only 100 %. `error` is the one that was told last.
     void done(double samples_per_pixel, double elapsed, double error);
 
   private:

@@ -39,7 +39,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the image says of its making, beside what its film knows.
+/// Adds to the image's metadata how it was made, beside the metadata that its film knows.
 void describe_making(Image& image, const Monitor& monitor, const std::string& command) {
     auto& m = image.metadata;
     m["covtrace:command"] = command;
@@ -78,7 +78,7 @@ void parse_texts(RenderArguments& a) {
             "'covtrace merge' of all shards");
 }
 
-/// Writes the image and what goes with it.
+/// Writes the image and the files that go with it.
 void deliver(RenderResult& result, const RenderArguments& a, const fs::path& output,
              const Monitor& monitor, const std::string& command, int threads) {
     keep_layers(result.image, a.layers);
@@ -90,7 +90,7 @@ void deliver(RenderResult& result, const RenderArguments& a, const fs::path& out
     if (!a.png.empty()) write_png(result.image, a.png);
 }
 
-/// Once: the viewer may come later, and the render needs none.
+/// Warns once of a viewer that is not there: it may come later, and the render needs none.
 void warn_of_absent_viewer(TevClient& viewer, const RenderArguments& a, ProgressLine& progress) {
     const std::string why = viewer.take_failure();
     if (why.empty() || a.quiet) return;
@@ -98,7 +98,7 @@ void warn_of_absent_viewer(TevClient& viewer, const RenderArguments& a, Progress
     say("warning: --tev: the viewer tev is not there at '{}': {}\n", a.tev, why);
 }
 
-/// All but the first of several processes only trace.
+/// Drops output and messages: all but the first of several processes only trace.
 void be_silent(RenderArguments& a) {
     a.quiet = true;
     a.progress = ProgressStyle::none;
@@ -108,13 +108,13 @@ void be_silent(RenderArguments& a) {
     a.tev.clear();
 }
 
-/// None where no image is made, or by a method that has none.
+/// The denoiser of a render; none where no image is made, or by a method that has none.
 FoundDenoiser denoiser_of(const RenderArguments& a, bool is_first) {
     if (a.options.method != Method::hybrid || a.film.shard || a.debug_pixel || !is_first) return {};
     return find(a.denoiser);
 }
 
-/// `ranks`: the processes that share the work; may be null.
+/// Renders a scene. `ranks`: the processes that share the work; may be null.
 int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLimit& threads,
                  const Ranks* ranks) {
     const bool is_first = !ranks || ranks->index() == 0;
@@ -130,6 +130,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     monitor.interrupted = &guard.flag();
     const MemoryLimit memory(a.max_memory);
 
+    // Read the scene, and check everything before hours of rendering
     SceneDescription description = read_scene_file(
         a.scene, {{a.search_paths.begin(), a.search_paths.end()}, a.overrides.shutter});
     const double loaded = monitor.elapsed();
@@ -144,6 +145,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     keeping.ranks = ranks;
     require_memory(a.max_memory, render_memory(description.film, a.options));
 
+    // Build the scene
     RenderScene scene(std::move(description), isa_name(a.isa), a.texture_bytes);
     const double built = monitor.elapsed();
     progress.clear();
@@ -153,11 +155,13 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
         print_warnings(scene.materials.warnings());
     }
     require_memory(a.max_memory, render_memory(scene.description.film, a.options), &scene);
+    // Tell one sample's path instead, for --debug-pixel
     if (a.debug_pixel) {
         const std::string text = describe_sample(scene, a.options, *a.debug_pixel);
         if (is_first) fmt::print("{}", text);
         return 0;
     }
+    // Render, and show the image as it grows
     const PixelBounds region = render_region(scene.description.film);
     progress.set_pixels(double(region.width()) * region.height());
     std::optional<TevClient> viewer;
@@ -176,6 +180,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     result.statistics.seconds[Phase::load] = loaded;
     result.statistics.seconds[Phase::build] = built - loaded;
     const double rendered = monitor.elapsed();
+    // Write the files and tell what was done
     progress.clear();
     if (viewer) viewer->show(copy_layers(result.image, a.tev_layers));
     if (!is_shard && is_first)
@@ -198,7 +203,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
                 ? fmt::format(" (k = {:.4g})", *result.statistics.density_factor)
                 : "",
             monitor.elapsed());
-    // A viewer that still takes the last image may; all else is done.
+    // A viewer that still takes the last image may do so; all else is done.
     if (viewer) {
         viewer->finish(std::max(0.25, 0.01 * monitor.elapsed()));
         warn_of_absent_viewer(*viewer, a, progress);
@@ -215,7 +220,8 @@ int run_render(RenderArguments a, const Invocation& invocation) {
     try {
         return render_scene(std::move(a), invocation, threads, ranks.get());
     } catch (...) {
-        // The others may wait for this one, which would wait for them in MPI's own end.
+        // The other processes are ended: they may wait for this one, which would wait for them in
+        // MPI's own end.
         const int code = report_failure(std::current_exception());
         ranks->abort(code);
         return code;

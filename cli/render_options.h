@@ -41,7 +41,7 @@ struct RenderArguments {
     bool reproducible = false, quiet = false;
 };
 
-/// Adds them to the command; `arguments` must outlive the parser.
+/// Adds the options to a command; `arguments` must outlive the parser.
 void add_render_options(CLI::App* command, RenderArguments& arguments);
 
 }  // namespace covtrace::cli

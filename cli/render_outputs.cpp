@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Links followed, as far as there are files.
+/// Whether a file is in the working folder, with links followed as far as there are files.
 bool is_in_working_folder(const fs::path& file) {
     std::error_code error;
     const fs::path here = fs::canonical(".", error);
@@ -64,10 +64,10 @@ void check_outputs(const RenderArguments& a, const fs::path& image, const SceneD
     if (!a.denoiser.library.empty()) inputs.push_back(a.denoiser.library);
     std::vector<NamedOutput> outputs{{"--output", image}, {"--png", a.png}, {"--stats", a.stats}};
     add_film(outputs, "--checkpoint", a.film.checkpoint);
-    // The final film may be that of the checkpoint.
+    // The final film may have the checkpoint's name.
     if (a.film.film != a.film.checkpoint) add_film(outputs, "--film", a.film.film);
     require_distinct(outputs, inputs);
-    // A shard only reads the checkpoint.
+    // A shard only reads the checkpoint, which need not be writable.
     const fs::path checkpoint = a.film.shard ? fs::path() : fs::path(a.film.checkpoint);
     for (const fs::path& file :
          {image, fs::path(a.png), fs::path(a.stats), fs::path(a.film.film), checkpoint})

@@ -1,4 +1,4 @@
-/// The files that `render` writes: what they are called, and whether they may be written.
+/// The files that `render` writes: their names, and whether they may be written.
 #pragma once
 
 #include <filesystem>
@@ -8,14 +8,15 @@
 
 namespace covtrace::cli {
 
-/// The image: --output, or else what the scene's film names, an OpenEXR file, or else SCENE.exr. A
-/// scene does not choose where to write: of a name that leads out of the working folder the last
-/// part is taken, with a warning among the scene's.
+/// Path of the image: --output, or else the name that the scene's film gives, an OpenEXR file, or
+/// else SCENE.exr. A scene does not choose where to write: of a name that leads out of the working
+/// folder the last part is taken, with a warning among the scene's.
 std::filesystem::path image_path(const RenderArguments& arguments, SceneDescription& scene);
 
-/// Throws before anything is written, and before hours of rendering: Error(usage) where an output
-/// is another one, or a file that is read; Error(usage) or Error(io) where one cannot be written.
-/// `image`: empty for a shard, which has none. Removes what killed processes have left of them.
+/// Checks the outputs. Throws before anything is written, and before hours of rendering:
+/// Error(usage) where an output is another one, or a file that is read; Error(usage) or Error(io)
+/// where one cannot be written. `image` is empty for a shard, which has none. Removes the leftovers
+/// of killed processes.
 void check_outputs(const RenderArguments& arguments, const std::filesystem::path& image,
                    const SceneDescription& scene);
 

@@ -11,7 +11,7 @@ namespace covtrace::cli {
 
 namespace {
 
-/// Bytes by what they are for, and the most that the process ever had in memory.
+/// Bytes by use, and the most that the process ever had in memory.
 nlohmann::json memory_json(const RenderScene& scene, const RenderResult& result) {
     nlohmann::json memory = scene.memory();
     memory.update(nlohmann::json(result.statistics.memory));
@@ -21,7 +21,8 @@ nlohmann::json memory_json(const RenderScene& scene, const RenderResult& result)
     return memory;
 }
 
-/// Name and file of the one that was used, or why there is none; null where none is needed.
+/// Name and file of the denoiser that was used, or the reason why there is none; null where none is
+/// needed.
 nlohmann::json denoiser_json(const FoundDenoiser& found, const Metadata& image) {
     const auto failure = image.find("covtrace:denoiserFailure");
     if (failure != image.end())
@@ -32,7 +33,7 @@ nlohmann::json denoiser_json(const FoundDenoiser& found, const Metadata& image) 
     return nullptr;
 }
 
-/// How many pixels are not what was rendered, the first of them, and in which layers.
+/// Number of the pixels that are not as rendered, the first of them, and their layers.
 nlohmann::json replaced_json(const Metadata& image) {
     const auto r = replaced_pixels(image);
     if (!r) return {{"count", 0}};

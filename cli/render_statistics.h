@@ -1,4 +1,4 @@
-/// What `render --stats` writes.
+/// The statistics that `render --stats` writes.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -7,7 +7,7 @@
 
 namespace covtrace::cli {
 
-/// Writes the page and says on standard error what was left out of it.
+/// Writes the page and says on standard error which layers were left out of it.
 void write_report_file(const viewer::Report& report, const std::filesystem::path& file);
 
 }  // namespace covtrace::cli

@@ -24,8 +24,8 @@ fs::path folder_of(const fs::path& file) {
     return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// Whether some file system may take both for one: the same but for capitals, or with letters
-/// beyond ASCII, which have several spellings.
+/// Whether some file system may take both names for one: they differ in capitals alone, or have
+/// letters beyond ASCII, which have several spellings.
 bool are_alike(const std::string& a, const std::string& b) {
     const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
     if (!std::all_of(a.begin(), a.end(), is_ascii) || !std::all_of(b.begin(), b.end(), is_ascii))
@@ -35,7 +35,7 @@ bool are_alike(const std::string& a, const std::string& b) {
     });
 }
 
-/// Whether the file system takes both names for one, by trying it: where a file of the first name
+/// Whether the file system takes both names for one. That is tried: where a file of the first name
 /// is made, is there one of the second? No rule that is written down here would know all systems
 /// that ignore case or accents.
 bool are_one_name(const fs::path& first, const fs::path& second) {
@@ -48,7 +48,7 @@ bool are_one_name(const fs::path& first, const fs::path& second) {
         std::error_code error;
         return fs::exists(other, error);
     } catch (const Error&) {
-        return false;  // nothing can be written there: whoever tries says why
+        return false;  // nothing can be written there: the command that tries says why
     }
 }
 
@@ -72,14 +72,14 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
         return first && first == number_of(b);
     }
     const fs::path first = OutputFile::resolved(a), second = OutputFile::resolved(b);
-    // Neither is there yet: they are one where their folders and their names in them are.
+    // Two files that are not there yet are one where their folders, and their names in them, are.
     return fs::equivalent(folder_of(first), folder_of(second), error) &&
            are_one_name(first, second);
 }
 
 void require_distinct(const std::vector<NamedOutput>& outputs,
                       const std::vector<fs::path>& inputs) {
-    // A scene may read a hundred thousand files: each is looked at once.
+    // Each input is looked at once: a scene may read a hundred thousand files.
     std::map<FileNumber, const fs::path*> read;
     for (const fs::path& input : inputs)
         if (const auto number = number_of(input)) read.emplace(*number, &input);

@@ -1,4 +1,4 @@
-/// Files that a command would lose because two of its names are one.
+/// Checks for files that a command would lose because two of its names are one.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,11 @@ namespace covtrace::cli {
 
 /// Whether both names are one regular file, there already or not, however they are spelled:
 /// relative or not, through links of any kind, in another case where the file system ignores it.
-/// Devices, pipes and empty names are none.
+/// Devices, pipes and empty names are never one.
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
-/// What an output is for ("--png") and its name; empty: not asked for.
+/// An output: the option that asks for it ("--png") and its name, which is empty where it is not
+/// asked for.
 struct NamedOutput {
     std::string option;
     std::filesystem::path file;

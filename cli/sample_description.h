@@ -1,4 +1,4 @@
-/// What one sample of a pixel found: the option --debug-pixel.
+/// A description of one sample's path: the option --debug-pixel.
 #pragma once
 
 #include <string>

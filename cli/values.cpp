@@ -25,7 +25,7 @@ bool take_number(std::string_view& text, T& value) {
     throw Error(ErrorKind::usage, option + ": '" + text + "' is not " + expected);
 }
 
-/// Exactly N numbers with `separator` between them.
+/// Reads exactly N numbers with `separator` between them.
 template <typename T, size_t N>
 std::array<T, N> parse_list(const std::string& option, const std::string& text, char separator,
                             const char* expected) {
@@ -47,7 +47,7 @@ double parse_duration(const std::string& option, const std::string& text) {
     std::string_view rest = text;
     double seconds = 0;
     if (!take_number(rest, seconds) || !rest.empty()) {
-        // Only a number alone may leave out its unit: "1h30" could mean minutes or seconds.
+        // Without a unit only a single number is clear: "1h30" could mean minutes or seconds.
         rest = text;
         seconds = 0;
         do {

@@ -1,5 +1,5 @@
-/// Option values that need a parser of their own. All throw Error(usage), whose message begins with
-/// `option`.
+/// Parsers for option values that need one of their own. All throw Error(usage), whose message
+/// begins with `option`.
 #pragma once
 
 #include <array>
@@ -11,29 +11,30 @@
 
 namespace covtrace::cli {
 
-/// "2.5", "45s", "3m", "1h30m" in seconds; above zero.
+/// Reads a duration above zero in seconds: "2.5", "45s", "3m", "1h30m".
 double parse_duration(const std::string& option, const std::string& text);
-/// "640x360".
+/// Reads a resolution: "640x360".
 std::array<int, 2> parse_resolution(const std::string& option, const std::string& text);
-/// "x0,y0,x1,y1" in pixels, end exclusive.
+/// Reads a crop "x0,y0,x1,y1" in pixels, end exclusive.
 PixelBounds parse_crop(const std::string& option, const std::string& text);
-/// "x,y", a pixel.
+/// Reads a pixel "x,y".
 std::array<int, 2> parse_pixel(const std::string& option, const std::string& text);
-/// "a,b", two finite numbers with a < b.
+/// Reads an interval "a,b", two finite numbers with a < b.
 std::array<float, 2> parse_interval(const std::string& option, const std::string& text);
-/// "host:port", "host" with tev's own port 14158, or "[::1]:port".
+/// Reads an address: "host:port", "host" with tev's own port 14158, or "[::1]:port".
 std::array<std::string, 2> parse_address(const std::string& option, const std::string& text);
-/// A finite number above zero and up to `most`; where `least` is given, not below it.
+/// Reads a finite number above zero and up to `most`; where `least` is given, not below it.
 double parse_positive(const std::string& option, const std::string& text, double most,
                       double least = 0);
-/// A whole number in [least, most], in decimal digits whatever it begins with.
+/// Reads a whole number in [least, most], in decimal digits whatever it begins with.
 int64_t parse_whole(const std::string& option, const std::string& text, int64_t least,
                     int64_t most);
-/// Paths per pixel: a whole number up to 2^20, or a part of one: a path in so many of the pixels.
+/// Reads paths per pixel: a whole number up to 2^20, or a part of one: a path in so many of the
+/// pixels.
 double parse_paths(const std::string& option, const std::string& text);
-/// Bytes: "500M", "2G", "64k", "1.5T" (powers of 1024) or a plain number.
+/// Reads a size in bytes: "500M", "2G", "64k", "1.5T" (powers of 1024) or a plain number.
 size_t parse_size(const std::string& option, const std::string& text);
-/// "k/n", the k-th of n shares, from 1.
+/// Reads a shard "k/n", the k-th of n shares, from 1.
 Shard parse_shard(const std::string& option, const std::string& text);
 
 /// One sample of one pixel.
@@ -41,9 +42,9 @@ struct DebugPixel {
     int x = 0, y = 0;
     uint64_t sample = 0;  ///< from 0
 };
-/// "x,y,sample".
+/// Reads a sample: "x,y,sample".
 DebugPixel parse_sample(const std::string& option, const std::string& text);
-/// A whole number in [0, 2^64).
+/// Reads a whole number in [0, 2^64).
 uint64_t parse_seed(const std::string& option, const std::string& text);
 
 }  // namespace covtrace::cli

@@ -25,7 +25,7 @@ std::optional<uint16_t> exact_half(float value) {
     if (size == 0) return sign;
     if (size > 65504.0f) return std::nullopt;
     constexpr float kLeastNormal = 6.103515625e-05f;  // 2^-14
-    if (size < kLeastNormal) {                        // multiples of 2^-24
+    if (size < kLeastNormal) {                        // a subnormal: a multiple of 2^-24
         const float steps = size * 16777216.0f;
         if (steps != std::floor(steps)) return std::nullopt;
         return uint16_t(sign | uint16_t(steps));

@@ -1,4 +1,5 @@
-/// Private to this folder: a plane of values as text that the page's planes.js reads.
+/// The encoding of a plane of values as text that the page's planes.js reads; private to this
+/// folder.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +8,10 @@
 
 namespace covtrace::viewer {
 
-/// Lossless but for the payload of NaNs. The values as 16-bit floats where all of them are such,
-/// else as 32-bit floats, little endian; byte k of all values before byte k + 1 of all values
-/// (neighbouring values share their high bytes, so that these compress well); deflated (zlib);
-/// base64.
+/// A plane as text, lossless but for the payload of NaNs. The values are 16-bit floats where all of
+/// them are such, else 32-bit floats, little endian; byte k of all values comes before byte k + 1
+/// of all values (neighbouring values share their high bytes, so that these compress well);
+/// deflated (zlib); base64.
 struct EncodedPlane {
     bool half = false;
     std::string text;

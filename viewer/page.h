@@ -1,4 +1,4 @@
-/// Private to this folder: the page as it was embedded, and its pieces put together.
+/// The page as it was embedded, and its pieces put together; private to this folder.
 #pragma once
 
 #include <span>
@@ -7,8 +7,8 @@
 
 namespace covtrace::viewer {
 
-/// The page with @DATA@, @SCRIPT_HASH@ and @STYLE_HASH@ to be filled in, cut into pieces. Hashes:
-/// SHA-256 in hexadecimal digits of the inline script and the style sheet.
+/// The page with @DATA@, @SCRIPT_HASH@ and @STYLE_HASH@ to be filled in, cut into pieces, with the
+/// hashes (SHA-256 in hexadecimal digits) of the inline script and the style sheet.
 struct PageTemplate {
     std::span<const std::string_view> pieces;
     std::string_view script_sha256, style_sha256;

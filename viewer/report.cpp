@@ -19,7 +19,7 @@ using nlohmann::json;
 
 std::string layer_of(const std::string& channel) {
     const size_t dot = channel.rfind('.');
-    // Z is no colour of the root.
+    // The channel Z at the root is no colour, but a layer of its own.
     if (dot == std::string::npos) return channel == "Z" ? "Z" : "";
     return channel.substr(0, dot);
 }
@@ -29,7 +29,7 @@ std::string component_of(const std::string& channel) {
     return dot == std::string::npos ? channel : channel.substr(dot + 1);
 }
 
-/// Layers in the order in which a page can do without them, last first.
+/// Rank of a layer by its importance for a page, 0 for the one that it needs most.
 size_t importance(const std::string& layer) {
     constexpr std::array<std::string_view, 13> kOrder{
         "",    "error", "samples", "density", "filter", "spectrum", "covweight",
@@ -92,14 +92,14 @@ std::string for_script_element(const json& value) {
     return text;
 }
 
-/// The planes that were taken, and what is known of them.
+/// The encoded planes of a page, within the bytes that it may have.
 class PlaneList {
   public:
     PlaneList(uint64_t most_bytes, size_t pixels) : most_(most_bytes), pixels_(pixels) {}
 
-    /// Takes all of these or, where they would not fit, none. Returns the places of the planes.
+    /// Takes all of these planes or, where they would not fit, none. Returns their indices.
     std::vector<size_t> add(const std::vector<std::span<const float>>& values) {
-        // Noise compresses to about three quarters: don't start on what cannot fit.
+        // Planes that cannot fit are not encoded: noise compresses to about three quarters.
         if (bytes_ + values.size() * pixels_ / 2 > most_) return {};
         std::vector<EncodedPlane> encoded(values.size());
         parallel_for(int64_t(values.size()),
@@ -139,6 +139,7 @@ std::vector<OmittedLayer> write_report(const Report& report, const std::filesyst
     PlaneList planes(most_bytes, report.images.front().image->pixel_count());
     std::vector<OmittedLayer> omitted;
 
+    // List the images and, by importance, their layers
     json images = json::array();
     std::vector<Layer> layers;
     for (size_t i = 0; i < report.images.size(); ++i) {
@@ -158,6 +159,7 @@ std::vector<OmittedLayer> write_report(const Report& report, const std::filesyst
         return importance(a.name) < importance(b.name);
     });
 
+    // Encode the planes as long as they fit; error maps come after the images' colours
     const auto add_flip = [&] {
         for (size_t i = 0; i < report.images.size(); ++i)
             for (const auto& [other, map] : report.images[i].flip) {
@@ -192,6 +194,7 @@ std::vector<OmittedLayer> write_report(const Report& report, const std::filesyst
     }
     if (!flip_added) add_flip();
 
+    // Describe them for the page
     json descriptions = json::array();
     for (const EncodedPlane& plane : planes.planes())
         descriptions.push_back({{"half", plane.half}});
@@ -205,11 +208,12 @@ std::vector<OmittedLayer> write_report(const Report& report, const std::filesyst
                  {"planes", std::move(descriptions)}};
     if (report.pixel) data["pixel"] = *report.pixel;
 
+    // Write the page
     const PageFrame frame = page_frame();
     OutputFile out(file);
     const auto write = [&](std::string_view text) { out.write(text.data(), text.size()); };
     write(frame.before);
-    // Elements of a type that is no script hold data; browsers don't run them.
+    // Data stands in elements of a type that is no script; browsers don't run them.
     write("<script type=\"application/json\" id=\"report\">");
     write(for_script_element(data));
     write("</script>\n");
