@@ -17,12 +17,12 @@ using Mat2 = cov::Mat2<double>;
 using Sym2 = cov::Sym2<double>;
 using Matrix5 = cov::Matrix5<double>;
 
-/// A surface is given as the rows t1, t2, n and its shape operator in the basis t1, t2.
+/// Makes a surface from the rows t1, t2, n and its shape operator in the basis t1, t2.
 cov::Surface<double> surface_of(const Frame& rows, const Sym2& curvature) {
     return {rows.z, rows.x, rows.y, curvature};
 }
 
-/// The camera's axes are given as the rows e1, e2, e3.
+/// Makes a lens from the camera's axes, given as the rows e1, e2, e3.
 cov::ThinLens<double> thin_lens(const Frame& axes, double focus_distance, double lens_radius,
                                 double pixels_x, double pixels_y, double shutter) {
     return {axes.x, axes.y, axes.z, focus_distance, lens_radius, pixels_x, pixels_y, shutter};

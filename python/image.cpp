@@ -21,8 +21,8 @@ namespace py = pybind11;
 
 namespace {
 
-/// Channels [first, first + count) as an array (height, width) or (height, width, count) on the
-/// image's own memory, which it keeps alive.
+/// An array (height, width) or (height, width, count) of the channels [first, first + count), on
+/// the image's own memory, which it keeps alive.
 py::array_t<float> view(const SharedPlanes& planes, size_t first, size_t count, bool flat) {
     const auto w = py::ssize_t(planes->data.width()), h = py::ssize_t(planes->data.height());
     const auto item = py::ssize_t(sizeof(float));
@@ -35,7 +35,7 @@ py::array_t<float> view(const SharedPlanes& planes, size_t first, size_t count, 
                               py::cast(planes));
 }
 
-/// The entries of an exported image by layer: name, first channel, number of channels.
+/// A layer of an exported image: its name, first channel and number of channels.
 struct Layer {
     std::string name;
     size_t first, count;
@@ -46,7 +46,7 @@ std::vector<Layer> layers_of(const Planes& planes) {
     for (size_t c = 0; c < planes.names.size(); ++c) {
         const size_t dot = planes.names[c].rfind('.');
         const std::string name = dot == std::string::npos ? "" : planes.names[c].substr(0, dot);
-        // "Z" beside R, G, B is a layer of its own.
+        // The channel "Z" beside R, G, B is a layer of its own.
         const bool depth = name.empty() && planes.names[c] == "Z";
         const std::string layer = depth ? "Z" : name;
         if (layers.empty() || layers.back().name != layer)
@@ -73,7 +73,7 @@ py::dict channel_views(const SharedPlanes& planes) {
 
 using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
-/// From channel name to (height, width) values, all of one size.
+/// Makes an image of (height, width) values by channel name, all of one size.
 SharedPlanes from_channels(const std::vector<std::pair<std::string, FloatArray>>& channels) {
     if (channels.empty()) throw py::value_error("an image needs at least one channel");
     const FloatArray& first = channels.front().second;

@@ -48,7 +48,8 @@ DenoiserSearch denoiser_search(const py::dict& o) {
     std::error_code ignored;
     if (::dladdr(reinterpret_cast<const void*>(&denoiser_search), &module) && module.dli_fname) {
         const fs::path folder = fs::absolute(module.dli_fname, ignored).parent_path();
-        // Beside it, in the build folder, and where the program is installed.
+        // The folders are those beside the module, in the build folder, and where the program is
+        // installed.
         search.folders = {folder / "denoiser", folder / "../../denoiser",
                           folder / "../../../denoiser", folder / "../../../covtrace/denoiser"};
     }

@@ -1,4 +1,4 @@
-/// The keywords of covtrace.render as options of the renderer. Errors: Error(usage).
+/// The keywords of covtrace.render as options of the renderer. Wrong ones throw Error(usage).
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -19,7 +19,7 @@ namespace covtrace::python {
 
 namespace py = pybind11;
 
-/// The value that a text stands for. Errors: Error(usage) that lists all.
+/// The value that a text stands for. Throws Error(usage) that lists all values.
 template <NamedEnum Enum>
 Enum choice(const char* option, const std::string& text) {
     if (const auto value = value_named<Enum>(text)) return *value;
@@ -31,7 +31,7 @@ inline void require(bool holds, const std::string& message) {
     if (!holds) throw Error(ErrorKind::usage, message);
 }
 
-/// options[name] as T. Errors: Error(usage) that says what was expected.
+/// The value options[name] as T. Throws Error(usage) that says what was expected.
 template <typename T>
 T value_of(const py::dict& options, const char* name, const char* expected) {
     const py::object value = options[name];
@@ -59,11 +59,11 @@ std::optional<T> positive(const py::dict& options, const char* name, double leas
 }
 
 RenderOptions render_options(const py::dict& o);
-/// Folders: those around the module's own file.
+/// The search for the denoiser; its folders are those around the module's own file.
 DenoiserSearch denoiser_search(const py::dict& o);
 SceneOverrides scene_overrides(const py::dict& o);
 
-/// Refuses what is no begin and a later end.
+/// Refuses a shutter that is no begin and a later end.
 std::array<float, 2> checked_shutter(const std::array<float, 2>& shutter);
 
 }  // namespace covtrace::python

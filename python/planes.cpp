@@ -14,7 +14,8 @@ std::string_view layer_of(std::string_view channel) {
 }  // namespace
 
 Planes::Planes(Image&& image) : data(image.data), display(image.display) {
-    // Files sort their channels by name, which leaves layers together; the root's may be apart.
+    // Put the channels of a layer together: files sort channels by name, but the root's may be
+    // apart
     std::vector<std::string_view> layers;
     for (const Channel& c : image.channels)
         if (std::find(layers.begin(), layers.end(), layer_of(c.name)) == layers.end())
@@ -23,8 +24,8 @@ Planes::Planes(Image&& image) : data(image.data), display(image.display) {
     for (const std::string_view layer : layers)
         for (Channel& c : image.channels)
             if (layer_of(c.name) == layer) order.push_back(&c);
-    // Files keep R, G, B in alphabetical order. A root's "Z" is a layer of its own, behind its
-    // other channels.
+    // Put the channels of each layer in order: files keep R, G, B in alphabetical order, and the
+    // root's "Z" is a layer of its own, behind its other channels
     const auto rank = [](const std::string& name) {
         if (name == "Z") return 5;
         const char last = name.back();

@@ -12,13 +12,13 @@ namespace covtrace::python {
 
 struct Planes {
     PixelBounds data, display;
-    std::vector<std::string> names;  ///< of the channels; those of one layer are neighbours
+    std::vector<std::string> names;  ///< names of the channels; those of one layer are neighbours
     std::vector<float> values;       ///< names.size() planes of data.width() * data.height()
     Metadata metadata;
 
     /// Takes an image apart, freeing each channel as it goes.
     explicit Planes(Image&& image);
-    /// A copy in the renderer's own form.
+    /// A copy of the image in the renderer's own form.
     Image image() const;
 
     size_t plane_size() const { return size_t(data.width()) * size_t(data.height()); }

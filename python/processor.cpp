@@ -1,5 +1,5 @@
-// The module `covtrace._processor`: what `covtrace._covtrace` needs and this processor has not,
-// before that module is loaded and ends the process by a signal.
+// The module `covtrace._processor`, which tells of instructions that `covtrace._covtrace` needs and
+// this processor lacks, before that module is loaded and ends the process by a signal.
 #include <Python.h>
 
 #include "core/processor.h"

@@ -12,19 +12,19 @@ namespace covtrace::python {
 
 namespace {
 
-/// What keeps the interpreter's end waiting. Nobody asks for Python's lock while holding `mutex`,
-/// which threads with Python's lock may therefore wait for.
+/// Activity for which the interpreter's end waits. Nobody asks for Python's lock while holding
+/// `mutex`, which threads with Python's lock may therefore wait for.
 struct Activity {
     std::mutex mutex;
     std::condition_variable changed;
     int unlocked = 0;             ///< threads that work with the lock released
     int calling = 0;              ///< threads that have the lock, or are about to, inside of C++
-    std::set<Monitor*> monitors;  ///< of the renders
+    std::set<Monitor*> monitors;  ///< monitors of the renders
     std::thread::id ending;       ///< the thread that ends the interpreter, once it does
     bool is_ending() const { return ending != std::thread::id(); }
 };
 
-/// Never destroyed: threads wait in it to the end of the process.
+/// The one Activity, never destroyed: threads wait in it to the end of the process.
 Activity& activity() {
     static auto* const a = new Activity;
     return *a;
@@ -35,7 +35,8 @@ Activity& activity() {
 }
 
 void finish_work() {
-    // A function of the caller that does not come back must not keep the process alive.
+    // Longest wait for the caller's functions: one that does not come back must not keep the
+    // process alive.
     constexpr std::chrono::seconds kMostCalling{5};
     Activity& a = activity();
     PyThreadState* const state = PyEval_SaveThread();

@@ -2,8 +2,9 @@
 ///
 /// A thread that asks for the lock while the interpreter ends, as daemon threads do, is ended by
 /// Python in the middle of C++, which aborts the process. So at the beginning of the end, as an
-/// atexit function, `finish_work` cancels every render, waits for what works without the lock, and
-/// from then on all threads but the one that ends the interpreter wait for ever instead of asking.
+/// atexit function, `finish_work` cancels every render, waits for threads that work without the
+/// lock, and from then on all threads but the one that ends the interpreter wait for ever instead
+/// of asking.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -12,7 +13,7 @@
 
 namespace covtrace::python {
 
-/// C++ that calls Python functions, while it lives: the interpreter's end waits for them a while.
+/// Guard around C++ that calls Python functions: the interpreter's end waits for it a while.
 class Calls {
   public:
     Calls();
@@ -21,7 +22,7 @@ class Calls {
     Calls& operator=(const Calls&) = delete;
 };
 
-/// Releases the lock while it lives. `between`: the calls that it interrupts, where there are any.
+/// Guard that releases the lock. `between`: the calls that it interrupts, where there are any.
 class Unlocked {
   public:
     explicit Unlocked(const Calls* between = nullptr);
@@ -34,11 +35,11 @@ class Unlocked {
     PyThreadState* state_;
 };
 
-/// A thread that renders without the lock, while it lives: the interpreter's end cancels it and
-/// waits for its destructor.
+/// Guard around a thread that renders without the lock: the interpreter's end cancels the render
+/// and waits for the guard's destructor.
 class Work {
   public:
-    /// Throws Error(interrupted) where the interpreter is ending.
+    /// Begins the work. Throws Error(interrupted) where the interpreter is ending.
     explicit Work(Monitor& monitor);
     ~Work();
     Work(const Work&) = delete;

@@ -31,7 +31,7 @@ namespace {
 
 using SharedScene = std::shared_ptr<SceneDescription>;
 
-/// What the thread that renders tells the one that waits for it.
+/// State that the thread that renders shares with the thread that waits for it.
 struct Exchange {
     std::mutex mutex;
     std::condition_variable changed;
@@ -46,8 +46,9 @@ py::object progress_object(const Progress& p) {
 }
 
 /// Waits for the render with the interpreter's lock released, but for the moments in which signals
-/// are looked at and the caller is told. Everything that is called runs in the caller's thread.
-/// Returns once the render has ended: what the caller's functions threw, which cancels it, or null.
+/// are looked at and the caller is told. Python functions are called in the caller's thread.
+/// Returns once the render has ended: the exception of the caller's functions, which cancels the
+/// render, or null.
 std::exception_ptr wait(Exchange& exchange, Monitor& monitor, const py::object& progress,
                         const py::object& cancel) {
     const Calls calls;
@@ -66,10 +67,10 @@ std::exception_ptr wait(Exchange& exchange, Monitor& monitor, const py::object& 
         try {
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
             if (latest && !progress.is_none()) progress(progress_object(*latest));
-            // Whatever it returns is true or false as in an `if`.
+            // The result of `is_set` is true or false as in an `if`.
             if (!cancel.is_none() && py::bool_(cancel.attr("is_set")())) monitor.cancel();
         } catch (...) {
-            // The thread that renders must be joined first.
+            // The thread that renders must be joined before the exception leaves.
             thrown = std::current_exception();
             monitor.cancel();
         }
@@ -83,7 +84,7 @@ struct Rendered {
     std::string isa;
     Warnings warnings;
     FoundDenoiser denoiser;
-    std::string denoiser_failure;  ///< while the image was made
+    std::string denoiser_failure;  ///< failure while the image was made
     std::optional<ReplacedPixels> replaced;
 };
 
@@ -98,7 +99,7 @@ std::vector<std::string> texts_of(const Warnings& warnings) {
     return texts;
 }
 
-/// All that happens without Python: builds the scene and renders it.
+/// Builds the scene and renders it, without Python.
 Rendered render_description(SceneDescription description, RenderOptions options,
                             const DenoiserSearch& search, const SceneOverrides& overrides,
                             int threads, const std::string& isa, size_t texture_bytes,
@@ -142,7 +143,7 @@ py::dict pass_dict(const PassStatistics& s) {
     return d;
 }
 
-/// As in the program's statistics.
+/// The denoiser as in the program's statistics.
 py::object denoiser_object(const Rendered& r) {
     py::dict d;
     if (!r.denoiser_failure.empty() || !r.denoiser.denoiser)
@@ -153,7 +154,7 @@ py::object denoiser_object(const Rendered& r) {
     return r.denoiser.denoiser || !r.denoiser.why_none.empty() ? py::object(d) : py::none();
 }
 
-/// As in the program's statistics.
+/// The replaced pixels as in the program's statistics.
 py::dict replaced_dict(const std::optional<ReplacedPixels>& r) {
     py::dict d;
     d["count"] = r ? r->pixels : 0;
@@ -193,6 +194,7 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
             : kNoTextureLimit;
     const py::object progress = o["progress"], cancel = o["cancel"];
 
+    // Render in a thread of its own, and wait for it
     Exchange exchange;
     Monitor monitor(
         [&exchange](const Progress& p) {
@@ -210,7 +212,8 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
         } catch (...) {
             failure = std::current_exception();
         }
-        // The caller may be gone, or wait for ever, from the moment the work is known to be done.
+        // The work is over before its end is told: from then on the caller may be gone, or wait for
+        // ever.
         work.reset();
         const std::lock_guard lock(exchange.mutex);
         exchange.finished = true;

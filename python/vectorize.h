@@ -1,5 +1,6 @@
-/// Makes a function of single matrices, vectors and numbers into one of numpy arrays: every
-/// argument may have leading dimensions, and these are broadcast against each other as numpy does.
+/// Vectorisation: makes a function of single matrices, vectors and numbers into one of numpy
+/// arrays. Every argument may have leading dimensions, and these are broadcast against each other
+/// as numpy does.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -18,7 +19,7 @@ namespace covtrace::python {
 namespace py = pybind11;
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// How one argument lies in the last dimensions of an array: its shape, and both directions.
+/// Layout of one argument in the last dimensions of an array: its shape, loading and storing.
 template <typename T>
 struct Item;
 
@@ -82,7 +83,7 @@ struct Item<covariance::Vec3<double>> {
     }
 };
 
-/// The rows X, Y, Z.
+/// Frames are the rows X, Y, Z.
 template <>
 struct Item<covariance::Frame<double>> {
     using Row = Item<covariance::Vec3<double>>;
@@ -95,7 +96,7 @@ struct Item<covariance::Frame<double>> {
     }
 };
 
-/// The leading dimensions of an array whose last ones are an item's; `operand` is its place among
+/// The leading dimensions of an array whose last ones are an item's; `operand` is its index among
 /// the arguments, for the message.
 template <typename T>
 std::vector<py::ssize_t> leading_shape(const Array& a, size_t operand) {
@@ -156,7 +157,7 @@ constexpr py::ssize_t item_size() {
     return size;
 }
 
-/// A result: one array, or one for each member of a pair (matrix, frame).
+/// The result: one array, or one for each member of a pair (matrix, frame).
 template <typename T>
 struct Result {
     py::array_t<double> array;
@@ -188,8 +189,8 @@ struct Result<covariance::LightField<double>> {
 template <typename>
 using ArrayFor = Array;
 
-/// The function of arrays. Results have the common leading shape and then the item's; a LightField
-/// comes back as the tuple (sigma, frame).
+/// Makes the function of arrays. Results have the common leading shape and then the item's; a
+/// LightField comes back as the tuple (sigma, frame).
 template <typename R, typename... Arguments>
 auto vectorized(R (*function)(Arguments...)) {
     return [function](const ArrayFor<Arguments>&... arrays) -> py::object {
@@ -217,7 +218,7 @@ auto vectorized(R (*function)(Arguments...)) {
                 }
             }
             py::object taken = result.take();
-            // No leading dimensions and no item's: a number.
+            // Without leading dimensions and item dimensions the result is a number.
             if (shape.empty() && py::isinstance<py::array>(taken) &&
                 taken.attr("ndim").cast<int>() == 0)
                 return taken.attr("item")();

@@ -28,8 +28,8 @@ def _numbers(values):
 
 
 def _parameter(name, value):
-    """`name` may carry pbrt's type, "texture reflectance"; else the value tells: a number, a text,
-    a truth value, three numbers for a colour."""
+    """One parameter as text. `name` may carry pbrt's type, "texture reflectance"; else the value
+    tells: a number, a text, a truth value, three numbers for a colour."""
     if " " in name:
         kind = name.split()[0]
         if isinstance(value, bool):
@@ -63,7 +63,7 @@ def _parameters(values):
 
 
 def _matrix(transform):
-    """pbrt writes the columns of the matrix that maps column vectors."""
+    """A transform as text: pbrt writes the columns of the matrix that maps column vectors."""
     m = numpy.asarray(transform, dtype=float)
     if m.shape != (4, 4):
         raise ValueError(f"a transform has the shape {m.shape}; expected (4, 4)")
@@ -111,7 +111,7 @@ class SceneBuilder:
                up: Sequence[float] = (0, 1, 0), kind: str = "perspective",
                resolution: tuple[int, int] = (640, 360), shutter: tuple[float, float] = (0, 1),
                **parameters: Any) -> None:
-        """kind and parameters as pbrt's Camera: fov, lensradius, focaldistance ..."""
+        """Sets the camera; kind and parameters as pbrt's Camera: fov, lensradius, focaldistance ..."""
         self._camera_given = True
         self._shutter = shutter
         width, height = resolution
@@ -121,7 +121,7 @@ class SceneBuilder:
             + _parameters({"float shutteropen": shutter[0], "float shutterclose": shutter[1],
                            **parameters}),
             f'Film "rgb" "integer xresolution" {int(width)} "integer yresolution" {int(height)}'
-            # The sensor's exposure is the shutter's length; the image should not depend on it.
+            # The exposure is the shutter's length; the image should not depend on it.
             + ('' if shutter[1] == shutter[0]
                else f' "float iso" {100 / (shutter[1] - shutter[0])!r}'),
         ]
@@ -146,12 +146,12 @@ class SceneBuilder:
                            f"\"string filename\" \"{file}\" " + _parameters(parameters))
 
     def material(self, name: str, kind: str, **parameters: Any) -> None:
-        """kind and parameters as pbrt's MakeNamedMaterial."""
+        """Adds a named material; kind and parameters as pbrt's MakeNamedMaterial."""
         self._world.append(f"MakeNamedMaterial {_quoted(name)} \"string type\" {_quoted(kind)} "
                            + _parameters(parameters))
 
     def light(self, kind: str, transform: ArrayLike | None = None, **parameters: Any) -> None:
-        """kind and parameters as pbrt's LightSource."""
+        """Adds a light; kind and parameters as pbrt's LightSource."""
         self._world += ["AttributeBegin", *_moved(transform, None),
                         f"LightSource {_quoted(kind)} " + _parameters(parameters), "AttributeEnd"]
 
@@ -159,7 +159,8 @@ class SceneBuilder:
              uv: ArrayLike | None = None, material: str | None = None,
              emission: ArrayLike | None = None, transform: ArrayLike | None = None,
              end_transform: ArrayLike | None = None, two_sided: bool = False) -> None:
-        """vertices (n, 3), triangles (m, 3) indices; normals (n, 3), uv (n, 2); `emission`: radiance."""
+        """Adds a mesh: vertices (n, 3), triangles (m, 3) indices; normals (n, 3), uv (n, 2);
+        `emission`: radiance."""
         vertices = _array(vertices, 3, "vertices")
         triangles = numpy.asarray(triangles)
         if triangles.ndim != 2 or triangles.shape[1] != 3 or triangles.dtype.kind not in "iu":
@@ -183,7 +184,7 @@ class SceneBuilder:
     def shape(self, kind: str, material: str | None = None, emission: ArrayLike | None = None,
               transform: ArrayLike | None = None, end_transform: ArrayLike | None = None,
               two_sided: bool = False, **parameters: Any) -> None:
-        """kind and parameters as pbrt's Shape: sphere, disk, ..."""
+        """Adds a shape; kind and parameters as pbrt's Shape: sphere, disk, ..."""
         self._shape(f"Shape {_quoted(kind)} " + _parameters(parameters), material, emission,
                     transform, end_transform, two_sided)
 
@@ -202,13 +203,13 @@ class SceneBuilder:
         if not self._camera_given:
             raise ValueError("the scene has no camera; call camera()")
         start, end = (float(t) for t in self._shutter)
-        # `end_transform` holds at the shutter's end, not at the time 1 that pbrt would give it.
+        # The time of `end_transform` is the shutter's end, not the time 1 that pbrt would give it.
         times = [f"TransformTimes {start!r} {end!r}"] if start < end else []
         return "\n".join([*times, *self._view, "WorldBegin", *self._world, ""])
 
     def write(self, folder: str | os.PathLike[str], name: str = "scene.pbrt") -> str:
         """Writes the scene with its meshes and textures into a folder; returns the scene's path.
-        `UsageError` where that would take the place of a file that the scene reads."""
+        `UsageError` where the scene would take the place of a file that the scene reads."""
         os.makedirs(folder, exist_ok=True)
         text = self.text()
         own = [file for file, *_ in (*self._meshes, *self._textures)]
@@ -231,7 +232,8 @@ def _require_distinct(folder, name, own, text):
             return os.path.samefile(a, b)
         return os.path.realpath(a) == os.path.realpath(b)
 
-    # The text names each of its own files once; once more, and the scene reads one of that name.
+    # A name that the text has more often than the scene has own files of it is a file that it
+    # reads.
     named = Counter(re.findall(r'"(?:string|spectrum) \w+" "([^"\n]*)"', text))
     read = [value for value in (named - Counter(own)) if os.path.isfile(os.path.join(folder, value))]
     for target in (name, *own):

@@ -4,7 +4,8 @@ A covariance `sigma` is (..., 5, 5) over (x, y, u, v, t): positions, slopes, tim
 frequencies squared (cycles per unit). A `frame` is (..., 3, 3), the rows X, Y, Z with Z the way the
 light goes. A `surface` is (..., 3, 3), the rows t1, t2, n, with its `curvature` (..., 2, 2) in the
 basis t1, t2. 2x2 matrices are (..., 2, 2), directions (..., 3). Leading dimensions broadcast as
-numpy's. Results are new float64 arrays. What changes the ray's direction returns (sigma, frame).
+numpy's. Results are new float64 arrays. Operators that change the ray's
+direction return (sigma, frame).
 
 Formulas and sources stand in the library's headers; the names are the same.
 """
@@ -28,7 +29,7 @@ _STILL = _numpy.zeros(3)
 
 
 def transform(sigma: ArrayLike, matrix: ArrayLike) -> Array:
-    """A^T Sigma A: the master rule; `matrix` gives the old coordinates from the new ones."""
+    """The master rule A^T Sigma A; `matrix` gives the old coordinates from the new ones."""
     return _c.transform(sigma, matrix)
 
 
@@ -38,7 +39,7 @@ def travel(sigma: ArrayLike, distance: ArrayLike) -> Array:
 
 
 def lens(sigma: ArrayLike, focal_length: ArrayLike) -> Array:
-    """Through an ideal thin lens."""
+    """Passage through an ideal thin lens."""
     return _c.lens(sigma, focal_length)
 
 
@@ -66,43 +67,44 @@ def occlude(sigma: ArrayLike, dx: ArrayLike, dy: ArrayLike, distance: ArrayLike,
 
 def motion_enter(sigma: ArrayLike, frame: ArrayLike, velocity: ArrayLike,
                  angular_velocity: ArrayLike = _STILL) -> Array:
-    """Into the coordinates that move with the object, at its point that the ray hits."""
+    """Change into the coordinates that move with the object, at its point that the ray hits."""
     return _c.motion_enter(sigma, frame, velocity, angular_velocity)
 
 
 def motion_exit(sigma: ArrayLike, frame: ArrayLike, velocity: ArrayLike,
                 angular_velocity: ArrayLike = _STILL) -> Array:
-    """Back into coordinates at rest, along the leaving ray's frame."""
+    """Change back into coordinates at rest, along the leaving ray's frame."""
     return _c.motion_exit(sigma, frame, velocity, angular_velocity)
 
 
 def surface_enter(sigma: ArrayLike, frame: ArrayLike, surface: ArrayLike,
                   curvature: ArrayLike = _FLAT) -> Array:
-    """From the arriving ray's coordinates to those of the surface."""
+    """Change from the arriving ray's coordinates to those of the surface."""
     return _c.surface_enter(sigma, frame, surface, curvature)
 
 
 def surface_exit(sigma: ArrayLike, frame: ArrayLike, surface: ArrayLike,
                  curvature: ArrayLike = _FLAT) -> Array:
-    """From the surface's coordinates to those of the leaving ray."""
+    """Change from the surface's coordinates to those of the leaving ray."""
     return _c.surface_exit(sigma, frame, surface, curvature)
 
 
 def reflect_specular(sigma: ArrayLike, frame: ArrayLike, surface: ArrayLike,
                      outgoing: ArrayLike) -> LightField:
-    """A perfect mirror; returns (sigma, frame)."""
+    """Reflection by a perfect mirror; returns (sigma, frame)."""
     return _c.reflect_specular(sigma, frame, surface, outgoing)
 
 
 def reflect_lobe(sigma: ArrayLike, frame: ArrayLike, surface: ArrayLike, outgoing: ArrayLike,
                  lobe: ArrayLike) -> LightField:
-    """Any lobe of covariance `lobe` (1/rad^2, in leaving slopes); returns (sigma, frame)."""
+    """Reflection by any lobe of covariance `lobe` (1/rad^2, in leaving slopes); returns (sigma, frame)."""
     return _c.reflect_lobe(sigma, frame, surface, outgoing, lobe)
 
 
 def reflect_glossy(sigma: ArrayLike, frame: ArrayLike, surface: ArrayLike, outgoing: ArrayLike,
                    micro: ArrayLike) -> LightField:
-    """A microfacet surface by its slopes' covariance `micro` along t1, t2; returns (sigma, frame)."""
+    """Reflection by a microfacet surface, with its slopes' covariance `micro` along t1, t2; returns
+    (sigma, frame)."""
     return _c.reflect_glossy(sigma, frame, surface, outgoing, micro)
 
 
@@ -187,7 +189,7 @@ def distant_source(angular: ArrayLike) -> Array:
 def sensor(sigma: ArrayLike, frame: ArrayLike, axes: ArrayLike,
            focus_distance: ArrayLike = float("inf"), lens_radius: ArrayLike = 0.0,
            pixels_x: ArrayLike = 1.0, pixels_y: ArrayLike = 1.0, shutter: ArrayLike = 1.0) -> Array:
-    """Into (pixel x, pixel y, lens u, lens v, shutter) of a perspective camera with a thin lens.
+    """Change into (pixel x, pixel y, lens u, lens v, shutter) of a perspective camera with a thin lens.
 
     axes: (..., 3, 3), rows e1 (pixel x), e2 (pixel y), e3 (optical axis, towards the scene);
     pixels: focal length in pixels; shutter in seconds.
@@ -199,14 +201,15 @@ def sensor_orthographic(sigma: ArrayLike, frame: ArrayLike, axes: ArrayLike,
                         focus_distance: ArrayLike = float("inf"), lens_radius: ArrayLike = 0.0,
                         pixels_x: ArrayLike = 1.0, pixels_y: ArrayLike = 1.0,
                         shutter: ArrayLike = 1.0) -> Array:
-    """The same for an orthographic camera; pixels: per scene unit."""
+    """Change into the coordinates of an orthographic camera, as `sensor`; pixels: per scene unit."""
     return _c.sensor_orthographic(sigma, frame, axes, focus_distance, lens_radius, pixels_x,
                                   pixels_y, shutter)
 
 
 def sensor_window(lens: ArrayLike = disc_lens_window,
                   shutter: ArrayLike = box_shutter_window) -> Array:
-    """What lens and shutter integrate over, as a covariance: diag(0, 0, lens, lens, shutter)."""
+    """The window that lens and shutter integrate over, as a covariance: diag(0, 0, lens, lens,
+    shutter)."""
     return _c.sensor_window(lens, shutter)
 
 
@@ -221,13 +224,14 @@ def integration_count(sigma: ArrayLike, window: ArrayLike | None = None) -> Arra
 
 
 def image_density(spectrum: ArrayLike) -> Array | float:
-    """sqrt(det) of a 2x2 spectrum."""
+    """The density sqrt(det) of a 2x2 spectrum."""
     return _c.image_density(spectrum)
 
 
 def hypercube_density(spectrum: ArrayLike, integration: ArrayLike) -> Array | float:
-    """sqrt|S| per pixel, whole aperture and whole shutter, from `preintegrate` and
-    `integration_count`: times k it is the thesis' number of samples per pixel."""
+    """The density sqrt|S| per pixel, whole aperture and whole shutter, from `preintegrate` and
+    `integration_count`: times k it is the number of samples per pixel of Belcour 2012, section
+    5.1, equation 5.3."""
     return _c.hypercube_density(spectrum, integration)
 
 
@@ -244,5 +248,5 @@ def filter_covariance(spectrum: ArrayLike, c: ArrayLike = 2.0, s_min: ArrayLike 
 
 def thesis_filter_covariance(spectrum: ArrayLike, s_min: ArrayLike = 0.5,
                              s_max: ArrayLike = 15.0) -> Array:
-    """The same by the thesis' equation 5.7 as printed."""
+    """The reconstruction filter's covariance by Belcour 2012, equation 5.7 as printed."""
     return _c.thesis_filter_covariance(spectrum, s_min, s_max)

@@ -1,4 +1,4 @@
-"""What can go wrong, by the kinds of the command line's exit codes."""
+"""Exceptions, one for each of the command line's exit codes."""
 
 from __future__ import annotations
 
@@ -65,4 +65,4 @@ class InternalError(Error):
 
 
 class SceneWarning(UserWarning):
-    """Something in a scene is ignored or replaced."""
+    """A warning: something in a scene is ignored or replaced."""

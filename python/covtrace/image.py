@@ -26,7 +26,7 @@ class Image:
     layers: name -> (height, width, n), or (height, width) for layers of one channel such as "Z",
         "samples", "error"; the delivered image is layer "".
     channels: name -> (height, width): "R", "raw.R", "cov.00", ...
-    metadata: what the file's header holds.
+    metadata: the entries of the file's header.
     complete: False where the render was stopped before its end.
     statistics: counters, seconds per phase, memory; empty for images that were read.
     """
@@ -48,14 +48,14 @@ class Image:
 
     @classmethod
     def read(cls, file: str | os.PathLike[str]) -> Image:
-        """An EXR, PNG, JPEG, TGA, HDR, PFM, PGM, PPM or QOI file; integer colours become linear."""
+        """Reads an EXR, PNG, JPEG, TGA, HDR, PFM, PGM, PPM or QOI file; integer colours become linear."""
         return cls(_covtrace.Planes.read(os.fspath(file)))
 
     @classmethod
     def from_arrays(cls, rgb: ArrayLike | None = None,
                     layers: Mapping[str, ArrayLike | Mapping[str, ArrayLike]] | None = None,
                     metadata: Mapping[str, Any] | None = None) -> Image:
-        """An image of arrays (copied): `rgb` (height, width, 3), `layers` name -> (height, width)
+        """Makes an image of arrays (copied): `rgb` (height, width, 3), `layers` name -> (height, width)
         or {channel name: (height, width)} such as {"N": {"X": x, "Y": y, "Z": z}}."""
         channels = []
         if rgb is not None:
@@ -125,7 +125,7 @@ class Image:
         return self._planes.display_window
 
     def write(self, file: str | os.PathLike[str]) -> None:
-        """Writes what the name says: all layers (.exr, or no ending), the sRGB picture, cut at white
+        """Writes the format that the name says: all layers (.exr, or no ending), the sRGB picture, cut at white
         (.png), or the linear colour (.pfm, .hdr); beside and renamed. `UsageError`, a `ValueError`,
         for other endings."""
         self._planes.write(os.fspath(file))
@@ -167,5 +167,5 @@ def _planes(image: Image | Array | str | os.PathLike[str]) -> _covtrace.Planes:
 
 def compare(image: Image | Array | str | os.PathLike[str],
             reference: Image | Array | str | os.PathLike[str]) -> Comparison:
-    """How far `image` is from `reference`: images, (height, width, 3) arrays or files."""
+    """Measures how far `image` is from `reference`: images, (height, width, 3) arrays or files."""
     return Comparison(**_planes(image).compare(_planes(reference)))

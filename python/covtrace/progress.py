@@ -1,4 +1,4 @@
-"""What a progress callback gets."""
+"""The argument of a progress callback."""
 
 from typing import NamedTuple
 

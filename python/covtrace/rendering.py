@@ -30,7 +30,7 @@ def _bytes(size: int | str | None) -> int | None:
 
 
 class Cancel(Protocol):
-    """What `cancel` must be like: a threading.Event is."""
+    """The interface of `cancel`, which a threading.Event has."""
 
     def is_set(self) -> bool: ...
 
@@ -59,7 +59,8 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     """Renders a scene into an `Image`.
 
     scene: path of a pbrt-v4 or glTF 2.0 file, `Scene`, or `SceneBuilder`.
-    method: "uniform" (the plain path tracer), "covariance" (the thesis' method) or "hybrid".
+    method: "uniform" (the plain path tracer), "covariance" (the method of
+        Belcour 2012, section 5.1) or "hybrid".
     spp, time, error: budgets: average samples per pixel (default: the scene's), seconds, estimated
         sqrt(relMSE); of several the first one stops.
     k: with density "thesis", one more budget: k sqrt|S| samples in each pixel, whatever their mean;
@@ -73,7 +74,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     progress: called with a `Progress` about ten times a second, in the calling thread.
     cancel: anything with `is_set()`, for example a threading.Event; the image that is there when it
         is set comes back with `complete` False.
-    All else as the options of `covtrace render`.
+    All other arguments are the options of `covtrace render`.
 
     Python's lock is released while it renders. An exception from `progress`, and Ctrl-C, end the
     render and come out of this call. Raises the classes of `covtrace.errors`.
@@ -89,7 +90,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
                "threads": threads, "isa": isa, "texture_memory": _bytes(texture_memory),
                "progress": progress, "cancel": cancel}
     if isinstance(scene, SceneBuilder):
-        # Textures are read when the scene is built, so the files must last as long.
+        # The files must last until the scene is built, which reads the textures.
         with tempfile.TemporaryDirectory(prefix="covtrace-") as folder:
             return _render(Scene(scene.write(folder), search_paths), options)
     if not isinstance(scene, Scene):

@@ -14,14 +14,14 @@ class Scene:
     """A scene in the pbrt-v4 or glTF 2.0 format, read and checked, not yet built.
 
     `Scene(file)` reads a file and the meshes that it names; `Scene.from_string` a text (pbrt-v4).
-    What the scene asks for and covtrace replaces or ignores is in `warnings`, and is warned of.
+    `warnings` tells what the scene asks for and covtrace replaces or ignores; each is warned of, too.
     """
 
     def __init__(self, file: str | os.PathLike[str],
                  search_paths: Iterable[str | os.PathLike[str]] = (),
                  shutter: tuple[float, float] | None = None) -> None:
-        """shutter: when it opens and closes, in place of the file's; seconds of glTF's animations,
-        whose nodes rest at 0 without it."""
+        """Reads a file. shutter: when it opens and closes, in place of the file's; seconds of glTF's
+        animations, whose nodes rest at 0 without it."""
         file = os.fspath(file)
         self._is_placed = _covtrace.is_gltf(file)
         self._shutter = None if shutter is None else tuple(shutter)
@@ -30,7 +30,7 @@ class Scene:
     @classmethod
     def from_string(cls, text: str, folder: str | os.PathLike[str] = ".", name: str = "scene",
                     search_paths: Iterable[str | os.PathLike[str]] = ()) -> Scene:
-        """`folder` is what relative file names in the text refer to, `name` what messages call it."""
+        """Reads a text. Relative file names in it refer to `folder`; messages call it `name`."""
         scene = cls.__new__(cls)
         scene._is_placed, scene._shutter = False, None
         scene._take(_covtrace.SceneDescription.read_string(text, name, os.fspath(folder),
