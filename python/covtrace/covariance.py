@@ -4,8 +4,8 @@ A covariance `sigma` is (..., 5, 5) over (x, y, u, v, t): positions, slopes, tim
 frequencies squared (cycles per unit). A `frame` is (..., 3, 3), the rows X, Y, Z with Z the way the
 light goes. A `surface` is (..., 3, 3), the rows t1, t2, n, with its `curvature` (..., 2, 2) in the
 basis t1, t2. 2x2 matrices are (..., 2, 2), directions (..., 3). Leading dimensions broadcast as
-numpy's. Results are new float64 arrays. Operators that change the ray's
-direction return (sigma, frame).
+numpy's. Results are new float64 arrays. Operators that change the ray's direction return (sigma,
+frame).
 
 Formulas and sources stand in the library's headers; the names are the same.
 """
@@ -97,7 +97,8 @@ def reflect_specular(sigma: ArrayLike, frame: ArrayLike, surface: ArrayLike,
 
 def reflect_lobe(sigma: ArrayLike, frame: ArrayLike, surface: ArrayLike, outgoing: ArrayLike,
                  lobe: ArrayLike) -> LightField:
-    """Reflection by any lobe of covariance `lobe` (1/rad^2, in leaving slopes); returns (sigma, frame)."""
+    """Reflection by any lobe of covariance `lobe` (1/rad^2, in leaving slopes); returns (sigma,
+    frame)."""
     return _c.reflect_lobe(sigma, frame, surface, outgoing, lobe)
 
 
@@ -189,7 +190,8 @@ def distant_source(angular: ArrayLike) -> Array:
 def sensor(sigma: ArrayLike, frame: ArrayLike, axes: ArrayLike,
            focus_distance: ArrayLike = float("inf"), lens_radius: ArrayLike = 0.0,
            pixels_x: ArrayLike = 1.0, pixels_y: ArrayLike = 1.0, shutter: ArrayLike = 1.0) -> Array:
-    """Change into (pixel x, pixel y, lens u, lens v, shutter) of a perspective camera with a thin lens.
+    """Change into (pixel x, pixel y, lens u, lens v, shutter) of a perspective camera with a thin
+    lens.
 
     axes: (..., 3, 3), rows e1 (pixel x), e2 (pixel y), e3 (optical axis, towards the scene);
     pixels: focal length in pixels; shutter in seconds.

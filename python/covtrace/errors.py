@@ -1,4 +1,4 @@
-"""Exceptions, one for each of the command line's exit codes."""
+"""Exceptions, by the kinds of the command line's exit codes."""
 
 from __future__ import annotations
 

@@ -48,15 +48,16 @@ class Image:
 
     @classmethod
     def read(cls, file: str | os.PathLike[str]) -> Image:
-        """Reads an EXR, PNG, JPEG, TGA, HDR, PFM, PGM, PPM or QOI file; integer colours become linear."""
+        """Reads an EXR, PNG, JPEG, TGA, HDR, PFM, PGM, PPM or QOI file; integer colours become
+        linear."""
         return cls(_covtrace.Planes.read(os.fspath(file)))
 
     @classmethod
     def from_arrays(cls, rgb: ArrayLike | None = None,
                     layers: Mapping[str, ArrayLike | Mapping[str, ArrayLike]] | None = None,
                     metadata: Mapping[str, Any] | None = None) -> Image:
-        """Makes an image of arrays (copied): `rgb` (height, width, 3), `layers` name -> (height, width)
-        or {channel name: (height, width)} such as {"N": {"X": x, "Y": y, "Z": z}}."""
+        """Makes an image of arrays (copied): `rgb` (height, width, 3), `layers` name -> (height,
+        width) or {channel name: (height, width)} such as {"N": {"X": x, "Y": y, "Z": z}}."""
         channels = []
         if rgb is not None:
             rgb = numpy.asarray(rgb, dtype=numpy.float32)
@@ -125,9 +126,9 @@ class Image:
         return self._planes.display_window
 
     def write(self, file: str | os.PathLike[str]) -> None:
-        """Writes the format that the name says: all layers (.exr, or no ending), the sRGB picture, cut at white
-        (.png), or the linear colour (.pfm, .hdr); beside and renamed. `UsageError`, a `ValueError`,
-        for other endings."""
+        """Writes the format that the name says: all layers (.exr, or no ending), the sRGB picture,
+        cut at white (.png), or the linear colour (.pfm, .hdr); beside and renamed. `UsageError`, a
+        `ValueError`, for other endings."""
         self._planes.write(os.fspath(file))
 
     def describe(self) -> str:

@@ -59,8 +59,8 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     """Renders a scene into an `Image`.
 
     scene: path of a pbrt-v4 or glTF 2.0 file, `Scene`, or `SceneBuilder`.
-    method: "uniform" (the plain path tracer), "covariance" (the method of
-        Belcour 2012, section 5.1) or "hybrid".
+    method: "uniform" (the plain path tracer), "covariance" (the method of Belcour
+        2012, section 5.1) or "hybrid".
     spp, time, error: budgets: average samples per pixel (default: the scene's), seconds, estimated
         sqrt(relMSE); of several the first one stops.
     k: with density "thesis", one more budget: k sqrt|S| samples in each pixel, whatever their mean;

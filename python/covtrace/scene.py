@@ -14,7 +14,8 @@ class Scene:
     """A scene in the pbrt-v4 or glTF 2.0 format, read and checked, not yet built.
 
     `Scene(file)` reads a file and the meshes that it names; `Scene.from_string` a text (pbrt-v4).
-    `warnings` tells what the scene asks for and covtrace replaces or ignores; each is warned of, too.
+    `warnings` tells what the scene asks for and covtrace replaces or ignores; each is warned of,
+    too.
     """
 
     def __init__(self, file: str | os.PathLike[str],

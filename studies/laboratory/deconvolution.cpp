@@ -8,11 +8,11 @@ namespace covtrace {
 
 namespace {
 
-constexpr double kLeast = 1.0 / 32, kMost = 256;  ///< of the grid, in units of the limit
+constexpr double kLeast = 1.0 / 32, kMost = 256;  ///< ends of the grid, in units of the limit
 constexpr double kPerOctave = 4;
 constexpr int kIterations = 400;
 
-/// 0 and both signs of a geometric row that keeps clear of the limit itself.
+/// The grid: 0 and both signs of a geometric row that keeps clear of the limit itself.
 std::vector<double> grid() {
     std::vector<double> points{0};
     for (double x = kLeast * std::exp2(0.5 / kPerOctave); x < kMost;
@@ -31,7 +31,7 @@ double share_beyond(std::span<const float> values, std::span<const float> deviat
     if (n == 0) return 0;
     std::vector<double> likelihood(n * m);
     for (size_t i = 0; i < n; ++i) {
-        // No measurement is more exact than the grid.
+        // Deviations are at least the grid's spacing: no measurement is more exact than the grid.
         const double spacing = std::exp2(0.5 / kPerOctave) - 1;
         const double v = std::clamp<double>(values[i], -kMost, kMost);
         const double d = std::max({double(deviations[i]), 0.5 * kLeast, spacing * std::abs(v)});

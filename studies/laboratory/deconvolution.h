@@ -1,4 +1,4 @@
-/// The distribution of a quantity of which only noisy measurements are known.
+/// Deconvolution: the distribution of a quantity of which only noisy measurements are known.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@ namespace covtrace {
 /// expectation maximisation over a grid of values; Gaussian noise). Counting the measurements
 /// beyond the limit instead would count noise as well.
 ///
-/// `values`, `deviations`: of the same length, in units of `limit`; deviations >= 0.
+/// `values` and `deviations` have the same length and are in units of `limit`; deviations are >= 0.
 double share_beyond(std::span<const float> values, std::span<const float> deviations);
 
 }  // namespace covtrace

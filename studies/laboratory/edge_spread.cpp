@@ -35,7 +35,7 @@ EdgeSpread edge_spread(const LocalField& field, const LocalField& without, Vec2 
         e.low += profile[i] / kEnd;
         e.high += profile[kBins - 1 - i] / kEnd;
     }
-    // With h from 0 to 1 and h' the line spread function on [-r, r], by parts:
+    // Integrate by parts, with h from 0 to 1 and h' the line spread function on [-r, r]:
     // <s> = r - Int h ds,  <s^2> = r^2 - 2 Int s h ds.
     double first = 0, second = 0;
     const double step = 2 * reach / kBins;

@@ -1,5 +1,5 @@
 /// Light fields around a ray of the camera, as functions of the sensor's coordinates: the scene's
-/// own radiance, and a probe of what a specular chain alone does.
+/// own radiance, and a probe that only a specular chain changes.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@ using LocalField = std::function<double(const SensorOffset& offset, uint32_t ind
 LocalField radiance_field(const RenderScene& scene, const SensorRays& rays, int max_depth,
                           uint64_t seed);
 
-/// What a chain of mirrors and refractions shows of a Gaussian spot on the surface at its end: real
-/// rays through the real geometry, without noise.
+/// The view through a chain of mirrors and refractions of a Gaussian spot on the surface at its
+/// end: real rays through the real geometry, without noise.
 ///
-/// `record`: a path whose vertices but the last are specular; offsets follow the same events on the
-/// same shapes and see 0 where they miss them. The spot is centred where the path ends and has the
-/// covariance `spot` of the spectrum per unit of the end's (u, v), which move with the object.
+/// `record` is a path whose vertices but the last are specular; offsets follow the same events on
+/// the same shapes and see 0 where they miss them. The spot is centred where the path ends and has
+/// the covariance `spot` of the spectrum per unit of the end's (u, v), which move with the object.
 LocalField probe_field(const RenderScene& scene, const SensorRays& rays, const PathRecord& record,
                        const SpatialCovariance2& spot);
 

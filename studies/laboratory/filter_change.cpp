@@ -15,7 +15,7 @@ namespace {
 constexpr int kSide = 5;  // pixels
 constexpr size_t kPixels = size_t(kSide) * kSide;
 
-/// A pixel as it is and through the filter, by half of its samples.
+/// Sums over half of a pixel's samples, of the pixel as it is and through the filter.
 struct Sums {
     double plain = 0, filtered = 0;
     double change() const { return plain > 0 ? filtered / plain - 1 : 0; }
@@ -49,7 +49,7 @@ FilterChange filter_change(const LocalField& field, const covariance::Sym2<doubl
             const Sampler::CameraSample u = sampler.camera();
             const Vec2 lens = square_to_disc(u.lens);
             const auto [z0, z1] = sampler.next_2d();
-            // Box and Muller: two independent normal numbers.
+            // Draw two independent normal numbers (Box and Muller)
             const double radius = std::sqrt(-2 * std::log(std::max(1 - double(z0), 1e-12))),
                          angle = 2 * double(kPi) * double(z1);
             const double n0 = radius * std::cos(angle), n1 = radius * std::sin(angle);

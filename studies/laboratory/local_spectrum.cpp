@@ -18,10 +18,11 @@ constexpr double kFourPiSq = 4 * double(kPi) * double(kPi);
 constexpr double kFilterSharpness = 2;  // c
 constexpr size_t kBatches = 8;          // even, for two halves
 constexpr int kIterations = 16;
-/// Where the window starts, as a part of the widest one: narrower than any filter.
+/// Share of the widest window at which the window starts: narrower than any filter.
 constexpr double kNarrowest = 1.0 / 300;
-/// The window grows at most twofold and shrinks at most fourfold at a time: far from its fixed
-/// point a single one tells little. As factors on the inverse of its covariance.
+/// Most and least factor of the inverse of the window's covariance in one step. The window grows at
+/// most twofold and shrinks at most fourfold at a time: far from its fixed point a single step
+/// tells little.
 constexpr double kWiden = 0.25, kNarrow = 16;
 
 /// The quantile of the normal distribution, by Newton's method on its tail.
@@ -40,7 +41,7 @@ struct HermiteSums {
     uint64_t count = 0;
     double sum = 0;
     Matrix second;
-    std::array<Matrix, 5> third;  ///< third[k](i, j)
+    std::array<Matrix, 5> third;  ///< entry (i, j, k) is third[k](i, j)
 
     void add(double g, const std::array<double, 5>& z, const std::array<bool, 5>& axes) {
         ++count;
@@ -66,8 +67,8 @@ using Batches = std::array<HermiteSums, kBatches>;
 
 /// The window as a linear map: offset = sum_k z_k axis_k, axes orthogonal.
 struct Window {
-    /// Of the inverse covariance. Axes that are not looked at stay their own eigenvectors, in
-    /// place.
+    /// Eigenvalues and eigenvectors of the inverse covariance. Axes that are not looked at stay
+    /// their own eigenvectors, in place.
     SymmetricEigen<5> precision;
 
     SensorOffset offset(const std::array<double, 5>& z) const {
@@ -79,7 +80,7 @@ struct Window {
     }
     /// The symmetric form that has the matrix l in whitened coordinates.
     Matrix unwhiten(const Matrix& l) const {
-        covariance::Matrix5<double> whitening;  // z from offset
+        covariance::Matrix5<double> whitening;  // gives z from the offset
         for (size_t k = 0; k < 5; ++k)
             for (size_t i = 0; i < 5; ++i)
                 whitening(k, i) = std::sqrt(precision.values[k]) * precision.vectors[k][i];
@@ -117,7 +118,7 @@ Batches sample_window(const LocalField& field, const Window& window, uint32_t sa
     return batches;
 }
 
-/// ½ (a b + b a)
+/// The symmetric product ½ (a b + b a).
 Matrix symmetric_product(const Matrix& a, const Matrix& b) {
     Matrix r;
     for (size_t i = 0; i < 5; ++i)
@@ -126,8 +127,8 @@ Matrix symmetric_product(const Matrix& a, const Matrix& b) {
     return r;
 }
 
-/// 4 pi^2 Sigma in whitened coordinates. Squares are products of two independent halves, which
-/// keeps the squared noise out; `left_out` batches count in neither.
+/// The matrix 4 pi^2 Sigma in whitened coordinates. Squares are products of two independent halves,
+/// which keeps the squared noise out; the batch `left_out` counts in neither.
 Matrix whitened_bandwidth(const Batches& batches, size_t left_out = kBatches) {
     std::array<HermiteSums, 2> half;
     for (size_t b = 0; b < kBatches; ++b)

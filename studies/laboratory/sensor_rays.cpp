@@ -5,7 +5,7 @@
 namespace covtrace {
 
 namespace {
-constexpr float kMiddle = 0.5f;  // of the shutter, and in both coordinates the centre of the lens
+constexpr float kMiddle = 0.5f;  // middle of the shutter, and of the lens in both coordinates
 }
 
 SensorRays::SensorRays(const RenderScene& scene, Vec2 film) : scene_(scene), film_(film) {}

@@ -8,17 +8,17 @@
 
 namespace covtrace {
 
-/// (pixel, pixel, lens, lens, shutter): pixels right and down, lens radii right and down, and the
-/// shutter interval as the unit of time.
+/// Offset in (pixel, pixel, lens, lens, shutter): pixels right and down, lens radii right and down,
+/// and the shutter interval as the unit of time.
 using SensorOffset = std::array<double, 5>;
 
 class SensorRays {
   public:
-    /// The central ray goes through `film` (pixels, y down), the centre of the lens, in the middle
-    /// of the shutter interval. The scene must outlive this.
+    /// Rays around the central ray, which goes through `film` (pixels, y down), the centre of the
+    /// lens, in the middle of the shutter interval. The scene must outlive this object.
     SensorRays(const RenderScene& scene, Vec2 film);
-    /// Film positions may lie outside the frame; lens points outside the unit disc and times
-    /// outside the shutter are taken as they are.
+    /// The ray at an offset. Film positions may lie outside the frame; lens points outside the unit
+    /// disc and times outside the shutter are taken as they are.
     Ray operator()(const SensorOffset& offset) const;
     Vec2 film() const { return film_; }
 

@@ -1,4 +1,4 @@
-/// Values as colours, and the legend that says which is which.
+/// Colour maps: values as colours, and the legend that says which is which.
 #pragma once
 
 #include <span>
@@ -9,16 +9,15 @@
 
 namespace covtrace::reproduce {
 
-/// A logarithmic scale from `least` to `most`, dark blue over green to pale yellow; what lies
-/// beyond has the colour of the end. The lightness rises all the way, so that it can be printed in
-/// grey.
+/// A logarithmic scale from `least` to `most`, dark blue over green to pale yellow; values beyond
+/// an end have its colour. The lightness rises all the way, so that it can be printed in grey.
 struct ColourMap {
     float least, most;
-    std::string quantity;  ///< with its unit, for the legend
+    std::string quantity;  ///< quantity with its unit, for the legend
     Ink operator()(float value) const;
 };
 
-/// From the 2nd to the 98th percentile of the positive values, at least a factor of 10.
+/// A map from the 2nd to the 98th percentile of the positive values, over at least a factor of 10.
 ColourMap map_for(std::span<const float> values, std::string quantity);
 
 Picture coloured(std::span<const float> values, int width, int height, const ColourMap& map);

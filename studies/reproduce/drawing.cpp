@@ -13,7 +13,7 @@ namespace covtrace::reproduce {
 
 namespace {
 
-constexpr float kFontStroke = 0.14f;  // of the height of capitals
+constexpr float kFontStroke = 0.14f;  // share of the height of capitals
 
 std::string colour(Ink i) {
     return fmt::format("#{:02x}{:02x}{:02x}", i.r, i.g, i.b);
@@ -40,8 +40,8 @@ float distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
     return length(p - (a + d * t));
 }
 
-/// A line of round ends; each pixel gets the largest share that any part of it covers, so that
-/// corners are not darker than the rest.
+/// Draws a line with round ends; each pixel gets the largest share that any part of the line
+/// covers, so that corners are not darker than the rest.
 void stroke(Picture& p, const std::vector<Vec2>& points, bool closed, Ink ink, float width) {
     if (points.empty()) return;
     Vec2 least = points[0], most = points[0];
@@ -162,7 +162,8 @@ std::string Drawing::svg() const {
                 "<poly{} points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:.3g}\"/>\n",
                 l->closed ? "gon" : "line", point_list(l->points), colour(l->ink), l->stroke);
         } else if (const auto* t = std::get_if<TextItem>(&item)) {
-            constexpr float kFontSize = 1.39f;  // of a sans-serif font over its capitals
+            // Size of a sans-serif font over that of its capitals.
+            constexpr float kFontSize = 1.39f;
             s += fmt::format(
                 "<text x=\"{:.6g}\" y=\"{:.6g}\" font-size=\"{:.4g}\" fill=\"{}\" "
                 "text-anchor=\"{}\">{}</text>\n",

@@ -1,6 +1,6 @@
 /// A picture that is described before it is drawn: images, lines, ellipses and text in one
 /// coordinate system, x right and y down, in units of output pixels. It can be written as SVG,
-/// where lines and text stay what they are, and as pixels.
+/// where lines and text stay lines and text, and as pixels.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace covtrace::reproduce {
 
-/// 8-bit display values, row by row from the top.
+/// Pixels of 8-bit display values, row by row from the top.
 struct Picture {
     Picture() = default;
     Picture(int w, int h) : width(w), height(h), rgb(size_t(w) * size_t(h) * 3, 0) {}
@@ -22,7 +22,7 @@ struct Picture {
     std::vector<uint8_t> rgb;
 };
 
-/// Display values, 0 to 255.
+/// Colour in display values, 0 to 255.
 struct Ink {
     uint8_t r = 0, g = 0, b = 0;
     constexpr bool operator==(const Ink&) const = default;
@@ -35,14 +35,15 @@ class Drawing {
   public:
     Drawing(int width, int height) : width_(width), height_(height) {}
 
-    /// The picture's pixels become squares of `scale` units.
+    /// Adds a picture, whose pixels become squares of `scale` units.
     void image(Picture picture, float x, float y, float scale);
     void fill(float x, float y, float width, float height, Ink ink);
     void frame(float x, float y, float width, float height, Ink ink, float stroke);
     void line(Vec2 from, Vec2 to, Ink ink, float stroke);
-    /// Where p^T C^-1 p = 1 around (x, y), C in units².
+    /// Adds the ellipse p^T C^-1 p = 1 around (x, y), C in units².
     void ellipse(float x, float y, const covariance::Sym2<float>& c, Ink ink, float stroke);
-    /// `size`: height of a capital letter in units; (x, y) is on the base line.
+    /// Adds text from (x, y), which is on the base line. `size`: height of a capital letter in
+    /// units.
     void text(float x, float y, float size, const std::string& text, Ink ink = kBlack,
               Anchor anchor = Anchor::start);
 

@@ -1,4 +1,5 @@
-/// The experiments of the thesis' section 5.1.
+/// The experiments of Belcour 2012, section 5.1. Figures, tables and equations are numbered as
+/// there.
 #pragma once
 
 #include "reproduce/section.h"
@@ -6,23 +7,23 @@
 
 namespace covtrace::reproduce {
 
-/// Figure 5.6: filters under a small and a large lens.
+/// Experiment on filters under a small and a large lens (figure 5.6).
 Section lens(Workshop& workshop);
-/// Figure 5.7: filters of a moving checkerboard.
+/// Experiment on filters of a moving checkerboard (figure 5.7).
 Section motion(Workshop& workshop);
-/// Figure 5.8: filters of highlights from sharp to broad.
+/// Experiment on filters of highlights from sharp to broad (figure 5.8).
 Section shininess(Workshop& workshop);
-/// Figures 5.9 and 5.10: the snooker table.
+/// Experiment on the snooker table (figures 5.9 and 5.10).
 Section snooker(Workshop& workshop);
-/// Figure 5.11: the helicopter.
+/// Experiment on the helicopter (figure 5.11).
 Section helicopter(Workshop& workshop);
-/// Table 5.1: times at equal quality.
+/// Experiment on times at equal quality (table 5.1).
 Section table(Workshop& workshop);
-/// Figure 5.12: the grid's width, and the query of the geometry.
+/// Experiment on the grid's width, and the query of the geometry (figure 5.12).
 Section voxels(Workshop& workshop);
-/// Section 5.1.3: sampling again where the limit of samples left noise.
+/// Experiment on sampling again where the limit of samples left noise (section 5.1.3).
 Section progressive(Workshop& workshop);
-/// Figure 5.1: from the covariance to the image; equation 5.7.
+/// Experiment on the way from the covariance to the image (figure 5.1, equation 5.7).
 Section pipeline(Workshop& workshop);
 
 }  // namespace covtrace::reproduce

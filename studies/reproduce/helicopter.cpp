@@ -8,7 +8,7 @@ namespace covtrace::reproduce {
 
 namespace {
 
-/// The main rotor, the cabin in focus, the ground, the tail rotor before toys out of focus.
+/// Insets: the main rotor, the cabin in focus, the ground, the tail rotor before toys out of focus.
 const std::vector<std::array<double, 4>> kInsets{{0.28, 0.08, 0.62, 0.34},
                                                  {0.24, 0.38, 0.52, 0.74},
                                                  {0.00, 0.52, 0.24, 0.86},

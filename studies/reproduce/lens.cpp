@@ -12,7 +12,7 @@ namespace covtrace::reproduce {
 
 namespace {
 
-constexpr float kSharpness = 2;  // c: of the filters that the closed form is about
+constexpr float kSharpness = 2;  // constant c of the filters that the closed form is about
 
 struct View {
     std::string name, label;
@@ -22,7 +22,8 @@ const std::array<View, 3> kViews{{{"lens-closed", "pinhole", {0}},
                                   {"lens-small", "small lens", {0.02}},
                                   {"lens-large", "large lens", {0.1}}}};
 
-/// `paths`: covariance paths per pixel; none: the program's own choice.
+/// Renders the board of a view. `paths`: covariance paths per pixel; none: the program's own
+/// choice.
 Timed render_board(Workshop& workshop, const View& view, TextureBandwidth bandwidth,
                    std::optional<int> paths = {}) {
     const auto resolution = workshop.settings.board;
@@ -43,8 +44,8 @@ struct Comparison {
     std::vector<double> ratio, blur, roundness, widths_at_top;
 };
 
-/// Filters under a lens beside those without one, `closed`. A lens adds r²/(4 c²) to the filter's
-/// covariance, r the radius of the circle of confusion: the spectrum S seen through it is
+/// Compares filters under a lens with those without one, `closed`. A lens adds r²/(4 c²) to the
+/// filter's covariance, r the radius of the circle of confusion: the spectrum S seen through it is
 /// (S^-1 + pi² r² I)^-1, preintegrate.hpp with the disc's window.
 Comparison compare(const LensBoard& board, std::array<int, 2> size, const Forced& closed,
                    const Forced& open) {
@@ -56,7 +57,8 @@ Comparison compare(const LensBoard& board, std::array<int, 2> size, const Forced
             const auto& f = open[at];
             const double extra = r * r / (4 * kSharpness * kSharpness);
             if (y < size[1] / 8) c.widths_at_top.push_back(std::sqrt(double(f.xx)));
-            // Half a pixel at 135 rows, and as much of the image at other sizes.
+            // Pixels that are hardly blurred are left out: by less than half a pixel at 135 rows,
+            // and as much of the image at other sizes.
             if (r < 0.5 * size[1] / 135) continue;
             c.ratio.push_back(std::sqrt(double(f.xx) / (double(closed[at].xx) + extra)));
             c.ratio.push_back(std::sqrt(double(f.yy) / (double(closed[at].yy) + extra)));

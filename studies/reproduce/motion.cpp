@@ -12,7 +12,7 @@ namespace covtrace::reproduce {
 
 namespace {
 
-constexpr float kSharpness = 2;  // c: of the filters that the closed form is about
+constexpr float kSharpness = 2;  // constant c of the filters that the closed form is about
 
 struct Case {
     std::string name, label;

@@ -1,4 +1,4 @@
-/// The sections as one HTML page and one JSON file.
+/// The page of results: all sections as one HTML page and one JSON file.
 #pragma once
 
 #include <filesystem>
@@ -10,22 +10,23 @@
 namespace covtrace::reproduce {
 
 struct PageFacts {
-    std::string command;                                     ///< that made the page
-    std::string size;                                        ///< "quick": what is said of the size
+    std::string command;                                     ///< command that made the page
+    std::string size;                                        ///< name of the size, such as "quick"
     std::vector<std::pair<std::string, std::string>> facts;  ///< version, processor, seconds …
     bool complete = false;                                   ///< false: more sections are to come
 };
 
-/// One file without scripts that needs no other, no network; any text is safe. Throws Error(io).
+/// Writes the page, one file without scripts that needs no other file and no network; any text is
+/// safe. Throws Error(io).
 void write_page(const std::vector<Section>& sections, const PageFacts& facts,
                 const std::filesystem::path& file);
 
-/// The same numbers: object "experiments", by name, each with its "claims", "tables" and "data".
-/// Throws Error(io).
+/// Writes the page's numbers: object "experiments", by name, each with its "claims", "tables" and
+/// "data". Throws Error(io).
 void write_results(const std::vector<Section>& sections, const PageFacts& facts,
                    const std::filesystem::path& file);
 
-/// figures/NAME.png and figures/NAME.svg below `folder`. Throws Error(io).
+/// Writes figures/NAME.png and figures/NAME.svg below `folder`. Throws Error(io).
 void write_figures(const Section& section, const std::filesystem::path& folder);
 
 }  // namespace covtrace::reproduce

@@ -96,7 +96,7 @@ void Sheet::ellipses(int column, int row, const std::vector<covariance::Sym2<flo
             const int y =
                 std::min(int((float(j) + 0.5f) * float(panel_[1]) / float(down)), panel_[1] - 1);
             const auto& f = filters[size_t(y) * size_t(panel_[0]) + size_t(x)];
-            // Not over the border of the panel.
+            // Leave out ellipses that would cross the border of the panel
             const float rx = deviations * std::sqrt(f.xx), ry = deviations * std::sqrt(f.yy);
             if (float(x) + 0.5f < rx || float(y) + 0.5f < ry ||
                 float(x) + 0.5f + rx > float(panel_[0]) || float(y) + 0.5f + ry > float(panel_[1]))

@@ -1,4 +1,4 @@
-/// The parts that figures are put together from.
+/// Panels: the parts that figures are put together from.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace covtrace::reproduce {
 
-/// As write_png shows it: exposure 1, sRGB; `dim` is multiplied to the display values.
+/// The image as write_png shows it: exposure 1, sRGB; `dim` is multiplied to the display values.
 Picture display(const Image& image, float dim = 1);
 
 /// The layer prefix + "xx", "xy", "yy" of an image, one matrix per pixel.
@@ -23,17 +23,17 @@ std::vector<covariance::Sym2<float>> matrices(const Image& image, const std::str
 std::vector<covariance::Sym2<float>> filters_of_spectrum(const Image& image, float c,
                                                          float widest = 1e4f);
 
-/// Geometric mean deviation of a filter in pixels: det(C)^(1/4).
+/// Sizes of filters in pixels: the geometric mean deviation det(C)^(1/4).
 std::vector<float> sizes_of(const std::vector<covariance::Sym2<float>>& filters);
 
-/// |I - R| of the luminance over R + 0.01, per pixel.
+/// Relative error |I - R| of the luminance over R + 0.01, per pixel.
 std::vector<float> relative_error(const Image& image, const Image& reference);
 
 /// Panels in rows under their titles, all of one size, with a heading per row at most.
 class Sheet {
   public:
-    /// `panel`: pixels of one picture; `scale`: units per pixel; `legends`: rows that need room for
-    /// one below.
+    /// Lays the sheet out. `panel`: pixels of one picture; `scale`: units per pixel; `legends`:
+    /// rows that need room for a legend below.
     Sheet(std::array<int, 2> panel, float scale, int columns, int rows,
           const std::vector<bool>& legends = {});
     Drawing drawing;
@@ -43,13 +43,14 @@ class Sheet {
     float height() const { return scale_ * float(panel_[1]); }
 
     void picture(int column, int row, const std::string& title, Picture picture);
-    /// A map of values with its legend.
+    /// Adds a map of values with its legend.
     void map(int column, int row, const std::string& title, const std::vector<float>& values,
              const ColourMap& map);
-    /// Ellipses where the filters reach `deviations` standard deviations, about `across` in a row.
+    /// Adds ellipses where the filters reach `deviations` standard deviations, about `across` in a
+    /// row.
     void ellipses(int column, int row, const std::vector<covariance::Sym2<float>>& filters,
                   int across, float deviations, Ink ink);
-    /// A frame around pixels.
+    /// Adds a frame around pixels.
     void mark(int column, int row, const PixelBounds& bounds, Ink ink);
 
   private:
@@ -58,7 +59,7 @@ class Sheet {
     std::vector<float> row_top_;
 };
 
-/// Rows of crops, magnified, one column per image.
+/// A crop, magnified by `crops`, which has one column per image.
 struct Crop {
     PixelBounds bounds;
     Ink ink;
@@ -66,7 +67,7 @@ struct Crop {
 Drawing crops(const std::vector<std::pair<std::string, const Image*>>& images,
               const std::vector<Crop>& crops, float width);
 
-/// `x0, y0, x1, y1` as shares of the image's sides; at least one pixel.
+/// The pixels in `x0, y0, x1, y1`, shares of the image's sides; at least one pixel.
 PixelBounds part(const Image& image, std::array<double, 4> shares);
 
 }  // namespace covtrace::reproduce

@@ -11,7 +11,7 @@ namespace covtrace::reproduce {
 
 namespace {
 
-/// Square root of the sum of two layers: a bandwidth.
+/// The square root of the sum of two layers: a bandwidth.
 std::vector<float> bandwidth(const Image& image, const std::string& a, const std::string& b) {
     const auto &u = image.find(a)->values, &v = image.find(b)->values;
     std::vector<float> sum(u.size());
@@ -36,7 +36,7 @@ Section pipeline(Workshop& workshop) {
     RenderOptions options;
     options.method = Method::covariance;
     options.seed = workshop.settings.seeds.front();
-    // So few that much of the image gets less than one sample a pixel.
+    // The count is so low that much of the image gets less than one sample a pixel.
     options.spp = 2;
     options.cov_spp = 1;
     const Timed sparse = workshop.render(scene, options);

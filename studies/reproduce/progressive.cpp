@@ -13,13 +13,14 @@ namespace covtrace::reproduce {
 namespace {
 
 /// The part of the image, a fifth of each side, where the limit of samples withholds most: the
-/// largest mean of the share of what the density asked of a pixel that it did not get. Not of the
-/// samples themselves: of those a few pixels, where single paths found an enormous N_int, are asked
-/// for more than all others together.
+/// largest mean of the share of the asked samples that a pixel did not get. Shares are compared,
+/// not the samples themselves: a few pixels, where single paths found an enormous N_int, are asked
+/// for more samples than all others together.
 PixelBounds most_withheld(const Image& capped) {
     const int w = capped.width(), h = capped.height();
     const auto &asked = capped.find("density.Y")->values, &taken = capped.find("samples.Y")->values;
-    std::vector<double> sums(size_t(w + 1) * size_t(h + 1), 0);  // over all pixels above and left
+    // Sums over all pixels above and left.
+    std::vector<double> sums(size_t(w + 1) * size_t(h + 1), 0);
     const auto sum = [&](int x, int y) -> double& {
         return sums[size_t(y) * size_t(w + 1) + size_t(x)];
     };

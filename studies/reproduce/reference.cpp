@@ -10,9 +10,9 @@ namespace covtrace::reproduce {
 
 namespace {
 
-constexpr std::array<uint64_t, 2> kSeeds{1000, 1001};  // that no experiment uses
+constexpr std::array<uint64_t, 2> kSeeds{1000, 1001};  // seeds that no experiment uses
 
-/// All that the pixels of a half depend on; empty where the code is not known.
+/// Everything that the pixels of a half depend on; empty where the code is not known.
 std::string origin(const LoadedScene& scene, const RenderOptions& options) {
     if (!kCommitIsExact) return {};
     const SceneDescription& d = scene.scene->description;
@@ -31,7 +31,8 @@ Reference::Reference(Workshop& workshop, LoadedScene& scene) {
         options.method = Method::uniform;
         options.spp = workshop.settings.reference_spp;
         options.seed = kSeeds[k];
-        // The floors of the filters are found on light with the emitters in view apart.
+        // Emitters in view are kept apart, so that the floors of the filters can be found by
+        // filtering both parts of the light, each with its own filters.
         options.emitters_apart = true;
         const std::string made_by = origin(scene, options);
         commands_[k] = render_command(scene, options);

@@ -1,4 +1,4 @@
-/// References in two independent halves, and how far an image is from them.
+/// References in two independent halves, and the errors of images against them.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace covtrace::reproduce {
 
-/// Two renders of the plain path tracer with seeds of their own. What one differs from the other is
+/// A reference: two renders of the plain path tracer with seeds of their own. Their difference is
 /// twice the noise of either, whatever the scene: so an image's error against both, less that
 /// noise, is its error against the truth.
 class Reference {
@@ -20,7 +20,7 @@ class Reference {
     /// Trimmed relMSE against the truth; may be a little below 0 for an image as good as the
     /// reference.
     double error(const Image& image, std::optional<PixelBounds> crop = std::nullopt) const;
-    /// Trimmed relMSE that the noise of one half makes; what error() has taken away.
+    /// Trimmed relMSE that the noise of one half makes, which error() has taken away.
     double noise(std::optional<PixelBounds> crop = std::nullopt) const;
     /// Trimmed relMSE of the mean of both halves: the reference's own error.
     double own_error() const { return 0.5 * noise(); }

@@ -15,7 +15,7 @@ namespace {
 
 struct Experiment {
     std::string name;
-    std::string source;  ///< figure or table of the thesis
+    std::string source;  ///< figure, table or section of Belcour 2012
     Section (*run)(Workshop&);
 };
 

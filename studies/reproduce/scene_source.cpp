@@ -55,8 +55,8 @@ void make_folder(const fs::path& folder) {
                     "cannot make the folder '" + folder.string() + "': " + error.message());
 }
 
-/// scenes/generate.py: beside the installed program (../share/covtrace/scenes), else in the source
-/// that it was built from; empty where neither is there.
+/// Path of scenes/generate.py: beside the installed program (../share/covtrace/scenes), else in the
+/// source that it was built from; empty where neither is there.
 fs::path find_generator() {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);

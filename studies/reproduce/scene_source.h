@@ -1,4 +1,4 @@
-/// Where the experiments' scenes come from.
+/// The source of the experiments' scenes.
 #pragma once
 
 #include <filesystem>
@@ -12,14 +12,15 @@ namespace fs = std::filesystem;
 /// Scenes by name, as folders with a scene.pbrt.
 class SceneSource {
   public:
-    /// `given`: a folder that holds the generated scenes already; empty: they are made in `made_in`
-    /// by the generator, which comes with the source and is installed with the program.
+    /// Scenes are taken from `given`, a folder that holds the generated ones already; where it is
+    /// empty, they are made in `made_in` by the generator, which comes with the source and is
+    /// installed with the program.
     SceneSource(fs::path given, fs::path made_in);
 
-    /// Made once per run, or found in the given folder. Throws Error(scene) where it is not there
-    /// or the generator fails.
+    /// A generated scene, made once per run, or found in the given folder. Throws Error(scene)
+    /// where it is not there or the generator fails.
     fs::path generated(const std::string& name);
-    /// A scene that is written here. Throws Error(io).
+    /// A scene of the given text, written to a file. Throws Error(io).
     fs::path written(const std::string& name, const std::string& text);
 
   private:

@@ -108,7 +108,7 @@ Match match_error(Workshop& workshop, LoadedScene& scene, const Reference& refer
         m.uniform = sample(workshop, scene, reference, uniform_options(m.spp, 0));
         m.mismatch = m.uniform.mean_error() / error - 1;
         if (std::abs(m.mismatch) <= kTolerance || k + 1 == kCorrections) break;
-        // A mean of n samples: the error falls as 1/n.
+        // The error of a mean of n samples falls as 1/n.
         m.spp = std::min(m.spp * (1 + m.mismatch), workshop.settings.most_spp);
     }
     return m;

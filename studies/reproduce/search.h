@@ -1,4 +1,5 @@
-/// Where the plain path tracer takes the time of another method, and where it reaches its error.
+/// The search for the counts at which the plain path tracer takes the time of another method, or
+/// reaches its error.
 #pragma once
 
 #include <vector>
@@ -7,7 +8,7 @@
 
 namespace covtrace::reproduce {
 
-/// One render of the path tracer, looked at after each of its rounds.
+/// A render of the path tracer, looked at after each of its rounds.
 class UniformCurve {
   public:
     struct Point {
@@ -31,10 +32,10 @@ class UniformCurve {
     double cpu_per_spp_ = 0;
 };
 
-/// Several seeds of one kind of render.
+/// Renders of one kind with several seeds.
 struct Sampled {
     std::vector<double> error, cpu, spp;
-    Timed first;  ///< the first seed's
+    Timed first;  ///< render with the first seed
     double mean_error() const;
     double mean_cpu() const;
     double mean_spp() const;
@@ -44,20 +45,20 @@ Sampled sample(Workshop& workshop, LoadedScene& scene, const Reference& referenc
                RenderOptions options);
 
 /// The path tracer at equal time (CPU seconds of the render, the scene being loaded) or equal
-/// error, searched: first on the curve, then corrected by what renders with all seeds show until it
-/// is within 5 %, three times at most.
+/// error. The count is searched on the curve, then corrected by renders with all seeds until it is
+/// within 5 %, three times at most.
 struct Match {
     Sampled uniform;
     double spp = 0;
     bool found = false;   ///< false: equal error needs more than the settings' most_spp
-    double mismatch = 0;  ///< of the matched quantity, relative
+    double mismatch = 0;  ///< relative error of the matched quantity
 };
 Match match_time(Workshop& workshop, LoadedScene& scene, const Reference& reference,
                  const UniformCurve& curve, double cpu);
 Match match_error(Workshop& workshop, LoadedScene& scene, const Reference& reference,
                   const UniformCurve& curve, double error);
 
-/// Of ratios over the seeds: geometric mean, least and most.
+/// Spread of ratios over the seeds: geometric mean, least and most.
 struct Spread {
     double mean = 0, least = 0, most = 0;
     std::string text() const;

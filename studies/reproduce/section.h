@@ -1,4 +1,4 @@
-/// What an experiment hands back: what the page shows and results.json holds.
+/// The result of an experiment, which the page shows and results.json holds.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,10 +11,10 @@
 namespace covtrace::reproduce {
 
 struct Figure {
-    std::string name;  ///< of the files figures/NAME.png and .svg
+    std::string name;  ///< name of the files figures/NAME.png and .svg
     std::string caption;
     Drawing drawing;
-    std::vector<std::string> commands;  ///< that render what it shows
+    std::vector<std::string> commands;  ///< commands that render the images shown
 };
 
 struct Table {
@@ -28,25 +28,25 @@ struct Table {
 struct Claim {
     std::string name;  ///< key in results.json
     std::string statement;
-    std::string thesis;    ///< what the thesis reports, or empty
-    std::string required;  ///< in words, or empty where nothing is
-    std::string found;     ///< in words, with the spread where there is one
-    double value = 0;      ///< the same as one number
+    std::string thesis;    ///< the result that Belcour 2012 reports, or empty
+    std::string required;  ///< demand in words, or empty where there is none
+    std::string found;     ///< finding in words, with the spread where there is one
+    double value = 0;      ///< finding as one number
     std::optional<bool> holds;
-    std::string command;  ///< that finds it
+    std::string command;  ///< command that finds it
 };
 
 struct Section {
     std::string name, title;
-    std::string thesis;              ///< what the thesis shows
-    std::vector<std::string> notes;  ///< also: what could not be reproduced, and why
+    std::string thesis;              ///< the result that Belcour 2012 shows
+    std::vector<std::string> notes;  ///< remarks; also: parts that could not be reproduced, and why
     std::vector<Figure> figures;
     std::vector<Table> tables;
     std::vector<Claim> claims;
     std::vector<std::string> pages;                  ///< files of the viewer beside the page
-    std::string failure;                             ///< why it was not run
+    std::string failure;                             ///< reason why it was not run
     nlohmann::json data = nlohmann::json::object();  ///< all numbers
-    double cpu = 0, wall = 0;                        ///< seconds it took
+    double cpu = 0, wall = 0;                        ///< seconds that the experiment took
 };
 
 }  // namespace covtrace::reproduce

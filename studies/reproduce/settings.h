@@ -1,4 +1,4 @@
-/// How large the experiments are.
+/// Settings of the experiments: their sizes and counts.
 #pragma once
 
 #include <array>
@@ -16,14 +16,16 @@ enum class Size {
 
 struct Settings {
     std::array<int, 2> board;    ///< pixels of `lens` and `motion`
-    std::array<int, 2> spheres;  ///< of `shininess`
-    std::array<int, 2> shadows;  ///< of `voxels`
-    std::array<int, 2> scene;    ///< of the snooker table and the helicopter
+    std::array<int, 2> spheres;  ///< pixels of `shininess`
+    std::array<int, 2> shadows;  ///< pixels of `voxels`
+    std::array<int, 2> scene;    ///< pixels of the snooker table and the helicopter
     double board_spp;            ///< samples per pixel of `lens`, `motion` and `shininess`
-    double spp;                  ///< of ours elsewhere
-    double reference_spp;        ///< of each of a reference's two halves
-    double most_spp;             ///< where the search for the path tracer's equal quality gives up
-    double thesis_uniform_spp;   ///< of the path tracer that the thesis compares with
+    double spp;                  ///< samples per pixel of our methods elsewhere
+    double reference_spp;        ///< samples per pixel of each of a reference's two halves
+    /// Samples per pixel where the search for the path tracer's equal quality gives up.
+    double most_spp;
+    /// Samples per pixel of the path tracer that Belcour 2012 compares with.
+    double thesis_uniform_spp;
     std::vector<uint64_t> seeds;
 };
 

@@ -12,7 +12,8 @@ namespace covtrace::reproduce {
 
 namespace {
 
-constexpr float kSharpness = 2, kWidest = 15;  // c and the largest deviation of filters by default
+// Constant c and the largest deviation of filters by default.
+constexpr float kSharpness = 2, kWidest = 15;
 constexpr std::array<const char*, 2> kRows{"metal", "coated"};
 
 /// Mean area of the filters on a sphere's highlight (of the ellipse at one deviation, pixels²), in
@@ -22,7 +23,7 @@ double highlight_area(const std::vector<covariance::Sym2<float>>& filters, const
     const auto over_sphere = [&](const auto& take) {
         for (int y = 0; y < image.height(); ++y)
             for (int x = 0; x < image.width(); ++x)
-                // Not the outline: what it does to filters is not the lobe's doing.
+                // The outline is left out: its effect on filters is not the lobe's doing.
                 if (std::hypot(x + 0.5 - circle[0], y + 0.5 - circle[1]) < 0.85 * circle[2])
                     take(size_t(y) * size_t(image.width()) + size_t(x));
     };

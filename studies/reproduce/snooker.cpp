@@ -10,14 +10,14 @@ namespace covtrace::reproduce {
 
 namespace {
 
-/// The glass ball and the eight, near the focus; the mirror ball and a ball out of focus; a ball on
-/// its way; the lamps.
+/// Insets: the glass ball and the eight, near the focus; the mirror ball and a ball out of focus; a
+/// ball on its way; the lamps.
 const std::vector<std::array<double, 4>> kInsets{{0.28, 0.58, 0.58, 0.88},
                                                  {0.60, 0.55, 0.84, 0.97},
                                                  {0.16, 0.40, 0.34, 0.72},
                                                  {0.36, 0.00, 0.66, 0.30}};
 
-/// What the three filters make of the thesis' other choices.
+/// A note on the three filters, beside the other choices of Belcour 2012.
 std::string filter_note(const SceneStudy& study) {
     const auto error = [&](FilterRule filter) {
         for (const ThesisStudy& t : study.thesis)

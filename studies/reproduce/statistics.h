@@ -1,4 +1,4 @@
-/// What many values have in common.
+/// Statistics of lists of values: mean, quantile, median.
 #pragma once
 
 #include <algorithm>

@@ -7,8 +7,8 @@ namespace covtrace::reproduce {
 
 namespace {
 
-/// Lines on a grid of 5 x 9 points: pairs of digits x y, y from 0, the top of capitals, over 6, the
-/// base line, to 8; a space ends a line.
+/// A letter as lines on a grid of 5 x 9 points: pairs of digits x y, y from 0, the top of capitals,
+/// over 6, the base line, to 8; a space ends a line.
 struct Glyph {
     std::string_view letter, lines;
 };
@@ -101,7 +101,7 @@ constexpr std::array kGlyphs{Glyph{"0", "100105163645413010"},
                              Glyph{"|", "2027"},
                              Glyph{"–", "0343"}};
 
-/// Bytes of the letter that starts with `first`.
+/// Number of bytes of the letter that starts with `first`.
 size_t letter_size(char first) {
     const auto byte = static_cast<unsigned char>(first);
     return byte < 0x80 ? 1 : byte < 0xe0 ? 2 : byte < 0xf0 ? 3 : 4;

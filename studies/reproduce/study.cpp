@@ -34,7 +34,7 @@ Breakdown breakdown_of(const Timed& timed, const SceneStudy& study) {
     return b;
 }
 
-/// The image after the filters that another render applied, `count` samples in every pixel.
+/// The image after the filters that another render applied, with one sample in every pixel.
 Image filtered(const Image& image, const Image& filters) {
     const size_t n = image.pixel_count();
     std::vector<Rgb> scattered(n), in_view(n);
@@ -62,7 +62,7 @@ Image filtered(const Image& image, const Image& filters) {
 }
 
 /// Error that filters make of an image without noise: one half of the reference is filtered, the
-/// other is what it should be.
+/// other half is the image that it should be.
 double bias_floor(const Reference& reference, const Image& filters) {
     const double against =
         0.5 * (compare(filtered(reference.half(0), filters), reference.half(1)).relmse_trimmed +
@@ -70,7 +70,8 @@ double bias_floor(const Reference& reference, const Image& filters) {
     return against - reference.noise();
 }
 
-/// The thesis' text prints one filter and describes another; the last is ours.
+/// The filters that are compared: Belcour 2012, section 5.1, prints one and describes another; the
+/// last is ours.
 constexpr std::array kFilters{FilterRule::thesis, FilterRule::matched, FilterRule::verified};
 
 std::string label_of(FilterRule filter) {

@@ -1,5 +1,5 @@
-/// A scene rendered by our methods, by the thesis' choices, and by the plain path tracer at equal
-/// time and at equal error. Shared by the experiments of a run.
+/// A study of a scene: rendered by our methods, by the choices of Belcour 2012, and by the plain
+/// path tracer at equal time and at equal error. Shared by the experiments of a run.
 #pragma once
 
 #include <optional>
@@ -24,10 +24,10 @@ struct MethodStudy {
     Sampled ours;
     Breakdown breakdown;
     std::optional<double> bias_floor;  ///< error of the same filters on an image without noise
-    Match equal_time, equal_error;     ///< the path tracer
+    Match equal_time, equal_error;     ///< the path tracer at equal time, and at equal error
 };
 
-/// What the thesis' own choices give, beside the path tracer as the curve has it.
+/// The study of the choices of Belcour 2012, beside the path tracer as the curve has it.
 struct ThesisStudy {
     std::string label;
     int cap = 0;  ///< most samples of a pixel
@@ -39,28 +39,30 @@ struct ThesisStudy {
 
 struct SceneStudy {
     std::string name;
-    LoadedScene* scene = nullptr;          ///< the workshop's
-    const Reference* reference = nullptr;  ///< likewise
+    LoadedScene* scene = nullptr;          ///< the scene, owned by the workshop
+    const Reference* reference = nullptr;  ///< the reference, owned by the workshop
     std::unique_ptr<UniformCurve> curve;
     std::vector<MethodStudy> methods;  ///< covariance, hybrid
     std::vector<ThesisStudy> thesis;   ///< by limit of samples, with each of the three filters
 };
 
-/// What the thesis used.
+/// The numbers that Belcour 2012, section 5.1, used: covariance paths, and limits of samples.
 struct ThesisChoices {
     int cov_spp;
     std::vector<int> caps;
 };
 
-/// Made once per workshop and scene.
+/// The study of a scene, made once per workshop and scene.
 SceneStudy& study(Workshop& workshop, const std::string& name, const ThesisChoices& choices);
 
-/// Rows: method, samples, seconds, error; the path tracer at equal time and error, the ratios.
+/// The table of a study. Rows: method, samples, seconds, error; the path tracer at equal time and
+/// error, the ratios.
 Table comparison_table(const SceneStudy& study);
-/// Every number of the study.
+/// The study's numbers, all of them.
 nlohmann::json to_json(const SceneStudy& study);
 
-/// Ours and the path tracer with insets, error maps and samples; the viewer's page beside them.
+/// Adds our images and the path tracer's with insets, error maps and samples, and writes the
+/// viewer's page beside them.
 void add_pictures(Section& section, const SceneStudy& study, Workshop& workshop,
                   const std::vector<std::array<double, 4>>& insets, const std::string& content);
 

@@ -21,7 +21,7 @@ const MethodStudy& method(const SceneStudy& s, const std::string& name) {
     throw Error(ErrorKind::internal, "a study without the method " + name);
 }
 
-/// Its layers of these names only.
+/// A copy of the image with these channels alone.
 Image with_layers(const Image& image, const std::vector<std::string>& channels) {
     Image result;
     result.data = image.data;

@@ -13,7 +13,7 @@ double radians(double degrees) {
     return degrees * std::numbers::pi / 180;
 }
 
-/// Pixels per unit of slope.
+/// Number of pixels per unit of slope.
 double pixels_per_slope(double fov, int height) {
     return 0.5 * height / std::tan(radians(fov) / 2);
 }
@@ -26,7 +26,7 @@ std::string film(const std::string& name, std::array<int, 2> r) {
         name, r[0], r[1]);
 }
 
-/// A square of half side `half` in the plane z = 0 with squares of `side`.
+/// The text of a square of half side `half` in the plane z = 0, with squares of `side`.
 std::string board(double half, double side) {
     return fmt::format(
         "Texture \"squares\" \"spectrum\" \"checkerboard\" \"float uscale\" {0} \"float vscale\" "

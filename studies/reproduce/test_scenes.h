@@ -10,7 +10,8 @@ namespace covtrace::reproduce {
 /// the middle of the image. Metres.
 struct LensBoard {
     double lens_radius = 0;
-    static constexpr double kFov = 30, kPitch = 25, kHeight = 1;  // degrees, metres above the board
+    // Degrees, degrees, metres above the board.
+    static constexpr double kFov = 30, kPitch = 25, kHeight = 1;
     std::string text(std::array<int, 2> resolution) const;
     /// Radius of the circle of confusion, pixels, in the middle of pixel row y.
     double blur(int y, int image_height) const;
@@ -18,7 +19,7 @@ struct LensBoard {
 
 /// A checkerboard parallel to the film that moves while the shutter is open, seen by a pinhole.
 struct MovingBoard {
-    /// By this share of the image's height, x to the right and y down.
+    /// Way of the board, as shares of the image's height, x to the right and y down.
     std::array<double, 2> path{0, 0};
     static constexpr double kFov = 30, kDistance = 2;
     std::string text(std::array<int, 2> resolution) const;
@@ -34,7 +35,7 @@ struct SphereRows {
     /// (C = e/(4 pi²) for Phong, brdf.hpp; a GGX lobe's C is 1/alpha² in the same unit).
     static double roughness(double exponent);
     std::string text(std::array<int, 2> resolution) const;
-    /// Middle and radius in pixels; row 0 is the metal.
+    /// Middle and radius of a sphere in pixels; row 0 is the metal.
     std::array<double, 3> circle(int row, int column, std::array<int, 2> resolution) const;
 };
 

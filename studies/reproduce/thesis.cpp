@@ -6,7 +6,7 @@ namespace covtrace::reproduce {
 
 namespace {
 
-/// The experiment's own command, that finds the match again.
+/// The experiment's own command, which finds the match again.
 std::string search_command(const SceneStudy& study, const Workshop& workshop) {
     return fmt::format("covtrace reproduce {} -o {}{}", study.name, workshop.output.string(),
                        workshop.size == Size::full    ? ""

@@ -1,4 +1,4 @@
-/// What the thesis reports, and the claims that stand beside it.
+/// Results of Belcour 2012, section 5.1, and the claims that stand beside them.
 #pragma once
 
 #include <map>
@@ -10,15 +10,15 @@ namespace covtrace::reproduce {
 inline const ThesisChoices kSnookerChoices{15, {100, 3000}};
 inline const ThesisChoices kHelicopterChoices{10, {200}};
 
-/// The path tracer's time over ours at equal error, at least so much for each method. What is asked
-/// for is asked of the full size: at others nothing is judged.
+/// Adds claims on the path tracer's time over ours at equal error, which is to be at least so much
+/// for each method. Demands are made of the full size: at others nothing is judged.
 void add_equal_error_claims(Section& section, const SceneStudy& study,
                             const std::map<std::string, double>& least, const std::string& thesis,
                             const Workshop& workshop);
-/// The path tracer's error over ours at equal time.
+/// Adds claims on the path tracer's error over ours at equal time.
 void add_equal_time_claims(Section& section, const SceneStudy& study,
                            const std::map<std::string, double>& least, const Workshop& workshop);
-/// Shares of the analysis and of the reconstruction in the time of `covariance`.
+/// Adds claims on the shares of the analysis and of the reconstruction in the time of `covariance`.
 void add_share_claims(Section& section, const SceneStudy& study);
 
 }  // namespace covtrace::reproduce

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<int, 5> kWidths{25, 50, 100, 200, 400};
 
-/// Of all pixels, in the logarithm.
+/// Mean size of the filters of all pixels, in the logarithm.
 double mean_size(const std::vector<float>& sizes) {
     double sum = 0;
     for (const float s : sizes) sum += std::log(double(s));
@@ -33,7 +33,8 @@ struct Kind {
     RenderOptions options;
 };
 
-/// The thesis' use of the grid, ours, and the query, in this order.
+/// The ways to find occluders: every voxel of the grid as in Belcour 2012, our use of the grid, and
+/// the query, in this order.
 std::vector<Kind> kinds(const Workshop& workshop) {
     std::vector<Kind> list;
     RenderOptions o;

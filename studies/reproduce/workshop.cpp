@@ -19,7 +19,7 @@ double cpu_seconds() {
 
 namespace {
 
-/// As a shell takes it for one word.
+/// The word as a shell takes it for one.
 std::string quoted(const std::string& word) {
     constexpr auto kPlain =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789/._-+=:,@%";

@@ -1,4 +1,4 @@
-/// What the experiments work with: scenes, renders whose time is taken, and where results go.
+/// The workshop of the experiments: scenes, renders whose time is taken, and the folder of results.
 #pragma once
 
 #include <atomic>
@@ -20,7 +20,7 @@ double cpu_seconds();
 struct Timed {
     RenderResult result;
     double cpu = 0, wall = 0;  ///< seconds, the scene being loaded already
-    std::string command;       ///< that renders the same image
+    std::string command;       ///< command that renders the same image
 };
 
 /// A scene at one resolution, loaded once.
@@ -29,7 +29,7 @@ struct LoadedScene {
     fs::path file;
     std::array<int, 2> resolution;
     std::unique_ptr<RenderScene> scene;
-    double load_cpu = 0;     ///< seconds to read and build it
+    double load_cpu = 0;     ///< seconds to read and build the scene
     double spectra_cpu = 0;  ///< seconds to analyse its textures and environment, once per scene
 };
 
@@ -37,8 +37,8 @@ class Workshop {
   public:
     using Say = std::function<void(const std::string&)>;
 
-    /// `output`: an existing folder. `interrupted`: ends the render that is running and all that
-    /// follow once it is true, whoever sets it.
+    /// Makes a workshop. `output` is an existing folder. `interrupted` ends the render that is
+    /// running and all that follow once it is true, whoever sets it.
     Workshop(Size size, fs::path output, const fs::path& scenes,
              const std::atomic<bool>& interrupted, Say say);
 
@@ -47,18 +47,19 @@ class Workshop {
     const fs::path output;
     SceneSource scenes;
 
-    /// Tells what is being done; one line.
+    /// Tells in one line what is being done.
     void tell(const std::string& line) const { say_(line); }
 
     LoadedScene load(const std::string& name, const fs::path& file, std::array<int, 2> resolution);
-    /// Throws Error(interrupted) once the workshop is interrupted. `watcher`: as Monitor's.
+    /// Renders a scene. Throws Error(interrupted) once the workshop is interrupted. `watcher` is
+    /// called as Monitor's.
     Timed render(LoadedScene& scene, const RenderOptions& options,
                  std::function<void(Monitor&, Image)> watcher = {});
 
     /// Seconds of rendering so far, scene loading included.
     double cpu() const { return cpu_seconds() - start_; }
 
-    /// What experiments share: made by `make` at the first call with this key.
+    /// An object that experiments share: made by `make` at the first call with this key.
     template <typename T>
     T& shared(const std::string& key, const std::function<T()>& make) {
         auto& entry = shared_[key];
@@ -73,7 +74,7 @@ class Workshop {
     std::map<std::string, std::shared_ptr<void>> shared_;
 };
 
-/// `covtrace render …` with all options that are not the defaults.
+/// The command `covtrace render …` with all options that are not the defaults.
 std::string render_command(const LoadedScene& scene, const RenderOptions& options);
 
 }  // namespace covtrace::reproduce
