@@ -30,6 +30,17 @@ def cpu_seconds(command):
     return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
 
 
+def callgrind(out, command, *options):
+    """Counts the instructions of a program into the file `out`; what it prints is dropped."""
+    done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", *options, *map(str, command)],
+                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
+    if done.returncode != 0:
+        # Valgrind 3.19 knows no VEX move of clang's between registers (66 0F D6), which portable builds do not have.
+        hint = ("valgrind does not know an instruction of this build; PRESET=portable ./scripts/build covtrace_program bench, "
+                "then set COVTRACE_BUILD=build/portable\n" if "nrecognised instruction" in done.stderr else "")
+        raise SystemExit(f"{' '.join(map(str, command))}: exit code {done.returncode}\n{hint or done.stderr}")
+
+
 def processor():
     found = re.search(r"^model name\s*:\s*(.*)$", pathlib.Path("/proc/cpuinfo").read_text(), re.M)
     return found.group(1) if found else platform.processor()
