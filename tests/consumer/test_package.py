@@ -85,12 +85,15 @@ class Package(unittest.TestCase):
         for file in ("status", "available"):
             (root / "var/lib/dpkg" / file).touch()
         as_root = [] if os.geteuid() == 0 else ["unshare", "--map-root-user"]
-        dpkg = [*as_root, "dpkg", f"--root={root}", "--force-depends", "--log=/dev/null"]
+        dpkg = [*as_root, "dpkg", f"--root={root}", "--force-depends", "--force-script-chrootless", "--log=/dev/null"]
         self.run_command(*dpkg, "--install", package)
         installed = {str(p) for p in self.files(root / "usr")}
         self.assertLessEqual(PROGRAM_FILES, installed)
         self.assertIn("include/covariance/covariance.hpp", installed)
         self.assertIn("covtrace", self.run_command(root / "usr/bin/covtrace", "--version"))
+        for module in (root / "usr").rglob("dist-packages/covtrace"):
+            (module / "__pycache__").mkdir()  # as after an import by root
+            (module / "__pycache__" / "image.pyc").touch()
         self.run_command(*dpkg, "--purge", "covtrace")
         left = {str(p) for p in self.files(root) if "var/lib/dpkg" not in str(p)}
         self.assertEqual(left, set())
