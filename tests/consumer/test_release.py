@@ -1,15 +1,22 @@
-"""What scripts/release makes, short of installing it: one version everywhere."""
+"""What scripts/release makes: one version everywhere, a wheel and an add-on that are installed and loaded here. In clean
+places `scripts/release --check` tries them."""
 
 import ast
 import os
 import pathlib
 import re
+import shutil
 import subprocess
+import sys
+import tempfile
+import tomllib
 import unittest
+import zipfile
 
 SOURCE = pathlib.Path(os.environ["COVTRACE_SOURCE"])
 BUILD = pathlib.Path(os.environ["COVTRACE_BUILD"])
 PROGRAM = os.environ["COVTRACE"]
+PYTHON = "/usr/bin/python3"
 VERSION = (SOURCE / "covariance/VERSION").read_text().strip()
 
 
@@ -50,6 +57,87 @@ class Version(unittest.TestCase):
                      if f.is_file() and "build" not in f.relative_to(SOURCE).parts and
                      re.search(rf"(?<![\d.]){re.escape(VERSION)}(?![\d.])", text_of(f))]
         self.assertEqual([], repeating)
+
+
+def run(*command, **environment):
+    return subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=240,
+                          env={**os.environ, **environment})
+
+
+class Made(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="covtrace-release-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def run_command(self, *command, **environment):
+        done = run(*command, **environment)
+        self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout}\n{done.stderr}")
+        return done.stdout
+
+
+@unittest.skipUnless((SOURCE / "build/auditwheel/auditwheel").is_dir(), "needs auditwheel (scripts/fetch-auditwheel)")
+@unittest.skipUnless((BUILD / "python/covtrace").is_dir(), "the Python package is not built")
+@unittest.skipIf(os.environ.get("COVTRACE_PRELOAD"), "a module with sanitizers is not for wheels")
+@unittest.skipUnless(run(PYTHON, "-c", "import pip, wheel").returncode == 0, "needs Debian's python3-pip and python3-wheel")
+class Wheel(Made):
+    def test_is_installed_and_renders_with_its_own_libraries(self):
+        self.run_command(SOURCE / "packaging/wheel", BUILD, self.folder)
+        [wheel] = self.folder.glob("*.whl")
+        self.assertRegex(wheel.name, rf"\Acovtrace-{re.escape(VERSION)}-(cp3\d+)-\1-manylinux_2_\d+_x86_64\.whl\Z")
+        target = self.folder / "site-packages"
+        self.run_command(PYTHON, "-m", "pip", "install", "--quiet", "--no-index", "--no-deps", "--target", target, wheel)
+        told = self.run_command(PYTHON, SOURCE / "packaging/check_python.py", VERSION, SOURCE / "packaging/scene.pbrt",
+                                PYTHONPATH=str(target))
+        self.assertTrue(told.startswith(f"{target}/covtrace/__init__.py: {VERSION}"), told)
+        [module] = (target / "covtrace").glob("_covtrace.*.so")
+        outside = [line for line in self.run_command("ldd", module).splitlines() if "=> /" in line and str(target) not in line]
+        self.assertLess(0, len(outside))
+        for line in outside:  # what every Linux with that C library has
+            self.assertRegex(line.split()[0], r"\A(lib(c|m|z|stdc\+\+|gcc_s|dl|pthread|rt)\.so\.\d+|/lib64/ld-linux.*)\Z")
+        bundled = {re.sub(r"-[0-9a-f]{8}\.so.*", "", f.name) for f in (target / "covtrace.libs").iterdir()}
+        self.assertLessEqual({"libembree3", "libtbb", "libOpenEXR-3_1"}, bundled)
+        licences = target / f"covtrace-{VERSION}.dist-info/licenses"
+        self.assertLessEqual({"libembree3-3", "libtbb12", "libopenexr-3-1-30"}, {d.name for d in licences.iterdir()})
+
+
+# As Blender is there for modules that are only loaded: classes to inherit from, properties, lists.
+BPY = """
+import sys, types
+class Stub(types.ModuleType):
+    def __getattr__(self, name):
+        if name[:1] == "_": raise AttributeError(name)
+        made = type(name, (), {}) if self.__name__ == "bpy.types" else (lambda *a, **k: None)
+        setattr(self, name, made)
+        return made
+bpy = Stub("bpy"); bpy.types = Stub("bpy.types"); bpy.props = Stub("bpy.props")
+sys.modules["bpy"] = bpy; sys.modules["mathutils"] = Stub("mathutils"); sys.modules["bpy_extras"] = Stub("bpy_extras")
+import importlib, pkgutil
+package = importlib.import_module("covtrace_blender")
+print(*sorted(m.name for m in pkgutil.iter_modules(package.__path__) if importlib.import_module("covtrace_blender." + m.name)))
+"""
+
+
+class Extension(Made):
+    def test_is_one_folder_that_blender_knows_as_an_extension_and_as_an_add_on(self):
+        self.run_command(sys.executable, SOURCE / "packaging/blender-extension", self.folder)
+        [archive] = self.folder.glob("*.zip")
+        self.assertEqual(archive.name, f"covtrace_blender-{VERSION}.zip")
+        with zipfile.ZipFile(archive) as files:
+            names = set(files.namelist())
+            manifest = tomllib.loads(files.read("covtrace_blender/blender_manifest.toml").decode())
+            files.extractall(self.folder)
+        sources = {f"covtrace_blender/{f.name}" for f in (SOURCE / "blender/covtrace_blender").glob("*.py")}
+        self.assertEqual(names, sources | {"covtrace_blender/blender_manifest.toml", "covtrace_blender/LICENSE"})
+        # What Blender 4.2 wants of a manifest, and how long it may be.
+        self.assertEqual((manifest["schema_version"], manifest["version"], manifest["type"], manifest["license"]),
+                         ("1.0.0", VERSION, "add-on", ["SPDX:Apache-2.0"]))
+        for text in (manifest["tagline"], *manifest["permissions"].values()):
+            self.assertLessEqual(len(text), 64)
+            self.assertRegex(text, r"\w\Z")
+        self.assertRegex(manifest["blender_version_min"], r"\A4\.[2-9]\.\d\Z")
+        self.assertTrue(manifest["id"].isidentifier() and manifest["name"] and manifest["maintainer"])
+        loaded = self.run_command(PYTHON, "-B", "-c", BPY, PYTHONPATH=str(self.folder))
+        self.assertEqual(set(loaded.split()), {pathlib.Path(name).stem for name in sources} - {"__init__"})
 
 
 if __name__ == "__main__":
