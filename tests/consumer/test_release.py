@@ -100,17 +100,14 @@ class Wheel(Made):
         self.assertLessEqual({"libembree3-3", "libtbb12", "libopenexr-3-1-30"}, {d.name for d in licences.iterdir()})
 
 
-# As Blender is there for modules that are only loaded: classes to inherit from, properties, lists.
+# Enough of Blender for modules that are loaded and not used: anything, and classes to inherit from.
 BPY = """
-import sys, types
-class Stub(types.ModuleType):
-    def __getattr__(self, name):
-        if name[:1] == "_": raise AttributeError(name)
-        made = type(name, (), {}) if self.__name__ == "bpy.types" else (lambda *a, **k: None)
-        setattr(self, name, made)
-        return made
-bpy = Stub("bpy"); bpy.types = Stub("bpy.types"); bpy.props = Stub("bpy.props")
-sys.modules["bpy"] = bpy; sys.modules["mathutils"] = Stub("mathutils"); sys.modules["bpy_extras"] = Stub("bpy_extras")
+import sys
+from unittest.mock import MagicMock
+for name in ("bpy", "mathutils", "bpy_extras"):
+    sys.modules[name] = MagicMock()
+for name in ("AddonPreferences", "PropertyGroup", "Panel", "RenderEngine"):
+    setattr(sys.modules["bpy"].types, name, type(name, (), {}))
 import importlib, pkgutil
 package = importlib.import_module("covtrace_blender")
 print(*sorted(m.name for m in pkgutil.iter_modules(package.__path__) if importlib.import_module("covtrace_blender." + m.name)))
