@@ -22,7 +22,7 @@ PROGRAM = os.environ.get("COVTRACE", str(ROOT / "build/release/covtrace"))
 NOT_OURS = {"build", "out", ".git", "node_modules"}
 OPTION = re.compile(r"(?<![\w-])(--?[a-zA-Z][\w-]*)")
 SOURCE = re.compile(r"(?:src|studies|cli|covariance|viewer|python|blender|tests)/[\w./-]*\w/?$|[a-z]+/\w+\.(?:h|hpp|cpp)$")
-SCRIPT = re.compile(r"(?:\./)?((?:scripts|bench|tests|scenes|fuzz)/[\w./-]*[\w])$")
+SCRIPT = re.compile(r"(?:\./)?((?:scripts|bench|tests|scenes|fuzz|packaging)/[\w./-]*[\w])$")
 BENCHMARK = re.compile(r"(?:\./)?build/release/bench/([\w-]+)$")
 
 
@@ -33,7 +33,7 @@ def documents():
 def sources():
     """Text files beside the documents, in which comments name documents."""
     endings = {".h", ".hpp", ".cpp", ".py", ".in", ".txt", ".cmake", ".pbrt", ".js", ".html", ""}
-    for folder in ("src", "studies", "cli", "covariance", "viewer", "python", "blender", "bench", "tests", "scenes", "scripts", "fuzz", "cmake", "docs"):
+    for folder in ("src", "studies", "cli", "covariance", "viewer", "python", "blender", "bench", "tests", "scenes", "scripts", "fuzz", "cmake", "docs", "packaging"):
         for file in (ROOT / folder).rglob("*"):
             parts = set(file.relative_to(ROOT).parts)
             if file.is_file() and file.suffix in endings and not parts & (NOT_OURS | {"generated", "corpus", "__pycache__"}):

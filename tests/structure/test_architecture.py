@@ -103,7 +103,7 @@ class Architecture(unittest.TestCase):
 
     def test_no_file_is_too_long(self):
         long = []
-        for folder in [*table_of(SOURCE), "bench", "fuzz", "tests", "scenes", "scripts"]:
+        for folder in [*table_of(SOURCE), "bench", "fuzz", "tests", "scenes", "scripts", "packaging"]:
             for file in (SOURCE / folder).rglob("*"):
                 if file.suffix in SUFFIXES and "generated" not in file.parts and "node_modules" not in file.parts:
                     lines = file.read_text(errors="replace").count("\n")
