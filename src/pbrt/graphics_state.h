@@ -5,7 +5,6 @@
 #include <array>
 #include <map>
 #include <string>
-#include <vector>
 
 #include "pbrt/current_transform.h"
 #include "pbrt/material_builder.h"
@@ -26,7 +25,7 @@ struct GraphicsState {
     int area_light = -1;  ///< into SceneDescription::area_lights
     std::string inside_medium, outside_medium;
     /// Parameters of `Attribute` directives, by their target.
-    std::map<std::string, std::vector<Parameter>> attributes{
+    std::map<std::string, InheritedParameters> attributes{
         {"shape", {}}, {"light", {}}, {"material", {}}, {"medium", {}}, {"texture", {}}};
 
     /// The transform of an entity that stands at `user`. Errors: Error(scene) where the current

@@ -59,33 +59,23 @@ void expect_multiple(const Parameter& p, size_t n) {
 
 }  // namespace
 
-ParameterList::ParameterList(std::vector<Parameter> own, const std::vector<Parameter>& inherited)
-    : all_(inherited) {
-    if (all_.empty()) {
-        all_ = std::move(own);
-    } else {
-        all_.insert(all_.end(), std::make_move_iterator(own.begin()),
-                    std::make_move_iterator(own.end()));
-    }
-}
+ParameterList::ParameterList(std::vector<Parameter> own, InheritedParameters inherited)
+    : own_(std::move(own)), inherited_(std::move(inherited)) {}
 
-Parameter* ParameterList::last(std::string_view name) {
-    for (auto it = all_.rbegin(); it != all_.rend(); ++it)
+const Parameter* ParameterList::last(std::string_view name) const {
+    for (auto it = own_.rbegin(); it != own_.rend(); ++it)
         if (it->name == name) return &*it;
-    return nullptr;
+    return inherited_.find(name);
 }
 
 const Parameter* ParameterList::find(std::string_view name,
                                      std::initializer_list<ParameterType> types) {
-    for (auto p = all_.rbegin(); p != all_.rend(); ++p) {
+    for (auto p = own_.rbegin(); p != own_.rend(); ++p) {
         if (p->name != name) continue;
         if (std::find(types.begin(), types.end(), p->type) != types.end()) {
             p->looked_up = true;
             return &*p;
         }
-        // Inherited parameters are not refused: an `Attribute` is for all directives of its kind,
-        // of which others may take that type.
-        if (p->may_be_unused) continue;
         std::string expected;
         for (const ParameterType t : types)
             expected += (expected.empty() ? "" : " or ") + type_name(t);
@@ -93,12 +83,12 @@ const Parameter* ParameterList::find(std::string_view name,
                     "parameter " + in_quotes(p->name) + " has the type " + type_name(p->type) +
                         "; expected " + expected);
     }
-    return nullptr;
+    // An `Attribute` is for all directives of its kind, of which others may take another type.
+    return inherited_.find(name, types);
 }
 
 bool ParameterList::has(std::string_view name) const {
-    return std::any_of(all_.begin(), all_.end(),
-                       [&](const Parameter& p) { return p.name == name; });
+    return last(name) != nullptr;
 }
 
 std::optional<float> ParameterList::number(std::string_view name) {
@@ -179,27 +169,24 @@ std::vector<Vec3> ParameterList::triples(std::string_view name) {
 }
 
 SourceLocation ParameterList::where(std::string_view name, const SourceLocation& otherwise) const {
-    for (auto it = all_.rbegin(); it != all_.rend(); ++it)
-        if (it->name == name) return it->where;
-    return otherwise;
+    const Parameter* p = last(name);
+    return p ? p->where : otherwise;
 }
 
 void ParameterList::ignore(std::initializer_list<std::string_view> names) {
-    for (Parameter& p : all_)
+    for (Parameter& p : own_)
         if (std::find(names.begin(), names.end(), p.name) != names.end()) p.looked_up = true;
 }
 
 void ParameterList::ignore_all() {
-    for (Parameter& p : all_) p.looked_up = true;
+    for (Parameter& p : own_) p.looked_up = true;
 }
 
 void ParameterList::warn_unused(WarningLog& log, const std::string& owner) const {
     std::unordered_map<std::string_view, size_t> last_of_name;
-    for (size_t i = 0; i < all_.size(); ++i)
-        if (!all_[i].may_be_unused) last_of_name[all_[i].name] = i;
-    for (size_t i = 0; i < all_.size(); ++i) {
-        const Parameter& p = all_[i];
-        if (p.may_be_unused) continue;
+    for (size_t i = 0; i < own_.size(); ++i) last_of_name[own_[i].name] = i;
+    for (size_t i = 0; i < own_.size(); ++i) {
+        const Parameter& p = own_[i];
         if (last_of_name[p.name] != i) {
             log.add(p.where, "parameter " + in_quotes(p.name) + " of " + owner +
                                  " is given twice; the last one counts");

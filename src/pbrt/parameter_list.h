@@ -12,50 +12,20 @@
 #include <string_view>
 #include <vector>
 
-#include "core/colour_space.h"
-#include "core/error.h"
 #include "core/vec.h"
+#include "pbrt/inherited_parameters.h"
+#include "pbrt/parameter.h"
 
 namespace covtrace {
 
 class WarningLog;
-
-enum class ParameterType {
-    floats,
-    integer,
-    boolean,
-    string,
-    point2,
-    vector2,
-    point3,
-    vector3,
-    normal3,
-    rgb,
-    blackbody,
-    spectrum,
-    texture
-};
-
-struct Parameter {
-    ParameterType type{};
-    std::string name;
-    SourceLocation where;
-    ColourSpace colour_space = ColourSpace::srgb;
-    bool may_be_unused = false;  ///< given by `Attribute`
-    bool looked_up = false;
-    /// Values of the parameter, in one of three lists; flags are in `integers`, `spectrum` has
-    /// numbers or strings.
-    std::vector<float> numbers;
-    std::vector<int> integers;
-    std::vector<std::string> strings;
-};
 
 class ParameterList {
   public:
     ParameterList() = default;
     /// Makes a list of a directive's own parameters and of `inherited` ones, those of the
     /// `Attribute` directives in force.
-    ParameterList(std::vector<Parameter> own, const std::vector<Parameter>& inherited);
+    ParameterList(std::vector<Parameter> own, InheritedParameters inherited);
 
     /// The parameter of that name which counts, marked as looked up; null where there is none.
     /// Inherited ones of other types than `types` are passed over. Errors: Error(scene) where the
@@ -86,8 +56,10 @@ class ParameterList {
     void warn_unused(WarningLog& log, const std::string& owner) const;
 
   private:
-    Parameter* last(std::string_view name);
-    std::vector<Parameter> all_;  ///< inherited first, so that the last one counts
+    /// Of one name, whatever its type.
+    const Parameter* last(std::string_view name) const;
+    std::vector<Parameter> own_;  ///< the last one of a name counts
+    InheritedParameters inherited_;
 };
 
 /// The single colour of an `rgb` parameter in linear Rec.709, as given (negative components are

@@ -100,10 +100,7 @@ void SceneBuilder::attribute(const std::string& target, std::vector<Parameter> p
         throw Error(ErrorKind::scene, where,
                     unknown_name("attribute target", target,
                                  {"shape", "light", "material", "medium", "texture"}));
-    for (Parameter& p : parameters) {
-        p.may_be_unused = true;
-        it->second.push_back(std::move(p));
-    }
+    for (Parameter& p : parameters) it->second.add(std::move(p));
 }
 
 void SceneBuilder::save(Scope scope, const SourceLocation& where) {

@@ -70,9 +70,8 @@ class Parser {
     }
     ParameterList parameters(const char* attributes) {
         const GraphicsState& state = builder_.state();
-        static const std::vector<Parameter> none;
         return {parse_parameters(tokens_, state.colour_space),
-                attributes ? state.attributes.at(attributes) : none};
+                attributes ? state.attributes.at(attributes) : InheritedParameters()};
     }
     std::string name() { return tokens_.expect_string("a name in quotes"); }
     template <size_t N>

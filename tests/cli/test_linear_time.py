@@ -38,6 +38,17 @@ class LinearTime(CliTest):
             seconds.append(self.cpu_seconds("info", "many.pbrt"))
         self.assert_linear(*seconds, 5)
 
+    def test_parameters_given_by_attribute(self):
+        """Beside as many shapes, and beside as many blocks: 9 s of 16,000."""
+        for what in ('Shape "sphere"\n', "AttributeBegin AttributeEnd\n", 'Material "diffuse"\n'):
+            seconds = []
+            for count in (4000, 16000):
+                directives = "".join(f'Attribute "shape" "float s{i}" {i} Attribute "material" "float m{i}" {i}\n{what}'
+                                     for i in range(count))
+                self.write("many.pbrt", HEADER + 'WorldBegin\nShape "sphere"\n' + directives)
+                seconds.append(self.cpu_seconds("info", "many.pbrt"))
+            self.assert_linear(*seconds, 4)
+
     def test_narrow_images(self):
         """The reconstruction of one row or one column took ten times that of a square."""
         header = HEADER.replace('"float fov" 40', '"float fov" 40 "float lensradius" .3 "float focaldistance" 6')
