@@ -31,7 +31,9 @@ template <typename Enum>
 inline constexpr auto kEnumNames = nullptr;
 
 template <typename Enum>
-concept NamedEnum = requires { kEnumNames<Enum>.size(); };
+concept NamedEnum = requires {
+    kEnumNames<Enum>.size();
+};
 
 /// The name of a value that the table has.
 template <NamedEnum Enum>

@@ -71,14 +71,15 @@ TEST(FurnaceFile, LensAndMotionKeepTheWeights) {
     }
 }
 
-// Where nothing is absorbed roulette has no reason to end a path before the bounce the scene allows.
+// Where nothing is absorbed roulette has no reason to end a path before the bounce the scene
+// allows.
 TEST(Furnace, AMillionBouncesBetweenWhiteWallsAreNotTaken) {
-    const RenderScene scene(read_pbrt_string(
-        "Integrator \"path\" \"integer maxdepth\" 1000000\n"
-        "WorldBegin\nLightSource \"point\" \"rgb I\" [ 1 1 1 ]\n"
-        "Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n"
-        "ReverseOrientation\nShape \"sphere\" \"float radius\" 2\n",
-        "test", "."));
+    const RenderScene scene(
+        read_pbrt_string("Integrator \"path\" \"integer maxdepth\" 1000000\n"
+                         "WorldBegin\nLightSource \"point\" \"rgb I\" [ 1 1 1 ]\n"
+                         "Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n"
+                         "ReverseOrientation\nShape \"sphere\" \"float radius\" 2\n",
+                         "test", "."));
     double bounces = 0;
     constexpr int kPaths = 64;
     for (int i = 0; i < kPaths; ++i) {

@@ -139,8 +139,8 @@ TEST(Hybrid, OneSamplePerPixelLeavesALampItsSize) {
 }
 
 TEST(Hybrid, NegativeLightBesideALampDoesNotDarkenTheSky) {
-    // The filter's lobes leave a negative ring around the lamp, in a sky without noise. The sky was up
-    // to a fifth too dark; a hundredth may be left.
+    // The filter's lobes leave a negative ring around the lamp, in a sky without noise. The sky was
+    // up to a fifth too dark; a hundredth may be left.
     const Image image = render_text(R"(
 Film "rgb" "integer xresolution" 80 "integer yresolution" 60
 PixelFilter "mitchell"
