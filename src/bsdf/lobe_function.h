@@ -22,7 +22,8 @@ auto function_of(const F& f, double x) {
     return f(x);
 }
 
-/// Fresnel's factor of a lobe's border for light that it reflects, `cos_i` > 0; 1 without a border.
+/// Fresnel reflectance of the border that a lobe belongs to (`LobeShare::border_eta`), for `cos_i`
+/// > 0; 1 without a border.
 template <typename S>
 S border_reflectance(const LobeShare& lobe, const S& cos_i) {
     if (!(lobe.border_eta > 0)) return S(1.0f);
@@ -40,11 +41,12 @@ S border_reflectance(const LobeShare& lobe, const S& cos_i) {
 }
 
 /// A lobe's BRDF (or BTDF) times |cos(wi)| without constant factors: for a glossy lobe its value
-/// where the border's indices are grey. A diffuse lobe below a coat is seen through the coat's
-/// smooth border on both sides; roughness makes that softer.
+/// where the border's indices are grey. A diffuse lobe below a coat is multiplied by what a smooth
+/// border lets through along wo and along wi, though a rough one is softer.
 ///
 /// `wo`, `wi`: unit, local, away from the surface, of either's own type (a direction that is
-/// constant need not carry derivatives). Zero for pairs that the lobe does not connect.
+/// constant need not carry derivatives). A glossy lobe is zero for pairs that it does not connect;
+/// for a diffuse lobe callers see to it that wi is on the lobe's side.
 template <typename O, typename I>
 auto lobe_function(const LobeShare& lobe, O wo, I wi) {
     using std::abs;

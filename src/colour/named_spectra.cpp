@@ -15,9 +15,9 @@ struct Metal {
     std::array<float, kSamples> values;
 };
 
-// Optical constants, measured every 10 nm from 380 to 780 nm. They are interpolated linearly from
-// the tables that pbrt-v4 distributes (src/pbrt/util/spectrum.cpp), where no nearer source is
-// named.
+// Optical constants of metals at 380, 390, ... 780 nm, interpolated linearly between the (mostly
+// other) wavelengths of pbrt-v4's tables (src/pbrt/util/spectrum.cpp). These do not say who
+// measured them.
 constexpr std::array<Metal, 14> kMetals{{
     {"metal-Ag-eta",
      {{0.1986f, 0.1879f, 0.173f,  0.1728f, 0.1669f, 0.1595f, 0.1575f, 0.1517f, 0.1434f,

@@ -22,7 +22,7 @@ class TexelPages {
   public:
     static constexpr size_t kPageBytes = size_t(1) << 14;
 
-    /// Holds as many pages as fit into `most_bytes`, at least one.
+    /// Makes an empty file. Pages held in memory take at most `most_bytes`, or one page.
     explicit TexelPages(size_t most_bytes);
     ~TexelPages();
     TexelPages(const TexelPages&) = delete;
@@ -37,11 +37,11 @@ class TexelPages {
 
   private:
     struct Slot {
-        size_t page = SIZE_MAX;  ///< none
+        size_t page = SIZE_MAX;  ///< number of the page that it holds; SIZE_MAX: none
         uint64_t used = 0;       ///< tick of its set when it was last read
     };
-    /// A set of slots. Pages compete for those of their set; the one that was read longest ago
-    /// gives way.
+    /// One set of a set-associative cache: pages compete for the slots of their set, and the page
+    /// that was read longest ago gives way.
     struct Set {
         mutable std::mutex mutex;
         std::vector<Slot> slots;

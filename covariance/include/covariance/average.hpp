@@ -4,7 +4,8 @@
 //
 // because Int |Lhat| = L(0) for positive spectra. This is the Monte Carlo estimator of a pixel, and
 // how several arriving lights are merged at a vertex. (Additivity: property 5 of Belcour et al.
-// 2013.) Also the harmonic sum, the covariance of a convolution of two signals.
+// 2013, "5D Covariance Tracing for Efficient Defocus and Motion Blur".) Also the harmonic sum, the
+// covariance of a convolution of two signals.
 #pragma once
 
 #include <cmath>
@@ -64,8 +65,9 @@ class Accumulator {
 /// frame.
 ///
 /// Pre      both frames have the same Z; weights are at least 0. With both 0 the first is returned.
-/// After a diffuse reflection bring both into one frame before they are merged (see `rotate_to`);
-/// after a mirror or refraction they already are, if their incoming frames were.
+///          Between `surface_enter` and `surface_exit` x, y are tangent coordinates, which must not
+///          turn with a frame: merge there only where both have the same X, Y, as two lights after
+///          diffuse reflection do; else after `surface_exit`.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> merge(const LightField<T>& a, NonDeduced<T> weight_a,
                                             const LightField<NonDeduced<T>>& b,

@@ -1,7 +1,8 @@
 // Diffuse reflection of light whose emitter is known. `cosine_window` (brdf.hpp) knows the angle of
-// incidence alone and takes the light of a distant emitter exactly; a near one is also seen larger
-// and steeper as the receiver comes closer, and past about 45 degrees of incidence that falloff,
-// not the cosine, is what bounds the bandwidth: up to 2.4 times in the plane of incidence.
+// incidence alone, which is enough for a distant emitter. A near one is also seen larger and
+// steeper as the receiver comes closer, and past about 45 degrees of incidence the bandwidth
+// follows from that falloff, not from the cosine: at 75 degrees it is 2.4 times what
+// `cosine_window` says.
 //
 // A small Lambertian emitter with the normal m at the unit distance in the direction d lights the
 // tangential displacement p of the receiver by
@@ -41,16 +42,21 @@ template <std::floating_point T>
 /// Squared bandwidth, times 4 pi^2, on the tangent plane, of the light that a small emitter at the
 /// unit distance casts; `falloff_peak` right below the emitter.
 ///
-/// Along the direction in which H = Hess E / E is highest it is
+/// Along the direction in which H = Hess E / E has its highest eigenvalue h it is
 ///
-///     max(peak (1 - sin^2(theta)/2), 1.5 (h - peak)),
+///     f1 = max(peak (1 - sin^2(theta)/2), -h, 1.5 (h - peak)),    theta the angle of incidence,
 ///
-/// what a Gaussian window of the size that follows from it sees of E, from the peak through the
-/// point of inflection, where h alone would tell nothing, out to the flank. Across it, -h and the
-/// change of h along the first direction within that window, the third derivative, root mean
-/// square. Within 15 % on the bandwidth of the exact kernel (docs/decisions/0010).
+/// a fit to what a Gaussian window of the size that follows from it sees of E, from the peak
+/// through the point of inflection, where h alone would be 0, out to the flank. Across it, where H
+/// has the eigenvalue l and E the third derivative t E (twice across, once along), it is
 ///
-/// Shapes   symmetric 2x2 along receiver.t1, t2. Frame the arriving one; z from the emitter.
+///     sqrt(max(peak, -l)^2 + t^2 / (4 f1)),
+///
+/// l and its change over that window, root mean square. Within 15 % on the bandwidth of the exact
+/// kernel (docs/decisions/0010-diffuse-falloff.md).
+///
+/// Shapes   symmetric 2x2 along receiver.t1, t2.
+/// Frame    of the arriving light, z from the emitter.
 /// Errors   none; the emission cosine counts as at least 0.05.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> falloff_bandwidth(const Frame<T>& incoming,
@@ -75,8 +81,8 @@ template <std::floating_point T>
     const Eigen2<T> e = eigen(hessian);
     const T sin_sq = std::min(a1 * a1 + a2 * a2, T(1));
     const T high = std::max(std::max(peak * (1 - sin_sq / 2), -e.high), T(1.5) * (e.high - peak));
-    // The third derivative, twice across and once along, is 4n(n + 1) a and the Hessian's part
-    // times b.
+    // The third derivative, twice across and once along, is 4n(n + 1) a - 2n b along e, up to terms
+    // with the components of a and b across it.
     const T along_a = e.x * a1 + e.y * a2, along_b = e.x * b1 + e.y * b2;
     const T third = second * along_a - peak * along_b;
     const T across = std::max(peak, -e.low);
@@ -88,12 +94,15 @@ template <std::floating_point T>
 /// The angular window of diffuse reflection for light from an emitter, in place of `cosine_window`,
 /// which knows nothing but the direction of the light.
 ///
-/// Frames   incoming: of the arriving light; `light`: its angular covariance there, between
-/// `surface_enter` and the slice. The weight of a direction, (1 + u^2 + v^2)^-2, has the tails of
-/// `tailed_lobe`. A receiver of curvature k turns against the light by k s beside the s/D of the
-/// emitter; only the part of the parallax, (1 + |k| D)^-2, gets the falloff.
-/// Errors   none; cosines below 0.05 count as 0.05 where the light is distant, below 0.02
-/// elsewhere.
+/// The weight of a direction, (1 + u^2 + v^2)^-2, has the tails of `tailed_lobe`. Over a tangent
+/// displacement s the direction to an emitter at the distance D turns by s/D, the normal of a
+/// receiver of curvature k by k s; only the share (1 + |k| D)^-2 of the difference between the
+/// falloff and the cosine is added.
+///
+/// Frames   incoming: of the arriving light. light: its angular covariance in that frame, between
+///          `surface_enter` and the integral over directions.
+/// Errors   none; cosines below 0.05 count as 0.05 where the light is distant, elsewhere those
+///          below 0.02 as 0.02.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> diffuse_window(const Frame<T>& incoming,
                                      const Surface<NonDeduced<T>>& receiver,

@@ -7,7 +7,7 @@
 //
 // Plain loops, a few nanoseconds per pixel under a filter. The renderer beside this library has a
 // gather of its own (src/reconstruction/gather.h), since wide filters cost it more than paths do:
-// it reads them from a pyramid in the processor's vectors, the variance and both halves at once.
+// it reads them from a pyramid with SIMD instructions, the variance and both halves at once.
 // Allocates: one of the headers for whole images, see renderer.hpp.
 #pragma once
 
@@ -21,8 +21,8 @@ namespace covariance {
 
 namespace detail {
 
-/// The Gaussian mean around (x, y) with the covariance `s`, cut at three standard deviations, and
-/// the sum of its weights.
+/// Weighted sum of the colours around (x, y), by a Gaussian of the covariance `s` that is cut at
+/// three standard deviations, and the sum of the weights: their quotient is the mean.
 template <Vec3Like Color, std::floating_point T>
 std::pair<Vec3<double>, double> gaussian_mean(std::span<const Color> mean,
                                               std::span<const std::uint32_t> count,
@@ -55,11 +55,12 @@ std::pair<Vec3<double>, double> gaussian_mean(std::span<const Color> mean,
 
 /// Gathers an image by its filters.
 ///
-/// Shapes   mean, count: width * height, row by row; colours of any type with members x, y, z.
+/// Shapes   mean, count: width * height, row by row; colours of any type with members x, y, z
 ///          (`Vec3<float>` or your own).
 /// Errors   none. Pixels without samples (count 0) are left out, and so are means that are not
 ///          finite: a NaN of the renderer is hidden here, not reported. A pixel with nothing to
-///          gather from gets wider filters until it has.
+///          gather from gets filters four times as wide, up to five times over, until it has; one
+///          that still has nothing is black.
 template <Vec3Like Color, std::floating_point T>
 [[nodiscard]] std::vector<Vec3<T>> gather(std::span<const Color> mean,
                                           std::span<const std::uint32_t> count,

@@ -1,5 +1,6 @@
-// LightField: a covariance together with the frame it is expressed in. Every operator comes twice,
-// on the bare matrix and on this type; the second form keeps the frame right by itself.
+// LightField: a covariance together with the frame it is expressed in. Operators that take and give
+// this type keep the frame right by themselves; those that need no frame, or are given it, also
+// come on the bare matrix.
 #pragma once
 
 #include "covariance/frame.hpp"

@@ -1,7 +1,7 @@
 // Occluders beside a ray: a grid of cells that a renderer fills with its triangles and spheres, and
 // that is asked for the outlines near a segment. Cells only tell which shapes to look at; the place
-// of an outline follows from the shapes themselves. So no result has the grid's resolution but the
-// reach: one cell on either side of the ray.
+// of an outline follows from the shapes themselves. So the size of the cells decides only how far
+// from the ray outlines are found: one cell on either side.
 //
 //   OccluderGrid<double> grid;
 //   grid.add_triangle(a, b, c);  grid.add_sphere(center, radius, velocity);  ...
@@ -10,8 +10,8 @@
 //
 // The edge between two triangles that share both corners (to the last bit) is an outline only where
 // both lie on the same side of it as the light sees them; the border of an open mesh always is. A
-// crease, as where two walls meet, is one for the light that leaves a wall beside it, which ends
-// there and goes on with another brightness.
+// crease, as where two walls meet, is an outline for light that leaves one wall close to it: that
+// wall's light ends there, and the other wall's begins with another brightness.
 //
 // The renderer beside this library has its own search (src/occluders/query.h): a hierarchy of boxes
 // with cones of blind directions, for millions of edges, instances and holes of alpha textures,
@@ -33,7 +33,8 @@ namespace covariance {
 /// An outline beside a segment.
 template <std::floating_point T = double>
 struct Outline {
-    T ahead = 0;          ///< along the ray, from where the segment begins; below 0 a little behind
+    /// Scene units along the ray, from where the segment begins; below 0 for one a little behind.
+    T ahead = 0;
     Vec3<T> direction{};  ///< unit, across the ray, towards the outline
     T distance = 0;       ///< scene units, from the ray along `direction`
     Vec3<T> velocity{};   ///< scene units per second
@@ -43,7 +44,8 @@ struct Outline {
 template <std::floating_point T = double>
 class OccluderGrid {
   public:
-    /// `cells`: along the longest side of the scene. More of them look less far and cost less.
+    /// `cells`: their number along the longest side of the scene. With more of them a ray looks
+    /// less far to its sides, and is faster.
     explicit OccluderGrid(int cells = 24) : cells_(std::max(1, cells)) {}
 
     /// Adds a triangle that moves with `velocity` (of its middle: turning is not followed). Call
@@ -191,8 +193,8 @@ class OccluderGrid {
         return cell;
     }
 
-    /// Enters a shape into all cells whose middle its outline may pass within a cell's half
-    /// diagonal and the reach of one cell.
+    /// Enters a shape into all cells whose middle is at most 1.87 cells from its outline: the reach
+    /// of one cell and half a cell's diagonal.
     void enter(std::uint32_t shape, T earliest, T latest,
                std::vector<std::pair<std::uint32_t, std::uint32_t>>& entries) const {
         const bool is_edge = shape < edges_.size();
@@ -234,7 +236,7 @@ class OccluderGrid {
         }
     }
 
-    /// Whether two faces of these normals (of any length) meet at more than 25 degrees.
+    /// Whether the normals of two faces (of any length) differ by more than acos(0.9) = 26 degrees.
     static bool is_crease(const Vec3<T>& n0, const Vec3<T>& n1) noexcept {
         return dot(n0, n1) < T(0.9) * length(n0) * length(n1);
     }
@@ -262,8 +264,8 @@ class OccluderGrid {
         const T k = squared > 0 ? std::clamp(-dot(flat_a, flat) / squared, low, high) : low;
         const Vec3<T> offset = flat_a + k * flat;
         const T r = length(offset), ahead = at_a + k * slope;
-        // The border of the surface that light has just left lies beside its start, on one side
-        // behind it.
+        // The border of a surface that light has just left counts up to 2 r behind the start; a
+        // crease counts up to 2 r beyond the start, too, and no further.
         if (!(r > 0) || !(ahead > -2 * r) || (!is_outline && ahead > 2 * r)) return;
         visit(Outline<T>{ahead, offset / r, r, edge.velocity});
     }
@@ -296,7 +298,8 @@ class OccluderGrid {
     Vec3<T> low_, high_, corner_;
     T size_ = 1;
     std::array<int, 3> n_{};
-    std::vector<std::uint32_t> first_, shapes_;  ///< for every cell, the first of its shapes
+    /// Numbers of the shapes, cell by cell, and for every cell where its own begin in them.
+    std::vector<std::uint32_t> first_, shapes_;
 };
 
 }  // namespace covariance

@@ -1,14 +1,15 @@
 // Travel past occluders beside the way: among the outlines that an OccluderGrid finds near a
 // segment the few that matter where the light arrives, each added at its distance (occlusion.hpp).
 //
-// The weight of an outline: with the light's covariance M over (x, u) at the end of the segment, an
-// edge q w w^T with w = (1, -z) raises the Schur complement by q h / (Muu + q z^2), h = w^T adj(M)
-// w. Its inverse is the squared width of the shadow edge,
+// An outline matters by the width of the shadow edge that it makes at the end of the segment. With
+// the light's covariance M over (x, u) there (both axes added) and an edge q w w^T, w = (1, -z), q
+// = 1/(4 pi^2 beta^2 r^2), the Schur complement over x becomes (det M + q h) / (Muu + q z^2), h =
+// w^T adj(M) w. The edge's part of it, q h / (Muu + q z^2), is 1/(4 pi^2 width^2):
 //
 //   width^2 = (z^2/(4 pi^2 Muu) + beta^2 r^2) / (1 + 2 z Mxu/Muu + z^2 Mxx/Muu)
 //
 // with r the outline's distance from the ray and z its distance from the end. At a camera the width
-// is a slope, beside the circle of confusion of its lens.
+// is a slope, and the circle of confusion of the lens takes the place of the first term.
 #pragma once
 
 #include <array>
@@ -32,14 +33,15 @@ struct EdgeMeasure {
     }
 };
 
-/// Angular windows of receivers that light may meet at the end of a segment, 1/rad^2.
+/// Angular window of a diffuse receiver that light may meet at the end of a segment, 1/rad^2.
 template <std::floating_point T>
 inline constexpr T diffuse_receiver = 1 / (pi<T> * pi<T>);
 template <std::floating_point T>
-inline constexpr T mirror_receiver = T(1e6);  ///< of mirrors and clear glass
+inline constexpr T mirror_receiver = T(1e6);  ///< window of mirrors and clear glass, 1/rad^2
 
-/// The measure at a surface whose sharpest lobe has the angular covariance `window` (per axis, in
-/// outgoing slopes): `diffuse_receiver<T>`, `mirror_receiver<T>`, or that of a glossy lobe.
+/// The measure at a surface at the end of a segment of the length `whole`, for light that starts as
+/// `leaving`. `window`: angular covariance per axis of the surface's sharpest lobe, in outgoing
+/// slopes: `diffuse_receiver<T>`, `mirror_receiver<T>`, or that of a glossy lobe.
 template <std::floating_point T>
 [[nodiscard]] EdgeMeasure<T> edge_measure_at_surface(const SymmetricMatrix5<T>& leaving,
                                                      NonDeduced<T> whole,
@@ -49,7 +51,8 @@ template <std::floating_point T>
     return {0, 1 / (2 * pi<T> * std::sqrt(uu)), 1, 2 * xu / uu, xx / uu};
 }
 
-/// The measure at a camera.
+/// The measure at a camera: widths are slopes, (R/2)(1/z - 1/focus distance) for an edge on the
+/// ray.
 template <std::floating_point T>
 [[nodiscard]] EdgeMeasure<T> edge_measure_at_camera(const ThinLens<T>& camera) noexcept {
     return {camera.lens_radius / 2, -camera.lens_radius / (2 * camera.focus_distance), 0, 0, 1};
@@ -74,8 +77,9 @@ class NarrowestOutlines {
         }
     }
 
-    /// Writes the outlines that matter, from the beginning of the segment on: none four times as
-    /// wide as the narrowest, none that repeats the direction of a narrower one. Returns how many.
+    /// Writes the outlines that matter, from the beginning of the segment on: none of more than
+    /// four times the narrowest one's width, none that repeats the direction of a narrower one.
+    /// Returns how many.
     std::size_t sorted(std::array<Outline<T>, 4>& result) noexcept {
         std::array<std::size_t, 4> order{0, 1, 2, 3};
         std::sort(order.begin(), order.end(),
@@ -107,9 +111,9 @@ class NarrowestOutlines {
 
 /// Carries light from `from` to `to`, past the outlines that matter by `measure`.
 ///
-/// Pre      field.frame.z is the direction from `from` to `to`; both are finite: light from
-/// infinity
-///          starts at `grid.entry(to, towards the light)`. The way is free of occluders.
+/// Pre      field.frame.z is the direction from `from` to `to`. Both are finite: light from
+///          infinity starts at `grid.entry(to, towards the light)`. The way itself is free of
+///          occluders.
 /// Units    scene units; time in seconds, 0 where the shapes stand as they were added.
 template <std::floating_point T>
 [[nodiscard]] LightField<T> travel_past(const OccluderGrid<T>& grid, const LightField<T>& field,
