@@ -13,7 +13,8 @@
 /// Unlike pbrt's, the hash has the place on the surface, too: where parallel light meets a plane in
 /// an orthographic view all samples have the same directions, and would all have one walk's error.
 /// At each reflection by the metal both directions through the coat are connected: wi's refracted
-/// one, and the one in which the metal reflects, by multiple importance sampling (Veach 1997).
+/// one, and the one in which the metal reflects, by multiple importance sampling (Veach 1997,
+/// "Robust Monte Carlo methods for light transport simulation", chapter 9).
 ///
 /// A smooth coat over a smooth metal is a mirror: the series is summed.
 #include <array>
@@ -44,12 +45,12 @@ float power_heuristic(float a, float b) {
     return sqr(a) / (sqr(a) + sqr(b));
 }
 
-/// A direction through or off the coat that was sampled without the choice between the two. The
-/// weight holds Fresnel's share; for refraction it has no factor 1 / eta^2.
+/// A direction through the coat, or off its inside: which of the two was decided before, so that
+/// the weight holds Fresnel's share. For refraction it has no factor 1 / eta^2.
 struct Crossing {
     Vec3 w;
     float weight = 0;
-    float pdf = 0;  ///< density of refraction through a rough coat
+    float pdf = 0;  ///< density of refraction through a rough coat, else 1
 };
 
 Ggx coat_ggx(const CoatedConductorBsdf& b) {
@@ -88,8 +89,8 @@ float enter_pdf(const CoatedConductorBsdf& b, Vec3 w, Vec3 in) {
     return coat_ggx(b).visible_normal_pdf(w, m) * sqr(eta) * std::abs(dot(in, m)) / length2;
 }
 
-/// Samples a reflection off the coat's inside, from w (z < 0, towards where the light is followed
-/// to) to another direction with z < 0.
+/// Samples a reflection off the coat's inside. `w` (z < 0) points back to where the walk came from;
+/// the result, with z < 0 too, is the direction in which the walk goes on.
 std::optional<Crossing> reflect_inside(const CoatedConductorBsdf& b, Vec3 w, Vec2 u) {
     w = mirror_z(w);
     const float eta = 1 / b.coat.eta;
@@ -217,8 +218,8 @@ float pdf(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi) {
         is_smooth(b) ? 0 : coat_ggx(b).reflection_pdf(wo, normalize(wo + wi)) * o.reflectance;
     if (o.cos_t == 0 || i.cos_t == 0) return coat;
     const Vec3 in_o{wo.x / eta, wo.y / eta, o.cos_t}, in_i{wi.x / eta, wi.y / eta, i.cos_t};
-    // Solid angles outside are eta^2 cos_t / cos times as large. A tenth of the density is for
-    // light that goes to and fro.
+    // Solid angles outside are eta^2 cos_t / cos times as large. A tenth of what enters gets the
+    // density of a cosine, for light that goes to and fro.
     const float once = pdf(effective_metal(b), in_o, in_i) * wi.z / (sqr(eta) * i.cos_t);
     return coat + (1 - o.reflectance) * (0.9f * once + 0.1f * cosine_hemisphere_pdf(wi.z));
 }
@@ -261,7 +262,8 @@ std::optional<BsdfSample> sample(const CoatedConductorBsdf& b, Vec3 wo, float u_
     return {};
 }
 
-// The parts are computed anew, not from the value, which a random walk may have found.
+// The parts are computed anew, not from the value that the caller gives, which may be the random
+// weight of `sample` times its density.
 LobeShares lobe_shares(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi, Rgb) {
     if (!same_side(wo, wi) || is_specular(b)) return {};
     wo = to_upper_side(wo);

@@ -99,11 +99,12 @@ inline constexpr T min_window_cosine = T(0.05);
 /// with a in the plane of incidence and b across it.
 ///
 /// At normal incidence the weight is (1 + u^2 + v^2)^-2, whose covariance is exactly 1/pi^2 per
-/// axis. At an angle the horizon is treated as an edge at the slope distance cot theta_i. Frame the
-/// incoming one; to be added between `surface_enter` and the slice, not elsewhere: it
-///          does not commute with curvature.
+/// axis. At an angle the horizon is treated as an edge at the slope distance cot theta_i. It does
+/// not commute with curvature: add it between `surface_enter` and the integral over directions, not
+/// elsewhere.
+///
+/// Frame    of the arriving light; n: the normal along its X, Y, Z.
 /// Errors   none; cosines below 0.05 count as 0.05.
-/// `n`: the normal along X, Y, Z of that frame.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> cosine_window(const Vec3<T>& n) noexcept {
     const T c = std::max(std::abs(n.z), min_window_cosine<T>);

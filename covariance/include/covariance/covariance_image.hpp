@@ -13,8 +13,8 @@
 namespace covariance {
 
 /// Radiance-weighted mean covariances over (pixel x, pixel y, lens, lens, shutter), row by row.
-/// Weight 0: no path of the pixel found light, and the covariance is zero. An image of 0x0 pixels
-/// stands for a part of the light that there is not.
+/// Weight 0: no path of the pixel found light, and the covariance is zero. Where a scene lacks one
+/// of the parts of light (in view, or scattered) an image of 0x0 pixels stands for it.
 template <std::floating_point T = float>
 struct CovarianceImage {
     CovarianceImage(int w, int h)
@@ -43,7 +43,7 @@ struct CovarianceImage {
     }
 };
 
-/// The covariances of all light, from those of its parts: images of one size, or of 0x0.
+/// The covariances of all light, from those of its two parts: images of one size, or of 0x0.
 template <std::floating_point T>
 [[nodiscard]] CovarianceImage<T> merge(const CovarianceImage<T>& a, const CovarianceImage<T>& b) {
     if (a.weight.empty() || b.weight.empty()) return a.weight.empty() ? b : a;
@@ -69,7 +69,8 @@ struct Prediction {
 
 namespace detail {
 
-/// Walks an image down and up, as a chamfer transform does: `relax(pixel, neighbour, is_diagonal)`.
+/// Passes over an image down and up, as a chamfer distance transform does (Borgefors 1986,
+/// "Distance transformations in digital images"), and calls `relax(pixel, neighbour, is_diagonal)`.
 template <typename Relax>
 void sweep_neighbours(int width, int height, const Relax& relax) {
     const auto visit = [&](int x, int y, int dx, int dy) {
@@ -107,8 +108,9 @@ void preintegrate_row(const CovarianceImage<T>& image, int y, Prediction<T>& res
     }
 }
 
-/// For every pixel the index of a nearest pixel with a weight; its own where no pixel has one.
-/// Takes time in proportion to the pixels, whatever the holes: by steps of length 5 and 7.
+/// For every pixel the index of a nearest pixel with a weight; its own where no pixel has one. The
+/// distance is that of steps to neighbours, 5 long along an axis and 7 diagonally, so that the time
+/// is in proportion to the pixels however large the holes.
 template <std::floating_point T>
 std::vector<std::size_t> nearest_with_weight(std::span<const T> weight, int width, int height) {
     constexpr int far = std::numeric_limits<int>::max() / 2;
@@ -118,8 +120,8 @@ std::vector<std::size_t> nearest_with_weight(std::span<const T> weight, int widt
         nearest[i] = i;
         if (weight[i] > 0) distance[i] = 0;
     }
-    // The first pass leaves pixels that it cannot reach at "far" with their own index; the second
-    // reaches them.
+    // Pixels that the pass down cannot reach keep the distance "far" and their own index; the pass
+    // up reaches them.
     detail::sweep_neighbours(width, height, [&](std::size_t i, std::size_t j, bool diagonal) {
         const int step = diagonal ? 7 : 5;
         if (distance[j] + step >= distance[i]) return;

@@ -22,10 +22,11 @@ struct Frame {
     friend constexpr bool operator==(const Frame&, const Frame&) noexcept = default;
 };
 
-/// Some right-handed frame with the given unit direction as Z.
+/// Some right-handed frame with the given unit direction as Z (Duff et al. 2017, "Building an
+/// orthonormal basis, revisited").
 template <std::floating_point T = double>
 [[nodiscard]] Frame<T> frame_along(const Vec3<NonDeduced<T>>& z) noexcept {
-    // The pole is chosen away from z, which avoids the smaller of two denominators.
+    // The sign of z.z gives the denominator sign + z.z a size of at least 1.
     const T sign = std::copysign(T(1), z.z);
     const T a = -1 / (sign + z.z);
     const T b = z.x * z.y * a;
@@ -42,7 +43,8 @@ template <std::floating_point T>
 
 /// The frame turned by the smallest rotation that brings its Z to the unit vector `z`.
 ///
-/// The natural frame after a refraction: an axis orthogonal to the plane of incidence stays.
+/// This is the natural frame after a refraction: an axis orthogonal to the plane of incidence
+/// stays.
 template <std::floating_point T>
 [[nodiscard]] Frame<T> turned_to(const Frame<T>& f, const Vec3<NonDeduced<T>>& z) noexcept {
     return {rotate_between<T>(f.z, z, f.x), rotate_between<T>(f.z, z, f.y), z};

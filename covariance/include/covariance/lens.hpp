@@ -208,9 +208,11 @@ template <std::floating_point T, typename Camera>
 /// Applies a thin lens of focal length f in the plane of the light field, axis along Z: u_old = u +
 /// x/f.
 ///
-/// For cameras that trace through their lens, with `travel` before and behind it.
-/// Travel d and then the lens gives the diagonal (1 - d/f, 1 - d/f, 1, 1, 1) of the official
-/// erratum to Belcour et al. 2013, table II(g). Units    f in scene units, positive converges.
+/// For cameras that trace through their lens, with `travel` before and behind it. Travel d and then
+/// the lens gives the diagonal (1 - d/f, 1 - d/f, 1, 1, 1) of the official erratum to table II(g)
+/// of Belcour et al. 2013, "5D Covariance Tracing for Efficient Defocus and Motion Blur".
+///
+/// Units    f in scene units, positive converges.
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> lens(SymmetricMatrix5<T> s,
                                                  NonDeduced<T> focal_length) noexcept {

@@ -4,10 +4,11 @@
 //
 //   w w^T / (4 pi^2 beta^2 r^2),    w = (d_x, d_y, 0, 0, -d.v),    beta = 1/2
 //
-// That occlusion adds is stated in Belcour et al. 2013; the rule for r is this library's: the
-// filter that matches the result has the standard deviation beta r and stays clear of the edge.
-// Use: travel to the occluder, occlude, travel on. A thick occluder is several of these, but an
-// edge that crosses many cells of a grid must be added once, not once per cell.
+// That occlusion adds is stated in Belcour et al. 2013, "5D Covariance Tracing for Efficient
+// Defocus and Motion Blur"; the rule for r is this library's: the filter that matches the result
+// has the standard deviation beta r and stays clear of the edge. Use: travel to the occluder,
+// occlude, travel on. A thick occluder is several of these, but an edge that crosses many cells of
+// a grid must be added once, not once per cell.
 #pragma once
 
 #include "covariance/texture.hpp"
@@ -45,8 +46,9 @@ template <std::floating_point T>
 ///
 /// Shapes   offset: world vector from a point of the ray to the edge (its part along Z is ignored);
 ///          velocity: of the edge, in world space.
-/// Units    scene units; distances below distance_min (above 0; half a voxel) count as
-/// distance_min. Errors   none. An offset without direction adds the same in all directions.
+/// Units    scene units; distances below distance_min, which is above 0 (in a grid half a voxel),
+///          count as distance_min.
+/// Errors   none. An offset without direction adds the same in all directions.
 template <std::floating_point T>
 [[nodiscard]] LightField<T> occlude(const LightField<T>& field, const Vec3<NonDeduced<T>>& offset,
                                     NonDeduced<T> distance_min,
@@ -83,7 +85,7 @@ template <std::floating_point T>
 /// Widest extent, as a standard deviation in scene units, of the local light field across the ray:
 /// 1/(2 pi sqrt(lambda_min)) of the spatial block; infinite where nothing limits it.
 ///
-/// Occluders farther away than a few of these do not matter; `limit_curvature` asks for it too.
+/// Occluders farther away than a few such radii do not matter; `limit_curvature` takes one too.
 template <std::floating_point T>
 [[nodiscard]] T footprint_radius(const SymmetricMatrix5<T>& s) noexcept {
     const T low = eigen(s.spatial()).low;

@@ -3,7 +3,8 @@
 //   Sigma = Int W W^T |Lhat(W)| dW / Int |Lhat(W)| dW      over W = (x, y, u, v, t)
 //
 // the second moment of the amplitude spectrum of the local light field, in ordinary frequencies
-// (cycles per unit): Sxx in 1/m^2, Sxu in 1/(m rad), Stt in 1/s^2. Definition: Belcour et al. 2013.
+// (cycles per unit): Sxx in 1/m^2, Sxu in 1/(m rad), Stt in 1/s^2; m stands for the scene unit.
+// Defined by Belcour et al. 2013, "5D Covariance Tracing for Efficient Defocus and Motion Blur".
 #pragma once
 
 #include <array>
@@ -97,7 +98,7 @@ template <std::floating_point T>
     return s(0, 0) + s(1, 1) + s(2, 2) + s(3, 3) + s(4, 4);
 }
 
-/// Whether every entry is a finite number. Give a path whose matrix is not the weight 0.
+/// Whether every entry is a finite number. A path whose matrix is not finite has to be left out.
 template <std::floating_point T>
 [[nodiscard]] bool is_finite(const SymmetricMatrix5<T>& s) noexcept {
     // A product with 0 is not a number where a value is not finite.

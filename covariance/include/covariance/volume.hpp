@@ -1,6 +1,6 @@
 // Participating media: absorption along a ray and scattering at a point of a volume. Derived in
-// RULES.md. Belcour, Bala and Soler 2014, "A local frequency analysis of light scattering and
-// absorption", have operators for the power spectrum; these are for amplitude.
+// covariance/RULES.md, section 6. Belcour, Bala and Soler 2014, "A local frequency analysis of
+// light scattering and absorption", have operators for the power spectrum; these are for amplitude.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ template <std::floating_point T>
 using DepthGradient = std::array<T, 5>;
 
 /// Multiplies the light by exp(-tau) where the optical depth tau changes over the neighbours: Sigma
-/// += g g^T/(4 pi^2), g = grad tau. This is the scale on which the light changes, as for lobes.
+/// += g g^T/(4 pi^2), g = grad tau, as for a signal that changes by its own size over 1/|g|.
 ///
 /// A depth that is the same for all neighbours changes nothing: absorption alone has no frequency.
 template <std::floating_point T>
@@ -49,8 +49,9 @@ template <std::floating_point T>
             -distance * in_y, 0};
 }
 
-/// Phase function of Henyey and Greenstein without its factor (1 - g^2)/(4 pi), for any scalar
-/// type: (1 + g^2 - 2 g mu)^(-3/2), mu the cosine of the deflection.
+/// Phase function of Henyey and Greenstein 1941, "Diffuse radiation in the galaxy", without its
+/// factor (1 - g^2)/(4 pi), for any scalar type: (1 + g^2 - 2 g mu)^(-3/2), mu the cosine of the
+/// deflection.
 template <std::floating_point T, typename S>
 [[nodiscard]] S henyey_greenstein(const S& mu, T g) noexcept {
     using std::pow;
@@ -68,12 +69,15 @@ template <std::floating_point T>
 /// Scatters light at a point of a volume, by a phase function p(mu) given for jets.
 ///
 /// Positions: a neighbour of the leaving ray starts at x X_o + y Y_o, which the arriving light
-/// crosses at P (x, y), P = [X_i.X_o X_i.Y_o; Y_i.X_o Y_i.Y_o]: no detail along the way the light
-/// came. Slopes: convolution with the local lobe of p, in the frame turned with the ray (for
-/// backward lobes mirrored), the axes in which p depends on the difference of the slopes.
-/// Neither enter nor exit: both sides are ray coordinates.
-/// Shapes   peak: covariance at the peak of p, for instance `henyey_greenstein_peak(g)`.
-/// Units    in 1/rad^2. Errors: none; |mu| of the frame's plane may be 0.
+/// crosses at P (x, y), P = [X_i.X_o X_i.Y_o; Y_i.X_o Y_i.Y_o]; along the arriving ray nothing
+/// changes. Slopes: convolution with the local lobe of p, in the frame turned with the ray (for
+/// backward lobes mirrored), the axes in which p depends on the difference of the slopes. No
+/// `surface_enter` and `surface_exit` belong to it: both sides are ray coordinates.
+///
+/// Shapes   peak: covariance at the peak of p, for instance `henyey_greenstein_peak(g)`; backward:
+///          whether p has its peak where light turns back.
+/// Units    peak in 1/rad^2.
+/// Errors   none; P may be singular, which it is for a deflection by 90 degrees.
 template <std::floating_point T, typename F>
 [[nodiscard]] LightField<T> scatter_in_volume(const LightField<T>& field,
                                               const Vec3<NonDeduced<T>>& outgoing, const F& phase,
