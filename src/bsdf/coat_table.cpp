@@ -45,8 +45,8 @@ struct Quadrature {
     }
 };
 
-/// Nodes over the square of the visible normals, by azimuth and polar angle; azimuths cover one
-/// half, as the plane of incidence is a mirror.
+/// Numbers of nodes, by azimuth and polar angle, on the unit square that visible normals are
+/// sampled from. Azimuths cover one half of it, as both sides of the plane of incidence are alike.
 constexpr int kAzimuths = 12, kPolar = 16;
 
 InterfaceShares rough_shares(const Interface& side, float alpha, float cos_o) {
@@ -112,7 +112,8 @@ CoatTable::CoatTable(float eta, float thickness) : eta_(eta), thickness_(thickne
             const InterfaceShares s = interface_shares(outside, alpha, x * x);
             nodes[i + 1] = {s.transmitted, s.reflected};
         }
-        // Both shares are even in sqrt(cos), and go on linearly past the normal.
+        // Beyond the table both shares are taken as even functions of sqrt(cos) at grazing angles,
+        // and as linear ones past the normal.
         nodes[0] = nodes[2];
         const Shares &last = nodes[kNodes], &before = nodes[kNodes - 1];
         nodes[kNodes + 1] = {2 * last.transmission - before.transmission,
@@ -122,7 +123,7 @@ CoatTable::CoatTable(float eta, float thickness) : eta_(eta), thickness_(thickne
                    interface_shares(inside, alpha, cos_theta).reflected;
         });
     }
-    // The rows must all be there, as a lookup between rows reads the next one too.
+    // The means come after all rows, as a lookup between rows reads the next row too.
     for (int row = 0; row < kRows; ++row) {
         mean_transmission_[row] = cosine_weighted_mean(outside_kink, [&](float cos_theta) {
             return row == 0 ? interface_shares(outside, 0, cos_theta).transmitted
@@ -144,6 +145,7 @@ const CoatTable& CoatTables::get(float eta, float thickness) {
 
 namespace {
 
+/// The coat's part of the model; the base is still missing.
 CoatedDiffuseBsdf coat_alone(const CoatTable& table, float alpha_x, float alpha_y) {
     CoatedDiffuseBsdf b;
     b.eta = table.eta();

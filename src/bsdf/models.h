@@ -1,7 +1,8 @@
 /// The models behind bsdf.h, one overload set each; bsdf.cpp chooses among them.
 ///
 /// Functions behave as described in bsdf.h. All models but the dielectric look the same from both
-/// sides.
+/// sides. The thin dielectric and the interface are specular and have only `sample` here; their
+/// other overloads, constants all of them, are in bsdf.cpp.
 #pragma once
 
 #include "bsdf/bsdf.h"
@@ -20,8 +21,8 @@ std::optional<BsdfSample> sample(const ConductorBsdf& b, Vec3 wo, float u_lobe, 
 LobeShares lobe_shares(const ConductorBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
 Rgb albedo(const ConductorBsdf& b, Vec3 wo);
 
-/// Value of a dielectric. Transmission carries the radiance factor 1 / eta^2: paths start at the
-/// camera.
+/// Value of a dielectric. Refraction carries the factor 1 / eta^2 by which radiance changes (eta:
+/// index on wi's side over that on wo's side), since paths start at the camera.
 Rgb eval(const DielectricBsdf& b, Vec3 wo, Vec3 wi);
 float pdf(const DielectricBsdf& b, Vec3 wo, Vec3 wi);
 std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
@@ -58,7 +59,7 @@ inline bool same_side(Vec3 wo, Vec3 wi) {
 inline Vec3 mirror_z(Vec3 w) {
     return {w.x, w.y, -w.z};
 }
-/// A cosine-distributed direction on the side of wo, or on the other one.
+/// A cosine-distributed direction on the side of wo, with `transmit` on the other side.
 Vec3 sample_cosine(Vec3 wo, bool transmit, Vec2 u);
 
 }  // namespace covtrace

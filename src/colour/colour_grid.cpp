@@ -43,8 +43,8 @@ ColourCell colour_cell(Rgb colour) {
         rest[i] = x - static_cast<float>(corner);
         node += static_cast<size_t>(corner) * kStrides[i];
     }
-    // Walk from the cell's first corner to its last, one channel after the other, the largest rest
-    // first.
+    // Walk along the corners of the tetrahedron that holds the colour: from the cell's first corner
+    // to its last, one channel after the other, the one with the largest rest first.
     std::array<size_t, 3> order{0, 1, 2};
     if (rest[order[0]] < rest[order[1]]) std::swap(order[0], order[1]);
     if (rest[order[1]] < rest[order[2]]) std::swap(order[1], order[2]);

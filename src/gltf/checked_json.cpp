@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Deepest nesting of values, because the library reads them recursively.
+/// Deepest nesting of values that is let through, because tinygltf reads them recursively.
 constexpr int kMostLevels = 128;
 
 SourceLocation location(std::string_view text, size_t byte, const std::string& name) {
@@ -26,7 +26,8 @@ SourceLocation location(std::string_view text, size_t byte, const std::string& n
             static_cast<int>(column) + 1};
 }
 
-/// The reason in the parser's message, without the position in front of it, in ASCII.
+/// The reason in the parser's message, without the position in front of it: ASCII, and at most 200
+/// characters.
 std::string reason(const std::string& what) {
     const size_t start = what.find(": ", what.find("column"));
     std::string text = start == std::string::npos ? what : what.substr(start + 2);
@@ -37,8 +38,8 @@ std::string reason(const std::string& what) {
 }
 
 /// The depth to which brackets outside of strings nest. It is measured before the parser sees the
-/// text: the parser's own callback would make objects of many values take the square of their
-/// number.
+/// text: the parser's own callback could stop it too, but then an object of n values takes a time
+/// in proportion to n^2.
 int deepest_level(std::string_view text) {
     int level = 0, deepest = 0;
     bool in_string = false;
@@ -66,7 +67,7 @@ json parse(std::string_view text, const std::string& name) {
         const size_t byte = e.byte > 0 ? e.byte - 1 : 0;
         throw Error(ErrorKind::scene, location(text, byte, name),
                     "this is no JSON: " + reason(e.what()));
-    } catch (const json::exception& e) {  // numbers beyond all bounds
+    } catch (const json::exception& e) {  // a number beyond the range of double
         throw Error(ErrorKind::scene, name + ": this is no JSON: " + reason(e.what()));
     }
 }
@@ -84,8 +85,8 @@ const json* element(const json& root, const char* list, std::optional<uint64_t> 
     return e.is_object() ? &e : nullptr;
 }
 
-/// Checks where embedded images lie: the library takes the address of one before anyone else can
-/// check it.
+/// Checks that embedded images lie inside their buffers: tinygltf takes the address of an image
+/// while it loads the file, before anyone else can check it.
 void check_embedded_images(const json& root, const std::string& name) {
     const auto images = root.find("images");
     if (images == root.end() || !images->is_array()) return;

@@ -23,7 +23,7 @@ struct NormalTensor {
 struct Voxel {
     NormalTensor normals;
     Vec3 centroid;
-    Vec3 velocity;  ///< of the material, scene units per unit of time
+    Vec3 velocity;  ///< of the surface, scene units per unit of the scene's time
     float area = 0;
 };
 
@@ -32,10 +32,10 @@ struct VoxelGridOptions {
     int shutter_samples =
         1;  ///< times, spread over the shutter, at which moving shapes are entered
     /// Box that the voxels divide; surfaces outside of it are ignored. Empty: Geometry::bounds(),
-    /// or without a few far corners beside which all the rest would lie in one voxel.
+    /// or a smaller box where a few far corners would leave all the rest in one voxel.
     Bounds3 box{};
-    /// Tells whether to stop; asked from all threads. Once it says yes the grid ends up empty,
-    /// soon.
+    /// Tells whether to stop; asked from all threads. Once it says yes the constructor soon
+    /// returns, and the grid is empty.
     std::function<bool()> cancelled{};
 };
 
@@ -59,7 +59,7 @@ class VoxelGrid {
     friend class VoxelWalk;
     friend class VoxelGridBuilder;
 
-    static constexpr int kReach = 4;  ///< voxels, the furthest that within[] looks
+    static constexpr int kReach = 4;  ///< voxels, the largest distance of Brick::within
 
     /// A bit for each voxel of a brick: bit y * 8 + x of word z stands for voxel (x, y, z).
     using Bits = std::array<uint64_t, 8>;
@@ -122,9 +122,10 @@ class VoxelMarch {
     /// Prepares a march from `from` to `to`; it looks only at the part between the distances
     /// `begin` and `end` from `from`.
     VoxelMarch(const VoxelGrid& grid, Vec3 from, Vec3 to, float begin = 0, float end = kInfinity);
-    /// The next occluder whose centroid is within `radius` of the ray, at most 3 voxels; false at
-    /// the end. Per 3 voxels of the way it gives the nearest one only: an edge that runs along the
-    /// ray would be counted many times otherwise. `radius` may change from call to call.
+    /// The next occluder whose centroid is within `radius` of the ray (a radius above 3 voxels
+    /// counts as 3); false at the end. Per 3 voxels of the way it gives the nearest one only: an
+    /// edge that runs along the ray would be counted many times otherwise. `radius` may change from
+    /// call to call.
     bool next(float radius, OccluderEvent& event);
 
   private:

@@ -111,8 +111,8 @@ class HeaderParser {
 
     void add_element(const std::vector<std::string_view>& w) {
         PlyElement e;
-        // The count is read to its end even beyond 64 bits: only from_chars' error tells such a
-        // number from 0.
+        // A count beyond 64 bits is also read to its end and leaves 0: only the error of from_chars
+        // tells it from a count of 0.
         const std::string_view count = w.size() == 3 ? w[2] : std::string_view{};
         const char* end = count.data() + count.size();
         const auto [rest, error] = std::from_chars(count.data(), end, e.count);
@@ -160,8 +160,8 @@ size_t size_of(PlyNumber type) {
 }
 
 uint64_t PlyElement::smallest_size(bool ascii) const {
-    // A number in ascii takes at least a digit and a blank; the last number of the file may end
-    // with it.
+    // A number in ascii takes at least a digit and a blank. The file's last number may lack the
+    // blank, for which callers allow one character.
     uint64_t sum = 0;
     for (const PlyProperty& p : properties)
         sum += ascii ? 2 : size_of(p.is_list ? p.count_type : p.type);

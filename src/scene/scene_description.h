@@ -30,8 +30,8 @@ struct TextureMapping {
     enum class Kind { uv, spherical, cylindrical, planar };
     Kind kind = Kind::uv;
     float scale_u = 1, scale_v = 1, delta_u = 0, delta_v = 0;
-    float u_per_v = 0, v_per_u = 0;  ///< uv only: the off-diagonal, which rotates
-    Vec3 v1{1, 0, 0}, v2{0, 1, 0};   ///< planar only
+    float u_per_v = 0, v_per_u = 0;  ///< uv only: how s changes with v, and t with u (a rotation)
+    Vec3 v1{1, 0, 0}, v2{0, 1, 0};   ///< planar only: (s, t) = (v1.p, v2.p) + delta at p
     Transform texture_from_world;    ///< all but uv
 };
 
@@ -73,17 +73,19 @@ struct ScaleTexture {
 struct MixTexture {
     TextureId tex1 = -1, tex2 = -1, amount = -1;  ///< (1 - amount) tex1 + amount tex2
 };
-/// A value of 1 where the surface stands along the direction, 0 where it faces it or turns its
-/// back: 1 - |n.direction| of its unit normal. The amount of pbrt's "directionmix".
+/// A value that is 1 - |n.direction| with the surface's unit normal n: 0 where the surface faces
+/// along the direction or against it, 1 where it stands edge-on. The amount of pbrt's
+/// "directionmix".
 struct AsideTexture {
     Vec3 direction;  ///< unit, world space
 };
-/// Dots in some of the cells of (s, t).
+/// Round dots of one texture on another, in randomly chosen unit cells of (s, t).
 struct DotsTexture {
     TextureMapping mapping;
     TextureId inside = -1, outside = -1;
 };
-/// Values at the corners (s, t) of the unit square, bilinear between and beyond them.
+/// Values at the corners (s, t) of the unit square (v01 at s = 0, t = 1), bilinear between and
+/// beyond them.
 struct BilerpTexture {
     TextureMapping mapping;
     Rgb v00, v01, v10, v11;
@@ -95,7 +97,7 @@ struct NoiseTexture {
     Transform texture_from_world;
     int octaves = 8;
     float omega = 0.5f;                 ///< pbrt's "roughness"
-    float scale = 1, variation = 0.2f;  ///< of marble
+    float scale = 1, variation = 0.2f;  ///< marble only
 };
 struct TextureDescription {
     std::string name;  ///< empty for values given inline
@@ -127,10 +129,10 @@ struct DielectricMaterial {
 /// A diffuse base under a dielectric coat, a thin gap between them.
 struct CoatedDiffuseMaterial {
     TextureId reflectance = -1;
-    TextureId u_roughness = -1, v_roughness = -1;
-    TextureId thickness = -1;
-    TextureId g = -1, albedo = -1;
-    float eta = 1.5f;
+    TextureId u_roughness = -1, v_roughness = -1;  ///< of the coat
+    TextureId thickness = -1;                      ///< of the gap, in optical depths
+    TextureId g = -1, albedo = -1;  ///< of the medium in the gap, which is rendered clear
+    float eta = 1.5f;               ///< of the coat
     bool remap_roughness = true;
     int max_depth = 10, samples = 1;
     /// Whether `reflectance` is the share that leaves of all light that the coat doesn't reflect:
@@ -146,9 +148,9 @@ struct DiffuseTransmissionMaterial {
 struct CoatedConductorMaterial {
     ConductorMaterial conductor;  ///< indices relative to vacuum, as if there were no coat
     TextureId u_roughness = -1, v_roughness = -1;  ///< of the coat
-    TextureId thickness = -1;
-    TextureId g = -1, albedo = -1;
-    float eta = 1.5f;  ///< of the coat
+    TextureId thickness = -1;                      ///< of the gap, in optical depths
+    TextureId g = -1, albedo = -1;  ///< of the medium in the gap, which is rendered clear
+    float eta = 1.5f;               ///< of the coat
     bool remap_roughness = true;
     int max_depth = 10, samples = 1;
 };
@@ -232,12 +234,12 @@ struct ShapeDescription {
     bool reverse_orientation = false;
     MaterialId material = -1;
     int area_light = -1;  ///< index into SceneDescription::area_lights
-    /// Number of the directive: shapes with the same one have the power of its area light together;
-    /// -1: the shape has it alone.
+    /// Number of the file's directive that made the shape: shapes with the same number share the
+    /// power of their area light. -1: the shape has it alone.
     int directive = -1;
-    /// Opacity. Constant 0 on a light that is not seen but lights the scene; other shapes never
-    /// have that.
-    TextureId alpha = -1;  ///< opacity, in [0, 1]
+    /// Opacity, in [0, 1]. A constant 0 stands for a light that lights the scene but is not seen;
+    /// shapes without light never have it.
+    TextureId alpha = -1;
     MediumId inside = -1, outside = -1;
     SourceLocation where;
 };
@@ -334,7 +336,7 @@ struct FilmDescription {
     float iso = 100;
     /// Matrix from linear Rec.709 to linear Rec.709 as the sensor's white balance shows it.
     std::array<std::array<float, 3>, 3> white_balance{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    float max_component_value = kInfinity;
+    float max_component_value = kInfinity;  ///< largest value of a sample's channels
     SourceLocation where;
 };
 

@@ -19,7 +19,8 @@ template <typename Densities>
 concept DensityRange = std::ranges::contiguous_range<Densities> &&
     std::floating_point<std::ranges::range_value_t<Densities>>;
 
-/// Rules for a pixel's density of samples, from its spectrum S2D and N_int.
+/// Rules for a pixel's density of samples, from the two members of its `Prediction`: the spectrum
+/// S2D and the count N_int.
 enum class DensityRule {
     tempered,  ///< n ~ sqrt( sqrt(det S2D) min(N_int, 4) ), a tenth of it shared out evenly
     thesis     ///< Belcour 2012, equation 5.3 as a Schur complement: n ~ sqrt(det S2D) N_int
@@ -117,7 +118,8 @@ double level_of(std::size_t n, std::int64_t total, const Wanted& wanted, double 
     return hi;
 }
 
-/// Whole counts near `wanted(i, level)`; fractions are carried along from pixel to pixel.
+/// Whole counts near `wanted(i, level)`, with the same sum but for rounding: fractions are carried
+/// along from pixel to pixel.
 template <typename Wanted>
 std::vector<std::uint32_t> counts_of(std::size_t n, const Wanted& wanted, double level) {
     constexpr int fraction_bits = 20;
@@ -167,7 +169,8 @@ auto multiple_below(const Densities& density, std::span<const std::uint32_t> at_
 
 }  // namespace detail
 
-/// Counts as near to one multiple of the density as `most(i)`, never below `at_least`, allows.
+/// Sample counts with the given total, as near to one multiple of the density as the limits of each
+/// pixel allow: at least `at_least`, at most `most(i)`, of which the former prevails.
 template <std::floating_point T, typename Most>
 [[nodiscard]] std::vector<std::uint32_t> counts_by_density(std::span<const T> density,
                                                            std::int64_t total,

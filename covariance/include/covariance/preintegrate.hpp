@@ -1,12 +1,12 @@
 // From the five axes of the sensor to the two of the image: integration over lens and shutter.
 //
-//   B = Sigma + W,    Sigma_2D = B_ss - B_sr B_rr^-1 B_rs,    s = (pixel x, y), r = (lens 1, 2,
-//   shutter)
+//   B = Sigma + W,    Sigma_2D = B_ss - B_sr B_rr^-1 B_rs
 //
-// A window multiplies, so its covariance adds; integrating slices the spectrum at zero, which for a
-// Gaussian is the Schur complement. (Equation 5.3 of Belcour 2012, "A Frequency Analysis of Light
-// Transport: From Theory to Implementation", must be read so.) It is not the block B_ss: that is
-// the image of a pinhole camera at one instant.
+// with s the axes pixel x and y, r the axes lens 1, lens 2 and shutter, and W the covariance of the
+// window that lens and shutter are. A window multiplies, so its covariance adds; integrating slices
+// the spectrum at zero, which for a Gaussian is the Schur complement. (Equation 5.3 of Belcour
+// 2012, "A Frequency Analysis of Light Transport: From Theory to Implementation", must be read so.)
+// It is not the block B_ss: that is the image of a pinhole camera at one instant.
 #pragma once
 
 #include <cmath>
@@ -95,7 +95,7 @@ template <std::floating_point T>
 /// Integrates over lens and shutter: the Schur complement of Sigma + W, a 2x2 in (cycles/pixel)^2.
 ///
 /// Shapes   s, window: sensor coordinates, `sensor_window()`.
-/// Post     positive semi-definite, and at most `project2(s)`.
+/// Post     positive semi-definite, and in no direction above `project2(s)`.
 /// Errors   none; a zero window is allowed and means an infinite, uniform one.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> preintegrate(

@@ -45,7 +45,8 @@ template <std::floating_point T>
 
 /// The pair of directions of a refraction by a rough surface: the map about the microfacet that
 /// refracts one direction into the other, h along n1 Zi - n2 Zo, and the lobe (n2/Gamma)^2 P_h Cm
-/// P_h^T.
+/// P_h^T. Gamma = n2 |h.Zo| - n1 |h.Zi| says how much the microfacet bends the light, P_h projects
+/// its tangent plane onto the leaving frame, and Cm is `micro`.
 ///
 /// Shapes   micro: slope covariance in surface.t1, t2.
 /// Units    refractive indices n1 on the side of the arriving light, n2 of the leaving light.

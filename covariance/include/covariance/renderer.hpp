@@ -1,8 +1,8 @@
 // Everything that a path tracer needs beside the operators: the search for occluders, covariances
 // of a whole image, filters and their limits, the gather, counts of samples. In contrast to
-// covariance.hpp these allocate (std::vector); they throw nothing else than std::bad_alloc.
-// README.md, "Ten minutes", has the order of the calls; examples/path_tracer.cpp is a whole
-// program.
+// covariance.hpp these allocate (std::vector); they throw nothing but std::bad_alloc.
+// covariance/README.md, "Ten minutes", has the order of the calls; examples/path_tracer.cpp is a
+// whole program.
 #pragma once
 
 #include "covariance/budget.hpp"

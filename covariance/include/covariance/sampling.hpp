@@ -1,7 +1,7 @@
 // Number of samples that a pixel needs. Belcour 2012, "A Frequency Analysis of Light Transport:
 // From Theory to Implementation", section 5.1, has the count N = k sqrt(det Sigma) per unit of
-// pixel, lens and shutter; it vanishes as soon as one axis is constant. With the windowed matrix B
-// = Sigma + W it splits:
+// pixel, lens and shutter; it vanishes as soon as one axis is constant. With the windowed matrix
+// Sigma + W (preintegrate.hpp) it splits, r the axes of lens and shutter:
 //
 //   sqrt det(Sigma + W) = sqrt det(Sigma_2D) * sqrt det(Sigma_rr + W_rr)
 //   N_int = sqrt( det(Sigma_rr + W_rr) / det W_rr ) >= 1,      N = k_img sqrt det(Sigma_2D) N_int
@@ -16,7 +16,7 @@
 
 namespace covariance {
 
-/// Result of one elimination of lens and shutter from S + W.
+/// Spectrum and count of a pixel, the result of eliminating lens and shutter from S + W once.
 template <std::floating_point T = double>
 struct SensorIntegral {
     Sym2<T> spectrum;   ///< `preintegrate()`

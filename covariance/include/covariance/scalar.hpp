@@ -1,4 +1,4 @@
-// Constants and the one tolerance that the other headers share.
+// Scalars: constants, the tolerance and the sums of products that the other headers share.
 #pragma once
 
 #if __cplusplus < 202002L && (!defined(_MSVC_LANG) || _MSVC_LANG < 202002L)
@@ -36,8 +36,8 @@ template <std::floating_point T>
 inline constexpr T noise_level = std::max(T(1e-13), 16 * std::numeric_limits<T>::epsilon());
 
 /// The value a b + c, rounded once where the processor does both in one instruction, which is also
-/// half of the work. Which of the two is decided when the code is compiled, so that the same
-/// program always gives the same bits, inlined or not.
+/// half of the work; in constant expressions always rounded twice. Which of the two is decided when
+/// the code is compiled, so that the same program always gives the same bits, inlined or not.
 template <std::floating_point T>
 [[nodiscard]] constexpr T multiply_add(T a, NonDeduced<T> b, NonDeduced<T> c) noexcept {
 #ifdef __FMA__

@@ -1,6 +1,6 @@
 // Sheets that let light pass without bending it: thin sheets, alpha masks, borders between media,
-// veils. Derived in RULES.md. A sheet that scatters is `reflect_diffuse` with the outgoing
-// direction on its other side.
+// veils. Derived in covariance/RULES.md, section 5. A sheet that scatters is `reflect_diffuse` with
+// the outgoing direction on its other side.
 #pragma once
 
 #include "covariance/occlusion.hpp"
@@ -12,7 +12,7 @@ namespace covariance {
 /// frame and its slopes, and Sigma_xy += P^-T T P^-1.
 ///
 /// It equals surface_enter, add_texture, surface_exit, in one step: curvature undoes on the way out
-/// what it does on the way in. Called in ray coordinates, without enter and exit.
+/// what it does on the way in. To be called in ray coordinates, without enter and exit.
 /// Shapes   texture: in surface.t1, t2, 1/m^2, of the transmittance (for an alpha mask of 1 -
 ///          alpha); zero for a plain sheet or a border between media, which change nothing.
 /// Errors   none; |cos| below 0.02 counts as 0.02.
@@ -50,8 +50,8 @@ template <std::floating_point T>
     return occlude(field, offset, distance_min, velocity, edge_beta<T> / std::sqrt(seen));
 }
 
-/// Contrast of 1 - f from that of f: the deviation is the same, the mean is not. For the light that
-/// passes an alpha mask, whose surface reflects alpha.
+/// Contrast of 1 - f from that of f: the deviation is the same, the mean is not. Such is the light
+/// that passes an alpha mask, of which the surface itself shows the share f = alpha.
 ///
 /// Units    contrast: deviation over mean of f; mean of f, in [0, 1). A mean of 1 gives infinity,
 ///          which `image_texture` limits.

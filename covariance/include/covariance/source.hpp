@@ -2,8 +2,8 @@
 // Sigma_xy = (4 pi^2 S_e)^-1: an event that later integrates over the light (a soft shadow, a
 // glossy reflection) then converges to the exact frequency. An emitter that is seen sharply, which
 // is directly or through any number of mirrors and clear glass, shows its outline:
-// `area_source_in_view` adds the distance to its border. An outline that `OccluderGrid` finds needs
-// no second time here.
+// `area_source_in_view` adds the border as an edge at its distance. Where `OccluderGrid` finds the
+// emitter's outline it must not be added here again.
 //
 // Everything is in the rest frame of the emitter; follow with `motion_exit` if it moves.
 #pragma once
@@ -68,8 +68,8 @@ template <std::floating_point T>
         moments, [=](T l) { return l * four_pi_sq<T> * cap > 1 ? 1 / (l * four_pi_sq<T>) : cap; });
 }
 
-/// Largest spatial variance this library starts a path with, 1/m^2 in scene units (beyond it the
-/// condition of the matrices, not the light, decides the result).
+/// Largest variance that this library starts a path with, of spatial frequencies in 1/(scene
+/// unit)^2 and of angular ones in 1/rad^2. Beyond it rounding, not the light, decides the result.
 template <std::floating_point T>
 inline constexpr T max_source_variance = T(1e8);
 
@@ -113,7 +113,7 @@ template <std::floating_point T>
 }
 
 /// Starts light at an area light that is seen sharply: by the camera, or through mirrors and clear
-/// glass alone. Without its border a lamp's image, and that of its reflection, is smeared.
+/// glass alone. Without the border the image of a lamp, and that of its reflection, is smeared.
 ///
 /// Shapes   border: in surface.t1, t2, from `rectangle_border`, `disc_border`, or your own with
 ///          `edge_variance`. For a sphere none is needed: `end_at_contour` after `surface_exit`.
@@ -126,8 +126,8 @@ template <std::floating_point T>
 
 /// Starts light at a point or spot light, in ray coordinates: Sxx = Syy = 1/(2 pi r_min)^2, a cap.
 ///
-/// Units    r_min in scene units, about 1e-4 of the scene's radius. Later operators saturate
-/// gracefully.
+/// Units    r_min in scene units, about 1e-4 of the scene's radius. How large the cap is matters
+///          little: a later diffuse reflection, for one, tends to a limit as it grows.
 template <std::floating_point T>
 [[nodiscard]] constexpr LightField<T> point_source(const Frame<T>& frame,
                                                    NonDeduced<T> r_min) noexcept {

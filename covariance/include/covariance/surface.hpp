@@ -96,8 +96,8 @@ template <std::floating_point T>
     return surface_curvature(f, normal_field(s));
 }
 
-/// The shape operator with principal curvatures limited to 1/(2 footprint), where the first order
-/// still means something. Units: footprint radius in scene units.
+/// The shape operator with principal curvatures limited to 1/(2 footprint radius): beyond that the
+/// first order, on which these operators rest, means nothing. Units: the radius in scene units.
 template <std::floating_point T>
 [[nodiscard]] Sym2<T> limit_curvature(const Sym2<T>& curvature,
                                       NonDeduced<T> footprint_radius) noexcept {
@@ -131,9 +131,11 @@ template <std::floating_point T>
     const Mat2<NonDeduced<T>>& g) noexcept {
     SymmetricMatrix5<T> s = change_positions(old, p);
     const Sym2<T> angular = s.angular();
-    // Light without slopes (after a slice, at a source) has nothing to follow the curvature.
+    // Light without frequencies over the slopes (after a diffuse reflection, at a source) is not
+    // changed by axes that turn.
     if ((angular.xx == 0 && angular.yy == 0) || g == Mat2<T>{}) return s;
-    // The new blocks are Xu' = P^T Xu + G^T Uu and Xx' = P^T Xx P + (P^T Xu) G + G^T Xu'^T.
+    // With the blocks Sxx, Sxu, Suu of the old matrix the new ones are Sxu' = P^T Sxu + G^T Suu and
+    // Sxx' = P^T Sxx P + (P^T Sxu) G + G^T Sxu'^T.
     const Mat2<T> projected = s.cross(), both = projected + transpose(g) * Mat2<T>(angular),
                   sum = projected + both;
     const Sym2<T> xx = s.spatial();
@@ -167,8 +169,10 @@ template <std::floating_point T>
 /// Goes from ray coordinates to local surface coordinates.
 ///
 /// Afterwards x, y are tangent positions along t1, t2, and u, v slopes relative to the incoming X,
-/// Y as they turn with the normal. Undone by `surface_exit` with the same frame. Frame    that of
-/// the arriving ray. Errors: none; NaN in gives NaN out.
+/// Y as they turn with the normal. Undone by `surface_exit` with the same frame.
+///
+/// Frame    that of the arriving ray.
+/// Errors   none; NaN in gives NaN out.
 template <std::floating_point T>
 [[nodiscard]] constexpr SymmetricMatrix5<T> surface_enter(
     const SymmetricMatrix5<T>& s, const Frame<NonDeduced<T>>& incoming,

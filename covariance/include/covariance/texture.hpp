@@ -1,4 +1,5 @@
-// Textures: a product of signals on the surface, so their covariance adds to the block of x, y.
+// Textures: factors of the light on a surface. The covariances of factors add, here to the block of
+// the positions x, y.
 //
 // A texture's bandwidth must know the distance to its nearest edge; a fixed bandwidth (such as the
 // first harmonic of a checkerboard) cannot see that a pixel lies beside one.
@@ -55,7 +56,8 @@ template <std::floating_point T>
 /// T_aa = 1/(4 pi^2 beta^2 max(e_a, e_min)^2), e_a the distance to the nearest edge along that
 /// axis.
 ///
-/// Both axes count always: the nearest edge alone leaves stars along the lines.
+/// Both axes count always: with the nearest edge alone the image has star-shaped faults along the
+/// lines.
 /// Units    distances in texture coordinates; e_min about half a pixel's footprint, above 0.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> checkerboard_texture(T edge_u, NonDeduced<T> edge_v,
@@ -70,6 +72,7 @@ template <std::floating_point T>
 ///
 /// The factor 2 pi^2 (not 4 pi^2) turns the power of a noise-like texture into an amplitude
 /// covariance.
+/// Shapes   structure: J; contrast: m.
 /// Units    J in 1/(texture unit)^2. Errors: none; a window without contrast gives zero.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym2<T> image_texture(const Sym2<T>& structure,
@@ -105,11 +108,11 @@ template <std::floating_point T>
             edge_variance(std::max(edges.z, e_min), beta)};
 }
 
-/// Covariance of solid noise without preferred direction whose frequencies have the mean square f^2
-/// in all, as a sum of waves in random directions: f^2/3 along every axis. For octaves, f^2 is the
-/// mean of their squares, by amplitude.
+/// Covariance of solid noise without preferred direction, taken as a sum of waves in random
+/// directions: f^2/3 along every axis, with f^2 the mean square of the waves' frequencies. For
+/// octaves that is the mean of their squared frequencies, weighted by their amplitudes.
 ///
-/// Units    frequency in cycles/scene unit.
+/// Units    frequency: f, in cycles/scene unit.
 template <std::floating_point T>
 [[nodiscard]] constexpr Sym3<T> solid_noise(T frequency) noexcept {
     const T along = frequency * frequency / 3;
