@@ -145,22 +145,22 @@ class Tracer {
             const Vertex& v = path.vertices[i - 1];
             const cov::Surface<double> surface = surface_of(v.hit);
             const cov::Motion<double> motion{v.hit.velocity, {}};
-            if (weight > 0) light = scatter(light, v, surface, motion, {});
+            const auto leave = [&](const cov::LightField<double>& field) {
+                const auto textured =
+                    cov::add_texture(field, texture(v, surface, length(at(i) - at(i - 1))));
+                return cov::motion_exit(cov::surface_exit(textured, surface), motion);
+            };
+            if (weight > 0) light = leave(scatter(light, v, surface, motion, {}));
             if (v.direct > 0) {
                 const Vec way = v.hit.position - v.lamp_point;
                 auto lit = lamp_light(normalize(way));
                 lit = cov::travel_past(grid_, lit, v.lamp_point, v.hit.position,
                                        cov::diffuse_receiver<double>, path.time);
-                lit = scatter(lit, v, surface, motion, {lamp_surface().n, length(way)});
+                lit = leave(scatter(lit, v, surface, motion, {lamp_surface().n, length(way)}));
                 light = weight > 0 ? cov::merge(light, weight, lit, v.direct) : lit;
                 weight += v.direct;
             }
-            if (!(weight > 0)) continue;
-            // Texture, surface, motion and the way are the same for light of all directions.
-            light = cov::add_texture(light, texture(v, surface, length(at(i) - at(i - 1))));
-            light = cov::surface_exit(light, surface);
-            light = cov::motion_exit(light, motion);
-            light = carry(path, light, at(i), i - 1);
+            if (weight > 0) light = carry(path, light, at(i), i - 1);
         }
         return {cov::sensor(light, camera_.lens), weight};
     }

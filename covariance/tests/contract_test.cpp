@@ -100,9 +100,8 @@ TYPED_TEST(Contract, WholePathWithTheCallersVectorsAllocatesNothing) {
         bumps);
     const LightField<T> fog = scatter_in_volume(pass_through(f, floor, {}), up, T(0.5));
     f = reflect_diffuse(f, floor, up);
-    f = merge(rotate_to(f, glossy.frame), 2, glossy, 1);
     f = add_texture(f, checkerboard_texture(T(0.1), T(0.2), T(0.01)));
-    f = surface_exit(f, floor);
+    f = merge(surface_exit(f, floor), 2, surface_exit(glossy, floor), 1);
     f = motion_exit(f, moving);
     f = travel(f, 3);
     const ThinLens<T> camera{t1, t2, down, 2, T(0.1), 100, 100, T(0.1)};

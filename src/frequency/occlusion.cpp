@@ -142,8 +142,8 @@ Visibility next_visibility(const SensorGeometry& camera, const Visibility& neare
 EdgeMeasure measure_at_surface(const cov::SymmetricMatrix5<double>& sigma, double length,
                                const Visibility& end) {
     // The light arrives as if nothing stood beside its way, then goes through the lobe; both axes
-    // are added up in one. With M over (x, u) an edge q w w^T, w = (1, -z), raises the Schur
-    // complement by q h / (Muu + q z^2), h = w^T adj(M) w.
+    // are added up in one. With M over (x, u) an edge q w w^T, w = (1, -z), makes the Schur
+    // complement (det M + q h) / (Muu + q z^2), h = w^T adj(M) w.
     const auto arriving = cov::travel(sigma, length);
     const double xx = arriving(0, 0) + arriving(1, 1), xu = arriving(0, 2) + arriving(1, 3),
                  uu = arriving(2, 2) + arriving(3, 3) + 2 * end.window;
