@@ -1,4 +1,4 @@
-"""What the tests of the add-on share: they run inside Blender, and render by covtrace and by Cycles."""
+"""Support for the tests of the add-on: they run inside Blender, and render by covtrace and by Cycles."""
 
 import faulthandler
 import math
@@ -24,7 +24,7 @@ MOST_SECONDS = 180
 
 
 def render(engine_name, samples):
-    """The render as channels by name, without the view layer's."""
+    """The render as channels by name, without the view layer's name."""
     scene = bpy.context.scene
     scene.render.engine = engine_name
     scene.covtrace.samples = samples
@@ -87,7 +87,7 @@ class BlenderTest(unittest.TestCase):
         return bpy.context.object
 
     def assert_as_cycles(self, tolerance, samples=64):
-        """The whole pictures' means agree, per channel."""
+        """Asserts that the means of both whole pictures agree, per channel."""
         ours, theirs = mean(render("COVTRACE", samples)), mean(render("CYCLES", samples))
         for channel, (a, b) in enumerate(zip(ours, theirs)):
             self.assertGreater(b, 1e-3)

@@ -60,7 +60,7 @@ class EngineTest(BlenderTest):
                 self.assertEqual(seen, [v > 0 for v in theirs["Combined.A"]])
                 self.assertEqual(sum(seen), 15 * 14)
                 if not crop:
-                    # The same samples as of the whole frame.
+                    # Samples of the crop are those of the whole frame.
                     for i, is_seen in enumerate(seen):
                         if is_seen:
                             self.assertAlmostEqual(ours["Noisy Image.R"][i], whole[i], delta=1e-5)
@@ -68,7 +68,7 @@ class EngineTest(BlenderTest):
                     self.assertEqual(len(ours[name]), len(ours["Combined.R"]))
 
     def test_every_failure_is_an_error(self):
-        """Also those of the add-on itself, after which Blender would go on with a blank picture."""
+        """Failures of the add-on itself are errors, too; Blender would go on with a blank picture."""
         self.plane(material(**self.MATT))
         read = engine.layers.read
         engine.layers.read = lambda path: {}["nothing"]

@@ -17,7 +17,7 @@ class GltfTest(BlenderTest):
         self.scene.render.fps = FRAMES_PER_SECOND
 
     def render_file(self, *words):
-        """The export rendered by covtrace: means by channel, as `render`; and the program's messages."""
+        """Renders the export by covtrace; returns means by channel, as `render`, and the program's messages."""
         with tempfile.TemporaryDirectory() as folder:
             file, image = os.path.join(folder, "scene.glb"), os.path.join(folder, "image.exr")
             bpy.ops.export_scene.gltf(filepath=file, export_cameras=True, export_lights=True, export_yup=True)
@@ -35,7 +35,7 @@ class GltfTest(BlenderTest):
         bpy.ops.mesh.subdivide(number_cuts=12)
         bpy.ops.object.mode_set(mode="OBJECT")
         bpy.ops.object.shade_smooth()
-        # Brighter than 1, so that it counts as a lamp and no others are made up.
+        # The emission is brighter than 1, so that it counts as a lamp and no others are made up.
         arm.data.materials.append(material(Emission=(1, 1, 1, 1), Emission_Strength=2.0, Base_Color=(0, 0, 0, 1), Specular=0.0))
         arm.shape_key_add(name="Basis")
         key = arm.shape_key_add(name="thick")

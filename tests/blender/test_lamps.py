@@ -10,7 +10,7 @@ class LampsTest(BlenderTest):
     def test_point_lamp_of_watts(self):
         self.plane(material(**self.MATT))
         self.lamp("POINT", energy=400, shadow_soft_size=0)
-        # W / (4 pi d^2) times reflectance / pi; 3 % for the fall-off over the pixels.
+        # Irradiance W / (4 pi d^2) times reflectance / pi; 3 % for the fall-off over the pixels.
         expected = 400 / (4 * math.pi * 9) * 0.5 / math.pi
         self.assertAlmostEqual(self.centre() / expected, 1, delta=0.03)
 

@@ -1,4 +1,4 @@
-"""Materials of the add-on against Cycles, and what is said of those that it has not."""
+"""Materials of the add-on against Cycles, and the messages about those that it lacks."""
 
 import math
 
@@ -21,7 +21,8 @@ class MaterialsTest(BlenderTest):
         self.assert_as_cycles(0.05)
 
     def test_shaders_that_keep_energy_are_as_bright_as_in_cycles(self):
-        """In a white surrounding, where nothing but the surface's own share counts; from above, and from the side."""
+        """Renders in a white surrounding, where nothing but the surface's own share counts; from above, and from the
+        side."""
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)
         self.camera.data.lens = 200
 
@@ -35,7 +36,8 @@ class MaterialsTest(BlenderTest):
             return m
 
         grey, white = (0.5, 0.6, 0.7, 1), (1, 1, 1, 1)
-        # From the side they differ as decision 0051 says: grey metals in Fresnel's term, rough borders in Smith's.
+        # Seen from the side they differ as decision 0051 says: grey metals in Fresnel's term, rough
+        # borders in Smith's.
         for m, tilts in ((shader("ShaderNodeBsdfDiffuse", Color=grey), (0, 1.2)),
                          (shader("ShaderNodeBsdfGlossy", Color=white, Roughness=0.1), (0, 1.2)),
                          (shader("ShaderNodeBsdfGlossy", Color=grey, Roughness=0.7), (0,)),
@@ -59,7 +61,7 @@ class MaterialsTest(BlenderTest):
         self.assertTrue(any("Noise Texture" in w for w in self.warnings), self.warnings)
 
     def test_what_is_left_out_is_told(self):
-        """Each of these changes the picture in Cycles and not here."""
+        """Each of the shaders changes the picture in Cycles and not here."""
         m = material()
         tree = m.node_tree
         principled, output = tree.nodes["Principled BSDF"], tree.nodes["Material Output"]

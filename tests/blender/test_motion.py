@@ -25,7 +25,8 @@ class MotionTest(BlenderTest):
         self.assertEqual(self.scene.frame_current, 1)
 
     def deform(self, mesh_object, moved, distance=(2, 0, 0)):
-        """A shape key that moves these vertices, from no part at frame 0 to the whole way at frame 2; shutter over both."""
+        """Adds a shape key that moves these vertices, from no part at frame 0 to the whole way at frame 2; the
+        shutter is open over both."""
         mesh_object.shape_key_add(name="Basis")
         key = mesh_object.shape_key_add(name="moved")
         for i in moved:
@@ -67,7 +68,7 @@ class MotionTest(BlenderTest):
         self.assertTrue(any("bends more while the shutter is open" in w for w in self.warnings), self.warnings)
 
     def test_arms_bend_as_in_cycles(self):
-        """An arm of two bones along x, whose second one turns by 40 degrees while the shutter is open."""
+        """Bends an arm of two bones along x, whose second one turns by 40 degrees while the shutter is open."""
         bpy.ops.mesh.primitive_grid_add(x_subdivisions=40, y_subdivisions=4, size=1)
         arm = bpy.context.object
         for vertex in arm.data.vertices:

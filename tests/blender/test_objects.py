@@ -1,4 +1,4 @@
-"""What becomes of objects, modifiers, instances and strands, against Cycles."""
+"""Objects, modifiers, instances and strands of the add-on, against Cycles."""
 
 import math
 
@@ -12,7 +12,8 @@ class ObjectsTest(BlenderTest):
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)
 
     def assert_silhouettes_as_cycles(self, delta=0.03, samples=64):
-        """Black things before white: the quarters of the picture agree, and none of it is empty or full."""
+        """Asserts silhouettes of black things before white: the quarters of the picture agree, and none of it is
+        empty or full."""
         ours, theirs = render("COVTRACE", samples), render("CYCLES", samples)
         self.assertGreater(mean(theirs)[0], 0.1)
         self.assertLess(mean(theirs)[0], 0.98)

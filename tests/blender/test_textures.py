@@ -1,4 +1,4 @@
-"""Where images lie on surfaces, and how they go on and shine, against Cycles."""
+"""The places of images on surfaces, their wrapping and their light, against Cycles."""
 
 import bpy
 from addon_support import BlenderTest, material, mean, render
@@ -6,7 +6,8 @@ from addon_support import BlenderTest, material, mean, render
 
 class TexturesTest(BlenderTest):
     def test_textures_lie_as_in_cycles(self):
-        # Nearest texels: Cycles interpolates bytes before it decodes them, which contrasts as hard as these would show.
+        # Texels are the nearest ones: Cycles interpolates bytes before it decodes them, which
+        # contrasts as hard as these would show.
         m = self.image_material()
         self.plane(m, size=3)
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)
@@ -14,7 +15,7 @@ class TexturesTest(BlenderTest):
         self.assert_quarters_as_cycles(samples=64)
 
     def image_material(self, size=4, extension="REPEAT", uv_map=None, is_float=False):
-        """Shows an image whose texels all differ, so that no turn or flip goes unseen."""
+        """A material with an image whose texels all differ, so that no turn or flip goes unseen."""
         image = bpy.data.images.new("texels", size, size, float_buffer=is_float)
         image.pixels = [v for i in range(size * size) for v in (i / 15, (i * 7 % 16) / 15, (i % 4) / 3, 1)]
         m = bpy.data.materials.new("shown")
@@ -39,7 +40,7 @@ class TexturesTest(BlenderTest):
                     self.assertAlmostEqual(a, b, delta=delta)
 
     def test_uv_maps_are_those_of_the_render(self):
-        # Selected in the editor, active for the render, and named by a node: all three differ.
+        # The UV maps selected in the editor, active for the render, and named by a node all differ.
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)
         for uv_map in (None, "", "named"):
             plane = self.plane(self.image_material(uv_map=uv_map), size=3)

@@ -25,7 +25,7 @@ class Exr:
 
     @property
     def data_window(self):
-        """x0, y0, x1, y1; end exclusive."""
+        """The window as x0, y0, x1, y1; end exclusive."""
         return self._exclusive("dataWindow")
 
     @property

@@ -1,4 +1,5 @@
-"""Threads, ranks, killed or not, methods, scenes: the same bits in every combination. The nightly test runs it.
+"""Renders in all combinations of threads, ranks, methods, scenes, killed or not: the same bits in every one. The nightly
+test runs it.
 
     COVTRACE=build/release/covtrace python3 -m unittest film_matrix        # in this folder
 """
@@ -64,7 +65,7 @@ class Matrix(FilmTest):
                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
 
     def kill(self, run, choice):
-        """One of the processes that render; the others of mpirun end with it. Whether there was one."""
+        """Kills one of the processes that render; the others of mpirun end with it. Returns whether there was one."""
         targets = ranks_of(run) if run.args[0] == MPIRUN else [run.pid]
         if targets and run.poll() is None:
             try:
@@ -75,8 +76,8 @@ class Matrix(FilmTest):
         return False
 
     def end(self, run):
-        """What it says until its end. mpirun itself may wait for ever for a process that died while it started them: it is
-        killed once none of its processes lives; one that lives is a failure."""
+        """The messages of a run until its end. mpirun itself may wait for ever for a process that died while it
+        started them: it is killed once none of its processes lives; one that lives is a failure."""
         for _ in range(12):
             try:
                 return run.communicate(timeout=10)[1]
@@ -87,7 +88,8 @@ class Matrix(FilmTest):
         self.fail(f"{run.communicate()[1]} it does not end, though one of its processes was killed")
 
     def render(self, command, choice, seconds):
-        """Until it ends by itself; with `seconds` killed at least once after at most about so long. Returns the kills."""
+        """Renders until the program ends by itself; with `seconds` it is killed at least once after at most about so
+        long. Returns the kills."""
         kills = 0
         for _ in range(200):
             run = self.start(command)

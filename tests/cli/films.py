@@ -1,4 +1,4 @@
-"""What the tests of films share: scenes that show all that a render can do, and runs that are killed."""
+"""Support for the tests of films: scenes that show all that a render can do, and runs that are killed."""
 
 import json
 import random
@@ -97,7 +97,8 @@ def render_killed(test, folder, arguments, seed, longest):
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
         )
         try:
-            # Where nothing was kept since the last kills, as on a loaded machine, it gets more time.
+            # A run gets more time where nothing was kept since the last kills, as on a loaded
+            # machine.
             _, errors = program.communicate(timeout=choice.uniform(0, longest * (1 + kills / 20)))
             test.assertEqual(program.returncode, DONE, errors)
             return kills

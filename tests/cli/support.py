@@ -1,4 +1,4 @@
-"""What the tests of the command line share: running the program, small scenes, what every error must look like."""
+"""Support for the tests of the command line: running the program, small scenes, the form of every error."""
 
 import os
 import pathlib
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 PROGRAM = os.environ.get("COVTRACE", "covtrace")
 SANITIZED = os.environ.get("COVTRACE_SANITIZE") == "1"
-SLOWER = 40 if SANITIZED else 1  # times as long may a sanitized program take, on a loaded machine
+SLOWER = 40 if SANITIZED else 1  # factor of time for a sanitized program on a loaded machine
 
 DONE, USAGE, SCENE, LIMIT, IO, INTERRUPTED, INTERNAL = 0, 2, 3, 4, 5, 6, 7
 
@@ -53,7 +53,7 @@ class Result:
 
 
 def limits(**values):
-    """For `before`: sets limits such as AS=2**30 in the child.
+    """A function for `before` that sets limits such as AS=2**30 in the child.
 
     Sanitizers: AS is left out where they need terabytes of it; the thread sanitizer writes a file of its own before main(), of
     which FSIZE=0 must not kill it.
@@ -113,14 +113,14 @@ class CliTest(unittest.TestCase):
         )
 
     def rendered(self, *arguments, output="out.exr", scene=TINY, **options):
-        """Renders, expects success, returns the path of the image (output=None: what TINY's film names)."""
+        """Renders, expects success, returns the path of the image (output=None: the name that TINY's film gives)."""
         result = self.render(scene, *arguments, output=output, **options)
         self.assertEqual(result.code, DONE, result)
         self.assertEqual(result.stdout, "", result)
         return self.folder / (output or "film.exr")
 
     def assert_fails(self, result, code, *fragments):
-        """The exit code, nothing on stdout, and one line on stderr that holds all the fragments.
+        """Asserts the exit code, nothing on stdout, and one line on stderr that holds all the fragments.
 
         A usage error that the parser of the command line found has a second line that tells of --help."""
         self.assertEqual(result.code, code, result)
@@ -133,7 +133,7 @@ class CliTest(unittest.TestCase):
             self.assertIn(fragment, lines[0], result)
 
     def assert_fails_at(self, result, place, *fragments, code=SCENE):
-        """`place`: file:line:column, at the start of the message."""
+        """Asserts a failure at `place`: file:line:column, at the start of the message."""
         self.assert_fails(result, code, *fragments)
         self.assertTrue(result.stderr.startswith(f"covtrace: {place}: "), result)
 
@@ -146,7 +146,7 @@ class CliTest(unittest.TestCase):
 
 
 def place_of(text, fragment, name="scene.pbrt"):
-    """file:line:column of the first place where `fragment` stands in `text`."""
+    """The place file:line:column where `fragment` first stands in `text`."""
     before = text[: text.index(fragment)]
     column = len(before) - (before.rfind("\n") + 1) + 1
     return f"{name}:{before.count(chr(10)) + 1}:{column}"
@@ -156,6 +156,6 @@ WARNING = re.compile(r"^warning: (?:(?P<place>\S+:\d+:\d+): )?(?P<text>.+)$")
 
 
 def warnings_of(result):
-    """(place or None, text) of every warning."""
+    """The warnings of a result, each as (place or None, text)."""
     found = [WARNING.match(line) for line in result.stderr.split("\n") if line.startswith("warning")]
     return [(m["place"], m["text"]) for m in found if m]

@@ -26,7 +26,7 @@ class Completion(CliTest):
         return set(re.findall(r"(?<=[ ,])--[a-z][a-z-]*", self.run_program(command, "--help").stdout))
 
     def complete(self, *words):
-        """What bash offers for the last word."""
+        """The words that bash offers for the last word."""
         quoted = " ".join(f"'{w}'" for w in words)
         command = f"source completion.bash; COMP_WORDS=({quoted}); COMP_CWORD={len(words) - 1}; _covtrace 2>/dev/null; printf '%s\\n' \"${{COMPREPLY[@]}}\""
         self.write("completion.bash", self.script("bash"))
@@ -59,7 +59,7 @@ class Completion(CliTest):
     def test_zsh(self):
         path = self.write("_covtrace", self.script("zsh"))
         subprocess.run(["zsh", "-n", path], check=True)
-        # zsh completes at a terminal only.
+        # A terminal is made, as zsh completes at a terminal only.
         leader, follower = pty.openpty()
         shell = subprocess.Popen(["zsh", "-f", "-i"], cwd=self.folder, stdin=follower, stdout=follower, stderr=follower,
                                  env=dict(os.environ, TERM="dumb", PS1="> ", HOME=self.folder), start_new_session=True)

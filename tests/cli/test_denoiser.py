@@ -1,4 +1,5 @@
-"""A denoiser among the candidates of hybrid: where it is looked for, what is said of it, what it may not change."""
+"""A denoiser among the candidates of hybrid: the search for it, the messages about it, the samples that it may not
+change."""
 
 import json
 import os
@@ -25,20 +26,20 @@ def fake(name):
 
 
 def in_environment(**values):
-    """For `before`: sets them in the child."""
+    """A function for `before` that sets variables of the environment in the child."""
     return lambda: os.environ.update({name: str(value) for name, value in values.items()})
 
 
 class DenoiserTest(FilmTest):
     def hybrid(self, *arguments, method="hybrid", spp="4", **options):
-        """Result and statistics of a small render into out.exr."""
+        """Renders a small image into out.exr; returns result and statistics."""
         result = self.run_program("render", "plain.pbrt", "--method", method, "--spp", spp, "-o", "out.exr", "--progress", "none",
                                   "--stats", "s.json", "--reproducible", *arguments, **options)
         self.assertEqual((result.code, result.stdout), (DONE, ""), result)
         return result, json.loads((self.folder / "s.json").read_text())
 
     def film(self, name):
-        """What a film holds, but for the seconds that it took."""
+        """The content of a film, without the seconds that it took."""
         data = (self.folder / name).read_bytes()
         end = 24 + struct.unpack_from("<I", data, 12)[0]
         header = json.loads(data[24:end])
@@ -126,7 +127,7 @@ class Choice(DenoiserTest):
             self.assertEqual(self.image().pixels["R"], plain.pixels["R"])
 
     def test_too_little_time(self):
-        """What one with the denoiser would take is told by a part."""
+        """The time of a reconstruction with the denoiser is told by a part of the image."""
         result, stats = self.hybrid("--denoiser-library", fake("slow"), "--time", "1", spp="64")
         self.assertLess(stats["seconds_total"], 5)
         self.assertIn("longer than the time that was left", stats["denoiser"]["why_none"])
@@ -161,14 +162,15 @@ class Places(DenoiserTest):
         shutil.copy2(pathlib.Path(PROGRAM).resolve(), self.program)
 
     def found(self):
-        """What the statistics of the copy say of its denoiser."""
+        """The denoiser in the statistics of the copied program."""
         environ = {k: v for k, v in os.environ.items() if k != "COVTRACE_OIDN_LIBRARY"}
         subprocess.run([self.program, "render", "plain.pbrt", "-o", "out.exr", "--spp", "1", "--quiet", "--stats", "s.json"],
                        cwd=self.folder, env=environ, check=True, timeout=600)
         return json.loads((self.folder / "s.json").read_text())["denoiser"]
 
     def test_around_the_program(self):
-        for place in ("lib/covtrace/denoiser", "denoiser", "bin/denoiser"):  # the nearest one counts
+        # The nearest one counts.
+        for place in ("lib/covtrace/denoiser", "denoiser", "bin/denoiser"):
             with self.subTest(place=place):
                 (self.tree / place).mkdir(parents=True)
                 shutil.copy2(fake("good"), self.tree / place)

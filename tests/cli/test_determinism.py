@@ -18,7 +18,7 @@ AttributeEnd
 """
 
 
-# Every way in which a render decides on its samples.
+# Ways in which a render decides on its samples, all of them.
 WAYS = {
     "uniform": ["--method", "uniform"],
     "covariance": ["--method", "covariance"],

@@ -39,7 +39,8 @@ class Failures(FilmTest):
                 for name, content in old.items():
                     self.write(name, content)
                 result = self.run_with(COVTRACE_FAIL_AT=str(at))
-                # Without a hard link the older film is moved; what is not removed is a spare name.
+                # Failed links and removals are harmless: the older film is then moved, or a spare
+                # name is left.
                 harmless = operation in ("link", "unlink")
                 self.assertEqual(result.code, DONE if harmless else IO, result)
                 if not harmless:

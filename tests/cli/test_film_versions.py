@@ -6,7 +6,7 @@ import unittest
 from support import DONE, SCENE, USAGE, TINY, CliTest
 
 FORMAT = 4
-AT = 8  # of the format's number in the file
+AT = 8  # offset of the format's number in the file
 
 
 class Versions(CliTest):
@@ -33,7 +33,7 @@ class Versions(CliTest):
                     )
 
     def test_such_a_checkpoint_is_not_set_aside(self):
-        """It is not damaged, even where the earlier one could be gone on from."""
+        """A film of another version is not damaged, even where the earlier one could be gone on from."""
         self.write("c.film.prev", self.film)
         newer = self.of_format(FORMAT + 1)
         self.write("c.film", newer)
@@ -43,7 +43,7 @@ class Versions(CliTest):
         self.assert_no_file("c.film.damaged")
 
     def test_a_render_goes_on_with_its_own_version(self):
-        """Of the same format the film is read, and the version that differs is told."""
+        """A film of the same format is read, and the version that differs is told."""
         self.assertIn(b'"version": "', self.film)
         self.assertEqual(self.render(TINY, "--spp", "1", "--checkpoint", "a.film", "--resume").code, DONE)
         result = self.render(TINY, "--spp", "1", "--seed", "2", "--checkpoint", "a.film", "--resume")

@@ -1,4 +1,4 @@
-"""Scenes of formats that are not read: said so, with what is."""
+"""Scenes of formats that are not read: the message says so, and which formats are read."""
 
 import unittest
 

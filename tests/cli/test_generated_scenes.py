@@ -17,7 +17,8 @@ import exr
 from support import DONE, CliTest, warnings_of
 
 SOURCE = pathlib.Path(os.environ.get("COVTRACE_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
-# About half the mean of green: a scene whose light is gone or faces the other way is darker.
+# Least mean of green, about half of the right one: a scene whose light is gone or faces the other
+# way is darker.
 SCENES = {
     "helicopter": 0.09,
     "mirror-motion": 0.05,
@@ -28,7 +29,7 @@ SCENES = {
     "foliage": 0.22,
     "shininess": 0.04,
 }
-HELD = ["glossy-lens", "foliage"]  # quick ones, for what is true of the generator
+HELD = ["glossy-lens", "foliage"]  # quick ones, for properties of the generator
 
 
 def generate(folder, *arguments):

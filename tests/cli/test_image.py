@@ -67,7 +67,8 @@ class Layers(CliTest):
         compared = 0
         for matched, thesis in zip(*(zip(*(rules[r][f"filter.{s}"] for s in SYMMETRIC)) for r in ("matched", "thesis"))):
             self.assertLessEqual(matched[0], thesis[0] * 1.00001)
-            # Variances along the axes; at the limits of 0.5 and 15 pixels rules give the same.
+            # Deviations along the axes are compared; at the limits of 0.5 and 15 pixels rules give
+            # the same.
             least, most = (
                 (xx + yy) / 2 + side * math.hypot((xx - yy) / 2, xy) for side, (xx, xy, yy) in ((-1, matched), (1, thesis))
             )
@@ -105,7 +106,8 @@ class Layers(CliTest):
         for n, wanted in zip(by_budget, density):
             self.assertLessEqual(abs(n - min(60, max(2, wanted))), 1.001)
 
-        # Twice the factor is twice the samples where no limit is in the way; nothing else decides.
+        # The double factor gives twice the samples where no limit is in the way; nothing else
+        # decides.
         few, _, statistics = rendered("--k", 0.2, "--cov-spp", 0.25)
         self.assertAlmostEqual(statistics["k"], 0.2, places=6)
         self.assertLess(statistics["spp"], 1)
@@ -146,7 +148,7 @@ class Layers(CliTest):
     def test_max_spp(self):
         samples = self.layers("--spp", "8", "--max-spp", "10").pixels["samples.Y"]
         self.assertLessEqual(max(samples), 10)
-        # The first samples, too.
+        # The limit holds for the first samples, too.
         for method in ("covariance", "hybrid"):
             self.assertLessEqual(max(self.layers("--method", method, "--spp", "8", "--max-spp", "2").pixels["samples.Y"]), 2)
 

@@ -108,7 +108,7 @@ class Formats(CliTest):
 
 class Read(CliTest):
     def test_compare_reads_what_is_written(self):
-        """Also of narrow images, whose rows in Radiance files have no run lengths."""
+        """Reading includes narrow images, whose rows in Radiance files have no run lengths."""
         for size in ("1x3", "7x5", "9x4", "200x3"):
             for ending in (".pfm", ".hdr", ".png"):
                 with self.subTest(size=size, ending=ending):
@@ -116,7 +116,7 @@ class Read(CliTest):
                     self.rendered(*SPP, "--resolution", size, output=f"out{ending}")
                     result = self.run_program("compare", f"out{ending}", "out.exr", "--json")
                     self.assertEqual(result.code, DONE, result)
-                    if ending != ".png":  # which is cut at white
+                    if ending != ".png":  # PNG is cut at white
                         self.assertLess(json.loads(result.stdout)["relmse"], 1e-4)
 
 

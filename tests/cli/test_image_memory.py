@@ -1,4 +1,5 @@
-"""Images that are little on disk and gigabytes decoded: what is too much is refused before it is decoded."""
+"""Images that are little on disk and gigabytes decoded: images that are too large are refused before they are
+decoded."""
 
 import json
 import struct
@@ -13,7 +14,7 @@ ENVIRONMENT = 'LightSource "infinite" "string filename" "{}"\n'
 
 
 def png(width, height):
-    """Black, a thousandth of its pixels' size."""
+    """A black PNG, a thousandth of its pixels' size."""
     def chunk(name, data):
         return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
 
@@ -24,11 +25,11 @@ def png(width, height):
 
 
 def qoi(width, height):
-    """Black, in runs of 62 pixels."""
+    """A black QOI image, in runs of 62 pixels."""
     return b"qoif" + struct.pack(">IIBB", width, height, 3, 0) + b"\xfd" * (width * height // 62 + 1) + bytes(8)
 
 
-# Of the others the header alone: none is decoded.
+# Formats other than PNG have the header alone here: none is decoded.
 BOMBS = {
     "bomb.qoi": qoi(SIDE, SIDE),
     "bomb.hdr": b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (SIDE, SIDE),
@@ -44,12 +45,12 @@ class ImageMemory(CliTest):
         return ["render", "scene.pbrt", "-o", "out.exr", "--spp", "1"]
 
     def test_bombs_are_refused_by_their_headers(self):
-        """A PNG of 780 KB took 4.2 GB as a texture and 7.1 as an environment."""
+        """Bombs are refused: a PNG of 780 KB took 4.2 GB as a texture and 7.1 as an environment."""
         for name, content in {"bomb.png": png(SIDE, SIDE), **BOMBS}.items():
             self.write(name, content)
             for world in (TEXTURE, ENVIRONMENT):
                 with self.subTest(file=name, role=world.split()[0]):
-                    # Of the address space 1 GiB is enough to refuse it.
+                    # An address space of 1 GiB is enough to refuse the image.
                     result = self.run_program(*self.scene_with(world.format(name)), "--max-memory", "500M",
                                               before=limits(AS=1 << 30))
                     self.assert_fails(result, LIMIT, name, "the limit of 500M", f"{SIDE}x{SIDE}")
@@ -67,7 +68,7 @@ class ImageMemory(CliTest):
 
     @unittest.skipIf(SANITIZED, "a sanitizer takes several times what the program does")
     def test_a_texture_of_bytes_is_decoded_as_bytes(self):
-        """Its pixels and a third of them, not their fourfold as numbers."""
+        """The texture takes its pixels and a third of them, not their fourfold as numbers."""
         self.write("texture.png", png(8192, 4096))  # 96 MiB
         arguments = self.scene_with(TEXTURE.format("texture.png"))
         result = self.run_program(*arguments, "--max-memory", "220M", "--stats", "s.json")
@@ -76,7 +77,8 @@ class ImageMemory(CliTest):
         self.assertLess(peak, 230 << 20)
 
     def test_textures_that_fit_one_after_the_other(self):
-        """Eight of 24 MiB are read side by side; with pages for what is read they fit into a fifth of that."""
+        """Textures are read side by side, eight of 24 MiB; with pages for what is read they fit into a fifth of
+        that."""
         for i in range(8):
             self.write(f"{i}.png", png(4096, 2048))
         world = "".join(TEXTURE.format(f"{i}.png").replace('"t"', f'"t{i}"') + f'Shape "sphere" "float radius" {1 + i}\n'

@@ -1,4 +1,4 @@
-"""Pipes, folders and devices in the place of files: said by name, and never waited for."""
+"""Pipes, folders and devices in the place of files: they are named in the message, and never waited for."""
 
 import json
 import os
@@ -10,7 +10,7 @@ from test_taken_names import LONG, OUTPUTS
 
 
 class Pipes(CliTest):
-    """Nobody has the other side open: whoever opens one waits for ever."""
+    """Pipes whose other side nobody has open: whoever opens one waits for ever."""
 
     def setUp(self):
         super().setUp()
@@ -40,7 +40,7 @@ class Pipes(CliTest):
         for name in ("pipe", self.pipe("pipe.pbrt"), self.pipe("pipe.pbrt.gz"), self.pipe("pipe.gltf"), self.pipe("pipe.glb")):
             for command in (["render", name], ["info", name], ["measure", name, "--pixel", "0,0"]):
                 if command[0] == "info" and name == "pipe":
-                    continue  # is taken for an image
+                    continue  # the format is taken for an image
                 with self.subTest(command=command):
                     self.assert_fails(self.run_program(*command, timeout=10), SCENE, name, "a named pipe")
 
@@ -69,7 +69,7 @@ class Pipes(CliTest):
         self.assertEqual(program.returncode, DONE)
 
     def test_standard_input_may_be_a_scene(self):
-        """Where a file is behind it; what comes through a pipe has no length."""
+        """Standard input is a scene where a file is behind it; data from a pipe has no length."""
         self.write("scene.pbrt", TINY)
         command = [PROGRAM, "render", "/dev/stdin", "--quiet", "--spp", "1", "-o", "a.exr"]
         with open(self.folder / "scene.pbrt", "rb") as scene:
@@ -80,7 +80,7 @@ class Pipes(CliTest):
 
 
 class Named(CliTest):
-    """What a scene names."""
+    """Files that a scene names."""
 
     LINES = (
         'Include "%s"',

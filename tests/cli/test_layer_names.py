@@ -62,7 +62,7 @@ class LayerNames(CliTest):
             text = subprocess.run(["oiiotool", "--stats", "-v", f"{names}.exr"], cwd=self.folder, capture_output=True, text=True, check=True).stdout
             line = re.search(r"channel list: (.*)", text).group(1)
             self.assertEqual({c.strip().removesuffix(" (float)") for c in line.split(",")}, ours)
-        # The values of one layer, as oiiotool writes them.
+        # Compare the values of one layer, as oiiotool writes them
         subprocess.run(["oiiotool", "blender.exr", "--ch", "ViewLayer.Noisy Image.R,ViewLayer.Noisy Image.G,ViewLayer.Noisy Image.B", "--chnames", "R,G,B", "-d", "float", "--compression", "zip", "-o", "raw.exr"], cwd=self.folder, check=True)
         raw = exr.read(self.folder / "raw.exr")
         for c in "RGB":

@@ -1,4 +1,4 @@
-"""Memory: what films take, and what is refused. Samples that are not finite."""
+"""Memory: the bytes that films take, and renders that are refused. Samples that are not finite."""
 
 import json
 import math
@@ -63,7 +63,7 @@ class Memory(FilmTest):
         self.run_render("plain", "hybrid", "--max-memory", "4G", "--spp", "1")
 
     def test_long_and_narrow_images(self):
-        """Their borders take several times the memory of their pixels."""
+        """Narrow images have borders that take several times the memory of their pixels."""
         for size in ("60000x1", "1x60000"):
             result = self.run_program(
                 "render", "plain.pbrt", "-o", "out.exr", "--method", "hybrid", "--resolution", size, "--max-memory", "250M"
@@ -73,7 +73,7 @@ class Memory(FilmTest):
 
     @unittest.skipIf(SANITIZED, "a sanitizer takes several times what the program does")
     def test_what_is_refused_would_not_have_fit(self):
-        """The estimate is near the most that the process then has in memory."""
+        """The estimate is near the most that the process has in memory at its worst."""
         factor = 1.6
         for method, resolution in (("uniform", "500x400"), ("covariance", "500x400"), ("hybrid", "300x200")):
             with self.subTest(method=method):
@@ -107,7 +107,7 @@ class NotFinite(FilmTest):
                     self.assertIn("vertex 0", shown.stdout)
 
     def test_light_without_a_known_error(self):
-        """The rest of the image has one: it is what --error asks for, and what the film keeps."""
+        """The rest of the image has a known error: --error asks for it, and the film keeps it."""
         self.write("lamp.pbrt", BRIGHT_LAMP)
         film = ["--error", "0.0001", "--checkpoint", "c.film", "--resume"]
         for spp in (32, 64):

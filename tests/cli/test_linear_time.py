@@ -1,4 +1,4 @@
-"""Large inputs: what a file costs grows with its size and not with its square."""
+"""Large inputs: the cost of a file grows with its size and not with its square."""
 
 import json
 import resource
@@ -17,11 +17,11 @@ class LinearTime(CliTest):
         return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
     def assert_linear(self, few, many, ratio):
-        """Twice what a linear cost would be, and a second for a machine that does other work."""
+        """Asserts at most twice the time of a linear cost, and a second for a machine that does other work."""
         self.assertLess(many, 2 * ratio * few + SLOWER)
 
     def test_nodes_of_a_gltf_file(self):
-        """Empty ones: 13.6 s of 100,000."""
+        """Nodes that are empty: 13.6 s of 100,000."""
         seconds = []
         for count in (20000, 100000):
             scene = {"asset": {"version": "2.0"}, "scenes": [{"nodes": list(range(count))}], "nodes": [{}] * count}
@@ -30,7 +30,7 @@ class LinearTime(CliTest):
         self.assert_linear(*seconds, 5)
 
     def test_parameters_of_a_shape(self):
-        """That are not known: 7 s of 100,000."""
+        """Parameters that are not known: 7 s of 100,000."""
         seconds = []
         for count in (20000, 100000):
             parameters = "".join(f'"float p{i}" {i}\n' for i in range(count))

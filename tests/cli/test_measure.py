@@ -1,4 +1,4 @@
-"""covtrace measure: what it prints, in which units, and how it fails."""
+"""covtrace measure: its output, the units, and its failures."""
 
 import json
 import math

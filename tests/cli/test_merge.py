@@ -25,7 +25,7 @@ class Merge(FilmTest):
         return result
 
     def rounds(self, scene, method, *arguments, n=SHARDS, order=lambda parts: parts):
-        """As the job array of the documentation does it. Returns the rounds it took."""
+        """Traces and merges rounds as the job array of the documentation does. Returns the rounds it took."""
         parts = [f"part-{k}.film" for k in range(1, n + 1)]
         for r in range(1, 20):
             for k in range(1, n + 1):
@@ -53,7 +53,8 @@ class Merge(FilmTest):
         self.assert_identical("whole.exr", "merged.exr")
 
     def test_all_orders(self):
-        """In every round of each method: the same film, byte by byte; also of joined ones; at last the same image."""
+        """Merging in any order, in every round of each method: the same film, byte by byte; also of joined ones; at
+        last the same image."""
         parts = [f"part-{k}.film" for k in range(1, SHARDS + 1)]
         for method in METHODS:
             with self.subTest(method=method):
@@ -94,14 +95,16 @@ class Merge(FilmTest):
                 self.assertEqual(value, whole.pixels[name][i] if there else 0, (name, x, y))
 
     def test_an_image_that_is_not_complete(self):
-        """Exit code 6, as of a render that was interrupted; a film that is joined step by step is nothing of the kind."""
+        """An incomplete image has exit code 6, as that of a render that was interrupted; a film that is joined step
+        by step is nothing of the kind."""
         for k in (1, 2, 3):
             self.shard(k, "plain", "hybrid", "--spp", "8", n=3)
         parts = [f"part-{k}.film" for k in (1, 2, 3)]
         for films, arguments, why in (
             (parts[:2], ["-o", "a.exr"], "1 of its 3 shards is missing"),
             (parts[:1], ["--png", "a.png", "--quiet"], "2 of its 3 shards are missing"),
-            (parts, ["-o", "a.exr", "--film", "all.film"], "not come to its end"),  # of its first round alone
+            # The film is of its first round alone.
+            (parts, ["-o", "a.exr", "--film", "all.film"], "not come to its end"),
         ):
             with self.subTest(films=films, arguments=arguments):
                 result = self.run_program("merge", *films, *arguments)
@@ -124,11 +127,11 @@ class Merge(FilmTest):
         self.assertEqual(json.loads((self.folder / "stats.json").read_text())["radiance"]["samples"], 0)
         for film in ("first", "part-1"):
             result = self.run_program("merge", f"{film}.film", "-o", f"{film}.exr")
-            self.assertEqual(result.code, INTERRUPTED, result)  # of one shard
+            self.assertEqual(result.code, INTERRUPTED, result)  # the film is of one shard
         self.assert_identical("first.exr", "part-1.exr")
 
     def test_a_shard_that_began_with_another_budget(self):
-        """Its round is the same: it keeps its samples and joins those with the new --spp."""
+        """A shard with another budget has the same round: it keeps its samples and joins those with the new --spp."""
         for method in ("covariance", "hybrid"):
             with self.subTest(method=method):
                 for film in self.folder.glob("*.film*"):
@@ -139,7 +142,7 @@ class Merge(FilmTest):
                 self.assert_identical("whole.exr", "merged.exr")
 
     def test_shards_of_hybrid_with_any_layers(self):
-        """Which layers are asked for changes nothing that `hybrid` keeps."""
+        """Layers that are asked for change nothing that `hybrid` keeps."""
         spp = ["--spp", "2"]
         self.shard(1, "plain", "hybrid", *spp, "--layers", "inview", n=2)
         self.shard(2, "plain", "hybrid", *spp, n=2)

@@ -56,7 +56,7 @@ class Ranks(FilmTest):
                 self.assertIn("covtrace: ", done.stderr)
 
     def test_ranks_that_do_not_begin_with_the_same(self):
-        """A checkpoint in a folder of the first one's alone."""
+        """The checkpoint is in a folder of the first process alone."""
         self.run_render("plain", "uniform", "--spp", "1", "--checkpoint", "c.film")
         other = self.folder / "other"
         other.mkdir()

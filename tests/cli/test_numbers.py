@@ -33,7 +33,7 @@ class Numbers(CliTest):
         return image
 
     def assert_no_bad_number(self, text, *arguments):
-        """Refused with a place, or rendered with finite layers."""
+        """Asserts that the scene is refused with a place, or rendered with finite layers."""
         result = self.render(text, "--spp", "4", *arguments)
         if result.code != DONE:
             self.assertRegex(result.stderr, r"^covtrace: scene\.pbrt:\d+:\d+: ")
@@ -56,7 +56,8 @@ class Numbers(CliTest):
                     self.assert_no_bad_number(scene(before=f"PixelFilter {text}"), "--method", method)
 
     def test_a_gaussian_of_a_wide_radius_is_as_bright(self):
-        """Six deviations hold all of it: a radius of 5000 pixels changes nothing but the rest beyond the default radius."""
+        """A Gaussian is within six deviations: a radius of 5000 pixels changes nothing but the rest beyond the
+        default radius."""
         means = []
         for radius in (3, 5000):
             text = scene(before=f'PixelFilter "gaussian" "float xradius" {radius} "float yradius" {radius}',
@@ -79,7 +80,7 @@ class Numbers(CliTest):
                         self.assert_no_bad_number(scene(world=world, iso=iso), "--method", method)
 
     def test_the_image_is_kept_and_says_what_was_replaced(self):
-        """After hours of rendering: all that is good stays, what is not is told once."""
+        """After hours of rendering all good pixels stay, and the others are told once."""
         self.write("scene.pbrt", scene(world='LightSource "infinite" "float scale" 1e25'))
         for method in METHODS:
             with self.subTest(method=method):
@@ -98,7 +99,7 @@ class Numbers(CliTest):
                 at_first = int(where[3]) * 24 + int(where[2])
                 self.assertIn(LARGEST, [values[at_first] for values in image.pixels.values()])
                 self.assertGreater(min(image.pixels["raw.G"]), 1e20)
-                # The film keeps what it had: its image is the same.
+                # The film keeps its samples: its image is the same.
                 merged = self.run_program("merge", "a.film", "-o", "merged.exr")
                 self.assertIn(told[0], merged.stderr)
 

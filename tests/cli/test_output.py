@@ -1,4 +1,4 @@
-"""Where results go, and what happens where they cannot be written."""
+"""The places of results, and failures where they cannot be written."""
 
 import json
 import os
@@ -54,7 +54,7 @@ class Names(CliTest):
 
 
 class CannotBeWritten(CliTest):
-    """Found before the render, since LONG would not end."""
+    """Outputs that cannot be written are found before the render, since LONG would not end."""
 
     def test_missing_folder(self):
         for option in ("-o", "--png", "--stats"):
@@ -144,7 +144,7 @@ class FailsInTheMiddle(CliTest):
             with self.subTest(option=option):
                 result = self.render(TINY, option, "/dev/full")
                 self.assert_fails(result, IO, "/dev/full")
-                exr.read(self.folder / "out.exr")  # what could be written is there
+                exr.read(self.folder / "out.exr")  # the part that could be written is there
 
 
 class StandardStreams(CliTest):

@@ -37,7 +37,8 @@ class Reader:
 
 
 class Peer:
-    """What tev keeps: the images that were created and updated. Raises in messages() where a byte is out of place."""
+    """The state that tev keeps: the images that were created and updated. Raises in messages() where a byte is out
+    of place."""
 
     def __init__(self):
         self.listener = socket.create_server(("127.0.0.1", 0))
@@ -148,7 +149,8 @@ class Preview(CliTest):
                 self.assertEqual(path.read_bytes(), plain)
 
     def test_a_viewer_that_is_absent_is_told_once(self):
-        """Also of renders so short, and of names so slow to look up, that nothing is known before the end."""
+        """The warning comes, too, for renders so short, and for names so slow to look up, that nothing is known
+        before the end."""
         with socket.socket() as closed:
             closed.bind(("127.0.0.1", 0))
             port = closed.getsockname()[1]
@@ -189,7 +191,8 @@ class Preview(CliTest):
         self.assertEqual(list(peer.images["out.exr"]["R"]), list(exr.read(self.folder / "out.exr").pixels["R"]))
 
     def test_a_viewer_that_hangs_or_is_killed(self):
-        """A process of its own, stopped with SIGSTOP before anything is read, or killed after the first bytes."""
+        """The viewer is a process of its own, stopped with SIGSTOP before anything is read, or killed after the
+        first bytes."""
         plain = self.rendered("--resolution", "200x150", "--spp", "4", "--reproducible", output="plain.exr").read_bytes()
         viewer = (
             "import socket, sys\n"

@@ -1,4 +1,4 @@
-"""What the program tells: compare, info, statistics, progress."""
+"""Reports of the program: compare, info, statistics, progress."""
 
 import array
 import fcntl
@@ -31,7 +31,7 @@ def luminance(image, i):
 
 
 def decile_ratio(image, reference, pixels):
-    """Sums of luminance over those of the reference, in ten groups of 8x8 blocks by its brightness."""
+    """The sums of luminance over those of the reference, in ten groups of 8x8 blocks by its brightness."""
     top, left = divmod(pixels[0], image.width)
     blocks = {}
     for i in pixels:
@@ -48,7 +48,7 @@ def decile_ratio(image, reference, pixels):
 
 
 def measures(image, reference, pixels=None):
-    """The definitions of the measures, once more; `pixels` are a rectangle's, row by row."""
+    """The measures by their definitions, once more; `pixels` are a rectangle's, row by row."""
     pixels = range(image.width * image.height) if pixels is None else pixels
     n = len(pixels)
     squares, encoded = 0.0, 0.0
@@ -282,7 +282,7 @@ class Progress(CliTest):
         known = [r for r in reports if r["error"] is not None]
         self.assertGreater(len(known), 1)
         self.assertLess(known[-1]["error"], known[0]["error"])
-        # What was said last is about what the raw samples in the file say.
+        # The error that was told last is about that of the raw samples in the file.
         image = exr.read(self.folder / "out.exr")
         n = len(image.pixels["R"])
         mean = sum(image.pixels["variance." + c][i] / (image.pixels["raw." + c][i] ** 2 + 0.01) for c in "RGB" for i in range(n)) / (3 * n)
@@ -297,7 +297,7 @@ class Progress(CliTest):
         known = [r["error"] for r in map(json.loads, result.stderr.splitlines()) if r["error"] is not None]
         self.assertGreater(len(known), 1)
         self.assertLess(known[-1], known[0])
-        # What was said last is about what the layer of the delivered image says.
+        # The error that was told last is about that of the delivered image's layer.
         image = exr.read(self.folder / "out.exr")
         brightness = [0.2126 * r + 0.7152 * g + 0.0722 * b for r, g, b in zip(*(image.pixels[c] for c in "RGB"))]
         mean = sum(e**2 / (y**2 + 0.01) for e, y in zip(image.pixels["error.Y"], brightness)) / len(brightness)

@@ -1,4 +1,5 @@
-"""The thesis' experiments at a tiny size: that they run, what they claim, and the page that says so."""
+"""The experiments of Belcour 2012, section 5.1, at a tiny size: that they run, the claims that they make, and the
+page that shows them."""
 
 import json
 import re

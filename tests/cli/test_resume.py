@@ -16,7 +16,8 @@ import exr
 from films import METHODS, SCENES, FilmTest, render_killed, textured_glb
 from support import DONE, INTERRUPTED, IO, PROGRAM, SCENE, SLOWER, USAGE, limits
 
-KILLS = int(os.environ.get("COVTRACE_KILLS", "3"))  # at least, of each scene and method; the nightly test wants more
+# Least kills of each scene and method; the nightly test wants more.
+KILLS = int(os.environ.get("COVTRACE_KILLS", "3"))
 
 
 class Killed(FilmTest):
@@ -42,7 +43,7 @@ class Killed(FilmTest):
                         self.assert_no_leftovers()
 
     def test_something_is_kept_between_two_kills(self):
-        """Killed each time after a while that is too short for the whole, it ends nevertheless."""
+        """A render that is killed each time after a while that is too short for the whole ends nevertheless."""
         start = time.monotonic()
         self.run_render("moving", "hybrid", "--spp", "128", output="whole.exr")
         seconds = time.monotonic() - start
@@ -72,7 +73,7 @@ class Interrupted(FilmTest):
                 if match and float(match[1]) >= after:
                     break
             sent = time.monotonic()
-            # The system and the shell both tell of a terminal that is closed.
+            # SIGHUP comes twice: the system and the shell both tell of a terminal that is closed.
             for _ in range(2 if number == signal.SIGHUP else 1):
                 program.send_signal(number)
                 time.sleep(0.01)
@@ -118,7 +119,7 @@ class Interrupted(FilmTest):
 
 class MoreSamples(FilmTest):
     def test_a_finished_film_takes_more_samples(self):
-        """From the end of one round to that of another: as in one call."""
+        """A film goes on from the end of one round to that of another, as in one call."""
         on_demand = ("covariance", "--progressive", "--density", "thesis")
         for method, *options in [*([m] for m in METHODS), on_demand]:
             for first in ("16", "32"):
@@ -213,7 +214,7 @@ class Refused(FilmTest):
         self.assert_fails(result, USAGE, "images: ")
 
     def test_images_within_the_scene_file(self):
-        """A glTF file that embeds its texture: covered by the hash of the file."""
+        """A glTF file that embeds its texture is covered by the hash of the file."""
         self.run_render("plain", "uniform", "--spp", "1", "--png", "map.png")
         spp = ["--spp", "1", "--checkpoint", "t.film", "--resume", "--method", "uniform", "--resolution", "20x10", "--quiet"]
         for seed in ("0", "3"):
@@ -241,7 +242,7 @@ class Refused(FilmTest):
         self.run_render("plain", "uniform", "--spp", "4", "--checkpoint", "c.film", "--resume")
 
     def test_a_damaged_film_behind_a_link_is_set_aside_where_it_is(self):
-        """The link stays, and the next film goes where it leads to."""
+        """The link of a damaged film stays, and the next film goes where it leads to."""
         (self.folder / "elsewhere").mkdir()
         real = self.write("elsewhere/real.film", b"damaged")
         (self.folder / "c.film").symlink_to(real)
@@ -258,7 +259,7 @@ class Refused(FilmTest):
             self.run_render("plain", "uniform", "--spp", spp, "--checkpoint", "c.film", *(["--resume"] if spp != "1" else []))
         self.write("c.film", b"damaged")
         good = (self.folder / "c.film.prev").read_bytes()
-        # The disk is full from here on: what was good stays.
+        # The disk is full from here on: the good film stays.
         result = self.run_program("render", "plain.pbrt", "-o", "/dev/null", "--method", "uniform", "--spp", "3", "--checkpoint", "c.film",
                                   "--resume", "--progress", "none", before=limits(FSIZE=1000))
         self.assert_fails_in_writing(result)

@@ -24,7 +24,7 @@ def binary_ply(vertices=TRIANGLE, faces=((0, 1, 2),), count=None):
 
 class SceneErrorTest(CliTest):
     def assert_scene_fails_at(self, scene, at, *fragments):
-        """`at`: the text at whose first place the error must point."""
+        """Asserts an error at the first place of the text `at`."""
         self.assert_fails_at(self.render(scene), place_of(scene, at), *fragments)
         self.assert_no_file()
 

@@ -1,4 +1,4 @@
-"""--search-path: files of a scene that are not where it says."""
+"""Files of a scene that are not where it says: the option --search-path."""
 
 import unittest
 

@@ -9,7 +9,8 @@ import unittest
 import exr
 from support import DONE, INTERRUPTED, PROGRAM, SLOWER, TINY, CliTest
 
-# Asked for are 2 s and 0.5 s; a machine that runs other tests at the same time may need longer.
+# Extra seconds: 2 s and 0.5 s are asked for, and a machine that runs other tests at the same time
+# may need longer.
 SLACK = 1.5 * SLOWER
 
 

@@ -1,4 +1,5 @@
-"""What one command reads or writes under two names would be lost: refused, however the names are spelled."""
+"""Files under two names: a command that reads or writes one twice would lose it, and is refused, however the names
+are spelled."""
 
 import json
 import os
@@ -31,7 +32,7 @@ end_header
 
 
 class Spellings(CliTest):
-    """Of one name, in two outputs."""
+    """Spellings of one name, in two outputs."""
 
     def assert_refused(self, first, second, name, spelled):
         result = self.render(TINY, *LONG, first, name, second, spelled, output=None, timeout=10)
@@ -126,7 +127,8 @@ class WhatTheSceneReads(CliTest):
             before = (self.folder / target).read_bytes()
             for option in OUTPUTS:
                 with self.subTest(target=target, option=option):
-                    # An ending that is refused by itself would prove nothing.
+                    # The link has the ending of the option: an ending that is refused by itself
+                    # would prove nothing.
                     spelled = self.folder / ("link.png" if option == "--png" else "link")
                     spelled.symlink_to(target)
                     result = self.run_program("render", name, *LONG, "--quiet", option, spelled, timeout=10)
@@ -189,7 +191,7 @@ class OtherCommands(CliTest):
             with self.subTest(arguments=arguments):
                 self.assert_fails(self.run_program("merge", "p1.film", "p2.film", *arguments), USAGE)
                 self.assertEqual((self.folder / "p1.film").read_bytes(), before)
-        # The earlier film of the new one is an input.
+        # The earlier film of the new one is an input of the merge.
         os.rename(self.folder / "p1.film", self.folder / "p2.film.prev")
         self.assert_fails(self.run_program("merge", "p2.film", "p2.film.prev", "--film", "p2.film"), USAGE, "p2.film")
         result = self.run_program("merge", "p2.film", "p2.film.prev", "--film", "all.film", "-o", "all.exr")

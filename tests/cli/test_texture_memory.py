@@ -1,4 +1,4 @@
-"""--texture-memory: the same image in less memory."""
+"""Images in less memory: the option --texture-memory changes no pixel."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""--time where a single path takes long: thousands of media, one inside the other."""
+"""Budgets of time where a single path takes long: thousands of media, one inside the other."""
 
 import math
 import time
@@ -10,7 +10,7 @@ from support import DONE, HEADER, SLOWER, CliTest
 
 class SlowPaths(CliTest):
     def test_nested_media(self):
-        """5,000 of them: it ran past 100 s of 3."""
+        """Media inside each other, 5,000 of them: the render ran past 100 s of 3."""
         media = "".join(
             f'MakeNamedMedium "m{i}" "string type" "homogeneous" "rgb sigma_s" [1 1 1]\n'
             f'MediumInterface "m{i}" "{f"m{i - 1}" if i else ""}"\nMaterial "interface"\n'

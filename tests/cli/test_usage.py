@@ -133,7 +133,7 @@ class WrongCommandLines(CliTest):
                 self.assert_fails(self.run_program("compare", image, image, "--crop", crop), USAGE)
 
     def test_durations(self):
-        # Only that they are understood: the spp limit ends the render long before.
+        # Durations are only to be understood: the spp limit ends the render long before.
         for time in ("2.5", "45s", "3m", "1h30m", "0.5h", "1h0m30.5s"):
             with self.subTest(time=time):
                 self.assertEqual(self.render(TINY, "--spp", "1", "--time", time).code, DONE)

@@ -1,4 +1,4 @@
-"""What pbrt-v4 has and this program has not: a warning with its place, a substitute, exit code 0."""
+"""Features that pbrt-v4 has and this program lacks: a warning with its place, a substitute, exit code 0."""
 
 import unittest
 
@@ -36,7 +36,8 @@ class Warnings(CliTest):
             ("AttributeEnd", "AttributeEnd"),
         ]:
             with self.subTest(directive=directive):
-                # The line of the directive that is substituted: the first, or the second after AttributeBegin.
+                # The line is that of the directive that is substituted: the first, or the second
+                # after AttributeBegin.
                 line = TINY.count("\n") + (2 if directive.startswith("AttributeBegin") else 1)
                 self.assert_warns(TINY + directive + "\n", line, fragment)
 

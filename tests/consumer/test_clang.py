@@ -22,7 +22,7 @@ class Clang(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout}\n{done.stderr}")
                 return done.stdout
 
-            # Nothing of the renderer beside it.
+            # Copy the library without anything of the renderer beside it
             shutil.copytree(SOURCE / "covariance", pathlib.Path(folder) / "covariance")
             run(CMAKE, "-G", "Ninja", "-S", "covariance", "-B", "build", f"-DCMAKE_CXX_COMPILER={CLANG}")
             run(CMAKE, "--build", "build", "-j", "2")

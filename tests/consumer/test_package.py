@@ -65,7 +65,7 @@ class Package(unittest.TestCase):
         self.assertIn("covtrace", self.run_command(prefix / "bin" / "covtrace", "--version"))
 
     def test_debian_package_installs_and_removes(self):
-        """Into a Debian system without any file of its own, so that nothing on this machine is touched."""
+        """Installs into a Debian system without any file of its own, so that nothing on this machine is touched."""
         self.run_command("cpack", "--config", BUILD / "CPackConfig.cmake", "-B", self.folder)
         (package,) = self.folder.glob("covtrace_*.deb")
         for other in set(self.folder.glob("*.deb")) - {package}:

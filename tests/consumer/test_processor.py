@@ -11,7 +11,8 @@ PROGRAM = os.environ["COVTRACE"]
 BUILD = pathlib.Path(os.environ["COVTRACE_BUILD"])
 PYTHON = "/usr/bin/python3"
 EMULATOR = shutil.which("qemu-x86_64")
-# The last of its maker's before AVX, and all that the emulator has.
+# Processors of the emulator: the last of its maker's before AVX, and one with all that the emulator
+# has.
 WITHOUT, WITH = "Nehalem", "max"
 
 

@@ -27,12 +27,12 @@ def add_on_version():
 
 
 def text_of(file):
-    """Without the version of the format of Blender's manifests."""
+    """The text of a file without the version of the format of Blender's manifests."""
     return re.sub(r"(?m)^schema_version .*$", "", file.read_text())
 
 
 class Version(unittest.TestCase):
-    """covariance/VERSION has it; CMake reads it there."""
+    """The version stands in covariance/VERSION, where CMake reads it."""
 
     def test_is_three_numbers(self):
         self.assertRegex(VERSION, r"\A\d+\.\d+\.\d+\Z")
@@ -43,14 +43,15 @@ class Version(unittest.TestCase):
         self.assertIn(f'"covtrace {VERSION}"', (BUILD / "cli/covtrace.1").read_text().splitlines()[0])
 
     def test_the_add_on_of_older_blenders(self):
-        # Blender reads it without running the file, so that it cannot be looked up.
+        # The add-on repeats the version: Blender reads it without running the file, so that it
+        # cannot be looked up.
         self.assertEqual(".".join(map(str, add_on_version())), VERSION)
 
     def test_the_changelog_has_its_section(self):
         self.assertRegex((SOURCE / "CHANGELOG.md").read_text(), rf"(?m)^## {re.escape(VERSION)}( \(\d{{4}}-\d\d-\d\d\))?$")
 
     def test_stands_nowhere_else(self):
-        """In no file that makes a package: what repeats it is forgotten at the next one."""
+        """No other file that makes a package has the version: a copy is forgotten at the next one."""
         files = [*SOURCE.glob("packaging/*"), *SOURCE.glob("cmake/*.cmake"), *SOURCE.rglob("CMakeLists.txt"),
                  SOURCE / "scripts/release", SOURCE / "docs/covtrace.1.in"]
         repeating = [str(f.relative_to(SOURCE)) for f in files

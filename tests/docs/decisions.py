@@ -49,7 +49,7 @@ class Record:
         self.archived = file.parent.name == "archive"
 
     def later(self):
-        """The records that took this one's place, as links of the index."""
+        """The records that took this record's place, as links of the index."""
         return [f"[{number}]({found.relative_to(FOLDER)})" for number in re.findall(r"\[(\d{4})\]", self.status)
                 for found in FOLDER.rglob(f"{number}-*.md")]
 

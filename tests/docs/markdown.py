@@ -1,4 +1,4 @@
-"""What a document consists of, line by line: prose, code, tables, headings. No more of Markdown than our documents use."""
+"""Reading documents line by line: prose, code, tables, headings. No more of Markdown than our documents use."""
 
 import re
 from dataclasses import dataclass
@@ -17,8 +17,8 @@ class Line:
 
 
 def lines(text):
-    """The lines of a document with their kinds. Indented code is what follows a blank line by four columns more than the
-    item that it could belong to."""
+    """The lines of a document with their kinds. Code may be indented: it follows a blank line by four
+    columns more than the item that it could belong to."""
     result, language, fenced, item_indent, after_blank, in_code = [], "", False, 0, True, False
     for number, line in enumerate(text.splitlines(), 1):
         indent = len(line) - len(line.lstrip(" "))

@@ -53,7 +53,7 @@ def text_of(file):
 
 @functools.cache
 def options_of_all():
-    """What the program's commands say of their options, and all scripts."""
+    """The help of the program's commands, and that of all scripts."""
     commands = re.findall(r"(?m)^  ([a-z]+)  ", help_of(PROGRAM).partition("Subcommands:")[2])
     scripts = [file for folder in ("bench", "scripts", "scenes") for file in (ROOT / folder).rglob("*")
                if file.is_file() and file.suffix in ("", ".py")]
@@ -81,7 +81,7 @@ def statements(code):
 
 
 def command_of(statement):
-    """A statement without what stands before its command: assignments, `sudo`, the `do` of a loop."""
+    """A statement without the words before its command: assignments, `sudo`, the `do` of a loop."""
     words = list(statement)
     while words and (re.match(r"\w+=(?!\$\()", words[0]) or words[0] in ("sudo", "do")):
         words.pop(0)
@@ -125,7 +125,7 @@ class Documents(unittest.TestCase):
         self.assertGreater(named, 30)
 
     def check(self, where, statement):
-        """What is wrong with a command, or None; counts those that it understands."""
+        """The fault of a command, or None; counts those that it understands."""
         words = command_of(statement)
         if not words:
             return None

@@ -11,7 +11,7 @@ import markdown
 
 WIDTH = 100
 LONGEST_CODE = 70  # that is not broken
-# What would begin a list, a quotation, a heading or a table at the start of a line.
+# Words that would begin a list, a quotation, a heading or a table at the start of a line.
 BEGINS_A_BLOCK = re.compile(r"([-*+]|\d+[.)]|#+|>.*|\|.*)$")
 
 
@@ -31,7 +31,7 @@ def words(text):
 
 
 def tokens(text):
-    """What is kept together: words, and what would begin a block with the word before it."""
+    """Words that are kept together: a word that would begin a block stays with the word before it."""
     kept = []
     for word in words(" ".join(text.split())):
         if kept and BEGINS_A_BLOCK.match(word):

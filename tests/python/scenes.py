@@ -33,7 +33,7 @@ def builder(resolution=(48, 27), **camera):
     return scene
 
 
-# Everything is lit alike: a radiance of 0.25 in every pixel.
+# A scene that is lit alike everywhere: a radiance of 0.25 in every pixel.
 FURNACE = """
 Camera "perspective" "float fov" 30
 Film "rgb" "integer xresolution" 8 "integer yresolution" 6

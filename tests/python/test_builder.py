@@ -1,4 +1,4 @@
-"""covtrace.SceneBuilder: what it builds moves, and what it can't build is refused."""
+"""Scenes of covtrace.SceneBuilder: they move, and scenes that it can't build are refused."""
 
 import pathlib
 import tempfile

@@ -1,4 +1,4 @@
-"""The interpreter ends while threads work in C++: no abort, and what was asked for before is finished."""
+"""The interpreter ends while threads work in C++: no abort, and work that was asked for before is finished."""
 
 import subprocess
 import sys
@@ -86,7 +86,7 @@ class InterpreterEnd(unittest.TestCase):
         """)
 
     def test_after_the_end_began(self):
-        """Functions of atexit that were registered before the package still have files, but no renders."""
+        """Late functions of atexit, registered before the package, still have files, but no renders."""
         done = subprocess.run([sys.executable, "-B", "-c", "import atexit\natexit.register(lambda: late())\n" + BEGIN + textwrap.dedent("""
             image = covtrace.render(scene, spp=1)
             folder = tempfile.mkdtemp()

@@ -133,7 +133,7 @@ class Rendering(unittest.TestCase):
             def is_set(self):
                 return self.answer()
 
-        # As in an `if`: a text is true unless it is empty.
+        # A text is true unless it is empty, as in an `if`.
         image = covtrace.render(scenes.builder(), method="uniform", spp=1 << 20,
                                 cancel=Cancel(lambda: "yes"))
         self.assertFalse(image.complete)
@@ -188,7 +188,7 @@ class Rendering(unittest.TestCase):
         seconds = time.monotonic() - start
         stop.set()
         thread.join()
-        # It would count once or twice if the lock were held.
+        # The thread would count once or twice if the lock were held.
         self.assertGreater(counted[0], min(20, 50 * seconds))
 
     def test_threads_do_not_change_the_image(self):
@@ -224,7 +224,7 @@ class Gltf(unittest.TestCase):
     def test_shutter_moves_what_is_animated(self):
         for shutter in ((0.5, 0.50001), (0.0, 1.0), (0.0, 0.02)):
             rgb = self.render(self.file, shutter=shutter).rgb
-            # The same light however long it shines.
+            # The light is the same however long it shines.
             self.assertAlmostEqual(float(rgb.mean()), 2 / 4 / 2, delta=0.01, msg=str(shutter))
             centre = {0.5: 2, 0.0: 1 if shutter[1] == 1 else 0}[shutter[0]]
             self.assertAlmostEqual(float(rgb[12:20, 31:33, 1].mean()), centre, delta=0.1,

@@ -41,7 +41,8 @@ def folder_of(path, table):
 
 
 def included_file(root, source, name):
-    """The file below the root that `#include "name"` in `source` names; None for other projects' headers and made ones."""
+    """The file below the root that `#include "name"` in `source` names; None for other projects' headers and made
+    ones."""
     for base in (source.parent, root / "src", root / "studies", root, root / "covariance/include"):
         if (base / name).is_file():
             return (base / name).resolve().relative_to(root.resolve())
