@@ -1,5 +1,6 @@
-// Film files, and states that headers describe, whatever they hold: covtrace::Error, or all that
-// the program does with a film works. libFuzzer's build does not look at the checksums of films.
+// Film files, and states that headers describe: whatever they hold, the reader throws
+// covtrace::Error, or all that the program does with a film works. libFuzzer's build does not look
+// at the checksums of films.
 #include <algorithm>
 #include <cstdint>
 #include <sstream>
@@ -25,12 +26,12 @@ void use(covtrace::RenderState state) {
     merge.add("a", state);
     try {
         merge.add("b", state);
-    } catch (const covtrace::Error&) {  // they overlap
+    } catch (const covtrace::Error&) {  // the shards overlap
     }
     describe(std::move(merge).result());
 }
 
-/// A header up to the first zero byte, the content of all arrays after it.
+/// Uses a header, up to the first zero byte, with the content of all arrays after it.
 void use_described(const std::string& bytes) {
     const size_t end = std::min(bytes.find('\0'), bytes.size());
     covtrace::RenderState state = covtrace::parse_film_header(bytes.substr(0, end), kMostBytes);

@@ -7,7 +7,7 @@
 #include "image/raster.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-    // The name says Targa, which counts where the first bytes say nothing else.
+    // The name is that of a Targa file, which counts where the first bytes say nothing else.
     static const covtrace::InputFile file(".tga");
     try {
         const covtrace::RasterImage image = covtrace::read_raster(file.write(data, size));

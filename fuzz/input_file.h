@@ -10,7 +10,7 @@
 
 namespace covtrace {
 
-/// Overwritten each time; gone when the process ends.
+/// An input file, overwritten each time and gone when the process ends.
 class InputFile {
   public:
     explicit InputFile(const std::string& suffix)

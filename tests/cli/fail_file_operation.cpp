@@ -18,7 +18,7 @@ namespace {
 
 std::atomic<long> operations{0};
 std::atomic<bool> written[1024];  // by descriptor: opened for writing
-std::atomic<bool> filled[1024];   // and written to: only then does closing it matter
+std::atomic<bool> filled[1024];  // by descriptor: written to, too; only then does closing it matter
 
 template <typename Function>
 Function next(const char* name) {

@@ -1,5 +1,5 @@
-// A renderer's first steps with the library: light from a disc reflected by a floor, seen through a
-// lens.
+// The first steps of a renderer with the library: light from a disc reflected by a floor, seen
+// through a lens.
 #include <cmath>
 #include <covariance/covariance.hpp>
 #include <cstdio>

@@ -14,12 +14,12 @@ struct NoisyView {
     NoisyFeatures features;
 };
 
-/// What a denoiser makes of it.
+/// The image as a denoiser leaves it.
 inline ColorPlanes denoised(const Denoiser& denoiser, const NoisyView& view, bool turned = false) {
     return denoiser.denoise(view.features, {{.color = view.color, .turned = turned}})[0];
 }
 
-/// Light between 0.1 and 2 from left to right, and features, with noise of `seed`.
+/// A view of light between 0.1 and 2 from left to right, and features, with noise of `seed`.
 inline NoisyView noisy_view(int width, int height, unsigned seed = 1) {
     std::mt19937 random(seed);
     const auto uniform = [&random] { return float(random() % 65536) / 65536; };

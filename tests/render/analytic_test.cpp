@@ -17,8 +17,8 @@ Camera "perspective" "float fov" 30
 WorldBegin
 )";
 
-/// The mean must agree with the known value within 4.5 standard errors (false alarm 7e-6 each) plus
-/// `model`.
+/// Asserts that the mean agrees with the known value within 4.5 standard errors (false alarm 7e-6
+/// each) plus `model`.
 void expect_mean(const RenderResult& r, double expected, double model = 1e-3) {
     const Summary s = summarize_image(r.image);
     EXPECT_NEAR(s.mean, expected, 4.5 * s.standard_error + model * expected);
@@ -58,7 +58,7 @@ Shape "sphere")",
 }
 
 TEST(Analytic, ClosedSphereOfLightSumsAllBounces) {
-    // Inside a sphere that emits L and reflects rho, the radiance is L / (1 - rho) everywhere.
+    // The radiance inside a sphere that emits L and reflects rho is L / (1 - rho) everywhere.
     const std::string text = R"(
 Integrator "path" "integer maxdepth" 400
 Film "rgb" "integer xresolution" 16 "integer yresolution" 16
@@ -74,7 +74,7 @@ AttributeEnd)";
 }
 
 TEST(Analytic, DistantLightOnAFacingPlane) {
-    // Irradiance 2 on an albedo of 0.5: radiance 1/pi.
+    // An irradiance of 2 on an albedo of 0.5 gives the radiance 1/pi.
     const std::string plane = R"(
 Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
 Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indices" [ 0 1 2 0 2 3 ])";
@@ -88,7 +88,7 @@ Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indi
 }
 
 TEST(Analytic, ACameraOnTheFloorDoesNotSeeTheFloor) {
-    // All that it sees is the sky, above and below; the floor is black.
+    // The camera sees nothing but the sky, above and below; the floor is black.
     const std::string text = R"(
 Film "rgb" "integer xresolution" 16 "integer yresolution" 16
 LookAt 0.3 0 0.7  0 0 5  0 1 0

@@ -13,7 +13,8 @@ using namespace test;
 
 constexpr float kLampRadius = 0.05f, kLampRadiance = 500;
 
-// A lamp at (0, 1, 0) over a floor that the camera sees near the origin, a mirror at x = 1.
+// The scene: a lamp at (0, 1, 0) over a floor that the camera sees near the origin, a mirror at x =
+// 1.
 const std::string kMirrorScene = R"(
 Integrator "path" "integer maxdepth" 4
 Film "rgb" "integer xresolution" 48 "integer yresolution" 48
@@ -34,8 +35,8 @@ Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ]
   "point3 P" [ 1 0 -1  1 0 1  1 2 1  1 2 -1 ]
 )";
 
-/// Irradiance of the floor at the origin: a sphere of radius r at distance d gives
-/// pi L (r / d)^2 cos(theta), the mirror's image of it (at (2, 1, 0)) what Fresnel leaves of that.
+/// Irradiance of the floor at the origin: a sphere of radius r at distance d gives pi L (r / d)^2
+/// cos(theta), its image in the mirror (at (2, 1, 0)) the part that Fresnel leaves of that.
 double floor_radiance() {
     const double source = kPi * kLampRadiance * kLampRadius * kLampRadius;
     const double direct = source;
@@ -46,7 +47,7 @@ double floor_radiance() {
     return 0.5 / kPi * (direct + image);
 }
 
-// 4.5 standard errors: false alarm 7e-6.
+// The bound is 4.5 standard errors: false alarm 7e-6.
 TEST(CausticGuide, LightOverAMirrorSumsToTheImageOfTheLamp) {
     const Summary s = summarize_image(render_text(kMirrorScene, uniform(64)).image);
     EXPECT_NEAR(s.mean, floor_radiance(), 4.5 * s.standard_error + 2e-3 * floor_radiance());
@@ -80,9 +81,9 @@ TEST(CausticGuide, PointsAtTheImageAndIsADensity) {
     const GuideMixture guide = scene.guide.at(p, up);
     ASSERT_GT(guide.share(), 0.01f);
     const Vec3 towards = normalize(Vec3{2, 1, 0} - p);
-    EXPECT_GT(guide.pdf(towards), 50);  // 1 / (2 pi) were uniform
+    EXPECT_GT(guide.pdf(towards), 50);  // a uniform density were 1 / (2 pi)
 
-    // Chi-square over cells of angle from the image's direction and azimuth, alpha 1e-4.
+    // Compare by chi-square over cells of angle from the image's direction and azimuth, alpha 1e-4
     constexpr int kRings = 24, kSectors = 8, kSamples = 200000;
     constexpr float kReach = 0.2f;  // radians
     const Frame frame = Frame::from_z(towards);

@@ -1,10 +1,10 @@
-// The thesis' closed form in real renders: a textured plane under a constant sky, out of focus or
-// moving.
+// The closed form of Belcour 2012 for filters in real renders: a textured plane under a constant
+// sky, out of focus or moving.
 //
 //   (4 pi^2 spectrum)^-1 = (4 pi^2 Sigma_texture)^-1 + r^2/4 I + v v^T/12
 //
-// r the radius of the blur disc in pixels, v the motion in pixels per shutter. Sigma_texture, in
-// pixels, is what a pinhole sees at rest. No constant is fitted.
+// The radius r of the blur disc is in pixels, the motion v in pixels per shutter. Sigma_texture, in
+// pixels, is the covariance that a pinhole sees at rest. No constant is fitted.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,8 +21,8 @@ using Sym2 = covariance::Sym2<double>;
 constexpr int kSize = 64;
 constexpr double kDistance = 4, kFov = 40;
 
-/// A texture of random waves with frequencies about (fx, fy) cycles per texture: nearly the same
-/// spectrum everywhere.
+/// Writes a texture of random waves with frequencies about (fx, fy) cycles per texture: nearly the
+/// same spectrum everywhere.
 std::filesystem::path write_waves() {
     const auto folder = std::filesystem::path(testing::TempDir());
     constexpr int n = 512;
@@ -83,7 +83,8 @@ Sym2 spectrum_at(const Image& image, const std::array<const char*, 3>& channels,
             image.find(channels[2])->values[i]};
 }
 constexpr std::array<const char*, 3> kSpectrum{"spectrum.xx", "spectrum.xy", "spectrum.yy"};
-/// What a pinhole would see at one instant of the same light: the texture alone, in pixels.
+/// Channels of the texture alone, in pixels, as a pinhole would see it at one instant of the same
+/// light.
 constexpr std::array<const char*, 3> kTexture{"cov.00", "cov.01", "cov.11"};
 
 double pixels_per_slope() {
@@ -101,9 +102,10 @@ void expect_near(const Sym2& measured, const Sym2& expected, double tolerance) {
     EXPECT_NEAR(measured.xy, expected.xy, tolerance * std::sqrt(expected.xx * expected.yy));
 }
 
-/// The closed form in every pixel of the middle, with the texture that this pixel met on its paths
-/// (the plane is not quite perpendicular to rays off the axis: 3 %). That texture's mean is the
-/// pinhole's at rest but for how much the waves differ between the places that are seen (20 %).
+/// Asserts the closed form in every pixel of the middle, with the texture that this pixel met on
+/// its paths (the plane is not quite perpendicular to rays off the axis: 3 %). That texture's mean
+/// is the pinhole's at rest but for how much the waves differ between the places that are seen (20
+/// %).
 void expect_closed_form(const Image& image, const Image& at_rest, const Sym2& blur) {
     expect_near(mean_of(image, kTexture), mean_of(at_rest, kSpectrum), 0.2);
     for (int y = kSize / 4; y < 3 * kSize / 4; y += 5)
@@ -114,9 +116,10 @@ void expect_closed_form(const Image& image, const Image& at_rest, const Sym2& bl
         }
 }
 
-/// The mean, with the texture that a pinhole at rest sees. The closed form is concave in the
-/// texture, and a blurred pixel sees a mean of what pinhole pixels see: its spectrum lies between
-/// the mean of their closed forms and the closed form of their mean (Jensen). 5 % beside that.
+/// Asserts the mean, with the texture that a pinhole at rest sees. The closed form is concave in
+/// the texture, and a blurred pixel sees a mean over several pinhole pixels: its spectrum lies
+/// between the mean of their closed forms and the closed form of their mean (Jensen). 5 % beside
+/// that.
 void expect_mean_of_closed_form(const Image& image, const Image& at_rest, const Sym2& blur) {
     Sym2 least{};
     double n = 0;
@@ -164,7 +167,7 @@ TEST(ClosedForm, DefocusedTexture) {
 TEST(ClosedForm, MovingTexture) {
     for (const auto& [vx, vy] : {std::pair{0.3, 0.0}, {0.0, 0.8}, {0.5, -0.7}}) {
         const double to_pixels = pixels_per_slope() / kDistance;
-        // Seen from -z with y up, world x is pixel x; pixel y points down.
+        // World x is pixel x, seen from -z with y up; pixel y points down.
         const Sym2 blur = (to_pixels * to_pixels / 12) * Sym2{vx * vx, -vx * vy, vy * vy};
         SCOPED_TRACE(fmt::format("velocity {} {}", vx, vy));
         expect_closed_form(render_plane(0, kDistance, vx, vy), plane_at_rest(), blur);

@@ -16,7 +16,7 @@ struct Known {
     const char* file;
     Where where;
     Rgb value;
-    double model = 2e-3;  ///< what the value itself may be off by, relative
+    double model = 2e-3;  ///< relative error that the value itself may have
 };
 
 void PrintTo(const Known& k, std::ostream* out) {
@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(CorpusFile, SpotLightsItsMiddle) {
     for (const char* name : {"light-spot", "light-spot-power"}) {
         const Image image = render_file(name, 16);
-        // The two by two pixels about the centre: up to 2.5 degrees off the axis.
+        // The two by two pixels about the centre are up to 2.5 degrees off the axis.
         const size_t i = size_t(image.height() / 2 * image.width() + image.width() / 2);
         EXPECT_NEAR(image.rgb(i).g, kLit.g, 0.01f * kLit.g) << name;
     }
@@ -146,7 +146,7 @@ TEST(CorpusFile, SlideStandsUpright) {
     const Image image = render_file("light-projection", 16);
     const auto at = [&](int x, int y) { return image.rgb(size_t(y * image.width() + x)); };
     const int last = image.width() - 1;
-    // In a corner of the view cos^4 is (4 / 4.3)^2.
+    // The fall-off cos^4 is (4 / 4.3)^2 in a corner of the view.
     const auto near = [](Rgb seen, Rgb expected) {
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], expected[c], 0.03f);
     };

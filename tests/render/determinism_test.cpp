@@ -1,4 +1,5 @@
-// The same command gives the same bits for any number of threads; seeds give other bits.
+// Determinism: the same command gives the same bits for any number of threads; seeds give other
+// bits.
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -1,4 +1,5 @@
-// What denoisers and regressions are told of a pixel: of what is seen through mirrors and glass.
+// Features that denoisers and regressions are told of a pixel: those of objects in mirrors and
+// behind glass.
 #include <gtest/gtest.h>
 
 #include "tests/render/fixtures.h"
@@ -8,8 +9,9 @@ namespace {
 
 using namespace test;
 
-/// The camera looks along +z onto a wall of `material` that is tilted by 45 degrees and shows, two
-/// units further on along +x, a card of the reflectance 0.8, 0.4, 0.1; the sky where there is none.
+/// Renders a wall of `material` that is tilted by 45 degrees, with the camera looking along +z; it
+/// shows, two units further on along +x, a card of the reflectance 0.8, 0.4, 0.1, or the sky where
+/// there is none.
 Image tilted_wall(const std::string& material, bool card = true) {
     const std::string text =
         R"(
@@ -69,7 +71,7 @@ TEST(Features, ARoughMetalTellsOfItself) {
 }
 
 TEST(Features, ACoatShowsAsMuchAsItReflects) {
-    // A black base, so that all of the feature's colour is the card's, in the coat.
+    // The base is black, so that all of the feature's colour is the card's, in the coat.
     const Image image =
         tilted_wall(R"("coateddiffuse" "rgb reflectance" [ 0 0 0 ] "float roughness" 0)");
     // Fresnel's equations for unpolarised light at 45 degrees on an index of 1.5: 5.0 %. The share

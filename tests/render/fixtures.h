@@ -35,9 +35,9 @@ inline RenderOptions covariance_method(double spp, uint64_t seed = 0) {
 }
 
 struct Summary {
-    double mean = 0;  ///< over pixels and the three channels
+    double mean = 0;  ///< mean over pixels and the three channels
     double standard_error =
-        0;  ///< of that mean, from the variance layer (channels fully correlated)
+        0;  ///< standard error of that mean, from the variance layer (channels fully correlated)
     int nonfinite = 0;
 };
 

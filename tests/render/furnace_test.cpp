@@ -11,8 +11,8 @@ using namespace test;
 
 struct Furnace {
     const char* name;
-    float middle;  ///< of the image, a quarter of each side around the centre
-    float corner;  ///< of the four corners, an eighth of each side
+    float middle;  ///< mean of the image's middle, a quarter of each side around the centre
+    float corner;  ///< mean of the four corners, an eighth of each side
 };
 
 void PrintTo(const Furnace& f, std::ostream* out) {
@@ -21,7 +21,7 @@ void PrintTo(const Furnace& f, std::ostream* out) {
 
 class FurnaceFile : public testing::TestWithParam<Furnace> {};
 
-/// Mean over a block, which must agree within 5 standard errors (false alarm 6e-7) and 2e-3.
+/// Asserts the mean over a block within 5 standard errors (false alarm 6e-7) and 2e-3.
 void expect_block(const Image& image, int x0, int y0, int size, float expected) {
     double mean = 0, variance = 0;
     for (int y = y0; y < y0 + size; ++y)
@@ -89,7 +89,8 @@ TEST(Furnace, AMillionBouncesBetweenWhiteWallsAreNotTaken) {
         EXPECT_TRUE(std::isfinite(path.radiance.g));
         bounces += path.rays.bounce;
     }
-    // 1000 and a geometric number of mean 100: the mean of 64 is within 6 standard errors of it.
+    // Paths have 1000 bounces and a geometric number of mean 100: the mean of 64 is within 6
+    // standard errors of it.
     EXPECT_NEAR(bounces / kPaths, 1100, 6 * 100 / std::sqrt(double(kPaths)));
 }
 

@@ -18,8 +18,8 @@ RenderOptions hybrid(double spp, uint64_t seed = 0) {
     return o;
 }
 
-// A sphere that emits 0.2 and reflects 0.75 seen from inside: 0.8 everywhere, by paths whose
-// lengths, and so whose values, vary.
+// The scene: a sphere that emits 0.2 and reflects 0.75 seen from inside: 0.8 everywhere, by paths
+// whose lengths, and so whose values, vary.
 const std::string kInside = R"(
 Integrator "path" "integer maxdepth" 100
 Film "rgb" "integer xresolution" 12 "integer yresolution" 12
@@ -35,8 +35,8 @@ AttributeEnd
 )";
 
 TEST(Hybrid, AdaptiveCountsLeaveTheRawMeanUnbiased) {
-    // Over 100 seeds and three rounds; 4.5 standard errors of the mean over the seeds (false alarm
-    // 7e-6), and 0.1 % that adapting may leave.
+    // The mean is over 100 seeds and three rounds; 4.5 standard errors of the mean over the seeds
+    // (false alarm 7e-6), and 0.1 % that adapting may leave.
     constexpr int kSeeds = 100;
     double sum = 0, squares = 0;
     for (uint64_t seed = 0; seed < kSeeds; ++seed) {
@@ -84,7 +84,7 @@ TEST(Hybrid, StopsAtTheErrorThatIsAskedFor) {
     options.method = Method::hybrid;
     options.error = 0.02;
     const RenderResult r = render_text(kInside, options);
-    // The true relative error of a flat image; the estimate may be off by half.
+    // The true relative error of a flat image is known; the estimate may be off by half.
     EXPECT_LT(std::sqrt(squared_error(r.image, 0.8f)) / 0.8, 0.03);
     options.error = 0.005;
     EXPECT_GT(render_text(kInside, options).statistics.samples_per_pixel,
@@ -106,8 +106,8 @@ TEST(Hybrid, EvenCountsAreEven) {
 }
 
 TEST(Hybrid, ALampInViewDoesNotLightTheSky) {
-    // The sky has no noise; the lamp covers a few pixels. From far away a place becomes a tenth
-    // brighter at most, and some light comes from near; before, it was a hundred times.
+    // The sky has no noise; the lamp covers a few pixels. A place far away becomes a tenth brighter
+    // at most, and some light comes from near; before the fix it was a hundred times.
     RenderScene scene(
         read_pbrt(std::filesystem::path(COVTRACE_SCENES_FOLDER) / "hard" / "lamp-in-view.pbrt"));
     const Rgb sky(0.02f, 0.03f, 0.05f);
@@ -124,7 +124,7 @@ TEST(Hybrid, ALampInViewDoesNotLightTheSky) {
 }
 
 TEST(Hybrid, OneSamplePerPixelLeavesALampItsSize) {
-    // With seeds 1 and 8 both halves see the lamp, and its 11 pixels became a square of 85.
+    // The lamp is seen by both halves with seeds 1 and 8, and its 11 pixels became a square of 85.
     RenderScene scene(
         read_pbrt(std::filesystem::path(COVTRACE_SCENES_FOLDER) / "hard" / "lamp-in-view.pbrt"));
     constexpr int kSky = 35;  // rows above the horizon

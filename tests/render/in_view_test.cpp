@@ -8,8 +8,8 @@ namespace {
 
 using namespace test;
 
-/// A wall lit by a weak lamp at the camera, and before it a square that is 10^4 times brighter and
-/// faces the camera. `lens`: parameters of the camera.
+/// The scene: a wall lit by a weak lamp at the camera, and before it a square that is 10^4 times
+/// brighter and faces the camera. `lens`: parameters of the camera.
 std::string lamp_before_wall(const std::string& lens) {
     return R"(
 Integrator "path" "integer maxdepth" 1
@@ -34,7 +34,8 @@ TEST(InView, NothingLeaksOverTheBorderOfALampInFocus) {
     for (size_t i = 0; i < lamp.size(); ++i) {
         if (lamp[i] > 0) continue;
         ++beside;
-        // 0.5 % of the lamp; the narrowest filter of scattered light would carry 10 % of it here.
+        // The bound is 0.5 % of the lamp; the narrowest filter of scattered light would carry 10 %
+        // of it here.
         EXPECT_LT(image.rgb(i).r, 0.3f) << "pixel " << i;
     }
     EXPECT_GT(beside, 700);

@@ -19,7 +19,8 @@ float normal(Rng& rng) {
     return std::sqrt(-2 * std::log(1 - rng.next_float())) * std::cos(6.2831853f * rng.next_float());
 }
 
-/// `beyond` of all true values are 3 in size, the others 0.3; noise of 0.5 to 1.5 deviations.
+/// Measures values of which the share `beyond` is 3 in size, the others 0.3; noise of 0.5 to 1.5
+/// deviations.
 Sample measured(size_t count, double beyond, uint64_t seed) {
     Rng rng(seed);
     Sample s;

@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-/// An orthographic camera half a unit above the floor that looks straight down; a pixel is 1/8.
+/// The camera: orthographic, half a unit above the floor, looking straight down; a pixel is 1/8.
 const char* kDown = R"(
 Integrator "path" "integer maxdepth" 1
 Film "rgb" "integer xresolution" 32 "integer yresolution" 32

@@ -1,6 +1,6 @@
 // Edges: penumbrae behind an occluder, and borders out of focus or in motion. An edge has no second
-// moment; its blur has, and the prediction is held against that: after the integration over lens
-// and shutter, the deviation of the filter across the edge against that of the line spread
+// moment; its blur has, and the prediction is held against that: the deviation of the filter across
+// the edge, after the integration over lens and shutter, against the deviation of the line spread
 // function.
 #include "tests/render/laboratory_fixtures.h"
 
@@ -11,10 +11,10 @@ using namespace test;
 
 struct Case {
     const char* name;
-    Vec2 across;   ///< the edge, in pixels
-    double reach;  ///< to the plateaus, pixels
+    Vec2 across;   ///< direction across the edge, in pixels
+    double reach;  ///< distance to the plateaus, pixels
     std::string text;
-    std::string without{};  ///< the same without the occluder; empty where there is none
+    std::string without{};  ///< text of the scene without the occluder; empty where there is none
 };
 
 std::string scene(const char* depth, const char* from, const char* camera,
@@ -29,7 +29,7 @@ WorldBegin
 )",
                        depth, from, camera, world);
 }
-/// A floor and a light `height` above it, with what stands between.
+/// A floor and a light `height` above it, with the occluder between them.
 std::string lit_floor(const char* light, const std::string& occluder) {
     return fmt::format(R"(AttributeBegin
 AreaLightSource "diffuse" "rgb L" [ 50 50 50 ]
@@ -44,7 +44,7 @@ Material "diffuse" "rgb reflectance" [ 0 0 0 ]
 const char* kDown = R"("orthographic" "float screenwindow" [ -1 1 -1 1 ])";
 const char* kBelow = "0 0 0.4  0 0 0  0 1 0";
 const char* kDisc = "Translate 0 0 4\nRotate 180 0 1 0\nShape \"disk\" \"float radius\" 0.5";
-/// Half a plane x > edge at the height z.
+/// An occluder: half a plane x > edge at the height z.
 std::string half_plane(double z, double edge) {
     return fmt::format(
         "Shape \"trianglemesh\" \"point3 P\" [ {1} -3 {0}  3 -3 {0}  3 3 {0}  {1} 3 {0} ] "
@@ -74,7 +74,7 @@ const Case kPenumbrae[]{
     penumbra("contact shadow", {1, 0}, 8, kDisc, half_plane(0.5, 0)),
 };
 
-/// One border of the texture, at x = edge; checks of 50 units.
+/// A texture with one border in view, at x = edge; checks of 50 units.
 std::string border(double edge, double tilt) {
     return fmt::format(R"(LightSource "infinite"
 Texture "checks" "spectrum" "checkerboard" "float uscale" 0.02 "float vscale" 0.02 "float udelta" 0 "float vdelta" 0.5
@@ -137,7 +137,7 @@ std::string mesh_ball(int rings) {
 }
 const std::string kMeshBall = mesh_ball(32);
 
-/// Without occluders: light ends at the ball's own outline.
+/// Cases without occluders: light ends at the ball's own outline.
 const Case kRims[]{
     {"rim of a ball out of focus", {1, 0}, 14, scene("1", kAhead, kLens, ball(0))},
     {"rim of a ball out of focus, half a radius beside it",
@@ -162,7 +162,8 @@ const Case kRims[]{
                ball(0))},
 };
 
-/// Deviation across the edge of the Gaussian whose spectrum is predicted, over the measured one.
+/// Ratio of the deviation across the edge of the Gaussian whose spectrum is predicted to the
+/// measured one.
 double bandwidth_ratio(const Table& table, const Case& c) {
     const auto s = covariance::preintegrate(table.predicted_over_lens_and_shutter().sigma);
     const double d0 = c.across.x, d1 = c.across.y;

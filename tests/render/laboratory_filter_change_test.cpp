@@ -1,4 +1,4 @@
-// What filters do to pixels, on fields of which it is known.
+// Changes of pixels by filters, on fields where the change is known.
 #include "laboratory/filter_change.h"
 
 #include "tests/render/laboratory_fixtures.h"
@@ -33,9 +33,9 @@ TEST(LaboratoryFilterChange, NothingChangesConstantsAndRamps) {
     }
 }
 
-/// A weave finer than the eye of the measured bandwidth: contrast 0.07, a third of a cycle per
-/// pixel. The bandwidth that is relative to the mean says that it may be smoothed over 15 pixels;
-/// the change tells that this would be seen.
+/// A weave finer than the eye of the measured bandwidth has a contrast of 0.07 and a third of a
+/// cycle per pixel. The bandwidth that is relative to the mean says that it may be smoothed over 15
+/// pixels; the change tells that this would be seen.
 TEST(LaboratoryFilterChange, TellsOfFaintDetailThatTheMeasuredBandwidthPassesOver) {
     constexpr double kContrast = 0.07, kFrequency = 1.0 / 3;
     const LocalField field = [](const SensorOffset& p, uint32_t) {
@@ -45,12 +45,12 @@ TEST(LaboratoryFilterChange, TellsOfFaintDetailThatTheMeasuredBandwidthPassesOve
     const MeasuredSpectrum m = measure(field, options);
     EXPECT_LT(std::sqrt(m.sigma(0, 0)), 0.1 * kFrequency);
     const FilterChange wide = filter_change(field, filter_of(m.sigma), kSamples, 1);
-    // Three pixels are a period: the mean square of the cosine is that of all phases but for two of
-    // 25 pixels. A square pixel leaves sinc(1/3) of the wave.
+    // The mean square of the cosine is that of all phases but for two of 25 pixels, as three pixels
+    // are a period. A square pixel leaves sinc(1/3) of the wave.
     const double visible = kContrast * std::sin(kPiD * kFrequency) / (kPiD * kFrequency);
     EXPECT_NEAR(wide.change, visible / std::sqrt(2.0), 0.15 * visible);
     EXPECT_LT(wide.noise, 0.2 * wide.change);
-    // What a filter of half a pixel leaves.
+    // A filter of half a pixel leaves this share of the wave.
     const FilterChange narrow = filter_change(field, round_filter(0.5), kSamples, 1);
     const double left = std::exp(-2 * std::pow(kPiD * kFrequency * 0.5, 2));
     EXPECT_NEAR(narrow.change, (1 - left) * visible / std::sqrt(2.0), 0.1 * visible);
@@ -60,7 +60,7 @@ TEST(LaboratoryFilterChange, FollowsTheFiltersDirection) {
     const LocalField field = [](const SensorOffset& p, uint32_t) {
         return 1 + 0.1 * std::cos(2 * kPiD * 0.2 * (p[0] + p[1]));
     };
-    // Long across the waves, and along them.
+    // Filters are long across the waves, and along them.
     const covariance::Sym2<double> across{4, 4, 4.01}, along{4, -4, 4.01};
     EXPECT_GT(filter_change(field, across, kSamples, 1).change, 0.04);
     EXPECT_LT(filter_change(field, along, kSamples, 1).change, 0.005);

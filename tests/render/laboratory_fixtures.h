@@ -1,4 +1,4 @@
-// A scene on the laboratory's table: prediction and measurement around one ray of its camera.
+// The laboratory's table: a scene with prediction and measurement around one ray of its camera.
 #pragma once
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ inline constexpr double kPiD = 3.14159265358979323846;
 /// A scene given as text, looked at through the middle of its film of 32 x 32 pixels.
 class Table {
   public:
-    /// `occlusion`: whether the outlines of the geometry are looked at.
+    /// Reads the scene. `occlusion`: whether the outlines of the geometry are looked at.
     explicit Table(const std::string& text, bool occlusion = false, Vec2 film = {16, 16})
         : scene_(read_pbrt_string(text, "test", ".")), rays_(scene_, film) {
         scene_.prepare_spectra();
@@ -73,7 +73,7 @@ class Table {
 
 /// Ratios of bandwidths, predicted over measured, along the axes on which either is resolved.
 struct Ratios {
-    double worst = 1;  ///< the one farthest from 1, as a factor
+    double worst = 1;  ///< the ratio farthest from 1, as a factor
     std::string text;
 
     void add(const char* axis, double ratio) {

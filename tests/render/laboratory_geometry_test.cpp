@@ -1,7 +1,7 @@
 // Geometry alone: a textured object seen directly, in mirrors, through glass, in motion and out of
 // focus. The texture is replaced by a Gaussian spot of the covariance that the replay starts from,
-// seen by real rays through the real geometry and camera, so that all that differs from the
-// prediction is the chain of operators.
+// seen by real rays through the real geometry and camera, so that prediction and measurement differ
+// by the chain of operators alone.
 #include "tests/render/laboratory_fixtures.h"
 
 namespace covtrace {

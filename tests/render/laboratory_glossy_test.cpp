@@ -12,7 +12,8 @@ struct Case {
     std::string text;
 };
 
-/// The camera looks from `from` at the origin, where the rough surface lies in the plane z = 0.
+/// The scene: the camera looks from `from` at the origin, where the rough surface lies in the plane
+/// z = 0.
 std::string scene(const char* from, const char* camera, const std::string& light,
                   const std::string& surface) {
     return fmt::format(R"(

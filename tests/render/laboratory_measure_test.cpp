@@ -50,8 +50,8 @@ TEST(LaboratoryMeasure, AnExponentialFlankHasTheBandwidthOfItsSecondDerivative) 
     EXPECT_NEAR(std::sqrt(m.sigma(0, 0)) * 2 * kPiD / k, 1, 0.15);
 }
 
-/// The window settles where the edge begins to show in it: the Gaussian of what is measured has
-/// about the distance of the edge as its deviation, twice that of the rule for edges.
+/// The window settles where the edge begins to show in it: the Gaussian of the measured bandwidth
+/// has about the distance of the edge as its deviation, twice that of the rule for edges.
 TEST(LaboratoryMeasure, ASharpEdgeReadsByItsDistance) {
     for (const double distance : {1.0, 3.0}) {
         const LocalField field = [&](const SensorOffset& p, uint32_t) {
@@ -64,7 +64,7 @@ TEST(LaboratoryMeasure, ASharpEdgeReadsByItsDistance) {
     }
 }
 
-/// Estimates with a relative standard deviation of 2: the mean survives, the stated error covers
+/// Estimates have a relative standard deviation of 2: the mean survives, the stated error covers
 /// it. False-alarm rate of the last check 6e-5 per axis (four deviations), two axes.
 TEST(LaboratoryMeasure, NoiseIsNotTakenForBandwidth) {
     const Matrix sigma = Matrix::diagonal(0.01, 0.002, 0, 0, 0);

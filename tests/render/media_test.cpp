@@ -51,7 +51,7 @@ ChannelMeans channel_means(const Image& image) {
     return m;
 }
 
-/// Each channel within 5 standard errors (false alarm 6e-7 each) plus `model` of its value.
+/// Asserts each channel within 5 standard errors (false alarm 6e-7 each) plus `model` of its value.
 void expect_channels(const RenderResult& r, const std::array<double, 3>& expected,
                      double model = 2e-4) {
     const ChannelMeans m = channel_means(r.image);
@@ -62,7 +62,7 @@ void expect_channels(const RenderResult& r, const std::array<double, 3>& expecte
 }
 
 TEST(Media, ASlabAttenuatesByItsWholeExtinction) {
-    // Depth 0 shows what comes straight through: exp(-2 (sigma_a + sigma_s)).
+    // Depth 0 shows the light that comes straight through: exp(-2 (sigma_a + sigma_s)).
     const std::string text = looking_along_z(0) + R"(
 MakeNamedMedium "m" "string type" "homogeneous" "rgb sigma_a" [ 0.1 0.2 0 ] "rgb sigma_s" [ 0.2 0.5 0.3 ] "float scale" 2
 LightSource "infinite" "rgb L" [ 1 1 1 ])" +
@@ -107,7 +107,7 @@ TEST(Media, APointLightInFogAroundTheCamera) {
     const double g = 0.3, intensity = 20;
     std::array<double, 3> expected{};
     constexpr int across = 16, steps = 4000;
-    const double end = 90;  // where a sphere far away ends the scene; the rest is below 1e-6
+    const double end = 90;  // a sphere far away ends the scene there; the rest is below 1e-6
     for (int i = 0; i < across; ++i)
         for (int j = 0; j < across; ++j) {
             const double x = -1 + 2 * (i + 0.5) / across, y = -1 + 2 * (j + 0.5) / across;
@@ -115,7 +115,7 @@ TEST(Media, APointLightInFogAroundTheCamera) {
                 const double d = end * (k + 0.5) / steps;
                 const double lx = -x, ly = 3 - y, lz = 2 - (-4 + d);
                 const double r = std::sqrt(lx * lx + ly * ly + lz * lz);
-                // The change of direction on the way from the light to the camera: -l to -z.
+                // The direction changes, on the way from the light to the camera, from -l to -z.
                 const double c = lz / r;
                 const double p = (1 - g * g) / (4 * M_PI * std::pow(1 + g * g - 2 * g * c, 1.5));
                 for (size_t n = 0; n < 3; ++n)
@@ -124,7 +124,7 @@ TEST(Media, APointLightInFogAroundTheCamera) {
                                    (across * across);
             }
         }
-    // A scene that holds the camera, and one that the camera is far from.
+    // The shapes are a scene that holds the camera, and one that the camera is far from.
     for (const char* shape :
          {"Shape \"sphere\" \"float radius\" 86", "Translate 0 50 0 Shape \"sphere\""}) {
         const std::string text = looking_along_z(1, "fog") + R"(

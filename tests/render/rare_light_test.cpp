@@ -1,4 +1,4 @@
-// `--error` does not trust samples that cannot have met what is rare.
+// Rare light: `--error` does not trust samples that cannot have met it.
 #include <gtest/gtest.h>
 
 #include "tests/render/fixtures.h"
@@ -8,8 +8,8 @@ namespace {
 
 using namespace test;
 
-/// A lamp that covers some 10^-4 of a pixel and, seen at once, adds as much light to it as there is
-/// already. It hangs before the camera, or behind it over a mirror.
+/// The scene: a lamp covers some 10^-4 of a pixel and, seen at once, adds as much light to it as
+/// there is already. The lamp hangs before the camera, or behind it over a mirror.
 std::string scene(bool lamp, bool mirror) {
     return std::string(R"(
 Film "rgb" "integer xresolution" 16 "integer yresolution" 16
@@ -48,7 +48,7 @@ TEST(RareLight, WhatIsEvenEndsWithTheLeastNumberOfSamples) {
     EXPECT_EQ(enough(scene(false, true)), 16);
 }
 
-/// One pixel of 256 misses an error of about 1 in squares over I^2, which alone is 6 %.
+/// A lamp in one pixel of 256 is an error of about 1 in squares over I^2 there, which alone is 6 %.
 TEST(RareLight, ALampThatNoSampleHasMetCounts) {
     EXPECT_GT(enough(scene(true, false)), 1000);
 }

@@ -17,7 +17,8 @@ double pixels_per_slope() {
     return kSize / (2 * std::tan(kFov * 3.14159265358979 / 360));
 }
 
-/// `depth`: enough for the way from the sky to the camera that the test is about, and little else.
+/// The head of a scene. `depth`: enough for the way from the sky to the camera that the test is
+/// about, and little else.
 std::string film(int depth) {
     return fmt::format(R"(
 Integrator "path" "integer maxdepth" {}
@@ -25,13 +26,13 @@ Film "rgb" "integer xresolution" 32 "integer yresolution" 32
 )",
                        depth);
 }
-/// Checks so large that the middle of one fills the view: a constant spectrum 1/(4 pi^2 (e/2)^2)
-/// there, e = 50.
+/// Texture of checks so large that the middle of one fills the view: a constant spectrum 1/(4 pi^2
+/// (e/2)^2) there, e = 50.
 const char* kChecks = R"(
 Texture "checks" "spectrum" "checkerboard" "float uscale" 0.01 "float vscale" 0.01 "float udelta" 0.5 "float vdelta" 0.5
     "rgb tex1" [ 0.9 0.9 0.9 ] "rgb tex2" [ 0.1 0.1 0.1 ]
 )";
-/// One unit of uv is one unit of length; the nearest edges are 50 units away.
+/// The plane: one unit of uv is one unit of length; the nearest edges are 50 units away.
 const char* kPlane = R"(Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ]
     "point2 uv" [ -9 -9 9 -9 9 9 -9 9 ] "integer indices" [ 0 2 1 0 3 2 ])";
 
@@ -59,8 +60,8 @@ LightSource "infinite"
 }
 
 TEST(Replay, PlaneInAFlatMirrorIsAsFarAsItsImage) {
-    // From (0, 0, -3) towards a mirror at the origin, tilted by 45 degrees; the plane stands 5
-    // units to the side.
+    // The camera looks from (0, 0, -3) towards a mirror at the origin, tilted by 45 degrees; the
+    // plane stands 5 units to the side.
     const std::string text = film(2) + fmt::format(R"(LookAt 0 0 -3  0 0 0  0 1 0
 Camera "perspective" "float fov" {}
 WorldBegin
@@ -118,9 +119,9 @@ Translate 0 0 -6
     const double flat = spectrum_xx(scene(R"(Shape "disk" "float radius" 3)"));
     const double convex = spectrum_xx(scene(R"(Translate 0 0 10
 Shape "sphere" "float radius" 10)"));
-    // Mirror equation: 1/s' = 2/R - 1/s with R = -10 (convex), s = 6: the image 2.73 behind the
-    // mirror, magnified by 2.73/6; seen from 4 the plane's coordinates move (4 + 2.73)/(2.73/6) per
-    // slope, against 10 for the flat one.
+    // The mirror equation is 1/s' = 2/R - 1/s with R = -10 (convex), s = 6: the image 2.73 behind
+    // the mirror, magnified by 2.73/6; seen from 4 the plane's coordinates move (4 + 2.73)/(2.73/6)
+    // per slope, against 10 for the flat one.
     const double ratio = (4 + 30.0 / 11) / (5.0 / 11) / 10;
     EXPECT_NEAR(convex / flat, ratio * ratio, 0.05 * ratio * ratio);
 }

@@ -17,8 +17,8 @@ TEST(SharedImages, PngKindsOfTheSuite) {
         int channels;
         bool sixteen;
     };
-    // Name, then 0: grey, 2: colour, 3p: palette, 4a and 6a: with alpha, then the bits. The alpha
-    // of grey images is dropped; transparent colours become alpha.
+    // The names go on with 0: grey, 2: colour, 3p: palette, 4a and 6a: with alpha, then the bits.
+    // The alpha of grey images is dropped; transparent colours become alpha.
     for (const Kind& k : {Kind{"basn0g01", 1, false},
                           {"basn0g02", 1, false},
                           {"basn0g04", 1, false},

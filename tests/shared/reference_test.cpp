@@ -12,7 +12,7 @@ namespace {
 
 struct Case {
     const char* name;
-    double tolerance;  ///< of mean_ratio; spectral against RGB conductors differ more
+    double tolerance;  ///< tolerance of mean_ratio; spectral against RGB conductors differ more
 };
 
 class Reference : public testing::TestWithParam<Case> {};
@@ -34,7 +34,8 @@ TEST_P(Reference, MeansAgree) {
     const Comparison difference = compare(image, reference);
     for (double ratio : difference.mean_ratio) EXPECT_NEAR(ratio, 1, c.tolerance);
     EXPECT_EQ(difference.nonfinite, 0);
-    // Two images of the same scene, not only of the same brightness: the mean colours of 64 blocks.
+    // The images show the same scene, not only the same brightness: compare the mean colours of 64
+    // blocks
     constexpr int kBlocks = 8;
     for (int by = 0; by < kBlocks; ++by)
         for (int bx = 0; bx < kBlocks; ++bx) {

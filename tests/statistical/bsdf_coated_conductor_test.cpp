@@ -1,9 +1,9 @@
 /// Coated metals: the walk that `sample` takes against the one that `eval` takes, over bins of
 /// directions, and against closed forms where there are any.
 ///
-/// Both estimate the same integrals by different means: `sample` follows the light until it leaves,
-/// `eval` connects every bounce with a given direction. All bins together alarm falsely with
-/// probability 0.01 (Šidák); the seeds are fixed.
+/// The walks estimate the same integrals by different means: `sample` follows the light until it
+/// leaves, `eval` connects every bounce with a given direction. All bins together alarm falsely
+/// with probability 0.01 (Šidák); the seeds are fixed.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -104,7 +104,7 @@ TEST_P(CoatedConductor, SampleAndEvalEstimateTheSame) {
 }
 
 TEST(CoatedConductorLimits, SmoothBordersSumTheSeries) {
-    // A metal that reflects everything under a clear coat: all light comes back, if late.
+    // The light comes back, if late, from a metal that reflects everything under a clear coat.
     CoatedConductorBsdf b;
     b.coat = {1.5f, 0, 0};
     b.metal = {Rgb(1e-4f), Rgb(1e3f), 0, 0};

@@ -42,7 +42,8 @@ double smith_lambda(const Layers& l, const Direction& w) {
     return (std::sqrt(1 + tan2) - 1) / 2;
 }
 
-/// Light runs along `d` and meets the interface; `weight` takes what single scattering keeps.
+/// Follows light along `d` to the interface and beyond; `weight` takes the share that single
+/// scattering keeps.
 void meet_interface(const Layers& l, Direction& d, double& weight, Rng& rng) {
     const bool from_above = d.z < 0;
     const double eta = from_above ? l.eta : 1 / l.eta, side = from_above ? 1 : -1;
@@ -143,8 +144,8 @@ Vec3 at_degrees(double theta, double phi = 0) {
 class CoatedWalk : public testing::TestWithParam<float> {};
 INSTANTIATE_TEST_SUITE_P(Alphas, CoatedWalk, testing::Values(0.0f, 0.05f, 0.15f, 0.5f));
 
-// A deterministic comparison in effect: 400000 walks leave a standard error below 0.2 % of each
-// albedo, so that the tolerance of 1 % lies five of them away.
+// The comparison is deterministic in effect: 400000 walks leave a standard error below 0.2 % of
+// each albedo, so that the tolerance of 1 % lies five of them away.
 TEST_P(CoatedWalk, DirectionalAlbedoAgrees) {
     const float alpha = GetParam();
     for (double degrees : {0.0, 30.0, 60.0, 75.0, 85.0}) {
@@ -167,7 +168,7 @@ TEST_P(CoatedWalk, DirectionalAlbedoAgrees) {
     }
 }
 
-// Where the base's light goes: checks the transmission on the way out and, with the above,
+// The directions of the base's light check the transmission on the way out and, with the albedo,
 // reciprocity.
 TEST_P(CoatedWalk, ExitDirectionsAgree) {
     const float alpha = GetParam();
@@ -189,8 +190,8 @@ TEST_P(CoatedWalk, ExitDirectionsAgree) {
     }
 }
 
-// The tables are isotropic: this bounds what an anisotropic coat loses by that. For moderate
-// anisotropy the error stays below 1.5 %; a ratio of five reaches 4.5 % at 80 degrees.
+// The error of anisotropic coats is bounded, as the tables are isotropic: for moderate anisotropy
+// it stays below 1.5 %; a ratio of five reaches 4.5 % at 80 degrees.
 TEST(CoatedWalkAnisotropic, AlbedoAgreesWithinFivePercent) {
     for (auto [alpha_x, alpha_y] : {std::pair{0.05f, 0.2f}, {0.1f, 0.5f}})
         for (double degrees : {20.0, 60.0, 80.0})

@@ -1,4 +1,4 @@
-/// What GGX without multiple scattering loses: the figures that ggx.h states.
+/// The losses of GGX without multiple scattering: the figures that ggx.h states.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -28,7 +28,7 @@ Vec3 at_cos(float cos_theta) {
     return {std::sqrt(1 - cos_theta * cos_theta), 0, cos_theta};
 }
 
-/// Cosine-weighted mean over incidence.
+/// Cosine-weighted mean over incidence of the share that is kept.
 double mean_kept(const Bsdf& bsdf) {
     constexpr int kCosines = 8;
     Rng rng(5);
@@ -38,7 +38,7 @@ double mean_kept(const Bsdf& bsdf) {
     return sum / kCosines;
 }
 
-// Perfectly reflecting: k so large that Fresnel is 1 within the tolerance.
+// A mirror that reflects perfectly: k is so large that Fresnel is 1 within the tolerance.
 Bsdf white_mirror(float alpha) {
     return ConductorBsdf{Rgb(1e-3f), Rgb(1e3f), alpha, alpha};
 }

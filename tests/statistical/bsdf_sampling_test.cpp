@@ -1,8 +1,9 @@
 /// Chi-square tests of `sample` against `pdf`: every model, over roughness, incidence and both
 /// sides.
 ///
-/// Together they alarm falsely with probability 0.01; the seeds are fixed. The share of failed and
-/// of specular samples is a cell of its own, so that the integral of the density is tested too.
+/// The tests together alarm falsely with probability 0.01; the seeds are fixed. The share of failed
+/// and of specular samples is a cell of its own, so that the integral of the density is tested,
+/// too.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -18,8 +19,8 @@ namespace {
 struct Case {
     std::string name;
     Bsdf bsdf;
-    float alpha;  ///< the widest of the glossy lobes, 0 where there is none
-    float eta;    ///< of refraction, 1 where there is none
+    float alpha;  ///< roughness of the widest of the glossy lobes, 0 where there is none
+    float eta;    ///< index of refraction, 1 where there is none
     Vec3 wo;
 };
 std::ostream& operator<<(std::ostream& out, const Case& c) {
@@ -66,7 +67,7 @@ std::vector<Case> all_cases() {
     return cases;
 }
 
-/// `n` cells on [a, b], narrow about `center`.
+/// Edges of `n` cells on [a, b], narrow about `center`.
 std::vector<double> edges_about(double a, double b, double center, double scale, int n) {
     const double lo = std::asinh((a - center) / scale), hi = std::asinh((b - center) / scale);
     std::vector<double> edges;
@@ -162,7 +163,7 @@ TEST_P(BsdfSampling, FollowsTheDensity) {
     const Case& c = GetParam();
     constexpr int kSamples = 150000;
     const Grid grid(c);
-    // The last cell counts what has no density: failures and specular lobes.
+    // The last cell counts samples without density: failures and specular lobes.
     std::vector<double> observed(grid.cells() + 1), expected(grid.cells() + 1);
     Rng rng(hash_combine(2024, static_cast<uint64_t>(c.alpha * 1000),
                          static_cast<uint64_t>(c.wo.z * 1e6f)));
@@ -182,7 +183,7 @@ TEST_P(BsdfSampling, FollowsTheDensity) {
     }
     EXPECT_LE(total, 1 + 1e-4);
     expected.back() = std::max(0.0, 1 - total) * kSamples;
-    // Below this the rest is the quadrature's error, not a share of the samples.
+    // Smaller rests are the quadrature's error, not a share of the samples.
     if (expected.back() < 1e-4 * kSamples && observed.back() == 0) expected.back() = 0;
     const ChiSquare test = chi_square_test(observed, expected);
     EXPECT_GT(test.p, sidak(0.01, all_cases().size()))

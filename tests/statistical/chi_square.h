@@ -8,9 +8,8 @@
 
 namespace covtrace {
 
-/// Upper tail of the chi-square distribution: the regularised incomplete gamma function
-/// Q(degrees / 2, value / 2), by its series or its continued fraction (Numerical Recipes,
-/// section 6.2).
+/// Upper tail of the chi-square distribution: the regularised incomplete gamma function Q(degrees /
+/// 2, value / 2), by its series or its continued fraction (Numerical Recipes, section 6.2).
 inline double chi_square_tail(double value, double degrees) {
     const double a = degrees / 2, x = value / 2;
     if (x <= 0) return 1;
@@ -38,7 +37,8 @@ struct ChiSquare {
     double p = 1;  ///< probability of a value as large if the expectations are right
 };
 
-/// Cells are pooled from the smallest expectation on until each pool expects five.
+/// Tests counts against expectations. Cells are pooled from the smallest expectation on until each
+/// pool expects five.
 inline ChiSquare chi_square_test(std::span<const double> observed,
                                  std::span<const double> expected) {
     std::vector<size_t> order(expected.size());

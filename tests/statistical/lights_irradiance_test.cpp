@@ -120,7 +120,7 @@ TEST_P(LightIrradiance, MatchesTheClosedForm) {
 INSTANTIATE_TEST_SUITE_P(Lights, LightIrradiance, testing::ValuesIn(all_irradiances()),
                          [](const auto& test) { return test.param.name; });
 
-// ---- how well
+// ---- Variance
 
 /// Relative variance of one sample of the luminous irradiance.
 double relative_variance(const LightScene& s, Vec3 p, Vec3 n, uint64_t seed) {
@@ -152,8 +152,8 @@ TEST(LightTreeQuality, BeatsUniformSelectionAmongScatteredLights) {
     for (int i = 0; i < 50; ++i) {
         const Vec3 p{10 * rng.next_float(), 10 * rng.next_float(), 0}, n{0, 0, 1};
         ours += relative_variance(s, p, n, uint64_t(i));
-        // Uniform selection, with the sampling of each sphere exact: only the sum over lights
-        // varies.
+        // Uniform selection is compared with, where the sampling of each sphere is exact: only the
+        // sum over lights varies.
         double sum = 0, square = 0;
         for (size_t k = 0; k < 64; ++k) {
             const Vec3 d = s.description.shapes[k].object_to_world.start().point({}) - p;

@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-/// A light scene, where it is looked at from, and the cone that its lights lie in.
+/// A scene of lights, the place that it is looked at from, and the cone that its lights lie in.
 struct Case {
     std::string name;
     std::function<void(LightScene&)> make;
@@ -214,7 +214,7 @@ class Cells {
         const Vec3 w = square_to_cone({ring / kRings, sector / kSectors}, rim_);
         return normalize(frame_.to_world(w));
     }
-    /// -1 outside the cone.
+    /// The cell of a direction; -1 outside the cone.
     int cell(Vec3 w) const {
         const Vec3 l = frame_.to_local(w);
         const float s2 = l.x * l.x + l.y * l.y;
@@ -245,7 +245,8 @@ TEST_P(LightSampling, DirectionsFollowTheDensity) {
     c.make(s);
     s.build();
     const Cells cells(c.axis, c.cone_degrees);
-    // First the directions of area lights, then those of infinite ones, then all that is left over.
+    // Cells are first those of area lights, then those of infinite ones, then one for all that is
+    // left over.
     std::vector<double> observed(2 * cells.count() + 1), expected(observed.size());
     constexpr int kSamples = 200000, kSteps = 64;
     Rng rng(17);
@@ -276,7 +277,8 @@ TEST_P(LightSampling, DirectionsFollowTheDensity) {
             double area = 0, sky = 0;
             for (int a = 0; a < kSteps; ++a)
                 for (int b = 0; b < kSteps; ++b) {
-                    // Jittered: a regular grid would line up with the edges of lights and texels.
+                    // Points are jittered: a regular grid would line up with the edges of lights
+                    // and texels.
                     const Vec2 j = rng.next_2d();
                     const Vec3 w = cells.direction(float(ring) + (float(a) + j.x) / kSteps,
                                                    float(sector) + (float(b) + j.y) / kSteps);
@@ -350,7 +352,7 @@ TEST_P(LightSampling, SelectionProbabilitiesSumToOneAtMost) {
         double sum = 0;
         for (int light = 0; light < s.lights->count(); ++light)
             sum += double(s.lights->selection_probability(p, n, light));
-        // Where all of a group of lights look away from p, choosing the group chooses none of them.
+        // Choosing a group of lights chooses none of them where all of them look away from p.
         ASSERT_LE(sum, 1 + 1e-5);
         if (c.looks_everywhere()) {
             ASSERT_NEAR(sum, 1, 1e-5);

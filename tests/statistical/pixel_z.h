@@ -21,7 +21,8 @@ struct PixelScene {
     const char* name;
     const char* view;
     const char* world;
-    /// False where pixels are heavy-tailed at 256 samples: alarms come too often then (0032).
+    /// Whether alarms are counted; not where pixels are heavy-tailed at 256 samples: alarms come
+    /// too often then (docs/decisions/0032).
     bool counts_alarms = true;
 };
 inline void PrintTo(const PixelScene& s, std::ostream* out) {
@@ -129,7 +130,7 @@ inline std::vector<Pixels> render_seeds(const RenderScene& scene, uint64_t first
     return images;
 }
 
-/// What one render of a number of samples is expected to show: mean, variance and skewness of every
+/// The distribution of one render of a number of samples: mean, variance and skewness of every
 /// pixel.
 struct Reference {
     Pixels mean = Pixels(kPixels), variance = Pixels(kPixels), skewness = Pixels(kPixels);
@@ -149,13 +150,13 @@ struct Reference {
             if (!is_constant(i)) skewness[i] = cubes[i] / std::pow(variance[i], 1.5);
     }
 
-    /// Up to rounding.
+    /// Whether the pixel is the same in every render, up to rounding.
     bool is_constant(size_t pixel) const {
         return variance[pixel] <= 1e-12 * mean[pixel] * mean[pixel];
     }
-    /// Whether the mean of the samples is near enough to a normal distribution for a z-test. Where
-    /// something bright or dark is met by few of the samples only (the corner of a pixel behind
-    /// which a moving ball passes) it is not, and such a pixel alone would alarm several times too
+    /// Whether the mean of the samples is near enough to a normal distribution for a z-test. It is
+    /// not where something bright or dark is met by few of the samples only (the corner of a pixel
+    /// behind which a moving ball passes), and such a pixel alone would alarm several times too
     /// often. The bound is five standard errors of the skewness of 120 normal renders.
     bool is_testable(size_t pixel) const {
         constexpr double kMostSkewed = 1.1;
@@ -180,7 +181,8 @@ inline double image_p(const Pixels& value, double renders, const Reference& refe
     for (size_t i = 0; i < kPixels; ++i) {
         const double expected = known ? (*known)[i] : reference.mean[i];
         const double off = std::abs(value[i] - expected);
-        // What is the same in every render up to rounding can't be tested by its variance.
+        // Pixels that are the same in every render up to rounding can't be tested by their
+        // variance.
         if (reference.is_constant(i) && off > 2e-5 * expected + 1e-7) return 0;
         if (!reference.is_testable(i)) continue;
         const double factor = 1 / renders + (known ? 0 : 1 / reference.renders);

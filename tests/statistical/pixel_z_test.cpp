@@ -47,7 +47,7 @@ TEST(PixelZTest, AlarmsAsOftenAsItsAlpha) {
             all[k] += alarms;
         }
     }
-    // The five together, which leaves 0.017 to 0.093 at 0.05.
+    // Counts are those of the five scenes together, which leaves 0.017 to 0.093 at 0.05.
     for (size_t k = 0; k < kAlphas.size(); ++k) {
         const int n = kSeeds * int(scenes);
         const auto [lo, hi] = binomial_bounds(n, kAlphas[k], sidak(0.005, 2));
@@ -69,7 +69,7 @@ void expect_known(const std::string& text, const Pixels& known, uint32_t spp, do
 }
 
 TEST(PixelZTest, InsideASphereOfLight) {
-    // L / (1 - rho); what follows after 60 bounces is below 1e-7.
+    // The radiance is L / (1 - rho); the rest after 60 bounces is below 1e-7.
     expect_known(scene_text(R"(Camera "perspective" "float fov" 90)", R"(
 ReverseOrientation
 AreaLightSource "diffuse" "rgb L" [ 0.2 0.2 0.2 ]
@@ -80,7 +80,8 @@ Shape "sphere" "float radius" 9)",
 }
 
 TEST(PixelZTest, APointLightAboveAFloor) {
-    // rho / pi I cos / d^2, averaged over each pixel. The camera is orthographic and looks down.
+    // The radiance is rho / pi I cos / d^2, averaged over each pixel. The camera is orthographic
+    // and looks down.
     const double intensity = 12, height = 1.5;
     Pixels known(kPixels);
     constexpr int n = 64;
@@ -106,7 +107,7 @@ Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indi
 }
 
 TEST(PixelZTest, SingleScatteringInASlab) {
-    // As in Media.SingleScatteringInASlab, light from behind the camera.
+    // The slab is that of Media.SingleScatteringInASlab, with light from behind the camera.
     const double s = 0.7, t = 1.1, irradiance = 3;
     const std::string text = R"(
 Integrator "volpath" "integer maxdepth" 1

@@ -1,7 +1,7 @@
 // Chi-square tests of the sampling routines below BSDFs and lights: warps (the lens among them),
 // pixel filters, environment maps, phase functions, distances in media.
 //
-// All of them together alarm falsely with probability 0.01; the seeds are fixed.
+// The tests together alarm falsely with probability 0.01; the seeds are fixed.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -83,7 +83,7 @@ TEST(WarpSampling, SphereHemisphereAndCone) {
 }
 
 TEST(WarpSampling, TheLensIsUniform) {
-    // Cells of equal area: 12 rings of the squared radius, 24 of the angle.
+    // Cells have equal area: 12 rings of the squared radius, 24 of the angle.
     std::vector<double> observed(12 * 24), expected(12 * 24, double(kSamples) / (12 * 24));
     Rng rng(4);
     for (int i = 0; i < kSamples; ++i) {
@@ -97,7 +97,7 @@ TEST(WarpSampling, TheLensIsUniform) {
 }
 
 TEST(WarpSampling, Triangles) {
-    // The corners' two coordinates in cells of a quarter along each.
+    // Cells are quarters along each of the corners' two coordinates.
     std::vector<double> observed(16), expected(16);
     Rng rng(5);
     for (int i = 0; i < kSamples; ++i) {
@@ -118,7 +118,7 @@ TEST(WarpSampling, PixelFilters) {
     struct Case {
         const char* name;
         FilterDescription filter;
-        std::function<double(double)> value;  // of one axis, any scale
+        std::function<double(double)> value;  // the filter along one axis, in any scale
     };
     const auto sinc = [](double x) { return x == 0 ? 1 : std::sin(M_PI * x) / (M_PI * x); };
     const auto mitchell = [](double x) {
@@ -145,8 +145,8 @@ TEST(WarpSampling, PixelFilters) {
          [&](double x) { return sinc(x) * sinc(x / 3); }},
     };
     for (const Case& c : cases) {
-        // The signs of both axes and the place: |f| is what is sampled, the weight's sign tells
-        // f's.
+        // Cells are the signs of both axes and the place: |f| is sampled, and the weight's sign
+        // tells f's.
         const PixelFilter filter(c.filter);
         constexpr int n = 12, points = 512;
         const double radius = c.filter.x_radius;
@@ -180,7 +180,7 @@ TEST(WarpSampling, PixelFilters) {
 }
 
 TEST(WarpSampling, EnvironmentMaps) {
-    // Smooth waves with a sun of one texel.
+    // The maps are smooth waves with a sun of one texel.
     const auto texels = [](int width, int height) {
         std::vector<Rgb> t;
         for (int y = 0; y < height; ++y)
@@ -200,7 +200,7 @@ TEST(WarpSampling, EnvironmentMaps) {
 TEST(WarpSampling, PhaseFunctions) {
     const Vec3 wo = normalize(Vec3{0.3f, -0.5f, 0.4f});
     for (float g : {-0.9f, -0.5f, -1e-4f, 0.0f, 1e-3f, 0.3f, 0.7f, 0.95f}) {
-        // In cells about the direction of travel, fine where the lobe is: equal parts of u.
+        // Cells are about the direction of travel, fine where the lobe is: equal parts of u.
         const Frame frame = Frame::from_z(-wo);
         constexpr int n = 24;
         std::vector<double> observed(n * 8), expected(n * 8);

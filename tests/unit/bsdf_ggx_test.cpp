@@ -12,7 +12,7 @@ Vec3 direction(float theta, float phi) {
     return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
-/// Midpoint rule over the upper hemisphere.
+/// Integral over the upper hemisphere by the midpoint rule.
 template <typename Function>
 double integrate_hemisphere(Function f, int n = 600) {
     double sum = 0;
@@ -40,8 +40,8 @@ TEST_P(GgxOfWidths, ProjectedAreaOfTheNormalsIsOne) {
     EXPECT_NEAR(integrate_hemisphere([&](Vec3 m) { return ggx.d(m) * m.z; }), 1, 2e-3);
 }
 
-// What is visible from w projects to the area of the plain surface: this pins masking to the
-// distribution.
+// The area that is visible from w projects to the area of the plain surface, which pins masking to
+// the distribution.
 TEST_P(GgxOfWidths, VisibleAreaIsTheCosine) {
     for (float theta : {0.0f, 0.7f, 1.3f, 1.5f}) {
         const Vec3 w = direction(theta, 0.9f);
@@ -78,8 +78,7 @@ TEST_P(GgxOfWidths, SampledNormalsAreUnitUpwardAndVisible) {
         const Vec3 m = ggx.sample_visible_normal(w, u);
         ASSERT_NEAR(length(m), 1, 1e-5f);
         ASSERT_GT(m.z, 0);
-        // The last step of u.y turns the cap's rim to the back of w, where rounding is all that is
-        // left.
+        // The last step of u.y turns the cap's rim to the back of w, where only rounding is left.
         ASSERT_GT(dot(w, m), i % 7 == 1 ? -2e-3f : -1e-6f);
     }
 }

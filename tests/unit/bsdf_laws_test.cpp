@@ -82,7 +82,7 @@ void expect_near(Rgb a, Rgb b, float relative, const char* what) {
             << what;
 }
 
-/// Index on the side of w.
+/// The index on the side of w.
 float index_at(const Bsdf& bsdf, Vec3 w) {
     const auto* dielectric = std::get_if<DielectricBsdf>(&bsdf);
     return dielectric && w.z < 0 ? dielectric->eta : 1;
@@ -130,7 +130,7 @@ TEST_P(BsdfLaws, SampleAgreesWithEvalAndPdf) {
                                      GetParam().name == "nearly_matched";
         const float tolerance = ill_conditioned ? 0.1f : 4e-3f;
         EXPECT_NEAR(pdf(bsdf, wo, s->wi) / s->pdf, 1, tolerance) << wo.z << " -> " << s->wi.z;
-        // A walk's weight: tests/statistical/bsdf_coated_conductor_test.cpp.
+        // The weight of a walk is tested in tests/statistical/bsdf_coated_conductor_test.cpp.
         if (!std::holds_alternative<CoatedConductorBsdf>(bsdf))
             expect_near(s->weight, eval(bsdf, wo, s->wi) / pdf(bsdf, wo, s->wi),
                         ill_conditioned ? 0.02f : 1e-3f, "weight");
@@ -173,7 +173,7 @@ TEST_P(BsdfLaws, GivesOutNoMoreEnergyThanArrives) {
                          (static_cast<float>(i / kSide) + rng.next_float()) / kSide};
             const auto s = sample(bsdf, wo, rng.next_float(), u);
             if (!s) continue;
-            // The radiance factor of transmission undone: this is energy.
+            // The radiance factor of transmission is undone, so that this is energy.
             for (int c = 0; c < 3; ++c) sum[c] += s->weight[c] * sqr(s->eta);
         }
         for (double c : sum) EXPECT_LE(c / (kSide * kSide), 1.002) << "cos " << cos_o;
@@ -192,7 +192,7 @@ TEST_P(BsdfLaws, DegenerateDirectionsGiveNoEnergyAndNoNan) {
         for (float zi : grazing) {
             for (int i = 0; i < 20; ++i) {
                 const Vec3 wo = with_z(zo);
-                // The opposite and the mirror direction are where half vectors vanish.
+                // Half vectors vanish for the opposite and the mirror direction.
                 const Vec3 wi = i == 0 ? -wo : i == 1 ? Vec3{-wo.x, -wo.y, wo.z} : with_z(zi);
                 const Rgb f = eval(bsdf, wo, wi);
                 const float p = pdf(bsdf, wo, wi);
@@ -238,7 +238,7 @@ TEST(BsdfSpecular, ModelsWithoutOtherLobesNeverEvaluate) {
             EXPECT_TRUE(is_specular(s->lobe)) << c.name;
         }
     }
-    // mirror, glass, no_border, lacquer_on_mirror, pane, interface
+    // The models are mirror, glass, no_border, lacquer_on_mirror, pane and interface.
     EXPECT_EQ(models, 6);
 }
 

@@ -85,7 +85,7 @@ TEST(BsdfLimits, MatchedIndicesLetLightPassStraight) {
     EXPECT_EQ(s->weight, Rgb(1));
 }
 
-// The narrowest lobes must do what the mirror does: same energy, same direction.
+// The narrowest lobes must do as the mirror does: same energy, same direction.
 TEST(BsdfLimits, RoughModelsApproachSmoothOnes) {
     Rng rng(4);
     constexpr float kAlpha = 0.001f;
@@ -120,7 +120,7 @@ TEST(BsdfLimits, CoatWithoutIndexIsTheBase) {
     }
 }
 
-// Nothing absorbs: a smooth coat with an empty gap over a white base must give everything back.
+// A smooth coat with an empty gap over a white base must give everything back, as nothing absorbs.
 TEST(BsdfLimits, WhiteBaseUnderSmoothCoatKeepsAllEnergy) {
     for (float eta : {1.2f, 1.5f, 2.0f, 0.8f}) {
         const CoatTable table(eta, 0);
@@ -153,14 +153,15 @@ TEST(BsdfLimits, CoatedAlbedoIsTheIntegralOfEval) {
 }
 
 TEST(BsdfLimits, DiffuseInternalReflectanceOfGlassIsTheKnownOne) {
-    // 1 - (1 - F_out) / eta^2 with the known diffuse reflectance 0.0918 of an index of 1.5.
+    // The formula is 1 - (1 - F_out) / eta^2 with the known diffuse reflectance 0.0918 of an index
+    // of 1.5.
     const CoatTable table(1.5f, 0);
     EXPECT_NEAR(table.internal_reflectance(0), 0.5963f, 5e-4f);
     EXPECT_NEAR(table.mean_transmission(0), 1 - 0.0918f, 5e-4f);
 }
 
 TEST(BsdfLimits, CoatTableDoesNotDependOnTheMemoryItLiesIn) {
-    // Storage full of NaN: reading what has not been filled yet would show.
+    // Storage is full of NaN: reading an entry that has not been filled yet would show.
     alignas(CoatTable) std::array<std::byte, sizeof(CoatTable)> storage;
     storage.fill(std::byte{0xff});
     const CoatTable* dirty = new (storage.data()) CoatTable(1.5f, 0.01f);

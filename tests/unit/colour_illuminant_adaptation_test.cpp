@@ -24,7 +24,7 @@ float largest_difference(Rgb a, Rgb b) {
     return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
 }
 
-/// Light after it met surfaces of these spectra: colour under D65 of the product of all.
+/// Colour under D65 of light that met surfaces of these spectra: of the product of all.
 Rgb product_colour(const std::vector<SigmoidSpectrum>& factors) {
     std::array<double, 3> sum{};
     for (const ObserverSample& s : observer_samples()) {

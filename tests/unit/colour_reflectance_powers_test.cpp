@@ -14,14 +14,14 @@ namespace covtrace::test {
 namespace {
 
 constexpr Rgb kRed{0.8f, 0.1f, 0.1f}, kCandle{1, 0.3f, 0.05f};
-/// What a smooth interface of index 1.5 sends back of light from inside.
+/// Share of light from inside that a smooth interface of index 1.5 sends back.
 constexpr float kAgain = 0.596f;
 
 float largest_difference(Rgb a, Rgb b) {
     return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
 }
 
-/// Sum of again^j S^(j + 1) over j < bounces at each wavelength, then its colour; not below 0.
+/// Colour of the sum of again^j S^(j + 1) over j < bounces at each wavelength; not below 0.
 Rgb sum_of_spectra(Rgb reflectance, float again, int bounces) {
     const SigmoidSpectrum spectrum = sigmoid_spectrum(reflectance);
     std::array<double, 3> colour{};

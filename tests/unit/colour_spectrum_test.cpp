@@ -51,8 +51,8 @@ RC_GTEST_PROP(SceneSpectrum, ColoursAreLinearInTheSpectrum, ()) {
 }
 
 TEST(SceneSpectrum, BlackbodiesHaveTheirKnownChromaticity) {
-    // Planckian locus, CIE 1931 (Robertson's and later tables): 2856 K is illuminant A, 6500 K
-    // nearly D65.
+    // Points of the Planckian locus, CIE 1931 (Robertson's and later tables): 2856 K is illuminant
+    // A, 6500 K nearly D65.
     struct Case {
         double kelvin, x, y;
     };
@@ -81,23 +81,24 @@ TEST(SceneSpectrum, MonochromaticLightIsSaturated) {
     EXPECT_EQ(line(630).b, 0);
     EXPECT_GT(line(530).g, 1.0f);
     EXPECT_EQ(line(530).r, 0);
-    // Its luminance is 1 before the negative green of such a blue is cut off, as in pbrt's image.
+    // The line's luminance is 1 before the negative green of such a blue is cut off, as in pbrt's
+    // image.
     EXPECT_GT(line(450).b, 40.0f);
     EXPECT_EQ(line(450).g, 0);
     EXPECT_TRUE(is_black(emission_colour({{900, 1000}, {1, 1}, false})));
 }
 
 TEST(SceneSpectrum, LinesLieWhereTheyLie) {
-    // However narrow a line is and wherever it lies, it has the colour of its wavelength.
+    // A line has the colour of its wavelength, however narrow it is and wherever it lies.
     for (const float nm : {435.8f, 546.1f, 589.3f, 611.7f})
         for (const float width : {0.01f, 0.2f, 1.0f}) {
             const Rgb narrow = emission_colour({{nm - width, nm, nm + width}, {0, 1, 0}, false});
             const Rgb line = emission_colour({{nm}, {1}, false});
-            // 1 together with the negative light of a colour outside Rec.709.
+            // The luminance is 1 together with the negative light of a colour outside Rec.709.
             EXPECT_GE(luminance(line), 1 - 1e-4f);
             expect_near(narrow, line, 0.01f * max_component(line));
         }
-    // Beside each other they add up by what they hold.
+    // Two lines beside each other add up by what they hold.
     const Spectrum two{{440, 441, 442, 599, 600, 601}, {0, 1, 0, 0, 1, 0}, false};
     const Spectrum wide{{440, 441, 442, 598, 600, 602}, {0, 1, 0, 0, 0.5f, 0}, false};
     expect_near(emission_colour(two), emission_colour(wide), 0.01f);
@@ -162,9 +163,8 @@ TEST(SceneSpectrum, FilesHoldPairsAndComments) {
     EXPECT_EQ(f.message, file.string() + ":2:5: expected a number, found \"x\"");
 }
 
-/// What a ball of radius 2 of an absorbing medium lets through of white light, seen by parallel
-/// rays over the square [-1, 1]^2: with a coefficient per channel, and with pbrt-v4's spectrum for
-/// it.
+/// White light after a ball of radius 2 of an absorbing medium, seen by parallel rays over the
+/// square [-1, 1]^2: with a coefficient per channel, and with pbrt-v4's spectrum for it.
 struct Absorbed {
     std::array<double, 3> channels{}, spectral{};
 };
@@ -185,13 +185,13 @@ Absorbed absorbed(Rgb coefficient) {
     return a;
 }
 
-// Why the colours of media differ from pbrt-v4's: attenuation is exponential, wavelength by
+// The colours of media differ from pbrt-v4's, as attenuation is exponential, wavelength by
 // wavelength, and three numbers are not a spectrum. The ratios are those of pbrt's renders of the
-// same ball (256 samples per pixel, decision 19), channels below 0.01 left out.
+// same ball (256 samples per pixel, docs/decisions/0019), channels below 0.01 left out.
 TEST(Spectrum, AbsorptionByChannelsIsNotThatOfASpectrum) {
     struct Case {
         Rgb coefficient;
-        std::array<double, 3> ratio;  // of channels over pbrt's; 0: not compared
+        std::array<double, 3> ratio;  // ratio of channels over pbrt's; 0: not compared
     };
     for (const Case& k :
          {Case{{0.1f, 0.5f, 2}, {1.234, 1.130, 0}}, Case{{2, 0.5f, 0.1f}, {0, 1.022, 1.159}},

@@ -19,7 +19,8 @@ TEST(Once, IsDoneOnceAndSeenByAll) {
         parallel_for(64, [&](int64_t) {
             once([&] {
                 ++calls;
-                // A loop of its own: threads that wait must not start the outer one's bodies in it.
+                // The loop is one of its own: threads that wait must not start the outer one's
+                // bodies in it.
                 std::atomic<int64_t> sum = 0;
                 parallel_for(1000, [&](int64_t i) { sum += i; });
                 result = sum;

@@ -24,8 +24,8 @@ TEST(Parallel, ThrowsWhatABodyThrows) {
                  int);
 }
 
-// Threads start in the mode in which the process first used the scheduler. A loop must not compute
-// anything else for that: here every test is a process of its own.
+// Threads start in the floating-point mode in which the process first used the scheduler. A loop
+// must not compute anything else for that: here every test is a process of its own.
 TEST(Parallel, ComputesInTheFloatingPointModeOfTheCaller) {
     const auto halves = [] {
         std::vector<float> half(1000);

@@ -22,7 +22,7 @@ TEST(Plane, BlursKeepTheSumOfAPoint) {
     }
     EXPECT_NEAR(box_blur(p, 3)(23, 17), 1 / 49.0f, 1e-6);
     EXPECT_FLOAT_EQ(box_blur(p, 3)(24, 20), 0);
-    // Two axes of deviation 3, cut at 9: 1/(2 pi 9) at the centre within what is cut off.
+    // The kernel has two axes of deviation 3, cut at 9: 1/(2 pi 9) at the centre, but for the cut.
     EXPECT_NEAR(gaussian_blur(p, 3)(20, 20), 1 / (2 * 3.14159265f * 9), 2e-4);
 }
 

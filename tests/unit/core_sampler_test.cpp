@@ -12,8 +12,8 @@
 namespace covtrace {
 namespace {
 
-/// Every elementary interval of area 1/n holds exactly one of n = 2^k points of a (0,2)-sequence in
-/// base 2.
+/// Asserts that every elementary interval of area 1/n holds exactly one of n = 2^k points of a
+/// (0,2)-sequence in base 2.
 void expect_elementary_intervals(const std::vector<Vec2>& points) {
     const int n = static_cast<int>(points.size());
     for (int columns = 1; columns <= n; columns *= 2) {
@@ -55,7 +55,7 @@ TEST(Sampler, CameraDimensionsAreStratified) {
 }
 
 TEST(Sampler, IntegratesSmoothFunctionsFasterThanRandom) {
-    // Mean squared error of the mean of x y over 64 points: random sampling has var(x y)/64
+    // The squared error is that of the mean of x y over 64 points: random sampling has var(x y)/64
     // = 7.6e-4.
     double squares = 0;
     constexpr int kRuns = 200;
@@ -74,7 +74,7 @@ TEST(Sampler, IntegratesSmoothFunctionsFasterThanRandom) {
 }
 
 TEST(Sampler, MeanOverSeedsIsUniform) {
-    // 20 000 numbers of different seeds: the mean is within 4 standard errors (false alarm 6e-5).
+    // The mean of 20 000 numbers of different seeds is within 4 standard errors (false alarm 6e-5).
     double sum = 0;
     constexpr int n = 20000;
     for (int i = 0; i < n; ++i) {
@@ -84,8 +84,8 @@ TEST(Sampler, MeanOverSeedsIsUniform) {
     EXPECT_NEAR(sum / n, 0.5, 4 / std::sqrt(12.0 * n));
 }
 
-/// Over 100 tiles, the mean squared error of the mean of `f` over the first `samples` samples of
-/// blocks of `width` by `width` pixels, over what it would be if the pixels had nothing to do with
+/// The mean squared error, over 100 tiles, of the mean of `f` over the first `samples` samples of
+/// blocks of `width` by `width` pixels, relative to its value if the pixels had nothing to do with
 /// each other: the error of single pixels over their number.
 template <typename F>
 double error_of_blocks(int width, uint32_t samples, double truth, F f) {
@@ -107,7 +107,7 @@ double error_of_blocks(int width, uint32_t samples, double truth, F f) {
     return blocks / pixels;
 }
 
-// By chance a ratio of 1 becomes 1.14: of at least 1600 blocks, whose squared means vary by twice
+// Ratio that 1 may become by chance: of at least 1600 blocks, whose squared means vary by twice
 // themselves, 4 standard errors (false alarm 6e-5 each).
 constexpr double kByChance = 1.14;
 
@@ -125,7 +125,8 @@ TEST(Sampler, NeighboursFillEachOthersGaps) {
         EXPECT_LT(error_of_blocks(4, samples, 0.245, lens), 0.6) << samples;
         EXPECT_LT(error_of_blocks(4, samples, 0.3, time), 0.1) << samples;
         EXPECT_LT(error_of_blocks(4, samples, 0.25, later), 0.1) << samples;
-        // No patterns are good at everything: these have their hole at 2x2 pixels of 4 samples.
+        // These patterns have their hole at 2x2 pixels of 4 samples: no patterns are good at
+        // everything.
         EXPECT_LT(error_of_blocks(2, samples, 0.25, later), samples == 4 ? kByChance : 0.5)
             << samples;
     }
@@ -148,8 +149,8 @@ TEST(Sampler, NumbersOfDifferentKeysDoNotGoTogetherInATile) {
 }
 
 TEST(Sampler, EveryPixelOfATileIsUniform) {
-    // Means over seeds of each pixel's first number, within 4.7 standard errors (false alarm of all
-    // 1280 comparisons 3e-3).
+    // The means over seeds of each pixel's first number are within 4.7 standard errors (false alarm
+    // of all 1280 comparisons 3e-3).
     constexpr int kSeeds = 2000;
     for (int pixel = 0; pixel < 256; ++pixel) {
         std::array<double, 5> sums{};

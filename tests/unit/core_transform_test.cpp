@@ -94,8 +94,8 @@ Transform random_stretch(double sign) {
 }
 
 RC_GTEST_PROP(AnimatedTransform, RotationsAndSymmetricStretchesAreInterpolatedApart, ()) {
-    // What the decomposition has to find is what the keys are made of; a reflection is the opposite
-    // of a rotation.
+    // The factors of the keys are those that the decomposition has to find; a reflection is the
+    // opposite of a rotation.
     const double sign = *rc::gen::element(1.0, -1.0);
     const Vec3 axis = random_vector() + Vec3{0.001f, 0, 0};
     const double degrees = *rc::gen::inRange(-170, 171);
@@ -134,7 +134,7 @@ RC_GTEST_PROP(AnimatedTransform, KeysAreReproduced, ()) {
     const Transform scale = Transform::scale(1.5, -2, 0.7);
     const AnimatedTransform motion(random_rigid() * scale, 0, random_rigid() * scale, 1);
     const Vec3 p = random_vector();
-    // Inside the interval the decomposition takes over: it must meet the keys at both ends.
+    // The decomposition takes over inside the interval: it must meet the keys at both ends.
     RC_ASSERT(distance(motion.at(1e-6f).point(p), motion.start().point(p)) < 2e-3f);
     RC_ASSERT(distance(motion.at(1 - 1e-6f).point(p), motion.end().point(p)) < 2e-3f);
 }
@@ -144,7 +144,7 @@ RC_GTEST_PROP(AnimatedTransform, VelocityIsRigidMotion, ()) {
     const float time = float(*rc::gen::inRange(5, 96)) * 0.01f;
     const Vec3 omega = motion.angular_velocity(time);
     const Vec3 p = random_vector(), q = p + random_vector() * 0.1f;
-    // Two points of one body: v(q) - v(p) = omega x (q - p).
+    // Two points of one body obey v(q) - v(p) = omega x (q - p).
     const Vec3 difference = motion.velocity(q, time) - motion.velocity(p, time);
     RC_ASSERT(distance(difference, cross(omega, q - p)) < 2e-2f);
 }

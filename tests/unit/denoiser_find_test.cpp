@@ -34,7 +34,7 @@ class FindDenoiser : public testing::Test {
         ::unsetenv("COVTRACE_OIDN_LIBRARY");
         ::unsetenv("FAKE_OIDN_THREADS");
     }
-    /// What is wrong with the library, told as a warning and as an error alike.
+    /// The defect of the library, told as a warning and as an error alike.
     static std::string defect(const fs::path& library) {
         const FoundDenoiser found = find_denoiser({DenoiserChoice::automatic, library, {}});
         EXPECT_EQ(found.denoiser, nullptr) << library;

@@ -34,7 +34,7 @@ LobeShare lobe_of(int i, Rng& rng) {
 }
 
 LocalAxes axes_along(Vec3 direction) {
-    // Of unit length in double, as the closed forms take for granted.
+    // The axes are of unit length in double, as the closed forms take for granted.
     const auto f = cov::frame_along<double>(cov::normalized_or<double>(direction, {}));
     return {f.x, f.y, f.z};
 }

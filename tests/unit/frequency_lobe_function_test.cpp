@@ -25,8 +25,8 @@ struct Model {
     Bsdf bsdf;
 };
 
-/// Without total reflection by the coat's table and with grey conductors: where the function is
-/// exact.
+/// Models without total reflection by the coat's table and with grey conductors, for which the
+/// function is exact.
 std::vector<Model> models() {
     return {{"diffuse", DiffuseBsdf{Rgb(0.5f)}},
             {"diffuse transmission", DiffuseTransmissionBsdf{Rgb(0.5f), Rgb(0.3f)}},
@@ -106,7 +106,7 @@ TEST(LobeFunction, DerivativesAreThoseOfFiniteDifferences) {
                 const auto jet = lobe_function(lobe, cov::jet_direction<double>(f.x, f.y, f.z),
                                                cov::jet_constant<double>(wi));
                 if (!(jet.value > 1e-6)) continue;
-                // Where total reflection begins the function has no derivatives.
+                // The function has no derivatives where total reflection begins.
                 if (lobe.border_eta > 0 && lobe.border_eta < 1 && lobe.border_k == 0) {
                     const Vec3 h = wo + s->wi * (is_transmission(lobe.kind) ? lobe.eta : 1.0f);
                     const float c = dot(wo, normalize(h));

@@ -19,7 +19,7 @@ Vec unit(Vec3 v) {
     return cov::normalized_or<double>(v, {0, 0, 1});
 }
 
-/// Borders of none, glass from both sides, and metal.
+/// Lobes with borders of none, glass from both sides, and metal.
 LobeShare lobe_of(int i, Rng& rng) {
     LobeShare lobe;
     lobe.kind = LobeKind::glossy_reflection;
@@ -100,7 +100,7 @@ TEST(FresnelDerivatives, AreThoseOfTheBordersFunction) {
         if (lobe.border_eta > 0 && std::abs(e2 - 1 + c * c) < 1e-3) continue;  // infinite there
         const auto a = reflectance_at(lobe, c);
         const auto b = border_reflectance(lobe, cov::Taylor<double>{c, 1, 0});
-        EXPECT_NEAR(a.value, b.value, 1e-6);  // of a square of the index in float
+        EXPECT_NEAR(a.value, b.value, 1e-6);  // the value is of a square of the index in float
         EXPECT_NEAR(a.first, b.first, 1e-5 * (1 + std::abs(b.first)));
         EXPECT_NEAR(a.second, b.second, 1e-4 * (1 + std::abs(b.second)));
     }

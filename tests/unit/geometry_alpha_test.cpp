@@ -1,5 +1,5 @@
-// Alpha: what rays pass, and what the voxel grid and the query of occluders see of a surface with
-// holes.
+// Alpha: the rays that pass a surface with holes, and its image in the voxel grid and the query of
+// occluders.
 #include <gtest/gtest.h>
 
 #include "geometry_fixtures.h"
@@ -68,7 +68,7 @@ TEST(GeometryAlpha, CountsOnWhatMayBeAnInterfaceToo) {
     EXPECT_TRUE(g.has_interfaces());
 }
 
-// What asks whether a mix may be no surface must not walk all of its 2^100 ends.
+// The question whether a mix may be no surface must not walk all of its 2^100 ends.
 TEST(GeometryAlpha, MixesThatMixTheSameTwiceEach) {
     SceneDescription scene = pile(0);
     scene.materials.resize(101);
@@ -86,7 +86,7 @@ TEST(GeometryAlpha, WithoutALookupEverythingIsOpaque) {
     EXPECT_EQ(hit.shape, 0u);
 }
 
-// Binomial, 20000 rays: five standard deviations (false alarm 6e-7 each).
+// The count is binomial, 20000 rays: five standard deviations (false alarm 6e-7 each).
 TEST(GeometryAlpha, PartialAlphaStopsItsShareOfRaysAndTheSameOnesEachTime) {
     for (const float opacity : {0.1f, 0.5f, 0.8f}) {
         Geometry g(pile(2));
@@ -161,7 +161,7 @@ TEST(GeometryAlpha, TheVoxelGridHasTheHoles) {
     SceneDescription scene = pile(1);
     scene.shapes.resize(1);
     Geometry whole(scene), cut(scene);
-    // Opaque below v = 1/2 only.
+    // The surface is opaque below v = 1/2 only.
     cut.set_alpha([](TextureId, Vec2 uv, Vec3) { return uv.y < 0.5f ? 1.0f : 0.0f; });
     VoxelGridOptions options;
     options.width = 40;
@@ -178,7 +178,7 @@ TEST(GeometryAlpha, HolesHaveOutlinesAndSquaresBehindThemNone) {
     scene.shapes[0].alpha = 0;
     scene.textures = {texture(0.5f)};
     Geometry g(scene);
-    // Opaque for x below 0 only; a veil of a tenth elsewhere counts as nothing.
+    // The surface is opaque for x below 0 only; a veil of a tenth elsewhere counts as nothing.
     g.set_alpha([](TextureId, Vec2 uv, Vec3) { return uv.x < 0.5f ? 1.0f : 0.1f; });
     const OccluderQuery query(g);
     EdgeMeasure nearest;

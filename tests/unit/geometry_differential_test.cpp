@@ -7,7 +7,7 @@ namespace {
 
 using namespace test;
 
-/// The shape operator and d(uv) by moving the ray sideways in the tangent plane.
+/// The shape operator and d(uv), by moving the ray sideways in the tangent plane.
 struct Numeric {
     float k[2][2], uv[2][2];
 };

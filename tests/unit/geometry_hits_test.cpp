@@ -76,7 +76,7 @@ TEST(GeometryHits, CamerasDoNotSeeThePlaneThatTheyStandOn) {
         EXPECT_NEAR(hit.t, 1.7f, 1e-5f);
         const Ray up{ray.origin, -down};
         EXPECT_FALSE(g.intersect_seen(up, hit));
-        // From a thousandth above it is seen.
+        // The slope is seen from a thousandth above it.
         ASSERT_TRUE(g.intersect_seen({ray.origin - 1e-3f * down, down}, hit));
         EXPECT_EQ(hit.shape, 0u);
     }
@@ -85,7 +85,7 @@ TEST(GeometryHits, CamerasDoNotSeeThePlaneThatTheyStandOn) {
 TEST(GeometryHits, TriangleDefaultUvsAreThoseOfPbrt) {
     const Geometry g{scene_of({mesh(unit_triangle())})};
     const SurfaceHit hit = must_hit(g, {0.25f, 0.5f, 3}, {0, 0, -1});
-    // b = (0.25, 0.25, 0.5) on (0,0), (1,0), (1,1).
+    // The hit has b = (0.25, 0.25, 0.5) on (0,0), (1,0), (1,1).
     EXPECT_NEAR(hit.uv.x, 0.75f, 1e-6f);
     EXPECT_NEAR(hit.uv.y, 0.5f, 1e-6f);
     EXPECT_TRUE(near_vec(hit.dpdu, {1, 0, 0}, 1e-6f));
@@ -132,8 +132,8 @@ TEST(GeometryHits, VertexNormalsDecideTheSide) {
 }
 
 TEST(GeometryHits, TheOutsideOfSubdividedMeshesIsPbrts) {
-    // Corners that are seen counterclockwise from +z: a plain mesh's outside, and the inside of
-    // what pbrt's limit normals, which decide, make of it.
+    // The corners are seen counterclockwise from +z: this is a plain mesh's outside, and the inside
+    // of the mesh with pbrt's limit normals, which decide.
     ShapeDescription plain = mesh(unit_triangle());
     const TriangleMesh& m = *std::get<std::shared_ptr<const TriangleMesh>>(plain.geometry);
     ShapeDescription fine = mesh(loop_subdivide(m.positions, m.triangles, 2, {}));
@@ -189,7 +189,7 @@ TEST(GeometryHits, SphereAgainstTheClosedForm) {
         const double a = inner(d, d), b = -inner(o, d) / a, h2 = (4.0 - inner(o, o)) / a + b * b;
         if (std::abs(h2) < 1e-3) continue;
         SurfaceHit hit;
-        // What is aimed at may lie on this side of the sphere, which is then behind.
+        // The point aimed at may lie on this side of the sphere, which is then behind.
         const bool hits_sphere = h2 > 0 && b > 0;
         ASSERT_EQ(g.intersect({origin, d}, hit), hits_sphere);
         if (!hits_sphere) continue;
@@ -324,7 +324,7 @@ TEST(GeometryHits, InterfacesAreSeenButDoNotOcclude) {
         SurfaceHit hit;
         EXPECT_TRUE(Geometry{scene}.intersect(ray, hit));
         EXPECT_FALSE(Geometry{scene}.occluded(ray));
-        // Between nothing and nothing it is not there.
+        // An interface between nothing and nothing is not there.
         scene.shapes[0].inside = -1;
         EXPECT_FALSE(Geometry{scene}.intersect(ray, hit));
         scene.materials[0].value = DiffuseMaterial{};

@@ -20,7 +20,7 @@ Vec3 exact_point(const Transform& t, const TriangleMesh& m, Vec2 b) {
     return t.point(p);
 }
 
-/// Shoots rays at the middle of the triangle where `exact` puts it at random times and returns the
+/// Shoots rays at the middle of the triangle where `exact` puts it at random times. Returns the
 /// largest distance between that plane and the hit, and between the two points.
 template <class At>
 double worst_error(const Geometry& g, const TriangleMesh& m, float t0, float t1, At&& exact) {
@@ -78,7 +78,7 @@ TEST(GeometryMotion, QuarterAndHalfTurnsAreCircles) {
 }
 
 TEST(GeometryMotion, ScalesBeforeRotationsAreMetWherePbrtPutsThem) {
-    // What pbrt interpolates, in closed form: the rotation R by the angle, and the symmetric
+    // The closed form of pbrt's interpolation: the rotation R by the angle, and the symmetric
     // stretches S and R^T S R of the keys S and S R. Embree's own way between two keys is another.
     struct Case {
         Transform scale;

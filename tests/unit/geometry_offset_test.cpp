@@ -29,7 +29,7 @@ OffsetStatistics leave_surface(const Geometry& g, Vec3 center, float size, Bends
         if (!g.intersect({origin, normalize(target - origin), time}, hit)) continue;
         ++s.hits;
         for (float side : {-1.0f, 1.0f}) {
-            // Grazing directions too: they are the hard ones.
+            // Directions are grazing, too: these are the hard ones.
             Vec3 d = random.direction();
             if (i % 2) d = normalize(d - hit.ng * (dot(d, hit.ng) * 0.99f));
             if (dot(d, hit.ng) * side < 0) d = -d;

@@ -37,7 +37,7 @@ TEST(GeometryRange, RaysThatAreNoRaysMeetNothing) {
 }
 
 TEST(GeometryRange, InstancesLimitWhereRaysMayStart) {
-    // In the space of the instance the origin is 1e10 times as far away.
+    // The origin is 1e10 times as far away in the space of the instance.
     const Geometry g{instanced(Transform::scale(1e-10, 1e-10, 1e-10))};
     SurfaceHit hit;
     EXPECT_TRUE(g.intersect({{0.25f, 0.25f, 1e4f}, {0, 0, -1}}, hit));

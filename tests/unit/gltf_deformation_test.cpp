@@ -102,7 +102,7 @@ TEST(GltfDeformation, WhatJointsBendMovesInPieces) {
 TEST(GltfDeformation, WhatHangsOnOneJointMovesExactly) {
     GltfFile file = skinned_file();
     animate(file);
-    // All of it hangs on the joint that turns.
+    // The whole strip hangs on the joint that turns.
     std::vector<float> weights;
     for (int i = 0; i < 2 * (kSteps + 1); ++i) weights.insert(weights.end(), {0, 3, 0, 0});
     file.root["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] =
@@ -110,7 +110,7 @@ TEST(GltfDeformation, WhatHangsOnOneJointMovesExactly) {
     const auto scene = read(file, {{}, std::array<float, 2>{0, 1}});
     ASSERT_EQ(scene.shapes.size(), 1u);
     const AnimatedTransform& t = scene.shapes[0].object_to_world;
-    // On arcs around the joint.
+    // The vertices move on arcs around the joint.
     const TriangleMesh& mesh = mesh_of(scene.shapes[0]);
     for (const float time : {0.0f, 0.5f, 1.0f}) {
         const float angle = 0.5f * 3.14159265f * time;
@@ -248,7 +248,7 @@ TEST(MovingPieces, BumpsOfFlatPiecesDoNotStretchThem) {
 }
 
 TEST(MovingPieces, SeparatePartsMoveAlone) {
-    // Two squares whose halves share no vertex, as flat shading has them; one rests.
+    // The mesh is two squares whose halves share no vertex, as flat shading has them; one rests.
     std::vector<Vec3> start, end;
     std::vector<std::array<uint32_t, 3>> triangles;
     for (const float x : {0.0f, 10.0f})
@@ -271,7 +271,7 @@ TEST(MovingPieces, SeparatePartsMoveAlone) {
 }
 
 TEST(MovingPieces, WhatOneTriangleCannotFollowIsTold) {
-    // Flattened to a line.
+    // The triangle is flattened to a line.
     const std::vector<Vec3> start{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
         end{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}};
     const std::vector<std::array<uint32_t, 3>> triangles{{0, 1, 2}};

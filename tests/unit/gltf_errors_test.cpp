@@ -1,4 +1,4 @@
-// What is wrong with a glTF file is told with its place; hostile files never crash.
+// Errors of glTF files are told with their place; hostile files never crash.
 #include <fstream>
 
 #include "core/rng.h"
@@ -69,7 +69,7 @@ TEST(GltfErrors, LimitsCounts) {
     EXPECT_TRUE(contains(f.message, "more than 2^30 vertices"));
 }
 
-/// Expects Error(limit) with this text.
+/// Asserts Error(limit) with this text.
 void expect_limit(const GltfFile& file, const std::string& text, const ReadOptions& options = {}) {
     const Failure f = failure_of([&] { read(file, options); });
     EXPECT_EQ(f.kind, ErrorKind::limit) << f.message;
@@ -85,7 +85,7 @@ TEST(GltfErrors, LimitsWhatPrimitivesMakeOfOneBuffer) {
     file.root["meshes"] = {{{"primitives", std::vector<json>(2000, primitive)}}};
     file.add_node({{"mesh", 0}});
     expect_limit(file, "too large for a file of");
-    // As strips, of which nothing would be kept, it costs time alone.
+    // The file costs time alone as strips, of which nothing would be kept.
     GltfFile strips = file;
     for (json& p : strips.root["meshes"][0]["primitives"]) p["mode"] = 5;
     expect_limit(strips, "too many for a file of");

@@ -1,4 +1,4 @@
-/// What the tests of the glTF reader share: small documents, written as files.
+/// Support for the tests of the glTF reader: small documents, written as files.
 #pragma once
 
 #include <cstring>
@@ -26,7 +26,7 @@ inline std::string base64(const std::string& bytes) {
     return text;
 }
 
-/// A document that grows: one buffer, views and accessors for what is appended to it.
+/// A document that grows: one buffer, views and accessors for the values that are appended to it.
 struct GltfFile {
     json root = {{"asset", {{"version", "2.0"}}}, {"nodes", json::array()}};
     std::string buffer;
@@ -55,7 +55,7 @@ struct GltfFile {
     int add_floats(const std::vector<float>& v, const std::string& type, size_t components) {
         return add(v, 5126, type, components);
     }
-    /// The unit square in z = 0 as a mesh of its own, with uv as an image has it: v downwards.
+    /// Adds the unit square in z = 0 as a mesh of its own, with uv as an image has it: v downwards.
     int add_square(const json& more = json::object()) {
         const int positions = add_floats({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3", 3);
         const int uvs = add_floats({0, 1, 1, 1, 1, 0, 0, 0}, "VEC2", 2);
@@ -111,7 +111,7 @@ inline SceneDescription read_text(const std::string& text, const ReadOptions& op
 inline SceneDescription read(const GltfFile& file, const ReadOptions& options = {}) {
     return read_text(file.text(), options);
 }
-/// The message without the folder of the test.
+/// The error's message without the folder of the test.
 inline std::string gltf_error(const std::string& text) {
     const TemporaryFolder folder;
     const auto path = folder.write("t.gltf", text);

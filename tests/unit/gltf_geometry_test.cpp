@@ -159,7 +159,7 @@ TEST(GltfGeometry, MovesNodesOverTheShutter) {
     file.add_node({{"mesh", file.add_square()}});
     const int times = file.add_floats({1, 3}, "SCALAR", 1);
     const int places = file.add_floats({0, 0, 0, 8, 0, 0}, "VEC3", 3);
-    // Cubic: in-tangent, value, out-tangent per key.
+    // The sampler is cubic: in-tangent, value, out-tangent per key.
     const int cubic =
         file.add_floats({0, 0, 0, 1, 1, 1, 0, 0, 0, 0, 0, 0, 3, 3, 3, 0, 0, 0}, "VEC3", 3);
     file.root["animations"] = {
@@ -176,7 +176,7 @@ TEST(GltfGeometry, MovesNodesOverTheShutter) {
     expect_near(first.start().point({0, 0, 0}), {2, 0, 0}, 1e-5f);
     expect_near(first.end().point({0, 0, 0}), {6, 0, 0}, 1e-5f);
     EXPECT_EQ(moving.camera.shutter_open, 1.5f);
-    // u = 1/4: 1 + 2 (3 u^2 - 2 u^3), upon the parent's place.
+    // The place at u = 1/4 is 1 + 2 (3 u^2 - 2 u^3), upon the parent's place.
     expect_near(moving.shapes[1].object_to_world.start().point({1, 0, 0}), {3.3125f, 0, 0}, 1e-5f);
     // The exposure changes the blur, not the brightness.
     EXPECT_NEAR((moving.camera.shutter_close - moving.camera.shutter_open) * moving.film.iso, 100,

@@ -30,7 +30,7 @@ TEST(GltfMaterials, MixesMetalAndDielectric) {
     const auto& metal = model_of<ConductorMaterial>(scene, mix->materials[1]);
     expect_near(constant_value(scene, base.reflectance), {0.8f, 0.4f, 0.2f}, 1e-6f);
     expect_near(constant_value(scene, metal.reflectance), {0.8f, 0.4f, 0.2f}, 1e-6f);
-    // Roughness squared is alpha.
+    // The alpha of GGX is the roughness squared.
     EXPECT_NEAR(constant_value(scene, base.u_roughness).r, 0.25f, 1e-6f);
     EXPECT_FALSE(base.remap_roughness);
     EXPECT_TRUE(base.reflects_through_coat);
@@ -153,7 +153,7 @@ GltfFile lit_by(const json& light) {
     GltfFile file = square_file();
     file.root["extensions"]["KHR_lights_punctual"]["lights"] = json::array({light});
     const double h = std::sqrt(0.5);
-    // From above: -z becomes -y.
+    // The light shines from above: -z becomes -y.
     file.add_node({{"translation", {0, 3, 0}},
                    {"rotation", {-h, 0, 0, h}},
                    {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
@@ -230,7 +230,7 @@ TEST(GltfCamera, TakesNoScaleFromItsNodes) {
         }
         return (is_animated ? read(file, {{}, std::array<float, 2>{0, 1}}) : read(file)).camera;
     };
-    // Turned by 90 degrees about y: looks along -x.
+    // The camera is turned by 90 degrees about y and looks along -x.
     const json turn = {0, std::sqrt(0.5), 0, std::sqrt(0.5)};
     for (const json& scale : {json{1, 1, 1}, json{2, 2, 2}, json{1, 3, 0.5}, json{-1, 1, 1}}) {
         const auto camera = with_node(

@@ -11,7 +11,7 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-/// How many pixels each decile has.
+/// Number of pixels in each decile.
 std::vector<int64_t> sizes(const std::vector<uint8_t>& deciles) {
     std::vector<int64_t> result;
     for (size_t k = 0; k < kDeciles; ++k)
@@ -20,7 +20,8 @@ std::vector<int64_t> sizes(const std::vector<uint8_t>& deciles) {
 }
 
 TEST(BrightnessDeciles, SortsBlocksByTheirMean) {
-    // Ten blocks side by side, brighter to the left; one bright pixel does not make a bright block.
+    // The plane is ten blocks side by side, brighter to the left; one bright pixel does not make a
+    // bright block.
     Plane plane(80, 8);
     for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 80; ++x) plane(x, y) = float(10 - x / 8);
@@ -37,7 +38,8 @@ TEST(BrightnessDeciles, EqualBlocksStayInTheirOrder) {
 }
 
 TEST(BrightnessDeciles, BlocksAtTheBorderCountWithTheirPixels) {
-    // 5 x 2 blocks; those at the right are one pixel wide, those at the bottom two high.
+    // The plane is 5 x 2 blocks; those at the right are one pixel wide, those at the bottom two
+    // high.
     Plane plane(33, 10, 1);
     for (int y = 0; y < 8; ++y) plane(32, y) = 0.5f;
     for (int y = 8; y < 10; ++y) plane(32, y) = 2;
@@ -48,7 +50,7 @@ TEST(BrightnessDeciles, BlocksAtTheBorderCountWithTheirPixels) {
 TEST(BrightnessDeciles, GroupsAreAsEqualAsTheyCanBe) {
     EXPECT_EQ(sizes(brightness_deciles(Plane(8 * 13, 8, 1))),
               (std::vector<int64_t>{64, 64, 64, 128, 64, 64, 128, 64, 64, 128}));
-    // Fewer than ten blocks: some groups are empty.
+    // Some groups are empty, as there are fewer than ten blocks.
     EXPECT_EQ(sizes(brightness_deciles(Plane(16, 8, 1))),
               (std::vector<int64_t>{0, 0, 0, 0, 64, 0, 0, 0, 0, 64}));
     EXPECT_EQ(sizes(brightness_deciles(Plane(3, 2, 1))),

@@ -51,14 +51,14 @@ TEST(Compare, PsnrClampsToTheDisplay) {
 }
 
 TEST(Compare, TrimsTheFloorOfAThousandth) {
-    // 2999 pixels: the 2 worst are left out, the third worst remains.
+    // The 2 worst of 2999 pixels are left out, the third worst remains.
     const Image reference = uniform(2999, 1, Rgb(0));
     Image image = reference;
     for (size_t i : {5u, 500u, 2998u}) image.channels[1].values[i] = 1;
     Comparison c = compare(image, reference);
     EXPECT_NEAR(c.relmse, 3 * 100.0 / 3 / 2999, 1e-9);
     EXPECT_NEAR(c.relmse_trimmed, 100.0 / 3 / 2997, 1e-9);
-    // Below a thousand pixels nothing is left out.
+    // No pixel is left out below a thousand of them.
     c = compare(uniform(999, 1, Rgb(1)), uniform(999, 1, Rgb(0)));
     EXPECT_DOUBLE_EQ(c.relmse_trimmed, c.relmse);
 }
@@ -130,7 +130,7 @@ TEST(Compare, DecilesOfACropAndOfPixelsThatAreFinite) {
     image.channels[0].values[0] = kInf;
     image.channels[2].values[79] = kNan;
     for (double ratio : compare(image, reference).decile_ratio) EXPECT_NEAR(ratio, 3, 1e-6);
-    // Two blocks, counted from the crop's corner, and then one: the other deciles are empty.
+    // The crop is two blocks, counted from its corner, and then one: the other deciles are empty.
     Comparison c = compare(image, reference, PixelBounds{4, 3, 20, 11});
     for (size_t k = 0; k < kDeciles; ++k)
         if (k == 4 || k == 9)
@@ -166,7 +166,7 @@ TEST(Compare, RelmseOfTheMedianKnowsNoExposure) {
         const Comparison c = compare(scaled, scaled_reference);
         EXPECT_NEAR(c.relmse_median, expected, 1e-5 * expected) << factor;
     }
-    // Where the median is 1, it is relmse_trimmed.
+    // The measure is relmse_trimmed where the median is 1.
     scale(image, 1 / 1.4f);
     scale(reference, 1 / 1.4f);
     const Comparison c = compare(image, reference);
@@ -179,7 +179,7 @@ TEST(Compare, RelmseOfTheMedianByHand) {
     const auto set = [](Image& i, std::array<float, 4> values) {
         for (Channel& channel : i.channels) channel.values.assign(values.begin(), values.end());
     };
-    // The median, the upper of two; then the mean, where most is black; then 1.
+    // The exposure is the median, the upper of two; then the mean, where most is black; then 1.
     set(image, {0.5f, 0, 0, 0});
     set(reference, {0, 4, 0, 2});
     const double tenth = 0.2 * 0.2;
@@ -204,7 +204,7 @@ TEST(Compare, IdenticalMeansBitsOfAllLayers) {
     Image a = uniform(2, 2, Rgb(kNan)), b = a;
     EXPECT_TRUE(compare(a, b).identical);  // equal bits, although NaN is not equal to itself
     std::swap(b.channels[0], b.channels[2]);
-    EXPECT_TRUE(compare(a, b).identical);  // by name, not by order
+    EXPECT_TRUE(compare(a, b).identical);  // channels are compared by name, not by order
     b.metadata["seconds"] = 1.0f;
     EXPECT_TRUE(compare(a, b).identical);
     b.add_channel("raw.R");

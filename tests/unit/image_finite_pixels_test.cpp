@@ -1,4 +1,4 @@
-// Values that are no finite numbers: replaced, counted, located.
+// Values that are not finite: replaced, counted, located.
 #include "image/finite_pixels.h"
 
 #include <gtest/gtest.h>
@@ -48,8 +48,8 @@ TEST(FinitePixels, NaNsBecomeTheMeanOfTheirFiniteNeighbours) {
     values[0] = values[8] = kNone;
     values[4] = kInfinity;
     ASSERT_TRUE(replace_nonfinite(image));
-    EXPECT_EQ(values[0], 2);  // of 1 and 3
-    EXPECT_EQ(values[8], 6);  // of 5 and 7
+    EXPECT_EQ(values[0], 2);  // mean of 1 and 3
+    EXPECT_EQ(values[8], 6);  // mean of 5 and 7
     Image nothing = counted({"R"});
     for (float& v : nothing.channels[0].values) v = kNone;
     ASSERT_TRUE(replace_nonfinite(nothing));

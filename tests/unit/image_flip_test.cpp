@@ -33,11 +33,11 @@ double uniform_flip(Rgb a, Rgb b) {
     return mean(error);
 }
 
-// Uniform images have no features; what remains are the paper's equations for the colour
-// difference, by hand from the CIELAB values of the primaries: green (87.735, -86.183, 83.179),
-// blue (32.297, 79.188, -107.860), red (53.241, 80.092, 67.203). Chroma times L/100 (Hunt);
-// HyAB(green, blue) is 203.30, whose power 0.7 is 41.28, the largest difference; 0.4 of it
-// is 16.51.
+// Uniform images have no features. The rest is the colour difference of Andersson et al. 2020,
+// "FLIP: A Difference Evaluator for Alternating Images", by hand from the CIELAB values of the
+// primaries: green (87.735, -86.183, 83.179), blue (32.297, 79.188, -107.860), red (53.241, 80.092,
+// 67.203). Chroma times L/100 (Hunt); HyAB(green, blue) is 203.30, whose power 0.7 is 41.28, the
+// largest difference; 0.4 of it is 16.51.
 TEST(Flip, UniformColorsByHand) {
     EXPECT_NEAR(uniform_flip({0, 1, 0}, {0, 0, 1}), 1, 1e-3);
     // Black and white: 100^0.7 = 25.12; 0.95 + 0.05 (25.12 - 16.51) / (41.28 - 16.51)
@@ -48,7 +48,7 @@ TEST(Flip, UniformColorsByHand) {
     EXPECT_NEAR(uniform_flip(Rgb(0.2f), Rgb(0.25f)), 0.18340, 1e-3);
 }
 
-// The same images through the authors' implementation (version 1.6) give these means.
+// The authors' implementation (version 1.6) gives these means for the same images.
 TEST(Flip, AgreesWithThePublishedImplementation) {
     constexpr int kWidth = 48, kHeight = 32;
     std::vector<Rgb> a(kWidth * kHeight), b(a.size());

@@ -1,4 +1,4 @@
-// Pictures in formats that hold the colour alone: what is written is read back.
+// Pictures in formats that hold the colour alone: written pictures are read back.
 #include <sys/stat.h>
 
 #include <cmath>
@@ -74,8 +74,8 @@ TEST(Pfm, KeepsEveryBitAndNothingElse) {
     }
 }
 
-// In all widths: below 8 and above 32767 rows have no run lengths; repeated pixels make runs of
-// all lengths, single ones the bytes between them.
+// The widths are of all kinds: below 8 and above 32767 rows have no run lengths; repeated pixels
+// make runs of all lengths, single ones the bytes between them.
 TEST(Hdr, IsAsCloseAsItsMantissas) {
     TemporaryDirectory directory;
     std::mt19937 random(2);
@@ -124,7 +124,7 @@ TEST(FileKind, TellsWhatIsNoFile) {
     EXPECT_EQ(irregular_kind(directory.path()), "a folder");
     EXPECT_EQ(irregular_kind(directory / "link"), "a named pipe");
     EXPECT_EQ(irregular_kind("/dev/null"), "a device");
-    // Nobody reads it: opening it to write would not return.
+    // The pipe has no reader: opening it to write would not return.
     for (const char* name : {"pipe", "link"})
         EXPECT_THROW(write_exr(picture(1, 1, {"Y"}), directory / name), Error);
 }

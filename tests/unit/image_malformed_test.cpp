@@ -1,4 +1,4 @@
-// Whatever a file holds, reading it gives an image or one Error(scene) of one line that names the
+// Reading a file, whatever it holds, gives an image or one Error(scene) of one line that names the
 // file; nothing is printed, nothing crashes.
 #include "image_reading_contract.h"
 #include "image_test_files.h"
@@ -85,7 +85,7 @@ TEST(Malformed, EveryTruncationIsAnError) {
             const fs::path file = directory / ("a." + extension);
             write_bytes(file, bytes.substr(0, length));
             ASSERT_EQ(problem_of(file), "") << extension << " of " << length << " bytes";
-            // The last bytes of these end the file without holding pixels.
+            // The last bytes of these formats end the file without holding pixels.
             const bool has_end_marker = extension == "png" || extension == "jpg";
             if (!has_end_marker || length + 20 < bytes.size()) {
                 ASSERT_THROW(read_image(file), Error) << extension << " of " << length << " bytes";

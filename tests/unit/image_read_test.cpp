@@ -20,7 +20,7 @@ class Read : public testing::Test {
 };
 
 TEST_F(Read, PfmOfBothByteOrders) {
-    // Two rows from the bottom: the second row of the file is the top of the image.
+    // The two rows come from the bottom: the second row of the file is the top of the image.
     for (const bool big : {false, true}) {
         const auto f = file("a.pfm", "PF\n2 2\n" + std::string(big ? "1.0" : "-1.0") + "\n" +
                                          float_bytes({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, big));
@@ -51,7 +51,7 @@ TEST_F(Read, PnmIsDecodedFromSrgbAsImageOnly) {
 
 TEST_F(Read, HdrFlatOldAndNewRunLengths) {
     const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
-    // 128 * 2^(129 - 136) = 1
+    // The value is 128 * 2^(129 - 136) = 1.
     const RasterImage flat = read_raster(
         file("a.hdr", header + "-Y 1 +X 2\n" + bytes_of({128, 64, 0, 129, 9, 9, 9, 0})));
     EXPECT_EQ(flat.values, (std::vector<float>{1, 0.5f, 0, 0, 0, 0}));
@@ -108,7 +108,8 @@ TEST_F(Read, TargaOrientationsPalettesAndRuns) {
 
 TEST_F(Read, QoiChunks) {
     const std::string header = "qoif" + bytes_of({0, 0, 0, 5, 0, 0, 0, 1, 3, 0});
-    // RGB(10, 20, 30), difference (+1, 0, -1), by green (+4: red +5, blue +2), a run of 2.
+    // The pixels are RGB(10, 20, 30), difference (+1, 0, -1), by green (+4: red +5, blue +2), a run
+    // of 2.
     const RasterImage raster =
         read_raster(file("a.qoi", header + bytes_of({0xfe, 10, 20, 30, 0x40 | 3 << 4 | 2 << 2 | 1,
                                                      0x80 | 36, 9 << 4 | 6, 0xc0 | 1})));

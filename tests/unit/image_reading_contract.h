@@ -1,5 +1,5 @@
-// What every reader of images keeps to: an image or one Error(scene) of one line, and nothing
-// printed.
+// The promise that every reader of images keeps: an image or one Error(scene) of one line, and
+// nothing printed.
 #pragma once
 
 #include <fcntl.h>
@@ -17,7 +17,7 @@ namespace covtrace::test {
 
 namespace fs = std::filesystem;
 
-/// Sends what the process prints into a file while it lives.
+/// Sends everything that the process prints into a file while it lives.
 class PrintCounter {
   public:
     explicit PrintCounter(const fs::path& file) : file_(file) {
@@ -46,7 +46,7 @@ class PrintCounter {
     int saved_[2]{};
 };
 
-/// Empty where reading ended as it may, else what is wrong.
+/// The problem of a reader; empty where reading ended as it may.
 template <class Reader>
 inline std::string problem_of_reading(const fs::path& file, Reader read) {
     try {

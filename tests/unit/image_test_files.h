@@ -79,7 +79,7 @@ inline std::string grey_jpeg() {
                         "0014100100000000000000000000000000000000ffda0008010100003f003fffd9");
 }
 
-/// Channels of noise; any bits, also those of NaN, infinity and denormals.
+/// An image of noise, any bits, also those of NaN, infinity and denormals.
 inline Image random_image(const PixelBounds& data, const PixelBounds& display,
                           const std::vector<std::string>& names, uint64_t seed) {
     Image image{data, display, {}, {}};
@@ -96,7 +96,7 @@ inline bool same_bits(const std::vector<float>& a, const std::vector<float>& b) 
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
-/// What `action` throws; a failed test where it throws nothing or something else.
+/// The error that `action` throws; a failed test where it throws nothing or something else.
 template <class Action>
 Error error_of(Action action) {
     try {

@@ -59,7 +59,7 @@ TEST(Write, DeviceIsWrittenDirectlyAndStays) {
     EXPECT_TRUE(fs::is_character_file("/dev/full"));
 }
 
-/// Exit code 0 where writing under a limit of `bytes` fails cleanly; runs in a process of its own.
+/// Writes under a limit of `bytes`, in a process of its own; returns 0 where that fails cleanly.
 int write_under_limit(const fs::path& file, int size, rlim_t bytes, bool png) {
     const Image image = noise(size);
     std::signal(SIGXFSZ, SIG_IGN);

@@ -73,8 +73,8 @@ TEST(Camera, ShutterMapsToTime) {
     EXPECT_FLOAT_EQ(camera.sensor(camera.generate_ray({5, 5}, {}, 0)).shutter, 0.4f);
 }
 
-/// The camera ray in terms of the sensor geometry: origin + R (l1 right + l2 down), slope p - R l /
-/// z_f.
+/// The camera ray in terms of the sensor geometry is: origin + R (l1 right + l2 down), slope p - R
+/// l / z_f.
 TEST(Camera, SensorGeometryPredictsNeighbouringRays) {
     for (bool mirrored : {false, true}) {
         CameraDescription d = description(0.2f);
@@ -138,7 +138,7 @@ TEST(Camera, MovingCameraHasItsVelocity) {
 }
 
 TEST(Camera, TurningByHalfATurnFollowsACircle) {
-    // On the spot, by an angle in proportion to time; either way round.
+    // The camera turns on the spot, by an angle in proportion to time; either way round.
     CameraDescription d;
     d.camera_to_world = AnimatedTransform(Transform(), 0, Transform::rotate(180, {0, 1, 0}), 1);
     const Camera camera(d, 10, 10);

@@ -94,7 +94,7 @@ TEST(PixelFilter, NarrowFiltersAreNumbers) {
                     EXPECT_TRUE(s.weight > 0.5f && s.weight < 2) << radius;
                 }
             }
-    // Much narrower than its sigma, a Gaussian less its value at the radius is a parabola.
+    // A Gaussian that is much narrower than its sigma, less its value at the radius, is a parabola.
     const PixelFilter parabola({.kind = Kind::gaussian, .x_radius = 1e-6f, .y_radius = 1e-3f});
     EXPECT_NEAR(parabola.variance().x / 1e-12, 0.2, 1e-3);
     EXPECT_NEAR(parabola.variance().y / 1e-6, 0.2, 1e-3);

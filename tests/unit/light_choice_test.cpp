@@ -1,4 +1,4 @@
-/// Which lights are chosen where BSDFs find some of them as well.
+/// The choice of lights where BSDFs find some of them as well.
 #include <gtest/gtest.h>
 
 #include "light_fixtures.h"
@@ -10,8 +10,8 @@ using namespace test;
 
 constexpr Vec3 kUp{0, 0, 1};
 
-/// An even sky of radiance 1, and a small lamp straight above the origin whose irradiance there is
-/// `irradiance`.
+/// A scene of an even sky of radiance 1, and a small lamp straight above the origin whose
+/// irradiance there is `irradiance`.
 struct SkyAndLamp {
     LightScene scene;
     int lamp = 0, sky = 1;
@@ -32,7 +32,7 @@ TEST(LightChoice, AnEvenSkyIsLeftToBsdfsWhereALampOutshinesIt) {
     EXPECT_EQ(bright.probability(bright.sky, kUp), 0);
     EXPECT_EQ(bright.probability(bright.lamp, kUp), 1);
     EXPECT_EQ(bright.scene.lights->environment_pdf({}, kUp, kUp), 0);
-    // It still shines.
+    // The sky still shines.
     EXPECT_EQ(bright.scene.lights->sky({}, kUp, kUp).radiance, Rgb(1));
 }
 
@@ -42,7 +42,8 @@ TEST(LightChoice, AnEvenSkyIsDrawnForAsFarAsItOutshinesTheRest) {
         EXPECT_NEAR(dim.probability(dim.sky, kUp), (1 - part) / (1 + part), 1e-4f) << part;
         EXPECT_NEAR(dim.probability(dim.lamp, kUp), 2 * part / (1 + part), 1e-4f) << part;
     }
-    // Never so far that the lamp is forgotten; but wholly where it can't shine.
+    // The sky is never drawn so often that the lamp is forgotten; but always where the lamp can't
+    // shine.
     const SkyAndLamp faint(1e-4f);
     EXPECT_NEAR(faint.probability(faint.lamp, kUp), 0.1f, 1e-5f);
     EXPECT_EQ(faint.probability(faint.sky, -kUp), 1);

@@ -1,4 +1,4 @@
-/// What lights emit, and to which side; how power is spread; which shapes emit at all.
+/// Emission of lights, and its side; the spread of power; the shapes that emit at all.
 #include <gtest/gtest.h>
 
 #include "core/rng.h"
@@ -107,7 +107,7 @@ TEST(Emission, PowerIsWhatTheWholeShapeEmits) {
         {mesh_of(rectangle(2, 3)), 6},
         {mesh_of(cube()), 24},
         {shape_of(whole_sphere(0.5f), AnimatedTransform(Transform::scale(2, 2, 2))), 4 * M_PI},
-        // Knud Thomsen's formula for ellipsoids, good to about one percent.
+        // Knud Thomsen's formula for ellipsoids is good to about one percent.
         {shape_of(whole_sphere(1), stretched),
          4 * M_PI *
              std::pow((std::pow(1, 1.6075) + std::pow(2, 1.6075) + std::pow(0.5, 1.6075)) / 3,
@@ -187,7 +187,7 @@ TEST(Emission, SpotsFallOffSmoothlyBetweenTheirCones) {
     EXPECT_NEAR(at(0), 1, 1e-5);
     EXPECT_NEAR(at(19.9f), 1, 1e-5);
     EXPECT_EQ(at(30.1f), 0);
-    // Half way in the cosine, not in the angle.
+    // The middle is half way in the cosine, not in the angle.
     const float middle =
         std::acos((std::cos(20 * kPi / 180) + std::cos(30 * kPi / 180)) / 2) * 180 / kPi;
     EXPECT_NEAR(at(middle), 0.5, 1e-3);
@@ -218,8 +218,8 @@ TEST(Emission, HiddenShapesLightTheSceneButAreNotSeen) {
 }
 
 TEST(Emission, LightsWhoseAlphaHangsOnPositionAreChosen) {
-    // Transparent as far around the origin as textures are asked for their mean; opaque in the
-    // cell beyond, which the light is in.
+    // The texture is transparent as far around the origin as textures are asked for their mean, and
+    // opaque in the cell beyond, which the light is in.
     LightScene s;
     const auto add_texture = [&s](auto value) {
         TextureDescription texture;
@@ -244,7 +244,7 @@ TEST(Emission, LightsWhoseAlphaHangsOnPositionAreChosen) {
     s.geometry = std::make_unique<Geometry>(s.description);
     s.lights = std::make_unique<Lights>(s.description, *s.geometry, &textures);
     const Vec3 p{600.5f, 0.5f, 2}, n{0, 0, -1};
-    // A twentieth as often as the same light without alpha.
+    // The light is chosen a twentieth as often as the same light without alpha.
     const float with = s.lights->selection_probability(p, n, 0),
                 without = s.lights->selection_probability(p, n, 2);
     EXPECT_NEAR(with / without, 0.05, 0.01);

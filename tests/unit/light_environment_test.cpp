@@ -16,7 +16,7 @@ Vec3 from_angles(float theta, float phi) {
     return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
-/// A map of `f(direction)` at the centres of its texels.
+/// The texels of a map that is f(direction) at their centres.
 template <class F>
 std::vector<Rgb> texels_of(int width, int height, F f) {
     std::vector<Rgb> texels;
@@ -103,7 +103,8 @@ TEST(EnvironmentMap, LatLongAndEqualAreaShowTheSamePicture) {
         1e-3);
     Rng rng(2);
     for (int i = 0; i < 20000; ++i) {
-        // At the centres of the square one's texels, within which it does not change.
+        // Directions are compared at the centres of the square map's texels, within which it does
+        // not change.
         const Vec2 uv = rng.next_2d();
         const Vec3 w = equal_area_square_to_sphere(
             {(std::floor(512 * uv.x) + 0.5f) / 512, (std::floor(512 * uv.y) + 0.5f) / 512});
@@ -116,7 +117,8 @@ TEST(EnvironmentMap, LatLongAndEqualAreaShowTheSamePicture) {
 }
 
 TEST(EnvironmentMap, EqualAreaTexelsAreConstantAsInPbrt) {
-    // One texel of 10 in an even map: pbrt-v4's ImageInfiniteLight looks up the nearest texel.
+    // The map has one texel of 10 and is even else: pbrt-v4's ImageInfiniteLight looks up the
+    // nearest texel.
     constexpr int kSide = 8;
     std::vector<Rgb> texels(kSide * kSide, Rgb(0.1f));
     texels[2 * kSide + 3] = Rgb(10);
@@ -129,7 +131,7 @@ TEST(EnvironmentMap, EqualAreaTexelsAreConstantAsInPbrt) {
 }
 
 TEST(EnvironmentMap, DirectionsAreDrawnForWhatStandsOut) {
-    // What is darker than most of the mean is left to BSDFs; even maps are drawn from evenly.
+    // Texels darker than most of the mean are left to BSDFs; even maps are drawn from evenly.
     for (const int width : {32, 64}) {
         const EnvironmentMap even(std::vector<Rgb>(size_t(width) * 32, Rgb(2)), width, 32);
         EXPECT_NEAR(even.drawn_share(), 1 - EnvironmentMap::kLeftOut, 1e-5);
@@ -210,7 +212,7 @@ TEST(EnvironmentMap, RefusesOtherShapesWithThePlaceInTheScene) {
 }
 
 TEST(Environment, TheTransformTurnsTheImage) {
-    // Bright around +x of light space.
+    // The map is bright around +x of light space.
     const TemporaryImage image(
         texels_of(64, 32, [](Vec3 w) { return Rgb(w.x > 0.9f ? 10.0f : 1.0f); }), 64, 32);
     const Environment turned = environment(image_light(image), Transform::rotate(90, {0, 0, 1}));
@@ -236,7 +238,7 @@ TEST(Environment, IlluminanceScalesTheImage) {
     EXPECT_NEAR(sum / kSamples, 1000, 5);
 }
 
-// ---- spectrum
+// ---- Spectrum
 
 TEST(EnvironmentSpectrum, UniformLightHasNone) {
     Environment e = environment(InfiniteLight{});
@@ -260,8 +262,8 @@ TEST(EnvironmentSpectrum, WavesAroundThePole) {
         Environment e = environment(image_light(image));
         e.prepare_spectrum();
         for (const float theta : {kPi / 2, kPi / 4}) {
-            // Sixteen waves around a circle of circumference 2 pi sin(theta); a structure tensor
-            // counts a single frequency f as up to 2 f^2.
+            // The texels have sixteen waves around a circle of circumference 2 pi sin(theta); a
+            // structure tensor counts a single frequency f as up to 2 f^2.
             const float f = 16 / (2 * kPi * std::sin(theta));
             const AngularCovariance a = e.spectrum(from_angles(theta, 1.3f));
             EXPECT_GT(a.a11, 0.7f * f * f) << theta;

@@ -19,7 +19,7 @@ class LightScene {
   public:
     SceneDescription description;
 
-    /// Makes the shape emit; its index.
+    /// Makes the shape emit; returns its index.
     size_t add(ShapeDescription shape, Rgb radiance, bool two_sided = false) {
         shape.area_light = static_cast<int>(description.area_lights.size());
         AreaLightDescription light;

@@ -1,4 +1,4 @@
-// Power of what one directive made of several shapes.
+// Power of several shapes that one directive made.
 #include <gtest/gtest.h>
 
 #include "light_fixtures.h"

@@ -1,4 +1,4 @@
-/// What the frequency analysis is told about lights: sizes, borders, curvature, motion.
+/// Properties of lights for the frequency analysis: sizes, borders, curvature, motion.
 #include <gtest/gtest.h>
 
 #include "core/rng.h"
@@ -69,7 +69,7 @@ TEST(SourceSpectrum, TriangleMomentsFollowTheFormula) {
     LightScene s;
     s.add(mesh_of(m), Rgb(1));
     const SourceSpectrum a = spectrum_at(s, {1.2f, 0.5f, 3}, {1.2f, 0.5f, 0});
-    // (1/12) sum of (v - c)(v - c)^T about the centroid (4/3, 2/3).
+    // The moments are (1/12) sum of (v - c)(v - c)^T about the centroid (4/3, 2/3).
     const double xx = (16.0 / 9 + 25.0 / 9 + 1.0 / 9) / 12,
                  yy = (4.0 / 9 + 4.0 / 9 + 16.0 / 9) / 12;
     const double xy = (8.0 / 9 - 10.0 / 9 - 4.0 / 9) / 12;
@@ -115,7 +115,7 @@ TEST(SourceSpectrum, ClosedMeshesHaveNoBorder) {
     s.add(mesh_of(cube()), Rgb(1));
     const SourceSpectrum a = spectrum_at(s, {0.2f, 0.3f, 5}, {0.2f, 0.3f, 1});
     EXPECT_EQ(a.border_distance, kInfinity);
-    // The surface of a cube of side 2: four sides give 1/3 along x, two give 1, by equal areas.
+    // The surface is a cube's of side 2: four sides give 1/3 along x, two give 1, by equal areas.
     EXPECT_NEAR(moment(a, {1, 0, 0}), (4.0 / 3 + 2) / 6, 1e-4);
 }
 
@@ -186,7 +186,7 @@ TEST(SourceSpectrum, LightsWithoutExtent) {
 }
 
 TEST(BorderEdges, FindTheNearestOfMany) {
-    // A staircase of separate triangles: all edges are borders.
+    // The border is that of a staircase of separate triangles: all edges are borders.
     std::vector<std::array<Vec3, 3>> triangles;
     Rng rng(7);
     for (int i = 0; i < 500; ++i) {
@@ -216,7 +216,7 @@ TEST(BorderEdges, FindTheNearestOfMany) {
     EXPECT_FALSE(BorderEdges().nearest({}));
 }
 
-/// The largest variance in any direction of what a projector sends towards `w`.
+/// The largest variance in any direction of a projector's light towards `w`.
 double slide_variance(const TemporaryImage& image, Vec3 towards) {
     LightScene s;
     ProjectionLight light;
@@ -234,7 +234,7 @@ double slide_variance(const TemporaryImage& image, Vec3 towards) {
 }
 
 TEST(SourceSpectrum, AProjectorsSlideHasItsAngularFrequencies) {
-    // Waves of 8 texels of 64: 8 cycles over 2 tan 30, 6.93 per radian in the middle.
+    // The image has waves of 8 texels of 64: 8 cycles over 2 tan 30, 6.93 per radian in the middle.
     constexpr int n = 64;
     const auto waves = [](float cycles) {
         std::vector<Rgb> texels;
@@ -248,11 +248,11 @@ TEST(SourceSpectrum, AProjectorsSlideHasItsAngularFrequencies) {
     const double measured = slide_variance(fine, {0, 0, 1});
     EXPECT_GT(measured, 0.8 * frequency * frequency);
     EXPECT_LT(measured, 3 * frequency * frequency);
-    // Half the frequency, a quarter of the variance.
+    // Half the frequency has a quarter of the variance.
     EXPECT_NEAR(measured / slide_variance(coarse, {0, 0, 1}), 4, 1.2);
     const TemporaryImage plain(std::vector<Rgb>(n * n, Rgb(0.5f)), n, n);
     EXPECT_LT(slide_variance(plain, {0, 0, 1}), 0.01 * measured);
-    // Near the rim its border against the dark counts.
+    // The border against the dark counts near the rim.
     EXPECT_GT(slide_variance(plain, normalize(Vec3{0.95f * std::tan(kPi / 6), 0, 1})),
               slide_variance(plain, {0, 0, 1}) + 10);
 }

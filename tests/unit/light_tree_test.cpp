@@ -76,7 +76,8 @@ TEST(LightTree, PrefersNearBrightAndFacedLights) {
 }
 
 TEST(LightTree, IrradianceIsOfWhatIsAboveTheHorizon) {
-    // A ball of lights, 0.1 wide each way, at distance 2: the cone's sine is sqrt(3) 0.1 / 2.
+    // The cluster is a ball of lights, 0.1 wide each way, at distance 2: the cone's sine is sqrt(3)
+    // 0.1 / 2.
     const auto at = [](float degrees) {
         const Vec3 c{2 * std::cos(degrees * kPi / 180), 0, 2 * std::sin(degrees * kPi / 180)};
         const Vec3 half{0.1f, 0.1f, 0.1f};
@@ -87,7 +88,7 @@ TEST(LightTree, IrradianceIsOfWhatIsAboveTheHorizon) {
     for (const float degrees : {10.0f, 30.0f, 90.0f})
         EXPECT_NEAR(at(degrees), std::sin(degrees * kPi / 180) / 4, 1e-3f) << degrees;
     EXPECT_EQ(at(-6), 0);
-    // A disc that the horizon halves: 2 / (3 pi) of its half-width is the mean height over all.
+    // The horizon halves a disc: 2 / (3 pi) of its half-width is the mean height over all.
     const float sine = 0.1f * std::sqrt(3.0f) / 2;
     EXPECT_NEAR(at(0) * 4, 2 * sine / (3 * kPi), 0.25f * 2 * sine / (3 * kPi));
 }
@@ -168,7 +169,7 @@ RC_GTEST_PROP(LightBounds, MergedConesHoldBoth, (uint32_t seed)) {
     RC_ASSERT(m.intensity == 2.0f);
     for (const LightBounds* l : {&a, &b})
         for (int i = 0; i < 50; ++i) {
-            // A direction on the rim of the smaller cone.
+            // The direction is on the rim of the smaller cone.
             const Vec3 side = normalize(cross(l->axis, square_to_sphere(rng.next_2d())));
             const Vec3 w = l->axis * std::cos(l->theta_o) + side * std::sin(l->theta_o);
             const float angle = std::atan2(length(cross(m.axis, w)), dot(m.axis, w));

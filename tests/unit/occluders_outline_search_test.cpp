@@ -18,7 +18,7 @@ struct Cloud {
 
 constexpr float kRadius = 1e-3f;
 
-/// Balls in the half space x > gap.
+/// A cloud of balls in the half space x > gap.
 Cloud cloud(size_t count, float gap) {
     Random random(7);
     Cloud c;
@@ -32,7 +32,7 @@ Cloud cloud(size_t count, float gap) {
     return c;
 }
 
-/// Along z, with an edge's distance as its width.
+/// A search along z, with an edge's distance as its width.
 OutlineSearch search_along_z(float widest) {
     EdgeMeasure m;
     m.b = 1;

@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-/// Width = distance / 2: edges alone, however far along the segment.
+/// A measure of width = distance / 2: edges alone, however far along the segment.
 EdgeMeasure plain(float widest) {
     EdgeMeasure m;
     m.b = 0.25f;
@@ -43,7 +43,7 @@ TEST(EdgeMeasure, ReachHoldsEveryDistanceWhereAnEdgeMatters) {
     Random random(5);
     for (int i = 0; i < 2000; ++i) {
         EdgeMeasure m;
-        // As at surfaces: h is the quadratic form of a positive matrix.
+        // The form h is quadratic with a positive matrix, as at surfaces.
         const float p = random.between(0, 2), q = random.between(0, 1), length = 3;
         m.a0 = i % 2 ? 0.0f : random.between(-1, 1);
         m.a1 = random.between(-1, 1);
@@ -65,7 +65,7 @@ TEST(FoldEdges, FlatNeighboursLeaveNoEdge) {
     square.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     square.triangles = {{0, 1, 2}, {0, 2, 3}};
     EXPECT_EQ(edges_of(square).size(), 4u);
-    // The same with corners of their own.
+    // The mesh is the same but for corners of its own.
     TriangleMesh apart;
     apart.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     apart.triangles = {{0, 1, 2}, {3, 4, 5}};
@@ -81,15 +81,15 @@ bool is_outline_from(const FoldEdge& edge, Vec3 p) {
 }
 
 TEST(FoldEdges, AnOutlineHasItsFacesOnOneSide) {
-    // A roof with its ridge along y.
+    // The mesh is a roof with its ridge along y.
     TriangleMesh roof;
     roof.positions = {{-1, 0, 0}, {0, 0, 1}, {0, 1, 1}, {1, 0, 0}};
     roof.triangles = {{0, 1, 2}, {1, 3, 2}};
     for (const FoldEdge& e : edges_of(roof)) {
         if (e.a.x != 0 || e.b.x != 0) continue;
         EXPECT_TRUE(is_outline_from(e, {5, 0.5f, 0.5f}));      // one face is hidden
-        EXPECT_FALSE(is_outline_from(e, {0, 0.5f, 5}));        // both are seen
-        EXPECT_FALSE(is_outline_from(e, {0, 0.5f, -5}));       // both from below
+        EXPECT_FALSE(is_outline_from(e, {0, 0.5f, 5}));        // both faces are seen
+        EXPECT_FALSE(is_outline_from(e, {0, 0.5f, -5}));       // both faces are seen, from below
         EXPECT_FALSE(is_outline_from(e, {0.5f, 0.4f, 0.5f}));  // a point of a face
     }
 }
@@ -120,7 +120,7 @@ TEST(FoldEdges, BlindConesHideNoOutline) {
         hierarchy.search(
             [&](const BoxHierarchy::Node& node, uint32_t n) {
                 const Vec3x8 middle = node.middle - all8(p);
-                // Missing children are no number.
+                // Children that are missing are not numbers.
                 return any_order((middle.x == middle.x) & ~cones[n].hide(middle));
             },
             [] { return kInfinity; },
@@ -132,7 +132,7 @@ TEST(FoldEdges, BlindConesHideNoOutline) {
                 for (size_t k = 0; k < own.size(); ++k) {
                     met[first[item] + k] = true;
                     ++count;
-                    // The same rule in double, where rounding does not decide.
+                    // The rule is computed in double, where rounding does not decide.
                     const Vec3d d = Vec3d(own[k].a) - Vec3d(p), along(own[k].b - own[k].a);
                     const double far = length(cross(d, along)) / length(along),
                                  s0 = dot(d, Vec3d(own[k].normal0)) / far,
@@ -157,7 +157,7 @@ TEST(BoxHierarchy, HoldsEveryBoxOnce) {
         for (const uint32_t per_item : {1u, 8u}) {
             std::vector<Bounds3> boxes(count);
             for (size_t i = 0; i < count; ++i) {
-                // A third of them at the very same place.
+                // A third of the boxes lies at the very same place.
                 const Vec3 p = i % 3 == 0 ? Vec3{1, 2, 3} : random.in_box(5);
                 boxes[i].extend(p);
                 boxes[i].extend(p + random.in_box(0.1f));
@@ -190,7 +190,7 @@ TEST(BoxHierarchy, HoldsEveryBoxOnce) {
 }
 
 TEST(OccluderQuery, AnEdgeAtItsDistanceAndDirection) {
-    // A wall x < 0 in the plane z = 5.
+    // The scene is a wall x < 0 in the plane z = 5.
     const Geometry g{
         scene_of({patches(patch({-10, -10, 5}, {0, -10, 5}, {-10, 10, 5}, {0, 10, 5}))})};
     const OccluderQuery query(g);
@@ -214,7 +214,7 @@ TEST(OccluderQuery, AnEdgeAtItsDistanceAndDirection) {
         ASSERT_NEAR(e.z, length(tilt) * 4, 0.11f);
     }
     EXPECT_TRUE(outlines(query, {1.1f, 0, 9}, {1.1f, 0, 1}, plain(0.5f)).empty());
-    // A plane that starts at the segment's end is no outline, nor is what lies behind an end.
+    // A plane that starts at the segment's end is no outline, nor is anything behind an end.
     EXPECT_TRUE(outlines(query, {-1, 0, 9}, {-1, 0, 5}, plain(2)).empty());
     EXPECT_TRUE(outlines(query, {0.1f, 0, 4}, {0.1f, 0, 1}, plain(1)).empty());
 }
@@ -242,7 +242,7 @@ TEST(OccluderQuery, FindsTheNarrowestOfAll) {
         m.h2 = sqr(m.h1) / 4 + 0.01f;
         m.widest = 0.7f;
         const auto found = outlines(query, begin, end, m);
-        // By brute force, points along every edge.
+        // The narrowest edge is found by brute force, by points along every edge.
         const Vec3 axis = (begin - end) / length;
         float narrowest = sqr(m.widest);
         for (uint32_t s = 0; s < scene.shapes.size(); ++s) {
@@ -280,13 +280,13 @@ TEST(OccluderQuery, BallsOccludeOthersAndNotThemselves) {
         for (const OutlineEvent& e : found) best = std::min(best, e.distance);
         EXPECT_NEAR(best, gap, 0.005f);
     }
-    // From a point of the ball along its surface.
+    // The segment goes from a point of the ball along its surface.
     const OccluderQuery::Segment away{{5, 0, 0.5f}, {1, 0, 0}, 0, {}, {0, 0}};
     EXPECT_EQ(query(away, plain(0.3f), 1e-4f).count, 0u);
 }
 
 TEST(OccluderQuery, BallsAreOutlinedByTheirTangents) {
-    // One as it is, one placed; the same ball of radius 1.
+    // Two balls are the same ball of radius 1, one as it is and one placed.
     const Vec3 center{0.3f, -0.2f, 0.5f};
     const AnimatedTransform at(Transform::translate(center) * Transform::scale(2, 2, 2));
     SceneDescription placed = scene_of({});
@@ -307,7 +307,8 @@ TEST(OccluderQuery, BallsAreOutlinedByTheirTangents) {
         m.h1 = -random.between(0, 1) / length;
         m.h2 = sqr(m.h1) / 4 + 0.01f;
         m.widest = 0.6f;
-        // By brute force, around the circle where tangents from the end touch the ball.
+        // The narrowest place is found by brute force, around the circle where tangents from the
+        // end touch the ball.
         const Vec3 axis = (begin - end) / length;
         const Frame frame = Frame::from_z((center - end) / d);
         float narrowest = kInfinity;

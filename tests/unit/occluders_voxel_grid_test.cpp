@@ -14,7 +14,8 @@ namespace {
 
 using namespace test;
 
-/// A square wall x < 0 in the plane z = 5 with an edge along y, in a box of about 20 units.
+/// A scene of a square wall x < 0 in the plane z = 5 with an edge along y, in a box of about 20
+/// units.
 SceneDescription wall_scene() {
     return scene_of({patches(patch({-10, -10, 5}, {0, -10, 5}, {-10, 10, 5}, {0, 10, 5})),
                      mesh(unit_triangle(), AnimatedTransform(Transform::translate({9, 9, 15})))});
@@ -77,12 +78,12 @@ TEST(VoxelWalk, MeetsWhatStandsOnTheWayAndNothingBesideIt) {
     // A march sees the edge beside this ray, a walk does not.
     EXPECT_FALSE(events(grid, {1.5f * size, 2, 2}, {1.5f * size, 2, 9}, 3 * size).empty());
     EXPECT_TRUE(crossings(grid, {1.5f * size, 2, 2}, {1.5f * size, 2, 9}).empty());
-    // What is occupied at either end is the surface's own.
+    // Voxels that are occupied at either end are the surface's own.
     EXPECT_TRUE(crossings(grid, {-5.03f, 2.07f, 5}, {-5.03f, 2.07f, 9}).empty());
     EXPECT_TRUE(crossings(grid, {-5.03f, 2.07f, 2}, {-5.03f, 2.07f, 5}).empty());
 }
 
-/// Along the wall and past its end; whichever way it goes.
+/// Ways along the wall and past its end, in either direction.
 TEST(VoxelWalk, CrossesEveryVoxelOfTheWayOnceAndInOrder) {
     const Geometry g{wall_scene()};
     const VoxelGrid grid(g, {.width = 100});
@@ -97,8 +98,8 @@ TEST(VoxelWalk, CrossesEveryVoxelOfTheWayOnceAndInOrder) {
             ASSERT_TRUE(k == 0 || found[k].s > found[k - 1].s) << i;
             ASSERT_EQ(found[k].voxel, grid.find(from + d * found[k].s)) << i;
         }
-        // The same as small steps find between the first and the last empty place, but for voxels
-        // whose corners they miss.
+        // Small steps find the same voxels between the first and the last empty place, but for
+        // voxels whose corners they miss.
         const float total = distance(from, to), step = 0.02f * size;
         float open = 0, close = total;
         while (open < total && grid.find(from + d * open)) open += step;
@@ -137,7 +138,7 @@ TEST(VoxelGrid, RaysPastAnEdgeSeeItAtItsDistance) {
         ASSERT_NEAR(e.distance, gap, size);
         ASSERT_GE(e.distance, 0.5f * size);
         ASSERT_NEAR(e.normals.zz, 1, 1e-4f);
-        // From the other end the same edge is at the rest of the way.
+        // The same edge is at the rest of the way from the other end.
         const auto back = events(grid, to, from, 3 * size);
         ASSERT_EQ(back.size(), 1u);
         ASSERT_NEAR(back[0].s + e.s, distance(from, to), 1.5f * size);
@@ -202,8 +203,8 @@ TEST(VoxelGrid, MarchFindsWhatBruteForceFinds) {
         const Vec3 d = normalize(to - from);
         const auto found = events(grid, from, to, radius);
         with_events += !found.empty();
-        // The nearest of all is among the events, unless it shares a slab with a nearer one; and
-        // what comes first is never farther along than the first candidate's slab.
+        // The nearest voxel of all is among the events, unless it shares a slab with a nearer one;
+        // and the first event is never farther along than the first candidate's slab.
         float nearest = kInfinity, first = kInfinity;
         for (Vec3 c : centroids) {
             const float s = dot(c - from, d);
@@ -310,8 +311,8 @@ TEST(VoxelGrid, EndsEmptyWhenCancelled) {
     EXPECT_TRUE(events(grid, {2.02f, 0, 5}, {2.02f, 0, -5}, 1).empty());
 }
 
-/// Bytes per occupied voxel: what lets 400 voxels of width stay below 1 GiB where a million
-/// triangles are scattered, at a size that is quick to test.
+/// The bytes per occupied voxel let 400 voxels of width stay below 1 GiB where a million triangles
+/// are scattered; this is a size that is quick to test.
 TEST(VoxelGrid, ScatteredTrianglesNeedLittleMemory) {
     Random random(4);
     TriangleMesh dust;
@@ -323,7 +324,7 @@ TEST(VoxelGrid, ScatteredTrianglesNeedLittleMemory) {
     const Geometry g{scene_of({mesh(std::move(dust))})};
     const VoxelGrid grid(g, {.width = 200});
     EXPECT_GT(grid.occupied_voxels(), 20000u);
-    // 55 bytes a voxel, 340 a brick; at most 26^3 bricks and a margin around them.
+    // The bound is 55 bytes a voxel, 340 a brick; at most 26^3 bricks and a margin around them.
     EXPECT_LT(grid.memory(), 55 * grid.occupied_voxels() + 350 * 28 * 28 * 28 + 4096);
 }
 

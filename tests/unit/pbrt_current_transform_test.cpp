@@ -10,7 +10,7 @@ namespace {
 
 struct Case {
     const char* directives;
-    const char* place;  ///< of the one to blame, with what is wrong
+    const char* place;  ///< place to blame, with the fault
 };
 
 constexpr std::array<Case, 6> kFlat{{

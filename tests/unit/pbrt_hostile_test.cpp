@@ -28,7 +28,7 @@ TEST(SceneHostile, FilesThatIncludeTwoOthersEach) {
 TEST(SceneHostile, ACompressedBomb) {
     const TemporaryFolder folder;
     const auto bomb = (folder.path() / "bomb.pbrt.gz").string();
-    // 320 MiB of blanks in a third of a megabyte.
+    // The file is 320 MiB of blanks in a third of a megabyte.
     gzFile out = gzopen(bomb.c_str(), "wb9");
     const std::string block(1 << 20, ' ');
     for (int i = 0; i < 320; ++i) gzwrite(out, block.data(), static_cast<unsigned>(block.size()));

@@ -18,7 +18,7 @@ const std::vector<Vec3> kCube{{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1}
 const Triangles kCubeFaces{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                            {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
 
-/// Each edge twice, once in each direction.
+/// Asserts that each edge is there twice, once in each direction.
 void expect_closed(const TriangleMesh& m) {
     std::map<std::pair<uint32_t, uint32_t>, int> count;
     for (const auto& t : m.triangles)
@@ -33,7 +33,7 @@ TEST(SceneLoopSubdivision, RefinesByFourAndStaysClosed) {
     for (int levels = 0; levels <= 3; ++levels) {
         const auto m = loop_subdivide(kTetrahedron, kTetrahedronFaces, levels, {});
         EXPECT_EQ(m.triangles.size(), 4u << (2 * levels));
-        // Euler: V - E + F = 2 with E = 3F / 2.
+        // Euler's formula is V - E + F = 2 with E = 3F / 2.
         EXPECT_EQ(m.positions.size(), 2 + m.triangles.size() / 2);
         expect_closed(m);
     }
@@ -54,8 +54,8 @@ TEST(SceneLoopSubdivision, LimitPointsDoNotDependOnTheLevel) {
 }
 
 TEST(SceneLoopSubdivision, TheTetrahedronsLimitIsKnown) {
-    // Valence 3: weights 1/(3 + 3/(8 * 3/16)) = 1/5 of the ring, 2/5 of the vertex; the ring sums
-    // to minus the vertex.
+    // The weights at valence 3 are 1/(3 + 3/(8 * 3/16)) = 1/5 of the ring, 2/5 of the vertex; the
+    // ring sums to minus the vertex.
     const auto m = loop_subdivide(kTetrahedron, kTetrahedronFaces, 2, {});
     for (size_t i = 0; i < 4; ++i) {
         expect_near(m.positions[i], 0.2f * kTetrahedron[i], 1e-6f);
@@ -99,7 +99,8 @@ TEST(SceneLoopSubdivision, FlatSheetsStayFlatWithTheirBorder) {
 }
 
 TEST(SceneLoopSubdivision, BrokenTopologyIsSurvived) {
-    // Three faces on one edge, a face turned over, a face that is a line, a point without faces.
+    // The mesh has three faces on one edge, a face turned over, a face that is a line, a point
+    // without faces.
     std::vector<Vec3> points = kTetrahedron;
     points.push_back({5, 5, 5});
     points.push_back({0, 0, 9});

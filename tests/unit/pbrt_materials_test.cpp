@@ -106,8 +106,8 @@ TEST(SceneMaterials, ConductorColoursAreKept) {
         ".25");
     const auto& m = std::get<ConductorMaterial>(made.material.value);
     EXPECT_EQ(constant_value(made.scene, m.eta), (Rgb{0.2f, 0.9f, 1.1f}));
-    // (n - 1)^2 + k^2 over (n + 1)^2 + k^2 of each channel; k may follow the colour of smooth
-    // spectra.
+    // The reflectance is (n - 1)^2 + k^2 over (n + 1)^2 + k^2 of each channel; k may follow the
+    // colour of smooth spectra.
     expect_near(normal_reflectance(made), {0.952f, 0.615f, 0.501f}, 0.05f);
     EXPECT_EQ(constant_value(made.scene, m.u_roughness), Rgb{0.25f});
     const auto mirror =
@@ -226,7 +226,8 @@ TEST(SceneMaterials, SubsurfaceTakesTheNameThenCoefficientsThenReflectance) {
         "\"rgb sigma_a\" [ .061 .97 1.45 ] \"rgb sigma_s\" [ .18 .07 .03 ] ";
     const std::string green = "\"rgb reflectance\" [ 0 1 0 ] ";
     const std::string cream = "\"string name\" \"Cream\" ";
-    // A reflectance holds what is reflected inside; what coefficients make of it does not.
+    // A reflectance includes the light that is reflected inside; a colour made of coefficients does
+    // not.
     for (const auto& [text, whole] : {std::pair{green, true}, {cream, false}, {ketchup, false}})
         EXPECT_EQ(
             std::get<CoatedDiffuseMaterial>(material_of("\"subsurface\" " + text).material.value)

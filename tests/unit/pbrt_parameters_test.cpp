@@ -134,7 +134,7 @@ TEST(SceneParameters, ColoursOfOtherSpacesBecomeRec709) {
     };
     expect_near(reflectance(0), Rgb{0.2f}, 1e-6f);
     expect_near(reflectance(1), {0.1f, 0.2f, 0.3f}, 0);
-    // Outside of the gamut: cut to zero.
+    // Colours outside of the gamut are cut to zero.
     expect_near(reflectance(2), {0, 0.56645f, 0}, 1e-4f);
 }
 

@@ -132,7 +132,7 @@ TEST(ScenePly, TruncationAtEveryByteIsAnError) {
     const std::string binary = small_binary();
     EXPECT_NO_THROW(read(binary));
     for (size_t n = 0; n < binary.size(); ++n) EXPECT_THROW(read(binary.substr(0, n)), Error) << n;
-    // In ascii, only what cuts off a whole number can be told.
+    // A file in ascii that is cut off can be told only where it lacks a whole number.
     const std::string ascii = header("ascii", 3, kVertex, 2) + "0 0 0 1 0 0 0 1 0 3 0 1 2 3 2 1 0";
     EXPECT_NO_THROW(read(ascii));
     for (size_t n = 0; n < ascii.size(); ++n) EXPECT_THROW(read(ascii.substr(0, n)), Error) << n;

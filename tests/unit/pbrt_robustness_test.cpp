@@ -1,4 +1,4 @@
-/// Whatever the text, reading succeeds or throws covtrace::Error.
+/// Reading succeeds or throws covtrace::Error, whatever the text.
 #include <random>
 
 #include "pbrt_test_support.h"
@@ -47,7 +47,7 @@ TEST(SceneRobustness, TheSceneItselfIsFine) {
     EXPECT_EQ(scene.objects.size(), 1u);
 }
 
-/// True where the text was read; anything but covtrace::Error fails the test.
+/// Whether the text was read; anything but covtrace::Error fails the test.
 bool survives(const std::string& text) {
     try {
         read_pbrt_string(text, "t.pbrt", "/nonexistent");
@@ -110,7 +110,7 @@ TEST(SceneRobustness, RandomMutations) {
         }
         read += survives(text);
     }
-    // Were all refused, or none, the mutations would test nothing.
+    // Mutations test nothing where all are refused, or none.
     EXPECT_GT(read, 400u);
     EXPECT_LT(read, 19000u);
 }

@@ -88,7 +88,7 @@ TEST(SceneShapes, AlphaIsKeptWhereItMatters) {
         "Shape \"sphere\" \"texture alpha\" \"leaf\"\nShape \"sphere\" \"float alpha\" .25\n"
         "Shape \"sphere\" \"float alpha\" 1\nShape \"disk\" \"float alpha\" 0\n"
         "AreaLightSource \"diffuse\" Shape \"disk\" \"float alpha\" 0\n");
-    ASSERT_EQ(scene.shapes.size(), 4u);  // what is neither seen nor emits is left out
+    ASSERT_EQ(scene.shapes.size(), 4u);  // a shape that is neither seen nor emits is left out
     EXPECT_EQ(constant_value(scene, scene.shapes[0].alpha), Rgb{0.5f});
     EXPECT_EQ(constant_value(scene, scene.shapes[1].alpha), Rgb{0.25f});
     EXPECT_EQ(scene.shapes[2].alpha, -1);
@@ -128,7 +128,7 @@ TEST(SceneShapes, CurvesBecomeTubesAroundThem) {
             EXPECT_GE(p.z, -1e-5f);
             EXPECT_LE(p.z, 3 + 1e-5f);
         }
-        // Around the first ring: the mean width over all sides is the circumference over pi.
+        // The mean width over all sides, around the first ring, is the circumference over pi.
         float around = 0;
         for (size_t i = 1; m.positions[i].z < m.positions[0].z + 1e-5f; ++i)
             around += distance(m.positions[i - 1], m.positions[i]);

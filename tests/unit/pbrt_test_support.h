@@ -1,4 +1,4 @@
-/// What the tests of the scene reader share.
+/// Support for the tests of the scene reader.
 #pragma once
 
 #include <gtest/gtest.h>

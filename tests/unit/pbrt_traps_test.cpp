@@ -146,8 +146,8 @@ Shape "sphere")");
     EXPECT_GT(constant_value(scene, m.k).r, 2);
 }
 
-// The layouts themselves: light_environment_test.cpp. Here both kinds of files are taken as
-// given.
+// Environment maps of both layouts are taken as given here; light_environment_test.cpp tests the
+// layouts themselves.
 TEST(SceneTraps, T14EnvironmentMapsOfBothLayouts) {
     const TemporaryFolder folder;
     folder.write("sky.pfm", "PF\n2 1\n-1\n" + std::string(24, '\0'));

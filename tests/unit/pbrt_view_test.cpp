@@ -119,7 +119,7 @@ TEST(SceneView, SphericalCameras) {
 
 TEST(SceneView, LensesOfSeveralElementsBecomeThin) {
     const TemporaryFolder folder;
-    // Two thin lenses of 100 mm in contact.
+    // The lens is two thin lenses of 100 mm in contact.
     folder.write("two.dat", R"(# radius thickness index diameter
 100 0.001 1.5 30
 -100 0.001 1 30
@@ -136,7 +136,8 @@ WorldBegin
     EXPECT_NEAR(scene.camera.lens_radius, 6e-3f, 1e-6f) << "the stop's own radius";
     EXPECT_NEAR(scene.camera.film_irradiance, kPi * sqr(6e-3f / 50.5e-3f), 1e-4f);
     EXPECT_NEAR(scene.camera.focal_distance, 5.05f, 1e-6f);
-    // 50 mm, focused at 5.05 m: 50.5 mm behind the lens; the shorter side is 30 mm.
+    // The lens has 50 mm and is focused at 5.05 m: 50.5 mm behind the lens; the shorter side is 30
+    // mm.
     EXPECT_NEAR(scene.camera.fov, 2 * std::atan(15 / 50.5f) * 180 / kPi, 0.01f);
     EXPECT_EQ(scene.warnings.size(), 1u);
     const auto star = read_options(
@@ -152,7 +153,7 @@ TEST(SceneView, WhiteBalanceMakesDaylightWhite) {
     for (size_t i = 0; i < 3; ++i)
         for (size_t j = 0; j < 3; ++j)
             EXPECT_NEAR(scene.film.white_balance[i][j], i == j ? 1 : 0, 2e-3f);
-    // A candle's light, balanced for it.
+    // The light is a candle's, and the image is balanced for it.
     const auto warm = read_options("Film \"rgb\" \"float whitebalance\" 2800").film.white_balance;
     const Rgb candle = emission_colour(blackbody_spectrum(2800));
     for (const auto& row : warm)

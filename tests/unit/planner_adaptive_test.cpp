@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kSize = 48;
 
-/// Left half as `base`, right half as the caller changes it.
+/// An image whose left half is as `base`; the caller changes the right half.
 struct Case {
     Case() : spectrum(size_t(kSize) * kSize, covariance::Sym2<float>{0.01f, 0, 0.01f}) {}
     std::vector<covariance::Sym2<float>> spectrum;
@@ -60,7 +60,7 @@ TEST(AdaptiveDensity, FollowsTheInverseRootOfTheCost) {
 }
 
 TEST(AdaptiveDensity, FollowsTheRootOfTheFilterSize) {
-    // Twice as fine in both axes: det times 16, to the power 1/4.
+    // The detail is twice as fine in both axes: det times 16, to the power 1/4.
     Case c;
     c.right([&](size_t i) { c.spectrum[i] = {0.04f, 0, 0.04f}; });
     EXPECT_NEAR(c.ratio(), 2, 0.01);
@@ -68,7 +68,7 @@ TEST(AdaptiveDensity, FollowsTheRootOfTheFilterSize) {
 }
 
 TEST(AdaptiveDensity, AsksForNoLessWhereNoFilterIsWideEnough) {
-    // Filters of c = 2 with deviations of 4 and 8 pixels.
+    // The filters are those of c = 2 with deviations of 4 and 8 pixels.
     const auto spectrum = [](double width) {
         const auto s = float(1 / std::pow(2 * std::numbers::pi * 2 * width, 2));
         return covariance::Sym2<float>{s, 0, s};
@@ -94,7 +94,7 @@ TEST(AdaptiveDensity, FollowsARareBrightPathWhereItWasSeenAndOwnSamplesLess) {
         c.known.variance[middle] = 1e4f;
         c.known.spectrum = c.spectrum;
         const std::vector<float> d = adaptive_density(c.known, settings);
-        // The middle of a Gaussian: of 1e4 under the root, of the root 100 itself.
+        // The middle of a Gaussian has this share: of 1e4 under the root, of the root 100 itself.
         const double share = 1 / (2 * std::numbers::pi * 1.5 * 1.5);
         for (const auto& [beside, falloff] :
              {std::pair<size_t, double>{0, 1}, {4, std::exp(-8 / 2.25)}}) {
@@ -134,7 +134,8 @@ struct RareLight {
         }
         return adaptive_density(known, kHalvesPlan);
     }
-    /// Doubles the average count; `even` of the samples, or what the halves do not agree on.
+    /// Doubles the average count. `even`: share of the samples given out evenly; none: as much as
+    /// the halves do not agree on.
     void round(uint32_t spp, std::optional<float> even) {
         std::array density{density_from(half[1]), density_from(half[0])};
         const float share = even.value_or(even_share(density[0], density[1]));
@@ -143,7 +144,7 @@ struct RareLight {
             take(half[k],
                  allocate(density[k], int64_t(spp / 2) * int64_t(kPixels), half[k].count, 8 * spp));
     }
-    /// Of the mean of the halves; 1 is true.
+    /// Mean of the mean of the halves; 1 is true.
     double mean() const {
         double sum = 0;
         for (const Half& h : half)
@@ -153,9 +154,9 @@ struct RareLight {
 };
 
 // The mean of 20 images of even counts would vary by 0.4 % at 16 samples per pixel and 0.2 % at 64;
-// the seeds are fixed. 0.03 and 0.07 % are lost here. With 30 % given out evenly whatever the
-// halves agree on 3.2 and 0.1 %, which tells the width of the average: 18 and 3.3 % with 0.7
-// pixels.
+// the seeds are fixed. 0.03 and 0.07 % are lost here. With 30 % given out evenly, whatever the
+// halves agree on, 3.2 and 0.1 % are lost, which tells the width of the average: 18 and 3.3 % with
+// 0.7 pixels.
 TEST(AdaptiveDensity, HalvesThatDriveEachOtherLoseLittleOfRareLight) {
     for (const std::optional<float> even : {std::optional<float>(), std::optional(0.3f)}) {
         double at_16 = 0, at_64 = 0;
@@ -181,8 +182,8 @@ TEST(AdaptiveDensity, BlackImageIsEven) {
 }
 
 TEST(EvenShare, IsWhatPlansDoNotAgreeOn) {
-    // Roots u + v and u + w of independent numbers in 1..2: their correlation is that of u's share
-    // of the variance, known to 0.02 (five deviations).
+    // The roots are u + v and u + w of independent numbers in 1..2: their correlation is that of
+    // u's share of the variance, known to 0.02 (five deviations).
     constexpr size_t kPixels = 60000;
     for (const double common : {0.0, 0.6, 0.8, 1.0}) {
         Rng rng(17);

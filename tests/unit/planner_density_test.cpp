@@ -39,7 +39,7 @@ TEST(Allocate, StopsAtTheLimits) {
     const std::vector<float> density{1, 100};
     const std::vector<uint32_t> least{5, 0};
     EXPECT_EQ(allocate(density, 40, least, 30), (std::vector<uint32_t>{10, 30}));
-    // Nothing more to give: every pixel is full.
+    // All pixels are full: there is nothing more to give.
     EXPECT_EQ(allocate(density, 1000, least, 30), (std::vector<uint32_t>{30, 30}));
 }
 
@@ -67,7 +67,7 @@ RC_GTEST_PROP(AllocateOnDemand, MeetsTheBudgetAndFillsUpToOneMultipleOfTheDensit
     const int64_t budget = taken + *rc::gen::inRange<int64_t>(0, 3000);
     const auto counts = allocate_on_demand(density, budget, have, 1u << 20);
     RC_ASSERT(total(counts) == budget);
-    // Nobody got anything beyond the multiple that those who got nothing have, but for roundings.
+    // No pixel got anything beyond the multiple that those who got nothing have, but for roundings.
     double least_left = 1e30;
     for (size_t i = 0; i < n; ++i) {
         RC_ASSERT(counts[i] >= have[i]);
@@ -81,7 +81,8 @@ TEST(AllocateOnDemand, LimitsWhatARoundAdds) {
     const std::vector<float> density{1, 4, 5};
     const std::vector<uint32_t> have{4, 4, 4};
     EXPECT_EQ(allocate_on_demand(density, 40, have, 1000), (std::vector<uint32_t>{4, 16, 20}));
-    // What the limit of a round leaves goes to the others; the next round may add as much again.
+    // Samples that the limit of a round leaves go to the others; the next round may add as much
+    // again.
     const auto first = allocate_on_demand(density, 34, have, 10);
     EXPECT_EQ(first, (std::vector<uint32_t>{6, 14, 14}));
     EXPECT_EQ(allocate_on_demand(density, 54, first, 10), (std::vector<uint32_t>{6, 24, 24}));
@@ -92,7 +93,7 @@ TEST(Emphasis, IsWhatTheThesisAsksForBeyondTheTemperedDensity) {
     constexpr size_t kPixels = size_t(kSide) * kSide;
     const covariance::Sym2<float> spectrum{0.01f, 0, 0.0225f};
     Prediction p{kSide, kSide, std::vector(kPixels, spectrum), std::vector<float>(kPixels, 2)};
-    // On the right lens and shutter ask for 64 times as many samples as on the left.
+    // Lens and shutter ask for 64 times as many samples on the right as on the left.
     for (size_t i = 0; i < kPixels; ++i)
         if (i % kSide >= kSide / 2) p.interior_count[i] = 128;
     const covariance::FilterLimits<float> limits{0.4f, 15};
@@ -101,7 +102,7 @@ TEST(Emphasis, IsWhatTheThesisAsksForBeyondTheTemperedDensity) {
     EXPECT_NEAR(thesis(0, 20), std::pow(2 * detail * detail / (detail * std::sqrt(2.0f)), 0.7f),
                 1e-4f);
     EXPECT_NEAR(thesis(39, 20), std::pow(128 * detail * detail / (detail * 2), 0.7f), 1e-3f);
-    // A mean over a few pixels.
+    // The emphasis is a mean over a few pixels.
     EXPECT_NEAR(thesis(19, 20) + thesis(20, 20), thesis(0, 20) + thesis(39, 20), 1e-3f);
     EXPECT_GT(thesis(19, 20), 3 * thesis(0, 20));
     for (const float v : emphasis(p, DensityRule::tempered, 2, limits).values) EXPECT_EQ(v, 1);
@@ -138,7 +139,7 @@ TEST(CovarianceBuffer, MergingWeighsThePartsByRadiance) {
     const auto diagonal = [](double x) {
         return covariance::SymmetricMatrix5<double>::diagonal(x, 0, 0, 0, 0);
     };
-    // Squares of what 16 bits hold exactly.
+    // The entries are squares of numbers that 16 bits hold exactly.
     b.scattered[0] = {diagonal(1), 1};
     b.in_view[0] = {diagonal(6.25), 3};
     b.scattered[1] = {diagonal(9), 2};

@@ -9,11 +9,11 @@ namespace {
 TEST(ErrorGoal, AsksForWhatIsMissing) {
     ErrorGoal goal;
     EXPECT_EQ(goal.samples(4, 0.1, 0.1), 4);
-    // Errors that fall as n^-1/2: four times the samples for half of it, and a margin of 3 %.
+    // The errors fall as n^-1/2: four times the samples for half of it, and a margin of 3 %.
     ErrorGoal plain;
     plain.samples(4, 0.4, 0.05);
     EXPECT_NEAR(plain.samples(16, 0.2, 0.1), 64 / (0.97 * 0.97), 0.1);
-    // Never a step that is not worth a reconstruction.
+    // Steps are never too small to be worth a reconstruction.
     EXPECT_NEAR(plain.samples(64, 0.1001, 0.1), 70.4, 1e-6);
 }
 

@@ -1,4 +1,5 @@
-// 40 bytes for a covariance: what they keep, and that the integral over lens and shutter survives.
+// Covariances in 40 bytes: the precision that is kept, and that the integral over lens and shutter
+// survives.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +12,7 @@ namespace {
 
 using Matrix = covariance::SymmetricMatrix5<double>;
 
-/// Of `rank` random directions, with axes of very different units.
+/// A covariance of `rank` random directions, with axes of very different units.
 Matrix random_covariance(std::mt19937& random, int rank) {
     std::normal_distribution<double> normal;
     std::array<double, 5> unit{};
@@ -39,8 +40,8 @@ TEST(PackedCovariance, KeepsEveryEntry) {
     }
 }
 
-/// Strong correlations of position with lens and shutter, as out of focus and in motion: what is
-/// left after the integral is up to 10^8 times smaller than what it is the difference of.
+/// Strong correlations of position with lens and shutter, as out of focus and in motion: the result
+/// of the integral is up to 10^8 times smaller than the terms of which it is the difference.
 TEST(PackedCovariance, KeepsWhatTheIntegralOverLensAndShutterLeaves) {
     std::mt19937 random(2);
     std::normal_distribution<double> normal;
@@ -67,8 +68,8 @@ TEST(PackedCovariance, KeepsWhatTheIntegralOverLensAndShutterLeaves) {
     }
 }
 
-/// Paths with nearly the same slopes, as before a plane out of focus: what the integral leaves of
-/// their mean is what the slopes differ by. With slopes that are wrong by 2^-11 it came out up to
+/// Paths have nearly the same slopes, as before a plane out of focus: the integral leaves of their
+/// mean the part by which the slopes differ. With slopes that are wrong by 2^-11 it came out up to
 /// twice as large.
 TEST(PackedCovariance, MeanKeepsWhatSlopesDifferBy) {
     std::mt19937 random(4);

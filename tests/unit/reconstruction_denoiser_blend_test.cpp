@@ -1,4 +1,4 @@
-// Who gets a pixel: our own mixture or the denoiser.
+// The owner of a pixel: our own mixture or the denoiser.
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-/// Makes the same of every image, whatever it is.
+/// A denoiser that makes the same of every image, whatever it is.
 class FixedDenoiser : public Denoiser {
   public:
     explicit FixedDenoiser(ColorPlanes result) : result_(std::move(result)) {}
@@ -70,7 +70,7 @@ TEST(DenoiserBlend, ADenoiserThatIsWrongGetsNothingWhereSamplesCanTell) {
 }
 
 TEST(DenoiserBlend, NoiseThatTellsNothingLeavesThePriorShare) {
-    // The denoiser is off by a hundredth, the noise of the samples a hundred times as much.
+    // The denoiser is off by a hundredth, the noise of the samples is a hundred times as much.
     const auto one = [](int, int) { return 1.0f; };
     const Halves halves = noisy_halves(kSize, kSize, one, 1, 33);
     const double share = mean_share(with(FixedDenoiser(constant(1.01f)), halves));

@@ -1,4 +1,4 @@
-// What the estimate tells of errors: their size, where they are, and what it is made of.
+// Estimates of errors: their size, their places, and the terms that they are made of.
 #include "reconstruction/error_estimate.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ Halves even_halves() {
     return halves;
 }
 
-/// Mean estimated over mean true squared error of a smooth image.
+/// The mean estimated over the mean true squared error of a smooth image.
 double told_over_true(float sigma, float samples, uint64_t seed) {
     Halves halves = noisy_halves(kSize, kSize, smooth_truth, sigma, seed);
     for (HalfBuffer& half : halves) half.count = Plane(kSize, kSize, samples / 2);
@@ -61,7 +61,7 @@ TEST(ErrorEstimate, CountsNoiseSpreadAndLightThatWasMoved) {
     const ErrorFactors factors{1, 16, 2, 3, 5};
     const ErrorEstimate error = estimate_error(halves, candidates, s, constant(1.05f),
                                                constant(1.3f), constant(1), nullptr, factors);
-    // N = 0.1^2 with 8 samples, S = 0.2^2, E = 0.05^2, C = 0.3^2.
+    // The terms are N = 0.1^2 with 8 samples, S = 0.2^2, E = 0.05^2, C = 0.3^2.
     const float expected = (3 * 0.01f + 2 * 0.04f + 3 * 0.0025f + 5 * 0.09f) / 1.01f;
     for (size_t i = 0; i < error.color.size(); ++i) {
         ASSERT_NEAR(error.color[i], expected, 1e-4f);

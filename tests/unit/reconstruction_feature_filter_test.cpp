@@ -1,4 +1,4 @@
-// Features: what has noise loses it, what has none stays.
+// Features: noisy ones lose their noise, others stay.
 #include "reconstruction/feature_filter.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@ namespace covtrace {
 namespace {
 
 TEST(FeatureFilter, TakesNoiseAndNothingElse) {
-    // Left a texture without noise, right an even feature with noise; between them less than a
-    // block of neither.
+    // The image has a texture without noise on its left, an even feature with noise on its right;
+    // between them lies less than a block of neither.
     constexpr int kWidth = 160, kHeight = 40, kTextured = 64, kNoisy = 80;
     constexpr float kSigma = 0.1f;
     Halves halves{HalfBuffer(kWidth, kHeight), HalfBuffer(kWidth, kHeight)};
@@ -39,7 +39,7 @@ TEST(FeatureFilter, TakesNoiseAndNothingElse) {
                 for (int x = kNoisy; x < kWidth; ++x)
                     squares += double(sqr(filtered[k][f](x, y) - 0.5f));
             }
-            // Windows of 121 pixels, nearly all of which are alike.
+            // The windows are 121 pixels, nearly all of which are alike.
             EXPECT_LT(std::sqrt(squares / ((kWidth - kNoisy) * kHeight)), 0.3f * kSigma);
         }
 }

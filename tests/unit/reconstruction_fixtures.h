@@ -14,7 +14,7 @@ inline float normal_number(Rng& rng) {
     return std::sqrt(-2 * std::log(u)) * std::cos(2 * kPi * v);
 }
 
-/// truth(x, y) in all channels, noise of deviation `sigma` in each half.
+/// Halves with truth(x, y) in all channels, and noise of deviation `sigma` in each half.
 inline Halves noisy_halves(int w, int h, const std::function<float(int, int)>& truth, float sigma,
                            uint64_t seed) {
     Halves halves{HalfBuffer(w, h), HalfBuffer(w, h)};

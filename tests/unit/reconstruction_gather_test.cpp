@@ -160,7 +160,7 @@ TEST(Gather, KeepsTheTotalAndSpreadsIt) {
     for (const Rgb& c : g.color) sum += c.r;
     EXPECT_NEAR(sum, 1, 1e-3);
     EXPECT_NEAR(g.color[30 * 61 + 30].r, 1 / (2 * 3.14159f * 2 * 3), 5e-4f);
-    // A deviation off, each.
+    // The two pixels are a deviation off, each.
     EXPECT_NEAR(g.color[33 * 61 + 30].r / g.color[30 * 61 + 32].r, 1, 1e-3f);
 }
 
@@ -200,7 +200,7 @@ TEST(FilterField, FiltersOfOtherLightLimitToo) {
 }
 
 TEST(FilterField, ThinFiltersAreAsShortAsTheirNeighboursAllow) {
-    // Along a straight border; the lamp at its end is narrow in both directions.
+    // The filters lie along a straight border; the lamp at its end is narrow in both directions.
     FilterField f = uniform_field(41, 1, {225, 0, 0.01f});
     f.covariance[0] = {0.01f, 0, 0.01f};
     const FilterSettings settings = covariance::filter_settings(16);
@@ -217,7 +217,8 @@ TEST(FilterField, ThinFiltersAreAsShortAsTheirNeighboursAllow) {
 }
 
 TEST(FilterField, UnknownLightKeepsToItsSideOfABorder) {
-    // A bright floor, thin towards its horizon at x = 20; beyond it no path met surfaces.
+    // The filters are those of a bright floor, thin towards its horizon at x = 20; beyond it no
+    // path met surfaces.
     FilterField f = uniform_field(41, 1, {0.25f, 0, 100});
     std::vector<bool> known(41, true);
     for (size_t x = 21; x < 41; ++x) {
@@ -241,7 +242,7 @@ TEST(FilterField, UnknownLightKeepsToItsSideOfABorder) {
     }
 }
 
-/// As damaged films have them.
+/// Damaged films have such spectra.
 TEST(FilterField, SpectraBeyondFloatsGiveTheNarrowestFilter) {
     constexpr float kMost = std::numeric_limits<float>::max(),
                     kInf = std::numeric_limits<float>::infinity(),
@@ -256,7 +257,7 @@ TEST(FilterField, SpectraBeyondFloatsGiveTheNarrowestFilter) {
         }
 }
 
-/// Whatever the count of samples is.
+/// The rule is the same whatever the count of samples is.
 TEST(FilterField, MatchedRuleHasTheSignalsOwnCovariance) {
     const std::vector<Sym2<float>> spectrum{{0.01f, 0.002f, 0.02f}};
     for (const double samples : {1.0, 16.0, 1024.0}) {
@@ -275,7 +276,7 @@ TEST(FilterField, ThesisRuleIsWiderByItsConstant) {
     const FilterSettings settings = covariance::filter_settings(16);
     const auto verified = filter_field(spectrum, 1, 1, FilterRule::verified, settings);
     const auto thesis = filter_field(spectrum, 1, 1, FilterRule::thesis, settings);
-    // 4 pi^2 c^2 against 2 pi, with c = 2.
+    // The ratio is 4 pi^2 c^2 against 2 pi, with c = 2.
     EXPECT_NEAR(thesis.covariance[0].xx / verified.covariance[0].xx, 2 * 3.14159265f * 4, 1e-2f);
 }
 

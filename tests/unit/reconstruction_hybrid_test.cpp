@@ -17,7 +17,7 @@ ColorPlanes weights_at_one(const Halves& halves) {
     return error_weights(halves, constant(1));
 }
 
-/// Where the truth is 1: the raw pixels, the truth, and what is biased.
+/// The selection where the truth is 1, among the raw pixels, the truth, and a biased candidate.
 Selection of_raw_truth_and_bias(const Halves& halves) {
     const std::vector<Candidate> candidates{{halves[0].color, halves[1].color},
                                             {constant(1), constant(1)},
@@ -120,7 +120,7 @@ TEST(Hybrid, NoiseOfFeaturesIsNoDetail) {
     const auto truth = [](int, int) { return 0.5f; };
     const HybridImage image = reconstruct(halves, kSpectrum);
     const double error = mean_squared_error(image.color, truth), raw = 0.125 / 2;
-    EXPECT_LT(error, 0.25 * raw);  // what the predicted Gaussians leave
+    EXPECT_LT(error, 0.25 * raw);  // the predicted Gaussians leave this much
     double told = 0;
     for (float v : image.variance.values) told += double(v) / (kSize * kSize);
     EXPECT_GT(told / error, 0.4);
@@ -140,8 +140,8 @@ TEST(Hybrid, OneSampleOfEachHalfKnowsThatFeaturesVary) {
     set_variance_from_difference(halves);
     const auto truth = [](int, int) { return 0.5f; };
     const double raw = 0.25 / 2;
-    // Fits to the samples' own features explain all of the noise here: that they are offered costs.
-    // With features that seem to be known exactly it would be 0.54 of the raw pixels' error.
+    // Fits to the samples' own features explain all of the noise here: offering them costs. With
+    // features that seem to be known exactly it would be 0.54 of the raw pixels' error.
     EXPECT_LT(mean_squared_error(reconstruct(halves, kSpectrum).color, truth), 0.08 * raw);
 }
 
@@ -159,8 +159,8 @@ TEST(Hybrid, CleansASmoothImage) {
 }
 
 TEST(Hybrid, IsNeverWorseThanThePixelsAndBecomesThem) {
-    // Noise as of n = 4 ... 16384 samples. The predicted filters of 0.8 pixels blur these squares
-    // whatever the noise; the error must fall with it all the same.
+    // The noise is that of n = 4 ... 16384 samples. The predicted filters of 0.8 pixels blur these
+    // squares whatever the noise; the error must fall with it all the same.
     double before = 1e9;
     for (float sigma : {0.5f, 0.125f, 0.031f, 0.0078f}) {
         const Halves halves = noisy_halves(kSize, kSize, checks, sigma, 7);

@@ -1,4 +1,4 @@
-// Square images of kSize x kSize pixels, and what is known of them.
+// Square images of kSize x kSize pixels, and the predicted spectrum that goes with them.
 #pragma once
 
 #include "covariance/covariance.hpp"
@@ -15,7 +15,7 @@ inline float smooth_truth(int x, int y) {
     return 1 + 0.3f * std::sin(0.1f * float(x)) * std::cos(0.07f * float(y));
 }
 
-/// Hard squares that no feature and no prediction knows of.
+/// Truth of hard squares that no feature and no prediction knows of.
 inline float checks(int x, int y) {
     return (x / 3 + y / 3) % 2 ? 1.0f : 0.2f;
 }

@@ -1,4 +1,4 @@
-// Light that filters lost: how much of it comes back, and where.
+// Light that filters lost: the part of it that comes back, and its places.
 #include "reconstruction/light_return.h"
 
 #include <gtest/gtest.h>
@@ -56,8 +56,7 @@ TEST(LightReturn, TheWholeImageHasTheLightOfItsSamples) {
 }
 
 TEST(LightReturn, NoiseIsNotGivenBack) {
-    // What the samples say beside the truth is their noise: an image that is the truth hardly
-    // changes.
+    // The samples differ from the truth by noise alone: an image that is the truth hardly changes.
     const Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.5f, 4);
     const ColorPlanes raw = mean_of_both({halves[0].color, halves[1].color});
     ColorPlanes color = constant(0);
@@ -95,7 +94,7 @@ TEST(LightReturn, OnePathsLightMakesNoBlotch) {
     Halves halves = halves_with(1e-4f);
     for (size_t c = 0; c < 3; ++c) {
         raw[c](kSize / 2, kSize / 2) = 200;
-        // The half that saw it knows by its spread that it is rare.
+        // The half that saw the lamp knows by its spread that it is rare.
         halves[0].color_variance[c](kSize / 2, kSize / 2) = 4 * sqr(199.0f);
     }
     LightReturn(halves).give_back(raw, color);

@@ -1,4 +1,4 @@
-// Which pixels judge together.
+// Likeness: the pixels that judge together.
 #include "reconstruction/likeness.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using namespace test;
 
 constexpr int kWidth = 40, kHeight = 30;
 
-/// 1 in the right half, 0 in the left one.
+/// A plane that is 1 in the right half, 0 in the left one.
 Plane right_half() {
     Plane p(kWidth, kHeight);
     for (int y = 0; y < kHeight; ++y)
@@ -33,7 +33,7 @@ float sum_around(const Plane& plane, const Likeness& likeness, int x, int y) {
     return sum;
 }
 
-/// The sum of the definition, term by term.
+/// The sum by its definition, term by term.
 float expected(const Plane& plane, const Plane& guide, const LikenessSettings& settings, int x,
                int y) {
     double sum = 0;
@@ -70,7 +70,7 @@ TEST(Likeness, GuidesAddUp) {
     one.add(half);
     two.add(half);
     two.add(half);
-    const int x = kWidth / 2;  // half of what is around is on the other side
+    const int x = kWidth / 2;  // half of the pixels around are on the other side
     const float all = sum_around(white, none, x, 15), right = sum_around(half, none, x, 15),
                 left = all - right;
     EXPECT_NEAR(sum_around(white, one, x, 15), right + std::exp(-0.5f) * left, 1e-3f * all);
@@ -78,7 +78,7 @@ TEST(Likeness, GuidesAddUp) {
 }
 
 TEST(Selector, JudgesEachSideOfABorderByItself) {
-    // Left of the border the first candidate is right, right of it the second.
+    // The first candidate is right on the left of the border, the second on its right.
     const Plane half = right_half();
     const auto truth = [&](int, int) { return 1.0f; };
     const Halves halves = noisy_halves(kWidth, kHeight, truth, 0.1f, 5);
@@ -103,8 +103,8 @@ TEST(Selector, JudgesEachSideOfABorderByItself) {
 }
 
 TEST(Selector, PixelsBesideABorderAreJudgedThemselves) {
-    // As above, without noise; the border passes all columns and is nowhere between pixels that
-    // share their mixture.
+    // The image is as above, but without noise; its border passes all columns and is nowhere
+    // between pixels that share their mixture.
     const auto is_right = [](int x, int y) { return x > 8 + 0.7f * float(y) ? 1.0f : 0.0f; };
     Halves halves{HalfBuffer(kWidth, kHeight), HalfBuffer(kWidth, kHeight)};
     ColorPlanes left, right, ones;
@@ -145,7 +145,7 @@ TEST(Guides, TellNoisyFromCleanAndBrightFromDark) {
     const Plane half = right_half(), white(kWidth, kHeight, 1);
     ColorPlanes guess;
     guess.fill(white);
-    // How much of the weight around a pixel at the border lies on its own side.
+    // The share is that of the weight around a pixel at the border that lies on its own side.
     const auto own_side = [&] {
         Likeness likeness(LikenessSettings{6, 0});
         add_features(halves, likeness);

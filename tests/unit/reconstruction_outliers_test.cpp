@@ -1,4 +1,4 @@
-// Rare bright light: limited, given back, and where it goes.
+// Rare bright light: limited, given back, and its places afterwards.
 #include "reconstruction/outliers.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(Outliers, WhatBothHalvesSeeStays) {
 }
 
 TEST(Outliers, RareNegativeLightIsLimited) {
-    // As a pixel filter with negative lobes makes it beside a rare path.
+    // The pixel is as a pixel filter with negative lobes makes it beside a rare path.
     Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.1f, 5);
     for (Plane& p : halves[0].color) p(30, 30) = -500;
     limit_outliers(halves);

@@ -19,7 +19,7 @@ Plane random_plane(unsigned seed, float least, float most) {
     return p;
 }
 
-/// Of the definition, the patch around both pixels with the outermost pixels repeated.
+/// The distance by its definition, the patch around both pixels with the outermost pixels repeated.
 double expected(const std::vector<Plane>& values, const std::vector<Plane>& variances, int radius,
                 int px, int py, int qx, int qy) {
     const auto at = [](const Plane& p, int x, int y) {

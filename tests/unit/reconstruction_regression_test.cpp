@@ -1,4 +1,4 @@
-// First-order regression: exact for what is linear, and blind to what has no samples.
+// First-order regression: exact for linear colours, and blind to pixels without samples.
 #include "reconstruction/regression.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ struct Linear {
     FeaturePlanes features;
 };
 
-/// Colours that are linear in random features and in the position; variances so large that all
-/// patches count as alike.
+/// An image of colours that are linear in random features and in the position; variances so large
+/// that all patches count as alike.
 Linear linear_image() {
     Linear l;
     Rng rng(3);
@@ -53,7 +53,7 @@ TEST(Regression, ReproducesLinearFunctionsOfFeaturesAndPosition) {
 TEST(Regression, ExplainsColoursByTheSamplesOwnFeaturesWhereAsked) {
     Linear l = linear_image();
     for (HalfBuffer& half : l.halves) half.feature = l.features;
-    FeaturePlanes filtered;  // of all detail
+    FeaturePlanes filtered;  // features freed of all detail
     filtered.fill(Plane(kWidth, kHeight, 0.5f));
     const std::array windows{RegressionWindow{.noise = FeatureNoise::kept}, RegressionWindow{}};
     const auto fitted = regress(l.halves[0], l.halves[1], filtered, windows);
@@ -84,7 +84,7 @@ TEST(Regression, PixelsWithoutSamplesTakeNoPart) {
 }
 
 TEST(Regression, DoesNotMixWhatTheOtherHalfTellsApart) {
-    // Two flat halves of the image, far apart in units of the noise: the border stays sharp.
+    // The image is two flat halves, far apart in units of the noise: the border stays sharp.
     const auto step = [](int x, int) { return x < 20 ? 1.0f : 2.0f; };
     const Halves halves = test::noisy_halves(kWidth, kHeight, step, 0.01f, 1);
     FeaturePlanes features;
@@ -96,7 +96,7 @@ TEST(Regression, DoesNotMixWhatTheOtherHalfTellsApart) {
 }
 
 TEST(Regression, TexturesUnderEvenLightShareTheirSamples) {
-    // No two pixels' colours are alike, but what they reflect is; the albedo is a feature.
+    // Colours of no two pixels are alike, but their light is; the albedo is a feature.
     FeaturePlanes features;
     features.fill(Plane(kWidth, kHeight));
     Rng rng(11);
@@ -121,7 +121,8 @@ TEST(Regression, TexturesUnderEvenLightShareTheirSamples) {
 }
 
 TEST(Regression, LightTellsPatchesApartOnlyWhereNoiseDoesNot) {
-    // Stripes under even light: told apart by colours, and alike by light, with little noise.
+    // The image is stripes under even light: told apart by colours, and alike by light, with little
+    // noise.
     FeaturePlanes features;
     features.fill(Plane(kWidth, kHeight));
     const auto albedo = [](int x, int) { return x % 4 < 2 ? 0.3f : 0.8f; };

@@ -1,4 +1,4 @@
-// Film files: what is written is read back, and nothing else is.
+// Film files: written films are read back, and no other files are.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -61,7 +61,7 @@ TEST_F(FilmFile, KeepsEveryBit) {
         for (Stage stage : {Stage::first_paths, Stage::pilot, Stage::rounds})
             for (bool in_round : {true, false}) {
                 if (method == Method::uniform && stage != Stage::rounds) continue;
-                // Once with two blocks an array.
+                // Arrays have two blocks once.
                 const bool large = method == Method::uniform && in_round && stage == Stage::rounds;
                 RenderState s = random_state(method, stage, in_round,
                                              {-7, 3, large ? 293 : 20, large ? 233 : 11});

@@ -1,4 +1,4 @@
-// Headers of film files: whatever they say is refused, or the film can be used.
+// Headers of film files: whatever they say, they are refused, or the film can be used.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,8 +50,8 @@ void use(RenderState state) {
     EXPECT_NE(describe(std::move(merge).result()), "");
 }
 
-/// Headers with random changes, their checksums right: refused or read, with no other error, and
-/// what is read can be used.
+/// Headers with random changes, their checksums right, are refused or read, with no other error,
+/// and states that are read can be used.
 TEST(FilmHeader, ChangedHeadersAreRefused) {
     const std::string pieces[] = {"-1",
                                   "1e999",
@@ -103,7 +103,7 @@ TEST(FilmHeader, LyingHeadersAreRefused) {
     for (const char* wrong : {"[]", "[1,1]", "[3,1]", "[-1,1]", "[1,5]"})
         refused(Method::uniform, Stage::rounds, present, std::string("\"present\": ") + wrong);
     refused(Method::uniform, Stage::rounds, "\"shards\": 5", "\"shards\": 1");
-    // Cut to 32 bits the first would be 5 again.
+    // The first number would be 5 again if cut to 32 bits.
     for (const char* wrong : {"4294967301", "-4294967291", "5.0", "1e70", "true", "\"5\""})
         refused(Method::uniform, Stage::rounds, "\"shards\": 5",
                 std::string("\"shards\": ") + wrong);
@@ -133,7 +133,7 @@ TEST(FilmMerge, OtherArraysAreNotMerged) {
     }
 }
 
-/// Issue 6: at most 64 for `uniform`, 160 for `covariance`; issue 9: 320 for `hybrid`.
+/// Bytes per pixel: at most 64 for `uniform`, 160 for `covariance`, 320 for `hybrid`.
 TEST(BytesPerPixel, AreAsTheRecordsSay) {
     EXPECT_EQ(sizeof(FilmPixel), 60u);
     EXPECT_EQ(sizeof(PathFeatures), 28u);

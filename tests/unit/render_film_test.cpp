@@ -1,4 +1,4 @@
-// What samples of either weight leave in a pixel: means, squares, the light in view.
+// Films: means, squares and the light in view that samples of either weight leave in a pixel.
 #include "render/film.h"
 
 #include <gtest/gtest.h>
@@ -44,9 +44,9 @@ TEST(Film, EqualWeightsGiveMeanAndSquares) {
     EXPECT_NEAR(film.pixels[0].variance_of_mean().r, squares / 30, 1e-6);
 }
 
-/// Samples of weight 1.5 and -1 (mean 1) whose radiance depends on the weight: the mean is that of
-/// weight times radiance but for the first sample, which counts as it is; and the variance told is
-/// the one that many films have. Four comparisons at 4.5 standard errors: false alarm 3e-5.
+/// Samples have the weights 1.5 and -1 (mean 1), on which their radiance depends: the mean is that
+/// of weight times radiance but for the first sample, which counts as it is; and the variance told
+/// is the one that many films have. Four comparisons at 4.5 standard errors: false alarm 3e-5.
 TEST(Film, SignedWeightsKeepTheWeightedMean) {
     std::mt19937 random(2);
     std::uniform_real_distribution<double> u(0, 1);

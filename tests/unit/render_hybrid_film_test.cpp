@@ -1,4 +1,4 @@
-// What the reconstruction is told of films.
+// Films as the reconstruction sees them.
 #include "render/hybrid_film.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace covtrace {
 namespace {
 
 TEST(HybridFilm, OneSamplePerPixelOfWhatIsEvenHasNoNoise) {
-    // As with --spp 1: every pixel is known to one of the halves, in turn.
+    // The films are as with --spp 1: every pixel is known to one of the halves, in turn.
     constexpr int kSize = 24;
     std::vector<Film> films(2, Film({0, 0, kSize, kSize}, film_parts(Method::hybrid)));
     FilmSample sample;
@@ -43,8 +43,8 @@ TEST(PlaceInSequence, BothHalvesTogetherHaveTheFirstSamples) {
 }
 
 TEST(PlaceInSequence, TheMeanOfBothHalvesIsAsEvenAsOneSequence) {
-    // Squared error of the mean of x + y over the film, of 1000 pixels: of both halves, and of
-    // halves with seeds of their own.
+    // The errors are squared ones of the mean of x + y over the film, of 1000 pixels: of both
+    // halves, and of halves with seeds of their own.
     double together = 0, apart = 0;
     for (int pixel = 0; pixel < 1000; ++pixel) {
         double sum = 0, own = 0;

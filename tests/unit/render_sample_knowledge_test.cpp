@@ -1,4 +1,4 @@
-// What a film tells the planner: brightness, the variance of one sample, and its cost.
+// The planner's knowledge from a film: brightness, the variance of one sample, and its cost.
 #include "render/sample_knowledge.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ TEST(SampleKnowledge, IsOfOneSample) {
     EXPECT_FLOAT_EQ(known.variance[0], 2);  // (1 + 1) / (2 - 1)
     EXPECT_FLOAT_EQ(known.cost[0], 5);
     EXPECT_FLOAT_EQ(known.brightness[1], 7);
-    EXPECT_FLOAT_EQ(known.variance[1], 0);  // one sample tells nothing of it
+    EXPECT_FLOAT_EQ(known.variance[1], 0);  // one sample tells nothing of its variance
     EXPECT_FLOAT_EQ(known.cost[1], 2);
 }
 

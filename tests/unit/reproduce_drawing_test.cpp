@@ -24,7 +24,7 @@ TEST(Drawing, EscapesWhatMarkupTakesForItsOwn) {
 
 TEST(Drawing, EllipseReachesTheDeviationsOfItsMatrix) {
     Drawing d(101, 101);
-    // Deviations 40 and 10 along the axes (3, 4)/5 and (-4, 3)/5.
+    // The ellipse has deviations 40 and 10 along the axes (3, 4)/5 and (-4, 3)/5.
     const float a = 1600, b = 100, c = 0.6f, s = 0.8f;
     d.ellipse(50.5f, 50.5f, {a * c * c + b * s * s, (a - b) * c * s, a * s * s + b * c * c}, kBlack,
               2);

@@ -1,4 +1,4 @@
-// Scenes of one cause of blur, and where they are found.
+// Scenes of one cause of blur, and the search for generated ones.
 #include "reproduce/test_scenes.h"
 
 #include <gtest/gtest.h>

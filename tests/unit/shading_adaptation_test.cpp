@@ -1,4 +1,4 @@
-/// The colour of a scene's light, and what it does to materials.
+/// The colour of a scene's light, and its effect on materials.
 #include <gtest/gtest.h>
 
 #include "light_fixtures.h"
@@ -73,7 +73,7 @@ class AdaptedMaterials : public testing::Test {
     TextureId constant(Rgb value) {
         return add({.name = "", .is_spectrum = true, .value = ConstantTexture{value}, .where = {}});
     }
-    /// Everywhere `value`, though it counts as varying.
+    /// A texture that is `value` everywhere, though it counts as varying.
     TextureId varying(Rgb value) {
         CheckerboardTexture board;
         board.tex1 = constant(value);
@@ -143,7 +143,7 @@ TEST_F(AdaptedMaterials, CoatsTakeTheBaseAgainByItsSpectrum) {
                        coat.internal_reflectance(fixed.table_row), (coated.max_depth + 1) / 2) *
         (kInvPi / sqr(coated.eta));
     EXPECT_EQ(fixed.base, expected);
-    // A lookup of everything at each hit, of the colour or of the roughness only.
+    // The textures need a lookup of everything at each hit, of the colour or of the roughness only.
     CoatedDiffuseMaterial textured = coated, rough = coated;
     textured.reflectance = varying(wall_);
     rough.u_roughness = rough.v_roughness = varying(Rgb(0));

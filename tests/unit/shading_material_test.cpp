@@ -15,7 +15,7 @@ class MaterialTest : public testing::Test {
             {.name = "", .is_spectrum = true, .value = ConstantTexture{value}, .where = {}});
     }
     TextureId constant(float value) { return constant(Rgb(value)); }
-    /// `a` where floor(u) + floor(v) is even, `b` elsewhere.
+    /// A texture that is `a` where floor(u) + floor(v) is even, `b` elsewhere.
     TextureId checks(TextureId a, TextureId b) {
         CheckerboardTexture t;
         t.tex1 = a;
@@ -27,7 +27,7 @@ class MaterialTest : public testing::Test {
         scene_.materials.push_back({.name = "", .value = material, .where = {}});
         return static_cast<MaterialId>(scene_.materials.size()) - 1;
     }
-    /// To be called when everything is added.
+    /// Builds the stores; to be called when everything is added.
     void build() {
         textures_ = std::make_unique<TextureStore>(scene_);
         materials_ = std::make_unique<MaterialStore>(scene_, *textures_);
@@ -148,7 +148,7 @@ TEST_F(MaterialTest, CoatedDiffuseHonoursDepthAndSharesTables) {
     EXPECT_NE(p.table, t.table);
     EXPECT_EQ(p.table->thickness(), 0.01f);
     EXPECT_EQ(t.table->thickness(), 0.5f);
-    // One reflection at the base instead of five: the series stops after its first term.
+    // The base reflects once instead of five times: the series stops after its first term.
     const float again = 0.8f * p.table->internal_reflectance(0);
     EXPECT_NEAR(p.base.g / s.base.g, (1 - std::pow(again, 5.0f)) / (1 - again), 1e-5f);
     EXPECT_LT(albedo(Bsdf(t), {0, 0, 1}).g, albedo(Bsdf(p), {0, 0, 1}).g);
@@ -211,8 +211,9 @@ TEST(ShadingFrame, FollowsNormalAndParameterisation) {
 }
 
 TEST_F(MaterialTest, WalksUnderACoatAreThoseOfTheirPlace) {
-    // Parallel light on a plane in an orthographic view: one pair of directions everywhere. What
-    // one walk misses must not be missed at all places, and a place keeps its walk.
+    // The scene is parallel light on a plane in an orthographic view: one pair of directions
+    // everywhere. Light that one walk misses must not be missed at all places, and a place keeps
+    // its walk.
     CoatedConductorMaterial m;
     m.samples = 1;
     m.u_roughness = m.v_roughness = constant(0.3f);
@@ -245,7 +246,7 @@ TEST_F(MaterialTest, WalksUnderACoatAreThoseOfTheirPlace) {
     const double mean = sum / kPlaces;
     const double deviation = std::sqrt(square / kPlaces - mean * mean);
     EXPECT_GT(deviation, 0.05 * expected);
-    // 1e-5 that it fails by chance.
+    // The test fails by chance with 1e-5.
     EXPECT_NEAR(mean, expected, 4.5 * deviation / std::sqrt(double(kPlaces)));
 }
 

@@ -48,7 +48,7 @@ struct Mapped {
     }
 };
 
-/// Between the centres of its four texels (u, v in 1/4 .. 3/4) a height of scale * s * t with
+/// Texels whose height, between the centres of the four (u, v in 1/4 .. 3/4), is scale * s * t with
 /// s = 2 u - 1/2 and t = 2 v - 1/2.
 std::vector<Rgb> saddle() {
     // The upper row is at v = 3/4.
@@ -74,7 +74,7 @@ TEST(NormalMap, BumpAddsItsSecondDerivativesToTheCurvature) {
     constexpr float kScale = 1e-3f;
     const Mapped m(image, true, kScale, {0.5f, 0.45f, 0});
     const auto [k11, k12, k22] = m.map(1e-2f).curvature();
-    // d ns = -(d2 h / du dv) dq; the tangent frame is (x, y) up to its sign.
+    // The normal turns by d ns = -(d2 h / du dv) dq; the tangent frame is (x, y) up to its sign.
     const float sign = m.base.tangent.x.x * m.base.tangent.y.y;
     EXPECT_NEAR(k12, -4 * kScale * sign, 0.02f * 4 * kScale);
     EXPECT_NEAR(k11, 0, 0.05f * 4 * kScale);
@@ -103,7 +103,7 @@ TEST(NormalMap, ImagesHoldNormalsInTheFrameOfTheSurface) {
     const TemporaryImage image({Rgb(0.8f, 0.5f, 0.9f)}, 1, 1);
     const Mapped m(image, false, 1, {0.5f, 0.5f, 0});
     expect_near(m.map().frame().z, {0.6f, 0, 0.8f}, 1e-3f);
-    // Turned over: the normal is on the other side, dp/du stays.
+    // The surface is turned over: the normal is on the other side, dp/du stays.
     ShapeDescription reversed = mesh_of(unit_square());
     reversed.reverse_orientation = true;
     const Mapped r(image, false, 1, {0.5f, 0.5f, 0}, reversed);

@@ -1,4 +1,4 @@
-// What glTF needs of image textures: channels, cutoffs, mirrored wrapping, rotation, embedded
+// Image textures as glTF needs them: channels, cutoffs, mirrored wrapping, rotation, embedded
 // files.
 #include <gtest/gtest.h>
 
@@ -86,13 +86,13 @@ TEST(TextureChannels, CutAtAValue) {
 
 TEST(TextureChannels, TurnByTheMapping) {
     ImageTexture t;
-    // (s, t) = (v, 1 - u): a quarter turn.
+    // The map is (s, t) = (v, 1 - u): a quarter turn.
     t.mapping.scale_u = t.mapping.scale_v = 0;
     t.mapping.u_per_v = 1;
     t.mapping.v_per_u = -1;
     t.mapping.delta_v = 1;
     const TextureStore textures(scene_of(t));
-    // (0.25, 0.75) shows (0.75, 0.75): the upper right texel.
+    // The place (0.25, 0.75) shows (0.75, 0.75): the upper right texel.
     EXPECT_NEAR(textures.eval_float(0, {{0.25f, 0.75f}, {}}), 1, 1e-6f);
     EXPECT_NEAR(textures.eval_float(0, {{0.25f, 0.25f}, {}}), 0, 1e-6f);
 }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr Vec3 kDpdu{1, 0, 0}, kDpdv{0, 1, 0};
 
-/// What an edge at distance e contributes across itself.
+/// Covariance of an edge at distance e, across itself.
 float edge(float e) {
     return 1 / sqr(kPi * e);
 }
@@ -60,12 +60,12 @@ TEST(TextureCovariance, OfCheckersFollowsTheDistanceToTheEdgesInUv) {
     const TextureId id =
         scene.add(board_of(scene.add_constant(Rgb(0.8f)), scene.add_constant(Rgb(0.2f)), 10, 4));
     TextureStore store(scene.description);
-    // (s, t) = (2.3, 1.9): 0.3 / 10 and 0.1 / 4 from the nearest edges.
+    // The place is (s, t) = (2.3, 1.9): 0.3 / 10 and 0.1 / 4 from the nearest edges.
     const SpatialCovariance2 c = covariance(store, id, {{0.23f, 0.475f}, {}});
     EXPECT_NEAR(c.ss / edge(0.03f), 1, 1e-3);
     EXPECT_NEAR(c.tt / edge(0.025f), 1, 1e-3);
     EXPECT_EQ(c.st, 0);
-    // Never closer than the footprint.
+    // Edges are never closer than the footprint.
     const SpatialCovariance2 d = covariance(store, id, {{0.2f, 0.25f}, {}}, kDpdu, kDpdv, 0.01f);
     EXPECT_NEAR(d.ss / edge(0.01f), 1, 1e-3);
     EXPECT_NEAR(d.tt / edge(0.01f), 1, 1e-3);
@@ -97,14 +97,14 @@ TEST(TextureCovariance, OfSolidCheckersSeesThePlanesOnTheSurface) {
     board.texture_from_world = Transform::scale(2, 2, 2);
     const TextureId id = scene.add(board);
     TextureStore store(scene.description);
-    // A plane z = 0.2 in the world, spanned by u along x (4 units) and v along y; texture space
-    // (0.5, 1.2, 0.4): distances 0.5 and 0.2, in u 0.5 / 8, in v 0.2 / 2.
+    // The surface is a plane z = 0.2 in the world, spanned by u along x (4 units) and v along y;
+    // texture space (0.5, 1.2, 0.4): distances 0.5 and 0.2, in u 0.5 / 8, in v 0.2 / 2.
     const TexturePoint at{{}, {0.25f, 0.6f, 0.2f}};
     const SpatialCovariance2 c = covariance(store, id, at, {4, 0, 0}, {0, 1, 0});
     EXPECT_NEAR(c.ss / edge(0.5f / 8), 1, 1e-4);
     EXPECT_NEAR(c.tt / edge(0.2f / 2), 1, 1e-4);
     EXPECT_EQ(c.st, 0);
-    // Where v climbs through the planes, these cross both axes.
+    // The planes cross both axes where v climbs through them.
     const SpatialCovariance2 tilted = covariance(store, id, at, {1, 0, 1}, {0, 1, 1});
     EXPECT_GT(tilted.st, 0);
     EXPECT_NEAR(tilted.st / edge(0.4f / 2), 1, 1e-4);
@@ -125,7 +125,7 @@ TEST(TextureCovariance, OfImagesHasTheDirectionOfTheFlippedImage) {
         EXPECT_LT(c.ss, 2.3f * 16);
         EXPECT_NEAR(c.tt / c.ss, 1, 0.05);
         EXPECT_GT(c.st / c.ss, 0.7);  // the values vary along (1, 1)
-        // Equal (s, t): each u counts three of s, each v minus two of t.
+        // The place has equal (s, t): each u counts three of s, each v minus two of t.
         const SpatialCovariance2 s = covariance(store, scaled, {{u / 3, -0.2f}, {}});
         EXPECT_NEAR(s.ss / (9 * c.ss), 1, 1e-3);
         EXPECT_NEAR(s.st / (-6 * c.st), 1, 1e-3);
@@ -144,7 +144,7 @@ TEST(TextureCovariance, OfPlanarMappingFollowsTheSurface) {
     const TextureId by_position = scene.add(waves);
     TextureStore store(scene.description);
     const SpatialCovariance2 c = covariance(store, by_uv, {{0.3f, 0.6f}, {}});
-    // s = z = 0.3 and t = x = 0.6; u moves z by 2, v moves x by 5.
+    // The place is s = z = 0.3 and t = x = 0.6; u moves z by 2, v moves x by 5.
     const SpatialCovariance2 p =
         covariance(store, by_position, {{0.9f, 0.1f}, {0.6f, 8, 0.3f}}, {0, 1, 2}, {5, 0, 0});
     EXPECT_NEAR(p.ss / (4 * c.ss), 1, 1e-3);

@@ -33,7 +33,8 @@ TEST(TextureStore, ScalesAndMixesAtAnyDepth) {
 }
 
 TEST(TextureStore, MixesByTheNormal) {
-    // pbrt-v4's directionmix: tex1 where the normal is along the direction, either way.
+    // The texture is pbrt-v4's directionmix: tex1 where the normal is along the direction, either
+    // way.
     TextureScene scene;
     const TextureId aside = scene.add(AsideTexture{{0, 0.6f, 0.8f}});
     const TextureId mixed = scene.add(MixTexture{scene.add_float(2), scene.add_float(4), aside});
@@ -43,7 +44,7 @@ TEST(TextureStore, MixesByTheNormal) {
     EXPECT_FLOAT_EQ(value({0, -0.6f, -0.8f}), 2);
     EXPECT_FLOAT_EQ(value({1, 0, 0}), 4);
     EXPECT_FLOAT_EQ(value({0, 0, -1}), 0.8f * 2 + 0.2f * 4);
-    EXPECT_FLOAT_EQ(value({}), 3);  // not known: half of each
+    EXPECT_FLOAT_EQ(value({}), 3);  // an unknown normal gives half of each
 }
 
 TEST(TextureStore, KnowsWhatIsConstant) {

@@ -50,7 +50,7 @@ TEST(TextureFilter, APointReadsTheFinestLevelAsItIs) {
     for (int i = 0; i < 1000; ++i) {
         const Vec2 st = rng.next_2d() * 3 - Vec2{1, 1};
         const float bilinear = image.value(image.bilinear(st));
-        // Below half a texel nothing is filtered either.
+        // Footprints below half a texel are not filtered either.
         for (const float radius : {0.0f, 1e-4f, 0.2f / 33})
             for (const Filter f : {Filter::bilinear, Filter::trilinear, Filter::ewa})
                 ASSERT_EQ(image.value(st, f, round_footprint(radius), 8), bilinear);
@@ -91,7 +91,7 @@ TEST(TextureFilter, TheMeanOverAllPlacesStays) {
 }
 
 TEST(TextureFilter, AnEllipseKeepsWhatRunsAlongIt) {
-    // Stripes of four texels that run along s; a footprint of 24 x 2 texels.
+    // The image has stripes of four texels that run along s; the footprint is 24 x 2 texels.
     const TextureImage image =
         image_of(64, 64, [](int, int y) { return y / 4 % 2 == 0 ? 1.0f : 0.0f; });
     const ImageFootprint along{{24.0f / 64, 0}, {0, 2.0f / 64}},
@@ -101,18 +101,19 @@ TEST(TextureFilter, AnEllipseKeepsWhatRunsAlongIt) {
     EXPECT_NEAR(image.value(bright, Filter::ewa, across, 16), 0.5f, 0.05f);
     // A round filter has to be as wide as the footprint is long.
     EXPECT_NEAR(image.value(bright, Filter::trilinear, along, 16), 0.5f, 0.05f);
-    // As has an ellipse that may not be long.
+    // An ellipse that may not be long has to be as wide, too.
     EXPECT_NEAR(image.value(bright, Filter::ewa, along, 1), 0.5f, 0.05f);
 }
 
 TEST(TextureFilter, IsTheGaussianOfTheEllipse) {
-    // Against the sum over all texels of the finest level, where level 0 is what is looked up: the
-    // short axis is a texel.
+    // The filter is compared with the sum over all texels of the finest level, where level 0 is
+    // looked up: the short axis is a texel.
     const TextureImage image = noise(128, 128);
     const Vec2 st{0.37f, 0.59f};
     const Vec2 a{5.0f / 128, 3.0f / 128}, b{-0.5f / 128, 0.8f / 128};
     const Vec2 p{a.x * 128, a.y * 128}, q{b.x * 128, b.y * 128};
-    // (x, y) = p cos + q sin and a texel's own radius: covariance of the widened ellipse.
+    // The ellipse is (x, y) = p cos + q sin widened by a texel's own radius; this is its
+    // covariance.
     const double xx = p.x * p.x + q.x * q.x + 1, xy = p.x * p.y + q.x * q.y,
                  yy = p.y * p.y + q.y * q.y + 1, determinant = xx * yy - xy * xy;
     double sum = 0, weights = 0;
@@ -142,7 +143,7 @@ TEST(TextureFilter, StrangeFootprintsGiveFiniteValues) {
 
 TEST(TextureFilter, AnEllipseOverManyRepeatsIsTheCoarsestLevel) {
     const TextureImage image = noise(16, 16);
-    // A lookup of all its texels would not end.
+    // A lookup of all texels of such a footprint would not end.
     for (const float longer : {100.0f, 1e4f, 1e12f}) {
         const float v =
             image.value({0.3f, 0.5f}, Filter::ewa, {{longer, 0}, {0, 0.5f * longer}}, 8);
@@ -166,7 +167,7 @@ TEST(TextureFilter, FootprintsTurnWithTheMapping) {
 }
 
 TEST(TextureFilter, FootprintOnATiltedPlane) {
-    // Seen at 60 degrees, a pixel of width 0.1 covers 0.1 across and 0.2 along the tilt.
+    // The pixel, seen at 60 degrees and of width 0.1, covers 0.1 across and 0.2 along the tilt.
     SurfaceHit hit;
     hit.ng = hit.ns = {0, 0, 1};
     hit.dpdu = {4, 0, 0};
@@ -180,7 +181,7 @@ TEST(TextureFilter, FootprintOnATiltedPlane) {
     EXPECT_NEAR(std::abs(f.duv[1].x), 0.05f, 1e-6f);
     EXPECT_NEAR(f.duv[0].x, 0, 1e-6f);
     EXPECT_TRUE(footprint_on(hit, w, 0).is_point());
-    // Seen straight on it is round.
+    // The footprint is round where it is seen straight on.
     const PointFootprint round = footprint_on(hit, {0, 0, 1}, 0.1f);
     EXPECT_NEAR(length(round.dp[0]), 0.1f, 1e-6f);
     EXPECT_NEAR(length(round.dp[1]), 0.1f, 1e-6f);

@@ -27,7 +27,7 @@ struct Picture {
     ImageSpectrum spectrum(Wrap wrap) const { return {values, width, height, wrap}; }
 };
 
-/// Per texel^2 at the centre of texel (x, y).
+/// The covariance per texel^2 at the centre of texel (x, y).
 SpatialCovariance2 per_texel(const ImageSpectrum& s, const Picture& p, int x, int y) {
     const auto w = float(p.width), h = float(p.height);
     const SpatialCovariance2 c = s.at((float(x) + 0.5f) / w, (float(y) + 0.5f) / h);
@@ -148,7 +148,7 @@ TEST(ImageSpectrum, MatchesTheAmplitudeSpectrumOfNoise) {
 }
 
 TEST(ImageSpectrum, SeesTheDirectionOfAnisotropicNoise) {
-    // Long along (1, 1): varies across it, so that the cross term is negative.
+    // The texture is long along (1, 1) and varies across it, so that the cross term is negative.
     const float r = std::sqrt(0.5f);
     const SpatialCovariance2 c = mean_per_texel(noise(256, 4, 2, {r, r}, 0.3f, 2));
     const float wide = 1 / sqr(2 * kPi * 2), narrow = 1 / sqr(2 * kPi * 4);
@@ -190,7 +190,7 @@ TEST(ImageSpectrum, ScalesWithUnitsNotWithBrightness) {
         EXPECT_NEAR(b.st / c.st, 1, 1e-3);
         EXPECT_NEAR(b.tt / c.tt, 1, 1e-3);
     }
-    // 0.4 radians per texel are 0.4 * 200 / (2 pi) cycles per unit of s.
+    // The waves of 0.4 radians per texel are 0.4 * 200 / (2 pi) cycles per unit of s.
     EXPECT_GT(c.ss, sqr(0.4f * 200 / (2 * kPi)));
     EXPECT_LT(c.ss, 2.3f * sqr(0.4f * 200 / (2 * kPi)));
     EXPECT_GT(c.st, 0);
@@ -207,7 +207,7 @@ TEST(ImageSpectrum, KeepsItsUnitsWhereLargeImagesAreReduced) {
         EXPECT_GE(std::sqrt(s.at(at, 0.5f).ss), cycles);
         EXPECT_LE(std::sqrt(s.at(at, 0.5f).ss), cycles * 1.45f);
     }
-    // Of 2048 by 2 texels at most: their means, and what is known of them.
+    // The memory is that of 2048 by 2 texels at most: their means, and their spectra.
     EXPECT_LE(s.memory(), size_t(ImageSpectrum::kMaxAnalysedSize) * 2 * 16);
 }
 
@@ -253,7 +253,7 @@ TEST(ImageSpectrum, DoesNotDependOnTheNumberOfThreads) {
 RC_GTEST_PROP(ImageSpectrum, IsFiniteAndPositiveSemidefinite, ()) {
     const int width = *rc::gen::inRange(1, 40), height = *rc::gen::inRange(1, 40);
     const auto wrap = *rc::gen::element(Wrap::repeat, Wrap::clamp, Wrap::repeat_s);
-    // From flat to high dynamic range, with black texels.
+    // The images are flat to high dynamic range, with black texels.
     const float range = *rc::gen::element(1e-3f, 1.0f, 10.0f);
     Rng rng(*rc::gen::arbitrary<uint64_t>());
     const Picture p(width, height, [&](float, float) {

@@ -1,5 +1,5 @@
-// The bound on the memory of texture images: what is kept where, and that values don't depend on
-// it.
+// The bound on the memory of texture images: the place of the texels, and that values don't depend
+// on it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +46,7 @@ std::vector<Lookup> lookups() {
     return all;
 }
 
-/// All that lookups give, with every filter.
+/// The values of all lookups, with every filter.
 std::vector<float> values_of(const TextureImage& image) {
     using Filter = TextureImage::Filter;
     using Channel = TextureImage::Channel;
@@ -91,7 +91,8 @@ TEST(TextureMemory, EightBitColoursThatAreConstantStayExactAtAllLevels) {
 
 TEST(TextureMemory, LookupsDoNotDependOnWhereLevelsLie) {
     using Wrap = ImageTexture::Wrap;
-    // Larger than a tile in neither, one and both directions, whole numbers of tiles and not.
+    // The images are larger than a tile in neither, one and both directions, whole numbers of tiles
+    // and not.
     const std::array<std::array<int, 2>, 4> sizes{{{5, 7}, {300, 3}, {129, 200}, {256, 128}}};
     for (const auto& [width, height] : sizes)
         for (const int channels : {1, 3, 4})
@@ -123,8 +124,8 @@ TEST(TextureMemory, LookupsDoNotDependOnWhereLevelsLie) {
 }
 
 TEST(TexelPages, GiveBackWhatWasAdded) {
-    // One page in memory at least, however little is allowed; whole sets of eight where there is
-    // room.
+    // Pages in memory are one at least, however little is allowed; whole sets of eight where there
+    // is room.
     EXPECT_EQ(TexelPages(0).memory(), TexelPages::kPageBytes);
     EXPECT_EQ(TexelPages(size_t(1) << 20).memory(), size_t(1) << 20);
     EXPECT_LE(TexelPages(12345678).memory(), 12345678u);

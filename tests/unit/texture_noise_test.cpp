@@ -9,7 +9,7 @@
 namespace covtrace {
 namespace {
 
-/// A scene of one texture, and it.
+/// A scene with a single texture.
 struct OneTexture {
     SceneDescription scene;
     std::optional<TextureStore> store;
@@ -37,7 +37,7 @@ Vec3 anywhere(Rng& rng) {
 }
 
 TEST(Noise, HasTheValuesOfPbrt) {
-    // By the formulas of pbrt-v4's util/noise.cpp in double precision.
+    // The values follow the formulas of pbrt-v4's util/noise.cpp in double precision.
     EXPECT_NEAR(noise({1.3f, 2.7f, -3.2f}), 0.2848972f, 2e-6f);
     EXPECT_NEAR(noise({100.25f, -50.5f, 0.125f}), 0.5810798f, 2e-6f);
     EXPECT_NEAR(noise({0.5f, 0.5f, 0.5f}), -0.1250000f, 2e-6f);
@@ -105,7 +105,7 @@ TEST(NoiseTextures, MarbleRunsThroughItsColours) {
     marble.variation = 0;
     marble.scale = 2;
     const OneTexture t(marble);
-    // sin = -1: the first colour; sin = 1: the last; both times 1.5.
+    // The first colour is at sin = -1, the last at sin = 1; both times 1.5.
     const Rgb first = t.at({0, -kPi / 4, 0}), last = t.at({0, kPi / 4, 0});
     for (const Rgb& c : {first, last}) {
         EXPECT_NEAR(c.r, 0.87f, 1e-5f);
@@ -205,7 +205,7 @@ TEST(NoiseTextures, CovarianceIsTheSpectrumOfTheOctavesInView) {
     const OneTexture all(t);
     EXPECT_GT(covariance(all, {1, 2, 3}, 0).ss, 4 * one.ss);
     EXPECT_LT(covariance(all, {1, 2, 3}, 0.1f).ss, 2 * one.ss);
-    // Twice as small, twice the frequency.
+    // The texture is twice as small and has twice the frequency.
     t.texture_from_world = Transform::scale(2, 2, 2);
     EXPECT_NEAR(covariance(OneTexture(t), {1, 2, 3}, 0).ss, 4 * covariance(all, {1, 2, 3}, 0).ss,
                 1e-3f);

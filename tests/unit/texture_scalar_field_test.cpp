@@ -79,14 +79,14 @@ TEST(ScalarField, HalvesAndDoublesARampWithoutShiftingIt) {
 }
 
 TEST(ScalarField, HalvesByAFilterOfThreeQuarters) {
-    // Impulses in both phases of the coarse grid: their mean variance in fine cells.
+    // The impulses are in both phases of the coarse grid: their mean variance in fine cells.
     double variance = 0;
     for (const int x : {20, 21}) {
         ScalarField impulse(42, 8, false, false);
         for (int y = 0; y < 8; ++y) impulse.row(y)[x] = 1;
         const Moments m = moments_along_x(halved(impulse));
         EXPECT_NEAR(m.sum, 0.5 * 4, 1e-5);
-        // Spread about the impulse itself; a coarse cell's centre is at 2 i + 0.5.
+        // The spread is about the impulse itself; a coarse cell's centre is at 2 i + 0.5.
         const double offset = 2 * m.mean + 0.5 - x;
         variance += 0.5 * (4 * m.variance + offset * offset);
     }

@@ -65,7 +65,8 @@ TEST(WindowEstimates, CanBeAskedForByManyThreads) {
         const ImageSpectrum s(f.values, f.width, f.height, ImageSpectrum::Wrap::repeat);
         std::vector<SpatialCovariance2> found(2000);
         parallel_for(int64_t(found.size()), [&](int64_t i) {
-            // All over the image, at the finest and at blends of coarser resolutions.
+            // The places are all over the image, at the finest and at blends of coarser
+            // resolutions.
             const float u = 0.618034f * float(i), texels = 1 + 0.01f * float(i % 500);
             found[size_t(i)] = s.at(u, 0.0731f * float(i), {texels / 300, texels / 260});
         });

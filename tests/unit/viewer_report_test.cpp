@@ -98,7 +98,7 @@ RC_GTEST_PROP(EncodePlane, IsLossless, (std::vector<uint32_t> bits)) {
 
 class WriteReport : public testing::Test {
   protected:
-    /// Every channel filled with noise that does not compress.
+    /// An image whose channels are all filled with noise that does not compress.
     static Image noise(const std::vector<std::string>& channels) {
         Image image{{0, 0, 64, 32}, {0, 0, 64, 32}, {}, {}};
         uint32_t state = 1;
