@@ -23,7 +23,8 @@ def either(inputs, *names):
     return next((inputs[name] for name in names if name in inputs), None)
 
 
-# Of Principled, what is left out: names of the socket, and the value at which it changes nothing.
+# Features of Principled that are left out: names of the socket, and the value at which it changes
+# nothing.
 LEFT_OUT = ((("Subsurface Weight", "Subsurface"), 0), (("Sheen Weight", "Sheen"), 0), (("Coat Weight", "Clearcoat"), 0),
             (("Anisotropic",), 0), (("Diffuse Roughness",), 0), (("Thin Film Thickness",), 0))
 
@@ -209,7 +210,7 @@ class MaterialExporter(SocketReader):
         return self._mix(self._shader(others[0]), self._shader(others[1]), Value(0.5))
 
     def _tell_left_out(self, inputs):
-        """Of Principled."""
+        """Warns of the features of Principled that are left out."""
         left_out = [(either(inputs, *names), without) for names, without in LEFT_OUT]
         tint = inputs["Specular Tint"]  # a colour since Blender 4.0, and white without effect
         left_out.append((tint, 1 if hasattr(tint.default_value, "__len__") else 0))
@@ -221,10 +222,11 @@ class MaterialExporter(SocketReader):
                 self.warn(f"material '{self.name}': Principled's {socket.name} is not supported and left out")
 
     def _reflectance(self, inputs):
-        """What Principled's coat reflects at the normal."""
+        """The reflectance of Principled's coat at the normal."""
         if "Specular" in inputs:
             return 0.08 * self._plain(inputs["Specular"])
-        # Since Blender 4.0 the index tells it, and this twice its half: 0.5 changes nothing.
+        # The index and this level tell the reflectance since Blender 4.0; a level of 0.5 changes
+        # nothing.
         eta = max(self._plain(inputs["IOR"]), 1e-3)
         return ((eta - 1) / (eta + 1)) ** 2 * 2 * self._plain(inputs["Specular IOR Level"])
 

@@ -143,7 +143,8 @@ TEST_F(AdaptedMaterials, CoatsTakeTheBaseAgainByItsSpectrum) {
                        coat.internal_reflectance(fixed.table_row), (coated.max_depth + 1) / 2) *
         (kInvPi / sqr(coated.eta));
     EXPECT_EQ(fixed.base, expected);
-    // The textures need a lookup of everything at each hit, of the colour or of the roughness only.
+    // Each material needs a lookup at every hit: the first of its colour, the second of its
+    // roughness alone.
     CoatedDiffuseMaterial textured = coated, rough = coated;
     textured.reflectance = varying(wall_);
     rough.u_roughness = rough.v_roughness = varying(Rgb(0));
