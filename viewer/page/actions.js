@@ -11,7 +11,7 @@ export function fail(error) {
 }
 
 export function change(values) {
-    // A range belongs to what it was chosen for.
+    // A range belongs to the layer and component that it was chosen for.
     if (['layout', 'layer', 'component', 'kind', 'a', 'b'].some((k) => k in values)) state.range = null;
     Object.assign(state, values);
     if (state.kind === 'flip' && flipPlane() === undefined) state.kind = 'absolute';

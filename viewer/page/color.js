@@ -3,7 +3,7 @@
 const encodeSrgb = (v) => (v <= 0.0031308 ? 12.92 * v : 1.055 * Math.pow(v, 1 / 2.4) - 0.055);
 const decodeSrgb = (v) => (v <= 0.04045 ? v / 12.92 : Math.pow((v + 0.055) / 1.055, 2.4));
 
-// level k is shown from thresholds[k] on. A table over the linear value finds a level at most two below.
+// Level k is shown from thresholds[k] on. A table over the linear value finds a level at most two below.
 const thresholds = Float64Array.from({ length: 257 }, (_, k) =>
     k === 0 ? -Infinity : k === 256 ? Infinity : decodeSrgb((k - 0.5) / 255));
 const kCells = 4096;
@@ -35,14 +35,14 @@ function oklch(lightness, chroma, hue) {
 
 const makeScale = (color) => Uint8Array.from({ length: 256 * 3 }, (_, i) => color(Math.floor(i / 3) / 255)[i % 3]);
 
-/** Even in lightness, so that it also reads in grey: dark violet, blue, green, yellow. */
+/** A scale even in lightness, so that it also reads in grey: dark violet, blue, green, yellow. */
 export const sequentialScale = makeScale((t) => oklch(0.16 + 0.78 * t, 0.08 + 0.09 * t, 305 - 205 * t));
-/** Blue below, dark at zero (the middle), orange above. */
+/** A scale around zero: blue below, dark at zero (the middle), orange above. */
 export const divergingScale = makeScale((t) => {
     const size = Math.abs(2 * t - 1);
     return oklch(0.17 + 0.7 * size, 0.15 * Math.sqrt(size), t > 0.5 ? 55 : 250);
 });
 export const greyScale = makeScale((t) => Array(3).fill(Math.round(255 * t)));
 
-/** What is no number stands out in every scale. */
+/** Colour of values that are not numbers, which stands out in every scale. */
 export const notANumberColor = [255, 0, 255];

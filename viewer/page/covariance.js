@@ -1,4 +1,4 @@
-// What a pixel's covariance says, in words and units (the same as `covtrace inspect --pixel`).
+// The covariance of a pixel in words and units, as `covtrace inspect --pixel` tells it.
 
 import { formatNumber } from './format.js';
 

@@ -1,6 +1,6 @@
-// Maps of what differs between two images.
+// Maps of the differences between two images.
 
-/** What a layer's component can be compared by. `a`, `b`: lists of planes, one for scalars, three for colours. */
+/** The comparisons that a layer's component allows. `a`, `b`: lists of planes, one for scalars, three for colours. */
 export const differenceKinds = [
     { id: 'signed', label: 'A − B', symmetric: true },
     { id: 'absolute', label: '|A − B|' },
@@ -10,7 +10,7 @@ export const differenceKinds = [
 
 const kWeights = [0.2126, 0.7152, 0.0722];
 
-/** One number per pixel. signed: of the luminance; absolute: mean over the channels; relative: mean over the
+/** A map with one number per pixel. signed: of the luminance; absolute: mean over the channels; relative: mean over the
  *  channels of (A - B)² / (B² + 0.01), the pixel's share of relMSE. */
 export function differenceMap(kind, a, b) {
     const result = new Float32Array(a[0].length);

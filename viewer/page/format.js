@@ -1,6 +1,6 @@
 // Numbers as people read them.
 
-/** Four significant digits; very small and very large values in powers of ten. */
+/** A number with four significant digits; very small and very large values in powers of ten. */
 export function formatNumber(value) {
     if (value === null || value === undefined) return '';
     if (Number.isNaN(value)) return 'NaN';
@@ -11,14 +11,14 @@ export function formatNumber(value) {
     return String(Number(value.toPrecision(4)));
 }
 
-/** Three significant digits in few letters, for matrices. */
+/** A number with three significant digits in few letters, for matrices. */
 export function formatBriefly(value) {
     const size = Math.abs(value);
     if (size !== 0 && (size < 1e-3 || size >= 1e4)) return value.toExponential(1);
     return String(Number(value.toPrecision(3)));
 }
 
-/** All digits that a 32-bit float holds: what is needed to tell two values apart. */
+/** A number with all digits that a 32-bit float holds: as many as tell two values apart. */
 export function formatExactly(value) {
     return Number.isFinite(value) ? String(Number(value.toPrecision(9))) : formatNumber(value);
 }

@@ -12,7 +12,7 @@ export function make(tag, attributes = {}, ...children) {
     return element;
 }
 
-/** rows: lists of texts; the first of each is its header. */
+/** A table. rows: lists of texts; the first of each is its header. */
 export function makeTable(caption, head, rows) {
     const table = make('table', {}, make('caption', {}, caption));
     if (head) table.append(make('thead', {}, make('tr', {}, ...head.map((h) => make('th', { scope: 'col' }, h)))));
@@ -86,7 +86,7 @@ function bandwidthTable(planes, image, index) {
     return result;
 }
 
-/** Fills `panel` for the pixel with the given index. images: those that are compared, each with a short name. */
+/** Fills `panel` for the pixel with the given index. images: the images that are compared, each with a short name. */
 export function showPixel(panel, planes, images, index) {
     const parts = [];
     for (const image of images) {

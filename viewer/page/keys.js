@@ -1,4 +1,4 @@
-// What the keys do.
+// The keys and their actions.
 
 import { change, fail, flip, nextDifference, setSplit, stepLayer } from './actions.js';
 import { movePin } from './pixel.js';
@@ -7,7 +7,7 @@ import { byId, several, state, viewport } from './session.js';
 const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 const brighter = (stops) => change({ exposure: Math.min(10, Math.max(-10, state.exposure + stops)) });
 
-/** key: what it does. Keys that are not in `texts` go with the one before. */
+/** Actions by key. Keys that are not in `texts` go with the one before. */
 const actions = {
     '+': () => viewport.zoom(1.5),
     '=': () => viewport.zoom(1.5),
@@ -31,7 +31,7 @@ const comparing = {
 };
 if (several) Object.assign(actions, comparing);
 
-/** For the list of keys. */
+/** Texts for the list of keys. */
 export const keyTexts = [
     ['←↑→↓', 'move the chosen pixel (with Shift by ten)'],
     ['+ −', 'zoom; also the wheel'],

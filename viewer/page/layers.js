@@ -1,4 +1,4 @@
-// Layers of an image and what of them can be shown: colours, directions, single numbers, derived numbers.
+// Layers of an image and their components that can be shown: colours, directions, single numbers, derived numbers.
 
 import { axes, symmetricIndex } from './covariance.js';
 
@@ -13,7 +13,7 @@ function scalar(id, label, planes, value) {
     return { id, label, kind: 'scalar', planes, value };
 }
 
-/** { id, label, kind: colour | direction | scalar, planes, value(arrays, i) for scalars }. */
+/** The components of a layer: { id, label, kind: colour | direction | scalar, planes, value(arrays, i) for scalars }. */
 export function components(layer) {
     const list = [];
     if (hasChannels(layer, ['R', 'G', 'B'])) {

@@ -61,7 +61,7 @@ const neededPlanes = () => {
 };
 
 let paintings = 0;
-/** Ends when the picture is there, or without one where the state has changed meanwhile. */
+/** Paints; ends when the picture is there, or without one where the state has changed meanwhile. */
 export async function paint() {
     const turn = ++paintings;
     await planes.load(neededPlanes());

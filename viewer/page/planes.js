@@ -2,7 +2,7 @@
 
 let halves = null;
 
-/** All 65536 half-precision numbers. */
+/** A table of all 65536 half-precision numbers. */
 function halfTable() {
     if (halves) return halves;
     halves = new Float32Array(65536);
@@ -29,7 +29,7 @@ async function inflate(bytes) {
     return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** Byte k of value i stands at k * count + i. */
+/** Puts the bytes of values together: byte k of value i stands at k * count + i. */
 function unshuffle(bytes, count, size) {
     const values = new Uint8Array(count * size);
     for (let k = 0; k < size; ++k)
@@ -38,7 +38,7 @@ function unshuffle(bytes, count, size) {
 }
 
 export class Planes {
-    /** descriptions[i].half: 16-bit floats; the text is in the element "plane-i". */
+    /** Prepares planes. descriptions[i].half: 16-bit floats; the text is in the element "plane-i". */
     constructor(descriptions, count) {
         this.descriptions = descriptions;
         this.count = count;
@@ -46,7 +46,7 @@ export class Planes {
         this.pending = new Map();
     }
 
-    /** Float32Array, or undefined while it is not loaded. */
+    /** The values as Float32Array, or undefined while they are not loaded. */
     get(index) {
         return this.values.get(index);
     }

@@ -9,7 +9,7 @@ function put(bytes, i, r, g, b) {
     bytes[4 * i + 3] = 255;
 }
 
-/** Linear colour times `gain`, as an sRGB screen shows it. */
+/** Draws a linear colour times `gain`, as an sRGB screen shows it. */
 export function paintColour(bytes, [red, green, blue], gain) {
     for (let i = 0; i < red.length; ++i) {
         const r = red[i], g = green[i], b = blue[i];
@@ -18,13 +18,13 @@ export function paintColour(bytes, [red, green, blue], gain) {
     }
 }
 
-/** Components in [-1, 1] as grey levels around the middle. */
+/** Draws components in [-1, 1] as grey levels around the middle. */
 export function paintDirection(bytes, [x, y, z]) {
     const level = (v) => Math.round(127.5 * (Math.min(1, Math.max(-1, v)) + 1));
     for (let i = 0; i < x.length; ++i) put(bytes, i, level(x[i]), level(y[i]), level(z[i]));
 }
 
-/** range: { low, high, log }; scale: 256 colours from low to high. */
+/** Draws values by a scale. range: { low, high, log }; scale: 256 colours from low to high. */
 export function paintScalar(bytes, values, range, scale) {
     const place = rangePlace(range);
     for (let i = 0; i < values.length; ++i) {
@@ -49,7 +49,7 @@ function rangePlace({ low, high, log }) {
     return (v) => (v > floor ? Math.log(v / floor) / decades : 0);
 }
 
-/** The 0.5 to 99.5 % of the values, or the same on both sides of zero where some are negative and
+/** A range from the 0.5 to the 99.5 % quantile, or one even on both sides of zero where some are negative and
  *  `symmetric` is asked for: outliers don't decide what is seen. */
 export function automaticRange(values, symmetric) {
     const step = Math.max(1, Math.floor(values.length / 50000));

@@ -1,4 +1,4 @@
-// What the page shows: the report's images, and the choices of whoever looks at them.
+// The state of the page: the report's images, and the choices of whoever looks at them.
 
 import { differenceKinds } from './differences.js';
 import { components, findLayer } from './layers.js';

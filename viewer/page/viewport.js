@@ -3,7 +3,7 @@
 const kMostZoom = 128;  // screen pixels per image pixel
 
 export class Viewport {
-    /** canvas: the element; size: [width, height] of the images in pixels. */
+    /** Makes a viewport. canvas: the element; size: [width, height] of the images in pixels. */
     constructor(canvas, [width, height]) {
         this.canvas = canvas;
         this.context = canvas.getContext('2d', { willReadFrequently: true });
@@ -11,14 +11,14 @@ export class Viewport {
         this.height = height;
         this.scale = 1;       // canvas pixels per image pixel
         this.center = [width / 2, height / 2];  // the image point in the middle of each pane
-        this.split = 0.5;     // of the canvas' width
+        this.split = 0.5;     // place of the split line, as a share of the canvas' width
         this.panes = [];      // { picture, label, from, to }: shares of the width that a picture is seen in
         this.shared = true;   // panes lie over one another (split) instead of side by side
         this.marks = null;    // { x, y, ellipse }
         this.fitted = true;
     }
 
-    /** pictures: canvases with labels. 'side': one beside the other; 'split': two, cut at this.split. */
+    /** Shows pictures, canvases with labels. 'side': one beside the other; 'split': two, cut at this.split. */
     setPanes(pictures, layout) {
         this.layout = layout;
         this.shared = layout !== 'side';
@@ -66,7 +66,7 @@ export class Viewport {
         return { x: (x - left) / this.scale, y: (y - top) / this.scale, canvasX: x, canvasY: y };
     }
 
-    /** Canvas position of the image's corner in a pane: on whole pixels, so that 1:1 is exact. */
+    /** Position of the image's corner on the canvas in a pane: on whole pixels, so that 1:1 is exact. */
     origin(pane) {
         const left = (this.shared ? 0 : pane * this.paneWidth()) + this.paneWidth() / 2 - this.center[0] * this.scale;
         const top = this.canvas.height / 2 - this.center[1] * this.scale;
@@ -116,7 +116,7 @@ export class Viewport {
         c.clearRect(0, 0, this.canvas.width, this.canvas.height);
         c.imageSmoothingEnabled = this.scale < 1;
         this.layOut().forEach((pane, k) => this.drawPane(pane, k));
-        // For tests and scripts: where the first pane's image lies on the canvas.
+        // Place of the first pane's image on the canvas, for tests and scripts.
         const [left, top] = this.origin(0);
         Object.assign(this.canvas.dataset, { left, top, scale: this.scale });
     }
