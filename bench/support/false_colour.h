@@ -33,7 +33,7 @@ class PanelPicture {
     void add(std::vector<Rgb> colours, LogColours scale, std::vector<float> ticks) {
         panels_.push_back({std::move(colours), std::move(scale), std::move(ticks)});
     }
-    /// Throws Error(io).
+    /// Writes the picture. Throws Error(io).
     void write_png(const std::filesystem::path& file) const;
 
   private:

@@ -27,7 +27,8 @@ struct PredictedImage {
 /// The layers that the image must be rendered with.
 constexpr const char* kPredictedLayers = "all,inview,inviewfilter,scatteredcov,scatteredcovweight";
 
-/// Throws Error(usage) where a layer is missing, Error(scene) where the file can't be read.
+/// Reads the image. Throws Error(usage) where a layer is missing, Error(scene) where the file can't
+/// be read.
 PredictedImage read_predicted_image(const std::filesystem::path& file);
 
 }  // namespace covtrace

@@ -61,7 +61,7 @@ def scaled(values):
 
 
 def write_pictures(image, folder):
-    """Without matplotlib: one grey picture per map."""
+    """Writes one grey picture per map, where there is no matplotlib."""
     image.write(folder / "image.png")
     for name, values in maps(image).items():
         grey = numpy.repeat(scaled(values)[:, :, None], 3, axis=2)

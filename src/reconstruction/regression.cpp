@@ -83,7 +83,7 @@ struct PatchDistances {
     static constexpr float kTellingNoise = 0.1f;
 };
 
-/// All centres of one block, for every window.
+/// Fits of all centres in one block, for every window.
 class Block {
   public:
     Block(const RegressionInputs& in, const PatchDistances& distance,

@@ -13,7 +13,7 @@ namespace covtrace {
 class Ranks;
 struct RenderState;
 
-/// Why a film is kept.
+/// Reason why a film is kept.
 enum class KeepReason {
     checkpoint,  ///< the render goes on
     interrupted,

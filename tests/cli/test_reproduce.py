@@ -49,7 +49,7 @@ class Reproduce(CliTest):
         self.assertNotIn("<b>", page)
         self.assertNotIn("<script", page)
         self.assertIn("default-src 'none'", page)
-        # Nothing is loaded: images are data, links are to files beside the page.
+        # The page loads nothing: images are data, links are to files beside the page.
         for reference in re.findall(r"(?:src|href)=\"([^\"]*)\"", page):
             self.assertRegex(reference, r"^(data:image/png;base64,|figures/|#|[a-z]+\.html)")
         self.assertNotIn("url(", page)

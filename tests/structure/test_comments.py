@@ -39,7 +39,8 @@ def cpp_comments(text):
 
 
 def python_comments(text):
-    """As cpp_comments; strings that document a module, class or function are comments, too."""
+    """Comments of Python as cpp_comments gives them; strings that document a module, class or function are comments,
+    too."""
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type == tokenize.COMMENT:
             alone = not token.line[:token.start[1]].strip()

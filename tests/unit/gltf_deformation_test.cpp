@@ -52,7 +52,7 @@ void animate(GltfFile& file) {
          {"samplers", {{{"input", times}, {"output", turns}}}}}};
 }
 
-/// Where linear blend skinning puts (x, 0, z) with joint 2 turned by `angle`.
+/// The point (x, 0, z) after linear blend skinning with joint 2 turned by `angle`.
 Vec3 skinned(float x, float z, float angle) {
     const float second = std::clamp(x - 1.5f, 0.0f, 1.0f);
     const Vec3 turned{2 + (x - 2) * std::cos(angle), (x - 2) * std::sin(angle), z};

@@ -40,7 +40,7 @@ TEST(FilmHeader, KeepsTheRuleOfTheFilters) {
     }
 }
 
-/// All that the program does with a film that it has read.
+/// Uses a film that was read in every way in which the program does.
 void use(RenderState state) {
     EXPECT_NE(describe(state), "");
     EXPECT_EQ(develop(state).pixel_count(), state.pixels());
