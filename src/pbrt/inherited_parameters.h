@@ -29,7 +29,7 @@ class InheritedParameters {
     using Latest = std::vector<std::shared_ptr<const Parameter>>;
     /// `hash`: the bits that have not led here.
     static Tree with(const Tree& tree, size_t hash, std::shared_ptr<const Parameter> added);
-    /// Of every type that has that name, the latest last; null where there is none.
+    /// Parameters of that name, of every type, the latest last; null where there is none.
     const Latest* latest(std::string_view name) const;
 
     Tree tree_;

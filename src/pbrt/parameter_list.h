@@ -56,7 +56,7 @@ class ParameterList {
     void warn_unused(WarningLog& log, const std::string& owner) const;
 
   private:
-    /// Of one name, whatever its type.
+    /// The parameter of that name that counts, whatever its type.
     const Parameter* last(std::string_view name) const;
     std::vector<Parameter> own_;  ///< the last one of a name counts
     InheritedParameters inherited_;

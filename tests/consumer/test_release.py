@@ -1,4 +1,4 @@
-"""What scripts/release makes: one version everywhere, a wheel and an add-on that are installed and loaded here. In clean
+"""Packages that scripts/release makes: one version everywhere, a wheel and an add-on that are installed and loaded here. In clean
 places `scripts/release --check` tries them."""
 
 import ast
@@ -126,7 +126,7 @@ class Extension(Made):
             files.extractall(self.folder)
         sources = {f"covtrace_blender/{f.name}" for f in (SOURCE / "blender/covtrace_blender").glob("*.py")}
         self.assertEqual(names, sources | {"covtrace_blender/blender_manifest.toml", "covtrace_blender/LICENSE"})
-        # What Blender 4.2 wants of a manifest, and how long it may be.
+        # Blender 4.2 asks for these keys of a manifest, and limits their lengths.
         self.assertEqual((manifest["schema_version"], manifest["version"], manifest["type"], manifest["license"]),
                          ("1.0.0", VERSION, "add-on", ["SPDX:Apache-2.0"]))
         for text in (manifest["tagline"], *manifest["permissions"].values()):
