@@ -4,6 +4,7 @@
 
 #include "image/compare.h"
 #include "pbrt/read_scene.h"
+#include "render/overrides.h"
 #include "render/session.h"
 #include "tests/shared/shared_folder.h"
 
