@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace covtrace {
 
@@ -31,14 +32,17 @@ double similarity(const Affine& m) {
     return keeps ? s : 0;
 }
 
-/// Makes a body a ball where its shape is a whole sphere that is round in local space.
-void note_ball(const LocalShape& shape, OccluderBody& body) {
+/// The body of a shape that is a whole sphere and round in local space; none for other shapes.
+std::optional<OccluderBody> ball_of(const LocalShape& shape) {
     const auto* q = std::get_if<Quadric>(&shape);
     if (!q || q->kind != Quadric::Kind::sphere || q->z_min > -q->radius || q->z_max < q->radius ||
         q->phi_max < 6.2831853)
-        return;
+        return std::nullopt;
+    OccluderBody body;
+    body.kind = OccluderBody::Kind::moving_ball;
     body.center = q->local_from_object.translation.to_float();
     body.radius = static_cast<float>(q->radius * similarity(q->local_from_object));
+    return body.radius > 0 ? std::optional(body) : std::nullopt;
 }
 
 bool is_flat(const LocalShape& shape) {
@@ -50,6 +54,11 @@ bool is_flat(const LocalShape& shape) {
 size_t triangle_count(const LocalShape& shape) {
     if (const auto* mesh = std::get_if<TriangleShape>(&shape)) return mesh->mesh->triangles.size();
     return 2 * std::get<PatchShape>(shape).mesh->patches.size();
+}
+
+Bounds3 bounds_of_ball(Vec3 center, float radius) {
+    const Vec3 r = Vec3{1, 1, 1} * (1.00001f * radius);
+    return {center - r, center + r};
 }
 
 Bounds3 transformed(const Bounds3& b, const Affine& map) {
@@ -94,31 +103,78 @@ OccluderBodies::OccluderBodies(const Geometry::Impl& g, std::function<bool()> ca
             perforated += static_cast<double>(triangle_count(g.local[i]));
     per_edge_ = static_cast<int>(std::min<double>(
         std::sqrt(kPerforatedTriangles / std::max(1.0, perforated)), kMostPerEdge));
+    using Kind = OccluderBody::Kind;
+    const std::vector<bool> deformed = deformed_scenes();
     std::vector<std::vector<OccluderBody>> of_scene(g.scenes.size());
+    std::vector<OccluderBall> still;
     for (const EmbreeInstance& instance : g.instances) {
         auto& parts = of_scene[instance.scene];
         if (parts.empty())
             parts = add(g.scenes[instance.scene].shape_of_geometry,
-                        g.world_from_local(instance, g.clock.open()));
+                        g.world_from_local(instance, g.clock.open()), deformed[instance.scene]);
         for (OccluderBody part : parts) {
             part.instance = &instance;
-            if (part.radius > 0 && !keeps_angles(instance)) part.radius = 0;
             if (part.curved.shape != Owner::kNone)
                 part.curved.instance = static_cast<uint32_t>(&instance - g.instances.data()) + 1;
+            const bool is_ball = part.kind == Kind::moving_ball;
+            if (is_ball && deformed[instance.scene] && !keeps_angles(instance))
+                part.kind = Kind::edges;
+            else if (is_ball && !instance.moves) {
+                still.push_back(moved(part, g.clock.open()));
+                continue;
+            }
             bodies.push_back(part);
         }
     }
     // The top scene starts with the instances themselves, so its own shapes come after these.
     const auto& top = g.top.shape_of_geometry;
     for (const OccluderBody& part :
-         add({top.begin() + static_cast<ptrdiff_t>(g.instances.size()), top.end()}, {}))
-        bodies.push_back(part);
+         add({top.begin() + static_cast<ptrdiff_t>(g.instances.size()), top.end()}, {}, false)) {
+        if (part.kind == Kind::moving_ball)
+            still.push_back({part.center, part.radius, part.curved});
+        else
+            bodies.push_back(part);
+    }
+    add_balls(still);
     std::vector<Bounds3> boxes;
     for (const OccluderBody& body : bodies) boxes.push_back(bounds_of(body));
     hierarchy = BoxHierarchy(boxes);
     std::vector<OccluderBody> ordered;
     for (size_t i = 0; i < hierarchy.items(); ++i) ordered.push_back(bodies[hierarchy.item(i)[0]]);
     bodies = std::move(ordered);
+}
+
+std::vector<bool> OccluderBodies::deformed_scenes() const {
+    std::vector<bool> deformed(geometry.scenes.size(), false), has_balls = deformed;
+    for (size_t i = 0; i < has_balls.size(); ++i)
+        for (uint32_t shape : geometry.scenes[i].shape_of_geometry)
+            has_balls[i] = has_balls[i] || ball_of(geometry.local[shape]);
+    for (const EmbreeInstance& instance : geometry.instances)
+        if (has_balls[instance.scene] && !deformed[instance.scene])
+            deformed[instance.scene] = !keeps_angles(instance);
+    return deformed;
+}
+
+/// Makes bodies of balls that do not move: blocks of those that stand together.
+void OccluderBodies::add_balls(const std::vector<OccluderBall>& all) {
+    std::vector<Bounds3> boxes(all.size());
+    for (size_t i = 0; i < all.size(); ++i) boxes[i] = bounds_of_ball(all[i].center, all[i].radius);
+    const BoxHierarchy groups(boxes, BoxHierarchy::kWidth);
+    for (size_t i = 0; i < groups.items(); ++i) {
+        std::vector<OccluderBall> block;
+        for (uint32_t k : groups.item(i)) block.push_back(all[k]);
+        OccluderBody body;
+        body.kind = OccluderBody::Kind::balls;
+        body.index = static_cast<uint32_t>(balls.size());
+        balls.emplace_back(block);
+        bodies.push_back(body);
+    }
+}
+
+OccluderBall OccluderBodies::moved(const OccluderBody& body, float time) const {
+    const Affine map = geometry.world_from_local(*body.instance, time);
+    const auto scale = static_cast<float>(length(map.row[0]));
+    return {map.point(Vec3d(body.center)).to_float(), body.radius * scale, body.curved};
 }
 
 /// Whether an instance's map is a similarity throughout the shutter, as far as its ends and its
@@ -147,10 +203,10 @@ Tessellation OccluderBodies::perforated(uint32_t shape, const Affine& world_from
         per_edge_);
 }
 
-/// Makes edge sets of shapes that stand together: one for all that is flat, one for each curved
-/// shape.
+/// Makes bodies of shapes that stand together: one edge set for all that is flat, balls, and an
+/// edge set for each other curved shape and, where they are deformed, for balls, too.
 std::vector<OccluderBody> OccluderBodies::add(const std::vector<uint32_t>& shapes,
-                                              const Affine& world_from_local) {
+                                              const Affine& world_from_local, bool are_deformed) {
     FoldEdgeFinder flat;
     std::vector<OccluderBody> parts;
     for (uint32_t shape : shapes) {
@@ -164,25 +220,29 @@ std::vector<OccluderBody> OccluderBodies::add(const std::vector<uint32_t>& shape
             flat.add(surface.positions(), surface.triangles());
             continue;
         }
+        OccluderBody body = ball_of(local).value_or(OccluderBody());
+        body.curved = {shape, 0};
+        if (body.kind == OccluderBody::Kind::moving_ball && !are_deformed) {
+            parts.push_back(body);
+            continue;
+        }
         FoldEdgeFinder curved;
         const Tessellation surface(local, piece_of(local), 1);
         curved.add(surface.positions(), surface.triangles());
-        if (keep(curved, {shape, 0}, parts)) note_ball(local, parts.back());
+        keep(curved, body, parts);
     }
     keep(flat, {}, parts);
     return parts;
 }
 
-/// Keeps the edges that a finder has found as a body; false where there are none.
-bool OccluderBodies::keep(FoldEdgeFinder& finder, Owner curved, std::vector<OccluderBody>& parts) {
+/// Keeps the edges that a finder has found as a body, where there are any.
+void OccluderBodies::keep(FoldEdgeFinder& finder, const OccluderBody& body,
+                          std::vector<OccluderBody>& parts) {
     const std::vector<FoldEdge> edges = finder.take();
-    if (edges.empty()) return false;
-    OccluderBody body;
-    body.set = static_cast<uint32_t>(sets.size());
-    body.curved = curved;
+    if (edges.empty()) return;
     parts.push_back(body);
+    parts.back().index = static_cast<uint32_t>(sets.size());
     sets.emplace_back(edges);
-    return true;
 }
 
 /// Length of a tessellation's pieces in local space, such that a whole turn has around_ of them.
@@ -198,11 +258,18 @@ double OccluderBodies::piece_of(const LocalShape& shape) const {
 }
 
 Bounds3 OccluderBodies::bounds_of(const OccluderBody& body) const {
-    Bounds3 local = sets[body.set].hierarchy.bounds();
-    if (body.radius > 0) {
-        const Vec3 r = Vec3{1, 1, 1} * (1.00001f * body.radius);
-        local = {body.center - r, body.center + r};
+    if (body.kind == OccluderBody::Kind::balls) {
+        const BallBlock& block = balls[body.index];
+        Bounds3 all;
+        for (size_t k = 0; k < BoxHierarchy::kWidth; ++k)
+            if (block.radius[k] > 0)
+                all.extend(bounds_of_ball({block.center.x[k], block.center.y[k], block.center.z[k]},
+                                          block.radius[k]));
+        return all;
     }
+    const Bounds3 local = body.kind == OccluderBody::Kind::moving_ball
+                              ? bounds_of_ball(body.center, body.radius)
+                              : sets[body.index].hierarchy.bounds();
     if (!body.instance) return local;
     if (!body.instance->moves) return transformed(local, body.instance->still);
     // A moving body's corners go along curves between two times: its bounds are the boxes at many

@@ -48,26 +48,20 @@ BoxHierarchy::Met OutlineSearch::near_local(const BoxHierarchy::Node& node,
     return met;
 }
 
-inline OutlineSearch::Nearest OutlineSearch::nearest(const Vec3x8& from,
-                                                     const Vec3x8& along) const {
+template <class Distance>
+inline OutlineSearch::Nearest OutlineSearch::nearest(const Curves& c,
+                                                     const Distance& distance2) const {
     const EdgeMeasure& m = measure_;
-    const Vec3x8 axis = all8(axis_);
-    const Float8 za = dot8(from, axis), dz = dot8(along, axis);
-    // Clip each edge to the part, t0 to t1 of its length, that lies beside the segment. Edges at
-    // right angles to the segment have no such part or, by infinities, are kept whole.
-    const Float8 ta = (all8(lo_) - za) / dz, tb = (all8(hi_) - za) / dz;
-    const Float8 t0 = max8(min8(ta, tb), Float8{}), t1 = min8(max8(ta, tb), all8(1));
-    const Vec3x8 p = subtract_product(axis, za, from), dp = subtract_product(axis, dz, along);
-    // Expand the width's numerator and denominator along the edge as polynomials in t.
+    // Expand the width's numerator and denominator along the curve as polynomials in t.
     const Float8 a1 = all8(m.a1), b = all8(m.b), h2 = all8(m.h2);
-    const Float8 blur = multiply_add(a1, za, all8(m.a0)), slope = a1 * dz;
-    const Float8 p2 = dot8(p, p), pdp = dot8(p, dp), dp2 = dot8(dp, dp);
-    const Float8 n0 = multiply_add(blur, blur, b * p2), n1 = 2 * multiply_add(blur, slope, b * pdp),
-                 n2 = multiply_add(slope, slope, b * dp2);
+    const Float8 blur = multiply_add(a1, c.z, all8(m.a0)), slope = a1 * c.dz;
+    const Float8 n0 = multiply_add(blur, blur, b * c.r2),
+                 n1 = 2 * multiply_add(blur, slope, b * c.dr2),
+                 n2 = multiply_add(slope, slope, b * c.ddr2);
     const Float8 least = all8(least_);
-    const Float8 bend = h2 * dz;
-    const Float8 d0 = max8(multiply_add(multiply_add(h2, za, all8(m.h1)), za, all8(m.h0)), least),
-                 d1 = multiply_add(2 * za, bend, m.h1 * dz), d2 = bend * dz;
+    const Float8 bend = h2 * c.dz;
+    const Float8 d0 = max8(multiply_add(multiply_add(h2, c.z, all8(m.h1)), c.z, all8(m.h0)), least),
+                 d1 = multiply_add(2 * c.z, bend, m.h1 * c.dz), d2 = bend * c.dz;
     // Find the least width: the quotient's derivative has the sign of a quadratic, qa t^2 + 2 qb t
     // + qc, and the quotient is least where that crosses zero upwards.
     const Float8 qa = subtract_product(n1, d2, n2 * d1), qb = subtract_product(n0, d2, n2 * d0),
@@ -75,20 +69,34 @@ inline OutlineSearch::Nearest OutlineSearch::nearest(const Vec3x8& from,
     const Float8 root = sqrt8(subtract_product(qa, qc, qb * qb));
     const Mask8 rises = qb > Float8{};
     const Float8 valley = (rises ? -qc : root - qb) / (rises ? qb + root : qa);
-    const Float8 t2 = min8(max8(valley, t0), t1);
+    const Float8 t2 = min8(max8(valley, c.t0), c.t1);
     // Evaluate the width anew at t: the polynomials would leave of points near the axis only
     // rounding.
     const auto width2 = [&](const Float8& t) {
-        const Float8 z = multiply_add(t, dz, za);
-        const Vec3x8 q = multiply_add(dp, t, p);
+        const Float8 z = multiply_add(t, c.dz, c.z);
         const Float8 a = multiply_add(a1, z, all8(m.a0));
         const Float8 h = multiply_add(multiply_add(h2, z, all8(m.h1)), z, all8(m.h0));
-        return multiply_add(a, a, b * dot8(q, q)) / max8(h, least);
+        return multiply_add(a, a, b * distance2(t)) / max8(h, least);
     };
-    const Float8 w0 = width2(t0), w1 = width2(t1), w2 = width2(t2);
+    const Float8 w0 = width2(c.t0), w1 = width2(c.t1), w2 = width2(t2);
     const Float8 ends = min8(w0, w1), best = min8(ends, w2);
-    const Float8 at = w2 < ends ? t2 : (w1 < w0 ? t1 : t0);
-    return {t0 <= t1 ? best : all8(kInfinity), at, (at > t0) & (at < t1)};
+    const Float8 at = w2 < ends ? t2 : (w1 < w0 ? c.t1 : c.t0);
+    return {c.t0 <= c.t1 ? best : all8(kInfinity), at, (at > c.t0) & (at < c.t1)};
+}
+
+inline OutlineSearch::Nearest OutlineSearch::nearest(const Vec3x8& from,
+                                                     const Vec3x8& along) const {
+    const Vec3x8 axis = all8(axis_);
+    const Float8 za = dot8(from, axis), dz = dot8(along, axis);
+    // Clip each edge to the part, t0 to t1 of its length, that lies beside the segment. Edges at
+    // right angles to the segment have no such part or, by infinities, are kept whole.
+    const Float8 ta = (all8(lo_) - za) / dz, tb = (all8(hi_) - za) / dz;
+    const Float8 t0 = max8(min8(ta, tb), Float8{}), t1 = min8(max8(ta, tb), all8(1));
+    const Vec3x8 p = subtract_product(axis, za, from), dp = subtract_product(axis, dz, along);
+    return nearest({t0, t1, za, dz, dot8(p, p), dot8(p, dp), dot8(dp, dp)}, [&](const Float8& t) {
+        const Vec3x8 q = multiply_add(dp, t, p);
+        return dot8(q, q);
+    });
 }
 
 void OutlineSearch::meet_world(const EdgeBlock& edges, uint32_t body) {
@@ -121,52 +129,69 @@ inline void OutlineSearch::meet(const Mask8& outlines, const Vec3x8& from, const
     }
 }
 
-void OutlineSearch::meet_ball(Vec3 center, float radius, uint32_t body) {
+void OutlineSearch::meet_balls(const BallBlock& balls, unsigned left_out, uint32_t body) {
     if (has_found_) steps_left_ -= kStepsPerBody;
-    const Vec3 d = center - end_;
-    const float d2 = length_squared(d), tangent2 = d2 - radius * radius;
-    // Seen from inside, or from a point of the ball's surface.
-    if (!(tangent2 > 1e-4f * d2)) return;
-    const Vec3 middle = d * (tangent2 / d2);
-    const float rho = radius * std::sqrt(tangent2 / d2);
-    // The axes of the outline's circle: u points towards the segment's axis, v across.
-    const Vec3 towards = axis_ * d2 - d * dot(d, axis_);
-    const float l = length(towards);
-    const Vec3 u = l > 1e-6f * d2 ? towards / l : Frame::from_z(d / std::sqrt(d2)).x;
-    const Vec3 v = cross(d / std::sqrt(d2), u);
-    const float z_middle = dot(middle, axis_), z_slope = rho * dot(u, axis_);
-
-    // Search the place on the circle where the outline is narrowest, by its cosine to u: both
-    // halves of the circle are alike. Nearest to the axis is the cosine 1; where the width falls
-    // along the axis, or the range ends, another may be best.
-    float best = kInfinity, best_cosine = 1;
-    const auto attempt = [&](float cosine) {
-        const float z = z_middle + cosine * z_slope;
-        if (!(std::abs(cosine) <= 1) || z < lo_ || z > hi_) return;
-        const Vec3 p = middle + u * (rho * cosine) + v * (rho * safe_sqrt(1 - cosine * cosine));
-        const float value = measure_.width_squared(z, length_squared(p - axis_ * z));
-        if (!(value < best)) return;
-        best = value;
-        best_cosine = cosine;
+    const Vec3x8 axis = all8(axis_), d = balls.center - all8(end_);
+    // A ball's middle is at z = a and, in the direction e across the axis, x = q.
+    const Float8 a = dot8(d, axis);
+    // The projection is made twice: beside a long way along the axis a short one across it is
+    // mostly rounding.
+    const Vec3x8 about = subtract_product(axis, a, d),
+                 across = subtract_product(axis, dot8(about, axis), about);
+    const Float8 q2 = dot8(across, across), d2 = multiply_add(a, a, q2);
+    const Float8 tangent2 = subtract_product(balls.radius, balls.radius, d2);
+    // Leave out balls that are seen from inside, or from a point of their surface.
+    const unsigned seen = bits8(tangent2 > 1e-4f * d2) & ~left_out;
+    if (seen == 0) return;
+    // The circle is at z + t dz, x + t dx and sqrt(1 - t^2) rho to both sides, t from -1 to 1.
+    const Float8 part = tangent2 / d2, distance = sqrt8(d2), q = sqrt8(q2);
+    const Float8 rho = balls.radius * sqrt8(part), cosine = a / distance, sine = q / distance;
+    const Float8 z = a * part, dz = rho * sine, x = q * part, dx = -rho * cosine;
+    const Float8 t0 = max8((all8(lo_) - z) / dz, all8(-1)),
+                 t1 = min8((all8(hi_) - z) / dz, all8(1));
+    const auto height2 = [&](const Float8& t) { return max8(1 - t * t, Float8{}); };
+    const Float8 rho2 = rho * rho;
+    const Nearest nearest = this->nearest(
+        {t0, t1, z, dz, multiply_add(x, x, rho2), x * dx, subtract_product(rho, rho, dx * dx)},
+        [&](const Float8& t) {
+            const Float8 e = multiply_add(t, dx, x);
+            return multiply_add(e, e, rho2 * height2(t));
+        });
+    const unsigned near = seen & bits8(nearest.width2 < all8(limit_));
+    if (near == 0) return;
+    if (!has_found_) frame_ = Frame::from_z(axis_);
+    const Mask8 is_beside = q > 1e-6f * distance;
+    const auto unit = [&](const Float8& component, float otherwise) {
+        return is_beside ? component / q : all8(otherwise);
     };
-    for (const float cosine : {1.0f, 0.7f, 0.0f, -0.7f, -1.0f}) attempt(cosine);
-    // Two more attempts lie just within the ends of the range.
-    attempt((lo_ * 1.00001f - z_middle) / z_slope);
-    attempt((hi_ * 0.99999f - z_middle) / z_slope);
-    if (!(best < 2 * limit_)) return;
-    for (float step = 0.25f; step > 0.01f; step *= 0.5f) {
-        const float from = best_cosine;
-        attempt(std::min(from + step, 1.0f));
-        attempt(std::max(from - step, -1.0f));
-    }
-    if (!(best < limit_)) return;
-
-    const float sine = safe_sqrt(1 - best_cosine * best_cosine);
+    const Vec3x8 e{unit(across.x, frame_.x.x), unit(across.y, frame_.x.y),
+                   unit(across.z, frame_.x.z)},
+        f = cross8(axis, e);
+    const Float8 t = nearest.t, height = sqrt8(height2(t));
+    const Float8 at_z = multiply_add(t, dz, z), at_e = multiply_add(t, dx, x);
     for (const float side : {1.0f, -1.0f}) {
-        const Vec3 point = middle + u * (rho * best_cosine) + v * (side * rho * sine);
-        keep(best, point, v * best_cosine - u * (side * sine), true, body);
-        if (sine == 0) return;
+        // The circle's tangent, turned by a right angle about the axis, and the point.
+        const Float8 to_f = side * height * cosine, at_f = -side * height * rho;
+        const Vec3x8 towards = multiply_add(f, to_f, multiply_add(e, t, Vec3x8{})),
+                     point = multiply_add(axis, at_z,
+                                          multiply_add(e, at_e, multiply_add(f, at_f, Vec3x8{})));
+        unsigned left = near & bits8(nearest.width2 < widths2_of(towards));
+        for (; left != 0; left &= left - 1) {
+            const auto k = static_cast<size_t>(std::countr_zero(left));
+            const Vec3 at{point.x[k], point.y[k], point.z[k]};
+            Vec3 to{towards.x[k], towards.y[k], towards.z[k]};
+            if (!(length_squared(to) > 0)) to = at - axis_ * at_z[k];
+            keep(nearest.width2[k], {at, to, body});
+        }
     }
+}
+
+/// Squared widths found so far in the sectors that eight directions are in.
+inline Float8 OutlineSearch::widths2_of(const Vec3x8& towards) const {
+    const Float8 x = dot8(towards, all8(frame_.x)), y = dot8(towards, all8(frame_.y));
+    const auto of = [this](size_t sector) { return all8(widths2_[sector]); };
+    const Mask8 rises = x * y > Float8{};
+    return x * x > y * y ? (rises ? of(0) : of(2)) : (rises ? of(1) : of(3));
 }
 
 void OutlineSearch::keep(float width2, Vec3 point, Vec3 along, bool is_inside, uint32_t body) {
@@ -176,6 +201,12 @@ void OutlineSearch::keep(float width2, Vec3 point, Vec3 along, bool is_inside, u
     Vec3 towards = cross(along, axis_);  // at right angles to the edge as it is seen
     if (!(length_squared(towards) > 0) || !(is_inside || length_squared(offset) <= sqr(1e-6f * z)))
         towards = offset;
+    keep(width2, {point, towards, body});
+}
+
+void OutlineSearch::keep(float width2, const Candidate& candidate) {
+    const Vec3 towards = candidate.towards;
+    if (!(width2 < limit_)) return;
     if (!(length_squared(towards) > 0)) return;  // seen end on, at a point: no direction
     // Choose the sector of 45 degrees that the line along the direction lies in: it is the quadrant
     // of the doubled angle.
@@ -185,7 +216,7 @@ void OutlineSearch::keep(float width2, Vec3 point, Vec3 along, bool is_inside, u
     const size_t sector = (x * x > y * y ? 0u : 1u) + (x * y > 0 ? 0u : 2u);
     if (!(width2 < widths2_[sector])) return;
     widths2_[sector] = width2;
-    best_[sector] = {point, towards, body};
+    best_[sector] = candidate;
     const auto [a, b, c, d] = widths2_;
     limit_ = std::min({widest2_, std::max(std::max(a, b), std::max(c, d)),
                        kFaint * std::min(std::min(a, b), std::min(c, d))});

@@ -7,6 +7,7 @@
 
 #include "core/frame.h"
 #include "geometry/affine.h"
+#include "occluders/ball_block.h"
 #include "occluders/blind_cones.h"
 #include "occluders/edge_block.h"
 #include "occluders/query.h"
@@ -35,9 +36,9 @@ class OutlineSearch {
     BoxHierarchy::Met near_local(const BoxHierarchy::Node& node, const BlindCones& cones);
     void meet_local(const EdgeBlock& edges, uint32_t body);
 
-    /// Looks at a whole ball of the world. Its outline is the circle on which its tangents from
-    /// end_ touch it.
-    void meet_ball(Vec3 center, float radius, uint32_t body);
+    /// Looks at whole balls: each is outlined by the circle on which its tangents from end_ touch
+    /// it. The k-th ball is passed over where bit k of `left_out` is set.
+    void meet_balls(const BallBlock& balls, unsigned left_out, uint32_t body);
 
     bool has_found() const { return has_found_; }
     /// Writes the outlines that were found; velocity(body, point) gives the velocity of a body's
@@ -50,8 +51,8 @@ class OutlineSearch {
     /// was found. Beside a cloud of occluders all of them would be near enough to matter, but the
     /// first ones matter as much as any (docs/decisions/0090).
     static constexpr int kMostSteps = 128;
-    /// Steps that a ball, or entering an instance's space, counts for: it takes the time of so many
-    /// nodes.
+    /// Steps that a block of balls, or entering an instance's space, counts for: it takes the time
+    /// of so many nodes.
     static constexpr int kStepsPerBody = 4;
 
     struct Candidate {
@@ -59,23 +60,33 @@ class OutlineSearch {
         Vec3 towards;  ///< along OutlineEvent::direction or against it, not of length 1
         uint32_t body;
     };
-    /// The places at which eight edges are narrowest.
+    /// Curves whose squared width is, at t from t0 to t1, the quotient of two quadratics.
+    struct Curves {
+        Float8 t0, t1;
+        Float8 z, dz;          ///< distance from the end, z + t dz
+        Float8 r2, dr2, ddr2;  ///< squared distance from the axis, r2 + 2 t dr2 + t^2 ddr2
+    };
+    /// The places at which eight curves are narrowest.
     struct Nearest {
-        Float8 width2;  ///< infinity where no part of the edge is beside the segment
-        Float8 t;       ///< the place along the edge, from 0 to 1
-        Mask8 inside;   ///< all bits set where the place is no end of the edge's part
+        Float8 width2;  ///< infinity where nothing of the curve is beside the segment
+        Float8 t;       ///< the place along the curve, from t0 to t1
+        Mask8 inside;   ///< all bits set where the place is no end of the curve
     };
 
     /// The boxes that may matter, given their middles relative to end_ and their half sizes, by
     /// axis.
     BoxHierarchy::Met may_matter(const Vec3x8& middle, const Vec3x8& half);
-    /// Where edges are narrowest; `from`: in the world, from end_ to their first corner, `along` to
-    /// the second.
+    /// The narrowest places of eight curves; `distance2(t)` gives squared distances from the axis.
+    template <class Distance>
+    Nearest nearest(const Curves& curves, const Distance& distance2) const;
+    /// The clipped parts of eight edges: `from`, `along` are in world space, relative to end_.
     Nearest nearest(const Vec3x8& from, const Vec3x8& along) const;
+    Float8 widths2_of(const Vec3x8& towards) const;
     void meet(const Mask8& outlines, const Vec3x8& from, const Vec3x8& along, uint32_t body);
     /// Keeps an edge if it is the narrowest in its sector of direction. `point`: the place where it
     /// is narrowest, from end_; `is_inside`: that place is no end of the edge.
     void keep(float width2, Vec3 point, Vec3 along, bool is_inside, uint32_t body);
+    void keep(float width2, const Candidate& candidate);
 
     Vec3 end_, axis_;  ///< `axis_`: unit, from the end to the beginning
     EdgeMeasure measure_;

@@ -32,7 +32,7 @@ size_t OccluderQuery::memory() const {
     for (const EdgeSet& set : impl_->sets)
         bytes += set.hierarchy.memory() + set.blocks.capacity() * sizeof(EdgeBlock) +
                  set.cones.capacity() * sizeof(BlindCones);
-    return bytes;
+    return bytes + impl_->balls.capacity() * sizeof(BallBlock);
 }
 
 OutlineEvents OccluderQuery::operator()(const Segment& segment, const EdgeMeasure& measure,
@@ -50,14 +50,17 @@ OutlineEvents OccluderQuery::operator()(const Segment& segment, const EdgeMeasur
             if (body.curved.shape != Owner::kNone &&
                 (is(body.curved, segment.at_begin) || is(body.curved, segment.at_end)))
                 return;
-            if (body.radius > 0) {
-                if (!body.instance) return search.meet_ball(body.center, body.radius, index);
-                const Affine map = g.geometry.world_from_local(*body.instance, segment.time);
-                const auto scale = static_cast<float>(length(map.row[0]));
-                return search.meet_ball(map.point(Vec3d(body.center)).to_float(),
-                                        body.radius * scale, index);
+            if (body.kind == OccluderBody::Kind::balls) {
+                const BallBlock& balls = g.balls[body.index];
+                return search.meet_balls(
+                    balls, balls.owned_by(segment.at_begin) | balls.owned_by(segment.at_end),
+                    index);
             }
-            const EdgeSet& set = g.sets[body.set];
+            if (body.kind == OccluderBody::Kind::moving_ball) {
+                const OccluderBall ball = g.moved(body, segment.time);
+                return search.meet_balls(BallBlock(std::span(&ball, 1)), 0, index);
+            }
+            const EdgeSet& set = g.sets[body.index];
             if (!body.instance) {
                 set.hierarchy.search(
                     [&](const Node& node, uint32_t i) {

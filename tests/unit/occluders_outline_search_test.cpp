@@ -48,7 +48,8 @@ size_t visits(const Cloud& c, OutlineSearch& search) {
         [&] { return search.limit(); },
         [&](uint32_t item) {
             ++count;
-            search.meet_ball(c.centers[hierarchy.item(item)[0]], kRadius, item);
+            const OccluderBall ball{c.centers[hierarchy.item(item)[0]], kRadius, {}};
+            search.meet_balls(BallBlock(std::span(&ball, 1)), 0, item);
         });
     return count;
 }
