@@ -1,3 +1,4 @@
+/// The Lambertian BSDF.
 #include "bsdf/models.h"
 #include "core/warp.h"
 

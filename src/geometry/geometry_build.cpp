@@ -1,3 +1,5 @@
+/// The geometry's construction: shapes, alpha and motion as Embree gets them. Rays are in
+/// geometry.cpp.
 #include <new>
 
 #include "geometry/embree_instances.h"

@@ -1,3 +1,5 @@
+/// Photons that the guide to caustics learns from: paths from the camera find glossy surfaces, and
+/// light of sampled lamps is sent over these.
 #include <cmath>
 
 #include "core/hash.h"

@@ -1,3 +1,4 @@
+/// A path's way through a medium, which absorbs, glows, and may scatter before the next surface.
 #include <cmath>
 
 #include "integrator/path_tracer.h"

@@ -1,3 +1,4 @@
+/// The next direction of a path, by the BSDF or by the guide to caustics, and its density.
 #include <cmath>
 
 #include "integrator/path_tracer.h"

@@ -1,3 +1,4 @@
+/// The spectrum of light as it leaves its source, with which every covariance begins.
 #include <cassert>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+/// The light tree's construction; a light is drawn from it in tree.cpp.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+/// The voxel grid's construction from the scene's triangles.
 #include <algorithm>
 #include <bit>
 #include <cmath>

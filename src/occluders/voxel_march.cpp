@@ -1,3 +1,5 @@
+/// The march along a segment through the voxel grid (`--occlusion grid`): of every few steps the
+/// nearest voxel is one edge beside the segment. `VoxelWalk` is the way of `--occlusion voxels`.
 #include <algorithm>
 #include <bit>
 #include <cmath>
