@@ -6,6 +6,8 @@
 #include <array>
 #include <string_view>
 
+#include "cli/message.h"
+
 namespace covtrace::cli {
 
 namespace {
@@ -23,10 +25,14 @@ bool contains(const Names& names, std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// The name that selects a channel: "raw" of "raw.R", "Z" of "Z".
+std::string layer_of(const Channel& c) {
+    return c.name.substr(0, c.name.rfind('.'));
+}
+
 bool is_selected(const Channel& c, const LayerSelection& selection) {
-    const size_t dot = c.name.rfind('.');
-    const bool root = dot == std::string::npos && c.name != "Z";
-    const std::string layer = c.name.substr(0, dot);
+    const bool root = c.name.find('.') == std::string::npos && c.name != "Z";
+    const std::string layer = layer_of(c);
     return root || (selection.all && !contains(kParts, layer)) || contains(selection.names, layer);
 }
 
@@ -63,6 +69,14 @@ void add_layers(CLI::App* c, const std::string& name, LayerSelection& selection,
 
 bool names(const LayerSelection& selection, const std::string& layer) {
     return contains(selection.names, layer);
+}
+
+void warn_of_absent_layers(const Image& image, const LayerSelection& selection) {
+    for (const std::string& name : selection.names)
+        if (std::none_of(image.channels.begin(), image.channels.end(),
+                         [&](const Channel& c) { return layer_of(c) == name; }))
+            say("warning: --layers: this image has no layer '{}'; not every method makes each\n",
+                name);
 }
 
 void keep_layers(Image& image, const LayerSelection& selection) {

@@ -27,6 +27,8 @@ void add_layers(CLI::App* command, const std::string& name, LayerSelection& sele
 /// Whether a layer is among the selection's names.
 bool names(const LayerSelection& selection, const std::string& layer);
 
+/// Warns of each named layer that the image has not: not every method makes every layer.
+void warn_of_absent_layers(const Image& image, const LayerSelection& selection);
 /// Drops every layer that is not selected.
 void keep_layers(Image& image, const LayerSelection& selection);
 /// A copy of an image with the selected layers alone, and without metadata.

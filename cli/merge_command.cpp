@@ -63,6 +63,7 @@ int merge_films(const MergeArguments& a) {
         if (!a.quiet) {
             warn_of_unusable(denoiser);
             warn_of_failed_denoiser(image);
+            warn_of_absent_layers(image, a.layers);
         }
         warn_of_replaced(image);
         keep_layers(image, a.layers);

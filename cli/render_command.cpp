@@ -81,6 +81,7 @@ void parse_texts(RenderArguments& a) {
 /// Writes the image and the files that go with it.
 void deliver(RenderResult& result, const RenderArguments& a, const fs::path& output,
              const Monitor& monitor, const std::string& command, int threads) {
+    if (!a.quiet) warn_of_absent_layers(result.image, a.layers);
     keep_layers(result.image, a.layers);
     if (!a.reproducible) describe_making(result.image, monitor, command);
     const bool has_layers = written_format(output) == WrittenFormat::exr;

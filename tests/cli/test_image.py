@@ -7,7 +7,7 @@ import unittest
 import zlib
 
 import exr
-from support import TINY, DONE, USAGE, CliTest
+from support import TINY, DONE, USAGE, CliTest, warnings_of
 
 PLAIN = (
     "R G B A raw.R raw.G raw.B albedo.R albedo.G albedo.B N.X N.Y N.Z Z variance.R variance.G variance.B error.Y samples.Y"
@@ -31,6 +31,15 @@ class Layers(CliTest):
         self.assertCountEqual(self.layers("--method", "covariance").channels, PLAIN + COVARIANCE)
 
         self.assertCountEqual(self.layers("--method", "hybrid").channels, PLAIN + COVARIANCE)
+
+    def test_named_layers_that_are_not_there_are_told(self):
+        def told(*arguments):
+            return [w for _, w in warnings_of(self.render(TINY, "--spp", 2, *arguments)) if "--layers" in w]
+
+        self.assertEqual(len(told("--method", "hybrid", "--layers", "all,inview")), 1)
+        self.assertIn("'density'", told("--method", "uniform", "--layers", "raw,density,Z")[0])
+        self.assertEqual(told("--method", "uniform", "--layers", "all,inview,A,Z"), [])
+        self.assertEqual(told("--method", "hybrid", "--layers", "all,inview", "--quiet"), [])
 
     def test_hybrid_is_the_default(self):
         self.assertEqual(self.layers().value("covtrace:method"), "hybrid")
