@@ -115,6 +115,14 @@ FoundDenoiser denoiser_of(const RenderArguments& a, bool is_first) {
     return find(a.denoiser);
 }
 
+/// Builds a scene that the end of the process frees at once: taking millions of instances apart one
+/// by one takes seconds, after all that was asked for is done.
+RenderScene& kept_scene(SceneDescription description, const RenderArguments& a) {
+    static RenderScene* kept = nullptr;  // reachable, so that it does not count as a leak
+    kept = new RenderScene(std::move(description), isa_name(a.isa), a.texture_bytes);
+    return *kept;
+}
+
 /// Renders a scene. `ranks`: the processes that share the work; may be null.
 int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLimit& threads,
                  const Ranks* ranks) {
@@ -147,7 +155,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     require_memory(a.max_memory, render_memory(description.film, a.options));
 
     // Build the scene
-    RenderScene scene(std::move(description), isa_name(a.isa), a.texture_bytes);
+    RenderScene& scene = kept_scene(std::move(description), a);
     const double built = monitor.elapsed();
     progress.clear();
     if (!a.quiet) {

@@ -10,6 +10,7 @@ namespace {
 
 /// Triangles that curved shapes may have together; each shape has at least a few hundred.
 constexpr double kCurvedTriangles = 2e6;
+constexpr ptrdiff_t kInstancesAtOnce = 1024;           ///< between two looks at the clock
 constexpr double kMostAround = 64, kLeastAround = 16;  ///< pieces of a circle
 /// Triangles that shapes with holes may have together, and the pieces that their edges are cut
 /// into.
@@ -108,6 +109,7 @@ OccluderBodies::OccluderBodies(const Geometry::Impl& g, std::function<bool()> ca
     std::vector<std::vector<OccluderBody>> of_scene(g.scenes.size());
     std::vector<OccluderBall> still;
     for (const EmbreeInstance& instance : g.instances) {
+        if ((&instance - g.instances.data()) % kInstancesAtOnce == 0 && is_cancelled()) break;
         auto& parts = of_scene[instance.scene];
         if (parts.empty())
             parts = add(g.scenes[instance.scene].shape_of_geometry,
@@ -135,10 +137,15 @@ OccluderBodies::OccluderBodies(const Geometry::Impl& g, std::function<bool()> ca
         else
             bodies.push_back(part);
     }
+    if (is_cancelled()) {
+        // Half of the occluders are no better than none, and their hierarchies take longest.
+        bodies.clear();
+        return;
+    }
     add_balls(still);
     std::vector<Bounds3> boxes;
     for (const OccluderBody& body : bodies) boxes.push_back(bounds_of(body));
-    hierarchy = BoxHierarchy(boxes);
+    hierarchy = BoxHierarchy(boxes, 1, cancelled_);
     std::vector<OccluderBody> ordered;
     for (size_t i = 0; i < hierarchy.items(); ++i) ordered.push_back(bodies[hierarchy.item(i)[0]]);
     bodies = std::move(ordered);
@@ -159,7 +166,7 @@ std::vector<bool> OccluderBodies::deformed_scenes() const {
 void OccluderBodies::add_balls(const std::vector<OccluderBall>& all) {
     std::vector<Bounds3> boxes(all.size());
     for (size_t i = 0; i < all.size(); ++i) boxes[i] = bounds_of_ball(all[i].center, all[i].radius);
-    const BoxHierarchy groups(boxes, BoxHierarchy::kWidth);
+    const BoxHierarchy groups(boxes, BoxHierarchy::kWidth, cancelled_);
     for (size_t i = 0; i < groups.items(); ++i) {
         std::vector<OccluderBall> block;
         for (uint32_t k : groups.item(i)) block.push_back(all[k]);
@@ -210,7 +217,7 @@ std::vector<OccluderBody> OccluderBodies::add(const std::vector<uint32_t>& shape
     FoldEdgeFinder flat;
     std::vector<OccluderBody> parts;
     for (uint32_t shape : shapes) {
-        if (cancelled_ && cancelled_()) break;
+        if (is_cancelled()) break;
         if (geometry.is_interface[shape]) continue;
         const LocalShape& local = geometry.local[shape];
         if (is_flat(local)) {

@@ -53,6 +53,7 @@ class OccluderBodies {
   private:
     using Owner = OccluderQuery::Owner;
 
+    bool is_cancelled() const { return cancelled_ && cancelled_(); }
     bool has_holes(uint32_t shape) const;
     Tessellation perforated(uint32_t shape, const Affine& world_from_local) const;
     /// Whether an instance of each of Embree's scenes makes ellipsoids of its balls.

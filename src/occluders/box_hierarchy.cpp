@@ -1,6 +1,7 @@
 #include "occluders/box_hierarchy.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -44,7 +45,9 @@ struct BoxHierarchy::Builder {
     BoxHierarchy& h;
     std::span<const Bounds3> boxes;
     uint32_t per_item;
+    const std::function<bool()>& is_cancelled;
     float margin = 0;
+    std::atomic<bool> was_cancelled = false;
     static constexpr uint32_t kSerial = 1 << 14;  ///< ranges below are built by one thread each
     static constexpr int kBins = 16;
     /// smaller ranges are built by one thread each
@@ -64,7 +67,7 @@ struct BoxHierarchy::Builder {
         size_t child = 0;
         std::vector<Node> nodes;
     };
-    std::vector<Task> tasks;
+    std::vector<Task> tasks{};
 
     Extent extent_of(uint32_t box) const {
         const Bounds3& b = boxes[box];
@@ -175,6 +178,9 @@ struct BoxHierarchy::Builder {
     uint32_t build(const Part& part, int depth, std::vector<Node>& nodes, bool apart) {
         const auto index = static_cast<uint32_t>(nodes.size());
         nodes.emplace_back();
+        if (is_cancelled && part.range.size() >= kSerial / kWidth && is_cancelled())
+            was_cancelled = true;
+        if (was_cancelled) return index;
         std::array<Part, kWidth> parts;
         const size_t count = split_wide(part, depth, parts);
         for (size_t k = 0; k < kWidth; ++k) {
@@ -237,6 +243,10 @@ struct BoxHierarchy::Builder {
             Task& t = tasks[static_cast<size_t>(i)];
             build(t.part, t.depth, t.nodes, false);
         });
+        if (was_cancelled) {
+            h = BoxHierarchy();
+            return;
+        }
         for (Task& t : tasks) {
             const auto first = static_cast<uint32_t>(h.nodes_.size());
             for (Node& n : t.nodes)
@@ -251,8 +261,9 @@ struct BoxHierarchy::Builder {
     }
 };
 
-BoxHierarchy::BoxHierarchy(std::span<const Bounds3> boxes, uint32_t per_item) {
-    if (!boxes.empty()) Builder{*this, boxes, per_item, {}, {}}.run();
+BoxHierarchy::BoxHierarchy(std::span<const Bounds3> boxes, uint32_t per_item,
+                           const std::function<bool()>& cancelled) {
+    if (!boxes.empty()) Builder{*this, boxes, per_item, cancelled}.run();
 }
 
 }  // namespace covtrace

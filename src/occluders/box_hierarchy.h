@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -28,8 +29,10 @@ class BoxHierarchy {
 
     BoxHierarchy() = default;
     /// Builds a hierarchy over items of up to `per_item` boxes each. The result is the same for any
-    /// number of threads. Fewer than 2^31 - 1 boxes, none of them empty.
-    explicit BoxHierarchy(std::span<const Bounds3> boxes, uint32_t per_item = 1);
+    /// number of threads. Fewer than 2^31 - 1 boxes, none of them empty. It is empty once
+    /// `cancelled`, asked from any thread, says yes.
+    explicit BoxHierarchy(std::span<const Bounds3> boxes, uint32_t per_item = 1,
+                          const std::function<bool()>& cancelled = {});
 
     bool empty() const { return nodes_.empty(); }
     /// The root is the first; parents come before their children.

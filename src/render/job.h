@@ -57,8 +57,6 @@ class RenderJob {
     /// The second at which a round ends that takes longer than was planned, or that was not planned
     /// by the clock, as the first rounds, which an image needs.
     double latest_end() const;
-    /// Whether work that takes no samples has to end now.
-    bool out_of_time() const { return monitor.cancelled() || monitor.elapsed() >= latest_end(); }
     /// The most samples of any pixel in a round up to an average of `target`.
     double most_samples(double target) const;
     /// Begins a round. `plan`: for each film, the samples that each pixel has at the round's end.

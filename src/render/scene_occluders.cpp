@@ -3,7 +3,10 @@
 namespace covtrace {
 
 SceneOccluders::SceneOccluders(RenderJob& job) {
-    const auto cancelled = [&job] { return job.out_of_time(); };
+    // The slack of latest_end() is for samples that an image needs.
+    const auto cancelled = [&job] {
+        return job.monitor.cancelled() || job.monitor.elapsed() >= job.tracing_end();
+    };
     every_voxel_ = job.options.occlusion == Occlusion::voxels;
     if (asks_grid(job.options.occlusion)) {
         const PhaseTimer timer(job.monitor, job.seconds(Phase::grid));

@@ -1,6 +1,7 @@
 // Spheres as occluders: exact, in blocks, and as polygons only where they are deformed.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <vector>
 
 #include "core/frame.h"
@@ -157,6 +158,27 @@ TEST(OccluderBalls, TheNarrowestOfMany) {
         ASSERT_NEAR(best, narrowest, 1e-3f);
     }
     EXPECT_GT(some, 100);
+}
+
+TEST(OccluderBalls, AreNoneOnceCancelled) {
+    SceneDescription scene = scene_of({});
+    scene.objects.push_back({"o", {shape(sphere(0.01f))}});
+    Random random(3);
+    for (int i = 0; i < 20000; ++i)
+        scene.instances.push_back(
+            {0, AnimatedTransform(Transform::translate(random.in_box(2))), {}});
+    const Geometry g{scene};
+    // As late as it may be asked; by more than the object's shape and each of its instances.
+    std::atomic<int> asked = 0;
+    const auto found = [&](int last) {
+        asked = 0;
+        const OccluderQuery query(g, [&] { return ++asked >= last; });
+        return outlines(query, {0, 0, 5}, {0, 0, -5}, plain(0.3f)).size();
+    };
+    EXPECT_GT(found(1 << 20), 0u);
+    const int all = asked;
+    EXPECT_GT(all, 20);
+    for (int last = 1; last <= all; ++last) EXPECT_EQ(found(last), 0u) << last;
 }
 
 }  // namespace
