@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, Literal, Protocol
 
 from . import _covtrace
+from .arguments import cancel_of, function_of, path_of, shutter_of
 from .builder import SceneBuilder
 from .errors import SceneWarning, UsageError
 from .image import Image
@@ -84,18 +85,20 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
                "occlusion": occlusion, "voxels": voxels, "brdf_covariance": brdf_covariance,
                "texture_bandwidth": texture_bandwidth, "filter": filter,
                "progressive": progressive, "even_counts": even_counts, "denoiser": denoiser,
-               "denoiser_library": None if denoiser_library is None else os.fspath(denoiser_library),
+               "denoiser_library": None if denoiser_library is None
+               else path_of("denoiser_library", denoiser_library),
                "resolution": resolution,
-               "crop": crop, "shutter": shutter, "focus": focus, "fstop": fstop, "seed": seed,
+               "crop": crop, "shutter": shutter_of(shutter), "focus": focus, "fstop": fstop, "seed": seed,
                "threads": threads, "isa": isa, "texture_memory": _bytes(texture_memory),
-               "progress": progress, "cancel": cancel}
+               "progress": function_of("progress", progress), "cancel": cancel_of(cancel)}
     if isinstance(scene, SceneBuilder):
         # The files must last until the scene is built, which reads the textures.
         with tempfile.TemporaryDirectory(prefix="covtrace-") as folder:
             return _render(Scene(scene.write(folder), search_paths), options)
     if not isinstance(scene, Scene):
-        scene = Scene(os.fspath(scene), search_paths, shutter)
-    elif scene._is_placed and shutter is not None and tuple(shutter) != scene._shutter:
+        scene = Scene(path_of("scene", scene, "a file's path, a Scene or a SceneBuilder"),
+                      search_paths, shutter)
+    elif scene._is_placed and shutter is not None and options["shutter"] != scene._shutter:
         raise UsageError(f"shutter is {shutter!r}, but the nodes of a glTF scene are placed when it "
                          f"is read; expected Scene(file, shutter={shutter!r})")
     return _render(scene, options)

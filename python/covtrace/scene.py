@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Iterable
 
 from . import _covtrace
+from .arguments import path_of, paths_of, shutter_of, text_of
 from .errors import SceneWarning
 
 
@@ -23,10 +24,11 @@ class Scene:
                  shutter: tuple[float, float] | None = None) -> None:
         """Reads a file. shutter: when it opens and closes, in place of the file's; seconds of glTF's
         animations, whose nodes rest at 0 without it."""
-        file = os.fspath(file)
+        file = path_of("file", file)
         self._is_placed = _covtrace.is_gltf(file)
-        self._shutter = None if shutter is None else tuple(shutter)
-        self._take(_covtrace.SceneDescription.read(file, _paths(search_paths), self._shutter))
+        self._shutter = shutter_of(shutter)
+        self._take(_covtrace.SceneDescription.read(file, paths_of("search_paths", search_paths),
+                                                   self._shutter))
 
     @classmethod
     def from_string(cls, text: str, folder: str | os.PathLike[str] = ".", name: str = "scene",
@@ -34,8 +36,9 @@ class Scene:
         """Reads a text. Relative file names in it refer to `folder`; messages call it `name`."""
         scene = cls.__new__(cls)
         scene._is_placed, scene._shutter = False, None
-        scene._take(_covtrace.SceneDescription.read_string(text, name, os.fspath(folder),
-                                                           _paths(search_paths)))
+        scene._take(_covtrace.SceneDescription.read_string(
+            text_of("text", text), text_of("name", name), path_of("folder", folder, "a folder's path"),
+            paths_of("search_paths", search_paths)))
         return scene
 
     def _take(self, description: _covtrace.SceneDescription) -> None:
@@ -68,7 +71,3 @@ class Scene:
     def __repr__(self) -> str:
         width, height = self.resolution
         return f"<covtrace.Scene {self.name!r}, {width}x{height}>"
-
-
-def _paths(search_paths: Iterable[str | os.PathLike[str]]) -> list[str]:
-    return [os.fspath(p) for p in search_paths]

@@ -146,8 +146,6 @@ class Rendering(unittest.TestCase):
             with self.assertRaises(ArithmeticError):
                 covtrace.render(scenes.builder(), method="uniform", spp=1 << 20,
                                 cancel=Cancel(answer))
-        with self.assertRaises(AttributeError):
-            covtrace.render(scenes.builder(), method="uniform", spp=1 << 20, cancel=object())
 
     def test_values_that_are_no_numbers(self):
         scene = covtrace.Scene.from_string('''
@@ -284,6 +282,38 @@ class Errors(unittest.TestCase):
                 covtrace.render(scene, **wrong)
         with self.assertRaises(TypeError):
             covtrace.render(scene, samples=4)
+
+    def test_arguments_of_other_kinds(self):
+        """Whatever stands where something else is expected: nothing but UsageError comes out."""
+        kinds = (0, -1, 1.5, True, float("nan"), 10**30, "", "x", "01", "\0", "\ud800", b"\0", (), (1,), [1, "a"], ("a",) * 4, {},
+                 object())
+        right = {"search_paths": [(), {}, ("a",) * 4], "denoiser_library": ["", "x", "01"]}
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "scene.pbrt"
+            file.write_text(scenes.FURNACE)
+            scene = covtrace.Scene(file)
+            for name in ("shutter", "search_paths", "progress", "cancel", "denoiser_library", "resolution", "crop", "scene"):
+                for kind in kinds:
+                    if any(kind is k or (type(kind) is type(k) and kind == k) for k in right.get(name, [])):
+                        continue
+                    arguments = {"spp": 1, "denoiser": "none", name: kind}
+                    given = arguments.pop("scene", file if name in ("shutter", "search_paths") else scene)
+                    with self.subTest(name, kind=kind):
+                        try:
+                            covtrace.render(given, **arguments)
+                        except covtrace.UsageError as e:
+                            self.assertIn(name, str(e))
+                        except covtrace.SceneError:
+                            self.assertIsInstance(kind, str)  # a path to a file that is not there
+                        else:
+                            self.fail("it renders")
+            for kind in (0, (), object(), "\ud800"):
+                for argument in ("text", "name", "folder", "search_paths"):
+                    with self.subTest(argument, kind=kind):
+                        if (argument, kind) == ("search_paths", ()):
+                            continue
+                        with self.assertRaisesRegex(covtrace.UsageError, argument):
+                            covtrace.Scene.from_string(**{"text": scenes.FURNACE, argument: kind})
 
     def test_warnings(self):
         text = scenes.FURNACE + 'Material "subsurface"\nShape "sphere"\n'

@@ -1,0 +1,70 @@
+"""Checks of what callers hand over, before it reaches the renderer."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable
+from typing import Any, NoReturn
+
+from .errors import UsageError
+
+
+def refuse(name: str, value: Any, expected: str) -> NoReturn:
+    raise UsageError(f"{name} is {value!r}; expected {expected}")
+
+
+def path_of(name: str, value: str | os.PathLike[str], expected: str = "a file's path") -> str:
+    """What a file system can name: neither a number nor a text with a zero in it."""
+    try:
+        path = os.fspath(value)
+        if b"\0" in os.fsencode(path):
+            refuse(name, value, expected)
+    except (TypeError, UnicodeError):
+        refuse(name, value, expected)
+    return path
+
+
+def paths_of(name: str, values: Iterable[str | os.PathLike[str]]) -> list[str]:
+    expected = "a list of folders"
+    if isinstance(values, (str, bytes)):  # whose letters would be the folders
+        refuse(name, values, expected)
+    try:
+        return [path_of(name, v, expected) for v in values]
+    except TypeError:
+        refuse(name, values, expected)
+
+
+def text_of(name: str, value: str) -> str:
+    try:
+        if isinstance(value, str):
+            value.encode()  # halves of a surrogate pair are no text
+        if isinstance(value, (str, bytes)):
+            return value
+    except UnicodeError:
+        pass
+    refuse(name, value, "a text")
+
+
+def shutter_of(value: tuple[float, float] | None) -> tuple[float, float] | None:
+    expected = "(begin, end)"
+    if value is None:
+        return None
+    if isinstance(value, (str, bytes)):  # "01" would be one
+        refuse("shutter", value, expected)
+    try:
+        begin, end = value
+        return float(begin), float(end)
+    except (TypeError, ValueError, OverflowError):
+        refuse("shutter", value, expected)
+
+
+def function_of(name: str, value: Callable[..., Any] | None) -> Callable[..., Any] | None:
+    if value is not None and not callable(value):
+        refuse(name, value, "a function")
+    return value
+
+
+def cancel_of(value: Any) -> Any:
+    if value is not None and not callable(getattr(value, "is_set", None)):
+        refuse("cancel", value, "what has is_set(), such as a threading.Event")
+    return value
