@@ -54,7 +54,7 @@ class HeaderParser {
 
     PlyHeader parse() {
         if (words(line()) != std::vector<std::string_view>{"ply"})
-            refuse("not a PLY file; expected a first line \"ply\"");
+            refuse("not a PLY file; expected a first line \"ply\"", line_);
         bool has_format = false;
         for (;;) {
             const std::string_view text = line();
@@ -69,34 +69,44 @@ class HeaderParser {
             } else if (w[0] == "property") {
                 add_property(w);
             } else {
-                refuse("unknown line " + in_quotes(text) + " in the header of a PLY file");
+                refuse("unknown line " + in_quotes(text) +
+                           " in the header of a PLY file; expected \"comment\", \"element\", "
+                           "\"property\" or \"end_header\"",
+                       w[0]);
             }
         }
-        if (!has_format) refuse("the header of the PLY file has no line \"format\"");
+        if (!has_format)
+            refuse("the header of the PLY file ends without a line \"format\"; expected one before",
+                   line_);
         header_.size = position_;
         header_.lines = line_number_;
         return std::move(header_);
     }
 
   private:
-    [[noreturn]] void refuse(const std::string& text) const {
-        throw Error(ErrorKind::scene, {file_, line_number_, 0}, text);
+    /// Of a part of the present line.
+    SourceLocation where(std::string_view part) const {
+        return {file_, line_number_, int(part.data() - line_.data()) + 1};
+    }
+    [[noreturn]] void refuse(const std::string& text, std::string_view at) const {
+        throw Error(ErrorKind::scene, where(at), text);
     }
 
     std::string_view line() {
         const size_t end = bytes_.find('\n', position_);
         ++line_number_;
+        line_ = bytes_.substr(position_, end - position_);
         if (end == std::string_view::npos)
-            refuse("the header of the PLY file has no end (\"end_header\")");
-        const std::string_view text = bytes_.substr(position_, end - position_);
+            refuse("the PLY file ends in its header; expected \"end_header\"",
+                   line_.substr(line_.size()));
         position_ = end + 1;
-        return text;
+        return line_;
     }
 
     void set_format(const std::vector<std::string_view>& w) {
         using enum PlyHeader::Format;
         if (w.size() != 3 || w[2] != "1.0")
-            refuse("expected \"format\", its name, and version 1.0");
+            refuse("expected \"format\", its name, and version 1.0", w.size() < 3 ? w[0] : w[2]);
         if (w[1] == "ascii") {
             header_.format = ascii;
         } else if (w[1] == "binary_little_endian") {
@@ -105,7 +115,8 @@ class HeaderParser {
             header_.format = big_endian;
         } else {
             refuse(unknown_name("PLY format", w[1],
-                                {"ascii", "binary_little_endian", "binary_big_endian"}));
+                                {"ascii", "binary_little_endian", "binary_big_endian"}),
+                   w[1]);
         }
     }
 
@@ -117,35 +128,41 @@ class HeaderParser {
         const char* end = count.data() + count.size();
         const auto [rest, error] = std::from_chars(count.data(), end, e.count);
         if (error != std::errc{} || rest != end)
-            refuse("expected \"element\", its name, and a count >= 0");
+            refuse("expected \"element\", its name, and a count >= 0", w.size() == 3 ? w[2] : w[0]);
         e.name = w[1];
-        e.where = {file_, line_number_, 0};
+        e.where = where(w[0]);
         header_.elements.push_back(std::move(e));
     }
 
     void add_property(const std::vector<std::string_view>& w) {
-        if (header_.elements.empty()) refuse("a property stands before the first element");
+        if (header_.elements.empty())
+            refuse("a property stands before the first element; expected \"element\"", w[0]);
         PlyProperty p;
         p.is_list = w.size() > 1 && w[1] == "list";
         if (w.size() != (p.is_list ? 5u : 3u))
-            refuse("expected \"property type name\" or \"property list type type name\"");
+            refuse("expected \"property type name\" or \"property list type type name\"", w[0]);
         p.name = w.back();
         p.type = number(w[w.size() - 2]);
         if (p.is_list) {
             p.count_type = number(w[2]);
             if (p.count_type == PlyNumber::float32 || p.count_type == PlyNumber::float64)
-                refuse("the length of a list must be of an integer type");
+                refuse("the length of a list is " + in_quotes(w[2]) + "; expected an integer type",
+                       w[2]);
         }
         header_.elements.back().properties.push_back(std::move(p));
     }
 
     PlyNumber number(std::string_view name) const {
         const auto type = number_named(name);
-        if (!type) refuse("unknown number type " + in_quotes(name));
+        if (!type)
+            refuse(unknown_name(
+                       "number type", name,
+                       {"char", "uchar", "short", "ushort", "int", "uint", "float", "double"}),
+                   name);
         return *type;
     }
 
-    std::string_view bytes_;
+    std::string_view bytes_, line_;
     std::shared_ptr<const std::string> file_;
     size_t position_ = 0;
     int line_number_ = 0;

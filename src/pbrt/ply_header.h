@@ -35,7 +35,7 @@ struct PlyHeader {
     int lines = 0;
 };
 
-/// Reads the header at the beginning of a file. Errors: Error(scene) with the line.
+/// Reads the header at the beginning of a file. Errors: Error(scene) with line and column.
 PlyHeader read_ply_header(std::string_view bytes, const std::shared_ptr<const std::string>& file);
 
 }  // namespace covtrace

@@ -24,12 +24,21 @@ class NumberReader {
         : bytes_(bytes),
           format_(header.format),
           position_(header.size),
+          last_(header.size),
           line_(header.lines + 1),
+          line_begin_(header.size),
           file_(std::move(file)) {}
 
-    [[noreturn]] void refuse(const std::string& text) const {
-        throw Error(ErrorKind::scene, {file_, is_ascii() ? line_ : 0, 0}, text);
+    /// A place that is of one word of the file.
+    struct Place {
+        int line = 0, column = 0;  ///< 0 where there are no lines
+    };
+    /// Of the last number.
+    Place last() const { return is_ascii() ? Place{line_, int(last_ - line_begin_) + 1} : Place{}; }
+    [[noreturn]] void refuse(const std::string& text, Place at) const {
+        throw Error(ErrorKind::scene, {file_, at.line, at.column}, text);
     }
+    [[noreturn]] void refuse(const std::string& text) const { refuse(text, last()); }
     bool is_ascii() const { return format_ == PlyHeader::Format::ascii; }
     size_t left() const { return bytes_.size() - position_; }
 
@@ -73,10 +82,15 @@ class NumberReader {
     double ascii() {
         for (; position_ < bytes_.size(); ++position_) {
             const char c = bytes_[position_];
-            if (c == '\n') ++line_;
+            if (c == '\n') {
+                ++line_;
+                line_begin_ = position_ + 1;
+            }
             if (c != ' ' && c != '\t' && c != '\r' && c != '\n') break;
         }
-        if (left() == 0) refuse("the PLY file is truncated: it ends before its last element");
+        last_ = position_;
+        if (left() == 0)
+            refuse("the PLY file is truncated: it ends before its last element; expected a number");
         const char* begin = bytes_.data() + position_;
         const char* end = bytes_.data() + bytes_.size();
         double v = 0;
@@ -94,8 +108,9 @@ class NumberReader {
 
     std::string_view bytes_;
     PlyHeader::Format format_;
-    size_t position_;
+    size_t position_, last_;  ///< of what follows; of the last number
     int line_;
+    size_t line_begin_;
     std::shared_ptr<const std::string> file_;
 };
 
@@ -144,8 +159,9 @@ class BodyReader {
             }
         }
         if (!has_vertices || !has_faces)
-            throw Error(ErrorKind::scene, file_,
-                        "the PLY file has no element \"vertex\" or no element \"face\"");
+            throw Error(ErrorKind::scene, {file_.file, header_.lines, 1},
+                        "the header of the PLY file ends without an element \"vertex\" or without "
+                        "an element \"face\"; expected both");
         check_indices();
         return mesh();
     }
@@ -179,9 +195,10 @@ class BodyReader {
         for (size_t i = 0; i < n; ++i) numbers_.next(p.type);
     }
 
-    float finite(double v) const {
+    float finite(double v, NumberReader::Place at) const {
         const auto f = static_cast<float>(v);
-        if (!std::isfinite(f)) numbers_.refuse("a vertex has a number that is not finite");
+        if (!std::isfinite(f))
+            numbers_.refuse("a vertex has a number that is not finite; expected a finite one", at);
         return f;
     }
 
@@ -189,18 +206,22 @@ class BodyReader {
         const VertexLayout layout(e);
         if (!layout.has_position())
             throw Error(ErrorKind::scene, e.where,
-                        "the vertices of the PLY file have no properties x, y and z");
+                        "the vertices of the PLY file have no position; expected x, y and z");
         std::vector<double> values(e.properties.size());
+        std::vector<NumberReader::Place> places(values.size());
         positions_.reserve(e.count);
         if (layout.has_normal()) normals_.reserve(e.count);
         if (layout.has_uv()) uvs_.reserve(e.count);
-        const auto at = [&](int i) { return finite(values[static_cast<size_t>(i)]); };
+        const auto at = [&](int i) {
+            return finite(values[static_cast<size_t>(i)], places[static_cast<size_t>(i)]);
+        };
         for (uint64_t i = 0; i < e.count; ++i) {
             for (size_t j = 0; j < values.size(); ++j) {
                 if (e.properties[j].is_list) {
                     skip(e.properties[j]);
                 } else {
                     values[j] = numbers_.next(e.properties[j].type);
+                    places[j] = numbers_.last();
                 }
             }
             const auto triple = [&](const std::array<int, 3>& k) {
@@ -226,7 +247,7 @@ class BodyReader {
             });
         if (indices == e.properties.end())
             throw Error(ErrorKind::scene, e.where,
-                        "the faces of the PLY file have no list \"vertex_indices\"");
+                        "the faces of the PLY file have no list; expected \"vertex_indices\"");
         reserve_faces(e, *indices);
         std::vector<uint32_t> corners;
         for (uint64_t i = 0; i < e.count; ++i) {
@@ -253,7 +274,10 @@ class BodyReader {
     uint32_t index(double v) {
         if (!(v >= 0 && v < double(std::numeric_limits<uint32_t>::max())) || v != std::floor(v))
             numbers_.refuse("a face has an index that is not a whole number >= 0");
-        largest_index_ = std::max(largest_index_, static_cast<uint32_t>(v));
+        if (v > double(largest_index_)) {
+            largest_index_ = static_cast<uint32_t>(v);
+            at_largest_ = numbers_.last();
+        }
         return static_cast<uint32_t>(v);
     }
 
@@ -271,10 +295,10 @@ class BodyReader {
 
     void check_indices() const {
         if ((triangles_.empty() && quads_.empty()) || largest_index_ < positions_.size()) return;
-        throw Error(ErrorKind::scene, file_,
-                    "a face has the vertex index " + std::to_string(largest_index_) +
-                        ", which is out of range; there are " + std::to_string(positions_.size()) +
-                        " vertices, counted from 0");
+        numbers_.refuse("a face has the vertex index " + std::to_string(largest_index_) +
+                            ", which is out of range; there are " +
+                            std::to_string(positions_.size()) + " vertices, counted from 0",
+                        at_largest_);
     }
 
     PlyMesh mesh() {
@@ -312,6 +336,7 @@ class BodyReader {
     std::vector<std::array<uint32_t, 3>> triangles_;
     std::vector<std::array<uint32_t, 4>> quads_;
     uint32_t largest_index_ = 0;
+    NumberReader::Place at_largest_;
 };
 
 }  // namespace

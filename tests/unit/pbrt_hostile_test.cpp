@@ -65,7 +65,7 @@ TEST(SceneHostile, OfSeveralBrokenMeshesTheFirstIsNamed) {
                                    "Shape \"plymesh\" \"string filename\" \"a.ply\"\n"
                                    "Shape \"plymesh\" \"string filename\" \"b.ply\"\n");
     for (int i = 0; i < 20; ++i)
-        EXPECT_TRUE(contains(failure_of([&] { read_pbrt(file); }).message, "c.ply:2: "));
+        EXPECT_TRUE(contains(failure_of([&] { read_pbrt(file); }).message, "c.ply:2:1: "));
 }
 
 TEST(SceneHostile, MeshesKeepTheirPlaceAmongTheShapes) {

@@ -154,35 +154,47 @@ TEST(ScenePly, EveryChangedByteIsReadOrRefused) {
         }
 }
 
-TEST(ScenePly, ErrorsSayWhatIsWrong) {
-    const std::string three = "0 0 0 1 0 0 0 1 0 ";
-    EXPECT_EQ(error_of("plx\n"), "m.ply:1: not a PLY file; expected a first line \"ply\"");
-    EXPECT_TRUE(contains(error_of("ply\nformat ascii 1.0\n"), "has no end"));
-    EXPECT_TRUE(contains(error_of("ply\nend_header\n"), "no line \"format\""));
-    EXPECT_TRUE(
-        contains(error_of("ply\nformat asci 1.0\n"), "m.ply:2: unknown PLY format \"asci\""));
-    EXPECT_TRUE(contains(error_of("ply\nnonsense\n"), "unknown line \"nonsense\""));
-    EXPECT_TRUE(contains(error_of("ply\nproperty float x\n"), "before the first element"));
-    EXPECT_TRUE(contains(error_of("ply\nelement vertex x\n"), "a count >= 0"));
-    EXPECT_TRUE(contains(error_of("ply\nelement vertex -1\n"), "a count >= 0"));
-    EXPECT_TRUE(contains(error_of("ply\nelement vertex 1\nproperty flaot x\n"),
-                         "unknown number type \"flaot\""));
-    EXPECT_TRUE(contains(error_of(header("ascii", 3, "property float x\n", 1) + three),
-                         "no properties x, y and z"));
-    EXPECT_TRUE(contains(error_of(header("ascii", 3, kVertex, 1, "property int a\n") + three + "1"),
-                         "no list \"vertex_indices\""));
-    EXPECT_TRUE(contains(error_of(header("ascii", 3, kVertex, 1) + three + "3 0 1 3"),
-                         "vertex index 3, which is out of range"));
-    EXPECT_TRUE(contains(error_of(header("ascii", 3, kVertex, 1) + three + "3 0 1 -1"),
-                         "not a whole number >= 0"));
-    EXPECT_TRUE(contains(error_of(header("ascii", 3, kVertex, 1) + "0 0 0\n1 0 x\n0 1 0\n3 0 1 2"),
-                         "m.ply:12: expected a number, found \"x\""));
-    EXPECT_TRUE(contains(error_of(header("ascii", 3, kVertex, 1) + "0 0 nan 1 0 0 0 1 0 3 0 1 2"),
-                         "not finite"));
-    EXPECT_TRUE(contains(error_of(header("ascii", 3, kVertex, 1) + three + "-3 0 1 2"),
-                         "length of a list"));
-    EXPECT_TRUE(contains(error_of(header("ascii", 3, kVertex, 1) + three + "1e300 0 1 2"),
-                         "longer than the rest"));
+TEST(ScenePly, ErrorsSayWhatIsWrongAndWhere) {
+    const auto fails = [](const std::string& text, const std::string& expected) {
+        const std::string error = error_of(text);
+        EXPECT_EQ(error.substr(0, expected.size()), expected);
+    };
+    fails("plx\n", "m.ply:1:1: not a PLY file; expected a first line \"ply\"");
+    fails("ply\nformat ascii 1.0\n", "m.ply:3:1: the PLY file ends in its header; expected");
+    fails("ply\nformat ascii 1.0\nelement", "m.ply:3:8: the PLY file ends in its header");
+    fails("ply\nend_header\n",
+          "m.ply:2:1: the header of the PLY file ends without a line \"format");
+    fails("ply\nformat asci 1.0\n", "m.ply:2:8: unknown PLY format \"asci\"");
+    fails("ply\nformat ascii  1.1\n", "m.ply:2:15: expected \"format\", its name, and version");
+    fails("ply\n nonsense\n", "m.ply:2:2: unknown line \" nonsense\"");
+    fails("ply\nproperty float x\n", "m.ply:2:1: a property stands before the first element");
+    fails("ply\nelement vertex x\n", "m.ply:2:16: expected \"element\", its name, and a count");
+    fails("ply\nelement vertex -1\n", "m.ply:2:16: expected \"element\"");
+    fails("ply\nelement vertex 1\nproperty flaot x\n",
+          "m.ply:3:10: unknown number type \"flaot\"; expected one of char, uchar");
+    fails("ply\nelement face 1\nproperty list float int a\n",
+          "m.ply:3:15: the length of a list is \"float\"; expected an integer type");
+    fails("ply\nformat ascii 1.0\nelement face 0\nproperty list int int vertex_index\nend_header\n",
+          "m.ply:5:1: the header of the PLY file ends without an element");
+
+    const std::string three = "0 0 0 1 0 0 0 1 0 ", mesh = header("ascii", 3, kVertex, 1);
+    fails(header("ascii", 3, "property float x\n", 1) + three,
+          "m.ply:4:1: the vertices of the PLY file have no position; expected x, y and z");
+    fails(header("ascii", 3, kVertex, 1, "property int a\n") + three + "1",
+          "m.ply:8:1: the faces of the PLY file have no list; expected \"vertex_indices\"");
+    fails(mesh + three + "3 0 3 1", "m.ply:11:23: a face has the vertex index 3, which is out of");
+    fails(mesh + three + "3 0 1 -1", "m.ply:11:25: a face has an index that is not a whole number");
+    fails(mesh + "0 0 0\n1 0 x\n0 1 0\n3 0 1 2", "m.ply:12:5: expected a number, found \"x\"");
+    fails(mesh + "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2", "m.ply:12:3: a vertex has a number that is not");
+    fails(mesh + three + "\n\t-3 0 1 2", "m.ply:12:2: the length of a list");
+    fails(mesh + three + "1e300 0 1 2", "m.ply:11:19: the PLY file is truncated: a list is longer");
+    fails(mesh + three + "3 0  1\n", "m.ply:12:1: the PLY file is truncated: it ends before");
+    // Binary data has no lines.
+    fails(
+        header("binary_little_endian", 1, kVertex, 1, "property list uint uint vertex_indices\n") +
+            std::string(12, '\0') + bytes<uint32_t>(3, false) + bytes<uint32_t>(0, false) +
+            bytes<uint32_t>(0, false) + bytes<uint32_t>(7, false),
+        "m.ply: a face has the vertex index 7");
 }
 
 TEST(ScenePly, AbsurdCountsAreRefusedBeforeAllocating) {
@@ -191,11 +203,12 @@ TEST(ScenePly, AbsurdCountsAreRefusedBeforeAllocating) {
         std::string(kVertex) +
         "element face 1\nproperty list uint uint vertex_indices\nend_header\n";
     EXPECT_TRUE(
-        contains(error_of(huge), "m.ply:3: the PLY file is truncated or its header is wrong"));
+        contains(error_of(huge), "m.ply:3:1: the PLY file is truncated or its header is wrong"));
     const std::string beyond =
         "ply\nformat ascii 1.0\nelement vertex 99999999999999999999\n" + std::string(kVertex) +
         "element face 0\nproperty list uint uint vertex_indices\nend_header\n0 0 0\n";
-    EXPECT_TRUE(contains(error_of(beyond), "m.ply:3: expected \"element\", its name, and a count"));
+    EXPECT_TRUE(
+        contains(error_of(beyond), "m.ply:3:16: expected \"element\", its name, and a count"));
     std::string list =
         header("binary_little_endian", 1, kVertex, 1, "property list uint uint vertex_indices\n");
     list += std::string(12, '\0') + bytes<uint32_t>(0xfffffff0u, false);
