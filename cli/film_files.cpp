@@ -71,10 +71,12 @@ void FilmFiles::write(const RenderState& state, const std::filesystem::path& fil
     if (file.empty()) return;
     try {
         write_film(state, file);
+        failing_.erase(file);
     } catch (const Error& e) {
+        failure_ = e;
+        if (!failing_.insert(file).second) return;
         clear_line_();
         say("warning: {}\n", e.what());
-        failure_ = e;
     }
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "cli/film_options.h"
 #include "core/error.h"
@@ -37,6 +38,7 @@ class FilmFiles {
     const FilmArguments& arguments_;
     std::function<void()> clear_line_;
     std::optional<Error> failure_;
+    std::set<std::filesystem::path> failing_;  ///< whose last writing failed, as was told
 };
 
 }  // namespace covtrace::cli

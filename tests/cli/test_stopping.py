@@ -1,6 +1,7 @@
 """Renders that end early: interrupts and budgets of time."""
 
 import math
+import shutil
 import signal
 import subprocess
 import time
@@ -71,6 +72,36 @@ class Interrupts(CliTest):
                 self.assertIn(b"before the first sample", stderr)
                 self.assertEqual((self.folder / "out.exr").read_text(), "an earlier image")
                 self.assertEqual((self.folder / "c.film").read_text(), "an earlier film")
+
+
+class FailingCheckpoints(CliTest):
+    def test_a_failure_is_told_once_until_it_works_again(self):
+        """A warning at every attempt: hundreds."""
+        self.write("scene.pbrt", TINY)
+        kept = self.folder / "kept"
+        kept.mkdir()
+        program = subprocess.Popen(
+            [PROGRAM, "render", "scene.pbrt", "-o", "out.exr", "--spp", "1e6", "--checkpoint", "kept/c.film", "--every", "0.02",
+             "--progress", "none"],
+            cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        )
+        try:
+            for _ in range(2):
+                for _ in range(1000 * SLOWER):
+                    if (kept / "c.film").exists():
+                        break
+                    time.sleep(0.02)
+                kept.rename(self.folder / "away")
+                time.sleep(1)  # fails many times
+                shutil.rmtree(self.folder / "away")
+                kept.mkdir()
+            program.send_signal(signal.SIGINT)
+            _, stderr = program.communicate(timeout=30 * SLOWER)
+        finally:
+            program.kill()
+            program.communicate()
+        self.assertEqual(program.returncode, INTERRUPTED, stderr)
+        self.assertEqual(stderr.count("warning: cannot write 'kept/c.film'"), 2, stderr)
 
 
 class Budgets(CliTest):
