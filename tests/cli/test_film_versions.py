@@ -24,13 +24,18 @@ class Versions(CliTest):
 
     def test_other_formats_are_named(self):
         version = self.run_program("--version").stdout.removeprefix("covtrace ").strip()
-        for number in (1, 2, 5, 17):
+        scene = ["render", self.write("scene.pbrt", TINY).name, "-o", "b.exr", "--spp", "2"]
+        for number in (0, 1, 2, 5, 17, 256, 1 << 31, (1 << 32) - 1):
             self.write("old.film", self.of_format(number))
-            for command in (["merge", "old.film", "-o", "b.exr"], ["info", "old.film"]):
+            for command in (["merge", "old.film", "-o", "b.exr"], ["merge", "a.film", "old.film", "-o", "b.exr"],
+                            ["info", "old.film"], [*scene, "--checkpoint", "old.film", "--resume"],
+                            [scene[0], scene[1], "--shard", "1/2", "--film", "part.film", "--checkpoint", "old.film", "--resume"]):
                 with self.subTest(number=number, command=command):
                     self.assert_fails(
                         self.run_program(*command), SCENE, "old.film", f"format {number},", f"the formats 3 and {FORMAT}", version
                     )
+                    self.assertEqual((self.folder / "old.film").read_bytes(), self.of_format(number))
+                    self.assert_no_file("b.exr")
 
     def test_such_a_checkpoint_is_not_set_aside(self):
         """A film of another version is not damaged, even where the earlier one could be gone on from."""
