@@ -158,7 +158,7 @@ int measure_pixel(MeasureArguments a) {
         print_warnings(scene.materials.warnings());
     }
     // Prepare the analysis
-    scene.prepare_spectra();
+    const SceneSpectra spectra(scene);
     std::optional<VoxelGrid> grid;
     std::optional<OccluderQuery> query;
     if (asks_grid(a.occlusion))
@@ -170,7 +170,7 @@ int measure_pixel(MeasureArguments a) {
     const SensorRays rays(scene, {float(pixel[0]) + 0.5f, float(pixel[1]) + 0.5f});
     const int depth = a.max_depth.value_or(scene.description.max_depth);
     const PathReplay replay(
-        scene,
+        scene, spectra,
         {grid ? &*grid : nullptr, query ? &*query : nullptr, a.occlusion == Occlusion::voxels},
         a.brdf_covariance);
     const PathCovariance predicted = predict(scene, replay, rays, depth, a.paths, a.measure.seed);

@@ -2,7 +2,9 @@
 
 #include <sys/resource.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "image/finite_pixels.h"
@@ -13,8 +15,10 @@ namespace {
 
 /// Bytes by use, and the most that the process ever had in memory.
 nlohmann::json memory_json(const RenderScene& scene, const RenderResult& result) {
-    nlohmann::json memory = scene.memory();
-    memory.update(nlohmann::json(result.statistics.memory));
+    std::map<std::string, size_t> bytes = scene.memory();
+    for (const auto& [name, count] : result.statistics.memory)
+        bytes[name == "spectra" ? "textures" : name] += count;
+    nlohmann::json memory = bytes;
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     memory["peak_resident"] = int64_t(usage.ru_maxrss) * 1024;

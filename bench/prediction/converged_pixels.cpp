@@ -22,6 +22,7 @@
 #include "image/image.h"
 #include "pbrt/read_scene.h"
 #include "render/job.h"
+#include "render/overrides.h"
 #include "render/session.h"
 
 using namespace covtrace;

@@ -30,11 +30,11 @@ using namespace covtrace;
 /// One kind of path, ready to be traced.
 class Way {
   public:
-    Way(const RenderScene& scene, const std::string& kind)
+    Way(const RenderScene& scene, const SceneSpectra& spectra, const std::string& kind)
         : kind_(kind),
           grid_(grid_of(scene, kind)),
           query_(query_of(scene, kind)),
-          replay_(scene, {grid_ ? &*grid_ : nullptr, query_ ? &*query_ : nullptr},
+          replay_(scene, spectra, {grid_ ? &*grid_ : nullptr, query_ ? &*query_ : nullptr},
                   BrdfCovariance::local),
           context_{.scene = scene, .seed = 1, .max_depth = scene.description.max_depth} {}
     const std::string& kind() const { return kind_; }
@@ -104,8 +104,9 @@ int main(int argc, char** argv) {
         const int every = std::atoi(argv[4]), rounds = std::atoi(argv[6]);
         const auto paths = static_cast<uint32_t>(std::atoi(argv[5]));
         const ThreadLimit one(1);
+        const SceneSpectra spectra(*scene);
         std::deque<Way> ways;
-        for (int i = 7; i < argc; ++i) ways.emplace_back(*scene, argv[i]);
+        for (int i = 7; i < argc; ++i) ways.emplace_back(*scene, spectra, argv[i]);
         // Spectra of textures are made when they are first asked for.
         for (Way& way : ways) way.trace(every, paths);
         if (RUNNING_ON_VALGRIND) {

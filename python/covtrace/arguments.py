@@ -14,7 +14,7 @@ def refuse(name: str, value: Any, expected: str) -> NoReturn:
 
 
 def path_of(name: str, value: str | os.PathLike[str], expected: str = "a file's path") -> str:
-    """What a file system can name: neither a number nor a text with a zero in it."""
+    """A path that a file system can name: neither a number nor a text with a zero in it."""
     try:
         path = os.fspath(value)
         if b"\0" in os.fsencode(path):

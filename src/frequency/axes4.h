@@ -4,16 +4,8 @@
 #include "core/simd.h"
 #include "covariance/covariance.hpp"
 
-<<<<<<< HEAD:src/frequency/axes4.h
-=======
-// GCC's warning about how such vectors are passed is of no concern: it depends on the processor
-// that is compiled for, which is one for all of the program.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
->>>>>>> 5bc1e5c (Let the last comments of the sources be read alone):src/frequency/double4.h
-namespace covtrace {
-
-/// Axes x, y, z of a frame side by side: each component of the three axes, in three of four lanes.
+/// Axes x, y, z of a frame side by side: each component of the three axes, in three of four
+/// lanes.
 struct Axes4 {
     Double4 x, y, z;
 

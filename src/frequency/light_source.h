@@ -3,7 +3,7 @@
 #pragma once
 
 #include "covariance/covariance.hpp"
-#include "light/lights.h"
+#include "light/source_spectrum.h"
 
 namespace covtrace {
 

@@ -63,6 +63,7 @@ PathWalk::PathWalk(const ReplayedScene& context, const PathRecord& record, Light
                    double least)
     : context_(context),
       scene_(context.scene),
+      spectra_(context.spectra),
       record_(record),
       part_(part),
       least_(least),
@@ -141,7 +142,7 @@ void PathWalk::scatter_all(int i, const Scatter& scatter) {
 }
 
 std::optional<OwnOutline> PathWalk::scatter_on_surface(int i) {
-    const ScatterPoint point(scene_, vertex(i), half_pixel(i));
+    const ScatterPoint point(scene_, spectra_.textures, vertex(i), half_pixel(i));
     ScatterSum sum(point);
     scatter_all(i, [&](const LightField& arriving, const cov::Emitter<double>& emitter,
                        const LobeShares& lobes, double weight) {
@@ -170,9 +171,9 @@ void PathWalk::emit_at(int i, std::optional<OwnOutline>& own) {
     const double way = ways_[size_t(i)];
     light_.emitter = emitter_at(v, way);
     if (!counts(emitted)) return;
-    const SourceSpectrum s = scene_.lights.source_spectrum(v.hit, v.seen_sharply);
+    const SourceSpectrum s = spectra_.lights.source_spectrum(v.hit, v.seen_sharply);
     if (emitted > light_.weight) light_.emitter = emitter_of(s, way);
-    const auto texture = emission_texture(scene_, v, s.tangent, half_pixel(i));
+    const auto texture = emission_texture(scene_, spectra_.textures, v, s.tangent, half_pixel(i));
     light_.add(source_field(s, v.wo, v.seen_sharply, context_.smallest, texture), emitted);
     if (own || !context_.occluders.query) return;
     const DifferentialGeometry d = scene_.geometry.differential(v.hit);
@@ -211,7 +212,7 @@ PathWalk::SampledLight PathWalk::sampled_light(int i, double weight) const {
         carry_from_infinity(sky.field, sample.wi, i, weight);
         return sky;
     }
-    const SourceSpectrum s = scene_.lights.source_spectrum(sample, v.hit.time);
+    const SourceSpectrum s = spectra_.lights.source_spectrum(sample, v.hit.time);
     SampledLight light{source_field(s, -sample.wi, false, context_.smallest),
                        emitter_of(s, sample.distance)};
     if (from_infinity)
@@ -224,8 +225,8 @@ PathWalk::SampledLight PathWalk::sampled_light(int i, double weight) const {
 }
 
 LightField PathWalk::sky_field(Vec3 w) const {
-    if (scene_.lights.has_even_sky()) return {{}, cov::frame_along<double>(-w)};
-    return source_field(scene_.lights.environment_spectrum(w), -w, false, context_.smallest);
+    if (spectra_.lights.has_even_sky()) return {{}, cov::frame_along<double>(-w)};
+    return source_field(spectra_.lights.environment_spectrum(w), -w, false, context_.smallest);
 }
 
 // ---- The way between two vertices

@@ -88,7 +88,8 @@ class PathWalk {
     bool counts(double luminance) const { return luminance > 0 && luminance >= least_ * total_; }
 
     const ReplayedScene& context_;
-    const RenderScene& scene_;
+    const LitScene& scene_;
+    const SceneSpectra& spectra_;
     const PathRecord& record_;
     LightPart part_;
     double least_;

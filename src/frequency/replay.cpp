@@ -19,9 +19,9 @@ constexpr double kLeastFollowed = 1 - kSmallestShare;
 
 }  // namespace
 
-ReplayedScene::ReplayedScene(const RenderScene& scene, const Occluders& occluders,
-                             BrdfCovariance rule)
-    : scene(scene), occluders(occluders), rule(rule) {
+ReplayedScene::ReplayedScene(const LitScene& scene, const SceneSpectra& spectra,
+                             const Occluders& occluders, BrdfCovariance rule)
+    : scene(scene), spectra(spectra), occluders(occluders), rule(rule) {
     const Bounds3 bounds = scene.geometry.bounds();
     center = bounds.center();
     radius = std::max(bounds.radius(), 1e-6f);

@@ -6,8 +6,9 @@
 #include "frequency/brdf_covariance.h"
 #include "frequency/light_source.h"
 #include "frequency/occlusion.h"
+#include "frequency/scene_spectra.h"
+#include "integrator/lit_scene.h"
 #include "integrator/path_record.h"
-#include "integrator/render_scene.h"
 
 namespace covtrace {
 
@@ -29,14 +30,16 @@ inline constexpr double kSmallestShare = 0.1;
 
 /// Data that the replays of all paths of a scene share.
 struct ReplayedScene {
-    const RenderScene& scene;
+    const LitScene& scene;
+    const SceneSpectra& spectra;
     Occluders occluders;
     BrdfCovariance rule;
     Vec3 center;      ///< bounding sphere of the scene: light from infinity enters there
     float radius;     ///< scene units
     double smallest;  ///< extent that stands for a point, scene units
 
-    ReplayedScene(const RenderScene& scene, const Occluders& occluders, BrdfCovariance rule);
+    ReplayedScene(const LitScene& scene, const SceneSpectra& spectra, const Occluders& occluders,
+                  BrdfCovariance rule);
     /// The point where light from infinity, seen from p in the direction w, enters the bounding
     /// sphere.
     Vec3 entry(Vec3 p, Vec3 w) const;
@@ -47,9 +50,10 @@ struct ReplayedScene {
 /// by luminance (an incoherent sum, covariance::merge), so that k vertices cost k steps.
 class PathReplay {
   public:
-    /// Prepares replays of paths in a scene; scene and occluders must outlive this object.
-    PathReplay(const RenderScene& scene, const Occluders& occluders, BrdfCovariance rule)
-        : context_(scene, occluders, rule) {}
+    /// Prepares replays of paths in a scene; scene, spectra and occluders must outlive this object.
+    PathReplay(const LitScene& scene, const SceneSpectra& spectra, const Occluders& occluders,
+               BrdfCovariance rule)
+        : context_(scene, spectra, occluders, rule) {}
     PathCovariance operator()(const PathRecord& record, LightPart part = LightPart::all) const;
 
   private:

@@ -10,15 +10,16 @@ namespace cov = covariance;
 
 namespace {
 
-cov::Sym2<double> texture_spectrum(const RenderScene& scene, TextureId id, const SurfaceHit& hit,
+cov::Sym2<double> texture_spectrum(const LitScene& scene, const TextureSpectra& spectra,
+                                   TextureId id, const SurfaceHit& hit,
                                    const cov::Mat2<double>& uv_from_tangent, float footprint_uv) {
     if (id < 0 || scene.textures.is_constant(id)) return {};
-    const SpatialCovariance2 t = scene.textures.uv_covariance(
-        id, {hit.uv, hit.position, {}, hit.ng}, hit.dpdu, hit.dpdv, footprint_uv);
+    const SpatialCovariance2 t = spectra.uv_covariance(id, {hit.uv, hit.position, {}, hit.ng},
+                                                       hit.dpdu, hit.dpdv, footprint_uv);
     return cov::texture_on_surface<double>({t.ss, t.st, t.tt}, uv_from_tangent);
 }
 
-DifferentialGeometry geometry_at(const RenderScene& scene, const PathVertex& vertex) {
+DifferentialGeometry geometry_at(const LitScene& scene, const PathVertex& vertex) {
     // Without a normal map the tangents are already those of the BSDF's frame.
     return scene.materials.has_normal_map(vertex.material)
                ? scene.geometry.differential(vertex.hit)
@@ -42,11 +43,12 @@ unsigned kinds_of_lobes(const PathVertex& vertex) {
 
 }  // namespace
 
-ScatterPoint::ScatterPoint(const RenderScene& scene, const PathVertex& vertex, float footprint)
-    : ScatterPoint(scene, vertex, footprint, geometry_at(scene, vertex)) {}
+ScatterPoint::ScatterPoint(const LitScene& scene, const TextureSpectra& spectra,
+                           const PathVertex& vertex, float footprint)
+    : ScatterPoint(scene, spectra, vertex, footprint, geometry_at(scene, vertex)) {}
 
-ScatterPoint::ScatterPoint(const RenderScene& scene, const PathVertex& vertex, float footprint,
-                           const DifferentialGeometry& d)
+ScatterPoint::ScatterPoint(const LitScene& scene, const TextureSpectra& spectra,
+                           const PathVertex& vertex, float footprint, const DifferentialGeometry& d)
     : surface{d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}},
       shading(vertex.shading),
       leaving(cov::frame_along<double>(vertex.wo)) {
@@ -77,15 +79,16 @@ ScatterPoint::ScatterPoint(const RenderScene& scene, const PathVertex& vertex, f
     // The shape's alpha varies the light of the surface as its reflectance does.
     const TextureId alpha = scene.geometry.shapes()[vertex.hit.shape].description.alpha;
     const auto spectrum = [&](TextureId id) {
-        return texture_spectrum(scene, id, vertex.hit, uv_from_tangent, footprint_uv);
+        return texture_spectrum(scene, spectra, id, vertex.hit, uv_from_tangent, footprint_uv);
     };
     const cov::Sym2<double> edges = spectrum(alpha);
     if (reflects) reflectance = spectrum(textures.reflectance) + edges;
     if (transmits) transmittance = spectrum(textures.transmittance) + edges;
 }
 
-cov::Sym2<double> emission_texture(const RenderScene& scene, const PathVertex& vertex,
-                                   const Frame& tangent, float footprint) {
+cov::Sym2<double> emission_texture(const LitScene& scene, const TextureSpectra& spectra,
+                                   const PathVertex& vertex, const Frame& tangent,
+                                   float footprint) {
     const ShapeDescription& shape = scene.geometry.shapes()[vertex.hit.shape].description;
     if (shape.area_light < 0) return {};
     const TextureId image =
@@ -100,8 +103,8 @@ cov::Sym2<double> emission_texture(const RenderScene& scene, const PathVertex& v
                                             along(1, tangent.x), along(1, tangent.y)};
     const float footprint_uv =
         footprint * std::sqrt(0.5f * (sqr(m[0][0]) + sqr(m[0][1]) + sqr(m[1][0]) + sqr(m[1][1])));
-    return texture_spectrum(scene, image, vertex.hit, uv_from_tangent, footprint_uv) +
-           texture_spectrum(scene, shape.alpha, vertex.hit, uv_from_tangent, footprint_uv);
+    return texture_spectrum(scene, spectra, image, vertex.hit, uv_from_tangent, footprint_uv) +
+           texture_spectrum(scene, spectra, shape.alpha, vertex.hit, uv_from_tangent, footprint_uv);
 }
 
 }  // namespace covtrace

@@ -4,8 +4,9 @@
 #include <optional>
 
 #include "covariance/covariance.hpp"
+#include "integrator/lit_scene.h"
 #include "integrator/path_record.h"
-#include "integrator/render_scene.h"
+#include "texture/spectra.h"
 
 namespace covtrace {
 
@@ -31,16 +32,18 @@ struct ScatterPoint {
 
     /// Gathers the data. `footprint`: half a pixel's extent at the vertex, in scene units; no
     /// texture edge counts as nearer. `vertex` must outlive this object.
-    ScatterPoint(const RenderScene& scene, const PathVertex& vertex, float footprint);
+    ScatterPoint(const LitScene& scene, const TextureSpectra& spectra, const PathVertex& vertex,
+                 float footprint);
 
   private:
-    ScatterPoint(const RenderScene& scene, const PathVertex& vertex, float footprint,
-                 const DifferentialGeometry& geometry);
+    ScatterPoint(const LitScene& scene, const TextureSpectra& spectra, const PathVertex& vertex,
+                 float footprint, const DifferentialGeometry& geometry);
 };
 
 /// Spectrum of the image and the alpha of an emitter that was hit, along the axes of `tangent` (z:
 /// its normal), 1 / scene unit^2. `footprint`: half a pixel's extent, in scene units.
-covariance::Sym2<double> emission_texture(const RenderScene& scene, const PathVertex& vertex,
-                                          const Frame& tangent, float footprint);
+covariance::Sym2<double> emission_texture(const LitScene& scene, const TextureSpectra& spectra,
+                                          const PathVertex& vertex, const Frame& tangent,
+                                          float footprint);
 
 }  // namespace covtrace

@@ -64,11 +64,6 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
     unbounded_distance = 2 * radius_of_media(description, geometry.bounds());
 }
 
-void LitScene::prepare_spectra(TextureBandwidth bandwidth) {
-    textures.prepare_spectra(bandwidth);
-    lights.prepare_spectra();
-}
-
 std::map<std::string, size_t> LitScene::memory() const {
     const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
     const auto mesh_bytes = [&](const auto& mesh, const auto& faces) {

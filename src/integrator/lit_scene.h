@@ -22,10 +22,6 @@ struct LitScene {
     explicit LitScene(SceneDescription scene_description, const std::string& isa = {},
                       size_t texture_bytes = kNoTextureLimit);
 
-    /// Measures spectra of textures and environments, which only the frequency analysis needs. Not
-    /// thread-safe.
-    void prepare_spectra(TextureBandwidth bandwidth = TextureBandwidth::own);
-
     /// Bytes held, by use: "meshes", "shapes", "embree" (at its peak), "textures".
     std::map<std::string, size_t> memory() const;
 

@@ -2,12 +2,16 @@
 /// the room that it takes over the shutter.
 #pragma once
 
+#include <variant>
 #include <vector>
 
 #include "core/transform.h"
 #include "light/tree.h"
 
 namespace covtrace {
+
+/// An emissive shape of either kind.
+using Emitter = std::variant<class EmissiveMesh, class EmissiveQuadric>;
 
 struct EmitterPoint {
     Vec3 position, normal;  ///< world; the unit normal is on the shape's outside

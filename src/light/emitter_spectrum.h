@@ -3,16 +3,15 @@
 #pragma once
 
 #include <array>
-#include <variant>
+#include <optional>
 
 #include "light/border.h"
-#include "light/lights.h"
+#include "light/emitter.h"
 #include "light/mesh.h"
 #include "light/quadric.h"
+#include "light/source_spectrum.h"
 
 namespace covtrace {
-
-using Emitter = std::variant<EmissiveMesh, EmissiveQuadric>;
 
 class EmitterSpectrum {
   public:

@@ -7,16 +7,8 @@
 #include "core/transform.h"
 #include "light/environment_map.h"
 #include "scene/scene_description.h"
-#include "texture/image_spectrum.h"
 
 namespace covtrace {
-
-/// Second moments of the angular amplitude spectrum, (cycles per radian)^2, in the x and y of
-/// `tangent`, whose z is the direction that the light travels in.
-struct AngularCovariance {
-    Frame tangent;
-    float a11 = 0, a12 = 0, a22 = 0;
-};
 
 /// All directions are unit vectors in world space that point away from the scene. Transforms need
 /// not be rigid: light space is looked up along the transformed direction, and densities follow.
@@ -47,11 +39,12 @@ class Environment {
     /// that directions are drawn for. 0 where the light is black.
     float irradiance() const;
 
-    /// Measures the image's spectrum, once; without it `spectrum` takes the light for uniform.
-    void prepare_spectrum();
-    AngularCovariance spectrum(Vec3 w) const;
-    /// Whether the spectrum is anything but zero.
-    bool varies() const { return spectrum_.has_value(); }
+    /// The image by directions of light space, before `scale`; null where the light is uniform.
+    const EnvironmentMap* map() const { return map_ ? &*map_ : nullptr; }
+    Rgb scale() const { return scale_; }
+    /// A direction in light space, of any length.
+    Vec3 to_light(Vec3 w) const { return to_light_(w); }
+    const Transform& light_to_world() const { return light_to_world_; }
 
   private:
     /// The linear part of a transform, in single precision: enough for directions.
@@ -67,10 +60,6 @@ class Environment {
     float determinant_ = 1;  // of the map from world to light, absolute value
     Rgb scale_{1};
     std::optional<EnvironmentMap> map_;
-    std::optional<ImageSpectrum> spectrum_;
-    /// Sine of the polar angle that the spectrum's rows next to the poles use.
-    float pole_sine_ = 1;
-    bool is_mirrored_ = false;  ///< whether light space is a mirror image of the world's
 };
 
 }  // namespace covtrace

@@ -104,52 +104,6 @@ Rgb LightImage::integral() const {
     return {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])};
 }
 
-void LightImage::prepare_spectrum() {
-    if (spectrum_) return;
-    // A slide ends in the dark, so the image is measured with a black margin of an eighth of its
-    // size, at least as wide as the widest derivative.
-    const auto border = [this](int n) { return is_slide() ? std::max(4, n / 8) : 0; };
-    const int left = border(width_), top = border(height_);
-    const int width = width_ + 2 * left, height = height_ + 2 * top;
-    std::vector<float> values(static_cast<size_t>(width) * static_cast<size_t>(height), 0.0f);
-    for (int y = 0; y < height_; ++y)
-        for (int x = 0; x < width_; ++x)
-            values[static_cast<size_t>(y + top) * static_cast<size_t>(width) +
-                   static_cast<size_t>(x + left)] =
-                luminance((*texels_)[static_cast<size_t>(y) * static_cast<size_t>(width_) +
-                                     static_cast<size_t>(x)]);
-    margin_ = {static_cast<float>(left) / static_cast<float>(width_),
-               static_cast<float>(top) / static_cast<float>(height_)};
-    spectrum_ =
-        std::make_shared<const ImageSpectrum>(values, width, height, ImageSpectrum::Wrap::clamp);
-}
-
-Vec2 LightImage::place_per_radian(Vec3 w, Vec3 axis) const {
-    constexpr float kStep = 1e-3f;
-    const std::optional<Vec2> a = place(normalize(w - axis * kStep)),
-                              b = place(normalize(w + axis * kStep));
-    // The derivative across a border of the octahedral square is taken as the map's mean scale; at
-    // the rim of a slide it is zero.
-    const float mean = is_slide() ? 0.0f : 1 / std::sqrt(4 * kPi);
-    const bool crosses_border = !is_slide() && a && b && length(*b - *a) > 0.1f;
-    if (!a || !b || crosses_border) return {mean, mean};
-    return (*b - *a) * (0.5f / kStep);
-}
-
-SpatialCovariance2 LightImage::spectrum(const Frame& frame) const {
-    const std::optional<Vec2> at = place(frame.z);
-    if (!spectrum_ || !at) return {};
-    const float s_scale = 1 / (1 + 2 * margin_.x), t_scale = 1 / (1 + 2 * margin_.y);
-    const SpatialCovariance2 c =
-        spectrum_->at((at->x + margin_.x) * s_scale, (at->y + margin_.y) * t_scale);
-    const Vec2 dx = place_per_radian(frame.z, frame.x), dy = place_per_radian(frame.z, frame.y);
-    const auto form = [&](Vec2 a, Vec2 b) {
-        const Vec2 p{a.x * s_scale, a.y * t_scale}, q{b.x * s_scale, b.y * t_scale};
-        return c.ss * p.x * q.x + c.st * (p.x * q.y + p.y * q.x) + c.tt * p.y * q.y;
-    };
-    return {form(dx, dx), form(dx, dy), form(dy, dy)};
-}
-
 float LightImage::cos_corner() const {
     return 1 / std::sqrt(1 + half_size_.x * half_size_.x + half_size_.y * half_size_.y);
 }

@@ -5,11 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "core/frame.h"
 #include "core/transform.h"
 #include "light/texels.h"
 #include "scene/scene_description.h"
-#include "texture/image_spectrum.h"
 
 namespace covtrace {
 
@@ -36,12 +34,12 @@ class LightImage {
     /// Cosine of the angle between a slide's axis and its corners.
     float cos_corner() const;
 
-    /// Measures the image, and for a slide its borders against the dark; once. Not thread-safe.
-    void prepare_spectrum();
-    /// Second moments of the angular amplitude spectrum around the world direction `frame.z`, which
-    /// points away from the light, in the frame's x and y, (cycles per radian)^2. Zero beside a
-    /// slide and before `prepare_spectrum`.
-    SpatialCovariance2 spectrum(const Frame& frame) const;
+    int width() const { return width_; }
+    int height() const { return height_; }
+    /// Row by row from the top.
+    const std::vector<Rgb>& texels() const { return *texels_; }
+    /// The place in the image, in [0, 1]^2, that a world direction falls on; empty beside a slide.
+    std::optional<Vec2> place(Vec3 w) const;
 
   private:
     static LightImage read(const std::filesystem::path& file, LightChannels channels,
@@ -49,18 +47,11 @@ class LightImage {
                            Warnings& warnings);
     LightImage(const LightTexels& image, const Transform& light_to_world);
     Rgb texel(Vec2 place) const;
-    /// The place in the image, in [0, 1]^2, that a world direction falls on; empty beside a slide.
-    std::optional<Vec2> place(Vec3 w) const;
-    /// Derivative of `place` by a rotation of w towards the unit vector `axis`, per radian.
-    Vec2 place_per_radian(Vec3 w, Vec3 axis) const;
 
     Transform world_to_light_;
     int width_ = 0, height_ = 0;
     std::shared_ptr<const std::vector<Rgb>> texels_;
     Vec2 half_size_;  // of a slide
-    std::shared_ptr<const ImageSpectrum> spectrum_;
-    // Black margin around the image as `spectrum_` has measured it, in parts of the image.
-    Vec2 margin_;
 };
 
 }  // namespace covtrace

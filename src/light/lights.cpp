@@ -82,8 +82,7 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
                        .alpha = -1,
                        .is_visible = !is_hidden(scene, shape.alpha),
                        .first_light = static_cast<int>(owner.size()),
-                       .emitter = std::move(*emitters[i]),
-                       .spectrum = {}};
+                       .emitter = std::move(*emitters[i])};
         // A light that is hidden altogether shines as if it had no alpha.
         if (textures && area.is_visible) area.alpha = shape.alpha;
         area.mean_factor = area.image < 0 ? Rgb(1) : textures->mean(area.image);

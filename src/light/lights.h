@@ -1,5 +1,4 @@
-/// All lights of a scene: emission, sampling with light selection, and the spectra that the
-/// frequency analysis starts from.
+/// All lights of a scene: emission, and sampling with light selection.
 #pragma once
 
 #include <memory>
@@ -21,34 +20,9 @@ struct LightSample {
     Rgb radiance;   ///< arriving if unoccluded; for delta lights irradiance of a facing surface
     float pdf = 0;  ///< selection times solid angle; for delta lights selection alone
     bool is_delta = false;
-    int light = -1;  ///< id for source_spectrum
+    int light = -1;  ///< id for LightSpectra::source_spectrum
     Vec3 position;   ///< of the sampled point where the distance is finite
     Vec3 normal;     ///< of area lights: unit, on the emitting outside
-};
-
-/// The spectrum of a light at its source, from which the covariance of its radiance starts. Each
-/// field says for which kinds it is set.
-struct SourceSpectrum {
-    enum class Kind { area, point, directional, environment };
-    Kind kind = Kind::area;
-    /// Frame of the quantities below. area: at the emitting point, z = normal; all others: x, y
-    /// span the directions, z is the direction that the light travels in.
-    Frame tangent;
-    /// area: second moments of the whole emitter about its centroid in (tangent.x, tangent.y),
-    /// length^2
-    float s11 = 0, s12 = 0, s22 = 0;
-    float k11 = 0, k12 = 0, k22 = 0;  ///< area: shape operator
-    Vec3 velocity, angular_velocity;  ///< area
-    /// area: from the point to the nearest point of the emitter's border (edges that belong to one
-    /// triangle only, the rim of a disk); infinite for closed meshes and for spheres, whose
-    /// silhouette depends on the view.
-    float border_distance = kInfinity;
-    /// Area: unit vector towards that border point, in (tangent.x, tangent.y).
-    Vec2 border_direction{1, 0};
-    /// environment, directional, and point for the image of a goniometric or projection light:
-    /// angular covariance in (tangent.x, tangent.y), (cycles per radian)^2
-    float a11 = 0, a12 = 0, a22 = 0;
-    float cone_variance = 0;  ///< point: angular variance of a spot's cone, 0 for none
 };
 
 /// An emissive shape as a whole, at a distance.
@@ -120,20 +94,6 @@ class Lights {
     Sky sky(Vec3 p, Vec3 n, Vec3 w) const;
     float environment_pdf(Vec3 p, Vec3 n, Vec3 w) const { return sky(p, n, w).pdf; }
 
-    /// Computes what the source spectra need; to be called once before asking for any. Not
-    /// thread-safe.
-    void prepare_spectra();
-    /// Spectrum of the emitter of a sample that lights something, without its border: only an
-    /// emitter in view shows that.
-    SourceSpectrum source_spectrum(const LightSample& s, float time) const;
-    /// Spectrum of the shape that was hit; empty where it does not emit. The border is left
-    /// infinitely far away unless it is asked for: finding it takes a search.
-    SourceSpectrum source_spectrum(const SurfaceHit& emitter, bool with_border) const;
-    /// Whether the infinite lights shine alike from all directions, with a spectrum that is zero.
-    bool has_even_sky() const;
-    /// Spectrum of all infinite lights together around the direction `w`, weighted by radiance.
-    SourceSpectrum environment_spectrum(Vec3 w) const;
-
     /// All emissive shapes that rays can meet, each as a whole.
     std::vector<DistantView> distant_views() const;
 
@@ -150,6 +110,7 @@ class Lights {
     float selection_probability(Vec3 p, Vec3 n, int light) const;
 
   private:
+    friend class LightSpectra;
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

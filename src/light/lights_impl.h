@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "light/delta.h"
-#include "light/emitter_spectrum.h"
 #include "light/environment.h"
 #include "light/lights.h"
+#include "light/mesh.h"
+#include "light/quadric.h"
 #include "light/tree.h"
 
 namespace covtrace {
@@ -22,7 +23,6 @@ struct AreaLight {
     Rgb mean_factor{1};                ///< of image and alpha together
     int first_light = 0;
     Emitter emitter;
-    std::optional<EmitterSpectrum> spectrum;
 
     bool varies() const { return image >= 0 || alpha >= 0; }
 };
@@ -53,7 +53,6 @@ struct Lights::Impl {
     float infinite_weight(const InfiniteShare& share, size_t i, Vec3 n) const;
     Sky sky(const InfiniteShare& share, Vec3 n, Vec3 w) const;
     Rgb environment(Vec3 w) const;
-    SourceSpectrum environment_spectrum(Vec3 w) const;
 
     /// The area light of the shape that was hit; null where the shape does not emit.
     const AreaLight* area_light_of(const SurfaceHit& hit) const;

@@ -84,7 +84,7 @@ class HeaderParser {
     }
 
   private:
-    /// Of a part of the present line.
+    /// The place of a part of the present line.
     SourceLocation where(std::string_view part) const {
         return {file_, line_number_, int(part.data() - line_.data()) + 1};
     }

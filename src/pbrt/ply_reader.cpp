@@ -29,11 +29,11 @@ class NumberReader {
           line_begin_(header.size),
           file_(std::move(file)) {}
 
-    /// A place that is of one word of the file.
+    /// The place of one word in the file.
     struct Place {
         int line = 0, column = 0;  ///< 0 where there are no lines
     };
-    /// Of the last number.
+    /// The place of the last number.
     Place last() const { return is_ascii() ? Place{line_, int(last_ - line_begin_) + 1} : Place{}; }
     [[noreturn]] void refuse(const std::string& text, Place at) const {
         throw Error(ErrorKind::scene, {file_, at.line, at.column}, text);

@@ -80,7 +80,7 @@ RenderState initial_state(const RenderScene& scene, const RenderOptions& options
 
 }  // namespace
 
-RenderJob::RenderJob(RenderScene& render_scene, const RenderOptions& render_options,
+RenderJob::RenderJob(const RenderScene& render_scene, const RenderOptions& render_options,
                      Monitor& render_monitor, FilmKeeping film_keeping)
     : scene(render_scene),
       options(render_options),

@@ -19,10 +19,10 @@ class RenderJob {
   public:
     /// Begins the render, or goes on from the film that `keeping` holds. Throws Error(usage) where
     /// that is a film of another render.
-    RenderJob(RenderScene& scene, const RenderOptions& options, Monitor& monitor,
+    RenderJob(const RenderScene& scene, const RenderOptions& options, Monitor& monitor,
               FilmKeeping keeping = {});
 
-    RenderScene& scene;
+    const RenderScene& scene;
     const RenderOptions& options;
     Monitor& monitor;
     const FilmKeeping keeping;

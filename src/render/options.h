@@ -15,7 +15,7 @@
 #include "reconstruction/denoiser.h"
 #include "reconstruction/filter_field.h"
 #include "scene/scene_description.h"
-#include "texture/texture.h"
+#include "texture/spectra.h"
 
 namespace covtrace {
 

@@ -193,11 +193,9 @@ void add_path(PackedCovariance& mean, uint32_t paths, const PathCovariance& path
 
 }  // namespace
 
-PassStatistics covariance_pass(const PassContext& context, const Occluders& occluders,
-                               BrdfCovariance rule, Film& film, std::span<const uint32_t> counts,
-                               const CovarianceTarget& target, const Monitor& monitor,
-                               const PassProgress& progress) {
-    const PathReplay replay(context.scene, occluders, rule);
+PassStatistics covariance_pass(const PassContext& context, const PathReplay& replay, Film& film,
+                               std::span<const uint32_t> counts, const CovarianceTarget& target,
+                               const Monitor& monitor, const PassProgress& progress) {
     return take_samples(context, film, counts, monitor, progress,
                         [&](size_t i, int x, int y, PassStatistics& statistics) {
                             static thread_local PathRecord record;

@@ -9,8 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "frequency/brdf_covariance.h"
-#include "frequency/occlusion.h"
+#include "frequency/replay.h"
 #include "integrator/path.h"
 #include "integrator/render_scene.h"
 #include "prediction/covariance_buffer.h"
@@ -84,10 +83,9 @@ struct CovarianceTarget {
 
 /// Takes samples as radiance_pass does, by paths that also leave their covariances. All samples
 /// that the film has so far are such paths.
-PassStatistics covariance_pass(const PassContext& context, const Occluders& occluders,
-                               BrdfCovariance rule, Film& film, std::span<const uint32_t> counts,
-                               const CovarianceTarget& target, const Monitor& monitor,
-                               const PassProgress& progress);
+PassStatistics covariance_pass(const PassContext& context, const PathReplay& replay, Film& film,
+                               std::span<const uint32_t> counts, const CovarianceTarget& target,
+                               const Monitor& monitor, const PassProgress& progress);
 
 /// Limits the weights of scattered light to ten times the mean of the image's first paths, so that
 /// no single path owns a pixel; to be called when `film` has at most one path in every pixel, which

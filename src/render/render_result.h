@@ -16,7 +16,8 @@ namespace covtrace {
 struct RenderStatistics {
     PassStatistics covariance, radiance;
     PhaseSeconds seconds;
-    /// Bytes: "film" and "plan"; "prediction" and "occluders" with covariance tracing.
+    /// Bytes: "film" and "plan"; with covariance tracing "prediction", "occluders" and "spectra",
+    /// those of textures.
     std::map<std::string, size_t> memory;
     double samples_per_pixel = 0;  ///< average taken
     /// The factor k of N = k sqrt|S|, with DensityRule::thesis: as asked for or as the budget made

@@ -15,7 +15,7 @@
 
 namespace covtrace {
 
-RenderResult render(RenderScene& scene, const RenderOptions& options, Monitor& monitor,
+RenderResult render(const RenderScene& scene, const RenderOptions& options, Monitor& monitor,
                     FilmKeeping keeping) {
     const PixelBounds region = render_region(scene.description.film);
     if (region.width() <= 0 || region.height() <= 0)

@@ -9,9 +9,9 @@
 
 namespace covtrace {
 
-/// Renders a scene. Calls scene.prepare_spectra() where the method needs it. Throws Error(limit)
-/// where memory runs out, Error(usage) where `keeping` asks for what cannot be.
-RenderResult render(RenderScene& scene, const RenderOptions& options, Monitor& monitor,
+/// Renders a scene. Throws Error(limit) where memory runs out, Error(usage) where `keeping` asks
+/// for what cannot be.
+RenderResult render(const RenderScene& scene, const RenderOptions& options, Monitor& monitor,
                     FilmKeeping keeping = {});
 
 }  // namespace covtrace

@@ -4,6 +4,7 @@
 #include "texture/graph.h"
 #include "texture/mapping.h"
 #include "texture/noise.h"
+#include "texture/spectra.h"
 
 namespace covtrace {
 namespace {
@@ -81,21 +82,28 @@ float kept_weight(float contrast, Vec2 gradient, float footprint_uv) {
     return std::min(1.0f, contrast * std::exp(-exponent));
 }
 
+/// The covariance of a node. `spectrum`: of the image that the node shows or mixes by, null where
+/// it does neither.
 struct Analyser {
     const TextureGraph& graph;
+    const TextureSpectra& spectra;
     const TexturePoint& at;
     Vec3 dpdu, dpdv;
     float footprint_uv;
 
-    SpatialCovariance2 of(TextureId id) const { return std::visit(*this, graph.nodes[size_t(id)]); }
-
-    SpatialCovariance2 operator()(const ConstantNode&) const { return {}; }
-
-    SpatialCovariance2 operator()(const ImageNode& node) const {
-        return of_image(node, node.spectrum);
+    SpatialCovariance2 of(TextureId id) const {
+        const ImageSpectrum* spectrum = spectra.of_image(id);
+        return std::visit([&](const auto& node) { return (*this)(node, spectrum); },
+                          graph.nodes[size_t(id)]);
     }
 
-    SpatialCovariance2 of_image(const ImageNode& node, int spectrum) const {
+    SpatialCovariance2 operator()(const ConstantNode&, const ImageSpectrum*) const { return {}; }
+
+    SpatialCovariance2 operator()(const ImageNode& node, const ImageSpectrum* spectrum) const {
+        return of_image(node, *spectrum);
+    }
+
+    SpatialCovariance2 of_image(const ImageNode& node, const ImageSpectrum& spectrum) const {
         const TextureImage& image = graph.images[size_t(node.image)];
         const StGradient gradient = st_gradient(node.mapping, at, dpdu, dpdv);
         Vec2 st = flip_t(map_to_st(node.mapping, at));
@@ -105,8 +113,8 @@ struct Analyser {
             st = {mirrored(st.x), mirrored(st.y)};
         }
         const float pixel_uv = 2 * footprint_uv;
-        SpatialCovariance2 c = graph.spectra[size_t(spectrum)].at(
-            st.x, st.y, {pixel_uv * length(gradient.s), pixel_uv * length(gradient.t)});
+        SpatialCovariance2 c =
+            spectrum.at(st.x, st.y, {pixel_uv * length(gradient.s), pixel_uv * length(gradient.t)});
         c.st *= turns;
         SpatialCovariance2 result = to_uv(c, gradient);
         if (image.wrap() == TextureImage::Wrap::black) {
@@ -119,12 +127,7 @@ struct Analyser {
         return result;
     }
 
-    SpatialCovariance2 of_mixture(const MixNode& node) const {
-        return of_image(std::get<ImageNode>(graph.nodes[size_t(node.amount)]),
-                        node.mixture_spectrum);
-    }
-
-    SpatialCovariance2 operator()(const CheckerboardNode& node) const {
+    SpatialCovariance2 operator()(const CheckerboardNode& node, const ImageSpectrum*) const {
         const Rgb a = eval(graph, node.tex1, at), b = eval(graph, node.tex2, at);
         const float contrast = relative_contrast(a, b);
         const auto edge_at = [&](float coordinate, Vec2 gradient) {
@@ -148,10 +151,10 @@ struct Analyser {
 
     /// A texture that depends on the normal alone varies as slowly as the surface bends: no
     /// covariance.
-    SpatialCovariance2 operator()(const AsideTexture&) const { return {}; }
+    SpatialCovariance2 operator()(const AsideTexture&, const ImageSpectrum*) const { return {}; }
 
     /// Dots: the nearest rim counts as a straight edge.
-    SpatialCovariance2 operator()(const DotsTexture& node) const {
+    SpatialCovariance2 operator()(const DotsTexture& node, const ImageSpectrum*) const {
         const Vec2 st = map_to_st(node.mapping, at);
         const StGradient gradient = st_gradient(node.mapping, at, dpdu, dpdv);
         float nearest = kInfinity;
@@ -176,7 +179,7 @@ struct Analyser {
     }
 
     /// Bilinear ramps vary as fast as they rise, relative to their value.
-    SpatialCovariance2 operator()(const BilerpTexture& node) const {
+    SpatialCovariance2 operator()(const BilerpTexture& node, const ImageSpectrum*) const {
         const Vec2 st = map_to_st(node.mapping, at);
         const float value = std::abs(luminance(bilerp(node, st)));
         // A thousandth of the corners keeps the quotient finite where a ramp goes through black.
@@ -193,7 +196,7 @@ struct Analyser {
 
     /// Noise is alike everywhere and in all directions: along each axis of texture space it has the
     /// mean square frequency, weighted by energy, of the octaves that a pixel shows.
-    SpatialCovariance2 operator()(const NoiseTexture& node) const {
+    SpatialCovariance2 operator()(const NoiseTexture& node, const ImageSpectrum*) const {
         using Kind = NoiseTexture::Kind;
         const Vec3 pu = node.texture_from_world.vector(dpdu),
                    pv = node.texture_from_world.vector(dpdv);
@@ -220,19 +223,22 @@ struct Analyser {
     }
 
     /// Scaling is a product of signals: their spectra are convolved, so their covariances add.
-    SpatialCovariance2 operator()(const ScaleNode& node) const {
+    SpatialCovariance2 operator()(const ScaleNode& node, const ImageSpectrum*) const {
         return of(node.tex) + of(node.scale);
     }
 
     /// Mixing is a sum of two signals, each weighted by what it contributes here. The amount
     /// multiplies their difference, so it counts as much as an edge between the two would.
-    SpatialCovariance2 operator()(const MixNode& node) const {
+    SpatialCovariance2 operator()(const MixNode& node, const ImageSpectrum* mixture) const {
         const SpatialCovariance2 first = of(node.tex1), second = of(node.tex2);
         const bool varies = first.ss + first.tt + second.ss + second.tt > 0;
-        if (node.mixture_spectrum >= 0 && !varies) return of_mixture(node);
+        const auto of_mixture = [&] {
+            return of_image(std::get<ImageNode>(graph.nodes[size_t(node.amount)]), *mixture);
+        };
+        if (mixture && !varies) return of_mixture();
         const Rgb a = eval(graph, node.tex1, at), b = eval(graph, node.tex2, at);
         SpatialCovariance2 result =
-            node.mixture_spectrum >= 0 ? of_mixture(node) : of(node.amount) * contrast_weight(a, b);
+            mixture ? of_mixture() : of(node.amount) * contrast_weight(a, b);
         if (!varies) return result;
         const Rgb amount = eval(graph, node.amount, at);
         const float wa = std::abs(luminance((Rgb(1) - amount) * a));
@@ -242,15 +248,17 @@ struct Analyser {
     }
 };
 
-}  // namespace
-
+/// The covariance per (u, v) of one edge along u and one along v through every point.
 SpatialCovariance2 highest_covariance(float footprint_uv) {
     return edge(0, {1, 0}, footprint_uv) + edge(0, {0, 1}, footprint_uv);
 }
 
-SpatialCovariance2 uv_covariance(const TextureGraph& graph, TextureId id, const TexturePoint& at,
-                                 Vec3 dpdu, Vec3 dpdv, float footprint_uv) {
-    return Analyser{graph, at, dpdu, dpdv, footprint_uv}.of(id);
+}  // namespace
+
+SpatialCovariance2 TextureSpectra::uv_covariance(TextureId id, const TexturePoint& at, Vec3 dpdu,
+                                                 Vec3 dpdv, float footprint_uv) const {
+    if (bandwidth_ == TextureBandwidth::highest) return highest_covariance(footprint_uv);
+    return Analyser{*graph_, *this, at, dpdu, dpdv, footprint_uv}.of(id);
 }
 
 }  // namespace covtrace

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "texture/image.h"
-#include "texture/image_spectrum.h"
 #include "texture/texture.h"
 
 namespace covtrace {
@@ -16,7 +15,6 @@ struct ConstantNode {
 };
 struct ImageNode {
     int image = -1;           ///< into TextureGraph::images
-    int spectrum = -1;        ///< into TextureGraph::spectra, once prepared
     bool is_spectrum = true;  ///< else the value of a float texture, in all channels
     TextureImage::Channel channel = TextureImage::Channel::automatic;
     std::optional<float> cutoff;
@@ -37,9 +35,6 @@ struct ScaleNode {
 };
 struct MixNode {
     TextureId tex1 = -1, tex2 = -1, amount = -1;
-    /// Index of the spectrum of the mixture of both textures' means where the amount is an image;
-    /// -1 for other amounts.
-    int mixture_spectrum = -1;
 };
 using TextureNode = std::variant<ConstantNode, ImageNode, CheckerboardNode, ScaleNode, MixNode,
                                  AsideTexture, DotsTexture, BilerpTexture, NoiseTexture>;
@@ -48,7 +43,6 @@ struct TextureGraph {
     std::vector<TextureNode> nodes;  ///< one per TextureId
     std::vector<TextureImage> images;
     size_t page_memory = 0;  ///< bytes for pages of images that are not in memory whole
-    std::vector<ImageSpectrum> spectra;
 };
 
 /// The place in an image that (s, t) means: an image's first row is at the top, t = 1.
@@ -78,13 +72,5 @@ Rgb bilerp(const BilerpTexture& node, Vec2 st);
 TextureId active_texture(const DotsTexture& node, const TexturePoint& at);
 
 Rgb eval(const TextureGraph& graph, TextureId id, const TexturePoint& at);
-
-/// The covariance per (u, v) of one edge along u and one along v through every point:
-/// TextureBandwidth::highest takes it for every texture.
-SpatialCovariance2 highest_covariance(float footprint_uv);
-
-/// Covariance of one texture's amplitude spectrum per (u, v): see TextureStore::uv_covariance.
-SpatialCovariance2 uv_covariance(const TextureGraph& graph, TextureId id, const TexturePoint& at,
-                                 Vec3 dpdu, Vec3 dpdv, float footprint_uv);
 
 }  // namespace covtrace

@@ -1,13 +1,10 @@
 #include "texture/texture.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <tuple>
 
-#include "core/parallel.h"
 #include "texture/graph.h"
 #include "texture/loader.h"
 
@@ -169,45 +166,11 @@ class GraphBuilder {
     TextureGraph graph_;
 };
 
-ImageSpectrum::Wrap spectrum_wrap(TextureImage::Wrap wrap) {
-    return wrap == TextureImage::Wrap::repeat ? ImageSpectrum::Wrap::repeat
-                                              : ImageSpectrum::Wrap::clamp;
-}
-
-ImageSpectrum analyse(const TextureImage& image, const ImageNode& node) {
-    return {[&](size_t i) { return luminance(image_value_at(node, image, i)); }, image.width(),
-            image.height(), spectrum_wrap(image.wrap())};
-}
-
-/// Mean luminance of a texture over the unit square of (u, v).
-float mean_luminance(const TextureGraph& graph, TextureId id) {
-    constexpr int kSide = 16;
-    float sum = 0;
-    for (int i = 0; i < kSide * kSide; ++i) {
-        const Vec2 uv{(float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide};
-        sum += luminance(eval(graph, id, {uv, {}}));
-    }
-    return sum / (kSide * kSide);
-}
-
-/// Spectrum of a mix whose amount is an image. An amount has no contrast of its own: a trace of
-/// chalk on a cloth is as visible as the difference it makes there. So the image that is analysed
-/// is the mixture of the two textures' means.
-ImageSpectrum analyse_mixture(const TextureGraph& graph, const MixNode& mix,
-                              const ImageNode& amount) {
-    const TextureImage& image = graph.images[size_t(amount.image)];
-    const float a = mean_luminance(graph, mix.tex1), b = mean_luminance(graph, mix.tex2);
-    return {[&](size_t i) { return a + luminance(image_value_at(amount, image, i)) * (b - a); },
-            image.width(), image.height(), spectrum_wrap(image.wrap())};
-}
-
 }  // namespace
 
 struct TextureStore::Impl {
     TextureGraph graph;
     Warnings warnings;
-    bool is_prepared = false;
-    TextureBandwidth bandwidth = TextureBandwidth::own;
 };
 
 TextureStore::TextureStore(const SceneDescription& scene, size_t most_bytes)
@@ -255,46 +218,8 @@ Rgb TextureStore::mean(TextureId id) const {
     return {float(sum[0] / count), float(sum[1] / count), float(sum[2] / count)};
 }
 
-void TextureStore::prepare_spectra(TextureBandwidth bandwidth) {
-    impl_->bandwidth = bandwidth;
-    if (impl_->is_prepared) return;
-    TextureGraph& graph = impl_->graph;
-    // Each distinct image is one job: most are too small to fill the cores alone.
-    std::vector<std::function<ImageSpectrum()>> jobs;
-    // The analysis is relative to the mean: a scale matters only where an inversion or a cutoff
-    // follows it.
-    std::map<std::tuple<int, bool, bool, float, TextureImage::Channel, std::optional<float>>, int>
-        ids;
-    for (TextureNode& node : graph.nodes) {
-        auto* n = std::get_if<ImageNode>(&node);
-        if (!n) continue;
-        const auto [entry, is_new] =
-            ids.try_emplace({n->image, n->is_spectrum, n->invert,
-                             n->invert || n->cutoff ? n->scale : 1.0f, n->channel, n->cutoff},
-                            int(jobs.size()));
-        if (is_new)
-            jobs.push_back([&graph, n] { return analyse(graph.images[size_t(n->image)], *n); });
-        n->spectrum = entry->second;
-    }
-    for (TextureNode& node : graph.nodes) {
-        auto* mix = std::get_if<MixNode>(&node);
-        if (!mix) continue;
-        const auto* amount = std::get_if<ImageNode>(&graph.nodes[size_t(mix->amount)]);
-        if (!amount) continue;
-        mix->mixture_spectrum = int(jobs.size());
-        jobs.push_back([&graph, mix, amount] { return analyse_mixture(graph, *mix, *amount); });
-    }
-    graph.spectra.resize(jobs.size());
-    parallel_for(int64_t(jobs.size()),
-                 [&](int64_t i) { graph.spectra[size_t(i)] = jobs[size_t(i)](); });
-    impl_->is_prepared = true;
-}
-
-SpatialCovariance2 TextureStore::uv_covariance(TextureId id, const TexturePoint& at, Vec3 dpdu,
-                                               Vec3 dpdv, float footprint_uv) const {
-    assert(impl_->is_prepared);
-    if (impl_->bandwidth == TextureBandwidth::highest) return highest_covariance(footprint_uv);
-    return covtrace::uv_covariance(impl_->graph, id, at, dpdu, dpdv, footprint_uv);
+const TextureGraph& TextureStore::graph() const {
+    return impl_->graph;
 }
 
 const Warnings& TextureStore::warnings() const {
@@ -304,7 +229,6 @@ const Warnings& TextureStore::warnings() const {
 size_t TextureStore::memory() const {
     size_t bytes = impl_->graph.page_memory;
     for (const TextureImage& image : impl_->graph.images) bytes += image.memory();
-    for (const ImageSpectrum& spectrum : impl_->graph.spectra) bytes += spectrum.memory();
     return bytes;
 }
 

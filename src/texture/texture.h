@@ -1,15 +1,12 @@
-/// Textures: values over a surface, and how fast they vary there.
+/// Textures: values over a surface.
 #pragma once
 
 #include <array>
 #include <limits>
 #include <memory>
-#include <vector>
 
-#include "core/enum_names.h"
 #include "geometry/hit.h"
 #include "scene/scene_description.h"
-#include "texture/image_spectrum.h"
 
 namespace covtrace {
 
@@ -32,22 +29,13 @@ struct TexturePoint {
     Vec3 normal = {};  ///< unit, of the geometry; zero where it isn't known
 };
 
-/// How fast the frequency analysis takes textures to vary.
-enum class TextureBandwidth {
-    own,  ///< each texture by its own values
-    /// Every texture as the image can show at most: as if every pixel saw an edge along both axes.
-    highest
-};
-
-template <>
-inline constexpr auto kEnumNames<TextureBandwidth> = enum_names<TextureBandwidth>(
-    {{TextureBandwidth::own, "own"}, {TextureBandwidth::highest, "highest"}});
+struct TextureGraph;
 
 /// No limit: textures take as much memory as their files ask for.
 inline constexpr size_t kNoTextureLimit = std::numeric_limits<size_t>::max();
 
 /// All textures of a scene, images loaded once per file, encoding and wrap mode. Thread-safe once
-/// constructed and, where covariances are wanted, prepared.
+/// constructed.
 ///
 /// Values follow pbrt-v4: images are looked up at (s, 1 - t), so that t = 0 is their last row; a
 /// float texture of a colour image is the mean of R, G and B, or alpha where the image has one that
@@ -76,16 +64,9 @@ class TextureStore {
     /// 64 points.
     Rgb mean(TextureId id) const;
 
-    /// Analyses all images; needed before `uv_covariance`, and by nothing else. May be called again
-    /// for another bandwidth.
-    void prepare_spectra(TextureBandwidth bandwidth = TextureBandwidth::own);
-    /// Covariance of the texture's amplitude spectrum per unit of the surface's (u, v) around `at`:
-    /// edges by their distance (never closer than `footprint_uv`, half a pixel's footprint in uv
-    /// units), images by windows of all sizes. Textures that are mapped by position are first
-    /// expressed in (u, v) with dpdu, dpdv. Requires `prepare_spectra`.
-    SpatialCovariance2 uv_covariance(TextureId id, const TexturePoint& at, Vec3 dpdu, Vec3 dpdv,
-                                     float footprint_uv) const;
-    /// Bytes held in memory by images, their pages and spectra.
+    /// The nodes and images that the textures are made of, for those who analyse them.
+    const TextureGraph& graph() const;
+    /// Bytes held in memory by images and their pages.
     size_t memory() const;
     /// Warnings of loading: images are read from a temporary file, or a colour space is not known.
     const Warnings& warnings() const;

@@ -8,7 +8,7 @@
 
 #include "integrator/path.h"
 #include "laboratory/sensor_rays.h"
-#include "texture/texture.h"
+#include "texture/spatial_covariance.h"
 
 namespace covtrace {
 

@@ -26,8 +26,9 @@ Breakdown breakdown_of(const Timed& timed, const SceneStudy& study) {
     const double delivered =
         study.curve->cpu_per_spp() / pixels * double(timed.result.statistics.covariance.samples);
     Breakdown b;
+    b.spectra = phase(Phase::spectra);
     b.analysis = phase(Phase::covariance) - delivered + phase(Phase::grid) +
-                 phase(Phase::outlines) + phase(Phase::plan);
+                 phase(Phase::outlines) + b.spectra + phase(Phase::plan);
     b.radiance = phase(Phase::radiance) + delivered;
     b.reconstruction = phase(Phase::reconstruction);
     b.total = timed.cpu;
@@ -228,13 +229,13 @@ nlohmann::json to_json(const SceneStudy& s) {
     };
     const auto parts = [](const Breakdown& b) {
         return json{{"analysis", b.analysis},
+                    {"spectra", b.spectra},
                     {"radiance", b.radiance},
                     {"reconstruction", b.reconstruction},
                     {"total", b.total}};
     };
     json j = {{"reference_error", s.reference->own_error()},
               {"load_cpu", s.scene->load_cpu},
-              {"spectra_cpu", s.scene->spectra_cpu},
               {"uniform_cpu_per_spp", s.curve->cpu_per_spp()}};
     for (const UniformCurve::Point& p : s.curve->points())
         j["uniform"].push_back({{"spp", p.spp}, {"cpu", p.cpu}, {"error", p.error}});

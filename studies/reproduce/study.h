@@ -13,7 +13,9 @@ namespace covtrace::reproduce {
 
 /// CPU seconds of the parts of a render, from the shares of its phases.
 struct Breakdown {
-    double analysis = 0;  ///< covariance paths beyond the radiance that they deliver, occluders
+    /// Covariance paths beyond the radiance that they deliver, occluders, spectra, plans.
+    double analysis = 0;
+    double spectra = 0;  ///< of the analysis, what comes before the first path: textures and lights
     double radiance = 0;  ///< all samples, those of the covariance paths too
     double reconstruction = 0;
     double total = 0;

@@ -48,11 +48,9 @@ LoadedScene Workshop::load(const std::string& name, const fs::path& file,
     SceneOverrides overrides;
     overrides.resolution = resolution;
     apply(overrides, description);
-    LoadedScene loaded{
-        name, file, resolution, std::make_unique<RenderScene>(std::move(description)), 0, 0};
+    LoadedScene loaded{name, file, resolution,
+                       std::make_unique<RenderScene>(std::move(description)), 0};
     loaded.load_cpu = cpu_seconds() - start;
-    loaded.scene->prepare_spectra();
-    loaded.spectra_cpu = cpu_seconds() - start - loaded.load_cpu;
     return loaded;
 }
 

@@ -29,8 +29,7 @@ struct LoadedScene {
     fs::path file;
     std::array<int, 2> resolution;
     std::unique_ptr<RenderScene> scene;
-    double load_cpu = 0;     ///< seconds to read and build the scene
-    double spectra_cpu = 0;  ///< seconds to analyse its textures and environment, once per scene
+    double load_cpu = 0;  ///< seconds to read and build the scene
 };
 
 class Workshop {

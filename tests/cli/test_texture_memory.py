@@ -40,6 +40,13 @@ class TextureMemory(FilmTest):
         self.assertEqual(whole, ALL)
         self.assertLessEqual(paged, 100 * 1024)
 
+    def test_the_spectra_of_textures_count(self):
+        for method in ("covariance", "hybrid"):
+            self.run_render("textured", method, "--spp", "2", "--stats", "stats.json")
+            memory = json.loads((self.folder / "stats.json").read_text())["memory"]
+            self.assertGreater(memory["textures"], ALL + 4 * SIDE * SIDE)  # a float for each texel at least
+            self.assertNotIn("spectra", memory)
+
     def test_a_film_goes_on_under_another_bound(self):
         self.run_render("textured", "hybrid", "--spp", "8", output="whole.exr")
         film = ["--checkpoint", "t.film", "--resume"]

@@ -23,10 +23,9 @@ class Table {
   public:
     /// Reads the scene. `occlusion`: whether the outlines of the geometry are looked at.
     explicit Table(const std::string& text, bool occlusion = false, Vec2 film = {16, 16})
-        : scene_(read_pbrt_string(text, "test", ".")), rays_(scene_, film) {
-        scene_.prepare_spectra();
+        : scene_(read_pbrt_string(text, "test", ".")), spectra_(scene_), rays_(scene_, film) {
         if (occlusion) query_.emplace(scene_.geometry);
-        replay_.emplace(scene_, Occluders{nullptr, query_ ? &*query_ : nullptr},
+        replay_.emplace(scene_, spectra_, Occluders{nullptr, query_ ? &*query_ : nullptr},
                         BrdfCovariance::local);
     }
     Table(const Table&) = delete;
@@ -56,7 +55,7 @@ class Table {
             if (record.count != mirrors + 1) continue;
             const PathVertex& end = record.vertices[size_t(mirrors)];
             if (!(end.direct > 0) || !end.seen_sharply) continue;
-            const auto spot = scene_.textures.uv_covariance(
+            const auto spot = spectra_.textures.uv_covariance(
                 scene_.materials.textures(end.material).reflectance, {end.hit.uv, end.hit.position},
                 end.hit.dpdu, end.hit.dpdv, 0);
             return Probe{(*replay_)(record).sigma, probe_field(scene_, rays_, record, spot)};
@@ -66,6 +65,7 @@ class Table {
 
   private:
     RenderScene scene_;
+    SceneSpectra spectra_;
     SensorRays rays_;
     std::optional<OccluderQuery> query_;
     std::optional<PathReplay> replay_;

@@ -296,8 +296,7 @@ TEST(Emission, DegenerateLightsAreHarmless) {
     s.add(mesh_of(rectangle(1, 1)), Rgb(0));
     s.add_light(PointLight{.intensity = Rgb(1), .power = {}, .from = {0, 0, 1}});
     s.description.area_lights[0].power = 10.0f;
-    s.build();
-    s.lights->prepare_spectra();
+    s.build_with_spectra();
     Rng rng(5);
     for (int i = 0; i < 1000; ++i) {
         const Vec3 p = i == 0 ? Vec3{0, 0, 1} : square_to_sphere(rng.next_2d());

@@ -241,9 +241,10 @@ TEST(Environment, IlluminanceScalesTheImage) {
 // ---- Spectrum
 
 TEST(EnvironmentSpectrum, UniformLightHasNone) {
-    Environment e = environment(InfiniteLight{});
-    e.prepare_spectrum();
-    const AngularCovariance a = e.spectrum(normalize(Vec3{1, 2, 3}));
+    const Environment e = environment(InfiniteLight{});
+    const EnvironmentSpectrum spectrum(e);
+    EXPECT_FALSE(spectrum.varies());
+    const AngularCovariance a = spectrum.at(normalize(Vec3{1, 2, 3}));
     EXPECT_EQ(a.a11, 0);
     EXPECT_EQ(a.a12, 0);
     EXPECT_EQ(a.a22, 0);
@@ -259,13 +260,13 @@ std::vector<Rgb> waves(int width, int height, float cycles) {
 TEST(EnvironmentSpectrum, WavesAroundThePole) {
     for (const int width : {512, 256}) {
         const TemporaryImage image(waves(width, 256, 16), width, 256);
-        Environment e = environment(image_light(image));
-        e.prepare_spectrum();
+        const Environment e = environment(image_light(image));
+        const EnvironmentSpectrum spectrum(e);
         for (const float theta : {kPi / 2, kPi / 4}) {
             // The texels have sixteen waves around a circle of circumference 2 pi sin(theta); a
             // structure tensor counts a single frequency f as up to 2 f^2.
             const float f = 16 / (2 * kPi * std::sin(theta));
-            const AngularCovariance a = e.spectrum(from_angles(theta, 1.3f));
+            const AngularCovariance a = spectrum.at(from_angles(theta, 1.3f));
             EXPECT_GT(a.a11, 0.7f * f * f) << theta;
             EXPECT_LT(a.a11, 3.0f * f * f) << theta;
             EXPECT_LT(a.a22, 0.3f * a.a11) << theta;
@@ -282,16 +283,15 @@ TEST(EnvironmentSpectrum, WavesAroundThePole) {
 TEST(EnvironmentSpectrum, TurnsWithTheTransformAndStaysFiniteAtThePoles) {
     const TemporaryImage image(waves(256, 128, 12), 256, 128);
     const Transform turn = Transform::rotate(70, {1, 0.3f, -2});
-    Environment still = environment(image_light(image)),
-                turned = environment(image_light(image), turn);
-    still.prepare_spectrum();
-    turned.prepare_spectrum();
+    const Environment still = environment(image_light(image)),
+                      turned = environment(image_light(image), turn);
+    const EnvironmentSpectrum spectrum(still), of_turned(turned);
     const Vec3 w = from_angles(1.1f, 2.7f);
-    const AngularCovariance a = still.spectrum(w), b = turned.spectrum(normalize(turn.vector(w)));
+    const AngularCovariance a = spectrum.at(w), b = of_turned.at(normalize(turn.vector(w)));
     EXPECT_NEAR(b.a11, a.a11, 1e-2f * a.a11);
     EXPECT_LT(distance(b.tangent.x, turn.vector(a.tangent.x)), 1e-5f);
     for (const Vec3 pole : {Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
-        const AngularCovariance c = still.spectrum(pole);
+        const AngularCovariance c = spectrum.at(pole);
         EXPECT_TRUE(std::isfinite(c.a11) && std::isfinite(c.a12) && std::isfinite(c.a22));
     }
 }
@@ -303,13 +303,10 @@ TEST(EnvironmentSpectrum, SeveralLightsAreAveragedByRadiance) {
     both.add_light(image_light(image),
                    Transform::rotate(90, {0, 0, 1}));  // waves of the same phase
     both.add_light(InfiniteLight{.radiance = Rgb(2), .image = {}, .illuminance = {}});
-    for (LightScene* s : {&one, &both}) {
-        s->build();
-        s->lights->prepare_spectra();
-    }
+    for (LightScene* s : {&one, &both}) s->build_with_spectra();
     const Vec3 w = from_angles(1.2f, 0.4f);
-    const SourceSpectrum a = one.lights->environment_spectrum(w),
-                         b = both.lights->environment_spectrum(w);
+    const SourceSpectrum a = one.spectra->environment_spectrum(w),
+                         b = both.spectra->environment_spectrum(w);
     EXPECT_EQ(a.kind, SourceSpectrum::Kind::environment);
     ASSERT_GT(a.a11, 0);
     const float l = luminance(one.lights->environment(w));

@@ -10,7 +10,7 @@
 
 #include "geometry/geometry.h"
 #include "image/image.h"
-#include "light/lights.h"
+#include "light/spectra.h"
 
 namespace covtrace::test {
 
@@ -41,8 +41,14 @@ class LightScene {
         lights = std::make_unique<Lights>(description, *geometry);
     }
 
+    void build_with_spectra() {
+        build();
+        spectra = std::make_unique<LightSpectra>(*lights);
+    }
+
     std::unique_ptr<Geometry> geometry;
     std::unique_ptr<Lights> lights;
+    std::unique_ptr<LightSpectra> spectra;
 };
 
 template <class G>

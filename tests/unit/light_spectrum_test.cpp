@@ -12,13 +12,10 @@ using namespace test;
 
 /// The spectrum at the point of the scene's only shape that a ray from `from` towards `at` meets.
 SourceSpectrum spectrum_at(LightScene& s, Vec3 from, Vec3 at, float time = 0) {
-    if (!s.lights) {
-        s.build();
-        s.lights->prepare_spectra();
-    }
+    if (!s.lights) s.build_with_spectra();
     SurfaceHit hit;
     EXPECT_TRUE(s.geometry->intersect({from, normalize(at - from), time}, hit));
-    return s.lights->source_spectrum(hit, true);
+    return s.spectra->source_spectrum(hit, true);
 }
 
 /// Second moment along a unit direction of the tangent plane.
@@ -137,16 +134,15 @@ TEST(SourceSpectrum, MotionMovesTheTensorAndGivesVelocities) {
 TEST(SourceSpectrum, SamplesAndHitsTellTheSame) {
     LightScene s;
     s.add(mesh_of(rectangle(2, 6)), Rgb(1));
-    s.build();
-    s.lights->prepare_spectra();
+    s.build_with_spectra();
     Rng rng(1);
     for (int i = 0; i < 100; ++i) {
         const auto sample = s.lights->sample({0.3f, 0.2f, 2}, {}, 0, 0.5f, rng.next_2d());
         ASSERT_TRUE(sample);
         SurfaceHit hit;
         ASSERT_TRUE(s.geometry->intersect({{0.3f, 0.2f, 2}, sample->wi}, hit));
-        const SourceSpectrum a = s.lights->source_spectrum(*sample, 0),
-                             b = s.lights->source_spectrum(hit, true);
+        const SourceSpectrum a = s.spectra->source_spectrum(*sample, 0),
+                             b = s.spectra->source_spectrum(hit, true);
         EXPECT_EQ(a.border_distance, kInfinity);
         EXPECT_LT(b.border_distance, 1.001f);
         EXPECT_NEAR(a.s11, b.s11, 1e-5);
@@ -163,14 +159,13 @@ TEST(SourceSpectrum, LightsWithoutExtent) {
                           .cone_angle = 10,
                           .cone_delta_angle = 0});
     s.add_light(DistantLight{});
-    s.build();
-    s.lights->prepare_spectra();
+    s.build_with_spectra();
     bool seen[3] = {};
     for (int i = 0; i < 300; ++i) {
         const auto sample = s.lights->sample({}, {0, 0, 1}, 0, float(i) / 300, {});
         ASSERT_TRUE(sample && sample->is_delta);
         seen[sample->light] = true;
-        const SourceSpectrum a = s.lights->source_spectrum(*sample, 0);
+        const SourceSpectrum a = s.spectra->source_spectrum(*sample, 0);
         EXPECT_LT(distance(a.tangent.z, -sample->wi), 1e-5f);
         if (sample->light == 2) {
             EXPECT_EQ(a.kind, SourceSpectrum::Kind::directional);
@@ -223,11 +218,10 @@ double slide_variance(const TemporaryImage& image, Vec3 towards) {
     light.image = image.path();
     light.fov = 60;
     s.add_light(light);
-    s.build();
-    s.lights->prepare_spectra();
+    s.build_with_spectra();
     const auto sample = s.lights->sample(towards, {}, 0, 0.5f, {0.5f, 0.5f});
     EXPECT_TRUE(sample);
-    const SourceSpectrum a = s.lights->source_spectrum(*sample, 0);
+    const SourceSpectrum a = s.spectra->source_spectrum(*sample, 0);
     EXPECT_EQ(a.kind, SourceSpectrum::Kind::point);
     const double half = 0.5 * (double(a.a11) + a.a22), difference = 0.5 * (double(a.a11) - a.a22);
     return half + std::sqrt(difference * difference + double(a.a12) * a.a12);

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/rng.h"
-#include "texture/texture.h"
+#include "texture/spectra.h"
 #include "texture_fixtures.h"
 
 namespace covtrace {
@@ -14,10 +14,9 @@ float edge(float e) {
     return 1 / sqr(kPi * e);
 }
 
-SpatialCovariance2 covariance(TextureStore& store, TextureId id, const TexturePoint& at,
+SpatialCovariance2 covariance(const TextureStore& store, TextureId id, const TexturePoint& at,
                               Vec3 dpdu = kDpdu, Vec3 dpdv = kDpdv, float footprint = 1e-4f) {
-    store.prepare_spectra();
-    return store.uv_covariance(id, at, dpdu, dpdv, footprint);
+    return TextureSpectra(store).uv_covariance(id, at, dpdu, dpdv, footprint);
 }
 
 CheckerboardTexture board_of(TextureId tex1, TextureId tex2, float scale_u, float scale_v) {
@@ -215,6 +214,31 @@ TEST(TextureCovariance, OfACheckerboardIncludesTheActiveSquare) {
     EXPECT_NEAR(
         covariance(store, id, on_waves).ss / (edge(0.125f) + covariance(store, waves, on_waves).ss),
         1, 1e-3);
+}
+
+TEST(TextureSpectra, AreMadeOncePerImageAndKeptBesideTheTextures) {
+    const TemporaryFolder folder("covariance_shared");
+    const ImageTexture waves = image_texture(write_waves(folder, "waves.pfm", 8));
+    ImageTexture scaled = waves, inverted = waves;
+    scaled.scale = 3;  // the analysis is relative to the mean
+    inverted.invert = true;
+    // Bytes after a look at each texture, which makes its part of the analysis.
+    const auto bytes_of = [](const std::vector<ImageTexture>& images, TextureBandwidth bandwidth) {
+        TextureScene scene;
+        for (const ImageTexture& image : images) scene.add(image);
+        const TextureStore store(scene.description);
+        const size_t of_textures = store.memory();
+        const TextureSpectra spectra(store, bandwidth);
+        for (TextureId id = 0; id < TextureId(images.size()); ++id)
+            spectra.uv_covariance(id, {{0.4f, 0.6f}, {}}, kDpdu, kDpdv, 1e-4f);
+        EXPECT_EQ(store.memory(), of_textures);
+        return spectra.memory();
+    };
+    const size_t one = bytes_of({waves}, TextureBandwidth::own);
+    EXPECT_GT(one, 64 * 64 * sizeof(float));
+    EXPECT_EQ(bytes_of({waves, scaled}, TextureBandwidth::own), one);
+    EXPECT_EQ(bytes_of({waves, inverted}, TextureBandwidth::own), 2 * one);
+    EXPECT_EQ(bytes_of({waves}, TextureBandwidth::highest), 0u);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include "core/rng.h"
 #include "texture/graph.h"
-#include "texture/texture.h"
+#include "texture/spectra.h"
 
 namespace covtrace {
 namespace {
@@ -13,6 +13,7 @@ namespace {
 struct OneTexture {
     SceneDescription scene;
     std::optional<TextureStore> store;
+    std::optional<TextureSpectra> spectra;
 
     template <typename Texture>
     explicit OneTexture(const Texture& texture, std::vector<Rgb> constants = {}) {
@@ -20,7 +21,7 @@ struct OneTexture {
         for (const Rgb& value : constants)
             scene.textures.push_back({"", true, ConstantTexture{value}, {}});
         store.emplace(scene);
-        store->prepare_spectra(TextureBandwidth::own);
+        spectra.emplace(*store);
     }
     Rgb at(Vec3 p) const { return store->eval(0, {{p.x, p.y}, p}); }
 };
@@ -144,7 +145,7 @@ TEST(NoiseTextures, AbsurdParametersMakeFiniteValues) {
             const OneTexture one(t);
             EXPECT_TRUE(is_finite(one.at(p)));
             const SpatialCovariance2 c =
-                one.store->uv_covariance(0, {{}, p}, {1, 0, 0}, {0, kHuge, 0}, 0.1f);
+                one.spectra->uv_covariance(0, {{}, p}, {1, 0, 0}, {0, kHuge, 0}, 0.1f);
             EXPECT_TRUE(std::isfinite(c.ss + c.st + c.tt));
         }
     }
@@ -191,7 +192,7 @@ TEST(Bilerp, HasItsValuesAtTheCorners) {
 }
 
 SpatialCovariance2 covariance(const OneTexture& t, Vec3 p, float footprint) {
-    return t.store->uv_covariance(0, {{p.x, p.y}, p}, {1, 0, 0}, {0, 1, 0}, footprint);
+    return t.spectra->uv_covariance(0, {{p.x, p.y}, p}, {1, 0, 0}, {0, 1, 0}, footprint);
 }
 
 TEST(NoiseTextures, CovarianceIsTheSpectrumOfTheOctavesInView) {

@@ -48,7 +48,8 @@ void print(const char* name, std::vector<Difference>& all) {
 
 void run(const RenderScene& scene, uint32_t paths) {
     const OccluderQuery query(scene.geometry);
-    const PathReplay replay(scene, {nullptr, &query}, BrdfCovariance::local);
+    const SceneSpectra spectra(scene);
+    const PathReplay replay(scene, spectra, {nullptr, &query}, BrdfCovariance::local);
     const PassContext context{.scene = scene, .seed = 1, .max_depth = scene.description.max_depth};
     const PixelBounds region = render_region(scene.description.film);
     // A spectrum less than that of the widest filter changes nothing.

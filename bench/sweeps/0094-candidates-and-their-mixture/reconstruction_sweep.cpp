@@ -15,6 +15,7 @@
 #include <cstdlib>
 
 #include "image/compare.h"
+#include "reconstruction/luminance.h"
 #include "reconstruction/selector.h"
 #include "support/error_bins.h"
 #include "support/hybrid_samples.h"

@@ -20,6 +20,7 @@
 #include <cmath>
 
 #include "image/image.h"
+#include "reconstruction/luminance.h"
 #include "reconstruction/outliers.h"
 #include "support/error_bins.h"
 #include "support/hybrid_samples.h"

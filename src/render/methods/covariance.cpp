@@ -10,7 +10,7 @@
 #include "render/develop.h"
 #include "render/rounds.h"
 #include "render/sample_knowledge.h"
-#include "render/scene_occluders.h"
+#include "render/scene_analysis.h"
 
 namespace covtrace {
 
@@ -26,12 +26,7 @@ constexpr auto kFactorName = "covtrace:k";
 class CovarianceRender {
   public:
     explicit CovarianceRender(RenderJob& job) : job_(job), s_(job.state) {
-        if (s_.stage == Stage::rounds) return;
-        {
-            const PhaseTimer timer(job.monitor, job.seconds(Phase::spectra));
-            job.scene.prepare_spectra(job.options.texture_bandwidth);
-        }
-        occluders_.emplace(job);
+        if (s_.stage != Stage::rounds) analysis_.emplace(job);
     }
 
     void run() {
@@ -160,21 +155,22 @@ class CovarianceRender {
         const PhaseTimer timer(job_.monitor, job_.seconds(phase));
         const PassProgress progress = job_.reporter(phase, s_.taken, s_.target);
         auto& statistics = job_.result.statistics;
-        if (radiance)
+        if (radiance) {
             job_.counted(statistics.radiance, radiance_pass(job_.context, s_.films[0], s_.plan[0],
                                                             job_.monitor, progress));
-        else
-            job_.counted(statistics.covariance,
-                         covariance_pass(job_.context, occluders_->view(),
-                                         job_.options.brdf_covariance, s_.films[0], s_.plan[0],
-                                         {s_.parts(), {}, s_.weight_limit.value_or(kInfinity)},
-                                         job_.monitor, progress));
+            return;
+        }
+        job_.counted(statistics.covariance,
+                     covariance_pass(job_.context, analysis_->replay(), s_.films[0], s_.plan[0],
+                                     {s_.parts(), {}, s_.weight_limit.value_or(kInfinity)},
+                                     job_.monitor, progress));
+        analysis_->note_memory();
     }
 
     RenderJob& job_;
     RenderState& s_;
-    std::optional<SceneOccluders> occluders_;  // there while covariance paths are traced
-    std::optional<Prediction> prediction_;     // there from the end of the covariance paths on
+    std::optional<SceneAnalysis> analysis_;  // there while covariance paths are traced
+    std::optional<Prediction> prediction_;   // there from the end of the covariance paths on
 };
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include "render/develop.h"
 #include "render/rounds.h"
 #include "render/sample_knowledge.h"
-#include "render/scene_occluders.h"
+#include "render/scene_analysis.h"
 #include "render/timed_denoiser.h"
 #include "render/unmet_emitters.h"
 
@@ -33,12 +33,7 @@ class HybridRender {
             denoiser_.emplace(*job.options.denoiser, job.monitor, job.seconds(Phase::denoise),
                               job.seconds(Phase::reconstruction));
         if (job.options.error) unmet_ = UnmetEmitters(job.context, job.region);
-        if (s_.stage == Stage::rounds) return;
-        {
-            const PhaseTimer timer(job_.monitor, job_.seconds(Phase::spectra));
-            job_.scene.prepare_spectra(job_.options.texture_bandwidth);
-        }
-        occluders_.emplace(job_);
+        if (s_.stage != Stage::rounds) analysis_.emplace(job_);
     }
 
     void trace() {
@@ -163,10 +158,10 @@ class HybridRender {
                           std::span<const uint32_t> earlier) {
         const PhaseTimer timer(job_.monitor, job_.seconds(Phase::covariance));
         job_.counted(job_.result.statistics.covariance,
-                     covariance_pass(contexts_[k], occluders_->view(), job_.options.brdf_covariance,
-                                     s_.films[k], counts,
+                     covariance_pass(contexts_[k], analysis_->replay(), s_.films[k], counts,
                                      {s_.parts(), earlier, s_.weight_limit.value_or(kInfinity)},
                                      job_.monitor, reporter(Phase::covariance, k)));
+        analysis_->note_memory();
     }
 
     void trace_radiance(size_t k) {
@@ -299,7 +294,7 @@ class HybridRender {
     std::vector<PassContext> contexts_;
     std::optional<TimedDenoiser> denoiser_;
     bool is_denoiser_too_slow_ = false;
-    std::optional<SceneOccluders> occluders_;  // there while covariance paths are traced
+    std::optional<SceneAnalysis> analysis_;  // there while covariance paths are traced
     // Smoothed; there from the end of the covariance paths on.
     std::optional<Prediction> prediction_;
     std::optional<HybridImage> image_;  // image of the film as it is

@@ -1,0 +1,40 @@
+#include "render/scene_analysis.h"
+
+namespace covtrace {
+
+SceneAnalysis::SceneAnalysis(RenderJob& job) : job_(job) {
+    {
+        const PhaseTimer timer(job.monitor, job.seconds(Phase::spectra));
+        spectra_.emplace(job.scene, job.options.texture_bandwidth);
+    }
+    // The slack of latest_end() is for samples that an image needs.
+    const auto cancelled = [&job] {
+        return job.monitor.cancelled() || job.monitor.elapsed() >= job.tracing_end();
+    };
+    if (asks_grid(job.options.occlusion)) {
+        const PhaseTimer timer(job.monitor, job.seconds(Phase::grid));
+        grid_.emplace(job.scene.geometry,
+                      VoxelGridOptions{.width = job.options.voxels, .cancelled = cancelled});
+    } else if (job.options.occlusion == Occlusion::query) {
+        const PhaseTimer timer(job.monitor, job.seconds(Phase::outlines));
+        query_.emplace(job.scene.geometry, cancelled);
+    }
+    note_memory();
+}
+
+PathReplay SceneAnalysis::replay() const {
+    return {job_.scene,
+            *spectra_,
+            {grid_ ? &*grid_ : nullptr, query_ ? &*query_ : nullptr,
+             job_.options.occlusion == Occlusion::voxels},
+            job_.options.brdf_covariance};
+}
+
+void SceneAnalysis::note_memory() const {
+    auto& memory = job_.result.statistics.memory;
+    memory["spectra"] = spectra_->textures.memory();
+    if (grid_) memory["occluders"] = grid_->memory();
+    if (query_) memory["occluders"] = query_->memory();
+}
+
+}  // namespace covtrace
