@@ -4,6 +4,8 @@
 #include "core/simd.h"
 #include "covariance/covariance.hpp"
 
+namespace covtrace {
+
 /// Axes x, y, z of a frame side by side: each component of the three axes, in three of four
 /// lanes.
 struct Axes4 {
