@@ -1,9 +1,29 @@
 #include "cli/picture_name.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
 #include "core/error.h"
 #include "image/write_image.h"
 
 namespace covtrace::cli {
+
+namespace {
+
+/// Of formats that are written or read.
+bool is_image_name(const std::filesystem::path& file) {
+    std::string ending = file.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    constexpr std::array<std::string_view, 6> kRead{".jpg", ".jpeg", ".tga",
+                                                    ".qoi", ".ppm",  ".pgm"};
+    return !ending.empty() &&
+           (written_format(file) || std::find(kRead.begin(), kRead.end(), ending) != kRead.end());
+}
+
+}  // namespace
 
 void require_image_name(const std::string& option, const std::filesystem::path& file,
                         const LayerSelection& layers) {
@@ -25,7 +45,7 @@ void require_picture_name(const std::string& option, const std::filesystem::path
 }
 
 void require_report_name(const std::string& option, const std::filesystem::path& file) {
-    if (!file.has_extension() || !written_format(file)) return;
+    if (!is_image_name(file)) return;
     throw Error(ErrorKind::usage, option + ": '" + file.string() +
                                       "' is the name of an image; expected one that ends in .html");
 }
