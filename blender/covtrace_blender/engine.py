@@ -29,7 +29,8 @@ PASSES = (
 
 
 # The same by covtrace's own names.
-LAYERS = "Z,N,albedo,raw,variance,error,samples,density,filter"
+LAYERS = "Z,N,albedo,raw,variance,error,samples"
+PREDICTED_LAYERS = "density,filter"  # not of uniform, where naming them would be a warning
 
 
 def _set_pixels(render_pass, pixels):
@@ -92,8 +93,9 @@ class CovtraceEngine(bpy.types.RenderEngine):
             self.report({"WARNING"}, text)
         image = os.path.join(folder, "image.exr")
         chosen = scene.covtrace
+        layer_names = LAYERS if chosen.method == "uniform" else f"{LAYERS},{PREDICTED_LAYERS}"
         command = [program, "render", file, "-o", image, "--method", chosen.method, "--progress", "json",
-                   "--layer-names", "blender", "--layers", LAYERS, "--seed", str(chosen.seed)]
+                   "--layer-names", "blender", "--layers", layer_names, "--seed", str(chosen.seed)]
         # Whichever comes first; a scene's own samples are those of the panel.
         command += ["--spp", repr(chosen.samples)]
         if chosen.seconds > 0:
