@@ -12,7 +12,7 @@ namespace covtrace::cli {
 
 namespace {
 
-/// Of formats that are written or read.
+/// Whether a file has the name of an image, of any format that is written or read.
 bool is_image_name(const std::filesystem::path& file) {
     std::string ending = file.extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(),

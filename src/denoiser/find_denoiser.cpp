@@ -48,7 +48,7 @@ FoundDenoiser find_denoiser(const DenoiserSearch& search) {
         return {oidn, oidn->file(), {}};
     } catch (const Error& e) {
         if (search.choice == DenoiserChoice::oidn)
-            throw Error(ErrorKind::usage, OptionName{"denoiser"}, e.what());
+            throw Error(ErrorKind::usage, OptionName{"denoiser"}, std::string("oidn: ") + e.what());
         return {nullptr, {}, e.what(), !file.empty()};
     }
 }

@@ -44,7 +44,7 @@ class FindDenoiser : public testing::Test {
             ADD_FAILURE() << library << ": no error";
         } catch (const Error& e) {
             EXPECT_EQ(e.kind(), ErrorKind::usage);
-            EXPECT_EQ(e.what(), "--denoiser oidn: " + found.why_none);
+            EXPECT_EQ(e.what(), "denoiser: oidn: " + found.why_none);
         }
         return found.why_none;
     }

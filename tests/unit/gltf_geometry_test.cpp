@@ -184,7 +184,7 @@ TEST(GltfGeometry, MovesNodesOverTheShutter) {
 
     const auto still = read(file);
     EXPECT_FALSE(still.shapes[0].object_to_world.is_animated());
-    EXPECT_TRUE(contains(all_warnings(still), "--shutter"));
+    EXPECT_TRUE(contains(all_warnings(still), "a shutter from T0 to T1"));
 
     file.root["animations"][0]["samplers"][0]["interpolation"] = "STEP";
     const auto step = read(file, {{}, std::array<float, 2>{2.9f, 3}});
