@@ -6,6 +6,7 @@
 
 #include "image/finite_pixels.h"
 #include "reconstruction/gather.h"
+#include "reconstruction/unfiltered_share.h"
 #include "render/hybrid_film.h"
 #include "render/layers.h"
 
@@ -53,6 +54,27 @@ GatheredImage gathered(const Film& film, const FilterField& filters,
     return image;
 }
 
+/// Mixes unfiltered pixels into a gathered image where its filters cost more than they gain.
+void mix_unfiltered(const Film& film, const FilterField& filters, GatheredImage& image) {
+    const int w = filters.width, h = filters.height;
+    FilteredLuminance l{Plane(w, h), Plane(w, h), Plane(w, h), Plane(w, h), filters.covariance};
+    for (size_t i = 0; i < image.color.size(); ++i) {
+        const FilmPixel& pixel = film.pixels[i];
+        const Rgb v = pixel.variance_of_mean();
+        l.raw[i] = luminance(pixel.mean);
+        l.raw_variance[i] = sqr(luminance({std::sqrt(v.r), std::sqrt(v.g), std::sqrt(v.b)}));
+        l.gathered[i] = luminance(image.color[i]);
+        l.gathered_variance[i] = image.variance[i];
+    }
+    const Plane share = unfiltered_share(l);
+    for (size_t i = 0; i < image.color.size(); ++i) {
+        if (film.pixels[i].count == 0) continue;
+        image.color[i] = (1 - share[i]) * image.color[i] + share[i] * film.pixels[i].mean;
+        image.variance[i] =
+            sqr(1 - share[i]) * image.variance[i] + sqr(share[i]) * l.raw_variance[i];
+    }
+}
+
 Image gathered_image(const RenderState& state) {
     const Film& film = state.films[0];
     const CovarianceBuffers& parts = state.parts();
@@ -72,7 +94,8 @@ Image gathered_image(const RenderState& state) {
     }
     const bool emitters_found = std::any_of(parts.in_view.begin(), parts.in_view.end(),
                                             [](const PackedCovariance& c) { return c.weight > 0; });
-    const GatheredImage image = gathered(film, field, emitters_found ? &in_view_field : nullptr);
+    GatheredImage image = gathered(film, field, emitters_found ? &in_view_field : nullptr);
+    if (state.filter == FilterRule::verified) mix_unfiltered(film, field, image);
     const CovarianceBuffer all = merge(parts);
     const Prediction raw = preintegrated(all);
     return make_layers(film, state.display, state.has_holes,

@@ -1,0 +1,81 @@
+/// Mixing raw pixels into filtered ones: where the filter is wrong and where the samples are noisy.
+#include "reconstruction/unfiltered_share.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace covtrace {
+namespace {
+
+constexpr int kWidth = 64, kHeight = 48;
+using Filter = covariance::Sym2<float>;
+
+/// A flat image of luminance 1 with noise of deviation `noise`, and its means by 1/`mean_of` of the
+/// variance, off by `bias`.
+struct Flat {
+    FilteredLuminance image;
+    std::vector<Filter> filters;
+
+    Flat(float noise, float mean_of, float bias, uint32_t seed) {
+        const auto plane = [] { return Plane(kWidth, kHeight); };
+        image = {plane(), plane(), plane(), plane(), {}};
+        // A Gaussian mean has 1 / (4 pi s^2) of the variance, and its own pixel 1 / (2 pi s^2).
+        const float s2 = mean_of / (4 * 3.14159265f);
+        filters.assign(image.raw.size(), Filter{s2, 0, s2});
+        image.filter = filters;
+        std::mt19937 random(seed);
+        std::normal_distribution<float> normal;
+        for (size_t i = 0; i < image.raw.size(); ++i) {
+            image.raw[i] = 1 + noise * normal(random);
+            image.raw_variance[i] = noise * noise;
+            image.gathered[i] = 1 + bias;
+            image.gathered_variance[i] = noise * noise / mean_of;
+        }
+    }
+    double mean_share() const {
+        double sum = 0;
+        const Plane share = unfiltered_share(image);
+        for (const float s : share.values) sum += s;
+        return sum / double(share.size());
+    }
+};
+
+TEST(UnfilteredShare, IsAllWhereTheFilterIsWrongAndNothingIsNoisy) {
+    EXPECT_NEAR(Flat(1e-4f, 50, 0.2f, 1).mean_share(), 1, 1e-3);
+    EXPECT_NEAR(Flat(1e-4f, 50, -0.2f, 2).mean_share(), 1, 1e-3);
+}
+
+/// About 50 pixels tell each bias: chance alone gives a share of sqrt(2 / 50) / sqrt(2 pi) = 0.08,
+/// 0.64 % of the noise's variance.
+TEST(UnfilteredShare, IsLittleWhereTheFilterIsRightAndPixelsAreNoisy) {
+    EXPECT_LT(Flat(0.5f, 50, 0, 3).mean_share(), 0.1);
+    EXPECT_LT(Flat(0.05f, 50, 0, 4).mean_share(), 0.1);
+}
+
+/// The mixture's error is near that of the best one, b^2 r / (b^2 + r), where bias and noise are
+/// alike.
+TEST(UnfilteredShare, WeighsBiasAgainstNoise) {
+    for (const float bias : {0.05f, 0.1f, 0.2f})
+        EXPECT_NEAR(Flat(0.1f, 200, bias, 5).mean_share(), bias * bias / (bias * bias + 0.01f),
+                    0.06)
+            << bias;
+}
+
+TEST(UnfilteredShare, IsNothingWhereBothImagesAreTheSame) {
+    EXPECT_EQ(Flat(0, 50, 0, 6).mean_share(), 0);
+}
+
+TEST(UnfilteredShare, DoesNotSpreadLightBeyondSquares) {
+    Flat flat(0.1f, 50, 0, 7);
+    flat.image.raw[100] = 1e30f;
+    flat.image.raw_variance[100] = INFINITY;
+    const Plane share = unfiltered_share(flat.image);
+    for (const float s : share.values) EXPECT_TRUE(s >= 0 && s <= 1) << s;
+    EXPECT_LT(flat.mean_share(), 0.1);
+}
+
+}  // namespace
+}  // namespace covtrace
