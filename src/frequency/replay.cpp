@@ -19,10 +19,10 @@ constexpr double kLeastFollowed = 1 - kSmallestShare;
 
 }  // namespace
 
-ReplayedScene::ReplayedScene(const LitScene& scene, const SceneSpectra& spectra,
-                             const Occluders& occluders, BrdfCovariance rule)
-    : scene(scene), spectra(spectra), occluders(occluders), rule(rule) {
-    const Bounds3 bounds = scene.geometry.bounds();
+ReplayedScene::ReplayedScene(const LitScene& lit_scene, const SceneSpectra& scene_spectra,
+                             const Occluders& scene_occluders, BrdfCovariance brdf_rule)
+    : scene(lit_scene), spectra(scene_spectra), occluders(scene_occluders), rule(brdf_rule) {
+    const Bounds3 bounds = lit_scene.geometry.bounds();
     center = bounds.center();
     radius = std::max(bounds.radius(), 1e-6f);
     smallest = 1e-4 * radius;

@@ -38,8 +38,8 @@ struct ReplayedScene {
     float radius;     ///< scene units
     double smallest;  ///< extent that stands for a point, scene units
 
-    ReplayedScene(const LitScene& scene, const SceneSpectra& spectra, const Occluders& occluders,
-                  BrdfCovariance rule);
+    ReplayedScene(const LitScene& lit_scene, const SceneSpectra& scene_spectra,
+                  const Occluders& scene_occluders, BrdfCovariance brdf_rule);
     /// The point where light from infinity, seen from p in the direction w, enters the bounding
     /// sphere.
     Vec3 entry(Vec3 p, Vec3 w) const;
