@@ -1,4 +1,4 @@
-/// A frame whose axes are computed with together.
+/// Frames as vectors of four numbers, for operators that treat all three axes alike.
 #pragma once
 
 #include "core/simd.h"
@@ -6,8 +6,8 @@
 
 namespace covtrace {
 
-/// Axes x, y, z of a frame side by side: each component of the three axes, in three of four
-/// lanes.
+/// Axes of a frame side by side: x holds the x components of the frame's three axes in its first
+/// three lanes, y and z hold the other components. The fourth lane begins as 0.
 struct Axes4 {
     Double4 x, y, z;
 
@@ -28,7 +28,7 @@ struct Axes4 {
     }
 };
 
-/// The square a a^T of the first two lanes: (a0 a0, a0 a1, a1 a1).
+/// Products a a^T of the first two lanes: (a0 a0, a0 a1, a1 a1, a1 a1).
 inline Double4 square4(const Double4& a) {
     return __builtin_shufflevector(a, a, 0, 0, 1, 1) * __builtin_shufflevector(a, a, 0, 1, 1, 1);
 }

@@ -10,8 +10,9 @@ namespace cov = covariance;
 
 namespace {
 
-/// The surface or medium at a vertex as an emitter, seen by a receiver at the given distance.
-/// Mirrors show an emitter that is taken to face the receiver.
+/// The surface or medium at a vertex as an emitter, seen by a receiver at the given distance. Only
+/// a diffuse surface has its own normal; what others reflect or transmit is taken to face the
+/// receiver.
 cov::Emitter<double> emitter_at(const PathVertex& v, double distance) {
     if (v.medium >= 0) return {{}, distance};  // a medium shines about evenly
     const LobeShares& lobes = v.scatters ? v.next_event.lobes : v.direct_event.lobes;
@@ -20,6 +21,7 @@ cov::Emitter<double> emitter_at(const PathVertex& v, double distance) {
     return {diffuse ? v.hit.ns : v.wo, distance};
 }
 
+/// The outline of a surface as seen along `outgoing`; none where it turns away nowhere.
 std::optional<OwnOutline> own_outline(const cov::Surface<double>& surface,
                                       const cov::Motion<double>& motion, Vec3 outgoing) {
     const auto contour = cov::contour<double>(surface, outgoing);
@@ -27,7 +29,8 @@ std::optional<OwnOutline> own_outline(const cov::Surface<double>& surface,
     return OwnOutline{*contour, motion};
 }
 
-/// Light at the sensor, from light as it is beside a camera that rests.
+/// Covariance over the sensor's coordinates, from the light field beside the camera as one that
+/// rests would see it.
 cov::SymmetricMatrix5<double> to_sensor(const LightField& at_rest, const SensorGeometry& g) {
     if (cov::trace(at_rest.sigma) == 0) return {};
     if (g.orthographic)

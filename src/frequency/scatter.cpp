@@ -18,8 +18,9 @@ namespace {
 /// limits a diffuse surface.
 constexpr float kWideLobe = 0.4f;
 
-/// Cosine above which a denser coat lets light through evenly: second derivatives of Fresnel's
-/// factor give a window of at most a seventh of the cosine's.
+/// Cosine above which a denser coat lets light through evenly: derivatives of the logarithm of
+/// Fresnel's factor give a window of at most a quarter of the bandwidth of the cosine's (the most
+/// is at an index of 1.8).
 constexpr double kEvenTransmission = 0.7;
 
 /// Cosine above which even light that meets a flat surface stays even: the window of cosine and
@@ -41,9 +42,9 @@ LocalAxes local_axes(const cov::Frame<double>& shading, const cov::Frame<double>
     return {local(f.x), local(f.y), local(f.z)};
 }
 
-/// Window of the light that a coat lets through around the direction of a ray: its transmission T
-/// as a function of the cosine alone, which is c + u x.z + v y.z - c (u^2 + v^2)/2 in the ray's
-/// slopes.
+/// Window of the light that a coat lets through around the direction of a ray: the coat's
+/// transmission T as a function of the cosine alone, which is c + u (X.n) + v (Y.n) - c (u^2 +
+/// v^2)/2 in the slopes u, v along the ray's axes X and Y, n the normal on the ray's side.
 cov::Sym2<double> coat_window(const LobeShare& lobe, const ScatterPoint& p,
                               const cov::Frame<double>& f) {
     const cov::Vec3<double>& n = p.facing().n;
@@ -59,14 +60,16 @@ cov::Sym2<double> coat_window(const LobeShare& lobe, const ScatterPoint& p,
         {0, l1 * x, l1 * y, l2 * x * x - l1 * c, l2 * x * y, l2 * y * y - l1 * c}, limit);
 }
 
-/// A lobe of GGX's slopes, which are distributed like cov::tailed_lobe, as light finds it.
+/// Covariance of a lobe of GGX's slopes for light of the angular covariance `light`. GGX has the
+/// tails that cov::tailed_lobe is for; lobes that are flat along one axis stay as they are.
 cov::Sym2<double> tailed(const cov::Sym2<double>& lobe, const cov::Sym2<double>& light) {
     const double size = cov::trace(lobe);
     const bool is_peaked = cov::det(lobe) > 1e-9 * size * size;
     return is_peaked ? cov::tailed_lobe(lobe, light) : lobe;
 }
 
-/// Reflects light by a lobe of GGX's slopes. Reflections do not map slopes.
+/// Reflects light by a lobe of GGX's slopes. The pair's map is not applied: that of a reflection is
+/// the identity.
 LightField reflect_tailed(const LightField& field, const cov::GlossyPair<double>& pair) {
     return {cov::convolve_angular(field.sigma, tailed(pair.lobe, field.sigma.angular())),
             pair.outgoing};
@@ -115,8 +118,8 @@ LightField through_glossy(const LightField& entered, const ScatterPoint& p, cons
         return reflects ? reflect_tailed(windowed, pair) : cov::scatter(windowed, pair);
     }
     // Distribution and Fresnel are functions of the half vector: their effect on the arriving
-    // slopes is in the lobe already, and the window is left with masking, at half the price of
-    // cov::local_lobe for any BRDF.
+    // slopes is in the lobe already, and the window is left with masking and the cosine. That takes
+    // half the time of cov::local_lobe, which is for any BRDF.
     const cov::Frame<double> shading{p.shading.x, p.shading.y, p.shading.z};
     const LocalAxes in = local_axes(shading, entered.frame),
                     out = local_axes(shading, pair.outgoing);
@@ -231,7 +234,7 @@ void ScatterSum::add(const LightField& arriving, const cov::Emitter<double>& emi
 
 void ScatterSum::add(const LightField& left, double weight) {
     weight_ += weight;
-    // Positions are along the tangents for all light; only slopes have axes of their own.
+    // Positions are along the surface's tangents for all light; only slopes have axes of their own.
     if (takes_slopes_of(left.frame))
         cov::add_scaled(sum_, weight, left.sigma);
     else

@@ -36,8 +36,8 @@ class GuideMixture {
   private:
     friend class CausticGuide;
     struct Lobe {
-        float x, y, z;  ///< direction
-        float kappa, weight;
+        float x, y, z;        ///< direction
+        float kappa, weight;  ///< von Mises-Fisher concentration; share of the mixture
         Vec3 direction() const { return {x, y, z}; }
     };
     std::array<Lobe, kMostLobes> lobes_;  ///< lobes, of which only `count_` are set
@@ -47,15 +47,18 @@ class GuideMixture {
 
 /// Light that arrived at a point over glossy surfaces.
 struct CausticPhoton {
-    Vec3 position, normal;  ///< moved off the surface to the lit side; unit, on that side
+    /// A point moved off its surface to the lit side, and the unit normal there on that side.
+    Vec3 position, normal;
     float time = 0;
-    Vec3 direction;  ///< unit, towards the place where it came from
+    Vec3 direction;  ///< unit, towards the place where the light came from
     /// Distance of the light along the unfolded path; infinite for distant light.
     float distance = 0;
     float weight = 0;     ///< luminance
     uint64_t source = 0;  ///< hash of the light and of the last surface on the way
 };
 
+/// The guide of a scene: a tree over the places that photons reached, whose leaves know the images
+/// of lights that are seen from there.
 class CausticGuide {
   public:
     /// Makes an empty guide: shares are 0 everywhere.
@@ -69,17 +72,18 @@ class CausticGuide {
 
   private:
     /// Image of a light, the point that its rays seem to come from. All light of one leaf that came
-    /// from one light over one surface seems to come from about one point: exactly so for a flat
-    /// mirror, from the point nearest to all its rays otherwise.
+    /// from one light over one surface seems to come from about one point: in a flat mirror from
+    /// the mirrored light, over a curved surface from near the point that is nearest to all its
+    /// rays.
     struct Image {
         Vec3 point;
-        float kappa = 0;       ///< concentration of the directions to the point
+        float kappa = 0;  ///< concentration of the directions to the point; 0: too wide to guide
         float irradiance = 0;  ///< luminance of the irradiance on the surfaces of the leaf
         uint64_t source = 0;   ///< CausticPhoton::source
     };
     struct Leaf {
-        Bounds3 bounds;  ///< where the leaf is worth asking
-        float share = 0;
+        Bounds3 bounds;   ///< box of its photons with a margin; no guide beyond it
+        float share = 0;  ///< share of the samples that should follow all the leaf's images
         uint32_t first = 0, count = 0;  ///< the leaf's images, in images_
     };
     struct Node {
@@ -96,11 +100,11 @@ class CausticGuide {
     class Probes;
     uint32_t build(std::span<CausticPhoton> photons, std::vector<Image> images, int depth,
                    std::vector<Region>& regions);
-    /// Renews those images that the photons suffice for; the others stay as they are.
+    /// Fits an image to each source that the photons suffice for; other images stay as they are.
     static void refine(std::span<const CausticPhoton> photons, std::vector<Image>& images);
     static Image fit(std::span<const CausticPhoton> cluster);
     /// Measures how much light there is to be found in each image, drops images that bring nothing,
-    /// and returns the share of the samples for the others.
+    /// and returns the share of the samples for the others. `key` seeds the leaf's random numbers.
     static float measure(const LitScene& scene, Region& region, uint64_t key);
 
     std::vector<Node> nodes_;

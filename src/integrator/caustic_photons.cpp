@@ -13,13 +13,12 @@ namespace covtrace {
 
 namespace {
 
-constexpr uint64_t kPilotKey = 0x6361757374696373ull;
-constexpr int kPathsPerChunk = 64;
-// Vertices that a pilot path visits in search of glossy surfaces.
-constexpr int kCameraVertices = 4;
-constexpr int kChainVertices = 8;  // glossy surfaces in a row
-constexpr int kMostInterfaces = 64;
-constexpr int kLightSamples = 2;  // samples of lights at every glossy surface found
+constexpr uint64_t kPilotKey = 0x6361757374696373ull;  // key of the random numbers, "caustics"
+constexpr int kPathsPerChunk = 64;                     // pilot paths that one task traces
+constexpr int kCameraVertices = 4;   // vertices of a pilot path that may be glossy surfaces
+constexpr int kChainVertices = 8;    // most glossy surfaces in a row that light is sent over
+constexpr int kMostInterfaces = 64;  // most interfaces between media that a ray passes through
+constexpr int kLightSamples = 2;     // samples of lights at every glossy surface found
 
 /// A pilot path from the camera, and the light sent over the glossy surfaces that it finds.
 class Pilot {
@@ -68,9 +67,10 @@ class Pilot {
         return false;
     }
 
-    /// Sends light of one sampled lamp to `start`, by a sharp lobe there and on to where it lands.
-    // Sample a lamp
+    /// Sends light of one sampled lamp to `start`, by a lobe there that is not diffuse and on to
+    /// where it lands: a photon is left on the first surface with a diffuse lobe.
     void send_light(const SurfaceHit& start, const Bsdf& start_bsdf, const Frame& start_frame) {
+        // Sample a lamp
         const float u_select = rng_.next_float();
         const auto light =
             scene_.lights.sample(start.position, Vec3{}, start.time, u_select, rng_.next_2d());
@@ -81,9 +81,10 @@ class Pilot {
         if (std::isfinite(light->distance)) shadow.t_max = light->distance * (1 - 1e-3f);
         if (scene_.geometry.occluded(shadow)) return;
 
-        // Follow its light from one sharp lobe to the next
+        // Follow the lamp's light from one lobe that is not diffuse to the next
         float travelled = light->distance;
-        // Skies that are seldom drawn, as BSDFs find them, would make photons of any weight.
+        // The density of a sky's samples may be next to 0, as BSDFs find its light, too; without a
+        // uniform density added to it such photons would have weights without bound.
         const bool is_sky = !light->is_delta && !std::isfinite(light->distance);
         Rgb weight = light->radiance / (light->pdf + (is_sky ? kUniformSpherePdf : 0.0f));
         SurfaceHit hit = start;

@@ -52,9 +52,9 @@ bool PathTracer::step() {
     const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
     const MaterialId material =
         scene_.materials.at(shape.description.material, hit, scene_.textures);
-    // Evaluate the BSDF, with textures filtered as in pbrt, wherever the path has been: the pixel's
-    // width at this distance from the eye, and an eighth of it, so that the filter of the texture
-    // adds nothing to that of the pixel
+    // Evaluate the BSDF, with textures filtered as in pbrt at 64 samples per pixel and more,
+    // wherever the path has been: over an eighth of the pixel's width at the straight distance from
+    // the eye, so that the filter of the texture adds next to nothing to that of the pixel
     const Vec3 from_eye = hit.position - camera_origin_;
     const float away = length(from_eye);
     const Bsdf bsdf = away > 0
@@ -98,7 +98,8 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, M
 Frame PathTracer::frame_at(const SurfaceHit& hit, const PlacedShape& shape,
                            MaterialId material) const {
     if (!scene_.materials.has_normal_map(material)) return shading_frame(hit);
-    // The step is as long as pbrt's for 64 samples per pixel and more: an eighth of half a pixel.
+    // The step of the map's differences is as long as pbrt's for 64 samples per pixel and more: an
+    // eighth of half a pixel.
     const float footprint = scene_.camera.half_pixel(distance(camera_origin_, hit.position)) / 8;
     const DifferentialGeometry base = scene_.geometry.differential(hit);
     return NormalMap(scene_.materials.description(material), scene_.textures, shape, hit, base,
@@ -141,8 +142,8 @@ bool PathTracer::survives(float u) {
     // hundred more in the mean.
     constexpr int kLongWalk = 1000;
     constexpr float kLeastEnd = 0.01f;
-    // Throughput below which paths may end: the light that such a path still finds is less than the
-    // noise of the ends of paths that carry more would be (docs/decisions/0075).
+    // Throughput below which paths may end at random. Ending those that carry more would add more
+    // noise than their rays are worth (docs/decisions/0075).
     constexpr float kWorthwhile = 0.25f;
     const float carried = max_component(beta_) * roulette_scale_ / kWorthwhile;
     const float least = depth_ > kLongWalk ? kLeastEnd : 0.0f;

@@ -10,8 +10,8 @@
 
 namespace covtrace {
 
-/// Lobes that take part at a vertex for one pair of directions, with their shares of the scattered
-/// light.
+/// Scattering at a vertex for one pair of directions: the lobes that take part and their shares of
+/// the scattered light; none in a medium.
 struct ScatterEvent {
     Vec3 wi;  ///< unit, world, away from the surface, towards the place where the light comes from
     LobeShares lobes;
@@ -22,7 +22,7 @@ struct ScatterEvent {
 struct PathVertex {
     SurfaceHit hit;
     MediumId medium = -1;  ///< medium that scatters; -1: on a surface
-    Vec3 wo;               ///< unit, world, towards the previous vertex
+    Vec3 wo;               ///< unit, world, towards the previous vertex or the camera
     Frame shading;         ///< frame of the BSDF: anisotropic roughness is along its x and y
     MaterialId material = -1;
 
@@ -31,7 +31,8 @@ struct PathVertex {
     float emitted = 0;
     /// Whether all lobes between the camera and this vertex are specular.
     bool seen_sharply = false;
-    /// Luminance that reaches the sensor from the media between this vertex and the previous one.
+    /// Luminance that reaches the sensor from the media between this vertex and the previous one
+    /// (or the camera).
     float glow = 0;
 
     /// Whether the vertex is seen by specular lobes alone that were all more likely than not: light
@@ -41,12 +42,12 @@ struct PathVertex {
 
     /// Luminance that reaches the sensor by the light sampled here; 0 where there is none.
     float direct = 0;
-    LightSample light;
-    ScatterEvent direct_event;
+    LightSample light;          ///< the light sampled here, where `direct` is above 0
+    ScatterEvent direct_event;  ///< scattering of the sampled light
 
     /// Whether the path goes on from here; false at its last vertex.
     bool scatters = false;
-    ScatterEvent next_event;
+    ScatterEvent next_event;  ///< scattering of the light from further along the path
 };
 
 struct PathRecord {
@@ -56,12 +57,10 @@ struct PathRecord {
     std::array<PathVertex, kCapacity> vertices;
     int count = 0;
     Ray camera_ray;
-    /// Luminance from the infinite lights where the path left the scene, and the direction in which
-    /// it left.
-    float escaped = 0;
-    Vec3 escape_direction;
-    float escape_glow = 0;  ///< luminance from the media behind the last vertex
-    bool escape_in_view = false;
+    float escaped = 0;            ///< luminance from the infinite lights where the path left
+    Vec3 escape_direction;        ///< direction in which the path left the scene, unit
+    float escape_glow = 0;        ///< luminance from the media behind the last vertex
+    bool escape_in_view = false;  ///< as PathVertex::in_view; means something where `escaped` > 0
 
     void clear() {
         count = 0;

@@ -1,4 +1,5 @@
-/// The class inside trace_path, for the files path*.cpp of this folder.
+/// A path in the making: the state of one call of trace_path. Only for the files path*.cpp of this
+/// folder.
 #pragma once
 
 #include <optional>
@@ -8,6 +9,9 @@
 
 namespace covtrace {
 
+/// Weight of a sample of density a whose direction another strategy samples with density b: the
+/// power heuristic with exponent 2 (Veach 1997, "Robust Monte Carlo methods for light transport
+/// simulation", section 9.2.3). An infinite density outweighs any other.
 inline float power_heuristic(float a, float b) {
     if (std::isinf(a)) return 1;
     if (std::isinf(b)) return 0;
@@ -22,8 +26,9 @@ inline float power_heuristic(float a, float b) {
 }
 
 /// A path in the making. The estimate is  sum over vertices of  beta * (emission + direct light),
-/// beta = product of  f |cos| / pdf  and of the weights of media so far; each kind of light is
-/// found by two strategies whose weights add to one.
+/// beta = product of  f |cos| / pdf  and of the weights of media so far. Lamps of some extent and
+/// skies are found by two strategies whose weights add to one; point lights by sampling alone, and
+/// all light behind specular lobes, and the glow of media, by the path alone.
 class PathTracer {
   public:
     PathTracer(const LitScene& scene, const CausticGuide& guide, Ray ray, Sampler& sampler,
@@ -69,8 +74,8 @@ class PathTracer {
     /// Describes the current vertex in the result, if it is the first one or is seen through
     /// mirrors and the like.
     void describe_vertex(Vec3 position, Rgb albedo, Vec3 normal);
-    /// Whether the path survives Russian roulette, by the throughput without the factors that
-    /// refraction and the guide put on it.
+    /// Decides by Russian roulette whether the path survives, from the throughput without the
+    /// factors that refraction and the guide put on it; a survivor's throughput grows accordingly.
     bool survives(float u);
     bool in_view() const { return sharp_so_far_ && sharp_probability_ > 0.5f; }
 
@@ -110,24 +115,25 @@ class PathTracer {
     PathResult result_;
     Rgb beta_{1};
     float pdf_ = 0;  // density of the last sampled direction
-    bool specular_ =
-        true;  // the last lobe (the camera counts as one): no light sampling could find it
-    bool sharp_so_far_ = true;
+    // Whether the last lobe was specular (the camera counts as one): light sampling could not find
+    // what the path finds next.
+    bool specular_ = true;
+    bool sharp_so_far_ = true;  // all lobes so far were specular
     bool seen_clearly_ = true;  // every lobe so far was sharp enough to see through
-    float travelled_ = 0;       // length of the path from the camera to the last vertex
+    float travelled_ = 0;       // length of the path from the camera to the last described vertex
     // Probability of the specular lobes that were chosen, while all were specular.
     float sharp_probability_ = 1;
-    float roulette_scale_ = 1;
+    float roulette_scale_ = 1;  // takes factors of refraction and guide out of beta_ for roulette
     MediumId medium_ = -1;
     int passed_interfaces_ = 0;
-    int depth_ = 0;       ///< scattering events so far
-    float glow_ = 0;      ///< luminance from media since the last vertex, for the record
-    Vec3 camera_origin_;  ///< start of the path
+    int depth_ = 0;       // scattering events so far
+    float glow_ = 0;      // luminance from media since the last vertex, for the record
+    Vec3 camera_origin_;  // start of the path
     GuideMixture guide_;  // guide at the current vertex
-    // Draw for the next vertex, where the lights can begin before it is known.
+    // Light draw of the vertex to come, begun before that vertex is known.
     Lights::Draw light_draw_;
     const bool draws_ahead_;
-    Vec3 light_normal_;  // normal that the lights are told at the current vertex
+    Vec3 light_normal_;  // normal that lights are sampled for at the current vertex; 0: both sides
     // Place and light normal of the last vertex, for the weights.
     Vec3 previous_position_, previous_normal_;
 };

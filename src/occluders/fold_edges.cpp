@@ -11,12 +11,12 @@ namespace covtrace {
 
 namespace {
 
-constexpr uint32_t kFree = ~uint32_t{0};
+constexpr uint32_t kFree = ~uint32_t{0};  // no corner: an empty slot
 /// Least angle, radians, of a bend that casts an outline worth knowing.
 constexpr float kLeastBend = 1e-3f;
 
 std::array<uint32_t, 3> bits_of(Vec3 p) {
-    // Positions are compared by their bits; adding 0 makes -0 and +0 one place.
+    // Hashes are of the bits; adding 0 makes -0 and +0, which compare equal, one place.
     return {std::bit_cast<uint32_t>(p.x + 0.0f), std::bit_cast<uint32_t>(p.y + 0.0f),
             std::bit_cast<uint32_t>(p.z + 0.0f)};
 }
@@ -36,8 +36,9 @@ struct Side {
     uint32_t opposite = 0;  ///< the triangle's third corner
 };
 
-/// Makes the wedge around the edge a-b that the triangles' third corners span; false where it is no
-/// fold.
+/// Makes the wedge that the triangles at the edge a-b fill, from their third corners. Returns false
+/// where the edge is no outline from anywhere: it has no length, or no gap around it is wider than
+/// pi.
 bool wedge(Vec3 a, Vec3 b, const std::vector<Vec3>& corners, const Side* begin, const Side* end,
            FoldEdge& edge) {
     if (!(distance(a, b) > 0)) return false;

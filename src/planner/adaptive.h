@@ -13,10 +13,10 @@ namespace covtrace {
 struct SampleKnowledge {
     Plane brightness;                                   ///< mean luminance
     Plane variance;                                     ///< variance of the luminance of one sample
-    Plane cost;                                         ///< cost of one sample, in any unit
+    Plane cost;                                         ///< rays of one sample; below 1 counts as 1
     std::span<const covariance::Sym2<float>> spectrum;  ///< predicted spectrum, (cycles/pixel)^2
-    /// Factor of the counts, in any unit, beside the density that lowers the error of the image
-    /// most; empty: the same for all.
+    /// Factor of the counts, where a density rule wants others than those that lower the error of
+    /// the image most (planner/density.h); only its ratios matter. Empty: the same for all.
     Plane emphasis;
 };
 
@@ -35,10 +35,11 @@ constexpr PlanSettings kOwnPlan{true, 0.01f, 15, 0.25f};
 /// than a Gaussian of some 2 pixels does: as found by a sweep (docs/decisions/0093).
 constexpr PlanSettings kHalvesPlan{false, 0.1f, 2, 0.2f};
 
-/// Makes relative densities with mean 1.
+/// Makes relative densities with mean 1; where all would be 0, each is 1.
 ///
-/// A filter F_p = sum_q a_pq y_q has the variance sum_q a_pq^2 sigma_q^2 / n_q; the counts that
-/// minimise the sum over p of g_p times it, g = 1 / (I^2 + eps), at a given total cost are
+/// A filter F_p = sum_q a_pq y_q of pixels' means y_q has the variance sum_q a_pq^2 sigma_q^2 /
+/// n_q; the counts that minimise the sum over p of g_p times it, g = 1 / (I^2 + eps), at a given
+/// total cost are
 ///     n_q ~ sigma_q sqrt(A_q / c_q),   A_q = sum_p g_p a_pq^2.
 /// For the predicted Gaussian, whose squares sum to 1 / (4 pi sqrt|C|) ~ sqrt|S_2D|,
 ///     n ~ sigma |S_2D|^(1/4) / (sqrt(I^2 + eps) sqrt(c)).

@@ -18,7 +18,7 @@ namespace covtrace {
 
 namespace {
 
-/// The light of the samples themselves: where one half has no samples, that of the other.
+/// The mean of both halves' samples; where one half has no samples, the colour of the other.
 ColorPlanes mean_of(const Halves& halves) {
     ColorPlanes mean = halves[0].color;
     const Plane &a = halves[0].count, &b = halves[1].count;
@@ -41,8 +41,8 @@ void replace_empty_half(Halves& halves) {
         }
 }
 
-/// A first guess of the brightness that errors are measured against: the mean over all candidates
-/// but the raw one, the same for all channels.
+/// Brightness that errors are measured against, as a first guess: the mean over all candidates but
+/// the raw one, the same for all channels.
 ColorPlanes common_brightness(std::span<const Candidate> candidates) {
     const size_t first = candidates.size() > 1 ? 1 : 0;
     Plane sum(candidates[0][0][0].width, candidates[0][0][0].height);
@@ -78,9 +78,9 @@ ColorPlanes mean_of(const Selection& s) {
     return mean;
 }
 
-/// Gives our own mixture the share `own` of every pixel and the denoiser the rest, as one more
-/// candidate of the selection. The denoiser's part of the image is that of all samples denoised
-/// together, which are cleaner than the mean of the denoised halves.
+/// Blends the selection's mixture with the denoiser's results: the mixture keeps the share `own` of
+/// every pixel, and the denoiser gets the rest as one more candidate. In `image` that part is from
+/// all samples denoised together, which is cleaner than the mean of the denoised halves.
 void blend(const Plane& own, const Denoised& clean, Selection& s, ColorPlanes& image) {
     const auto mix = [&](Plane& ours, const Plane& theirs) {
         for (size_t i = 0; i < own.size(); ++i)
@@ -96,12 +96,15 @@ void blend(const Plane& own, const Denoised& clean, Selection& s, ColorPlanes& i
     }
 }
 
-/// Denoises both halves and all samples; none where the denoiser fails, and `failure` says why.
+/// Denoises both halves and, upright and turned, all samples. Returns nothing without a denoiser,
+/// or where it fails, and then `failure` says why.
 std::optional<Denoised> denoised(const Denoiser* denoiser, const Halves& halves,
                                  const ColorPlanes& all, std::string& failure) {
     if (!denoiser) return std::nullopt;
     NoisyFeatures features;
-    features.draft = true;  // the image errs 0.7 % more, in a third less time (docs/decisions/0085)
+    // Noisy features are smoothed in about a third of the time then, and the image errs 0.7 % more
+    // (docs/decisions/0085)
+    features.draft = true;
     for (size_t k = 0; k < 3; ++k) {
         features.albedo[k] = mean_of(halves[0].feature[k], halves[1].feature[k]);
         features.normal[k] = mean_of(halves[0].feature[3 + k], halves[1].feature[3 + k]);
@@ -148,15 +151,15 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     // Limit rare bright paths; light_return knows the halves as they were
     const LightReturn light_return(halves);
     limit_outliers(halves);
-    // Smooth the variances: those that know of their own pixel's mean would let bright pixels
-    // accept dark ones and not the other way round
+    // Smooth the variances: unsmoothed ones follow their own pixel's mean, and would let bright
+    // pixels accept dark ones and not the other way round
     for (HalfBuffer& half : halves)
         for (Plane& v : half.color_variance) v = box_blur(v, 1);
     // Make the candidates and the guides that tell which pixels are alike
     std::vector<Candidate> candidates = make_candidates(halves, spectrum, settings.candidates);
     Likeness likeness(settings.likeness);
     add_features(halves, likeness);
-    // Free them: they are large and not needed any more.
+    // Free the features: they are large, and the candidates and guides have been made of them.
     for (HalfBuffer& half : halves) half.feature = half.feature_variance = {};
     // Select twice, as candidates that spread highlights also lift the first guess of dark pixels,
     // which hides their errors there, and as the guess tells which pixels are alike
@@ -180,7 +183,8 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
         candidates.push_back(clean->half);
     }
 
-    // Keep the image from being negative but where the samples are, and from being darker than they
+    // Keep the image from being negative where the samples are not, and from being more
+    // so than they are elsewhere
     for (size_t k = 0; k < 3; ++k)
         for (size_t i = 0; i < all[k].size(); ++i)
             image.color[k][i] = std::max(std::min(0.0f, all[k][i]), image.color[k][i]);

@@ -39,13 +39,15 @@ RenderState read_film(const std::filesystem::path& file);
 /// does.
 RenderState read_film(std::istream& in, uint64_t size, const std::string& name);
 
-/// The film of a render that goes on: `file`, or the earlier film where `file` is damaged or
-/// missing, with `damage` to say why; no film where there is neither. find_film throws
-/// FilmOfOtherVersion.
+/// The film that find_film found.
 struct FoundFilm {
-    std::optional<RenderState> state;
-    std::string damage;  ///< empty: the film itself was read
+    std::optional<RenderState> state;  ///< none where there is no film
+    std::string damage;  ///< why the earlier film had to do; empty: the film itself was read
 };
+
+/// Finds the film of a render that goes on: `file`, or the earlier film where `file` is damaged or
+/// missing. Throws as read_film does where there is no earlier film to take, and
+/// FilmOfOtherVersion for `file` in any case.
 FoundFilm find_film(const std::filesystem::path& file);
 
 /// Moves a damaged film out of the way, so that the next film that is written does not take the

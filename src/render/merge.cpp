@@ -14,12 +14,13 @@ namespace {
     throw Error(ErrorKind::usage, name + ": " + why);
 }
 
+/// The round and budget of a film, as far as films that are joined must agree on them.
 auto round_of(const RenderState& s) {
     return std::tuple(s.stage, s.taken, s.target, s.covariance_spp, s.weight_limit, s.spp,
                       s.complete, s.in_round());
 }
 
-/// Whether two films have the same records for the same pixels.
+/// Whether two films store the same arrays over the same region, whatever their records hold.
 bool same_arrays(RenderState& a, RenderState& b) {
     const std::vector<FilmArray> of_a = film_arrays(a), of_b = film_arrays(b);
     return a.region == b.region && std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(),
@@ -30,7 +31,7 @@ bool same_arrays(RenderState& a, RenderState& b) {
                                               });
 }
 
-/// Copies the records of the pixels that `from` has.
+/// Copies into `to` the records of the pixels whose shards `from` has.
 void copy_pixels(RenderState& to, RenderState& from) {
     const std::vector<FilmArray> target = film_arrays(to), source = film_arrays(from);
     const Tiles tiles(to.region);
@@ -88,7 +89,8 @@ void FilmMerge::add(const std::string& name, RenderState film) {
     std::sort(sum.first_rejected.begin(), sum.first_rejected.end(), before);
     if (sum.first_rejected.size() > PassStatistics::kMostRejectedKept)
         sum.first_rejected.resize(PassStatistics::kMostRejectedKept);
-    // Times of the first shard stand for all: sums of them would depend on the order.
+    // Times of the first shard stand for all: sums of floating-point numbers would depend on the
+    // order in which films are added.
     if (film.present.front() < sum.present.front()) {
         sum.seconds = film.seconds;
         sum.seconds_spp = film.seconds_spp;

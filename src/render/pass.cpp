@@ -52,8 +52,8 @@ template <typename Take>
 PassStatistics take_samples(const PassContext& context, const Film& film,
                             std::span<const uint32_t> counts, const Monitor& monitor,
                             const PassProgress& progress, const Take& take) {
-    // Rays between looks at the clock: a sample is one ray at least, and thousands beyond
-    // interfaces.
+    // Rays traced between looks at the clock. Samples are no measure: one takes a single ray or,
+    // where it meets many interfaces of media, thousands.
     constexpr uint64_t kRaysBetweenLooks = 256;
     const Tiles tiles(film.bounds);
     std::vector<PassStatistics> per_tile(static_cast<size_t>(tiles.count()));
@@ -102,7 +102,7 @@ void sample_pixel(const PassContext& context, Film& film, size_t pixel, int x, i
             statistics.first_rejected.push_back({x, y, context.sample_name(index)});
         s.radiance = s.in_view = Rgb(0);
     }
-    // Features that are not numbers become 0: filters that are led by features would spread them.
+    // Features that are not finite become 0: filters that are led by features would spread them.
     for (Rgb* albedo : {&s.albedo, &s.features.albedo})
         if (!is_finite(*albedo)) *albedo = Rgb(0);
     for (Vec3* normal : {&s.normal, &s.features.normal})
@@ -172,6 +172,7 @@ PassStatistics radiance_pass(const PassContext& context, Film& film,
 
 namespace {
 
+/// Whether the path found an emitter, or a sky, that is in view.
 bool shows_emitter(const PathRecord& record) {
     if (record.escaped > 0 && record.escape_in_view) return true;
     for (int i = 0; i < record.count; ++i) {
@@ -182,7 +183,8 @@ bool shows_emitter(const PathRecord& record) {
     return false;
 }
 
-/// Takes one more path into the mean of `paths` of them.
+/// Adds a path's covariance to `mean`, the mean of `paths` paths before it. Its weight is cut to
+/// `weight_limit`.
 void add_path(PackedCovariance& mean, uint32_t paths, const PathCovariance& path,
               double weight_limit) {
     covariance::Accumulator<double> sum;
@@ -213,7 +215,7 @@ PassStatistics covariance_pass(const PassContext& context, const PathReplay& rep
 }
 
 double limit_weights(const Film& film, CovarianceBuffers& buffers) {
-    constexpr double kMost = 10;  // times the mean
+    constexpr double kMost = 10;  // weight of one path, as a multiple of the mean over all paths
     double sum = 0, paths = 0;
     for (size_t i = 0; i < film.pixels.size(); ++i) {
         sum += buffers.scattered[i].weight;
