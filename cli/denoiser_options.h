@@ -17,8 +17,8 @@ struct DenoiserArguments {
 /// Adds the options to a command; `arguments` must outlive the parser.
 void add_denoiser_options(CLI::App* command, DenoiserArguments& arguments);
 
-/// Finds the denoiser that the options ask for, also in the program's own folder. Throws
-/// Error(usage) where it was asked for and cannot be used.
+/// Finds the denoiser that the options ask for, also in the folders that belong to the program's
+/// own. Throws Error(usage) where it was asked for and cannot be used.
 FoundDenoiser find(const DenoiserArguments& arguments);
 
 /// Warns of a denoiser that was found and cannot be used.

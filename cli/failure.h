@@ -11,7 +11,7 @@ int report_failure(const std::exception_ptr& failure);
 
 /// The exit code of a command line that cannot be understood.
 inline constexpr int kUsageExitCode = 2;
-/// The exit code where this machine does not suffice.
+/// The exit code of Error(limit): this machine has too little, such as memory, for what was asked.
 inline constexpr int kLimitExitCode = 4;
 
 }  // namespace covtrace::cli

@@ -12,6 +12,7 @@
 
 namespace covtrace::cli {
 
+/// Writes a message as it is: the caller ends its lines.
 template <typename... Args>
 void say(fmt::format_string<Args...> format, Args&&... args) {
     const std::string text = fmt::format(format, std::forward<Args>(args)...);

@@ -78,7 +78,7 @@ void parse_texts(RenderArguments& a) {
             "'covtrace merge' of all shards");
 }
 
-/// Writes the image and the files that go with it.
+/// Writes the image, with the layers that were asked for, and its PNG.
 void deliver(RenderResult& result, const RenderArguments& a, const fs::path& output,
              const Monitor& monitor, const std::string& command, int threads) {
     if (!a.quiet) warn_of_absent_layers(result.image, a.layers);
@@ -99,7 +99,7 @@ void warn_of_absent_viewer(TevClient& viewer, const RenderArguments& a, Progress
     say("warning: --tev: the viewer tev is not there at '{}': {}\n", a.tev, why);
 }
 
-/// Drops output and messages: all but the first of several processes only trace.
+/// Drops outputs and messages, for all but the first of several processes, which only trace.
 void be_silent(RenderArguments& a) {
     a.quiet = true;
     a.progress = ProgressStyle::none;
@@ -229,8 +229,8 @@ int run_render(RenderArguments a, const Invocation& invocation) {
     try {
         return render_scene(std::move(a), invocation, threads, ranks.get());
     } catch (...) {
-        // The other processes are ended: they may wait for this one, which would wait for them in
-        // MPI's own end.
+        // All processes are ended at once: the others may wait for this one, which would wait for
+        // them in MPI_Finalize.
         const int code = report_failure(std::current_exception());
         ranks->abort(code);
         return code;

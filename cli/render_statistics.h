@@ -8,6 +8,7 @@
 
 namespace covtrace::cli {
 
+/// Makes the statistics of a finished render, as JSON.
 nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& result,
                                const FoundDenoiser& denoiser, const Monitor& monitor);
 

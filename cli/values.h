@@ -1,5 +1,5 @@
-/// Parsers for option values that need one of their own. All throw Error(usage), whose message
-/// begins with `option`.
+/// Parsers for the values of command-line options. Each throws Error(usage), whose message begins
+/// with `option`, for any other text.
 #pragma once
 
 #include <array>
@@ -21,20 +21,21 @@ PixelBounds parse_crop(const std::string& option, const std::string& text);
 std::array<int, 2> parse_pixel(const std::string& option, const std::string& text);
 /// Reads an interval "a,b", two finite numbers with a < b.
 std::array<float, 2> parse_interval(const std::string& option, const std::string& text);
-/// Reads an address: "host:port", "host" with tev's own port 14158, or "[::1]:port".
+/// Reads an address into host and port: "host:port", "[::1]:port", or a host alone, which gets
+/// tev's own port 14158.
 std::array<std::string, 2> parse_address(const std::string& option, const std::string& text);
 /// Reads a finite number above zero and up to `most`; where `least` is given, not below it.
 double parse_positive(const std::string& option, const std::string& text, double most,
                       double least = 0);
-/// Reads a whole number in [least, most], in decimal digits whatever it begins with.
+/// Reads a whole number in [least, most]. It is decimal: a 0 in front does not make it octal.
 int64_t parse_whole(const std::string& option, const std::string& text, int64_t least,
                     int64_t most);
-/// Reads paths per pixel: a whole number up to 2^20, or a part of one: a path in so many of the
-/// pixels.
+/// Reads the number of paths per pixel: a whole number from 1 to 2^20, or a fraction above 0, the
+/// part of the pixels that get one path.
 double parse_paths(const std::string& option, const std::string& text);
 /// Reads a size in bytes: "500M", "2G", "64k", "1.5T" (powers of 1024) or a plain number.
 size_t parse_size(const std::string& option, const std::string& text);
-/// Reads a shard "k/n", the k-th of n shares, from 1.
+/// Reads a shard "k/n" with 1 <= k <= n; the result's index begins at 0.
 Shard parse_shard(const std::string& option, const std::string& text);
 
 /// One sample of one pixel.

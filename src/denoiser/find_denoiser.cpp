@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kName = "libOpenImageDenoise.so.2";
 
-/// The library to be tried: a path, or the bare name for the system's library; empty where there is
-/// none.
+/// The library to be tried: the one that is named, by the search or COVTRACE_OIDN_LIBRARY, else the
+/// first in the search's folders, else the bare name of the system's; empty where there is none.
 fs::path place(const DenoiserSearch& search) {
     std::error_code error;
     if (!search.library.empty()) return fs::absolute(search.library, error);

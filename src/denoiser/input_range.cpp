@@ -9,7 +9,9 @@ namespace covtrace {
 
 namespace {
 
-constexpr double kBright = 0.99;  // share of the pixels with light that are no brighter
+/// Share of the pixels with light that are no brighter than the one that sets the exposure.
+constexpr double kBright = 0.99;
+/// Most that the network gets of a pixel, where the one that sets the exposure gets about 1.
 constexpr float kMost = 1e4f;
 
 /// The brightest channel that `kBright` of the pixels with light do not exceed; 0 without light.

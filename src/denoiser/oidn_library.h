@@ -1,4 +1,4 @@
-/// Loading the library Open Image Denoise into this process.
+/// Loader of the library Open Image Denoise (OIDN) into this process.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 namespace covtrace::oidn {
 
 struct Library {
-    Api api;
-    std::filesystem::path file;  ///< file, where the dynamic linker found it
+    Api api;                     ///< the library's functions
+    std::filesystem::path file;  ///< path at which the dynamic linker found the library
 };
 
 /// Loads `file`: a path, or a bare name that the dynamic linker looks for. The parts of the library

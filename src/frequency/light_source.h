@@ -12,13 +12,15 @@ using LightField = covariance::LightField<double>;
 /// Makes the light field that leaves a light in the direction `travel` (unit, world).
 ///
 /// Area lights are Gaussian emitters with the moments of the whole shape. Where the camera sees
-/// them sharply (directly or by specular lobes alone) their border is an image edge and its
-/// distance limits the bandwidth, too, as does any variation on the light: `texture`, along
-/// source.tangent's x and y. `smallest` is the extent that stands for a point, in scene units.
+/// them sharply (directly or by specular lobes alone) their border is an image edge, which adds the
+/// bandwidth of an edge at its distance, and so does any variation on the light: `texture`, the
+/// covariance of its spectrum along source.tangent's x and y, 1 / scene unit^2. `smallest` is the
+/// extent that stands for a point, in scene units.
 LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sharply,
                         double smallest, const covariance::Sym2<double>& texture = {});
 
-/// The light as an emitter for a diffuse receiver `distance` away (scene units).
+/// The light as covariance::diffuse_window takes it: an emitter for a diffuse receiver `distance`
+/// away (scene units).
 covariance::Emitter<double> emitter_of(const SourceSpectrum& source, double distance);
 
 }  // namespace covtrace

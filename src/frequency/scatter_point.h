@@ -13,8 +13,8 @@ namespace covtrace {
 /// Geometry, motion and textures at a vertex, gathered once for all the light that meets there.
 struct ScatterPoint {
     covariance::Surface<double> surface;  ///< the geometry, on which positions are measured
-    /// Normals that the BSDF faces, of the geometry or of a bump or normal map over it; empty where
-    /// they do not change.
+    /// Field of the normals that the BSDF faces, of the geometry or of a bump or normal map over
+    /// it; empty on flat geometry without such a map.
     std::optional<covariance::NormalField<double>> normals;
     /// The surface with its tangents turned along by a bump or normal map; empty without one.
     std::optional<covariance::Surface<double>> turned;

@@ -10,6 +10,7 @@ namespace covtrace {
 
 namespace {
 
+/// Whether the linear part of t is a rotation or reflection, to single precision.
 bool preserves_lengths(const Transform& t) {
     const Vec3 x = t.vector({1, 0, 0}), y = t.vector({0, 1, 0}), z = t.vector({0, 0, 1});
     const auto is = [](float value, float expected) { return std::abs(value - expected) < 1e-5f; };
@@ -49,6 +50,7 @@ EnvironmentMap::Sight Environment::look(Vec3 n, Vec3 w) const {
     Vec3 local = to_light_(w);
     float stretch = 1;
     if (!is_rigid_) {
+        // A linear map A stretches solid angles by |det A| / |A w|^3.
         const float l = length(local);
         local = local / l;
         stretch = determinant_ / (l * l * l);

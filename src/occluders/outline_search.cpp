@@ -9,8 +9,8 @@ namespace covtrace {
 
 namespace {
 
-/// Ratio of squared widths from which on an edge is left out: one so much wider than the narrowest
-/// does not change what that allows.
+/// Ratio of an edge's squared width to that of the narrowest from which on the edge is left out:
+/// one so much wider hardly narrows what the narrowest one lets through.
 constexpr float kFaint = 16;
 
 }  // namespace
@@ -70,8 +70,8 @@ inline OutlineSearch::Nearest OutlineSearch::nearest(const Curves& c,
     const Mask8 rises = qb > Float8{};
     const Float8 valley = (rises ? -qc : root - qb) / (rises ? qb + root : qa);
     const Float8 t2 = min8(max8(valley, c.t0), c.t1);
-    // Evaluate the width anew at t: the polynomials would leave of points near the axis only
-    // rounding.
+    // Evaluate the width anew at t: near the axis the polynomials cancel, and only rounding would
+    // be left of it.
     const auto width2 = [&](const Float8& t) {
         const Float8 z = multiply_add(t, c.dz, c.z);
         const Float8 a = multiply_add(a1, z, all8(m.a0));
@@ -134,8 +134,8 @@ void OutlineSearch::meet_balls(const BallBlock& balls, unsigned left_out, uint32
     const Vec3x8 axis = all8(axis_), d = balls.center - all8(end_);
     // A ball's middle is at z = a and, in the direction e across the axis, x = q.
     const Float8 a = dot8(d, axis);
-    // The projection is made twice: beside a long way along the axis a short one across it is
-    // mostly rounding.
+    // The part along the axis is taken out twice: what one subtraction leaves of a long way along
+    // the axis and a short one across it is mostly rounding.
     const Vec3x8 about = subtract_product(axis, a, d),
                  across = subtract_product(axis, dot8(about, axis), about);
     const Float8 q2 = dot8(across, across), d2 = multiply_add(a, a, q2);
@@ -143,7 +143,8 @@ void OutlineSearch::meet_balls(const BallBlock& balls, unsigned left_out, uint32
     // Leave out balls that are seen from inside, or from a point of their surface.
     const unsigned seen = bits8(tangent2 > 1e-4f * d2) & ~left_out;
     if (seen == 0) return;
-    // The circle is at z + t dz, x + t dx and sqrt(1 - t^2) rho to both sides, t from -1 to 1.
+    // The circle that outlines a ball, of radius rho, is at z + t dz along the axis, x + t dx along
+    // e and sqrt(1 - t^2) rho to both sides of their plane, t from -1 to 1.
     const Float8 part = tangent2 / d2, distance = sqrt8(d2), q = sqrt8(q2);
     const Float8 rho = balls.radius * sqrt8(part), cosine = a / distance, sine = q / distance;
     const Float8 z = a * part, dz = rho * sine, x = q * part, dx = -rho * cosine;

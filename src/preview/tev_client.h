@@ -27,9 +27,9 @@ class TevClient {
     /// Waits for the last image to be sent as long as the viewer keeps taking bytes, but at most
     /// `seconds`; nothing is sent afterwards.
     void finish(double seconds);
-    /// The reason why the viewer was not there when it was first looked for, or, after finish(),
-    /// why it never was. Told once, in words; empty before, afterwards, and where the viewer was
-    /// there.
+    /// Takes the reason, in words, why the viewer was not there when it was first looked for or,
+    /// after finish(), why it never was. It is told once: empty before it is known, after it was
+    /// taken, and where the viewer was there.
     std::string take_failure();
 
   private:

@@ -1,4 +1,4 @@
-/// A film in words, for `covtrace info`.
+/// Description of a film in words, for `covtrace info`.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace covtrace {
 
-/// Several lines for people: the method, where it stands, what it was asked for, what it holds.
+/// Describes a film in several lines for people: the method, where it stands, what it was asked
+/// for, what it holds.
 std::string describe(const RenderState& state);
 
 }  // namespace covtrace
