@@ -220,7 +220,10 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
     // Give what is still lacking to the whole image
     give_to_all(difference(), in_place, color);
     for (size_t c = 0; c < 3; ++c)
-        for (size_t i = 0; i < color[c].size(); ++i) color[c][i] += in_place[c][i];
+        for (size_t i = 0; i < color[c].size(); ++i) {
+            float& v = color[c][i];
+            v = std::max(std::min(v, 0.0f), v + in_place[c][i]);
+        }
 }
 
 }  // namespace covtrace

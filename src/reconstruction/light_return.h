@@ -28,8 +28,8 @@ class LightReturn {
     /// limited.
     explicit LightReturn(const Halves& halves);
 
-    /// Gives light back to `color`; `raw` is the mean of the samples. Light that is shared among
-    /// pixels makes none negative that is not so already; light that stays in its pixels may.
+    /// Gives light back to `color`; `raw` is the mean of the samples. No pixel becomes negative
+    /// that is not so already.
     void give_back(const ColorPlanes& raw, ColorPlanes& color) const;
 
   private:

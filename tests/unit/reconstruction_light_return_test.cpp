@@ -55,6 +55,21 @@ TEST(LightReturn, TheWholeImageHasTheLightOfItsSamples) {
     EXPECT_NEAR(mean_of_columns(color, 0, kSize) / mean_of_columns(raw, 0, kSize), 1, 0.01);
 }
 
+TEST(LightReturn, NothingBecomesNegative) {
+    // A spot that no sample has seen stands in an image that is twice as bright as its samples.
+    ColorPlanes raw, color;
+    raw.fill(Plane(kSize, kSize, 0.01f));
+    color.fill(Plane(kSize, kSize, 0.02f));
+    for (size_t c = 0; c < 3; ++c)
+        for (int y = kSize / 2 - 3; y <= kSize / 2 + 3; ++y)
+            for (int x = kSize / 2 - 3; x <= kSize / 2 + 3; ++x) {
+                raw[c](x, y) = 0;
+                color[c](x, y) = 1;
+            }
+    LightReturn(halves_with(0)).give_back(raw, color);
+    EXPECT_GE(*std::min_element(color[1].values.begin(), color[1].values.end()), 0);
+}
+
 TEST(LightReturn, NoiseIsNotGivenBack) {
     // The samples differ from the truth by noise alone: an image that is the truth hardly changes.
     const Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.5f, 4);
