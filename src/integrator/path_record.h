@@ -17,8 +17,8 @@ struct ScatterEvent {
     LobeShares lobes;
 };
 
-/// A place where the path scatters: on a surface, or inside a medium, where of `hit` only position
-/// and time mean anything and the events have no lobes.
+/// A place where the path scatters or ends: on a surface, or inside a medium, where of `hit` only
+/// position and time mean anything and the events have no lobes.
 struct PathVertex {
     SurfaceHit hit;
     MediumId medium = -1;  ///< medium that scatters; -1: on a surface

@@ -183,8 +183,8 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
         candidates.push_back(clean->half);
     }
 
-    // Keep the image from being negative where the samples are not, and from being more
-    // so than they are elsewhere
+    // Keep the image from being negative where the samples are not and, where they are, from being
+    // more negative than they
     for (size_t k = 0; k < 3; ++k)
         for (size_t i = 0; i < all[k].size(); ++i)
             image.color[k][i] = std::max(std::min(0.0f, all[k][i]), image.color[k][i]);
