@@ -1,6 +1,7 @@
 /// Photons that the guide to caustics learns from: paths from the camera find glossy surfaces, and
 /// light of sampled lamps is sent over these.
 #include <cmath>
+#include <optional>
 
 #include "core/hash.h"
 #include "core/parallel.h"
@@ -53,18 +54,21 @@ class Pilot {
         ray.t_max = kInfinity;
     }
 
-    /// Finds the nearest surface that is no interface.
-    bool next_surface(Ray& ray, SurfaceHit& hit, Bsdf& bsdf) const {
+    /// Finds the nearest surface that is no interface; returns its distance from where `ray`
+    /// began. The ray itself begins at the last interface afterwards.
+    std::optional<float> next_surface(Ray& ray, SurfaceHit& hit, Bsdf& bsdf) const {
+        float distance = 0;
         for (int i = 0; i < kMostInterfaces; ++i) {
-            if (!scene_.geometry.intersect(ray, hit)) return false;
+            if (!scene_.geometry.intersect(ray, hit)) return std::nullopt;
+            distance += hit.t;
             const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
             const MaterialId material =
                 scene_.materials.at(shape.description.material, hit, scene_.textures);
             bsdf = scene_.materials.bsdf(material, hit, scene_.textures);
-            if (!std::holds_alternative<InterfaceBsdf>(bsdf)) return true;
+            if (!std::holds_alternative<InterfaceBsdf>(bsdf)) return distance;
             ray.origin = Geometry::offset_origin(hit, ray.direction);
         }
-        return false;
+        return std::nullopt;
     }
 
     /// Sends light of one sampled lamp to `start`, by a lobe there that is not diffuse and on to
@@ -100,8 +104,9 @@ class Pilot {
             weight *= s->weight;
             const uint64_t source = hash_combine(uint64_t(light->light), hit.shape, hit.instance);
             follow(ray, hit, normalize(frame.to_world(s->wi)));
-            if (!next_surface(ray, hit, bsdf)) return;
-            travelled += hit.t;
+            const std::optional<float> distance = next_surface(ray, hit, bsdf);
+            if (!distance) return;
+            travelled += *distance;
             towards_light = -ray.direction;
             if (has_diffuse_lobe(bsdf)) {
                 const float y = luminance(weight);

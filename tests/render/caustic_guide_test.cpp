@@ -126,6 +126,32 @@ TEST(CausticGuide, PointsAtTheImageAndIsADensity) {
     EXPECT_GT(chi_square_test(observed, expected).p, 1e-4);
 }
 
+// The lamp's image is seen at (2, 1, 0) from everywhere, so each photon has come its distance from
+// there, whatever interfaces between media the light passed through after the mirror.
+TEST(CausticGuide, PhotonsCountTheWayThroughInterfaces) {
+    std::string with_media = kMirrorScene;  // the integrator "path" leaves media out
+    with_media.replace(with_media.find("\"path\""), 6, "\"volpath\"");
+    const RenderScene scene(read_pbrt_string(with_media + R"(
+MakeNamedMedium "air" "string type" "homogeneous" "rgb sigma_a" [ 0 0 0 ]
+  "rgb sigma_s" [ 1e-6 1e-6 1e-6 ]
+MediumInterface "air" ""
+Material "interface"
+Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ]
+  "point3 P" [ -1 0.3 -1  -1 0.3 1  0.95 0.3 1  0.95 0.3 -1 ]
+)",
+                                             "test", "."));
+    ASSERT_TRUE(scene.has_interfaces);
+    const auto photons = trace_caustic_photons(scene, 0, 4096);
+    int through = 0;  // photons that came over a point of the mirror above the interface
+    for (const CausticPhoton& photon : photons) {
+        const Vec3 met =
+            photon.position + photon.direction * ((1 - photon.position.x) / photon.direction.x);
+        if (met.y > 0.3f && photon.position.x < 0.9f) ++through;
+        EXPECT_NEAR(photon.distance, length(Vec3{2, 1, 0} - photon.position), 1.01f * kLampRadius);
+    }
+    EXPECT_GT(through, 20);
+}
+
 TEST(CausticGuide, IsEmptyWithoutMirrors) {
     const RenderScene scene(read_pbrt_string(R"(
 Film "rgb" "integer xresolution" 16 "integer yresolution" 16
