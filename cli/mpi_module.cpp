@@ -13,9 +13,12 @@ namespace covtrace::cli {
 
 namespace {
 
+/// The type of `covtrace_join_ranks` (src/ranks/mpi_ranks.cpp); the caller owns the result.
 using Join = Ranks* (*)();
 
-/// Loads the function from the module, beside the program or where it is installed.
+/// Loads `covtrace_join_ranks` from the module covtrace_mpi.so, which is beside the program in a
+/// build and in lib/covtrace/modules where it is installed. Throws Error(usage) where it is in
+/// neither place or does not load.
 Join load_join() {
     namespace fs = std::filesystem;
     std::error_code ignored;
@@ -23,7 +26,7 @@ Join load_join() {
     for (const fs::path& file :
          {folder / "covtrace_mpi.so", folder / "../lib/covtrace/modules/covtrace_mpi.so"}) {
         if (!fs::exists(file, ignored)) continue;
-        // Symbols are made known to all, among which MPI looks for its own parts.
+        // Open MPI loads plug-ins that look for its own symbols: RTLD_GLOBAL lets them find these.
         void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
         void* join = module ? ::dlsym(module, "covtrace_join_ranks") : nullptr;
         if (join) return reinterpret_cast<Join>(join);
@@ -39,6 +42,7 @@ Join load_join() {
 }  // namespace
 
 std::unique_ptr<Ranks> join_ranks() {
+    // Open MPI's mpirun sets this variable; launchers of other MPI libraries go unnoticed.
     const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
     if (!size || std::atoi(size) < 2) return nullptr;
     return std::unique_ptr<Ranks>(load_join()());

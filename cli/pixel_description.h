@@ -28,18 +28,20 @@ struct AxisBandwidth {
     std::string name;  ///< "image x", "image y", "lens x", "lens y", "time"
     std::string unit;  ///< "cycles/pixel", "cycles/aperture", "cycles/shutter"
     double value = 0;
-    std::string words;
+    std::string words;  ///< meaning of the value, such as "one period in 4 pixels"
 };
 
-/// The count N = k sqrt|S| of one pixel (Belcour 2012, section 5.1, equation 5.3).
+/// The count N = k sqrt|S + W| of samples in one pixel (Belcour 2012, section 5.1, equation 5.3): S
+/// is the pixel's covariance, W that of the windows of lens and shutter, without which one constant
+/// axis would make the count vanish (covariance::hypercube_density).
 struct HypercubeCount {
-    double density = 0;       ///< sqrt|S| per unit hypercube: pixel, aperture and shutter as one
+    double density = 0;       ///< sqrt|S + W| per unit hypercube: pixel x aperture x shutter
     std::optional<double> k;  ///< absent where the image was not planned by this density
 };
 
 struct PixelDescription {
     int x = 0, y = 0;
-    std::vector<std::pair<std::string, float>> values;  ///< all channels but those of cov
+    std::vector<std::pair<std::string, float>> values;  ///< all but those of `covariance`
     /// Covariance over (pixel x, pixel y, lens radius x, lens radius y, shutter); absent without
     /// the 15 channels of cov.
     std::optional<std::array<std::array<float, 5>, 5>> covariance;
@@ -48,6 +50,8 @@ struct PixelDescription {
     std::optional<PrincipalAxes> spectrum;    ///< cycles/pixel, after lens and shutter
     std::optional<PrincipalAxes> filter;      ///< standard deviations in pixels
     std::optional<HypercubeCount> hypercube;  ///< from `covariance`
+    /// Samples taken, samples that the last plan asked for, and estimated standard error of the
+    /// luminance; each absent without its layer.
     std::optional<float> samples, density, error;
 };
 
@@ -55,7 +59,9 @@ struct PixelDescription {
 /// pixel is outside the data window.
 PixelDescription describe_pixel(const Image& image, int x, int y);
 
+/// The description in lines of text, of which the last ends with a line break.
 std::string to_text(const PixelDescription& pixel);
+/// The description as one JSON object; values that are not finite are null.
 nlohmann::json to_json(const PixelDescription& pixel);
 
 /// A number with four significant digits; powers of ten below 1e-4 and from 1e5 on.

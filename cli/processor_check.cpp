@@ -1,6 +1,6 @@
-// The check of the processor: ends the program with a message where instructions are lacking that
-// it was compiled for, which would otherwise end it by a signal. Compiled, as core/processor.cpp,
-// for any x86-64.
+// The check of the processor: ends the program with a message where the processor lacks
+// instructions that it was compiled for; the first of them would end it by SIGILL without a word.
+// This file and core/processor.cpp are compiled for any x86-64.
 #include <unistd.h>
 
 #include <cstring>
@@ -11,12 +11,12 @@
 namespace {
 
 void write_error(const char* text) {
-    // A message that cannot be written is lost; the exit code tells as well.
+    // A message that cannot be written is lost: nothing is left to do, and the exit code tells.
     [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text, std::strlen(text));
 }
 
-/// Runs before the initialisers of all other files, which may have these instructions: 101 is the
-/// first priority that is free for programs.
+/// Runs before the initialisers of all other files, which may use instructions that are missing:
+/// 101 is the first priority that is free for programs.
 [[gnu::constructor(101)]] void refuse_other_processors() {
     const char* missing = covtrace::missing_instructions();
     if (!missing) return;

@@ -17,14 +17,17 @@ float smoothstep(float x) {
     return x * x * (3 - 2 * x);
 }
 
-/// Fall-off of a spot light at the cosine to its axis.
+/// The factor in [0, 1] on a spot light's intensity in a direction with this cosine to its axis, as
+/// in pbrt-v4: 1 in the inner cone, 0 outside the outer one, a smoothstep of the cosine between.
 float falloff(const PointEmitter& light, float cosine) {
     if (cosine >= light.cos_inner) return 1;
     if (cosine <= light.cos_outer) return 0;
     return smoothstep((cosine - light.cos_outer) / (light.cos_inner - light.cos_outer));
 }
 
-/// Half the mean squared angle to the axis, weighted by the intensity.
+/// Angular variance of a spot light along one axis across its own, radians^2: half the mean squared
+/// angle to its axis over the solid angle of the cone, weighted by the intensity. Steps of equal
+/// cosine have equal solid angles; 256 of them leave a relative error below 1e-4.
 float cone_variance(const PointEmitter& light) {
     constexpr int kSteps = 256;
     double weight = 0, square = 0;
@@ -54,7 +57,7 @@ PointEmitter make_point_emitter(const SpotLight& light, const Transform& light_t
     e.axis = normalize(light_to_world.point(light.to) - e.position);
     if (e.axis == Vec3{}) e.axis = normalize(light_to_world.vector({0, 0, 1}));
     const float outer = std::clamp(light.cone_angle, 0.0f, 180.0f);
-    // The cosine alone counts, as in pbrt, also where the difference of the angles is negative.
+    // pbrt-v4 takes the cosine of the difference, so the sign of a negative one does not count.
     const float inner =
         std::clamp(std::abs(light.cone_angle - light.cone_delta_angle), 0.0f, outer);
     e.cos_outer = std::cos(radians(outer));
@@ -115,7 +118,7 @@ LightBounds bounds(const PointEmitter& light) {
     b.theta_o = is_cone ? std::acos(light.cos_inner) : kPi;
     b.theta_e = is_cone ? std::acos(light.cos_outer) - b.theta_o : kPi / 2;
     if (light.image) {
-        // The image counts with its mean over the directions that the light shines into.
+        // The image counts with its mean: over the cone around a slide, else over all directions.
         const float solid_angle = is_cone ? 2 * kPi * (1 - light.cos_outer) : 4 * kPi;
         b.intensity *= choice_weight(light.image_integral) / solid_angle;
     }

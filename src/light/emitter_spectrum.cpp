@@ -6,8 +6,9 @@ namespace covtrace {
 
 namespace {
 
-/// Second moments of a mesh about the centroid of all its triangles together, in the object space
-/// that `start` places. Triangles are weighted by their area in the world.
+/// Second moments (xx, xy, xz, yy, yz, zz) of a mesh about its centroid, in object space, length^2;
+/// `start` takes that space to the world at the start of the shutter. Triangles are weighted by
+/// their area in the world.
 std::array<double, 6> mesh_moments(const EmissiveMesh& mesh, const Transform& start) {
     const Transform to_object = start.inverse();
     std::array<double, 6> square{};
@@ -47,6 +48,7 @@ std::array<double, 3> transposed_vector(const Transform& t, Vec3 v) {
     return r;
 }
 
+/// The value a^T S b for a symmetric S, given as (xx, xy, xz, yy, yz, zz).
 double quadratic_form(const std::array<double, 6>& s, const std::array<double, 3>& a,
                       const std::array<double, 3>& b) {
     return a[0] * (s[0] * b[0] + s[1] * b[1] + s[2] * b[2]) +
@@ -78,6 +80,7 @@ std::optional<Vec3> EmitterSpectrum::nearest_border(Vec3 position, const Transfo
     }
     const AnimatedTransform& motion = shape_->description.object_to_world;
     if (!motion.is_animated()) return border_.nearest(position);
+    // The border is known where the shape is at the start of the shutter.
     const Vec3 at_start = motion.start().point(now.inverse().point(position));
     const auto q = border_.nearest(at_start);
     return q ? std::optional(now.point(motion.start().inverse().point(*q))) : std::nullopt;
@@ -89,6 +92,7 @@ SourceSpectrum EmitterSpectrum::at(Vec3 position, Vec3 normal, float time, bool 
     if (motion.is_animated()) moved = motion.at(time);
     const Transform& now = moved ? *moved : motion.start();
     const Frame tangent = Frame::from_z(normal);
+    // The world's moments M S M^T along a tangent x are those of object space, S, along M^T x.
     const auto x = transposed_vector(now, tangent.x), y = transposed_vector(now, tangent.y);
     const auto* quadric = std::get_if<EmissiveQuadric>(emitter_);
     const float curvature = quadric ? quadric->curvature(time) : 0;

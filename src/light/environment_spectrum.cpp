@@ -11,9 +11,13 @@ namespace covtrace {
 
 namespace {
 
+/// Largest width, in texels, at which a map is analysed: a texel is then a third of a degree wide.
 constexpr int kWidestSpectrum = 1024;
+/// Most places per axis at which a wider map is looked up for the mean over one analysed texel:
+/// enough for every texel of a map that is 4096 wide.
 constexpr int kMostTapsPerAxis = 4;
 
+/// Unit direction in light space, whose pole is z, for angles in radians.
 Vec3 from_angles(float theta, float phi) {
     const float s = std::sin(theta);
     return {s * std::cos(phi), s * std::sin(phi), std::cos(theta)};
@@ -46,7 +50,8 @@ EnvironmentSpectrum::EnvironmentSpectrum(const Environment& light) : light_(&lig
         }
     });
     image_.emplace(values, width, height, ImageSpectrum::Wrap::repeat_s);
-    // The two rows next to a pole share one factor: there the map's rows shrink to a point.
+    // The map's rows shrink to a point at the poles. Nearer to one than two rows, the scale along
+    // the row is that of two rows away, so that it stays finite.
     pole_sine_ = std::sin(std::min(2 * kPi / float(height), kPi / 2));
     is_mirrored_ = light.light_to_world().swaps_handedness();
 }

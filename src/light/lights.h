@@ -17,8 +17,10 @@ struct LightSample {
     Vec3 wi;  ///< unit, towards the light
     /// Distance to the sampled point; infinite for distant and environment light.
     float distance = kInfinity;
-    Rgb radiance;   ///< arriving if unoccluded; for delta lights irradiance of a facing surface
-    float pdf = 0;  ///< selection times solid angle; for delta lights selection alone
+    Rgb radiance;  ///< arriving if unoccluded; for delta lights irradiance of a facing surface
+    /// Density per solid angle, with the probability of choosing the light; for delta lights that
+    /// probability alone.
+    float pdf = 0;
     bool is_delta = false;
     int light = -1;  ///< id for LightSpectra::source_spectrum
     Vec3 position;   ///< of the sampled point where the distance is finite
@@ -27,17 +29,18 @@ struct LightSample {
 
 /// An emissive shape as a whole, at a distance.
 struct DistantView {
-    Bounds3 box;          ///< over the shutter
-    float intensity = 0;  ///< bound on the luminance of its radiant intensity in any direction
-    float radiance = 0;   ///< luminance, mean over the shape
+    Bounds3 box;  ///< over the shutter
+    /// Largest luminance of its radiant intensity in any direction, with the mean of its image.
+    float intensity = 0;
+    float radiance = 0;  ///< luminance, mean over the shape
 };
 
 class Lights {
   public:
     /// Builds the lights of a scene. Image files that are missing, broken or of an unknown layout
-    /// throw Error(scene) with the place in the scene file. `geometry` and `textures` must outlive
-    /// the lights; without textures there is no alpha and no image on area lights. Shapes of
-    /// instanced objects don't emit.
+    /// throw Error(scene) with the place in the scene file, those beyond the memory that is left
+    /// Error(limit). `geometry` and `textures` must outlive the lights; without textures area
+    /// lights have no image, and no alpha but a constant 0. Shapes of instanced objects don't emit.
     Lights(const SceneDescription& scene, const Geometry& geometry,
            const TextureStore* textures = nullptr);
     ~Lights();
@@ -47,30 +50,33 @@ class Lights {
     /// Chooses a light for the point p, then a point on it. Empty where the chosen light can't
     /// light p. `u_select` chooses the light. `n` is the unit normal on the side that light is
     /// wanted for: for opaque surfaces the side of the viewer; the zero vector for volumes and
-    /// where light counts from both sides. Light from behind n is found seldom, beside
-    /// infinite light not at all, and uniform infinite light only above n. Not all light is found:
-    /// what comes from all directions alike is left to BSDFs and phase functions where other lights
-    /// outshine it, and so is the dark part of environment maps.
+    /// where light counts from both sides. Not all light is found. Finite lights behind n are
+    /// chosen seldom; where all of them are behind n and there are infinite lights, never. Uniform
+    /// infinite light is found above n only. Where other lights outshine it, it is left to BSDFs
+    /// and phase functions, and so is what environment maps have below EnvironmentMap::kLeftOut of
+    /// their mean (docs/decisions/0074).
     ///
-    /// Infinite lights with extent count as one light here: `radiance` and `pdf` are of all of them
-    /// together.
+    /// Uniform infinite lights and environment maps count as one light here: `radiance` and `pdf`
+    /// are those of all of them together. Distant lights are not among them.
     std::optional<LightSample> sample(Vec3 p, Vec3 n, float time, float u_select, Vec2 u) const {
         return finish_draw(p, n, time, u_select, {u, {}, 0});
     }
 
     /// The part of a sample that depends on `u` alone: the place where it falls in an environment
-    /// map. Begun as soon as u is known, it lets memory answer while a path looks for p.
+    /// map. Begun as soon as u is known, it has the map's memory fetched into the cache while the
+    /// path still looks for p (docs/decisions/0060).
     struct Draw {
         Vec2 u;
         EnvironmentMap::Draw sky;
         int steps = 0;  ///< steps of the draw that are done
     };
-    /// Whether drawing ahead gains anything: the scene has one infinite light with an image, and no
-    /// other light.
+    /// Whether drawing ahead gains anything: the scene has an environment map and no other infinite
+    /// light, so it is known which one a draw is from. Finite lights do not matter.
     bool draws_ahead() const;
     /// Does the first step of a draw.
     Draw begin_draw(Vec2 u) const;
-    /// Does the second step of a draw, best before something else that takes its time.
+    /// Does the second step of a draw, which asks for a texel's memory: best before other work that
+    /// takes as long as memory does to answer.
     void continue_draw(Draw& draw) const;
     /// Finishes `sample` with a draw that was taken as far as time allowed.
     std::optional<LightSample> finish_draw(Vec3 p, Vec3 n, float time, float u_select,
@@ -78,15 +84,17 @@ class Lights {
 
     /// Radiance that the surface at `hit` emits towards `wo` (unit, away from the surface).
     Rgb emitted(const SurfaceHit& hit, Vec3 wo) const;
-    /// Density with which `sample(p, n)` finds the emitter point `hit` in the direction wi:
-    /// selection times solid angle.
+    /// Density per solid angle with which `sample(p, n)` finds the emitter point `hit` in the
+    /// direction wi, with the probability of choosing the emitter.
     float pdf(Vec3 p, Vec3 n, Vec3 wi, const SurfaceHit& hit) const;
 
+    /// Whether there is a uniform infinite light or an environment map.
     bool has_environment() const;
-    /// Radiance of all infinite lights from the direction `w` (unit, away from the scene).
+    /// Radiance of all uniform infinite lights and environment maps from the direction `w` (unit,
+    /// away from the scene). Distant lights have none.
     Rgb environment(Vec3 w) const;
-    /// Radiance of the infinite lights from one direction, and the density with which `sample(p,
-    /// n)` finds that direction.
+    /// Radiance from one direction as `environment` has it, and the density per solid angle with
+    /// which `sample(p, n)` finds that direction.
     struct Sky {
         Rgb radiance;
         float pdf = 0;
@@ -97,8 +105,8 @@ class Lights {
     /// All emissive shapes that rays can meet, each as a whole.
     std::vector<DistantView> distant_views() const;
 
-    /// Power that all lights emit; infinite lights count with what enters the sphere around the
-    /// scene.
+    /// Power (radiant flux) that all lights emit; infinite and distant lights count with what
+    /// enters the sphere around the scene.
     Rgb total_power() const;
     /// Number of lights: every emissive triangle, patch half, sphere and disk counts as one of its
     /// own.

@@ -17,6 +17,7 @@ class EmissiveMesh {
     explicit EmissiveMesh(const PlacedShape& shape);
 
     int light_count() const { return static_cast<int>(elements_.size()); }
+    /// The light of this mesh that a hit of its shape lies on.
     int light_of(const SurfaceHit& hit) const;
     /// A point on a light. Flat elements: uniform by solid angle as seen from p, but by area where
     /// the solid angle is tiny or nearly a hemisphere. Halves of patches that are no
@@ -24,11 +25,12 @@ class EmissiveMesh {
     std::optional<EmitterPoint> sample(int light, Vec3 p, float time, Vec2 u) const;
     /// Density of `sample` at a hit, per solid angle.
     float pdf(int light, Vec3 p, const SurfaceHit& hit) const;
-    /// The surface's texture coordinates at a sampled point.
+    /// The surface's texture coordinates at a sampled point, which are the same at any time.
     Vec2 uv(int light, const EmitterPoint& point, float time) const;
     /// Area of a light in world space, at the start of the shutter.
     float area(int light) const;
-    /// Bounds of a light, with the intensity that a radiance of 1 gives.
+    /// Bounds of a light over the shutter, with the largest intensity that a radiance of 1 gives at
+    /// its start: the area.
     LightBounds bounds(int light) const;
 
     /// Corners of a light in world space at the start of the shutter.
@@ -40,18 +42,24 @@ class EmissiveMesh {
     /// with b1, b2 >= 0 and b1 + b2 <= 1. In world space where nothing moves, else in object space.
     struct Element {
         Vec3 p0, p1, p2;
-        Vec3 normal;  // unit, along d1 x d2 of flat elements
+        Vec3 normal;  // unit, along d1 x d2 at p0: for flat elements everywhere
         Vec3 twist;   // zero for flat elements
-        Vec3 facing;  // interpolated, its sign tells whether d1 x d2 points to the outside
+        // One value per corner; interpolated at a point, the sign tells whether d1 x d2 points to
+        // the outside there.
+        Vec3 facing;
         bool is_flat() const { return twist == Vec3{}; }
+        /// Derivatives of the point by b1 and b2.
         Vec3 d1(Vec2 b) const { return p1 - p0 + twist * b.y; }
         Vec3 d2(Vec2 b) const { return p2 - p0 + twist * b.x; }
         Vec3 point(Vec2 b) const {
             return p0 + (p1 - p0) * b.x + (p2 - p0) * b.y + twist * (b.x * b.y);
         }
     };
+    /// The element of a light in world space.
     Element at(int light, float time) const;
     static Element moved(Element e, const Transform& t);
+    /// Density per solid angle, seen from p, of the point `position` = e.point(b) where b is drawn
+    /// uniformly; 0 where it is not finite.
     static float area_pdf(const Element& e, Vec3 p, Vec3 position, Vec2 b);
 
     decltype(ShapeDescription::geometry) mesh_;
