@@ -11,6 +11,7 @@ namespace covtrace::cli {
 
 namespace {
 
+/// A size as --max-memory takes it, where M is 2^20 bytes: "512.0M".
 std::string megabytes(size_t bytes) {
     return fmt::format("{:.1f}M", double(bytes) / double(1 << 20));
 }
@@ -30,6 +31,7 @@ void require_memory(size_t most, const std::map<std::string, size_t>& coming,
             parts[name] += bytes;
             known += bytes;
         }
+    // The scene does not list all that the process holds: its code, buffers, libraries.
     parts[scene ? "program" : "program and scene"] += now - std::min(now, known);
     std::string list;
     for (const auto& [name, bytes] : parts)

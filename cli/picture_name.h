@@ -1,4 +1,4 @@
-/// Checks of the names of images, which say their format.
+/// Checks of the names of output files, whose endings say their format.
 #pragma once
 
 #include <filesystem>
@@ -8,17 +8,18 @@
 
 namespace covtrace::cli {
 
-/// Throws Error(usage), whose message begins with `option`, for a name that says none of the
-/// formats that are written, or one that cannot hold layers that were asked for by name. Empty
-/// names pass.
+/// Checks the name of an image. Throws Error(usage), whose message begins with `option`, for an
+/// ending that is none of the formats that are written, or one of a format that cannot hold the
+/// layers that were asked for by name. Empty names pass.
 void require_image_name(const std::string& option, const std::filesystem::path& file,
                         const LayerSelection& layers);
 
-/// Throws such an error for a name that says another format than PNG; a name without an ending
-/// passes.
+/// Checks the name of a PNG file. Throws Error(usage), whose message begins with `option`, for an
+/// ending other than .png; names without an ending, and empty ones, pass.
 void require_picture_name(const std::string& option, const std::filesystem::path& file);
 
-/// Throws such an error for the name of a page that says the format of an image.
+/// Checks the name of an HTML page. Throws Error(usage), whose message begins with `option`, for an
+/// ending of any image format that is written or read; all others pass.
 void require_report_name(const std::string& option, const std::filesystem::path& file);
 
 }  // namespace covtrace::cli

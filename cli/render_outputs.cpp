@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether a file is in the working folder, with links followed as far as there are files.
+/// Whether a file is in the working folder or below it, whatever links its path has; the file and
+/// its folders need not exist.
 bool is_in_working_folder(const fs::path& file) {
     std::error_code error;
     const fs::path here = fs::canonical(".", error);
@@ -26,13 +27,15 @@ bool is_in_working_folder(const fs::path& file) {
            std::mismatch(here.begin(), here.end(), place.begin(), place.end()).first == here.end();
 }
 
+/// Throws Error(usage) where the file's folder does not exist, or as OutputFile does where the file
+/// cannot be written.
 void require_writable(const fs::path& file) {
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
     std::error_code error;
     if (!fs::is_directory(folder, error))
         throw Error(ErrorKind::usage,
                     "the folder of the output '" + file.string() + "' does not exist");
-    const OutputFile probe(file);
+    const OutputFile probe(file);  // creates a temporary file, and removes it
 }
 
 }  // namespace
@@ -44,7 +47,8 @@ fs::path image_path(const RenderArguments& a, SceneDescription& scene) {
     fs::path name = scene.film.filename;
     const fs::path last = name.filename();
     const bool names_file = !last.empty() && last != "." && last != "..";
-    // A film that asks for another format keeps its name, and all layers.
+    // A film that asks for another format gets OpenEXR all the same, which holds all layers, under
+    // its own name with another ending.
     if (names_file && name.extension() != ".exr") name.replace_extension(".exr");
     if (names_file && is_in_working_folder(name)) return name;
     const bool may_be_here = names_file && is_in_working_folder(name.filename());

@@ -12,6 +12,7 @@ Rgb LightTexels::operator[](size_t texel) const {
     const auto linear = [&](size_t i) {
         return encoded ? srgb_decode(raster.value(i)) : raster.value(i);
     };
+    // NaN fails the comparison, and is black like all that is negative.
     const auto cut = [this](float v) { return v > 0 ? std::min(v, brightest) : 0.0f; };
     const auto count = static_cast<size_t>(raster.channels);
     const size_t first = texel * count;

@@ -14,11 +14,12 @@ namespace covtrace {
 struct OccluderBall {
     Vec3 center;
     float radius = 0;
-    OccluderQuery::Owner owner;  ///< the sphere that it is
+    OccluderQuery::Owner owner;  ///< shape and instance of the sphere in the scene
 };
 
 struct BallBlock {
-    /// Makes a block of up to eight balls; lanes without one hold no number.
+    /// Makes a block of up to eight balls. A lane without a ball has a NaN centre, so that every
+    /// comparison fails, and the radius 0.
     explicit BallBlock(std::span<const OccluderBall> balls) {
         const Float8 none = all8(std::numeric_limits<float>::quiet_NaN());
         center = {none, none, none};
@@ -32,7 +33,8 @@ struct BallBlock {
         }
     }
 
-    /// A mask whose bit k tells whether the k-th ball is the owner's.
+    /// A mask whose bit k tells whether the k-th ball is the owner's; bits of lanes without a ball
+    /// mean nothing.
     unsigned owned_by(const OccluderQuery::Owner& owner) const {
         unsigned bits = 0;
         for (size_t k = 0; k < shape.size(); ++k)

@@ -8,20 +8,23 @@ namespace covtrace {
 
 namespace {
 
-/// Triangles that curved shapes may have together; each shape has at least a few hundred.
+/// Triangles that curved shapes may have together, as far as pieces of a circle between the two
+/// bounds allow (docs/decisions/0014): a sphere has at least 256.
 constexpr double kCurvedTriangles = 2e6;
-constexpr ptrdiff_t kInstancesAtOnce = 1024;           ///< between two looks at the clock
-constexpr double kMostAround = 64, kLeastAround = 16;  ///< pieces of a circle
-/// Triangles that shapes with holes may have together, and the pieces that their edges are cut
-/// into.
+constexpr double kMostAround = 64, kLeastAround = 16;
+/// Instances that are looked at between two calls of `cancelled`.
+constexpr ptrdiff_t kInstancesAtOnce = 1024;
+/// Triangles that flat shapes with alpha may have together, and bounds on the pieces that an edge
+/// of theirs is cut into for them (docs/decisions/0043).
 constexpr double kPerforatedTriangles = 2e6;
 constexpr int kMostPerEdge = 64, kLeastPerEdge = 4;
-/// Alpha from which on a surface occludes. A surface that lets t through has the contrast (1 -
-/// t)/(1 + t); here that is a tenth, from which on partial edges count in full
-/// (covariance::edge_visibility).
+/// Alpha above which a surface occludes. The edge of a surface that lets the share t of the light
+/// through has the contrast (1 - t) / (1 + t). With t = 1 - 0.18 that is a tenth, and edges of this
+/// contrast and more count in full (covariance::edge_visibility).
 constexpr float kOpaque = 0.18f;
 
-/// The factor by which the map makes all lengths longer, or 0 where it does not keep angles.
+/// The factor on lengths of a map that is a similarity (it scales all directions alike); 0 for any
+/// other map.
 double similarity(const Affine& m) {
     const double s = length(m.row[0]);
     const auto is = [s](double value, double expected) {
@@ -65,7 +68,8 @@ Bounds3 bounds_of_ball(Vec3 center, float radius) {
 Bounds3 transformed(const Bounds3& b, const Affine& map) {
     const Vec3d c = map.point(Vec3d(b.center())), h = map.absolute(Vec3d(b.diagonal() * 0.5f));
     Bounds3 r;
-    // The box is a little larger than computed, for the rounding to single precision.
+    // The box grows by 1e-5 of itself, which covers the rounding to single precision at places up
+    // to a hundred times its half size from the origin.
     r.extend((c - h * 1.00001).to_float());
     r.extend((c + h * 1.00001).to_float());
     return r;
@@ -197,10 +201,11 @@ bool OccluderBodies::has_holes(uint32_t shape) const {
     return geometry.placed[shape].description.alpha >= 0 && geometry.alpha;
 }
 
-/// The triangles that alpha leaves of a flat shape. Holes that depend on the position are those at
-/// `world_from_local`.
+/// The triangles that alpha leaves of a flat shape. Alpha that depends on the place in the world is
+/// looked up where `world_from_local` puts the shape.
 Tessellation OccluderBodies::perforated(uint32_t shape, const Affine& world_from_local) const {
     const TextureId texture = geometry.placed[shape].description.alpha;
+    // No piece is as small as 1e-30 units, so that per_edge_ alone decides how many there are.
     return Tessellation(
         geometry.local[shape], 1e-30, 1,
         [&](Vec2 uv, Vec3 position) {
@@ -210,8 +215,9 @@ Tessellation OccluderBodies::perforated(uint32_t shape, const Affine& world_from
         per_edge_);
 }
 
-/// Makes bodies of shapes that stand together: one edge set for all that is flat, balls, and an
-/// edge set for each other curved shape and, where they are deformed, for balls, too.
+/// Makes bodies of the shapes of one of Embree's scenes: one edge set for all flat shapes together,
+/// a ball for each whole sphere, an edge set for each other curved shape. With `are_deformed` a
+/// sphere gets an edge set as well, for the instances that make an ellipsoid of it.
 std::vector<OccluderBody> OccluderBodies::add(const std::vector<uint32_t>& shapes,
                                               const Affine& world_from_local, bool are_deformed) {
     FoldEdgeFinder flat;
@@ -242,7 +248,7 @@ std::vector<OccluderBody> OccluderBodies::add(const std::vector<uint32_t>& shape
     return parts;
 }
 
-/// Keeps the edges that a finder has found as a body, where there are any.
+/// Adds to `parts` a body like `body` with the edges that the finder has found, if there are any.
 void OccluderBodies::keep(FoldEdgeFinder& finder, const OccluderBody& body,
                           std::vector<OccluderBody>& parts) {
     const std::vector<FoldEdge> edges = finder.take();
@@ -252,7 +258,8 @@ void OccluderBodies::keep(FoldEdgeFinder& finder, const OccluderBody& body,
     sets.emplace_back(edges);
 }
 
-/// Length of a tessellation's pieces in local space, such that a whole turn has around_ of them.
+/// Length of a curved shape's tessellation pieces, in local space: around_ of them make the widest
+/// circle of a quadric, a quarter of that the diagonal of other shapes' bounding box.
 double OccluderBodies::piece_of(const LocalShape& shape) const {
     Bounds3 b;
     if (const auto* quadric = std::get_if<Quadric>(&shape)) {

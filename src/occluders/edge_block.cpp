@@ -6,6 +6,7 @@ namespace covtrace {
 
 namespace {
 
+/// Sets lane k.
 void put(Vec3x8& to, size_t k, Vec3 v) {
     to.x[k] = v.x;
     to.y[k] = v.y;
@@ -15,6 +16,7 @@ void put(Vec3x8& to, size_t k, Vec3 v) {
 }  // namespace
 
 EdgeBlock::EdgeBlock(std::span<const FoldEdge> edges) {
+    // With NaN every comparison fails, so that a lane without an edge is never an outline.
     const float none = std::numeric_limits<float>::quiet_NaN();
     a = {all8(none), all8(none), all8(none)};
     for (size_t k = 0; k < edges.size(); ++k) {

@@ -1,4 +1,4 @@
-/// How much an edge beside a ray matters at the ray's end.
+/// How much an edge beside a segment matters at the segment's end.
 #pragma once
 
 #include <algorithm>
@@ -7,14 +7,18 @@
 
 namespace covtrace {
 
-/// The width, at the end of a segment, of the shadow edge (or of the image edge) that an occluder
-/// gives which passes the segment at the perpendicular distance r, z before its end:
+/// The width of the shadow, or of the edge in the image, that an occluder's edge makes at the end
+/// of a segment. The edge passes the segment at the perpendicular distance r, at the distance z
+/// from its end, both in scene units:
 ///
 ///     width^2 = ((a0 + a1 z)^2 + b r^2) / (h0 + h1 z + h2 z^2)
 ///
-/// as a standard deviation, in the units of `widest`. The first term is the blur that the edge has
-/// where it arrives (penumbra, circle of confusion), the second its distance. Only edges narrower
-/// than `widest` are wanted. The denominator must not be concave.
+/// It is a standard deviation in the units of `widest`: scene units at a surface, slopes at a
+/// perspective camera. The first term is the blur that the edge has where it arrives (penumbra,
+/// circle of confusion), the second its distance. docs/decisions/0014 derives it;
+/// measure_at_surface and measure_at_camera (frequency/occlusion.h) set the coefficients. Only
+/// edges narrower than `widest` are wanted. h2 >= 0: searches take the larger value at the ends of
+/// a range of z for the denominator's bound.
 struct EdgeMeasure {
     float a0 = 0, a1 = 0;
     float b = 1;
@@ -25,6 +29,7 @@ struct EdgeMeasure {
         const float a = a0 + a1 * z;
         return a * a + b * r2;
     }
+    /// The denominator, which rounding never makes less than a millionth of h0.
     float denominator(float z) const { return std::max(h0 + z * (h1 + z * h2), 1e-6f * h0); }
     float width_squared(float z, float r2) const { return numerator(z, r2) / denominator(z); }
 

@@ -16,13 +16,16 @@ namespace covtrace {
 
 class OutlineSearch {
   public:
+    /// Begins a search beside the segment from `begin` to `end`, in world space. Edges that pass
+    /// closer than `nearest` (scene units) to either end do not count.
     OutlineSearch(Vec3 begin, Vec3 end, const EdgeMeasure& measure, float nearest);
 
     /// Whether the search ends before it begins: no edge can matter.
     bool is_over() const { return !(lo_ <= hi_); }
 
-    /// The boxes of a node, in the world, that may hold edges which are narrow enough and, by
-    /// `cones`, outlines. Their bounds are squared widths.
+    /// The boxes of a node, in world space, that may hold an edge which is narrow enough; with
+    /// `cones` boxes that hold no outline as seen from the segment's end are left out. The bounds
+    /// of the boxes are squared widths.
     BoxHierarchy::Met near_world(const BoxHierarchy::Node& node);
     BoxHierarchy::Met near_world(const BoxHierarchy::Node& node, const BlindCones& cones);
     /// The squared width that an edge must stay below to be of interest; below 0 once the search
@@ -31,7 +34,7 @@ class OutlineSearch {
     /// Looks at edges, in world space, that belong to `body`.
     void meet_world(const EdgeBlock& edges, uint32_t body);
 
-    /// Enters the local space of the nodes and edges that follow.
+    /// Sets the local space of the nodes and edges that near_local and meet_local are given next.
     void enter(const Affine& world_from_local);
     BoxHierarchy::Met near_local(const BoxHierarchy::Node& node, const BlindCones& cones);
     void meet_local(const EdgeBlock& edges, uint32_t body);
@@ -56,8 +59,8 @@ class OutlineSearch {
     static constexpr int kStepsPerBody = 4;
 
     struct Candidate {
-        Vec3 point;    ///< from end_
-        Vec3 towards;  ///< along OutlineEvent::direction or against it, not of length 1
+        Vec3 point;    ///< relative to end_, in world space
+        Vec3 towards;  ///< along OutlineEvent::direction or against it, of any length
         uint32_t body;
     };
     /// Curves whose squared width is, at t from t0 to t1, the quotient of two quadratics.
@@ -70,7 +73,7 @@ class OutlineSearch {
     struct Nearest {
         Float8 width2;  ///< infinity where nothing of the curve is beside the segment
         Float8 t;       ///< the place along the curve, from t0 to t1
-        Mask8 inside;   ///< all bits set where the place is no end of the curve
+        Mask8 inside;   ///< all bits set where the place lies between the curve's ends
     };
 
     /// The boxes that may matter, given their middles relative to end_ and their half sizes, by
@@ -81,27 +84,32 @@ class OutlineSearch {
     Nearest nearest(const Curves& curves, const Distance& distance2) const;
     /// The clipped parts of eight edges: `from`, `along` are in world space, relative to end_.
     Nearest nearest(const Vec3x8& from, const Vec3x8& along) const;
+    /// The least squared widths so far in the sectors that eight directions are in.
     Float8 widths2_of(const Vec3x8& towards) const;
+    /// Looks at the eight edges of which `outlines` says that they are outlines; `from`, `along`
+    /// are in world space, relative to end_.
     void meet(const Mask8& outlines, const Vec3x8& from, const Vec3x8& along, uint32_t body);
     /// Keeps an edge if it is the narrowest in its sector of direction. `point`: the place where it
-    /// is narrowest, from end_; `is_inside`: that place is no end of the edge.
+    /// is narrowest, relative to end_; `is_inside`: that place lies between the edge's ends.
     void keep(float width2, Vec3 point, Vec3 along, bool is_inside, uint32_t body);
     void keep(float width2, const Candidate& candidate);
 
     Vec3 end_, axis_;  ///< `axis_`: unit, from the end to the beginning
     EdgeMeasure measure_;
     float lo_ = 1, hi_ = 0;  ///< range of distances from the end in which edges matter
-    float limit_ = 0;
+    float limit_ = 0;        ///< squared width from which on an edge no longer matters
     int steps_left_ = kMostSteps;
-    float widest2_ = 0;
-    float least_ = 0;  ///< least value of the measure's denominator
-    float sharp_ = 0;  ///< distance at which the blur is least; 0 where it is the same everywhere
+    float widest2_ = 0;  ///< square of the measure's `widest`
+    float least_ = 0;    ///< least value of the measure's denominator
+    float sharp_ = 0;    ///< distance at which the blur is least; 0 where it is the same everywhere
     bool has_found_ = false;
     /// Least squared width so far in each sector of direction.
     std::array<float, OutlineEvents::kMost> widths2_{kInfinity, kInfinity, kInfinity, kInfinity};
     std::array<Candidate, OutlineEvents::kMost> best_;
     Frame frame_;  ///< about axis_, where anything was found
 
+    // The space that enter() has set: rows of the linear part and translation of its map to the
+    // world, and end_ in it.
     std::array<Vec3, 3> rows_;
     Vec3 shift_, local_end_;
 };
@@ -124,10 +132,11 @@ inline BoxHierarchy::Met OutlineSearch::may_matter(const Vec3x8& middle, const V
     const Vec3x8 axis = all8(axis_);
     const Float8 along = dot8(middle, axis), reach = dot8(half, abs8(axis));
     const Float8 z0 = max8(along - reach, all8(lo_)), z1 = min8(along + reach, all8(hi_));
-    // The distance across the axis is bounded thus: the box lies beyond a plane at right angles to
-    // the way to its middle, at beyond / |p|. Both sides of the comparison are multiplied by what a
-    // quotient would divide by; equal ones count, as both vanish where their products become too
-    // small.
+    // The distance across the axis has a lower bound: p leads from the axis to the box's middle, at
+    // right angles, and the whole box lies beyond the plane across p at the distance beyond / |p|.
+    // Both sides of the comparison are multiplied by the denominators, p2 among them, instead of
+    // dividing. Equal sides count as met: where the products become too small for single precision
+    // both are 0.
     const Vec3x8 p = subtract_product(axis, along, middle);
     const Float8 p2 = dot8(p, p);
     const Float8 beyond = max8(p2 - dot8(half, abs8(p)), Float8{});
@@ -146,7 +155,8 @@ void OutlineSearch::collect(OutlineEvents& events, const Velocity& velocity) {
     std::array<size_t, OutlineEvents::kMost> narrowest{0, 1, 2, 3};
     std::sort(narrowest.begin(), narrowest.end(),
               [this](size_t a, size_t b) { return widths2_[a] < widths2_[b]; });
-    /// Cosine of the angle within which two edges limit the light in the same direction.
+    /// Cosine of the angle (30 degrees) within which two edges narrow the light in the same
+    /// direction.
     constexpr float kSameDirection = 0.87f;
     for (const size_t sector : narrowest) {
         const float width2 = widths2_[sector];
