@@ -12,6 +12,7 @@ namespace covtrace::cli {
 
 namespace {
 
+/// The exit code of an error, as docs/reference/exit-codes.md lists them.
 int exit_code(ErrorKind kind) {
     using enum ErrorKind;
     switch (kind) {
@@ -31,7 +32,8 @@ int exit_code(ErrorKind kind) {
     return 7;
 }
 
-/// The error's message; an option that is refused is spelled as on the command line: "--max-spp: ".
+/// The error's message. One that refuses an option begins with the name of its field, "max_spp: ",
+/// which becomes the option of the command line, "--max-spp: ".
 std::string message_of(const Error& e) {
     const std::string text = e.what();
     if (e.option().empty()) return text;

@@ -9,9 +9,11 @@ namespace covtrace::cli {
 
 namespace {
 
-constexpr double kEvery = 60;                     // seconds
-constexpr size_t kSlowBytes = size_t(100) << 20;  // films beyond this may take more than a second
-constexpr double kMostShare = 0.01;               // share of the time, unless --every is given
+/// Seconds between checkpoints, and the largest share of a render's time that writing them takes;
+/// both unless --every is given.
+constexpr double kEvery = 60, kMostShare = 0.01;
+/// Size beyond which writing a film may take more than a second: an interrupt is answered first.
+constexpr size_t kSlowBytes = size_t(100) << 20;
 
 }  // namespace
 
@@ -62,6 +64,8 @@ void FilmFiles::keep(const RenderState& state, KeepReason reason) {
         clear_line_();
         say("interrupted: keeping a film of {} MB, which takes a while\n", bytes >> 20);
     }
+    // A shard has one file, --film, which it writes at every occasion. Other renders write it when
+    // they end or are interrupted; where it has the checkpoint's name, that is written below.
     if (a.shard || (reason != KeepReason::checkpoint && a.film != a.checkpoint))
         write(state, a.film);
     if (!a.shard) write(state, a.checkpoint);

@@ -19,6 +19,8 @@ std::string text(Rgb c) {
     return fmt::format("{:.9g},{:.9g},{:.9g}", c.r, c.g, c.b);
 }
 
+/// One line on a vertex: place, material or medium, and the luminances that reach the sensor from
+/// it.
 std::string describe(const PathVertex& v, int index) {
     std::string line =
         fmt::format("vertex {}: at {} time {:.9g}", index, text(v.hit.position), v.hit.time);
@@ -40,6 +42,7 @@ std::string describe_sample(const RenderScene& scene, const RenderOptions& optio
                     fmt::format("--debug-pixel: {},{} is not one of the pixels "
                                 "{},{} to {},{}",
                                 p.x, p.y, region.x0, region.y0, region.x1 - 1, region.y1 - 1));
+    // The two halves of `hybrid` take turns in the numbers of samples (PassContext::sample_name).
     const PassContext whole = pass_context(scene, options);
     const PassContext context =
         options.method == Method::hybrid ? half_context(whole, uint32_t(p.sample % 2)) : whole;

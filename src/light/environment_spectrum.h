@@ -23,13 +23,13 @@ class EnvironmentSpectrum {
 
     /// The covariance around the world direction `w` (unit, away from the scene).
     AngularCovariance at(Vec3 w) const;
-    /// Whether the spectrum is anything but zero.
+    /// Whether the light has an image; without one the spectrum is zero everywhere.
     bool varies() const { return image_.has_value(); }
 
   private:
     const Environment* light_;
     std::optional<ImageSpectrum> image_;
-    /// Sine of the polar angle that the rows next to the poles use.
+    /// Least sine of the polar angle that the scale along a row is taken with.
     float pole_sine_ = 1;
     bool is_mirrored_ = false;  ///< whether light space is a mirror image of the world's
 };

@@ -1,4 +1,4 @@
-/// Eight points or directions that are computed with together.
+/// Vectors of eight points or directions, for the vector instructions of core/simd.h.
 #pragma once
 
 #include "core/simd.h"
@@ -6,7 +6,7 @@
 
 namespace covtrace {
 
-/// Eight points or directions.
+/// Eight points or directions: lane k of x, y and z is the k-th.
 struct Vec3x8 {
     Float8 x{}, y{}, z{};
 };

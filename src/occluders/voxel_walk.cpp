@@ -11,7 +11,8 @@ VoxelWalk::VoxelWalk(const VoxelGrid& grid, Vec3 from, Vec3 to) : grid_(grid) {
     const Vec3 direction = (to - from) / total;
     float enter = 0, leave = total;
     for (int k = 0; k < 3; ++k) {
-        // The walk covers two voxels beyond the box, where rounding may have entered something.
+        // A surface in a far face of the box is in the voxel beyond it, or by rounding in one next
+        // to that: the walk covers two voxels beyond the box.
         const float lo = grid.box_.lo[k] - 2 * size - from[k],
                     hi = grid.box_.hi[k] + 2 * size - from[k];
         if (direction[k] == 0) {
@@ -36,6 +37,7 @@ VoxelWalk::VoxelWalk(const VoxelGrid& grid, Vec3 from, Vec3 to) : grid_(grid) {
                                       direction[k]
                                 : kInfinity;
     }
+    // Leave out the occupied voxels at either end: the surfaces there are the segment's own.
     while (at_ < end_ && voxel()) step();
     float last_empty = at_;
     for (VoxelWalk ahead = *this; ahead.at_ < end_;) {

@@ -17,9 +17,11 @@ using Covariance2 = covariance::Sym2<float>;
 using CovarianceBuffer = covariance::CovarianceImage<float>;
 using Prediction = covariance::Prediction<float>;
 
-/// The covariances of a pixel's light, in two parts. An emitter in view outshines the light beside
-/// it a hundred times: in one mean it would decide the spectra around it, and the tails of filters
-/// would carry it over its border. `scattered` is all the light that surfaces sent on.
+/// The covariances of a pixel's light, in two parts, row by row. `in_view` is the light of emitters
+/// that are seen directly or by specular lobes that were each more likely than not
+/// (PathVertex::in_view), `scattered` is all other light. An emitter in view outshines the light
+/// beside it a hundred times: in one mean it would decide the spectra around it, and the tails of
+/// filters would carry it over its border.
 struct CovarianceBuffers {
     CovarianceBuffers(int w, int h)
         : width(w), height(h), scattered(size_t(w) * size_t(h)), in_view(scattered.size()) {}
@@ -30,13 +32,16 @@ struct CovarianceBuffers {
         return (scattered.size() + in_view.size()) * sizeof(PackedCovariance);
     }
 };
+/// The covariances and weights of width * height pixels, row by row.
 CovarianceBuffer unpack(std::span<const PackedCovariance> packed, int width, int height);
 /// Covariances of all light: the mean of both parts, weighted by their radiance.
 CovarianceBuffer merge(const CovarianceBuffers& buffers);
-/// Covariances of all light, packed to be kept; no rounding to floats comes before the packing.
+/// Covariances of all light as `merge` has them, packed for a film: from double precision, without
+/// the rounding to floats that `merge` ends with.
 std::vector<PackedCovariance> packed_merge(const CovarianceBuffers& buffers);
 
-/// Predicts every pixel as it is, in parallel (covariance::preintegrate): the `spectrum` layer.
+/// Predicts every pixel by its own covariance, without smoothing, in parallel
+/// (covariance::preintegrate): the `spectrum` layer.
 Prediction preintegrated(const CovarianceBuffer& buffer);
 
 /// Smooths in parallel (covariance::smooth): means over 3x3 pixels, holes filled from the nearest

@@ -26,7 +26,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPoll{50};  // time until a request to stop is seen
+// Time until a request to stop is seen; a viewer that takes no byte for so long is stalled.
+constexpr milliseconds kPoll{50};
 constexpr milliseconds kConnectTimeout{2000};
 constexpr milliseconds kRetry{500};  // time between attempts to connect
 constexpr const char* kNoAnswer = "no answer yet";
@@ -49,20 +50,23 @@ struct TevClient::State {
     // The following members belong to the thread alone.
     int socket = -1;
     std::vector<std::string> created;  ///< channels of the image that the viewer has
-    std::pair<int, int> created_size;
-    bool had_focus = false;
+    std::pair<int, int> created_size;  ///< width and height of that image
+    bool had_focus = false;            ///< whether an image took tev's focus: only the first does
 
     State(std::string h, std::string p, std::string n)
         : host(std::move(h)), port(std::move(p)), name(std::move(n)) {}
     ~State() { disconnect(); }
 
     void run();
+    /// Sends an image; false where the viewer is gone, or finish() gives no more time.
     bool send_image(const Image& image);
     bool send_all(const std::string& bytes);
+    /// Connects to the viewer; false where no address of the host answers.
     bool connect();
-    /// Connects to one address; returns nothing, or the reason why it cannot be done.
+    /// Connects to one address. Returns the reason why it cannot be done, empty where it is.
     std::string connect_to(const addrinfo& address);
-    void fails(const std::string& why) {
+    /// Keeps the reason of the first failure, unless the viewer was there before.
+    void keep_failure(const std::string& why) {
         const std::lock_guard lock(mutex);
         if (!failure && !connected) failure = why;
     }
@@ -141,7 +145,7 @@ bool TevClient::State::connect() {
     hints.ai_socktype = SOCK_STREAM;
     addrinfo* found = nullptr;
     if (const int error = ::getaddrinfo(host.c_str(), port.c_str(), &hints, &found)) {
-        fails(::gai_strerror(error));
+        keep_failure(::gai_strerror(error));
         return false;
     }
     const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> addresses(found, ::freeaddrinfo);
@@ -153,7 +157,7 @@ bool TevClient::State::connect() {
         connected = true;
         return true;
     }
-    fails(why);
+    keep_failure(why);
     return false;
 }
 
