@@ -13,6 +13,7 @@ namespace covtrace::cli {
 
 namespace {
 
+/// An axis of the covariance, as it is shown.
 struct Axis {
     const char *name, *unit;
     double scale;  ///< factor from the covariance's unit to `unit`
@@ -29,6 +30,7 @@ std::optional<float> find_value(const Image& image, const std::string& channel, 
     return c ? std::optional(c->values[index]) : std::nullopt;
 }
 
+/// Principal axes of the 2x2 matrix in a layer's channels xx, xy and yy; empty without them.
 std::optional<PrincipalAxes> find_axes(const Image& image, const std::string& layer, size_t i) {
     const auto xx = find_value(image, layer + ".xx", i), xy = find_value(image, layer + ".xy", i),
                yy = find_value(image, layer + ".yy", i);
@@ -36,6 +38,7 @@ std::optional<PrincipalAxes> find_axes(const Image& image, const std::string& la
     return principal_axes(*xx, *xy, *yy);
 }
 
+/// The matrix in the channels cov.00, cov.01 ... cov.44; empty unless all 15 are there.
 std::optional<std::array<std::array<float, 5>, 5>> find_covariance(const Image& image, size_t i) {
     std::array<std::array<float, 5>, 5> matrix{};
     for (size_t r = 0; r < 5; ++r)
@@ -47,13 +50,15 @@ std::optional<std::array<std::array<float, 5>, 5>> find_covariance(const Image& 
     return matrix;
 }
 
-/// The bandwidth in words, the same as of bandwidthWords in the viewer's covariance.js.
+/// The bandwidth in words, the same ones as bandwidthWords has in viewer/page/covariance.js. `axis`
+/// is an index into kAxes, `value` is in its unit.
 std::string bandwidth_words(size_t axis, double value) {
-    // Cycles over the whole aperture or shutter below which nothing varies: the value changes by
-    // less than a third of its range.
+    // Cycles over the whole aperture or shutter below which nothing varies: such a part of a wave
+    // changes by less than 2 pi 0.05, a third of its amplitude.
     constexpr double kStill = 0.05;
     if (axis < 2) {
         if (value < 0.001) return "does not vary";
+        // Pixels show no more than half a cycle each (Nyquist).
         if (value >= 0.5) return "finer than the pixels can show (0.5)";
         return "one period in " + format_number(1 / value) + " pixels";
     }
@@ -62,7 +67,8 @@ std::string bandwidth_words(size_t axis, double value) {
     return format_number(value) + " periods " + where;
 }
 
-/// The count by the pixel's own covariance, before the plan smooths and limits it.
+/// The count N that the pixel's own covariance asks for; a render's plan smooths covariances and
+/// limits counts. k is that of the image's metadata, covtrace:k.
 HypercubeCount hypercube_count(const Image& image,
                                const std::array<std::array<float, 5>, 5>& covariance) {
     covariance::SymmetricMatrix5<double> sigma;
@@ -75,6 +81,7 @@ HypercubeCount hypercube_count(const Image& image,
     return count;
 }
 
+/// A number of JSON, which knows neither infinity nor NaN.
 nlohmann::json number_or_null(double value) {
     return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
 }

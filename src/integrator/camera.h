@@ -9,17 +9,21 @@
 
 namespace covtrace {
 
-/// The linear map of a thin-lens (or orthographic) camera around one of its rays.
+/// The linear map of a camera around one of its rays: that of a thin lens with perspective or
+/// parallel rays. A spherical camera counts as a pinhole that looks along the ray.
 struct SensorGeometry {
-    Vec3 right, down,
-        forward;  ///< world directions of increasing pixel x, pixel y, and the optical axis
+    /// Unit world directions of increasing pixel x, of increasing pixel y, and of the optical axis.
+    Vec3 right, down, forward;
     float lens_radius = 0;     ///< world units; 0 for a pinhole
     float focal_distance = 1;  ///< world units along `forward`
-    float pixels_per_x = 1,
-          pixels_per_y = 1;  ///< per unit of slope (perspective) or of length (orthographic)
-    float shutter = 1;       ///< length of the shutter interval
+    /// Pixels along `right` and `down` per unit of slope, or per world unit of an orthographic
+    /// camera.
+    float pixels_per_x = 1, pixels_per_y = 1;
+    float shutter = 1;  ///< length of the shutter interval, in the scene's unit of time
     bool orthographic = false;
-    Vec3 velocity, angular_velocity;  ///< motion of the camera at the ray's lens point and time
+    /// Motion of the camera at the ray's lens point and time: world units and radians per unit of
+    /// time.
+    Vec3 velocity, angular_velocity;
 };
 
 class Camera {
@@ -27,15 +31,20 @@ class Camera {
     /// Makes a camera whose full frame has `width` x `height` pixels.
     Camera(const CameraDescription& description, int width, int height);
 
-    /// The ray through a film position in pixels (y down), a lens position and a shutter position
-    /// in [0, 1)^2, [0, 1).
+    /// The ray through a film position in pixels (y down from the top of the full frame), a lens
+    /// position in [0, 1)^2, which is mapped to the disc, and a shutter position in [0, 1).
     Ray generate_ray(Vec2 film, Vec2 lens, float shutter) const;
+    /// The camera's linear map around a ray that generate_ray has made.
     SensorGeometry sensor(const Ray& ray) const;
     bool has_lens() const { return lens_radius_ > 0; }
     /// Extent of half a pixel at a distance from the camera, scene units.
     float half_pixel(float distance) const;
-    /// World to camera, and world to normalised device coordinates, at the shutter's opening.
+    /// The map from the world to the camera's space, which looks along +z, at the shutter's
+    /// opening.
     Matrix4 world_to_camera() const;
+    /// The projection from the world to the film at the shutter's opening: x / w and y / w are in
+    /// [0, 1] from the top left corner, as OpenEXR's "worldToNDC" has them. Means nothing for
+    /// spherical cameras.
     Matrix4 world_to_ndc() const;
 
   private:
@@ -45,7 +54,7 @@ class Camera {
     Vec3 spherical_direction(Vec2 film) const;
     SensorGeometry spherical_sensor(const Ray& ray, const Transform& camera_to_world) const;
 
-    /// The camera's place where it stands still, in single precision.
+    /// The camera's linear map to the world at one time, in single precision.
     struct Placement {
         Vec3 origin, x, y, z;
         Vec3 point(Vec3 p) const { return origin + vector(p); }
@@ -54,10 +63,10 @@ class Camera {
     static Placement placement(const Transform& camera_to_world);
 
     CameraDescription description_;
-    Placement still_;
+    Placement still_;  // at all times where the camera stands still, else at its first key
     int width_, height_;
     Vec2 origin_;     // camera-space slope (or position) of film position (0, 0)
-    Vec2 per_pixel_;  // change of origin_ per pixel; y is negative
+    Vec2 per_pixel_;  // change of camera-space slope (or position) per pixel; y is negative
     float lens_radius_ = 0, focal_distance_ = 1;
     float shutter_open_ = 0, shutter_close_ = 1;
     std::optional<SensorGeometry> sensor_;  // set where it is the same for all rays

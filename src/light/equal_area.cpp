@@ -17,7 +17,7 @@ Vec3 equal_area_square_to_sphere(Vec2 uv) {
     // outside in. r is the radius of a concentric diamond in either, 1 at the horizon.
     const float inside = 1 - (x + y);
     const float r = 1 - std::abs(inside);
-    // The turn is the azimuth less pi / 4.
+    // The turn is the azimuth within the quadrant of (a, b), from 0 to pi / 2, less pi / 4.
     const SinCos turn = sin_cos_octant(r > 0 ? (y - x) / r * (kPi / 4) : -kPi / 4);
     const float z = std::copysign(1 - r * r, inside);
     const float s = r * std::sqrt(2 - r * r) * kHalfRoot;
@@ -33,6 +33,7 @@ Vec2 equal_area_sphere_to_square(Vec3 w) {
     const float r = std::sqrt(horizontal / (1 + std::abs(w.z)));
     const float share = x + y > 0 ? arctangent(y, x) * (2 / kPi) : 0.0f;
     float v = share * r, u = r - v;
+    // The lower hemisphere is turned outside in: its point is mirrored at the diagonal u + v = 1.
     if (w.z < 0) {
         const float t = u;
         u = 1 - v;

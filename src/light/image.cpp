@@ -13,7 +13,8 @@ namespace covtrace {
 
 namespace {
 
-constexpr float kBrightest = std::numeric_limits<float>::infinity();  // nothing is cut
+/// The limit on the texels' values (LightTexels::brightest): none.
+constexpr float kBrightest = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
@@ -69,8 +70,9 @@ Rgb LightImage::texel(Vec2 place) const {
 
 std::optional<Vec2> LightImage::place(Vec3 w) const {
     const Vec3 local = normalize(world_to_light_.vector(w));
+    // The pole of a goniometric light is y, that of the equal-area map z.
     if (!is_slide()) return equal_area_sphere_to_square({local.x, local.z, local.y});
-    constexpr float kNearest = 1e-3f;  // as in pbrt
+    constexpr float kNearest = 1e-3f;  // as in pbrt-v4: nothing shines to the side or back
     if (local.z < kNearest) return std::nullopt;
     const Vec2 place{0.5f * (1 + local.x / (local.z * half_size_.x)),
                      0.5f * (1 - local.y / (local.z * half_size_.y))};

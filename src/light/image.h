@@ -1,4 +1,4 @@
-/// The image that a goniometric or a projection light sends out, by direction.
+/// The image of a goniometric or a projection light: a factor on its intensity, by direction.
 #pragma once
 
 #include <memory>
@@ -14,13 +14,15 @@ namespace covtrace {
 class LightImage {
   public:
     /// The image of a goniometric light: square and equal-area, with light space's y as the pole,
-    /// as pbrt-v4 has it. Grey: each texel is the mean of its channels. Throws Error(scene) at
-    /// `where` for images that can't be read or aren't square.
+    /// as pbrt-v4 has it. It is grey: each texel is the mean of its channels. Throws Error(scene)
+    /// at `where` for images that can't be read or aren't square, Error(limit) for those too large
+    /// for the memory that is left.
     static LightImage goniometric(const std::filesystem::path& file,
                                   const Transform& light_to_world, const SourceLocation& where,
                                   Warnings& warnings);
     /// A slide in the plane z = 1 of light space, its first row at +y, `fov` degrees along its
-    /// shorter side. Throws Error(scene) at `where` for images that can't be read.
+    /// shorter side. Throws Error(scene) at `where` for images that can't be read, Error(limit) for
+    /// those too large for the memory that is left.
     static LightImage slide(const std::filesystem::path& file, float fov,
                             const Transform& light_to_world, const SourceLocation& where,
                             Warnings& warnings);
@@ -30,15 +32,17 @@ class LightImage {
     Rgb operator()(Vec3 w) const;
     /// Integral of the image over all directions, by solid angle.
     Rgb integral() const;
+    /// Whether this is the image of a projection light.
     bool is_slide() const { return half_size_.x > 0; }
-    /// Cosine of the angle between a slide's axis and its corners.
+    /// Cosine of the angle between a slide's axis and its corners; means nothing for other images.
     float cos_corner() const;
 
     int width() const { return width_; }
     int height() const { return height_; }
-    /// Row by row from the top.
+    /// The texels, linear Rec.709, row by row from the top.
     const std::vector<Rgb>& texels() const { return *texels_; }
-    /// The place in the image, in [0, 1]^2, that a world direction falls on; empty beside a slide.
+    /// The place in the image that a world direction falls on, in [0, 1]^2 from the left and the
+    /// top; empty beside a slide.
     std::optional<Vec2> place(Vec3 w) const;
 
   private:
@@ -51,7 +55,7 @@ class LightImage {
     Transform world_to_light_;
     int width_ = 0, height_ = 0;
     std::shared_ptr<const std::vector<Rgb>> texels_;
-    Vec2 half_size_;  // of a slide
+    Vec2 half_size_;  // of a slide in its plane z = 1 of light space; 0 for other images
 };
 
 }  // namespace covtrace

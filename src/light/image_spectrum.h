@@ -19,13 +19,14 @@ class LightImageSpectrum {
     SpatialCovariance2 at(const Frame& frame) const;
 
   private:
-    /// Derivative of the image's place by a rotation of w towards the unit vector `axis`, per
+    /// Derivative of LightImage::place by a rotation of w towards the unit vector `axis`, per
     /// radian.
     Vec2 place_per_radian(Vec3 w, Vec3 axis) const;
 
     const LightImage* image_;
     ImageSpectrum spectrum_;
-    /// Black margin around the image as `spectrum_` has measured it, in parts of the image.
+    /// Width of the black margin on each side of the image that `spectrum_` has measured with it,
+    /// as a share of the image's width and height; 0 for a goniometric light.
     Vec2 margin_;
 };
 

@@ -13,8 +13,8 @@ namespace covtrace {
 
 namespace {
 
-/// Least probability of choosing finite lights, or infinite ones beyond an even sky: an estimate
-/// that knows no shadows is not trusted to call either negligible.
+/// Least probability of choosing finite lights, and of infinite ones unless all are even skies: the
+/// estimates know no shadows, so neither group is taken for negligible by them.
 constexpr float kSmallestShare = 0.1f;
 
 Emitter make_emitter(const PlacedShape& shape) {
@@ -24,7 +24,7 @@ Emitter make_emitter(const PlacedShape& shape) {
     return EmissiveMesh(shape);
 }
 
-double surface(const Emitter& emitter) {
+double total_area(const Emitter& emitter) {
     return std::visit(
         [](const auto& e) {
             double sum = 0;
@@ -64,11 +64,11 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
     area_light_of_shape.assign(shapes.size(), -1);
     std::vector<LightBounds> finite;
     std::vector<std::optional<Emitter>> emitters(shapes.size());
-    std::map<LightKey, double> surfaces;
+    std::map<LightKey, double> areas;
     for (size_t i = 0; i < shapes.size(); ++i) {
         if (shapes[i].description.area_light < 0 || shapes[i].is_instanced) continue;
         emitters[i] = make_emitter(shapes[i]);
-        surfaces[light_key(shapes, i)] += surface(*emitters[i]);
+        areas[light_key(shapes, i)] += total_area(*emitters[i]);
     }
     for (size_t i = 0; i < shapes.size(); ++i) {
         if (!emitters[i]) continue;
@@ -88,14 +88,14 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
         area.mean_factor = area.image < 0 ? Rgb(1) : textures->mean(area.image);
         if (light.power) {
             const float measured =
-                static_cast<float>(surfaces.at(light_key(shapes, i))) *
+                static_cast<float>(areas.at(light_key(shapes, i))) *
                 luminance(exitance(area.radiance * area.mean_factor, area.two_sided));
             area.radiance *= normalisation(*light.power, measured);
         }
         Rgb choice_factor = area.mean_factor;
         if (area.alpha >= 0) {
-            // Alpha's mean over the parameters may miss all that shines where position decides; a
-            // twentieth takes little from the other lights.
+            // The mean of alpha over (u, v) may be 0 although some of the shape shines, where alpha
+            // depends on the place in the world. A twentieth takes little from the other lights.
             constexpr float kLeast = 0.05f;
             // Alpha that is not a number becomes 0.
             const float alpha = std::min(1.0f, std::max(0.0f, textures->mean(area.alpha).r));
@@ -157,8 +157,8 @@ InfiniteShare Lights::Impl::infinite_share(Vec3 p, Vec3 n) const {
     const float finite = tree.irradiance(p, n);
     const bool has_uneven = share.weight > 0;
     if (even > 0) {
-        // An even sky is found by BSDFs, too. It is drawn for only as far as it outshines
-        // everything else (docs/decisions/0074).
+        // An even sky (uniform infinite light) is found by BSDFs, too: it counts with half of what
+        // it outshines everything else by (docs/decisions/0074).
         const float rest = finite + share.weight;
         share.even = 0.5f * std::max(0.0f, 1 - rest / even);
         share.weight += share.even * even;
@@ -384,7 +384,7 @@ std::vector<DistantView> Lights::distant_views() const {
 Rgb Lights::total_power() const {
     Rgb sum;
     for (const AreaLight& area : impl_->area_lights)
-        sum += static_cast<float>(surface(area.emitter)) *
+        sum += static_cast<float>(total_area(area.emitter)) *
                exitance(area.radiance * area.mean_factor, area.two_sided);
     for (const PointEmitter& point : impl_->points) sum += power(point);
     const float disk = kPi * sqr(impl_->geometry->bounds().radius());

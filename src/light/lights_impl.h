@@ -14,14 +14,15 @@
 
 namespace covtrace {
 
+/// One emissive shape with all its lights.
 struct AreaLight {
-    uint32_t shape = 0;
-    Rgb radiance;
+    uint32_t shape = 0;  ///< index into Geometry::shapes()
+    Rgb radiance;        ///< emitted where image and alpha are 1
     bool two_sided = false;
     TextureId image = -1, alpha = -1;  ///< textures that the radiance varies by; -1: none
-    bool is_visible = true;            ///< mean of image and alpha together
-    Rgb mean_factor{1};                ///< of image and alpha together
-    int first_light = 0;
+    bool is_visible = true;  ///< false where a constant alpha of 0 hides the shape from all rays
+    Rgb mean_factor{1};      ///< mean of image and alpha together
+    int first_light = 0;     ///< id of its first light
     Emitter emitter;
 
     bool varies() const { return image >= 0 || alpha >= 0; }
@@ -29,10 +30,11 @@ struct AreaLight {
 
 /// The balance between all infinite lights and all finite ones at a point, for choosing among them.
 struct InfiniteShare {
-    float probability = 0;  ///< of choosing some infinite light
-    /// Summed over infinite lights, which share `probability` by their weights.
-    float weight = 0;
-    float even = 1;  ///< factor on the irradiance by even skies beside that by other lights
+    float probability = 0;  ///< probability of choosing any infinite light
+    float weight = 0;  ///< sum of infinite_weight, by which infinite lights share `probability`
+    /// Factor on the weight of even skies (uniform infinite lights): less where other light
+    /// outshines them, as BSDFs find them too (docs/decisions/0074).
+    float even = 1;
 };
 
 struct Lights::Impl {
@@ -41,11 +43,15 @@ struct Lights::Impl {
     /// Radiance of an area light at a place, by its image; alpha does not count.
     Rgb radiance_at(const AreaLight& area, const TexturePoint& at) const;
 
+    /// A sample of a light that was chosen with the given probability; empty where it can't light
+    /// p.
     std::optional<LightSample> sample_area(int light, float probability, Vec3 p, float time,
                                            Vec2 u) const;
     std::optional<LightSample> sample_point(int light, float probability, Vec3 p) const;
+    /// Chooses an infinite light by its weight, then a direction.
     std::optional<LightSample> sample_infinite(const InfiniteShare& share, Vec3 n, float u_select,
                                                Draw draw) const;
+    /// Takes a draw of `light` up to the given number of steps (Lights::Draw::steps).
     void advance(const Environment& light, Draw& draw, int steps) const;
 
     InfiniteShare infinite_share(Vec3 p, Vec3 n) const;

@@ -9,8 +9,9 @@ namespace covtrace {
 
 namespace {
 
-/// Range of solid angles, steradians, that are sampled by solid angle. Below it areas serve as well
-/// and cost fewer digits; above it the point all but lies in the triangle.
+/// Range of solid angles, steradians, in which triangles are sampled by solid angle, about that of
+/// pbrt-v4. Smaller ones are sampled as well by area, which loses fewer digits; a larger one is
+/// nearly a hemisphere, 2 pi, where the point all but lies in the triangle.
 constexpr float kSmallestSolidAngle = 3e-4f, kLargestSolidAngle = 6.2f;
 
 bool by_solid_angle(float solid_angle) {
@@ -70,6 +71,7 @@ EmissiveMesh::EmissiveMesh(const PlacedShape& shape)
         const auto corner = [&](size_t i) { return placed.point(mesh.positions[k[i]]); };
         Vec3 twist = corner(0) - corner(1) - corner(2) + corner(3);
         const float size = std::max(distance(corner(0), corner(3)), distance(corner(1), corner(2)));
+        // A patch with no more twist than rounding leaves is a parallelogram, which is flat.
         if (length(twist) <= 1e-5f * size) twist = {};
         add(mesh, k[0], k[1], k[2], twist);
         add(mesh, k[3], k[2], k[1], twist);
@@ -96,7 +98,8 @@ EmissiveMesh::Element EmissiveMesh::at(int light, float time) const {
 }
 
 float EmissiveMesh::area_pdf(const Element& e, Vec3 p, Vec3 position, Vec2 b) {
-    // Barycentric coordinates (b1, b2) are drawn with density 2; their area element is |d1 x d2|.
+    // (b1, b2) is uniform in a triangle of area 1/2, so its density is 2; an area element of the
+    // surface is |d1 x d2| times that of (b1, b2).
     const Vec3 n = cross(e.d1(b), e.d2(b)), to_point = position - p;
     const float distance_squared = length_squared(to_point);
     const float projected = abs_dot(n, to_point);  // |n| distance cos
@@ -136,6 +139,7 @@ float EmissiveMesh::pdf(int light, Vec3 p, const SurfaceHit& hit) const {
         if (by_solid_angle(solid_angle)) return 1 / solid_angle;
     }
     Vec2 b = hit.barycentric;
+    // The second half of a patch counts from the opposite corner.
     if (is_patches_ && (light & 1)) b = {1 - b.x, 1 - b.y};
     return area_pdf(e, p, hit.position, b);
 }
@@ -168,8 +172,8 @@ float EmissiveMesh::area(int light) const {
     Element e = elements_[static_cast<size_t>(light)];
     if (motion_) e = moved(e, motion_->start());
     if (e.is_flat()) return 0.5f * length(cross(e.p1 - e.p0, e.p2 - e.p0));
-    // The area comes by the midpoint rule over small squares of (b1, b2); those on the diagonal
-    // count half.
+    // The area is summed by the midpoint rule over small squares of (b1, b2); those on the diagonal
+    // b1 + b2 = 1 are half inside and count half.
     constexpr int kSteps = 32;
     double sum = 0;
     for (int i = 0; i < kSteps; ++i)
