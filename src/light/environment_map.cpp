@@ -16,10 +16,6 @@ namespace covtrace {
 
 namespace {
 
-/// Largest radiance of a texel. A brighter one is damage (the sun is below 1e10), and sums of it
-/// would overflow.
-constexpr float kBrightest = 1e18f;
-
 /// Chooses one of two, the first with probability a / (a + b), and says whether it is the second; u
 /// is stretched to be used again.
 bool choose_second(float a, float b, float& u) {
@@ -50,8 +46,7 @@ int wrap_repeat(int i, int n) {
 
 EnvironmentMap EnvironmentMap::read(const std::filesystem::path& file, const SourceLocation& where,
                                     Warnings& warnings) {
-    const LightTexels image =
-        read_light_texels(file, LightChannels::colour, kBrightest, where, warnings);
+    const LightTexels image = read_light_texels(file, LightChannels::colour, where, warnings);
     const int width = image.width(), height = image.height();
     if (width < 1 || (width != height && width != 2 * height))
         throw Error(ErrorKind::scene, where,

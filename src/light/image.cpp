@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/memory_limit.h"
@@ -10,13 +9,6 @@
 #include "light/equal_area.h"
 
 namespace covtrace {
-
-namespace {
-
-/// The limit on the texels' values (LightTexels::brightest): none.
-constexpr float kBrightest = std::numeric_limits<float>::infinity();
-
-}  // namespace
 
 LightImage::LightImage(const LightTexels& image, const Transform& light_to_world)
     : world_to_light_(light_to_world.inverse()),
@@ -27,7 +19,7 @@ LightImage::LightImage(const LightTexels& image, const Transform& light_to_world
 LightImage LightImage::read(const std::filesystem::path& file, LightChannels channels,
                             const Transform& light_to_world, const SourceLocation& where,
                             Warnings& warnings) {
-    const LightTexels texels = read_light_texels(file, channels, kBrightest, where, warnings);
+    const LightTexels texels = read_light_texels(file, channels, where, warnings);
     const MemoryReservation room(texels.size() * sizeof(Rgb),
                                  "the texels of '" + file.string() + "'", where);
     return made_of(file, where, [&] { return LightImage(texels, light_to_world); });

@@ -13,7 +13,7 @@ Rgb LightTexels::operator[](size_t texel) const {
         return encoded ? srgb_decode(raster.value(i)) : raster.value(i);
     };
     // NaN fails the comparison, and is black like all that is negative.
-    const auto cut = [this](float v) { return v > 0 ? std::min(v, brightest) : 0.0f; };
+    const auto cut = [](float v) { return v > 0 ? std::min(v, kBrightestTexel) : 0.0f; };
     const auto count = static_cast<size_t>(raster.channels);
     const size_t first = texel * count;
     const Rgb c =
@@ -29,12 +29,12 @@ std::vector<Rgb> LightTexels::all() const {
 }
 
 LightTexels read_light_texels(const std::filesystem::path& file, LightChannels channels,
-                              float brightest, const SourceLocation& where, Warnings& warnings) {
+                              const SourceLocation& where, Warnings& warnings) {
     RasterImage raster = read_raster(file, where);
     const ColourSpace space = channels == LightChannels::colour
                                   ? colour_space_of(raster, file, where, warnings)
                                   : ColourSpace::srgb;
-    return {std::move(raster), space, brightest};
+    return {std::move(raster), space};
 }
 
 }  // namespace covtrace

@@ -308,5 +308,25 @@ TEST(Emission, DegenerateLightsAreHarmless) {
     }
 }
 
+TEST(Emission, DamagedTexelsOfLightImagesDoNotOverflow) {
+    // Sums and means of such texels would be infinite, and the choice among lights not a number.
+    const TemporaryImage image({Rgb(3e38f), Rgb(1), Rgb(1), Rgb(3e38f)}, 2, 2);
+    for (const bool is_slide : {false, true}) {
+        LightScene s;
+        if (is_slide)
+            s.add_light(ProjectionLight{.scale = 1, .fov = 90, .image = image.path()});
+        else
+            s.add_light(GoniometricLight{.intensity = Rgb(1), .image = image.path()});
+        s.add_light(PointLight{.intensity = Rgb(1), .from = {1, 0, 0}});
+        s.build();
+        const Vec3 p{0.1f, 0.1f, 1};
+        EXPECT_TRUE(std::isfinite(s.lights->total_power().g));
+        EXPECT_NEAR(
+            s.lights->selection_probability(p, {}, 0) + s.lights->selection_probability(p, {}, 1),
+            1, 1e-5f);
+        EXPECT_TRUE(s.lights->sample(p, {}, 0, 0.5f, {0.5f, 0.5f}));
+    }
+}
+
 }  // namespace
 }  // namespace covtrace
