@@ -23,7 +23,9 @@ export function bandwidth(values, axis) {
     return axes[axis].scale * Math.sqrt(Math.max(0, values[symmetricIndex(axis, axis)]));
 }
 
-const kStill = 0.05;  // cycles over the whole aperture or shutter: the value changes by less than a third of its range
+// Cycles over the whole aperture or shutter below which nothing varies: such a part of a wave changes by less than a
+// third of its amplitude.
+const kStill = 0.05;
 
 export function bandwidthWords(axis, value) {
     if (axis < 2) {
