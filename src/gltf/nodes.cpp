@@ -85,6 +85,10 @@ class Placer {
             }
     }
 
+    /// The nodes that the walk begins with. Files list children beside their parents, which the
+    /// specification forbids and viewers accept: those are met below the parents, once. Where a
+    /// listed node's parent is not in the scene, neither is what the parent does to it, as in
+    /// three.js and Khronos's sample viewer; Blender's importer places it by the parent.
     std::vector<int> roots() {
         const auto& model = document_.model;
         std::vector<int> roots;
@@ -95,17 +99,66 @@ class Placer {
         }
         const int scene = model.defaultScene < 0 ? 0 : model.defaultScene;
         const std::string place = element("scenes", static_cast<size_t>(scene)) + ".nodes";
-        std::vector<bool> known(parents_.size());
+        std::vector<bool> is_listed(parents_.size());
+        std::vector<int> listed;
         for (const int node : at(document_, model.scenes, scene, "scenes", "scene").nodes) {
             at(document_, model.nodes, node, "nodes", place);
-            // Roots have no parents: a child among them would be there twice, and a cycle has no
-            // root.
-            if (parents_[static_cast<size_t>(node)] != kNone || known[static_cast<size_t>(node)])
-                document_.refuse(place, "node " + std::to_string(node) + " is no root");
-            known[static_cast<size_t>(node)] = true;
+            if (is_listed[static_cast<size_t>(node)]) continue;
+            is_listed[static_cast<size_t>(node)] = true;
+            listed.push_back(node);
+        }
+        const std::vector<Ancestry> ancestries = find_ancestries(is_listed);
+        int below = 0, without_parent = 0;
+        for (const int node : listed) {
+            const Ancestry ancestry = ancestries[static_cast<size_t>(node)];
+            if (ancestry == Ancestry::cycle)
+                document_.refuse(
+                    place, "node " + std::to_string(node) + " is below itself; expected a tree");
+            if (ancestry == Ancestry::below_listed) {
+                ++below;
+                continue;
+            }
+            if (parents_[static_cast<size_t>(node)] != kNone) ++without_parent;
             roots.push_back(node);
         }
+        if (below > 0)
+            log_.add(document_.place(place),
+                     std::to_string(below) + " of its " + std::to_string(listed.size()) +
+                         " nodes are no roots but below others of it: each is placed once, by its "
+                         "parents");
+        if (without_parent > 0)
+            log_.add(document_.place(place),
+                     std::to_string(without_parent) + " of its " + std::to_string(listed.size()) +
+                         " nodes are no roots, and their parents are not in the scene: each is "
+                         "placed by its own transform");
         return roots;
+    }
+
+    /// Kinds of what is above a node: nothing that the scene lists, a node that it lists, or the
+    /// node itself.
+    enum class Ancestry { cycle, free, below_listed };
+
+    /// The ancestry of each node, by a walk from the roots of the whole file, which meets all nodes
+    /// but those in cycles.
+    std::vector<Ancestry> find_ancestries(const std::vector<bool>& is_listed) const {
+        std::vector<Ancestry> result(parents_.size(), Ancestry::cycle);
+        std::vector<int> stack;
+        for (size_t i = 0; i < parents_.size(); ++i)
+            if (parents_[i] == kNone) {
+                result[i] = Ancestry::free;
+                stack.push_back(static_cast<int>(i));
+            }
+        while (!stack.empty()) {
+            const auto node = static_cast<size_t>(stack.back());
+            stack.pop_back();
+            const bool is_free = result[node] == Ancestry::free && !is_listed[node];
+            for (const int child : document_.model.nodes[node].children) {
+                result[static_cast<size_t>(child)] =
+                    is_free ? Ancestry::free : Ancestry::below_listed;
+                stack.push_back(child);
+            }
+        }
+        return result;
     }
 
     Matrix4 local(int index, double time) const {

@@ -33,8 +33,10 @@ std::vector<double> morph_weights(const Document& document, const Animations& an
                                   double time);
 
 /// The nodes of the document's default scene (the first one, where none is named; all roots, where
-/// there are no scenes). Refuses nodes with two parents, which cycles are made of. Nodes that a
-/// scale of zero hides are left out of the placed ones.
+/// there are no scenes). A node that the scene lists beside one above it is placed once, by its
+/// parents; one whose parents are not in the scene by its own transform; both with a warning.
+/// Refuses nodes with two parents and cycles. Nodes that a scale of zero hides are left out of the
+/// placed ones.
 ///
 /// `shutter`: both ends in seconds; none: at rest, as at time 0 of the animations.
 PlacedNodes place_nodes(const Document& document,

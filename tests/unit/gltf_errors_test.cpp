@@ -129,10 +129,13 @@ TEST(GltfErrors, RefusesHierarchiesThatAreNoTrees) {
             r["scenes"] = {{{"nodes", scene}}};
         });
     };
-    EXPECT_TRUE(contains(nodes({{{"children", {1}}}, {{"children", {0}}}}, {0}), "is no root"));
-    EXPECT_TRUE(contains(nodes({{{"children", {0}}}}, {0}), "is no root"));
+    EXPECT_TRUE(
+        contains(nodes({{{"children", {1}}}, {{"children", {0}}}}, {0}), "is below itself"));
+    EXPECT_TRUE(contains(nodes({{{"children", {0}}}}, {0}), "is below itself"));
+    EXPECT_TRUE(
+        contains(nodes({{{"children", {1}}}, {{"children", {2}}}, {{"children", {1}}}}, {0}),
+                 "expected a tree"));
     EXPECT_TRUE(contains(nodes({{{"children", {1, 1}}}, {{"mesh", 0}}}, {0}), "expected a tree"));
-    EXPECT_TRUE(contains(nodes({{{"mesh", 0}}}, {0, 0}), "is no root"));
     EXPECT_TRUE(contains(nodes({{{"children", {5}}}}, {0}), "there is no nodes[5]"));
 }
 

@@ -153,6 +153,33 @@ TEST(GltfGeometry, PlacesNodesByTheirParents) {
     expect_near(scene.instances[1].instance_to_world.start().point({0, 0, 0}), {1, 2, 5}, 1e-6f);
 }
 
+TEST(GltfGeometry, PlacesListedNodesThatAreNoRootsOnce) {
+    // Nodes 0 to 2 hang below each other, each one step along x from its parent.
+    GltfFile file;
+    file.add_node({{"translation", {1, 0, 0}}, {"children", {1}}, {"mesh", file.add_square()}});
+    file.add_node({{"translation", {1, 0, 0}}, {"children", {2}}, {"mesh", file.add_square()}});
+    file.add_node({{"translation", {1, 0, 0}}, {"mesh", file.add_square()}});
+    const auto places = [&](const json& listed, const std::string& warning) {
+        file.root["scenes"] = {{{"nodes", listed}}};
+        const SceneDescription scene = read(file);
+        EXPECT_TRUE(contains(all_warnings(scene), warning)) << all_warnings(scene);
+        EXPECT_TRUE(scene.instances.empty());
+        std::vector<float> x;
+        for (const ShapeDescription& shape : scene.shapes)
+            x.push_back(shape.object_to_world.start().point({0, 0, 0}).x);
+        return x;
+    };
+    using Places = std::vector<float>;
+    const std::string below = "2 of its 3 nodes are no roots but below others of it";
+    EXPECT_EQ(places({0, 1, 2}, below), (Places{1, 2, 3}));
+    EXPECT_EQ(places({2, 1, 0}, below), (Places{1, 2, 3}));
+    EXPECT_EQ(places({0, 2}, "1 of its 2 nodes are no roots but below"), (Places{1, 2, 3}));
+    EXPECT_EQ(places({0, 0}, "no camera"), (Places{1, 2, 3}));
+    // Parents that are not in the scene move nothing.
+    EXPECT_EQ(places({1}, "1 of its 1 nodes are no roots, and their parents"), (Places{1, 2}));
+    EXPECT_EQ(places({1, 2}, "1 of its 2 nodes are no roots, and their parents"), (Places{1, 2}));
+}
+
 TEST(GltfGeometry, MovesNodesOverTheShutter) {
     GltfFile file;
     file.add_node({{"mesh", file.add_square()}, {"children", {1}}});
