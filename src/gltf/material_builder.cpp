@@ -1,11 +1,21 @@
 #include "gltf/material_builder.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "gltf/extensions.h"
 
 namespace covtrace::gltf {
 namespace {
 
 using Channel = ImageTexture::Channel;
+
+/// Refractive index that stands for all larger ones: its border reflects 99.6 % at the normal, and
+/// what is below it keeps more than rounding errors of the rest.
+constexpr float kLargestIndex = 1000;
+/// Amplitude that the border of that index reflects at the normal.
+constexpr float kLargestRoot = (kLargestIndex - 1) / (kLargestIndex + 1);
 
 /// Checks a number that the library leaves unchecked: refuses it outside of [least, most].
 float in_range(const Document& document, double v, double least, double most,
@@ -181,11 +191,13 @@ void MaterialBuilder::read_normal_map() {
 
 void MaterialBuilder::read_index() {
     if (const auto* e = extension(material_.extensions, "KHR_materials_ior")) {
-        const double ior = number(document_, *e, "ior", 1.5, 0, 100, in("KHR_materials_ior"));
+        constexpr double kAny = std::numeric_limits<double>::max();
+        const double ior = number(document_, *e, "ior", 1.5, 0, kAny, in("KHR_materials_ior"));
         if (ior > 0 && ior < 1)
             document_.refuse(in("KHR_materials_ior"), "expected an ior of 0 or at least 1");
-        // An ior of 0 stands for a border that reflects everything; 100 reflects 96 %.
-        eta_ = static_cast<float>(ior > 0 ? ior : 100);
+        // An ior of 0 stands for a border that reflects everything, as it does in the limit of
+        // large ones.
+        eta_ = ior > 0 ? static_cast<float>(std::min(ior, double(kLargestIndex))) : kLargestIndex;
     }
     const auto* specular = extension(material_.extensions, "KHR_materials_specular");
     if (!specular) return;
@@ -198,8 +210,7 @@ void MaterialBuilder::read_index() {
     // The index is that of a border that reflects as much at the normal as the specular factors
     // say.
     const float mean = static_cast<float>(factor * (tint[0] + tint[1] + tint[2]) / 3);
-    const float at_normal = std::min(sqr((eta_ - 1) / (eta_ + 1)) * mean, 0.96f);
-    const float root = std::sqrt(at_normal);
+    const float root = std::min((eta_ - 1) / (eta_ + 1) * std::sqrt(mean), kLargestRoot);
     eta_ = (1 + root) / (1 - root);
 }
 

@@ -114,11 +114,14 @@ float albedo_of(const CoatedDiffuseBsdf& b, float cos_o) {
 }
 
 TEST(CoatedTotal, WhiteReflectsAllLightOfRoughCoats) {
-    const CoatTable table(1.5f, 0);
-    for (const float alpha : {0.2f, 0.5f, 1.0f})
-        for (const float cos_o : {0.3f, 0.7f, 1.0f})
-            EXPECT_NEAR(albedo_of(make_coated_total(table, Rgb(1), alpha, alpha), cos_o), 1, 0.01f)
-                << "alpha " << alpha << ", cos " << cos_o;
+    for (const float eta : {1.5f, 1000.0f}) {
+        const CoatTable table(eta, 0);
+        for (const float alpha : {0.2f, 0.5f, 1.0f})
+            for (const float cos_o : {0.3f, 0.7f, 1.0f})
+                EXPECT_NEAR(albedo_of(make_coated_total(table, Rgb(1), alpha, alpha), cos_o), 1,
+                            0.01f)
+                    << "eta " << eta << ", alpha " << alpha << ", cos " << cos_o;
+    }
 }
 
 TEST(CoatedTotal, IsTheLayeredBodyUnderASmoothCoat) {
