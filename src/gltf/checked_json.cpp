@@ -5,8 +5,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "core/error.h"
+#include "gltf/extensions.h"
 #include "scene/names.h"
 
 namespace covtrace::gltf {
@@ -26,15 +28,18 @@ SourceLocation location(std::string_view text, size_t byte, const std::string& n
             static_cast<int>(column) + 1};
 }
 
-/// The reason in the parser's message, without the position in front of it: ASCII, and at most 200
-/// characters.
-std::string reason(const std::string& what) {
-    const size_t start = what.find(": ", what.find("column"));
-    std::string text = start == std::string::npos ? what : what.substr(start + 2);
+/// The text in ASCII, and at most 200 characters of it.
+std::string printable(std::string text) {
     for (char& c : text)
         if (c < 0x20 || c > 0x7e) c = '?';
     constexpr size_t kLongest = 200;
     return text.substr(0, kLongest);
+}
+
+/// The reason in the parser's message, without the position in front of it.
+std::string reason(const std::string& what) {
+    const size_t start = what.find(": ", what.find("column"));
+    return printable(start == std::string::npos ? what : what.substr(start + 2));
 }
 
 /// The depth to which brackets outside of strings nest. It is measured before the parser sees the
@@ -120,12 +125,32 @@ void check_version(const json& root, const std::string& name) {
                                           " is not supported; expected \"2.0\"");
 }
 
+/// Refuses files that require what is not read. tinygltf would call compressed ones invalid, as
+/// their accessors or images have no data that it knows.
+void check_extensions(const json& root, const std::string& name) {
+    const auto required = root.find("extensionsRequired");
+    if (required == root.end() || !required->is_array()) return;
+    std::vector<std::string> missing;
+    for (const json& extension : *required) {
+        if (!extension.is_string()) continue;
+        const auto& text = extension.get_ref<const std::string&>();
+        if (!is_supported(text)) missing.push_back(printable(text));
+    }
+    if (missing.empty()) return;
+    const bool is_one = missing.size() == 1;
+    throw Error(ErrorKind::scene,
+                name + ": extensionsRequired: the file can't be read without the extension" +
+                    (is_one ? " " : "s ") + listed(missing) + ", which " + (is_one ? "is" : "are") +
+                    " not supported");
+}
+
 }  // namespace
 
 void check_json(std::string_view text, const std::string& name) {
     const json root = parse(text, name);
     if (!root.is_object()) throw Error(ErrorKind::scene, name + ":1:1: expected a JSON object");
     check_version(root, name);
+    check_extensions(root, name);
     check_embedded_images(root, name);
 }
 

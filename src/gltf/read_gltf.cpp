@@ -9,7 +9,6 @@
 #include "gltf/camera.h"
 #include "gltf/deformed_nodes.h"
 #include "gltf/document.h"
-#include "gltf/extensions.h"
 #include "gltf/geometry.h"
 #include "gltf/lights.h"
 #include "gltf/materials.h"
@@ -19,13 +18,6 @@ namespace covtrace {
 
 namespace gltf {
 namespace {
-
-void check_extensions(const Document& document) {
-    for (const std::string& name : document.model.extensionsRequired)
-        if (!is_supported(name))
-            document.refuse("extensionsRequired", "the file can't be read without the extension " +
-                                                      name + ", which is not supported");
-}
 
 /// Turns placed nodes into shapes, objects and instances of the scene.
 class SceneAssembler {
@@ -176,7 +168,6 @@ class SceneAssembler {
 SceneDescription read(const std::filesystem::path& file, const ReadOptions& options) {
     WarningLog log;
     const Document document = read_document(file, options.search_paths, log);
-    check_extensions(document);
     SceneDescription scene;
     scene.name = file.stem().string();
     // Depth and samples are ours, as a format for interchange says nothing of quality: enough for

@@ -61,6 +61,23 @@ TEST(GltfErrors, TellsThePlaceInTheDocument) {
               "t.gltf: the scene has no triangles to render");
 }
 
+TEST(GltfErrors, NamesRequiredExtensionsBeforeTheRestIsRead) {
+    // The accessors of compressed meshes have no buffer view, embedded images none of their type.
+    const auto compressed = [](json& r) {
+        r["extensionsRequired"] = {"KHR_mesh_quantization", "EXT_of_tomorrow", "EXT_\nof_a_dream"};
+        r["textures"] = {{{"sampler", "none"}}};
+        r["bufferViews"][0]["byteLength"] = "long";
+    };
+    EXPECT_EQ(changed(compressed),
+              "t.gltf: extensionsRequired: the file can't be read without the extensions "
+              "EXT_of_tomorrow, EXT_?of_a_dream, which are not supported");
+    EXPECT_TRUE(contains(changed([&](json& r) {
+                             compressed(r);
+                             r["extensionsRequired"] = {"KHR_mesh_quantization", 7};
+                         }),
+                         "this is no valid glTF"));
+}
+
 TEST(GltfErrors, LimitsCounts) {
     GltfFile file = square_file();
     file.root["accessors"][0]["count"] = 18446744073709551615u;
