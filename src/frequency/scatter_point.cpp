@@ -14,8 +14,8 @@ cov::Sym2<double> texture_spectrum(const LitScene& scene, const TextureSpectra& 
                                    TextureId id, const SurfaceHit& hit,
                                    const cov::Mat2<double>& uv_from_tangent, float footprint_uv) {
     if (id < 0 || scene.textures.is_constant(id)) return {};
-    const SpatialCovariance2 t = spectra.uv_covariance(id, {hit.uv, hit.position, {}, hit.ng},
-                                                       hit.dpdu, hit.dpdv, footprint_uv);
+    const SpatialCovariance2 t = spectra.uv_covariance(
+        id, {hit.uv, hit.position, {}, hit.ng, hit.vertices()}, hit.dpdu, hit.dpdv, footprint_uv);
     return cov::texture_on_surface<double>({t.ss, t.st, t.tt}, uv_from_tangent);
 }
 

@@ -75,6 +75,7 @@ void fill_hit(const SurfacePoint& point, SurfaceHit& hit) {
     hit.dpdu = point.dpdu.to_float();
     hit.dpdv = point.dpdv.to_float();
     hit.uv = point.uv;
+    hit.mesh = point.vertices.mesh;
     const double rounding = kHalfUlp * dot(abs(point.ng), abs(point.position));
     hit.position_error = static_cast<float>(point.error + rounding);
 }
@@ -132,7 +133,8 @@ bool Geometry::Impl::nearest_opaque(const Ray& ray, unsigned mask, SurfaceHit& h
     if (!any_alpha) return find(ray, hit);
     return first_that_stops(ray, hit, find, [this](const Ray& r, const SurfaceHit& h) {
         const TextureId texture = placed[h.shape].description.alpha;
-        const float opacity = texture >= 0 && alpha ? alpha(texture, h.uv, h.position) : 1.0f;
+        const float opacity =
+            texture >= 0 && alpha ? alpha(texture, h.uv, h.position, h.vertices()) : 1.0f;
         return opacity >= 1 || (opacity > 0 && ray_hash(r) < opacity);
     });
 }

@@ -26,8 +26,10 @@ struct WorldTriangle {
     Vec3 p0, p1, p2;
 };
 
-/// Opacity of a shape's alpha texture at a place: (u, v) of the surface, world position.
-using AlphaLookup = std::function<float(TextureId, Vec2 uv, Vec3 position)>;
+/// Opacity of a shape's alpha texture at a place: (u, v) of the surface, world position, and the
+/// place in a mesh whose vertices have values.
+using AlphaLookup =
+    std::function<float(TextureId, Vec2 uv, Vec3 position, const VertexPlace& vertices)>;
 
 class Geometry {
   public:

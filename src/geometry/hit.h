@@ -5,6 +5,7 @@
 
 #include "core/frame.h"
 #include "core/vec.h"
+#include "geometry/vertex_place.h"
 #include "scene/scene_description.h"
 
 namespace covtrace {
@@ -31,6 +32,9 @@ struct SurfaceHit {
     uint32_t primitive = 0;  ///< triangle or patch of the shape; 0 for spheres and disks
     uint32_t instance = 0;   ///< Embree instance, 0 where there is none: Geometry's own business
     Vec2 barycentric;        ///< Embree's (u, v) in the primitive
+    const TriangleMesh* mesh = nullptr;  ///< the mesh, where its vertices have values for textures
+
+    VertexPlace vertices() const { return {mesh, primitive, barycentric}; }
 };
 
 /// Second-order geometry and motion at a hit, for the frequency analysis only.

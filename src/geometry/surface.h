@@ -9,6 +9,7 @@
 
 #include "geometry/affine.h"
 #include "geometry/bilinear_patch.h"
+#include "geometry/vertex_place.h"
 #include "scene/scene_description.h"
 
 namespace covtrace {
@@ -59,6 +60,7 @@ struct SurfacePoint {
     Vec3d ns;          ///< unit, in the hemisphere of ng
     Vec3d dpdu, dpdv;
     Vec2 uv;
+    VertexPlace vertices;
 };
 
 /// Derivatives at a point by two parameters (a, b) of the shape's own choice, in local space.

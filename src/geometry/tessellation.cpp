@@ -83,7 +83,7 @@ void Tessellation::add_opaque(int nu, int nv, bool is_triangle, PointAt&& point_
     const auto consider = [&](Vec2 a, Vec2 b, Vec2 c) {
         const SurfacePoint centre = point_at((a + b + c) * (1.0f / 3));
         const float chance = to_unit_float(static_cast<uint32_t>(mix_bits(++considered_) >> 32));
-        if (!(opacity(centre.uv, centre.position.to_float()) > chance)) return;
+        if (!(opacity(centre) > chance)) return;
         const auto first = static_cast<uint32_t>(positions_.size());
         for (const Vec2 corner : {a, b, c})
             positions_.push_back(point_at(corner).position.to_float());

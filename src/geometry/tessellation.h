@@ -12,7 +12,7 @@ namespace covtrace {
 /// Triangles over positions; either list may belong to the shape itself, which must outlive this.
 class Tessellation {
   public:
-    using Opacity = std::function<float(Vec2 uv, Vec3 local_position)>;
+    using Opacity = std::function<float(const SurfacePoint& local)>;
 
     /// Cuts curved shapes into pieces of about `piece` scene units, at most 512 along a parameter;
     /// `scale` is how much longer a local unit may be in the scene.
@@ -20,7 +20,7 @@ class Tessellation {
 
     /// Makes a surface with holes: the shape is cut into pieces of about `piece` everywhere. Pieces
     /// that `opacity` makes opaque are kept, and a part of those that are partly so. `opacity` gets
-    /// the surface's (u, v) and a local position. A primitive has at most `most` pieces along an
+    /// a point in local space. A primitive has at most `most` pieces along an
     /// edge.
     Tessellation(const LocalShape& shape, double piece, double scale, const Opacity& opacity,
                  int most = 64);

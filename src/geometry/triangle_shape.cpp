@@ -20,14 +20,10 @@ Corners corners(const TriangleShape& shape, uint32_t primitive) {
     c.p0 = Vec3d(shape.positions[c.index[0]]);
     c.e1 = Vec3d(shape.positions[c.index[1]]) - c.p0;
     c.e2 = Vec3d(shape.positions[c.index[2]]) - c.p0;
-    if (mesh.uvs.empty()) {
-        c.duv1 = {1, 0};
-        c.duv2 = {1, 1};
-    } else {
-        c.uv0 = mesh.uvs[c.index[0]];
-        c.duv1 = mesh.uvs[c.index[1]] - c.uv0;
-        c.duv2 = mesh.uvs[c.index[2]] - c.uv0;
-    }
+    const auto uvs = uv_corners(mesh, primitive);
+    c.uv0 = uvs[0];
+    c.duv1 = uvs[1] - c.uv0;
+    c.duv2 = uvs[2] - c.uv0;
     return c;
 }
 
@@ -71,6 +67,7 @@ SurfacePoint triangle_point(const TriangleShape& shape, uint32_t primitive, Vec2
             if (dot(point.ng, ns) < 0) point.ng = point.ng * -1.0;
         }
     }
+    if (has_vertex_values(*shape.mesh)) point.vertices = {shape.mesh.get(), primitive, barycentric};
     point.uv = c.uv0 + c.duv1 * barycentric.x + c.duv2 * barycentric.y;
     solve_tangents(c.e1, c.e2, c.duv1, c.duv2, point.ng, point.dpdu, point.dpdv);
     return point;

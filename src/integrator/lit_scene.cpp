@@ -52,8 +52,8 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
       materials(description, textures, IlluminantAdaptation(lights.total_power())),
       camera(description.camera, description.film.width, description.film.height),
       filter(description.filter) {
-    geometry.set_alpha([this](TextureId id, Vec2 uv, Vec3 position) {
-        return textures.eval_float(id, {uv, position});
+    geometry.set_alpha([this](TextureId id, Vec2 uv, Vec3 position, const VertexPlace& vertices) {
+        return textures.eval_float(id, {uv, position, {}, {}, vertices});
     });
     for (const Warnings* w : {&textures.warnings(), &lights.warnings()})
         description.warnings.insert(description.warnings.end(), w->begin(), w->end());
@@ -69,11 +69,17 @@ std::map<std::string, size_t> LitScene::memory() const {
     const auto mesh_bytes = [&](const auto& mesh, const auto& faces) {
         return bytes(mesh.positions) + bytes(mesh.normals) + bytes(mesh.uvs) + bytes(faces);
     };
+    const auto vertex_value_bytes = [&](const TriangleMesh& mesh) {
+        size_t sum = bytes(mesh.colours) + bytes(mesh.colour_steps);
+        for (const auto& uvs : mesh.more_uvs) sum += bytes(uvs);
+        return sum;
+    };
     std::map<const void*, size_t> meshes;  // shapes share meshes
     for (const PlacedShape& shape : geometry.shapes()) {
         const auto& g = shape.description.geometry;
         if (const auto* triangles = std::get_if<std::shared_ptr<const TriangleMesh>>(&g))
-            meshes[triangles->get()] = mesh_bytes(**triangles, (*triangles)->triangles);
+            meshes[triangles->get()] =
+                mesh_bytes(**triangles, (*triangles)->triangles) + vertex_value_bytes(**triangles);
         else if (const auto* patches = std::get_if<std::shared_ptr<const BilinearMesh>>(&g))
             meshes[patches->get()] = mesh_bytes(**patches, (*patches)->patches);
     }

@@ -5,12 +5,10 @@
 #include <tuple>
 #include <utility>
 
-#include "core/hash.h"
 #include "light/lights_impl.h"
 #include "light/weight.h"
 
 namespace covtrace {
-
 namespace {
 
 /// Least probability of choosing finite lights, and of infinite ones unless all are even skies: the
@@ -201,9 +199,12 @@ std::optional<LightSample> Lights::Impl::sample_area(int light, float probabilit
     s.distance = dot(point->position - p, point->wi);
     s.radiance = area.radiance;
     if (area.varies()) {
-        const Vec2 uv =
-            std::visit([&](const auto& e) { return e.uv(local, *point, time); }, area.emitter);
-        const TexturePoint at{uv, point->position};
+        const TexturePoint at = std::visit(
+            [&](const auto& e) -> TexturePoint {
+                return {
+                    e.uv(local, *point, time), point->position, {}, {}, e.vertices(local, *point)};
+            },
+            area.emitter);
         s.radiance = radiance_at(area, at);
         if (area.alpha >= 0) s.radiance *= clamp01(textures->eval_float(area.alpha, at));
         if (is_black(s.radiance)) return std::nullopt;
@@ -327,7 +328,7 @@ std::optional<LightSample> Lights::finish_draw(Vec3 p, Vec3 n, float time, float
 Rgb Lights::emitted(const SurfaceHit& hit, Vec3 wo) const {
     const AreaLight* area = impl_->area_light_of(hit);
     if (!area || !area->is_visible || (!area->two_sided && !(dot(hit.ng, wo) > 0))) return {};
-    return impl_->radiance_at(*area, {hit.uv, hit.position});
+    return impl_->radiance_at(*area, {hit.uv, hit.position, {}, {}, hit.vertices()});
 }
 
 float Lights::pdf(Vec3 p, Vec3 n, Vec3 wi, const SurfaceHit& hit) const {

@@ -147,11 +147,8 @@ float EmissiveMesh::pdf(int light, Vec3 p, const SurfaceHit& hit) const {
 Vec2 EmissiveMesh::uv(int light, const EmitterPoint& point, float) const {
     const Vec2 b = point.place;
     if (const auto* triangles = std::get_if<std::shared_ptr<const TriangleMesh>>(&mesh_)) {
-        // As in pbrt, a triangle without coordinates has (0, 0), (1, 0), (1, 1) at its corners.
-        if ((*triangles)->uvs.empty()) return {b.x + b.y, b.y};
-        const auto& t = (*triangles)->triangles[static_cast<size_t>(light)];
-        const auto& uvs = (*triangles)->uvs;
-        return uvs[t[0]] * (1 - b.x - b.y) + uvs[t[1]] * b.x + uvs[t[2]] * b.y;
+        const auto uvs = uv_corners(**triangles, static_cast<uint32_t>(light));
+        return uvs[0] * (1 - b.x - b.y) + uvs[1] * b.x + uvs[2] * b.y;
     }
     const auto& mesh = *std::get<std::shared_ptr<const BilinearMesh>>(mesh_);
     const Vec2 at = light & 1 ? Vec2{1 - b.x, 1 - b.y} : b;
@@ -159,6 +156,12 @@ Vec2 EmissiveMesh::uv(int light, const EmitterPoint& point, float) const {
     const auto& k = mesh.patches[static_cast<size_t>(light / 2)];
     return (mesh.uvs[k[0]] * (1 - at.x) + mesh.uvs[k[1]] * at.x) * (1 - at.y) +
            (mesh.uvs[k[2]] * (1 - at.x) + mesh.uvs[k[3]] * at.x) * at.y;
+}
+
+VertexPlace EmissiveMesh::vertices(int light, const EmitterPoint& point) const {
+    const auto* triangles = std::get_if<std::shared_ptr<const TriangleMesh>>(&mesh_);
+    if (!triangles || !has_vertex_values(**triangles)) return {};
+    return {triangles->get(), static_cast<uint32_t>(light), point.place};
 }
 
 std::array<Vec3, 3> EmissiveMesh::start_corners(int light) const {

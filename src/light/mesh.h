@@ -27,6 +27,8 @@ class EmissiveMesh {
     float pdf(int light, Vec3 p, const SurfaceHit& hit) const;
     /// The surface's texture coordinates at a sampled point, which are the same at any time.
     Vec2 uv(int light, const EmitterPoint& point, float time) const;
+    /// The place of a sampled point in a mesh whose vertices have values.
+    VertexPlace vertices(int light, const EmitterPoint& point) const;
     /// Area of a light in world space, at the start of the shutter.
     float area(int light) const;
     /// Bounds of a light over the shutter, with the largest intensity that a radiance of 1 gives at

@@ -208,9 +208,9 @@ Tessellation OccluderBodies::perforated(uint32_t shape, const Affine& world_from
     // No piece is as small as 1e-30 units, so that per_edge_ alone decides how many there are.
     return Tessellation(
         geometry.local[shape], 1e-30, 1,
-        [&](Vec2 uv, Vec3 position) {
-            const Vec3 at = world_from_local.point(Vec3d(position)).to_float();
-            return geometry.alpha(texture, uv, at) > kOpaque ? 1.0f : 0.0f;
+        [&](const SurfacePoint& p) {
+            const Vec3 at = world_from_local.point(p.position).to_float();
+            return geometry.alpha(texture, p.uv, at, p.vertices) > kOpaque ? 1.0f : 0.0f;
         },
         per_edge_);
 }

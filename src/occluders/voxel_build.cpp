@@ -131,9 +131,9 @@ class VoxelGridBuilder {
         if (texture < 0 || !geometry_.alpha)
             return std::make_unique<Tessellation>(local, layout_.size, scale);
         return std::make_unique<Tessellation>(
-            local, layout_.size, scale, [&](Vec2 uv, Vec3 position) {
-                return geometry_.alpha(texture, uv,
-                                       first.world_from_local.point(Vec3d(position)).to_float());
+            local, layout_.size, scale, [&](const SurfacePoint& p) {
+                const Vec3 at = first.world_from_local.point(p.position).to_float();
+                return geometry_.alpha(texture, p.uv, at, p.vertices);
             });
     }
 

@@ -31,8 +31,9 @@ struct TextureMapping {
     Kind kind = Kind::uv;
     float scale_u = 1, scale_v = 1, delta_u = 0, delta_v = 0;
     float u_per_v = 0, v_per_u = 0;  ///< uv only: how s changes with v, and t with u (a rotation)
-    Vec3 v1{1, 0, 0}, v2{0, 1, 0};   ///< planar only: (s, t) = (v1.p, v2.p) + delta at p
-    Transform texture_from_world;    ///< all but uv
+    int uv_set = -1;  ///< uv only: index into TriangleMesh::more_uvs; -1: the surface's (u, v)
+    Vec3 v1{1, 0, 0}, v2{0, 1, 0};  ///< planar only: (s, t) = (v1.p, v2.p) + delta at p
+    Transform texture_from_world;   ///< all but uv
 };
 
 struct ConstantTexture {
@@ -90,6 +91,15 @@ struct BilerpTexture {
     TextureMapping mapping;
     Rgb v00, v01, v10, v11;
 };
+/// The colours of a mesh's vertices, or their alpha, linear over each triangle; 1 on other shapes.
+struct VertexColourTexture {
+    bool is_alpha = false;
+};
+/// A value that is 1 where `tex` is at least `cutoff`, 0 elsewhere.
+struct CutoffTexture {
+    TextureId tex = -1;
+    float cutoff = 0.5f;
+};
 /// Solid noise in texture space.
 struct NoiseTexture {
     enum class Kind { fbm, wrinkled, windy, marble };
@@ -103,7 +113,8 @@ struct TextureDescription {
     std::string name;  ///< empty for values given inline
     bool is_spectrum = true;
     std::variant<ConstantTexture, ImageTexture, CheckerboardTexture, ScaleTexture, MixTexture,
-                 AsideTexture, DotsTexture, BilerpTexture, NoiseTexture>
+                 AsideTexture, DotsTexture, BilerpTexture, NoiseTexture, VertexColourTexture,
+                 CutoffTexture>
         value;
     SourceLocation where;
 };
@@ -196,11 +207,21 @@ struct MediumDescription {
 
 // ---- shapes, in object space
 
+struct VertexColour {
+    Rgb value{1};
+    float alpha = 1;
+};
 struct TriangleMesh {
+    static constexpr float kLargestColourStep = 255;  ///< contrast of something beside black
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;  ///< empty or one per position
     std::vector<Vec2> uvs;      ///< empty or one per position
     std::vector<std::array<uint32_t, 3>> triangles;
+    std::vector<std::vector<Vec2>> more_uvs = {};  ///< sets of coordinates, one per position each
+    std::vector<VertexColour> colours = {};        ///< empty or one per position
+    /// Contrasts of the colours across the side opposite each corner, in [0, kLargestColourStep];
+    /// empty or one per triangle (find_colour_steps).
+    std::vector<std::array<uint8_t, 3>> colour_steps = {};
 };
 /// Bilinear patches, each of four corners p00, p10, p01, p11.
 struct BilinearMesh {

@@ -266,7 +266,8 @@ Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStor
     const Material& material = materials_[static_cast<size_t>(id)];
     Bsdf found = material.constant;
     if (!material.is_constant) {
-        const TexturePoint at{hit.uv, hit.position, footprint_on(hit, w, width), hit.ng};
+        const TexturePoint at{hit.uv, hit.position, footprint_on(hit, w, width), hit.ng,
+                              hit.vertices()};
         const Values values{textures, at, material.colours, adaptation_, powers_};
         found = std::visit([&](const auto& m) { return make(m, values, material.coat); },
                            material.description.value);
@@ -280,7 +281,8 @@ MaterialId MaterialStore::at(MaterialId id, const SurfaceHit& hit,
                              const TextureStore& textures) const {
     while (id >= 0 && description(id).mix) {
         const MaterialMix& mix = *description(id).mix;
-        const float amount = textures.eval_float(mix.amount, {hit.uv, hit.position, {}, hit.ng});
+        const float amount =
+            textures.eval_float(mix.amount, {hit.uv, hit.position, {}, hit.ng, hit.vertices()});
         const uint64_t h = hash_of_position(hit, static_cast<uint64_t>(id));
         id = mix.materials[to_unit_float(static_cast<uint32_t>(h >> 32)) < amount ? 1 : 0];
     }

@@ -222,6 +222,48 @@ struct Analyser {
         return finite(all * (folded * energy.slope / energy.all));
     }
 
+    /// Colours of vertices vary over a triangle as fast as they rise, relative to their value, and
+    /// jump where the neighbour's colours differ along a side.
+    SpatialCovariance2 operator()(const VertexColourTexture& node, const ImageSpectrum*) const {
+        const VertexPlace& place = at.vertices;
+        if (!place.mesh || place.mesh->colours.empty()) return {};
+        const std::array<VertexColour, 3> colours = place.corners(place.mesh->colours);
+        const std::array<float, 3> weights = place.weights();
+        std::array<float, 3> values;
+        float value = 0, sum = 0;
+        for (size_t i = 0; i < 3; ++i) {
+            values[i] = node.is_alpha ? colours[i].alpha : luminance(colours[i].value);
+            value += weights[i] * values[i];
+            sum += values[i];
+        }
+        const auto [by1, by2] = place.barycentric_by_uv();
+        SpatialCovariance2 result;
+        // A thousandth of the corners keeps the quotient finite where the colour goes through
+        // black.
+        if (const float least = 1e-3f * sum; value + least > 0) {
+            const Vec2 slope = (by1 * (values[1] - values[0]) + by2 * (values[2] - values[0])) *
+                               (1 / (2 * kPi * (value + least)));
+            result = {slope.x * slope.x, slope.x * slope.y, slope.y * slope.y};
+        }
+        if (place.mesh->colour_steps.empty()) return finite(result);
+        // A barycentric coordinate is the distance to the side opposite its corner.
+        const std::array<Vec2, 3> gradients{(by1 + by2) * -1.0f, by1, by2};
+        const auto& steps = place.mesh->colour_steps[place.triangle];
+        for (size_t i = 0; i < 3; ++i) {
+            if (steps[i] == 0) continue;
+            const float contrast =
+                float(steps[i]) / (TriangleMesh::kLargestColourStep * kFullContrast);
+            result = result + edge(weights[i], gradients[i], footprint_uv) *
+                                  kept_weight(contrast, gradients[i], footprint_uv);
+        }
+        return finite(result);
+    }
+
+    /// A cutoff is met in jumps; what it is applied to varies no slower.
+    SpatialCovariance2 operator()(const CutoffTexture& node, const ImageSpectrum*) const {
+        return of(node.tex);
+    }
+
     /// Scaling is a product of signals: their spectra are convolved, so their covariances add.
     SpatialCovariance2 operator()(const ScaleNode& node, const ImageSpectrum*) const {
         return of(node.tex) + of(node.scale);

@@ -82,6 +82,12 @@ struct Evaluator {
             }
         }
     }
+    Rgb operator()(const VertexColourTexture& node) const {
+        return vertex_colour(node, at.vertices);
+    }
+    Rgb operator()(const CutoffTexture& node) const {
+        return Rgb(eval(graph, node.tex, at).r >= node.cutoff ? 1.0f : 0.0f);
+    }
     /// Non-finite values, which parameters near the largest numbers there are give, become 0.
     static Rgb grey(float value) { return Rgb(std::isfinite(value) ? value : 0.0f); }
     Rgb operator()(const ScaleNode& node) const {
@@ -121,6 +127,16 @@ TextureId active_texture(const DotsTexture& node, const TexturePoint& at) {
     const bool is_inside =
         center && sqr(st.x - center->x) + sqr(st.y - center->y) < sqr(kDotRadius);
     return is_inside ? node.inside : node.outside;
+}
+
+Rgb vertex_colour(const VertexColourTexture& node, const VertexPlace& at) {
+    if (!at.mesh || at.mesh->colours.empty()) return Rgb(1);
+    const std::array<VertexColour, 3> corners = at.corners(at.mesh->colours);
+    const std::array<float, 3> weights = at.weights();
+    Rgb sum;
+    for (size_t i = 0; i < 3; ++i)
+        sum += weights[i] * (node.is_alpha ? Rgb(corners[i].alpha) : corners[i].value);
+    return sum;
 }
 
 Rgb eval(const TextureGraph& graph, TextureId id, const TexturePoint& at) {

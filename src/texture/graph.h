@@ -36,8 +36,9 @@ struct ScaleNode {
 struct MixNode {
     TextureId tex1 = -1, tex2 = -1, amount = -1;
 };
-using TextureNode = std::variant<ConstantNode, ImageNode, CheckerboardNode, ScaleNode, MixNode,
-                                 AsideTexture, DotsTexture, BilerpTexture, NoiseTexture>;
+using TextureNode =
+    std::variant<ConstantNode, ImageNode, CheckerboardNode, ScaleNode, MixNode, AsideTexture,
+                 DotsTexture, BilerpTexture, NoiseTexture, VertexColourTexture, CutoffTexture>;
 
 struct TextureGraph {
     std::vector<TextureNode> nodes;  ///< one per TextureId
@@ -70,6 +71,9 @@ Rgb bilerp(const BilerpTexture& node, Vec2 st);
 /// The texture that the dots show at this point: the one inside of a dot, or the one around the
 /// dots.
 TextureId active_texture(const DotsTexture& node, const TexturePoint& at);
+
+/// The colour of a mesh's vertices at a place, or their alpha; 1 where there are none.
+Rgb vertex_colour(const VertexColourTexture& node, const VertexPlace& at);
 
 Rgb eval(const TextureGraph& graph, TextureId id, const TexturePoint& at);
 

@@ -30,12 +30,35 @@ StGradient3 gradient_by_position(const TextureMapping& mapping, Vec3 p) {
     }
 }
 
+/// The texture coordinates that a mapping by (u, v) starts from.
+Vec2 mapped_uv(const TextureMapping& mapping, const TexturePoint& at) {
+    const TriangleMesh* mesh = at.vertices.mesh;
+    if (mapping.uv_set < 0 || !mesh || size_t(mapping.uv_set) >= mesh->more_uvs.size())
+        return at.uv;
+    const auto uv = at.vertices.corners(mesh->more_uvs[size_t(mapping.uv_set)]);
+    const auto weights = at.vertices.weights();
+    return uv[0] * weights[0] + uv[1] * weights[1] + uv[2] * weights[2];
+}
+
+/// Gradients of the mapped coordinates by the surface's (u, v).
+StGradient mapped_uv_gradient(const TextureMapping& mapping, const TexturePoint& at) {
+    const TriangleMesh* mesh = at.vertices.mesh;
+    if (mapping.uv_set < 0 || !mesh || size_t(mapping.uv_set) >= mesh->more_uvs.size())
+        return {{1, 0}, {0, 1}};
+    const auto uv = at.vertices.corners(mesh->more_uvs[size_t(mapping.uv_set)]);
+    const auto [by1, by2] = at.vertices.barycentric_by_uv();
+    const Vec2 d1 = uv[1] - uv[0], d2 = uv[2] - uv[0];
+    return {by1 * d1.x + by2 * d2.x, by1 * d1.y + by2 * d2.y};
+}
+
 }  // namespace
 
 Vec2 map_to_st(const TextureMapping& mapping, const TexturePoint& at) {
-    if (mapping.kind == TextureMapping::Kind::uv)
-        return {mapping.scale_u * at.uv.x + mapping.u_per_v * at.uv.y + mapping.delta_u,
-                mapping.v_per_u * at.uv.x + mapping.scale_v * at.uv.y + mapping.delta_v};
+    if (mapping.kind == TextureMapping::Kind::uv) {
+        const Vec2 uv = mapped_uv(mapping, at);
+        return {mapping.scale_u * uv.x + mapping.u_per_v * uv.y + mapping.delta_u,
+                mapping.v_per_u * uv.x + mapping.scale_v * uv.y + mapping.delta_v};
+    }
     const Vec3 p = mapping.texture_from_world.point(at.position);
     switch (mapping.kind) {
         case TextureMapping::Kind::spherical: {
@@ -51,8 +74,11 @@ Vec2 map_to_st(const TextureMapping& mapping, const TexturePoint& at) {
 
 StGradient st_gradient(const TextureMapping& mapping, const TexturePoint& at, Vec3 dpdu,
                        Vec3 dpdv) {
-    if (mapping.kind == TextureMapping::Kind::uv)
-        return {{mapping.scale_u, mapping.u_per_v}, {mapping.v_per_u, mapping.scale_v}};
+    if (mapping.kind == TextureMapping::Kind::uv) {
+        const StGradient g = mapped_uv_gradient(mapping, at);
+        return {g.s * mapping.scale_u + g.t * mapping.u_per_v,
+                g.s * mapping.v_per_u + g.t * mapping.scale_v};
+    }
     const Transform& to_texture = mapping.texture_from_world;
     const StGradient3 g = gradient_by_position(mapping, to_texture.point(at.position));
     const Vec3 pu = to_texture.vector(dpdu), pv = to_texture.vector(dpdv);
@@ -83,11 +109,11 @@ PointFootprint footprint_on(const SurfaceHit& hit, Vec3 w, float width) {
 ImageFootprint image_footprint(const TextureMapping& mapping, const TexturePoint& at) {
     const PointFootprint& f = at.footprint;
     if (f.is_point()) return {};
-    const auto along = [&mapping](Vec2 duv) {
-        return Vec2{mapping.scale_u * duv.x + mapping.u_per_v * duv.y,
-                    mapping.v_per_u * duv.x + mapping.scale_v * duv.y};
-    };
-    if (mapping.kind == TextureMapping::Kind::uv) return {along(f.duv[0]), along(f.duv[1])};
+    if (mapping.kind == TextureMapping::Kind::uv) {
+        const StGradient g = st_gradient(mapping, at, {}, {});
+        const auto along = [&g](Vec2 duv) { return Vec2{dot(g.s, duv), dot(g.t, duv)}; };
+        return {along(f.duv[0]), along(f.duv[1])};
+    }
     const StGradient g = st_gradient(mapping, at, f.dp[0], f.dp[1]);
     return {{g.s.x, g.t.x}, {g.s.y, g.t.y}};
 }

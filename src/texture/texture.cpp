@@ -81,6 +81,8 @@ class GraphBuilder {
     double lookups_of(const AsideTexture&) const { return 1; }
     double lookups_of(const BilerpTexture&) const { return 1; }
     double lookups_of(const NoiseTexture&) const { return 1; }
+    double lookups_of(const VertexColourTexture&) const { return 1; }
+    double lookups_of(const CutoffTexture& n) const { return 1 + lookups_of(n.tex); }
     double lookups_of(const ScaleNode& n) const {
         return 1 + lookups_of(n.tex) + lookups_of(n.scale);
     }
@@ -133,6 +135,14 @@ class GraphBuilder {
     TextureNode make_node(const AsideTexture& t, const TextureDescription&, int) { return t; }
     TextureNode make_node(const BilerpTexture& t, const TextureDescription&, int) { return t; }
     TextureNode make_node(const NoiseTexture& t, const TextureDescription&, int) { return t; }
+    TextureNode make_node(const VertexColourTexture& t, const TextureDescription&, int) {
+        return t;
+    }
+    TextureNode make_node(const CutoffTexture& t, const TextureDescription&, int depth) {
+        const Rgb* value = constant(build(t.tex, depth + 1));
+        if (value) return ConstantNode{Rgb(value->r >= t.cutoff ? 1.0f : 0.0f)};
+        return t;
+    }
     TextureNode make_node(const ScaleTexture& t, const TextureDescription&, int depth) {
         const TextureNode& tex = build(t.tex, depth + 1);
         const TextureNode& scale = build(t.scale, depth + 1);

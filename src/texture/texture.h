@@ -27,6 +27,7 @@ struct TexturePoint {
     Vec3 position;  ///< world space
     PointFootprint footprint = {};
     Vec3 normal = {};  ///< unit, of the geometry; zero where it isn't known
+    VertexPlace vertices = {};
 };
 
 struct TextureGraph;
