@@ -97,7 +97,10 @@ void frame(const Document& document, const Bounds3& bounds, SceneDescription& sc
                        std::cos(azimuth) * std::cos(height)};
     const auto world_to_camera = Transform::look_at(center + towards * distance, center, {0, 1, 0});
     if (!world_to_camera) document.refuse("", "the scene is too large to place a camera");
-    scene.camera.camera_to_world = AnimatedTransform(world_to_camera->inverse());
+    // look_at takes the world for a left-handed one, in which it would show a mirror image of
+    // glTF's.
+    scene.camera.camera_to_world =
+        AnimatedTransform(world_to_camera->inverse() * Transform::scale(-1, 1, 1));
     scene.camera.fov = kFov;
     scene.camera.where = document.place("");
     set_film(scene.film, 16.0 / 9);

@@ -277,6 +277,8 @@ TEST(GltfCamera, FramesTheSceneWithoutOne) {
     }
     // A square takes a good part of the picture.
     EXPECT_LT(to_camera.point({0.5f, 0.5f, 0}).z, 3);
+    // The front faces +z, so that +x is on the right: the picture is no mirror image.
+    EXPECT_GT(to_camera.point({1, 0.5f, 0}).x, to_camera.point({0, 0.5f, 0}).x);
 }
 
 }  // namespace
