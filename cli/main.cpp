@@ -54,6 +54,9 @@ int run(int argc, char** argv) {
                                           std::string(covtrace::kCommit) + ")");
     app.require_subcommand(1);
     app.get_formatter()->column_width(30);
+    // The last one of an option given twice holds, so that scripts and aliases can be added to.
+    // Commands inherit this; lists take all (take_all).
+    app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
     covtrace::cli::add_render(app, invocation);
     covtrace::cli::add_merge(app, invocation);
     covtrace::cli::add_compare(app, invocation);

@@ -86,7 +86,10 @@ int merge_films(const MergeArguments& a) {
 void add_merge(CLI::App& app, Invocation& invocation) {
     auto a = std::make_shared<MergeArguments>();
     CLI::App* c = app.add_subcommand("merge", "Join the films of shards, and make their image");
-    c->add_option("FILM", a->films, "the films, in any order")->required()->option_text(" ");
+    c->add_option("FILM", a->films, "the films, in any order")
+        ->required()
+        ->take_all()
+        ->option_text(" ");
     c->add_option("-o,--output", a->output, "the image")->check(not_empty())->option_text("FILE");
     c->add_option("--film", a->film, "the joined film, to go on from")
         ->check(not_empty())

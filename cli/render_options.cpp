@@ -66,6 +66,7 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
                   "also look here for the scene's files; repeatable")
         ->check(CLI::ExistingDirectory.description(""))
         ->allow_extra_args(false)
+        ->take_all()
         ->option_text("DIR");
     c->add_option("--png", a.png, "also an 8-bit sRGB picture, cut at white")
         ->check(not_empty())

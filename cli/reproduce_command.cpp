@@ -55,7 +55,7 @@ int reproduce_results(const ReproduceArguments& a, const Invocation& invocation)
 void add_reproduce(CLI::App& app, Invocation& invocation) {
     auto a = std::make_shared<ReproduceArguments>();
     CLI::App* c = app.add_subcommand("reproduce", "Render the thesis' figures and table anew");
-    c->add_option("NAME", a->names, "experiments (default: all)")->option_text("...");
+    c->add_option("NAME", a->names, "experiments (default: all)")->take_all()->option_text("...");
     c->add_option("-o,--output", a->output, "folder for index.html, results.json, figures/")
         ->required()
         ->option_text("DIR");

@@ -1,10 +1,11 @@
 """Help, version, and command lines that are wrong."""
 
 import json
+import re
 import unittest
 
 import exr
-from support import DONE, USAGE, TINY, CliTest
+from support import DONE, HEADER, USAGE, TINY, CliTest
 
 
 class Help(CliTest):
@@ -118,6 +119,34 @@ class WrongCommandLines(CliTest):
             self.assertAlmostEqual(exr.read(image).value("spp"), 1 / 64)
             few = self.render(TINY, "--resolution", "8x8", "--spp", "0.001", "--method", method)
             self.assert_fails(few, USAGE, "0.001 samples per pixel", "64 pixels")
+
+    def test_the_last_one_of_an_option_holds(self):
+        image = exr.read(self.rendered("--spp", "1", "--seed", "7", "--spp=2", "--layers", "all", "--layers", "none"))
+        self.assertEqual(image.value("spp"), 2)
+        self.assertNotIn("raw.R", image.pixels)
+        self.write("parts/ball.pbrt", 'Shape "sphere"')
+        (self.folder / "empty").mkdir()
+        self.write("scene.pbrt", HEADER + "WorldBegin\nInclude \"ball.pbrt\"\n")
+        result = self.run_program("render", "scene.pbrt", "--search-path", "parts", "--search-path", "empty")
+        self.assertEqual(result.code, DONE, result)
+
+    def test_every_option_may_be_given_twice(self):
+        # What is missing is told after the command line was understood.
+        values = {"WxH": "8x8", "x,y": "1,1", "x0,y0,x1,y1": "0,0,4,4", "T0,T1": "0,1", "LIST": "none", "DIR": ".", "HOST:PORT": "localhost:1",
+                  "SIZE": "1G", "K/N": "1/2", "x,y,sample": "1,1,0", "N": "1", "T": "1s", "FILE": "f"}
+        given = {"--samples": "4096"}
+        for command, files in (("render", ["none.pbrt"]), ("measure", ["none.pbrt"]), ("inspect", ["none.exr"]), ("compare", ["a.exr", "b.exr"]), ("merge", ["none.film"])):
+            text = self.run_program(command, "--help").stdout
+            for name, kind in re.findall(r"^ +(?:-\w,)?(--[\w-]+)(?: ([\w|:/,]+))?", text, re.MULTILINE):
+                if name == "--help":
+                    continue
+                value = given.get(name) or values.get(kind) or kind.split("|")[0]
+                argument = [f"{name}={value}"] if kind else [name]
+                needed = {"measure": ["--pixel=1,1"], "merge": ["--output=o.exr"]}.get(command, [])
+                with self.subTest(command=command, option=name):
+                    result = self.run_program(command, *files, *needed, *argument, *argument)
+                    self.assertNotIn("at most", result.stderr, result)
+                    self.assertNotIn("--help", result.stderr, result)
 
     def test_unknown_option(self):
         self.assert_fails(self.render(TINY, "--frobnicate"), USAGE, "--frobnicate")
