@@ -98,8 +98,9 @@ TEST(LightReturn, ASmallLampDoesNotLightTheImage) {
         LightReturn(halves).give_back(raw, color);
         for (int y = 0; y < kSize; ++y)
             for (int x = 0; x < kSize; ++x)
-                if (std::max(std::abs(2 * x - kSize), std::abs(2 * y - kSize)) > 2 * side + 2)
+                if (std::max(std::abs(2 * x - kSize), std::abs(2 * y - kSize)) > 2 * side + 2) {
                     ASSERT_NEAR(color[0](x, y), 1, 0.25f) << side << " " << x << " " << y;
+                }
         EXPECT_GT(color[0](kSize / 2 - 1, kSize / 2 - 1) + color[0](kSize / 2, kSize / 2), 9e4f);
     }
 }
