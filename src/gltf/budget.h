@@ -21,6 +21,8 @@ class Budget {
         return true;
     }
 
+    uint64_t left() const { return left_; }
+
   private:
     uint64_t left_ = 0;
 };
@@ -35,6 +37,19 @@ inline Budget budget_of_numbers(uint64_t bytes) {
 /// bytes; meshes that share vertices keep only those that they use.
 inline Budget budget_of_meshes(uint64_t bytes) {
     return {uint64_t{1} << 28, 32, bytes};
+}
+
+/// Budget of the bytes that codecs decode. The best that their encoders reach is a flat grid: 112
+/// times its size as Draco's mesh, of which seams and integers on the way count as much again;
+/// models have 5 to 40 times. Attributes of meshopt can't exceed 64 times.
+inline Budget budget_of_decoded(uint64_t bytes) {
+    return {uint64_t{1} << 26, 256, bytes};
+}
+
+/// Bytes of a file that decoded ones count as in the other budgets: a quarter, so that a small file
+/// that decodes to a large one does not get all the room that the large one itself would have.
+inline uint64_t bytes_for_decoded(uint64_t bytes) {
+    return bytes / 4;
 }
 
 }  // namespace covtrace::gltf

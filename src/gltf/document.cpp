@@ -12,6 +12,8 @@
 
 #include "core/hash.h"
 #include "gltf/checked_json.h"
+#include "gltf/draco.h"
+#include "gltf/plain_json.h"
 #include "scene/names.h"
 #include "scene/scene_files.h"
 
@@ -124,6 +126,33 @@ std::string_view json_chunk(std::string_view bytes, const std::string& name) {
     return bytes.substr(kHeader, length);
 }
 
+/// A binary file with another JSON chunk: its header's lengths are those of the new one.
+std::string with_json_chunk(std::string_view bytes, std::string_view old_json, std::string json) {
+    const auto word = [](size_t v) {
+        const auto word = static_cast<uint32_t>(v);
+        std::string s(sizeof word, '\0');
+        std::memcpy(s.data(), &word, sizeof word);
+        return s;
+    };
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const auto rest = static_cast<size_t>(old_json.data() + old_json.size() - bytes.data());
+    std::string all = std::string(bytes.substr(0, 8));
+    all += word(20 + json.size() + bytes.size() - rest) + word(json.size()) + "JSON" + json;
+    return all.append(bytes.substr(rest));
+}
+
+/// Checks the file's JSON; returns the file as tinygltf takes it.
+std::string checked_file(std::string bytes, const std::string& name) {
+    const bool binary = is_binary(bytes);
+    const std::string_view json = binary ? json_chunk(bytes, name) : std::string_view(bytes);
+    const std::string json_name = binary ? name + " (JSON chunk)" : name;
+    check_json(json, json_name);
+    std::optional<std::string> plain = plain_json(json, binary);
+    if (!plain) return bytes;
+    check_json(*plain, json_name);
+    return binary ? with_json_chunk(bytes, json, std::move(*plain)) : std::move(*plain);
+}
+
 void parse(Document& document, std::string_view bytes, SceneFiles& files) {
     Reading reading{&document, &files};
     tinygltf::TinyGLTF library;
@@ -151,6 +180,17 @@ void parse(Document& document, std::string_view bytes, SceneFiles& files) {
                     document.name + ": this is no valid glTF: " + first_line(error));
 }
 
+/// Decodes what codecs have compressed. What they made counts in the document's budgets.
+void decode(Document& document, WarningLog& log) {
+    document.decoded = budget_of_decoded(document.bytes);
+    const size_t read = document.model.buffers.size();
+    decode_draco(document, log);
+    uint64_t made = 0;
+    for (size_t i = read; i < document.model.buffers.size(); ++i)
+        made += document.model.buffers[i].data.size();
+    document.bytes += bytes_for_decoded(made);
+}
+
 }  // namespace
 
 SourceLocation Document::place(const std::string& path) const {
@@ -169,19 +209,16 @@ Document read_document(const fs::path& file, const std::vector<fs::path>& search
     document.roots = {document.folder};
     document.roots.insert(document.roots.end(), search_paths.begin(), search_paths.end());
     SceneFiles files(document.folder, search_paths, log);
-    const std::string bytes = files.read(file, {});
+    std::string bytes = files.read(file, {});
     if (bytes.size() > kLargestFile)
         throw Error(ErrorKind::limit, document.name + ": the file is larger than 4 GiB");
-    if (is_binary(bytes))
-        check_json(json_chunk(bytes, document.name), document.name + " (JSON chunk)");
-    else
-        check_json(bytes, document.name);
-    parse(document, bytes, files);
+    document.bytes = bytes.size();
+    parse(document, checked_file(std::move(bytes), document.name), files);
     document.content_hash = files.content_hash();
     for (const fs::path& read : files.files()) document.files.insert(read);
-    document.bytes = bytes.size();
     for (const tinygltf::Buffer& buffer : document.model.buffers)
         document.bytes += buffer.data.size();
+    decode(document, log);
     document.numbers = budget_of_numbers(document.bytes);
     return document;
 }

@@ -23,6 +23,7 @@ struct Document {
     tinygltf::Model model;
     uint64_t content_hash = 0;
     uint64_t bytes = 0;                             ///< of the file and its buffers
+    Budget decoded;                                 ///< what codecs may still decode to
     mutable Budget numbers;                         ///< what accessors may still be read as
     mutable std::set<std::filesystem::path> files;  ///< files that were read or found
 

@@ -52,9 +52,9 @@ TEST(GltfErrors, TellsThePlaceInTheDocument) {
                   r["nodes"][0]["rotation"] = {1, 2};
               }),
               "t.gltf: nodes[0].rotation: expected 4 numbers");
-    EXPECT_EQ(changed([](json& r) { r["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }),
+    EXPECT_EQ(changed([](json& r) { r["extensionsRequired"] = {"KHR_texture_basisu"}; }),
               "t.gltf: extensionsRequired: the file can't be read without the extension "
-              "KHR_draco_mesh_compression, which is not supported");
+              "KHR_texture_basisu, which is not supported");
     EXPECT_EQ(changed([](json& r) {
                   r["scenes"] = {{{"nodes", json::array()}}};
               }),

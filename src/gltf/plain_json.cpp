@@ -1,0 +1,84 @@
+#include "gltf/plain_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace covtrace::gltf {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+constexpr const char* kMeshopt = "meshopt_compression";  ///< behind EXT_ or KHR_
+
+/// The value of a key, null where there is none or `object` is no object.
+json* value(json& object, const char* key) {
+    if (!object.is_object()) return nullptr;
+    const auto it = object.find(key);
+    return it == object.end() ? nullptr : &*it;
+}
+
+/// Calls visit(element, its index) for all elements of a list that are objects.
+template <typename Visit>
+void visit_objects(json* list, Visit visit) {
+    if (!list || !list->is_array()) return;
+    for (size_t i = 0; i < list->size(); ++i)
+        if ((*list)[i].is_object()) visit((*list)[i], i);
+}
+
+/// The object of either meshopt extension.
+json* meshopt_extension(json& object) {
+    json* extensions = value(object, "extensions");
+    if (!extensions) return nullptr;
+    for (const char* prefix : {"EXT_", "KHR_"}) {
+        json* found = value(*extensions, (std::string(prefix) + kMeshopt).c_str());
+        if (found && found->is_object()) return found;
+    }
+    return nullptr;
+}
+
+/// Removes the indices that Draco's triangles take the place of.
+void remove_draco_indices(json& root) {
+    visit_objects(value(root, "meshes"), [](json& mesh, size_t) {
+        visit_objects(value(mesh, "primitives"), [](json& primitive, size_t) {
+            json* extensions = value(primitive, "extensions");
+            json* draco = extensions ? value(*extensions, kDraco) : nullptr;
+            if (draco && draco->is_object()) primitive.erase("indices");
+        });
+    });
+}
+
+/// Gives a URI to the buffers without one that stand for what meshopt decodes to.
+void fill_placeholders(json& root, bool has_chunk) {
+    json* buffers = value(root, "buffers");
+    if (!buffers || !buffers->is_array()) return;
+    std::vector<bool> is_decoded(buffers->size());
+    visit_objects(buffers, [&](json& buffer, size_t i) {
+        if (meshopt_extension(buffer)) is_decoded[i] = true;
+    });
+    visit_objects(value(root, "bufferViews"), [&](json& view, size_t) {
+        const json* index = value(view, "buffer");
+        if (meshopt_extension(view) && index && index->is_number_unsigned() &&
+            index->get<uint64_t>() < is_decoded.size())
+            is_decoded[index->get<uint64_t>()] = true;
+    });
+    visit_objects(buffers, [&](json& buffer, size_t i) {
+        if (!is_decoded[i] || buffer.contains("uri") || (has_chunk && i == 0)) return;
+        buffer["uri"] = "data:application/octet-stream;base64,AA==";
+        buffer["byteLength"] = 1;
+    });
+}
+
+}  // namespace
+
+std::optional<std::string> plain_json(std::string_view text, bool has_chunk) {
+    if (text.find(kDraco) == std::string_view::npos &&
+        text.find(kMeshopt) == std::string_view::npos)
+        return std::nullopt;
+    json root = json::parse(text.begin(), text.end(), nullptr, false);
+    if (!root.is_object()) return std::nullopt;
+    remove_draco_indices(root);
+    fill_placeholders(root, has_chunk);
+    return root.dump();
+}
+
+}  // namespace covtrace::gltf

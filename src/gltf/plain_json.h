@@ -1,0 +1,16 @@
+/// Private to this folder: the text of a compressed file as tinygltf takes it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace covtrace::gltf {
+
+/// tinygltf refuses indices whose accessor has no bytes, which are those that Draco decodes to, and
+/// buffers without a URI, which stand for what meshopt decodes to. Returns the JSON without such
+/// indices, and with a URI of one byte for such buffers; nothing where the text uses neither
+/// extension, or is no JSON. `has_chunk`: the first buffer may be the binary chunk of the file.
+std::optional<std::string> plain_json(std::string_view text, bool has_chunk);
+
+}  // namespace covtrace::gltf
