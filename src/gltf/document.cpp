@@ -13,6 +13,7 @@
 #include "core/hash.h"
 #include "gltf/checked_json.h"
 #include "gltf/draco.h"
+#include "gltf/meshopt.h"
 #include "gltf/plain_json.h"
 #include "scene/names.h"
 #include "scene/scene_files.h"
@@ -184,6 +185,7 @@ void parse(Document& document, std::string_view bytes, SceneFiles& files) {
 void decode(Document& document, WarningLog& log) {
     document.decoded = budget_of_decoded(document.bytes);
     const size_t read = document.model.buffers.size();
+    decode_meshopt(document);
     decode_draco(document, log);
     uint64_t made = 0;
     for (size_t i = read; i < document.model.buffers.size(); ++i)

@@ -24,12 +24,6 @@ inline draco::DataType draco_type(int component_type) {
     }
 }
 
-/// The bytes of an accessor of a GltfFile, whose elements are packed.
-inline const char* accessor_bytes(const GltfFile& file, const json& accessor) {
-    const size_t view = accessor["bufferView"];
-    return file.buffer.data() + file.root["bufferViews"][view]["byteOffset"].get<size_t>();
-}
-
 /// A primitive with indices of 16 bits as a stream. `method`: draco::MESH_SEQUENTIAL_ENCODING,
 /// which keeps the order of vertices, or MESH_EDGEBREAKER_ENCODING. `bits` of the positions, 0
 /// keeps floats as they are. Attributes get the ids 0, 1, … in the order of their names.
@@ -91,31 +85,6 @@ inline GltfFile with_draco(const GltfFile& plain, int method = draco::MESH_SEQUE
         }
     file.root["extensionsUsed"] = {"KHR_draco_mesh_compression"};
     file.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
-    return file;
-}
-
-/// A wavy square of n by n vertices with normals and texture coordinates, on one node.
-inline GltfFile wave_file(int n) {
-    GltfFile file;
-    std::vector<float> points, normals, uvs;
-    std::vector<uint16_t> indices;
-    for (int y = 0; y < n; ++y)
-        for (int x = 0; x < n; ++x) {
-            const float u = float(x) / float(n - 1), v = float(y) / float(n - 1);
-            points.insert(points.end(), {u, v, 0.2f * std::sin(9 * u) * std::cos(7 * v)});
-            normals.insert(normals.end(), {0.6f * u, 0.8f * u, std::sqrt(1 - u * u)});
-            uvs.insert(uvs.end(), {u, 1 - v});
-        }
-    for (int y = 0; y + 1 < n; ++y)
-        for (int x = 0; x + 1 < n; ++x)
-            for (const int k : {0, 1, n + 1, 0, n + 1, n})
-                indices.push_back(uint16_t(y * n + x + k));
-    const json attributes = {{"POSITION", file.add_floats(points, "VEC3", 3)},
-                             {"NORMAL", file.add_floats(normals, "VEC3", 3)},
-                             {"TEXCOORD_0", file.add_floats(uvs, "VEC2", 2)}};
-    const int corners = file.add<uint16_t>(indices, 5123, "SCALAR", 1);
-    file.root["meshes"] = {{{"primitives", {{{"attributes", attributes}, {"indices", corners}}}}}};
-    file.add_node({{"mesh", 0}});
     return file;
 }
 

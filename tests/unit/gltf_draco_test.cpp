@@ -21,21 +21,6 @@ std::pair<size_t, size_t> stream_range(const GltfFile& file) {
     return {view["byteOffset"], view["byteLength"]};
 }
 
-void expect_same(const SceneDescription& a, const SceneDescription& b) {
-    ASSERT_EQ(a.shapes.size(), b.shapes.size());
-    for (size_t s = 0; s < a.shapes.size(); ++s) {
-        const TriangleMesh &m = mesh_of(a.shapes[s]), &n = mesh_of(b.shapes[s]);
-        EXPECT_EQ(m.triangles, n.triangles);
-        ASSERT_EQ(m.positions.size(), n.positions.size());
-        ASSERT_EQ(m.normals.size(), n.normals.size());
-        ASSERT_EQ(m.uvs.size(), n.uvs.size());
-        for (size_t i = 0; i < m.positions.size(); ++i)
-            expect_near(m.positions[i], n.positions[i], 0);
-        for (size_t i = 0; i < m.normals.size(); ++i) expect_near(m.normals[i], n.normals[i], 0);
-        for (size_t i = 0; i < m.uvs.size(); ++i) EXPECT_EQ(m.uvs[i].y, n.uvs[i].y);
-    }
-}
-
 TEST(GltfDraco, ReadsWhatWasCompressedWithoutLoss) {
     const GltfFile plain = wave_file(20);
     GltfFile file = with_draco(plain);

@@ -30,6 +30,7 @@ inline std::string base64(const std::string& bytes) {
 struct GltfFile {
     json root = {{"asset", {{"version", "2.0"}}}, {"nodes", json::array()}};
     std::string buffer;
+    json more_buffers = json::array();  ///< behind the first, which holds `buffer`
 
     int add_view(const std::string& bytes, int stride = 0) {
         buffer.resize((buffer.size() + 3) / 4 * 4);
@@ -76,6 +77,7 @@ struct GltfFile {
         if (!buffer.empty())
             all["buffers"] = {{{"byteLength", buffer.size()},
                                {"uri", "data:application/octet-stream;base64," + base64(buffer)}}};
+        for (const json& b : more_buffers) all["buffers"].push_back(b);
         return all.dump(1);
     }
     std::string binary() const {
@@ -83,6 +85,7 @@ struct GltfFile {
         std::string body = buffer;
         body.resize((body.size() + 3) / 4 * 4);
         if (!body.empty()) all["buffers"] = {{{"byteLength", body.size()}}};
+        for (const json& b : more_buffers) all["buffers"].push_back(b);
         std::string head = all.dump();
         head.resize((head.size() + 3) / 4 * 4, ' ');
         const auto word = [](size_t v) {
@@ -101,6 +104,37 @@ struct GltfFile {
 inline GltfFile square_file() {
     GltfFile file;
     file.add_node({{"mesh", file.add_square()}});
+    return file;
+}
+
+/// The bytes of an accessor of a GltfFile, whose elements are packed.
+inline const char* accessor_bytes(const GltfFile& file, const json& accessor) {
+    const size_t view = accessor["bufferView"];
+    return file.buffer.data() + file.root["bufferViews"][view]["byteOffset"].get<size_t>();
+}
+
+/// A wavy square of n by n vertices with normals and texture coordinates, on one node.
+inline GltfFile wave_file(int n) {
+    GltfFile file;
+    std::vector<float> points, normals, uvs;
+    std::vector<uint16_t> indices;
+    for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x) {
+            const float u = float(x) / float(n - 1), v = float(y) / float(n - 1);
+            points.insert(points.end(), {u, v, 0.2f * std::sin(9 * u) * std::cos(7 * v)});
+            normals.insert(normals.end(), {0.6f * u, 0.8f * u, std::sqrt(1 - u * u)});
+            uvs.insert(uvs.end(), {u, 1 - v});
+        }
+    for (int y = 0; y + 1 < n; ++y)
+        for (int x = 0; x + 1 < n; ++x)
+            for (const int k : {0, 1, n + 1, 0, n + 1, n})
+                indices.push_back(uint16_t(y * n + x + k));
+    const json attributes = {{"POSITION", file.add_floats(points, "VEC3", 3)},
+                             {"NORMAL", file.add_floats(normals, "VEC3", 3)},
+                             {"TEXCOORD_0", file.add_floats(uvs, "VEC2", 2)}};
+    const int corners = file.add<uint16_t>(indices, 5123, "SCALAR", 1);
+    file.root["meshes"] = {{{"primitives", {{{"attributes", attributes}, {"indices", corners}}}}}};
+    file.add_node({{"mesh", 0}});
     return file;
 }
 
@@ -131,6 +165,21 @@ inline std::string all_warnings(const SceneDescription& scene) {
 }
 inline const TriangleMesh& mesh_of(const ShapeDescription& shape) {
     return *std::get<std::shared_ptr<const TriangleMesh>>(shape.geometry);
+}
+/// Expects the same triangles, vertex by vertex.
+inline void expect_same(const SceneDescription& a, const SceneDescription& b) {
+    ASSERT_EQ(a.shapes.size(), b.shapes.size());
+    for (size_t s = 0; s < a.shapes.size(); ++s) {
+        const TriangleMesh &m = mesh_of(a.shapes[s]), &n = mesh_of(b.shapes[s]);
+        EXPECT_EQ(m.triangles, n.triangles);
+        ASSERT_EQ(m.positions.size(), n.positions.size());
+        ASSERT_EQ(m.normals.size(), n.normals.size());
+        ASSERT_EQ(m.uvs.size(), n.uvs.size());
+        for (size_t i = 0; i < m.positions.size(); ++i)
+            expect_near(m.positions[i], n.positions[i], 0);
+        for (size_t i = 0; i < m.normals.size(); ++i) expect_near(m.normals[i], n.normals[i], 0);
+        for (size_t i = 0; i < m.uvs.size(); ++i) EXPECT_EQ(m.uvs[i].y, n.uvs[i].y);
+    }
 }
 template <typename T>
 const T& model_of(const SceneDescription& scene, MaterialId id) {
