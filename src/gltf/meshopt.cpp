@@ -14,7 +14,7 @@ namespace {
 enum class Mode { attributes, triangles, indices };
 enum class Filter { none, octahedral, quaternion, exponential, colour };
 
-/// What an extension's object says of a stream.
+/// A stream, and what the extension's object says of it.
 struct Stream {
     std::span<const unsigned char> bytes;
     size_t stride = 0, count = 0;
@@ -87,7 +87,7 @@ Stream read_stream(const Document& document, const tinygltf::BufferView& view,
     return s;
 }
 
-/// What a stream needs that the library does not have; empty where it has all.
+/// The library that a stream needs; empty where this one reads it.
 std::optional<std::string> lack(const Stream& s) {
     constexpr unsigned char kAttributes = 0xa0;
     constexpr int kVersion1 = 230;

@@ -123,7 +123,7 @@ TEST(GltfMeshopt, RefusesWhatItCannotDecode) {
     EXPECT_TRUE(contains(error(0, "buffer", 1), "its bytes end beyond their buffer of 1 bytes"));
     EXPECT_EQ(error(0, "count", 24),
               ": its 24 elements of 12 bytes are not those of its buffer view");
-    // What the library would end the process over.
+    // Strides over which the library would end the process.
     for (const int stride : {0, 2, 6, 260, 1 << 30})
         EXPECT_TRUE(contains(error(0, "byteStride", stride), "expected a byteStride of 4, 8, "));
     EXPECT_TRUE(contains(error(3, "byteStride", 8), "expected a byteStride of 2 or 4"));
