@@ -22,6 +22,7 @@ std::pair<std::shared_ptr<const TriangleMesh>, Transform> part_of(
     auto part = std::make_shared<TriangleMesh>();
     std::map<uint32_t, uint32_t> places;
     part->triangles.reserve(triangles.size());
+    part->more_uvs.resize(mesh.more_uvs.size());
     for (const uint32_t t : triangles) {
         auto triangle = mesh.triangles[t];
         for (uint32_t& i : triangle) {
@@ -31,10 +32,14 @@ std::pair<std::shared_ptr<const TriangleMesh>, Transform> part_of(
                 part->positions.push_back(mesh.positions[i]);
                 if (!mesh.normals.empty()) part->normals.push_back(mesh.normals[i]);
                 if (!mesh.uvs.empty()) part->uvs.push_back(mesh.uvs[i]);
+                if (!mesh.colours.empty()) part->colours.push_back(mesh.colours[i]);
+                for (size_t set = 0; set < mesh.more_uvs.size(); ++set)
+                    part->more_uvs[set].push_back(mesh.more_uvs[set][i]);
             }
             i = it->second;
         }
         part->triangles.push_back(triangle);
+        if (!mesh.colour_steps.empty()) part->colour_steps.push_back(mesh.colour_steps[t]);
     }
     Bounds3 box;
     for (const Vec3& p : part->positions) box.extend(p);
@@ -64,7 +69,8 @@ bool DeformedNodes::deforms(const PlacedNode& node) {
             any(morph_weights(document_, placed_.animations, node.node, double(shutter_[1]))));
 }
 
-std::vector<MovedMesh> DeformedNodes::meshes(const PlacedNode& node, size_t primitive, int uv_set) {
+std::vector<MovedMesh> DeformedNodes::meshes(const PlacedNode& node, size_t primitive,
+                                             const VertexLayout& layout) {
     const tinygltf::Node& n = node_of(node);
     const std::string place = element("nodes", static_cast<size_t>(node.node));
     static const JointMatrices kNone;
@@ -72,11 +78,11 @@ std::vector<MovedMesh> DeformedNodes::meshes(const PlacedNode& node, size_t prim
     const auto at_end = [&](size_t end) {
         const auto weights =
             morph_weights(document_, placed_.animations, node.node, double(shutter_[end]));
-        return geometry_.deformed(n.mesh, primitive, uv_set, weights, joints[end], place);
+        return geometry_.deformed(n.mesh, primitive, layout, weights, joints[end], place);
     };
     const TriangleMesh open = at_end(0), close = at_end(1);
     // Joints place the vertices that they carry, whatever the node's own transform.
-    const bool is_skinned = !joints[0].empty() && geometry_.has_joints(n.mesh, primitive, uv_set);
+    const bool is_skinned = !joints[0].empty() && geometry_.has_joints(n.mesh, primitive, layout);
     const AnimatedTransform to_world = is_skinned ? AnimatedTransform(Transform()) : node.transform;
     if (open.positions == close.positions)
         return {{std::make_shared<TriangleMesh>(open), to_world}};

@@ -26,7 +26,8 @@ class DeformedNodes {
     /// Whether the node's mesh is deformed, by morph targets or a skin.
     bool deforms(const PlacedNode& node);
     /// One primitive of the node's mesh, deformed: one mesh that may move with the node, or pieces.
-    std::vector<MovedMesh> meshes(const PlacedNode& node, size_t primitive, int uv_set);
+    std::vector<MovedMesh> meshes(const PlacedNode& node, size_t primitive,
+                                  const VertexLayout& layout);
 
   private:
     /// A skin's joint matrices, from the mesh's space to the world's, at both ends of the shutter;

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "gltf/accessor.h"
+#include "scene/vertex_colours.h"
 
 namespace covtrace::gltf {
 namespace {
@@ -54,6 +55,8 @@ std::vector<uint32_t> keep_used_vertices(TriangleMesh& mesh) {
     pick(mesh.positions);
     pick(mesh.normals);
     pick(mesh.uvs);
+    pick(mesh.colours);
+    for (auto& uvs : mesh.more_uvs) pick(uvs);
     for (auto& triangle : mesh.triangles)
         for (uint32_t& i : triangle) i = place[i];
     return used;
@@ -70,22 +73,33 @@ std::string place_of(int mesh, size_t primitive) {
     return element("meshes", static_cast<size_t>(mesh)) + "." + element("primitives", primitive);
 }
 
-}  // namespace
-
-std::shared_ptr<const TriangleMesh> GeometryReader::mesh(int mesh, size_t primitive, int uv_set) {
-    return entry(mesh, primitive, uv_set).mesh;
+/// Refuses an attribute that has not one element for each vertex.
+void require_count(const Document& document, size_t found, size_t expected,
+                   const std::string& place) {
+    if (found != expected)
+        document.refuse(place, "has " + std::to_string(found) + " elements; expected " +
+                                   std::to_string(expected) + ", one per position");
 }
 
-GeometryReader::Entry& GeometryReader::entry(int mesh, size_t primitive, int uv_set) {
-    const auto [it, is_new] = meshes_.try_emplace({mesh, primitive, uv_set});
+}  // namespace
+
+std::shared_ptr<const TriangleMesh> GeometryReader::mesh(int mesh, size_t primitive,
+                                                         const VertexLayout& layout) {
+    return entry(mesh, primitive, layout).mesh;
+}
+
+GeometryReader::Entry& GeometryReader::entry(int mesh, size_t primitive,
+                                             const VertexLayout& layout) {
+    const auto [it, is_new] = meshes_.try_emplace({mesh, primitive, layout});
     if (is_new)
         it->second = read(document_.model.meshes[static_cast<size_t>(mesh)].primitives[primitive],
-                          uv_set, place_of(mesh, primitive));
+                          layout, place_of(mesh, primitive));
     return it->second;
 }
 
-const Deformation& GeometryReader::deformation(int mesh, size_t primitive, int uv_set) {
-    Entry& e = entry(mesh, primitive, uv_set);
+const Deformation& GeometryReader::deformation(int mesh, size_t primitive,
+                                               const VertexLayout& layout) {
+    Entry& e = entry(mesh, primitive, layout);
     if (!e.deformation)
         e.deformation = read_deformation(
             document_, document_.model.meshes[static_cast<size_t>(mesh)].primitives[primitive],
@@ -93,32 +107,77 @@ const Deformation& GeometryReader::deformation(int mesh, size_t primitive, int u
     return *e.deformation;
 }
 
-bool GeometryReader::has_joints(int mesh, size_t primitive, int uv_set) {
-    return deformation(mesh, primitive, uv_set).influences > 0;
+bool GeometryReader::has_joints(int mesh, size_t primitive, const VertexLayout& layout) {
+    return deformation(mesh, primitive, layout).influences > 0;
 }
 
-TriangleMesh GeometryReader::deformed(int mesh, size_t primitive, int uv_set,
+TriangleMesh GeometryReader::deformed(int mesh, size_t primitive, const VertexLayout& layout,
                                       std::span<const double> weights,
                                       std::span<const Matrix4> joints, const std::string& place) {
-    const Deformation& d = deformation(mesh, primitive, uv_set);
-    const TriangleMesh& rest = *entry(mesh, primitive, uv_set).mesh;
+    const Deformation& d = deformation(mesh, primitive, layout);
+    const TriangleMesh& rest = *entry(mesh, primitive, layout).mesh;
     // The budget counts targets and joints as vertices, so that it bounds the time, too.
     const auto moving = static_cast<size_t>(
         std::count_if(weights.begin(), weights.end(), [](double w) { return w != 0; }));
-    spend(rest.positions.size() * (1 + moving + d.influences), rest.triangles.size(), place);
+    spend(rest, rest.positions.size() * (1 + moving + d.influences), place);
     return deform(document_, rest, d, weights, joints, place);
 }
 
-void GeometryReader::spend(size_t vertices, size_t triangles, const std::string& place) {
-    constexpr size_t kVertex = 2 * sizeof(Vec3) + sizeof(Vec2), kTriangle = 3 * sizeof(uint32_t);
-    if (!bytes_.spend(vertices, kVertex) || !bytes_.spend(triangles, kTriangle))
+void GeometryReader::spend(const TriangleMesh& mesh, size_t vertices, const std::string& place) {
+    const size_t vertex = 2 * sizeof(Vec3) + sizeof(Vec2) * (1 + mesh.more_uvs.size()) +
+                          (mesh.colours.empty() ? 0 : sizeof(VertexColour));
+    constexpr size_t kTriangle = 3 * sizeof(uint32_t);
+    if (!bytes_.spend(vertices, vertex) || !bytes_.spend(mesh.triangles.size(), kTriangle))
         throw Error(ErrorKind::limit, document_.place(place),
                     "it and the meshes before are too large for a file of " +
                         std::to_string(document_.bytes) + " bytes");
 }
 
-GeometryReader::Entry GeometryReader::read(const tinygltf::Primitive& primitive, int uv_set,
-                                           const std::string& place) {
+ColourUse GeometryReader::colours(int mesh, size_t primitive) {
+    const tinygltf::Primitive& source =
+        document_.model.meshes[static_cast<size_t>(mesh)].primitives[primitive];
+    const auto colour = source.attributes.find("COLOR_0");
+    const bool is_rendered = source.mode < 0 || source.mode >= TINYGLTF_MODE_TRIANGLES;
+    if (colour == source.attributes.end() || !is_rendered) return {};
+    const auto [it, is_new] = colours_.try_emplace(colour->second);
+    if (is_new)
+        it->second = use_of(read_colours(document_, colour->second,
+                                         place_of(mesh, primitive) + ".attributes.COLOR_0"));
+    return it->second;
+}
+
+void GeometryReader::read_vertex_values(const tinygltf::Primitive& primitive,
+                                        const VertexLayout& layout, TriangleMesh& mesh,
+                                        const std::string& place) {
+    const size_t count = mesh.positions.size();
+    const std::string attributes = place + ".attributes.";
+    const auto read_uvs = [&](int set, bool is_needed) {
+        std::vector<Vec2> uvs;
+        if (set == VertexLayout::kNoSet) return uvs;
+        const std::string name = "TEXCOORD_" + std::to_string(set);
+        const auto it = primitive.attributes.find(name);
+        if (it == primitive.attributes.end()) {
+            if (!is_needed) return uvs;
+            warn(place, "has textures but no " + name + "; they are looked up at (0, 0)");
+            uvs.assign(count, Vec2{0, 1});
+            return uvs;
+        }
+        const Numbers uv = read_numbers(document_, it->second, 2, attributes + name);
+        require_count(document_, uv.count(), count, attributes + name);
+        uvs.resize(count);
+        for (size_t i = 0; i < count; ++i) uvs[i] = {uv.element(i)[0], 1 - uv.element(i)[1]};
+        return uvs;
+    };
+    mesh.uvs = read_uvs(layout.uv_set, layout.needs_uvs);
+    for (const int set : layout.more_sets) mesh.more_uvs.push_back(read_uvs(set, true));
+    if (!layout.has_colours) return;
+    const std::string name = attributes + "COLOR_0";
+    mesh.colours = read_colours(document_, primitive.attributes.at("COLOR_0"), name);
+    require_count(document_, mesh.colours.size(), count, name);
+}
+
+GeometryReader::Entry GeometryReader::read(const tinygltf::Primitive& primitive,
+                                           const VertexLayout& layout, const std::string& place) {
     const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
     if (mode < TINYGLTF_MODE_TRIANGLES) {
         warn(place, "points and lines are not rendered");
@@ -141,27 +200,14 @@ GeometryReader::Entry GeometryReader::read(const tinygltf::Primitive& primitive,
         throw Error(ErrorKind::limit, document_.place(place), "it has more than 2^30 vertices");
     const auto read_attribute = [&](const std::string& name, size_t components) {
         Numbers n = read_numbers(document_, attribute(name), components, attributes + name);
-        if (n.count() != count)
-            document_.refuse(attributes + name, "has " + std::to_string(n.count()) +
-                                                    " elements; expected " + std::to_string(count) +
-                                                    ", one per position");
+        require_count(document_, n.count(), count, attributes + name);
         return n;
     };
 
     auto mesh = std::make_shared<TriangleMesh>();
     mesh->positions = vectors(read_attribute("POSITION", 3));
     if (attribute("NORMAL") >= 0) mesh->normals = vectors(read_attribute("NORMAL", 3));
-    const std::string uv_name = "TEXCOORD_" + std::to_string(std::max(uv_set, 0));
-    if (attribute(uv_name) >= 0) {
-        const Numbers uv = read_attribute(uv_name, 2);
-        mesh->uvs.resize(count);
-        for (size_t i = 0; i < count; ++i) mesh->uvs[i] = {uv.element(i)[0], 1 - uv.element(i)[1]};
-    } else if (uv_set >= 0) {
-        warn(place, "has textures but no " + uv_name + "; they are looked up at (0, 0)");
-        mesh->uvs.assign(count, Vec2{0, 1});
-    }
-    if (attribute("COLOR_0") >= 0)
-        warn(place, "vertex colours (COLOR_0) are not supported and left out");
+    read_vertex_values(primitive, layout, *mesh, place);
 
     std::vector<uint32_t> indices;
     if (primitive.indices >= 0) {
@@ -175,7 +221,8 @@ GeometryReader::Entry GeometryReader::read(const tinygltf::Primitive& primitive,
     Entry result;
     result.count = count;
     result.kept = keep_used_vertices(*mesh);
-    spend(mesh->positions.size(), mesh->triangles.size(), place);
+    spend(*mesh, mesh->positions.size(), place);
+    if (!mesh->colours.empty()) find_colour_steps(*mesh);
     result.mesh = std::move(mesh);
     return result;
 }

@@ -8,29 +8,46 @@
 #include <tuple>
 #include <vector>
 
+#include "gltf/colours.h"
 #include "gltf/deformation.h"
 #include "gltf/document.h"
 #include "scene/scene_description.h"
 
 namespace covtrace::gltf {
 
-/// Converts each primitive once per set of texture coordinates; all nodes that use a mesh share it.
+/// What the textures of a primitive's material read from its vertices.
+struct VertexLayout {
+    static constexpr int kNoSet = -1;
+    /// The set of texture coordinates that becomes the surface's (u, v).
+    int uv_set = kNoSet;
+    bool needs_uvs = false;      ///< whether a texture reads `uv_set`: else it may be missing
+    std::vector<int> more_sets;  ///< the sets of TriangleMesh::more_uvs
+    bool has_colours = false;
+    auto operator<=>(const VertexLayout&) const = default;
+};
+
+/// Converts each primitive once per layout of its vertices; all nodes that use a mesh share it.
 class GeometryReader {
   public:
     GeometryReader(const Document& document, WarningLog& log)
         : document_(document), log_(log), bytes_(budget_of_meshes(document.bytes)) {}
 
-    /// The triangles of meshes[mesh].primitives[primitive] with TEXCOORD_`uv_set` (-1: the first
-    /// one, if it is there), v upwards as everywhere else here (glTF's runs down). Null for points,
+    /// What COLOR_0 of meshes[mesh].primitives[primitive] changes.
+    ColourUse colours(int mesh, size_t primitive);
+
+    /// The triangles of meshes[mesh].primitives[primitive] with the texture coordinates and colours
+    /// of the layout, v upwards as everywhere else here (glTF's runs down). Null for points,
     /// lines and primitives without triangles, with a warning where something is left out. Throws
     /// Error(limit) where all meshes are too large for the file.
-    std::shared_ptr<const TriangleMesh> mesh(int mesh, size_t primitive, int uv_set);
+    std::shared_ptr<const TriangleMesh> mesh(int mesh, size_t primitive,
+                                             const VertexLayout& layout);
 
     /// The primitive that `mesh` gives, which must not be null, deformed by its morph targets and
     /// joints: see `deform`.
-    TriangleMesh deformed(int mesh, size_t primitive, int uv_set, std::span<const double> weights,
-                          std::span<const Matrix4> joints, const std::string& place);
-    bool has_joints(int mesh, size_t primitive, int uv_set);
+    TriangleMesh deformed(int mesh, size_t primitive, const VertexLayout& layout,
+                          std::span<const double> weights, std::span<const Matrix4> joints,
+                          const std::string& place);
+    bool has_joints(int mesh, size_t primitive, const VertexLayout& layout);
 
   private:
     struct Entry {
@@ -40,20 +57,24 @@ class GeometryReader {
         std::optional<Deformation> deformation;  ///< set once it was asked for
     };
 
-    Entry& entry(int mesh, size_t primitive, int uv_set);
-    const Deformation& deformation(int mesh, size_t primitive, int uv_set);
-    Entry read(const tinygltf::Primitive& primitive, int uv_set, const std::string& place);
+    Entry& entry(int mesh, size_t primitive, const VertexLayout& layout);
+    const Deformation& deformation(int mesh, size_t primitive, const VertexLayout& layout);
+    Entry read(const tinygltf::Primitive& primitive, const VertexLayout& layout,
+               const std::string& place);
+    void read_vertex_values(const tinygltf::Primitive& primitive, const VertexLayout& layout,
+                            TriangleMesh& mesh, const std::string& place);
     /// Takes a mesh's bytes from the budget. Errors: Error(limit) where the budget of meshes is
     /// spent.
-    void spend(size_t vertices, size_t triangles, const std::string& place);
+    void spend(const TriangleMesh& mesh, size_t vertices, const std::string& place);
     void warn(const std::string& place, const std::string& text) {
         log_.add(document_.place(place), text);
     }
 
     const Document& document_;
     WarningLog& log_;
-    std::map<std::tuple<int, size_t, int>, Entry> meshes_;
-    Budget bytes_;  ///< budget of what meshes may still take
+    std::map<std::tuple<int, size_t, VertexLayout>, Entry> meshes_;
+    std::map<int, ColourUse> colours_;  ///< by accessor
+    Budget bytes_;                      ///< budget of what meshes may still take
 };
 
 }  // namespace covtrace::gltf

@@ -56,7 +56,8 @@ Surface MaterialBuilder::build() {
     }
     read_emission();
     read_normal_map();
-    base_ = textures_.colour(use(pbr_.baseColorTexture), base_factor_, pbr("baseColorTexture"));
+    base_ =
+        tinted(textures_.colour(use(pbr_.baseColorTexture), base_factor_, pbr("baseColorTexture")));
     const auto mr = use(pbr_.metallicRoughnessTexture);
     alpha_ = squared(mr, Channel::green,
                      in_range(document_, pbr_.roughnessFactor, 0, 1, pbr("roughnessFactor")),
@@ -93,29 +94,43 @@ void MaterialBuilder::choose_uv_set() {
         transmission ? texture_info(document_, *transmission, "transmissionTexture",
                                     in("KHR_materials_transmission"))
                      : none;
+    VertexLayout& layout = surface_.layout;
+    layout.has_colours = colours_.tints || colours_.has_holes;
+    // The colours' slopes are told by the surface's (u, v). The file's own may be the same at all
+    // corners, as those of models that are painted from a palette; a triangle's are not.
+    const bool keeps_own = layout.has_colours && material_.normalTexture.index < 0;
+    if (keeps_own) return;
+    layout.uv_set = 0;
     for (const tinygltf::TextureInfo& info :
-         {pbr_.baseColorTexture, pbr_.metallicRoughnessTexture, plain_info(material_.normalTexture),
+         {plain_info(material_.normalTexture), pbr_.baseColorTexture, pbr_.metallicRoughnessTexture,
           material_.emissiveTexture, transmitted}) {
         if (info.index < 0) continue;
-        const int set = TextureReader::uv_set(document_, info, place_);
-        if (surface_.uv_set < 0) surface_.uv_set = set;
+        layout.uv_set = TextureReader::uv_set(document_, info, place_);
+        break;
     }
 }
 
-tinygltf::TextureInfo MaterialBuilder::use(const tinygltf::TextureInfo& info) {
-    if (info.index < 0) return info;
-    if (surface_.uv_set < 0) surface_.uv_set = TextureReader::uv_set(document_, info, place_);
-    if (TextureReader::uv_set(document_, info, place_) != surface_.uv_set) {
-        warn(
-            "its textures use several sets of texture coordinates; those that don't use "
-            "TEXCOORD_" +
-            std::to_string(surface_.uv_set) + " are left out");
-        return {};
+TextureUse MaterialBuilder::use(const tinygltf::TextureInfo& info) {
+    TextureUse use{info, -1};
+    if (info.index < 0) return use;
+    VertexLayout& layout = surface_.layout;
+    const int set = TextureReader::uv_set(document_, info, place_);
+    if (set == layout.uv_set) {
+        layout.needs_uvs = true;
+        return use;
     }
-    return info;
+    const auto known = std::find(layout.more_sets.begin(), layout.more_sets.end(), set);
+    use.mapped_set = static_cast<int>(known - layout.more_sets.begin());
+    if (known == layout.more_sets.end()) layout.more_sets.push_back(set);
+    return use;
 }
 
-TextureId MaterialBuilder::squared(const tinygltf::TextureInfo& info, Channel channel, float factor,
+TextureId MaterialBuilder::tinted(TextureId colour) {
+    if (!colours_.tints) return colour;
+    return textures_.product(colour, textures_.vertex_colour(false), true);
+}
+
+TextureId MaterialBuilder::squared(const TextureUse& info, Channel channel, float factor,
                                    const std::string& place) {
     if (info.index < 0) return textures_.constant(factor * factor);
     const TextureId r = textures_.channel(info, channel, factor, place);
@@ -129,34 +144,51 @@ void MaterialBuilder::read_alpha() {
         pbr_.baseColorFactor.size() == 4
             ? in_range(document_, pbr_.baseColorFactor[3], 0, 1, pbr("baseColorFactor"))
             : 1;
-    const auto info = use(pbr_.baseColorTexture);
-    const std::string place = pbr("baseColorTexture");
     if (mode == "MASK") {
-        const float cutoff =
-            in_range(document_, material_.alphaCutoff, 0, 1e30, place_ + ".alphaCutoff");
-        if (factor < cutoff) {
-            surface_.is_visible = false;  // alpha is at most the factor
-        } else if (info.index >= 0 && cutoff > 0) {
-            surface_.alpha = textures_.mask(info, cutoff / factor, place);
-        }
+        read_mask(factor,
+                  in_range(document_, material_.alphaCutoff, 0, 1e30, place_ + ".alphaCutoff"));
     } else if (mode == "BLEND") {
+        const TextureUse info = use(pbr_.baseColorTexture);
         surface_.is_visible = factor > 0;
         if (info.index >= 0)
-            surface_.alpha = textures_.channel(info, Channel::alpha, factor, place);
+            surface_.alpha =
+                textures_.channel(info, Channel::alpha, factor, pbr("baseColorTexture"));
         else if (factor < 1)
             surface_.alpha = textures_.constant(factor);
+        if (colours_.has_holes)
+            surface_.alpha =
+                surface_.alpha < 0
+                    ? textures_.vertex_colour(true)
+                    : textures_.product(surface_.alpha, textures_.vertex_colour(true), false);
     } else {
         document_.refuse(place_ + ".alphaMode", "expected OPAQUE, MASK or BLEND");
     }
 }
 
-void MaterialBuilder::emit(Rgb radiance, const tinygltf::TextureInfo& info,
-                           const std::string& place) {
+void MaterialBuilder::read_mask(float factor, float cutoff) {
+    if (factor < cutoff) {
+        surface_.is_visible = false;  // alpha is at most the factor
+        return;
+    }
+    if (!(cutoff > 0)) return;
+    const TextureUse info = use(pbr_.baseColorTexture);
+    const std::string place = pbr("baseColorTexture");
+    if (!colours_.has_holes) {
+        if (info.index >= 0) surface_.alpha = textures_.mask(info, cutoff / factor, place);
+        return;
+    }
+    surface_.alpha =
+        textures_.cutoff(textures_.product(textures_.channel(info, Channel::alpha, factor, place),
+                                           textures_.vertex_colour(true), false),
+                         cutoff);
+}
+
+void MaterialBuilder::emit(Rgb radiance, TextureId image) {
     AreaLightDescription light;
     light.radiance = radiance;
     light.two_sided = material_.doubleSided;
     light.where = document_.place(place_);
-    if (info.index >= 0) light.image = textures_.colour(info, Rgb(1), place);
+    light.image = image;
     surface_.emission = light;
 }
 
@@ -165,8 +197,11 @@ void MaterialBuilder::build_unlit() {
         "KHR_materials_unlit: an emitter of the base colour takes its place, which also "
         "lights what is near");
     surface_.material = add(DiffuseMaterial{textures_.constant(Rgb(0), true)});
-    if (!is_black(base_factor_))
-        emit(base_factor_, use(pbr_.baseColorTexture), pbr("baseColorTexture"));
+    if (is_black(base_factor_)) return;
+    const TextureUse info = use(pbr_.baseColorTexture);
+    emit(base_factor_, info.index < 0 && !colours_.tints
+                           ? -1
+                           : tinted(textures_.colour(info, Rgb(1), pbr("baseColorTexture"))));
 }
 
 void MaterialBuilder::read_emission() {
@@ -178,7 +213,9 @@ void MaterialBuilder::read_emission() {
                           in("KHR_materials_emissive_strength"));
     const Rgb radiance = factor * static_cast<float>(strength);
     if (is_black(radiance)) return;
-    emit(radiance, use(material_.emissiveTexture), place_ + ".emissiveTexture");
+    const TextureUse info = use(material_.emissiveTexture);
+    emit(radiance,
+         info.index < 0 ? -1 : textures_.colour(info, Rgb(1), place_ + ".emissiveTexture"));
     surface_.is_strong_light = max_component(radiance) > 1;
 }
 

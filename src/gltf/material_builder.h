@@ -15,13 +15,15 @@ namespace covtrace::gltf {
 class MaterialBuilder {
   public:
     MaterialBuilder(const Document& document, SceneDescription& scene, WarningLog& log,
-                    TextureReader& textures, const tinygltf::Material& material, std::string place)
+                    TextureReader& textures, const tinygltf::Material& material, ColourUse colours,
+                    std::string place)
         : document_(document),
           scene_(scene),
           log_(log),
           textures_(textures),
           material_(material),
           pbr_(material.pbrMetallicRoughness),
+          colours_(colours),
           place_(std::move(place)) {}
 
     /// Appends the material's models and textures to the scene; docs/guide/gltf.md has all
@@ -36,17 +38,21 @@ class MaterialBuilder {
     MaterialId add(decltype(MaterialDescription::value) model);
     MaterialId mix(MaterialId a, MaterialId b, TextureId amount);
 
-    /// Chooses the mesh's one set of coordinates: that of the base colour, else of the first
-    /// texture.
+    /// Chooses the set of coordinates that becomes the surface's (u, v): that of the normal map,
+    /// whose tangents these give; else of the base colour, else of the first texture.
     void choose_uv_set();
-    /// The texture reference `info`, or none where it needs coordinates that the mesh won't have.
-    tinygltf::TextureInfo use(const tinygltf::TextureInfo& info);
+    /// The texture reference with the place of its coordinates, which meshes will have.
+    TextureUse use(const tinygltf::TextureInfo& info);
+    /// The texture times the colours of the vertices, where these matter.
+    TextureId tinted(TextureId colour);
 
     /// Texture of (factor times channel)^2: glTF's roughness squared is the width alpha of GGX.
-    TextureId squared(const tinygltf::TextureInfo& info, ImageTexture::Channel channel,
-                      float factor, const std::string& place);
+    TextureId squared(const TextureUse& info, ImageTexture::Channel channel, float factor,
+                      const std::string& place);
     void read_alpha();
-    void emit(Rgb radiance, const tinygltf::TextureInfo& info, const std::string& place);
+    void read_mask(float factor, float cutoff);
+    /// Lets the surface shine with the texture's colour, which may be none, times `radiance`.
+    void emit(Rgb radiance, TextureId image);
     void build_unlit();
     void read_emission();
     void read_normal_map();
@@ -77,7 +83,7 @@ class MaterialBuilder {
     /// `attenuationDistance`.
     void read_absorption(const tinygltf::Value& volume);
     Coatable dielectric_surface();
-    Coatable metals_and_others(const tinygltf::TextureInfo& texture, float metallic);
+    Coatable metals_and_others(const TextureUse& texture, float metallic);
     MaterialId with_clearcoat(Coatable surface);
 
     /// Largest roughness of panes that are rendered clear: their blur is below 1/400 radian.
@@ -89,6 +95,7 @@ class MaterialBuilder {
     TextureReader& textures_;
     const tinygltf::Material& material_;
     const tinygltf::PbrMetallicRoughness& pbr_;
+    const ColourUse colours_;
     const std::string place_;
     Surface surface_;
     Rgb base_factor_;

@@ -122,7 +122,7 @@ MaterialBuilder::Coatable MaterialBuilder::dielectric_surface() {
                                    place + ".transmissionTexture"));
 }
 
-MaterialBuilder::Coatable MaterialBuilder::metals_and_others(const tinygltf::TextureInfo& texture,
+MaterialBuilder::Coatable MaterialBuilder::metals_and_others(const TextureUse& texture,
                                                              float metallic) {
     read_clearcoat();
     if (metallic == 0) return dielectric_surface();

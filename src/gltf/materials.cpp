@@ -6,17 +6,18 @@
 
 namespace covtrace::gltf {
 
-const Surface& MaterialReader::surface(int index, const std::string& place) {
+const Surface& MaterialReader::surface(int index, ColourUse colours, const std::string& place) {
     if (index >= 0) at(document_, document_.model.materials, index, "materials", place);
-    const int key = std::max(index, -1);
+    const std::pair key(std::max(index, -1), colours);
     const auto it = surfaces_.find(key);
     if (it != surfaces_.end()) return it->second;
-    const bool is_default = key < 0;
+    const bool is_default = index < 0;
     const tinygltf::Material otherwise;
     const tinygltf::Material& material =
-        is_default ? otherwise : document_.model.materials[static_cast<size_t>(key)];
-    const std::string here = is_default ? place : element("materials", static_cast<size_t>(key));
-    Surface surface = MaterialBuilder(document_, scene_, log_, textures_, material, here).build();
+        is_default ? otherwise : document_.model.materials[static_cast<size_t>(index)];
+    const std::string here = is_default ? place : element("materials", static_cast<size_t>(index));
+    Surface surface =
+        MaterialBuilder(document_, scene_, log_, textures_, material, colours, here).build();
     return surfaces_.emplace(key, std::move(surface)).first->second;
 }
 

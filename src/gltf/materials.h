@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "gltf/document.h"
+#include "gltf/geometry.h"
 #include "gltf/textures.h"
 #include "scene/scene_description.h"
 
@@ -16,8 +17,7 @@ struct Surface {
     TextureId alpha = -1;
     std::optional<AreaLightDescription> emission;
     MediumId inside = -1;
-    /// Texture coordinates that all its textures use; -1: there are none.
-    int uv_set = -1;
+    VertexLayout layout;           ///< of the meshes that have it
     bool is_visible = true;        ///< false where alpha is 0 everywhere
     bool is_strong_light = false;  ///< emits more than 1, which makes it a lamp
 };
@@ -30,15 +30,16 @@ class MaterialReader {
     MaterialReader(const Document& document, SceneDescription& scene, WarningLog& log)
         : document_(document), scene_(scene), log_(log), textures_(document, scene, log) {}
 
-    /// The surface that materials[index] makes, each read once; -1: glTF's default material.
-    const Surface& surface(int index, const std::string& place);
+    /// The surface that materials[index] makes with such colours of vertices, each read once; -1:
+    /// glTF's default material.
+    const Surface& surface(int index, ColourUse colours, const std::string& place);
 
   private:
     const Document& document_;
     SceneDescription& scene_;
     WarningLog& log_;
     TextureReader textures_;
-    std::map<int, Surface> surfaces_;
+    std::map<std::pair<int, ColourUse>, Surface> surfaces_;
 };
 
 }  // namespace covtrace::gltf

@@ -68,7 +68,7 @@ class SceneAssembler {
     /// Adds a deformed mesh, which each node has for itself: its shape is the node's.
     void add_deformed(const PlacedNode& placed) {
         for (const Part& part : parts_of(node(placed).mesh))
-            for (MovedMesh& moved : deformed_.meshes(placed, part.primitive, part.uv_set)) {
+            for (MovedMesh& moved : deformed_.meshes(placed, part.primitive, part.layout)) {
                 Bounds3 bounds;
                 for (const Vec3& p : moved.mesh->positions) bounds.extend(p);
                 grow(bounds, moved.to_world);
@@ -96,7 +96,7 @@ class SceneAssembler {
         bool is_strong_light = false;
         Bounds3 bounds;
         size_t primitive = 0;  ///< index into the mesh's primitives
-        int uv_set = -1;
+        VertexLayout layout;
     };
 
     /// The visible parts of a mesh, read once however many nodes place it.
@@ -127,9 +127,10 @@ class SceneAssembler {
             element("meshes", static_cast<size_t>(mesh)) + "." + element("primitives", index);
         const int material =
             document_.model.meshes[static_cast<size_t>(mesh)].primitives[index].material;
-        const Surface& surface = materials_.surface(material, place);
+        const Surface& surface =
+            materials_.surface(material, geometry_.colours(mesh, index), place);
         if (!surface.is_visible) return std::nullopt;
-        auto triangles = geometry_.mesh(mesh, index, surface.uv_set);
+        auto triangles = geometry_.mesh(mesh, index, surface.layout);
         if (!triangles) return std::nullopt;
         Part part;
         for (const Vec3& p : triangles->positions) part.bounds.extend(p);
@@ -141,7 +142,7 @@ class SceneAssembler {
         part.emission = surface.emission;
         part.is_strong_light = surface.is_strong_light;
         part.primitive = index;
-        part.uv_set = surface.uv_set;
+        part.layout = surface.layout;
         return part;
     }
 

@@ -70,8 +70,15 @@ TextureId TextureReader::product(TextureId a, TextureId b, bool is_spectrum) {
     return add({{}, is_spectrum, ScaleTexture{a, b}, document_.place("")});
 }
 
-std::optional<ImageTexture> TextureReader::image(const tinygltf::TextureInfo& info,
-                                                 const std::string& place) {
+TextureId TextureReader::vertex_colour(bool is_alpha) {
+    return add({{}, !is_alpha, VertexColourTexture{is_alpha}, document_.place("")});
+}
+
+TextureId TextureReader::cutoff(TextureId texture, float cutoff) {
+    return add({{}, false, CutoffTexture{texture, cutoff}, document_.place("")});
+}
+
+std::optional<ImageTexture> TextureReader::image(const TextureUse& info, const std::string& place) {
     if (info.index < 0) return std::nullopt;
     const auto& model = document_.model;
     const tinygltf::Texture& texture =
@@ -88,6 +95,7 @@ std::optional<ImageTexture> TextureReader::image(const tinygltf::TextureInfo& in
 
     ImageTexture result;
     result.mapping = mapping_of(document_, info, place);
+    result.mapping.uv_set = info.mapped_set;
     if (texture.sampler >= 0) {
         const tinygltf::Sampler& sampler =
             at(document_, model.samplers, texture.sampler, "samplers", texture_place + ".sampler");
@@ -110,8 +118,7 @@ std::optional<ImageTexture> TextureReader::image(const tinygltf::TextureInfo& in
     return result;
 }
 
-TextureId TextureReader::colour(const tinygltf::TextureInfo& info, Rgb factor,
-                                const std::string& place) {
+TextureId TextureReader::colour(const TextureUse& info, Rgb factor, const std::string& place) {
     auto texture = image(info, place);
     if (!texture) return constant(factor, true);
     texture->encoding = ImageTexture::Encoding::srgb;
@@ -119,7 +126,7 @@ TextureId TextureReader::colour(const tinygltf::TextureInfo& info, Rgb factor,
     return factor == Rgb(1) ? id : product(id, constant(factor, true), true);
 }
 
-TextureId TextureReader::linear(const tinygltf::TextureInfo& info, const std::string& place) {
+TextureId TextureReader::linear(const TextureUse& info, const std::string& place) {
     auto texture = image(info, place);
     if (!texture) return -1;
     texture->encoding = ImageTexture::Encoding::linear;
@@ -127,8 +134,8 @@ TextureId TextureReader::linear(const tinygltf::TextureInfo& info, const std::st
     return add({{}, true, *texture, document_.place(place)});
 }
 
-TextureId TextureReader::channel(const tinygltf::TextureInfo& info, ImageTexture::Channel which,
-                                 float factor, const std::string& place) {
+TextureId TextureReader::channel(const TextureUse& info, ImageTexture::Channel which, float factor,
+                                 const std::string& place) {
     auto texture = image(info, place);
     if (!texture) return constant(factor);
     texture->encoding = ImageTexture::Encoding::linear;
@@ -137,8 +144,7 @@ TextureId TextureReader::channel(const tinygltf::TextureInfo& info, ImageTexture
     return add({{}, false, *texture, document_.place(place)});
 }
 
-TextureId TextureReader::mask(const tinygltf::TextureInfo& info, float cutoff,
-                              const std::string& place) {
+TextureId TextureReader::mask(const TextureUse& info, float cutoff, const std::string& place) {
     auto texture = image(info, place);
     if (!texture) return -1;
     texture->encoding = ImageTexture::Encoding::linear;

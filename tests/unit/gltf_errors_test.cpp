@@ -197,7 +197,7 @@ GltfFile rich_file() {
         {"extensions", {{"KHR_texture_transform", {{"offset", {0.1, 0}}, {"rotation", 0.5}}}}}};
     file.root["materials"] = {
         {{"pbrMetallicRoughness", {{"baseColorTexture", texture}, {"metallicFactor", 0.5}}},
-         {"normalTexture", {{"index", 0}, {"scale", 2}}},
+         {"normalTexture", {{"index", 0}, {"scale", 2}, {"texCoord", 1}}},
          {"alphaMode", "MASK"},
          {"emissiveFactor", {1, 1, 1}},
          {"extensions",
@@ -221,6 +221,11 @@ GltfFile rich_file() {
     const json four = {{"JOINTS_0", file.add<uint8_t>(std::vector<uint8_t>(16), 5121, "VEC4", 4)},
                        {"WEIGHTS_0", file.add_floats(std::vector<float>(16, 0.25f), "VEC4", 4)}};
     file.root["meshes"][0]["primitives"][0]["attributes"].update(four);
+    const json values = {
+        {"COLOR_0", file.add<uint8_t>({255, 0, 9, 80, 0, 7, 0, 255, 5, 4, 3, 2, 1, 0, 1, 255}, 5121,
+                                      "VEC4", 4, true)},
+        {"TEXCOORD_1", file.add_floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2)}};
+    file.root["meshes"][0]["primitives"][0]["attributes"].update(values);
     file.root["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", target}}};
     const int bind = file.add_floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, "MAT4", 16);
     file.root["skins"] = {{{"joints", {2}}, {"inverseBindMatrices", bind}}};
