@@ -17,8 +17,8 @@ bool is_image_name(const std::filesystem::path& file) {
     std::string ending = file.extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](unsigned char c) { return char(std::tolower(c)); });
-    constexpr std::array<std::string_view, 6> kRead{".jpg", ".jpeg", ".tga",
-                                                    ".qoi", ".ppm",  ".pgm"};
+    constexpr std::array<std::string_view, 7> kRead{".jpg", ".jpeg", ".tga", ".qoi",
+                                                    ".ppm", ".pgm",  ".webp"};
     return !ending.empty() &&
            (written_format(file) || std::find(kRead.begin(), kRead.end(), ending) != kRead.end());
 }

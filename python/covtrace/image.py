@@ -48,7 +48,7 @@ class Image:
 
     @classmethod
     def read(cls, file: str | os.PathLike[str]) -> Image:
-        """Reads an EXR, PNG, JPEG, TGA, HDR, PFM, PGM, PPM or QOI file; integer colours become
+        """Reads an EXR, PNG, JPEG, TGA, HDR, PFM, PGM, PPM, QOI or WebP file; integer colours become
         linear."""
         return cls(_covtrace.Planes.read(os.fspath(file)))
 

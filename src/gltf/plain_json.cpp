@@ -7,6 +7,7 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::string_view kWebpData = "data:image/webp;base64,";
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
 constexpr const char* kMeshopt = "meshopt_compression";  ///< behind EXT_ or KHR_
 
@@ -68,16 +69,29 @@ void fill_placeholders(json& root, bool has_chunk) {
     });
 }
 
+/// Gives WebP images in the text the type that stands for any.
+void rename_webp_data(json& root) {
+    visit_objects(value(root, "images"), [](json& image, size_t) {
+        json* uri = value(image, "uri");
+        if (!uri || !uri->is_string()) return;
+        auto& text = uri->get_ref<std::string&>();
+        if (text.starts_with(kWebpData))
+            text.replace(0, kWebpData.size(), "data:application/octet-stream;base64,");
+    });
+}
+
 }  // namespace
 
 std::optional<std::string> plain_json(std::string_view text, bool has_chunk) {
     if (text.find(kDraco) == std::string_view::npos &&
-        text.find(kMeshopt) == std::string_view::npos)
+        text.find(kMeshopt) == std::string_view::npos &&
+        text.find("webp") == std::string_view::npos)
         return std::nullopt;
     json root = json::parse(text.begin(), text.end(), nullptr, false);
     if (!root.is_object()) return std::nullopt;
     remove_draco_indices(root);
     fill_placeholders(root, has_chunk);
+    rename_webp_data(root);
     return root.dump();
 }
 

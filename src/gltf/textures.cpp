@@ -45,6 +45,17 @@ TextureMapping mapping_of(const Document& document, const tinygltf::TextureInfo&
     return mapping;
 }
 
+/// Index of the image of a texture: the WebP one where there is one, else the one for readers that
+/// know no extension; -1 where there is none.
+int source_of(const Document& document, const tinygltf::Texture& texture,
+              const std::string& place) {
+    const tinygltf::Value* webp = extension(texture.extensions, "EXT_texture_webp");
+    if (!webp) return texture.source;
+    constexpr double kLargestIndex = 1 << 30;
+    return static_cast<int>(number(document, *webp, "source", texture.source, 0, kLargestIndex,
+                                   place + ".extensions.EXT_texture_webp"));
+}
+
 }  // namespace
 
 int TextureReader::uv_set(const Document& document, const tinygltf::TextureInfo& info,
@@ -84,14 +95,15 @@ std::optional<ImageTexture> TextureReader::image(const TextureUse& info, const s
     const tinygltf::Texture& texture =
         at(document_, model.textures, info.index, "textures", place + ".index");
     const std::string texture_place = element("textures", static_cast<size_t>(info.index));
-    if (texture.source < 0) {
+    const int source_index = source_of(document_, texture, texture_place);
+    if (source_index < 0) {
         log_.add(document_.place(texture_place),
-                 "a texture without an image of a known format (PNG, JPEG) is left out");
+                 "a texture without an image of a known format (PNG, JPEG, WebP) is left out");
         return std::nullopt;
     }
     const tinygltf::Image& source =
-        at(document_, model.images, texture.source, "images", texture_place + ".source");
-    const std::string image_place = element("images", static_cast<size_t>(texture.source));
+        at(document_, model.images, source_index, "images", texture_place + ".source");
+    const std::string image_place = element("images", static_cast<size_t>(source_index));
 
     ImageTexture result;
     result.mapping = mapping_of(document_, info, place);
@@ -110,7 +122,7 @@ std::optional<ImageTexture> TextureReader::image(const TextureUse& info, const s
         result.file = find_file(document_, source.uri, image_place + ".uri");
         return result;
     }
-    auto& content = contents_[texture.source];
+    auto& content = contents_[source_index];
     if (!content)
         content = std::make_shared<const std::string>(source.image.begin(), source.image.end());
     result.content = content;

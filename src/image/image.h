@@ -63,8 +63,8 @@ struct Image {
 /// display window stays.
 Image cropped(const Image& image, const PixelBounds& bounds);
 
-/// Reads EXR, PNG, JPEG, TGA, Radiance HDR, PFM, PGM, PPM and QOI; the content decides, not the
-/// file's name (but for TGA, which has no signature). All channels become float; 8- and 16-bit
+/// Reads EXR, PNG, JPEG, TGA, Radiance HDR, PFM, PGM, PPM, QOI and WebP; the content decides, not
+/// the file's name (but for TGA, which has no signature). All channels become float; 8- and 16-bit
 /// integer colour is decoded from sRGB, alpha is not. EXR keeps its windows, metadata and channel
 /// names, those of further parts prefixed with the part's name; plain images get R, G, B, A, or Y,
 /// A where they are grey. NaN and infinite values are kept.

@@ -63,5 +63,7 @@ PlainImage decode_pnm(Bytes bytes);
 /// The "Quite OK Image" format, qoiformat.org, version 1.0; as floating point where its header says
 /// that the colours are linear.
 PlainImage decode_qoi(Bytes bytes);
+/// WebP, with and without loss, with and without alpha; animations are refused.
+PlainImage decode_webp(Bytes bytes);
 
 }  // namespace covtrace

@@ -53,13 +53,16 @@ ImageFormat format_of(std::string_view bytes, const std::filesystem::path& file,
     if (bytes.starts_with("\xff\xd8\xff"sv)) return ImageFormat::jpeg;
     if (bytes.starts_with("#?RADIANCE"sv) || bytes.starts_with("#?RGBE"sv)) return ImageFormat::hdr;
     if (bytes.starts_with("qoif"sv)) return ImageFormat::qoi;
+    if (bytes.starts_with("RIFF"sv) &&
+        bytes.substr(std::min(bytes.size(), size_t{8})).starts_with("WEBP"sv))
+        return ImageFormat::webp;
     if (bytes.size() > 2 && bytes[0] == 'P' &&
         "123456fF"sv.find(bytes[1]) != std::string_view::npos &&
         std::isspace(static_cast<unsigned char>(bytes[2])))
         return ImageFormat::pnm;
     if (lower_case_extension(file) == ".tga") return ImageFormat::targa;
     throw_unreadable(file, where,
-                     "it is no image of a known format (EXR, PNG, JPEG, TGA, HDR, PFM, QOI)");
+                     "it is no image of a known format (EXR, PNG, JPEG, TGA, HDR, PFM, QOI, WebP)");
 }
 
 }  // namespace
@@ -96,6 +99,8 @@ PlainImage decode(Bytes bytes, ImageFormat format) {
             return decode_pnm(bytes);
         case ImageFormat::qoi:
             return decode_qoi(bytes);
+        case ImageFormat::webp:
+            return decode_webp(bytes);
         case ImageFormat::exr:
             break;
     }

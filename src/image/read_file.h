@@ -15,7 +15,7 @@
 namespace covtrace {
 
 /// Kinds of files by their first bytes; Targa has no signature and goes by the file's name.
-enum class ImageFormat { exr, png, jpeg, targa, hdr, pnm, qoi };
+enum class ImageFormat { exr, png, jpeg, targa, hdr, pnm, qoi, webp };
 
 /// Opens the file and looks at its first bytes.
 ImageFormat detect_image_format(const std::filesystem::path& file, const SourceLocation& where);

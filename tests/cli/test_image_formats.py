@@ -98,7 +98,7 @@ class Formats(CliTest):
     def test_a_report_is_no_image(self):
         self.rendered(*SPP)
         before = (self.folder / "out.exr").read_bytes()
-        for name in ("r.exr", "r.PNG", "r.hdr", "r.jpg", "r.JPEG", "r.tga", "r.qoi", "r.ppm"):
+        for name in ("r.exr", "r.PNG", "r.hdr", "r.jpg", "r.JPEG", "r.tga", "r.qoi", "r.ppm", "r.webp"):
             for command in (["compare", "out.exr", "out.exr"], ["inspect", "out.exr"]):
                 with self.subTest(name=name, command=command[0]):
                     self.assert_fails(self.run_program(*command, "--report", name), USAGE, "--report", name, ".html")

@@ -45,6 +45,35 @@ TEST(GltfMaterials, DefaultsAreThoseOfTheFormat) {
     EXPECT_NO_THROW(model_of<ConductorMaterial>(none, none.shapes[0].material));
 }
 
+TEST(GltfMaterials, ReadsWebpImages) {
+    const auto images_of = [](const json& texture, const json& image) {
+        GltfFile file;
+        const int view = file.add_view(kImage);
+        file.root["images"] = {{{"bufferView", view}, {"mimeType", "image/png"}}, image};
+        file.root["textures"] = json::array({texture});
+        file.root["materials"] = {
+            {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+        file.root["extensionsRequired"] = {"EXT_texture_webp"};
+        file.add_node({{"mesh", file.add_square({{"material", 0}})}});
+        std::vector<ImageTexture> found;
+        const auto scene = read(file);
+        for (const TextureDescription& t : scene.textures)
+            if (const auto* i = std::get_if<ImageTexture>(&t.value)) found.push_back(*i);
+        return found;
+    };
+    const json webp = {{"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}};
+    const json embedded = {{"uri", "data:image/webp;base64," + base64("RIFF as WebP")}};
+    const auto alone = images_of(webp, embedded);
+    ASSERT_FALSE(alone.empty());
+    ASSERT_TRUE(alone[0].content);
+    EXPECT_EQ(*alone[0].content, "RIFF as WebP");
+    // Beside a source for other readers it counts, too.
+    json both = webp;
+    both["source"] = 0;
+    EXPECT_EQ(*images_of(both, embedded).at(0).content, "RIFF as WebP");
+    EXPECT_EQ(*images_of({{"source", 0}}, embedded).at(0).content, kImage);
+}
+
 TEST(GltfMaterials, ReadsChannelsOfTextures) {
     const auto scene =
         with_material({{"pbrMetallicRoughness",

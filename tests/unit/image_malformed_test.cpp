@@ -22,6 +22,7 @@ std::vector<std::pair<std::string, std::string>> valid_files(const TemporaryDire
         {"pfm", "PF\n1 1\n-1.0\n" + float_bytes({1, 2, 3})},
         {"tga", bytes_of({0, 1, 9, 0, 0,    2, 0, 24,  0, 0,   0, 0,   3,
                           0, 1, 0, 8, 0x20, 0, 0, 255, 0, 255, 0, 130, 1})},
+        {"webp", webp_file({10, 20, 30, 255, 40, 50, 60, 128}, 2, 1, true)},
         {"qoi", "qoif" + bytes_of({0, 0, 0, 3, 0, 0, 0, 1, 4, 0, 0xff, 1, 2, 3, 4, 0x6a, 0xc0})},
     };
 }

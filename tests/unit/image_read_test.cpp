@@ -139,6 +139,30 @@ TEST_F(Read, Jpeg) {
     EXPECT_EQ(raster.bytes, std::vector<uint8_t>(64, 128));
 }
 
+TEST_F(Read, Webp) {
+    const std::vector<uint8_t> rgba{255, 0, 0, 255, 0, 255, 0, 128, 0, 0, 255, 255, 9, 8, 7, 255};
+    const RasterImage exact = read_raster(file("a.webp", webp_file(rgba, 2, 2, true)));
+    EXPECT_EQ(exact.channels, 4);
+    EXPECT_TRUE(exact.is_8bit);
+    EXPECT_EQ(exact.bytes, rgba);
+    // Opaque ones have no alpha; a grey square is grey with loss, too.
+    const std::vector<uint8_t> grey(4 * 16 * 16, 255);
+    const RasterImage lossy = read_raster(file("b.webp", webp_file(grey, 16, 16, false)));
+    EXPECT_EQ(lossy.channels, 3);
+    EXPECT_EQ(lossy.bytes, std::vector<uint8_t>(3 * 16 * 16, 255));
+    const Image image = read_image(directory_ / "a.webp");
+    EXPECT_FLOAT_EQ(image.find("A")->values[1], 128 / 255.0f);
+}
+
+TEST_F(Read, WebpAnimationsAreRefused) {
+    // An extended header that says so, behind which nothing counts any more.
+    const std::string header = "RIFF" + bytes_of({22, 0, 0, 0}) + "WEBPVP8X" +
+                               bytes_of({10, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 3, 0, 0}) + "ANIM";
+    const fs::path animation = file("a.webp", header + std::string(40, '\0'));
+    const std::string text = error_of([&] { read_image(animation); }).what();
+    EXPECT_NE(text.find("it is an animation"), std::string::npos) << text;
+}
+
 TEST_F(Read, RasterOfExrTakesTheRootLayerAndRepairs) {
     const float inf = std::numeric_limits<float>::infinity();
     Image image{{2, 3, 4, 4}, {0, 0, 10, 10}, {}, {}};

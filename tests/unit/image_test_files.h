@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <webp/encode.h>
 
 #include <bit>
 #include <cstdint>
@@ -77,6 +78,18 @@ inline std::string grey_jpeg() {
     return bytes_of_hex("ffd8ffdb004300" + tables +
                         "ffc0000b080008000801011100ffc40014000100000000000000000000000000000000ffc4"
                         "0014100100000000000000000000000000000000ffda0008010100003f003fffd9");
+}
+
+/// A WebP file of these values, R G B A each, from the library's encoder.
+inline std::string webp_file(const std::vector<uint8_t>& rgba, int width, int height,
+                             bool lossless) {
+    uint8_t* bytes = nullptr;
+    const size_t size = lossless
+                            ? WebPEncodeLosslessRGBA(rgba.data(), width, height, 4 * width, &bytes)
+                            : WebPEncodeRGBA(rgba.data(), width, height, 4 * width, 90, &bytes);
+    const std::string file(reinterpret_cast<const char*>(bytes), size);
+    WebPFree(bytes);
+    return file;
 }
 
 /// An image of noise, any bits, also those of NaN, infinity and denormals.
