@@ -29,7 +29,8 @@ struct CompletedCommand {
 /// The choices in a text such as "a|b|c", as the help shows them.
 std::vector<std::string> choices_of(const std::string& text) {
     std::vector<std::string> choices;
-    if (text.find('|') == std::string::npos) return choices;
+    // A word in capitals, as in FILE|COLOUR, stands for what is not known.
+    if (text.find('|') == std::string::npos || text.starts_with("FILE")) return choices;
     for (size_t from = 0; from <= text.size();) {
         const size_t to = std::min(text.find('|', from), text.size());
         choices.push_back(text.substr(from, to - from));

@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/message.h"
 #include "cli/options.h"
+#include "cli/override_options.h"
 #include "core/parallel.h"
 #include "geometry/instruction_set.h"
 #include "laboratory/filter_change.h"
@@ -24,7 +25,7 @@ namespace covtrace::cli {
 namespace {
 
 struct MeasureArguments {
-    std::string scene, pixel, resolution, shutter;
+    std::string scene, pixel;
     std::optional<InstructionSet> isa;
     Occlusion occlusion = RenderOptions{}.occlusion;
     BrdfCovariance brdf_covariance = RenderOptions{}.brdf_covariance;
@@ -141,9 +142,6 @@ void print_table(const PixelComparison& c, const MeasureArguments& a) {
 int measure_pixel(MeasureArguments a) {
     // Read the scene
     const ThreadLimit threads(a.threads);
-    if (!a.resolution.empty())
-        a.overrides.resolution = parse_resolution("--resolution", a.resolution);
-    if (!a.shutter.empty()) a.overrides.shutter = parse_interval("--shutter", a.shutter);
     const std::array<int, 2> pixel = parse_pixel("--pixel", a.pixel);
 
     SceneDescription description = read_scene_file(a.scene, {{}, a.overrides.shutter});
@@ -211,9 +209,6 @@ void add_measure(CLI::App& app, Invocation& invocation) {
     add_choice(c, "--brdf-covariance", a->brdf_covariance,
                "a BRDF's frequencies: at the path, or its peak's");
     add_whole(c, "--voxels", a->voxels, 1, 2048, "width of the occlusion grid (default 200)");
-    c->add_option("--resolution", a->resolution, "in place of the scene's")
-        ->check(not_empty())
-        ->option_text("WxH");
     add_whole(c, "--max-depth", a->max_depth, 0, std::numeric_limits<int>::max(),
               "most scattering events (default: the scene's)");
     c->add_option_function<std::string>(
@@ -222,13 +217,7 @@ void add_measure(CLI::App& app, Invocation& invocation) {
         ->option_text("N");
     add_whole(c, "--threads", a->threads, 1, 4096, "worker threads (default: all cores)");
     add_choice(c, "--isa", a->isa, "instruction set of the ray tracing");
-    c->add_option("--shutter", a->shutter, "in place of the scene's")
-        ->check(not_empty())
-        ->option_text("T0,T1");
-    add_positive(c, "--focus", a->overrides.focal_distance, 1e30,
-                 "focal distance in place of the scene's", SceneOverrides::kLeastOfLens);
-    add_positive(c, "--fstop", a->overrides.f_number, 1e30,
-                 "lens by f-number (full-frame sensor, metres)", SceneOverrides::kLeastOfLens);
+    add_override_options(c, a->overrides);
     c->add_flag("--json", a->json, "one JSON object on standard output");
     c->add_flag("--quiet", a->quiet, "errors only");
     c->callback([a, &invocation] { invocation.action = [a] { return measure_pixel(*a); }; });

@@ -61,10 +61,6 @@ void write_text(const std::string& text, const fs::path& path) {
 
 void parse_texts(RenderArguments& a) {
     if (!a.seconds.empty()) a.options.seconds = parse_duration("--time", a.seconds);
-    if (!a.resolution.empty())
-        a.overrides.resolution = parse_resolution("--resolution", a.resolution);
-    if (!a.crop.empty()) a.overrides.crop = parse_crop("--crop", a.crop);
-    if (!a.shutter.empty()) a.overrides.shutter = parse_interval("--shutter", a.shutter);
     if (a.quiet && a.progress == ProgressStyle::automatic) a.progress = ProgressStyle::none;
     a.options.emitters_apart = names(a.layers, "inview") || names(a.tev_layers, "inview");
     for (const char* layer : {"featurealbedo", "featureN"})

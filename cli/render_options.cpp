@@ -3,16 +3,14 @@
 #include <limits>
 
 #include "cli/options.h"
+#include "cli/override_options.h"
 
 namespace covtrace::cli {
 
-void add_render_options(CLI::App* c, RenderArguments& a) {
-    c->add_option("SCENE", a.scene, "the scene: a pbrt-v4 or glTF 2.0 file")
-        ->required()
-        ->option_text(" ");
-    c->add_option("-o,--output", a.output, "the image: .exr .png .pfm .hdr (default: film's)")
-        ->check(not_empty())
-        ->option_text("FILE");
+namespace {
+
+/// How much is sampled, and how the image is made of it.
+void add_method_options(CLI::App* c, RenderArguments& a) {
     add_choice(c, "--method", a.options.method, "plain, the thesis' method, or hybrid (default)");
     add_positive(c, "--spp", a.options.spp, 1 << 30,
                  "average samples per pixel (default: the scene's)");
@@ -41,33 +39,31 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
     add_choice(c, "--texture-bandwidth", a.options.texture_bandwidth,
                "textures' frequencies: own, or the image's");
     add_choice(c, "--filter", a.options.filter, "its constant: verified, c = 1, thesis' eq. 5.7");
-    c->add_option("--resolution", a.resolution, "in place of the scene's")
-        ->check(not_empty())
-        ->option_text("WxH");
-    c->add_option("--crop", a.crop, "only these pixels, end exclusive")
-        ->check(not_empty())
-        ->option_text("x0,y0,x1,y1");
     add_whole(c, "--max-depth", a.options.max_depth, 0, std::numeric_limits<int>::max(),
               "most scattering events (default: the scene's)");
     c->add_option_function<std::string>(
          "--seed", [&a](const std::string& text) { a.options.seed = parse_seed("--seed", text); },
          "seed of all random numbers (default 0)")
         ->option_text("N");
-    add_whole(c, "--threads", a.threads, 1, 4096, "worker threads (default: all cores)");
-    add_choice(c, "--isa", a.isa, "instruction set of the ray tracing");
-    c->add_option("--shutter", a.shutter, "in place of the scene's")
-        ->check(not_empty())
-        ->option_text("T0,T1");
-    add_positive(c, "--focus", a.overrides.focal_distance, 1e30,
-                 "focal distance in place of the scene's", SceneOverrides::kLeastOfLens);
-    add_positive(c, "--fstop", a.overrides.f_number, 1e30,
-                 "lens by f-number (full-frame sensor, metres)", SceneOverrides::kLeastOfLens);
+}
+
+/// What is shown, and what of the scene something else takes the place of.
+void add_scene_options(CLI::App* c, RenderArguments& a) {
+    add_override_options(c, a.overrides);
+    c->add_option_function<std::string>(
+         "--crop", [&a](const std::string& text) { a.overrides.crop = parse_crop("--crop", text); },
+         "only these pixels, end exclusive")
+        ->option_text("x0,y0,x1,y1");
     c->add_option("--search-path", a.search_paths,
                   "also look here for the scene's files; repeatable")
         ->check(CLI::ExistingDirectory.description(""))
         ->allow_extra_args(false)
         ->take_all()
         ->option_text("DIR");
+}
+
+/// What is written beside the image, and what is told meanwhile.
+void add_output_options(CLI::App* c, RenderArguments& a) {
     c->add_option("--png", a.png, "also an 8-bit sRGB picture, cut at white")
         ->check(not_empty())
         ->option_text("FILE");
@@ -78,12 +74,22 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
         ->option_text("HOST:PORT");
     add_layers(c, "--tev-layers", a.tev_layers, "layers that tev shows, too (default: none)");
     add_choice(c, "--progress", a.progress, "how progress is shown on standard error");
+    c->add_option("--stats", a.stats, "counters, phase times and memory as JSON")
+        ->check(not_empty())
+        ->option_text("FILE");
+    c->add_flag("--reproducible", a.reproducible, "write no command, seconds and date");
+    c->add_flag("--quiet", a.quiet, "errors only");
+}
+
+/// What the machine has to give.
+void add_machine_options(CLI::App* c, RenderArguments& a) {
+    add_whole(c, "--threads", a.threads, 1, 4096, "worker threads (default: all cores)");
+    add_choice(c, "--isa", a.isa, "instruction set of the ray tracing");
     c->add_option_function<std::string>(
          "--texture-memory",
          [&a](const std::string& text) { a.texture_bytes = parse_size("--texture-memory", text); },
          "most bytes of texture images: 500M, 2G")
         ->option_text("SIZE");
-    add_film_options(c, a.film);
     c->add_option_function<std::string>(
          "--max-memory",
          [&a](const std::string& text) { a.max_memory = parse_size("--max-memory", text); },
@@ -94,11 +100,22 @@ void add_render_options(CLI::App* c, RenderArguments& a) {
          [&a](const std::string& text) { a.debug_pixel = parse_sample("--debug-pixel", text); },
          "trace this one sample and tell its path")
         ->option_text("x,y,sample");
-    c->add_option("--stats", a.stats, "counters, phase times and memory as JSON")
+}
+
+}  // namespace
+
+void add_render_options(CLI::App* c, RenderArguments& a) {
+    c->add_option("SCENE", a.scene, "the scene: a pbrt-v4 or glTF 2.0 file")
+        ->required()
+        ->option_text(" ");
+    c->add_option("-o,--output", a.output, "the image: .exr .png .pfm .hdr (default: film's)")
         ->check(not_empty())
         ->option_text("FILE");
-    c->add_flag("--reproducible", a.reproducible, "write no command, seconds and date");
-    c->add_flag("--quiet", a.quiet, "errors only");
+    add_method_options(c, a);
+    add_scene_options(c, a);
+    add_output_options(c, a);
+    add_film_options(c, a.film);
+    add_machine_options(c, a);
 }
 
 }  // namespace covtrace::cli

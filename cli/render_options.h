@@ -26,7 +26,7 @@ inline constexpr size_t kNoMemoryLimit = std::numeric_limits<size_t>::max();
 struct RenderArguments {
     std::string scene, output, png, stats;
     std::optional<InstructionSet> isa;
-    std::string seconds, resolution, crop, shutter, tev;
+    std::string seconds, tev;
     FilmArguments film;
     DenoiserArguments denoiser;
     std::optional<DebugPixel> debug_pixel;

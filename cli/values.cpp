@@ -4,7 +4,13 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <sstream>
 #include <string_view>
+#include <system_error>
+#include <vector>
 
 #include "core/error.h"
 
@@ -25,19 +31,25 @@ bool take_number(std::string_view& text, T& value) {
     throw Error(ErrorKind::usage, option + ": '" + text + "' is not " + expected);
 }
 
-/// Reads exactly N numbers with `separator` between them.
+/// Exactly N numbers with `separator` between them; empty for any other text.
 template <typename T, size_t N>
-std::array<T, N> parse_list(const std::string& option, const std::string& text, char separator,
-                            const char* expected) {
-    std::string_view rest = text;
+std::optional<std::array<T, N>> list_of(std::string_view rest, char separator) {
     std::array<T, N> values{};
     for (size_t i = 0; i < N; ++i) {
         const bool separated = i == 0 || (!rest.empty() && rest.front() == separator);
         if (separated && i > 0) rest.remove_prefix(1);
-        if (!separated || !take_number(rest, values[i])) refuse(option, text, expected);
+        if (!separated || !take_number(rest, values[i])) return std::nullopt;
     }
-    if (!rest.empty()) refuse(option, text, expected);
-    return values;
+    return rest.empty() ? std::optional(values) : std::nullopt;
+}
+
+/// Reads exactly N numbers with `separator` between them.
+template <typename T, size_t N>
+std::array<T, N> parse_list(const std::string& option, const std::string& text, char separator,
+                            const char* expected) {
+    const auto values = list_of<T, N>(text, separator);
+    if (!values) refuse(option, text, expected);
+    return *values;
 }
 
 }  // namespace
@@ -159,6 +171,62 @@ size_t parse_size(const std::string& option, const std::string& text) {
     }
     if (!(bytes >= 0) || !(bytes < 1e18)) refuse(option, text, kExpected);
     return size_t(bytes);
+}
+
+CameraOverride parse_camera(const std::string& option, const std::string& text) {
+    constexpr auto kExpected =
+        "a camera such as 'eye 0,1,6 target 0,0,0 fov 40', with 'up 0,0,1' where that is up";
+    std::istringstream words(text);
+    std::map<std::string, std::vector<float>> values;
+    for (std::string name, value; words >> name;) {
+        const bool is_number = name == "fov";
+        if (!is_number && name != "eye" && name != "target" && name != "up")
+            refuse(option, text, kExpected);
+        if (!(words >> value) || values.count(name)) refuse(option, text, kExpected);
+        const auto number = list_of<float, 1>(value, ',');
+        const auto vector = list_of<float, 3>(value, ',');
+        if (is_number ? !number : !vector) refuse(option, text, kExpected);
+        auto& list = values[name];
+        list = is_number ? std::vector{(*number)[0]} : std::vector(vector->begin(), vector->end());
+        for (const float v : list)
+            if (!std::isfinite(v)) refuse(option, text, kExpected);
+    }
+    for (const char* name : {"eye", "target", "fov"})
+        if (!values.count(name)) refuse(option, text, kExpected);
+    const auto vector = [&](const char* name) {
+        const std::vector<float>& v = values.at(name);
+        return Vec3{v[0], v[1], v[2]};
+    };
+    CameraOverride camera{vector("eye"), vector("target"), values.at("fov")[0], {}};
+    if (values.count("up")) camera.up = vector("up");
+    if (!(camera.fov >= CameraOverride::kLeastFov && camera.fov < 180))
+        refuse(option, text,
+               fmt::format("a camera whose fov is from {} degrees to below 180",
+                           CameraOverride::kLeastFov));
+    return camera;
+}
+
+EnvironmentOverride parse_environment(const std::string& option, const std::string& text) {
+    std::optional<std::array<float, 3>> colour = list_of<float, 3>(text, ',');
+    if (const auto grey = list_of<float, 1>(text, ','))
+        colour = {(*grey)[0], (*grey)[0], (*grey)[0]};
+    if (colour) {
+        for (const float c : *colour)
+            if (!(c >= 0) || !std::isfinite(c))
+                refuse(option, text, "a colour r,g,b of numbers that are at least 0");
+        return {{}, {(*colour)[0], (*colour)[1], (*colour)[2]}};
+    }
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(text, ignored))
+        refuse(option, text, "the name of a file that is there, a colour r,g,b or a number");
+    return {text, Rgb(1)};
+}
+
+float parse_degrees(const std::string& option, const std::string& text) {
+    constexpr auto kExpected = "an angle in degrees such as 90 or -22.5";
+    const float degrees = parse_list<float, 1>(option, text, ',', kExpected)[0];
+    if (!std::isfinite(degrees)) refuse(option, text, kExpected);
+    return degrees;
 }
 
 Shard parse_shard(const std::string& option, const std::string& text) {

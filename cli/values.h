@@ -7,6 +7,7 @@
 #include <string>
 
 #include "image/image.h"
+#include "render/overrides.h"
 #include "render/shard.h"
 
 namespace covtrace::cli {
@@ -35,6 +36,13 @@ int64_t parse_whole(const std::string& option, const std::string& text, int64_t 
 double parse_paths(const std::string& option, const std::string& text);
 /// Reads a size in bytes: "500M", "2G", "64k", "1.5T" (powers of 1024) or a plain number.
 size_t parse_size(const std::string& option, const std::string& text);
+/// Reads a camera "eye x,y,z target x,y,z fov N up x,y,z", in any order; "up" may be missing.
+CameraOverride parse_camera(const std::string& option, const std::string& text);
+/// Reads a light from all around: a colour "r,g,b" or one number, or the name of a file that is
+/// there.
+EnvironmentOverride parse_environment(const std::string& option, const std::string& text);
+/// Reads an angle: a finite number of degrees.
+float parse_degrees(const std::string& option, const std::string& text);
 /// Reads a shard "k/n" with 1 <= k <= n; the result's index begins at 0.
 Shard parse_shard(const std::string& option, const std::string& text);
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <system_error>
 
 namespace covtrace::python {
 
@@ -62,6 +63,42 @@ std::array<float, 2> checked_shutter(const std::array<float, 2>& shutter) {
     return shutter;
 }
 
+namespace {
+
+Vec3 finite_vector(const py::dict& camera, const char* name) {
+    const auto v = value_of<std::array<float, 3>>(camera, name, "(x, y, z)");
+    for (const float x : v) require(std::isfinite(x), "camera must hold finite numbers");
+    return {v[0], v[1], v[2]};
+}
+
+CameraOverride camera_override(const py::dict& camera) {
+    CameraOverride c;
+    c.eye = finite_vector(camera, "eye");
+    c.target = finite_vector(camera, "target");
+    c.fov = value_of<float>(camera, "fov", "a number of degrees");
+    require(c.fov >= CameraOverride::kLeastFov && c.fov < 180,
+            "camera must have a fov above 0 and below 180 degrees");
+    if (is_given(camera, "up")) c.up = finite_vector(camera, "up");
+    return c;
+}
+
+/// A path, or a colour (r, g, b).
+EnvironmentOverride environment_override(const py::dict& o) {
+    if (py::isinstance<py::tuple>(o["environment"])) {
+        const auto c = value_of<std::array<float, 3>>(o, "environment", "(r, g, b)");
+        for (const float v : c)
+            require(v >= 0 && std::isfinite(v), "environment must be a colour of at least 0");
+        return {{}, {c[0], c[1], c[2]}};
+    }
+    const auto image = value_of<std::filesystem::path>(o, "environment", "an image's path");
+    std::error_code ignored;
+    require(std::filesystem::is_regular_file(image, ignored),
+            "environment is '" + image.string() + "'; expected a file that is there");
+    return {image, Rgb(1)};
+}
+
+}  // namespace
+
 SceneOverrides scene_overrides(const py::dict& o) {
     SceneOverrides s;
     if (is_given(o, "resolution")) {
@@ -77,6 +114,13 @@ SceneOverrides scene_overrides(const py::dict& o) {
         s.shutter = checked_shutter(value_of<std::array<float, 2>>(o, "shutter", "(begin, end)"));
     s.focal_distance = positive<float>(o, "focus", SceneOverrides::kLeastOfLens);
     s.f_number = positive<float>(o, "fstop", SceneOverrides::kLeastOfLens);
+    if (is_given(o, "camera")) s.camera = camera_override(o["camera"]);
+    if (is_given(o, "environment")) s.environment = environment_override(o);
+    if (is_given(o, "environment_rotation")) {
+        s.environment_rotation = value_of<float>(o, "environment_rotation", "a number of degrees");
+        require(std::isfinite(*s.environment_rotation), "environment_rotation must be finite");
+    }
+    s.environment_scale = positive<float>(o, "environment_scale");
     return s;
 }
 

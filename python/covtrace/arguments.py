@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NoReturn
 
 from .errors import UsageError
@@ -56,6 +56,48 @@ def shutter_of(value: tuple[float, float] | None) -> tuple[float, float] | None:
         return float(begin), float(end)
     except (TypeError, ValueError, OverflowError):
         refuse("shutter", value, expected)
+
+
+def vector_of(name: str, value: Any, expected: str) -> tuple[float, float, float]:
+    if isinstance(value, (str, bytes)):  # "012" would be one
+        refuse(name, value, expected)
+    try:
+        x, y, z = value
+        return float(x), float(y), float(z)
+    except (TypeError, ValueError, OverflowError):
+        refuse(name, value, expected)
+
+
+def environment_of(value: Any) -> str | tuple[float, float, float] | None:
+    """The path of an image, or a colour."""
+    expected = "an image's path, a number or (r, g, b)"
+    if value is None:
+        return None
+    if isinstance(value, (str, bytes, os.PathLike)):
+        return path_of("environment", value, expected)
+    try:
+        return (float(value),) * 3
+    except (TypeError, ValueError, OverflowError):
+        return vector_of("environment", value, expected)
+
+
+def camera_of(value: Any) -> dict[str, Any] | None:
+    """eye, target, fov and, where it is given, up."""
+    expected = "{'eye': (x, y, z), 'target': (x, y, z), 'fov': degrees}, 'up': (x, y, z) if need be"
+    if value is None:
+        return None
+    if not isinstance(value, Mapping) or not {"eye", "target", "fov"} <= set(value) <= {"eye", "target", "fov", "up"}:
+        refuse("camera", value, expected)
+    camera: dict[str, Any] = {"up": None}
+    for name, part in value.items():
+        if name == "fov":
+            try:
+                camera[name] = float(part)
+            except (TypeError, ValueError, OverflowError):
+                refuse("camera", value, expected)
+        elif name != "up" or part is not None:
+            camera[name] = vector_of("camera", part, expected)
+    return camera
 
 
 def function_of(name: str, value: Callable[..., Any] | None) -> Callable[..., Any] | None:

@@ -6,11 +6,11 @@ import os
 import re
 import tempfile
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, Protocol
 
 from . import _covtrace
-from .arguments import cancel_of, function_of, path_of, shutter_of
+from .arguments import camera_of, cancel_of, environment_of, function_of, path_of, shutter_of
 from .builder import SceneBuilder
 from .errors import SceneWarning, UsageError
 from .image import Image
@@ -51,7 +51,11 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            resolution: tuple[int, int] | None = None,
            crop: tuple[int, int, int, int] | None = None,
            shutter: tuple[float, float] | None = None, focus: float | None = None,
-           fstop: float | None = None, seed: int = 0, threads: int = 0,
+           fstop: float | None = None,
+           camera: Mapping[str, Any] | None = None,
+           environment: str | os.PathLike[str] | float | tuple[float, float, float] | None = None,
+           environment_rotation: float | None = None, environment_scale: float | None = None,
+           seed: int = 0, threads: int = 0,
            isa: Literal["sse2", "avx", "avx2", "avx512"] | None = None,
            texture_memory: int | str | None = None,
            search_paths: Iterable[str | os.PathLike[str]] = (),
@@ -71,6 +75,11 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     resolution (w, h), crop (x0, y0, x1, y1), shutter (t0, t1), focus, fstop: in place of the scene's.
         The nodes of a glTF file are placed when it is read: give `shutter` with the file's path, or
         to `Scene`.
+    camera: {"eye": (x, y, z), "target": (x, y, z), "fov": degrees of the shorter side}, a pinhole in
+        place of the scene's; "up" where it is not what is up in the scene.
+    environment, environment_rotation, environment_scale: an image's path, a number or (r, g, b), in
+        place of the scene's infinite lights; degrees about what is up; a factor. The last two change
+        the scene's own where no environment is given.
     threads: 0 for all cores; holds for the process while the render runs.
     progress: called with a `Progress` about ten times a second, in the calling thread.
     cancel: anything with `is_set()`, for example a threading.Event; the image that is there when it
@@ -88,7 +97,10 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
                "denoiser_library": None if denoiser_library is None
                else path_of("denoiser_library", denoiser_library),
                "resolution": resolution,
-               "crop": crop, "shutter": shutter_of(shutter), "focus": focus, "fstop": fstop, "seed": seed,
+               "crop": crop, "shutter": shutter_of(shutter), "focus": focus, "fstop": fstop,
+               "camera": camera_of(camera), "environment": environment_of(environment),
+               "environment_rotation": environment_rotation, "environment_scale": environment_scale,
+               "seed": seed,
                "threads": threads, "isa": isa, "texture_memory": _bytes(texture_memory),
                "progress": function_of("progress", progress), "cancel": cancel_of(cancel)}
     if isinstance(scene, SceneBuilder):

@@ -171,6 +171,7 @@ SceneDescription read(const std::filesystem::path& file, const ReadOptions& opti
     const Document document = read_document(file, options.search_paths, log);
     SceneDescription scene;
     scene.name = file.stem().string();
+    scene.up = Vec3{0, 1, 0};
     // Depth and samples are ours, as a format for interchange says nothing of quality: enough for
     // glass, and for a clean image.
     constexpr int kDepth = 12, kSamples = 64;

@@ -6,41 +6,48 @@
 
 #include "core/error.h"
 #include "core/vec.h"
+#include "render/camera_override.h"
+#include "render/environment_override.h"
 
 namespace covtrace {
 
+namespace {
+
+/// Another resolution shows the same picture: a crop given in pixels keeps its place in the frame.
+void set_resolution(const std::array<int, 2>& resolution, FilmDescription& film) {
+    if (film.pixel_bounds) {
+        const auto& b = *film.pixel_bounds;
+        film.crop_window = {float(b[0]) / float(film.width), float(b[1]) / float(film.width),
+                            float(b[2]) / float(film.height), float(b[3]) / float(film.height)};
+        film.pixel_bounds.reset();
+    }
+    film.width = resolution[0];
+    film.height = resolution[1];
+    if (film.is_too_large())
+        throw Error(ErrorKind::limit, OptionName{"resolution"},
+                    std::to_string(film.width) + "x" + std::to_string(film.height) +
+                        " is too large; " + film.kLargest);
+}
+
+void set_crop(const PixelBounds& c, FilmDescription& film) {
+    if (c.x0 < 0 || c.y0 < 0 || c.x1 > film.width || c.y1 > film.height || c.x0 >= c.x1 ||
+        c.y0 >= c.y1)
+        throw Error(ErrorKind::usage, OptionName{"crop"},
+                    "the pixels must lie inside the frame of " + std::to_string(film.width) + "x" +
+                        std::to_string(film.height) + " pixels and hold at least one");
+    film.pixel_bounds = {c.x0, c.x1, c.y0, c.y1};
+}
+
+}  // namespace
+
 void apply(const SceneOverrides& overrides, SceneDescription& scene) {
-    if (overrides.resolution) {
-        // Another resolution shows the same picture: a crop given in pixels keeps its place in the
-        // frame.
-        FilmDescription& film = scene.film;
-        if (film.pixel_bounds) {
-            const auto& b = *film.pixel_bounds;
-            film.crop_window = {float(b[0]) / float(film.width), float(b[1]) / float(film.width),
-                                float(b[2]) / float(film.height), float(b[3]) / float(film.height)};
-            film.pixel_bounds.reset();
-        }
-        film.width = (*overrides.resolution)[0];
-        film.height = (*overrides.resolution)[1];
-        if (film.is_too_large())
-            throw Error(ErrorKind::limit, OptionName{"resolution"},
-                        std::to_string(film.width) + "x" + std::to_string(film.height) +
-                            " is too large; " + film.kLargest);
-    }
-    if (overrides.crop) {
-        const PixelBounds& c = *overrides.crop;
-        if (c.x0 < 0 || c.y0 < 0 || c.x1 > scene.film.width || c.y1 > scene.film.height ||
-            c.x0 >= c.x1 || c.y0 >= c.y1)
-            throw Error(ErrorKind::usage, OptionName{"crop"},
-                        "the pixels must lie inside the frame of " +
-                            std::to_string(scene.film.width) + "x" +
-                            std::to_string(scene.film.height) + " pixels and hold at least one");
-        scene.film.pixel_bounds = {c.x0, c.x1, c.y0, c.y1};
-    }
+    if (overrides.resolution) set_resolution(*overrides.resolution, scene.film);
+    if (overrides.crop) set_crop(*overrides.crop, scene.film);
     if (overrides.shutter) {
         scene.camera.shutter_open = (*overrides.shutter)[0];
         scene.camera.shutter_close = (*overrides.shutter)[1];
     }
+    if (overrides.camera) override_camera(*overrides.camera, scene);
     if (overrides.focal_distance) scene.camera.focal_distance = *overrides.focal_distance;
     if (overrides.f_number) {
         // The lens is that of a full-frame sensor, 24 mm high: focal length from the field of view,
@@ -48,6 +55,8 @@ void apply(const SceneOverrides& overrides, SceneDescription& scene) {
         const float focal_length = 0.012f / std::tan(scene.camera.fov * kPi / 360);
         scene.camera.lens_radius = focal_length / (2 * *overrides.f_number);
     }
+    if (overrides.environment) replace_environment(*overrides.environment, scene);
+    change_environment(overrides, scene);
 }
 
 PixelBounds render_region(const FilmDescription& film) {

@@ -2,12 +2,28 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <optional>
 
 #include "image/image.h"
 #include "scene/scene_description.h"
 
 namespace covtrace {
+
+/// A perspective pinhole, in place of the scene's camera.
+struct CameraOverride {
+    Vec3 eye, target;
+    float fov = 0;                             ///< degrees, of the picture's shorter side
+    std::optional<Vec3> up;                    ///< default: what is up in the scene
+    static constexpr double kLeastFov = 1e-6;  ///< single precision tells no directions apart below
+};
+
+/// Light from all around, in place of the scene's infinite lights.
+struct EnvironmentOverride {
+    /// An image of the layouts that InfiniteLight has, in place of a colour.
+    std::optional<std::filesystem::path> image;
+    Rgb radiance{1};  ///< without an image: black takes the infinite lights away
+};
 
 /// Values that take the place of the scene's own, where they are given.
 struct SceneOverrides {
@@ -16,13 +32,20 @@ struct SceneOverrides {
     std::optional<std::array<float, 2>> shutter;
     std::optional<float> focal_distance;
     std::optional<float> f_number;
+    std::optional<CameraOverride> camera;
+    std::optional<EnvironmentOverride> environment;
+    /// Degrees by which the infinite lights are turned about their poles: counterclockwise as seen
+    /// from above, so that a picture moves to its left.
+    std::optional<float> environment_rotation;
+    std::optional<float> environment_scale;  ///< of the infinite lights, above 0
     /// Least focal distance and f-number: smaller ones ask for lenses that single precision cannot
     /// hold.
     static constexpr double kLeastOfLens = 1e-9;
 };
 
-/// Applies resolution, crop, shutter, focus and f-number. Throws Error(usage) for a crop outside
-/// the frame, Error(limit) for sizes that no machine holds.
+/// Applies all of them. Throws Error(usage) for a crop outside the frame, a camera that looks
+/// nowhere, and for a rotation or scale of infinite lights that aren't there; Error(limit) for
+/// sizes that no machine holds.
 void apply(const SceneOverrides& overrides, SceneDescription& scene);
 
 /// The pixels that a description asks for: its crop window or pixel bounds within the frame.

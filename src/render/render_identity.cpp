@@ -55,6 +55,8 @@ RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& op
         {"lens radius (--fstop)", text(d.camera.lens_radius)},
     };
     id["--max-spp"] = text(options.max_spp);
+    id["--camera"] = d.camera_override.empty() ? "the scene's" : d.camera_override;
+    id["--environment"] = d.environment_override.empty() ? "the scene's" : d.environment_override;
     if (options.method == Method::uniform) {
         id["light of emitters (--layers)"] = options.emitters_apart ? "apart" : "not apart";
         id["features (--layers)"] = options.features ? "kept" : "not kept";

@@ -378,6 +378,7 @@ struct SceneDescription {
     int samples_per_pixel = 16;
     int max_depth = 5;
     bool renders_media = true;  ///< false: the integrator sees no media, as pbrt's "path"
+    std::optional<Vec3> up;     ///< axis of the world that points up, where the format or user says
     std::vector<TextureDescription> textures;
     std::vector<MaterialDescription> materials;
     std::vector<MediumDescription> media;
@@ -391,6 +392,9 @@ struct SceneDescription {
     Warnings warnings;
     /// Hash of all bytes read for the description: scene files and meshes.
     uint64_t content_hash = 0;
+    /// What takes the place of the file's camera and environment, as text for a render's identity;
+    /// empty: its own.
+    std::string camera_override, environment_override;
     /// All files that were read for the scene or that it names: scenes, meshes, spectra, lenses,
     /// buffers, images. Each once, by name.
     std::vector<std::filesystem::path> files;

@@ -33,6 +33,18 @@ def builder(resolution=(48, 27), **camera):
     return scene
 
 
+# A scene that shows its sky alone.
+SKY = """
+Camera "perspective" "float fov" 30
+Film "rgb" "integer xresolution" 8 "integer yresolution" 6
+WorldBegin
+LightSource "infinite" "rgb L" [3 3 3]
+AttributeBegin
+  Translate 0 0 -9
+  Shape "sphere" "float radius" 1
+AttributeEnd
+"""
+
 # A scene that is lit alike everywhere: a radiance of 0.25 in every pixel.
 FURNACE = """
 Camera "perspective" "float fov" 30
