@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/denoiser_options.h"
+#include "cli/display_options.h"
 #include "cli/layer_selection.h"
 #include "cli/message.h"
 #include "cli/options.h"
@@ -27,6 +28,7 @@ struct MergeArguments {
     std::vector<std::string> films;
     std::string output, film, png;
     LayerSelection layers{true, {}};
+    DisplayOptions display;
     DenoiserArguments denoiser;
     bool quiet = false;
 };
@@ -64,11 +66,12 @@ int merge_films(const MergeArguments& a) {
             warn_of_unusable(denoiser);
             warn_of_failed_denoiser(image);
             warn_of_absent_layers(image, a.layers);
+            warn_of_no_picture(a.display, a.output, a.png);
         }
         warn_of_replaced(image);
         keep_layers(image, a.layers);
-        if (!a.output.empty()) write_image(image, a.output, threads.threads());
-        if (!a.png.empty()) write_png(image, a.png);
+        if (!a.output.empty()) write_image(image, a.output, threads.threads(), a.display);
+        if (!a.png.empty()) write_png(image, a.png, a.display);
     }
     if (!a.quiet)
         say("{}{:.4g} samples per pixel, {}\n",
@@ -97,6 +100,7 @@ void add_merge(CLI::App& app, Invocation& invocation) {
     c->add_option("--png", a->png, "also an 8-bit sRGB picture, cut at white")
         ->check(not_empty())
         ->option_text("FILE");
+    add_display_options(c, a->display);
     add_layers(c, "--layers", a->layers, "all, or name,name…: layers beside the image");
     add_denoiser_options(c, a->denoiser);
     c->add_flag("--quiet", a->quiet, "errors only");

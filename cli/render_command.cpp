@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/display_options.h"
 #include "cli/failure.h"
 #include "cli/film_files.h"
 #include "cli/interrupts.h"
@@ -78,13 +79,14 @@ void parse_texts(RenderArguments& a) {
 void deliver(RenderResult& result, const RenderArguments& a, const fs::path& output,
              const Monitor& monitor, const std::string& command, int threads) {
     if (!a.quiet) warn_of_absent_layers(result.image, a.layers);
+    if (!a.quiet) warn_of_no_picture(a.display, output, a.png);
     keep_layers(result.image, a.layers);
     if (!a.reproducible) describe_making(result.image, monitor, command);
     const bool has_layers = written_format(output) == WrittenFormat::exr;
     if (has_layers) rename_layers(result.image, a.layer_names);
-    write_image(result.image, output, threads);
+    write_image(result.image, output, threads, a.display);
     if (has_layers) restore_layer_names(result.image);
-    if (!a.png.empty()) write_png(result.image, a.png);
+    if (!a.png.empty()) write_png(result.image, a.png, a.display);
 }
 
 /// Warns once of a viewer that is not there: it may come later, and the render needs none.

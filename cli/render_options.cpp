@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "cli/display_options.h"
 #include "cli/options.h"
 #include "cli/override_options.h"
 
@@ -67,6 +68,7 @@ void add_output_options(CLI::App* c, RenderArguments& a) {
     c->add_option("--png", a.png, "also an 8-bit sRGB picture, cut at white")
         ->check(not_empty())
         ->option_text("FILE");
+    add_display_options(c, a.display);
     add_layers(c, "--layers", a.layers, "all, or name,name…: layers beside the image");
     add_choice(c, "--layer-names", a.layer_names, "whose names the layers get in the EXR");
     c->add_option("--tev", a.tev, "show the image in the viewer tev while it renders")

@@ -14,6 +14,7 @@
 #include "cli/progress_line.h"
 #include "cli/values.h"
 #include "geometry/instruction_set.h"
+#include "image/display.h"
 #include "image/layer_names.h"
 #include "render/options.h"
 #include "render/overrides.h"
@@ -31,6 +32,7 @@ struct RenderArguments {
     DenoiserArguments denoiser;
     std::optional<DebugPixel> debug_pixel;
     LayerSelection layers{true, {}}, tev_layers;
+    DisplayOptions display;
     LayerNames layer_names = LayerNames::standard;
     size_t texture_bytes = kNoTextureLimit, max_memory = kNoMemoryLimit;
     std::vector<std::string> search_paths;

@@ -229,6 +229,13 @@ float parse_degrees(const std::string& option, const std::string& text) {
     return degrees;
 }
 
+float parse_number(const std::string& option, const std::string& text, float least, float most) {
+    const auto value = list_of<float, 1>(text, ',');
+    if (!value || !((*value)[0] >= least && (*value)[0] <= most))
+        refuse(option, text, fmt::format("a number from {:.10g} to {:.10g}", least, most));
+    return (*value)[0];
+}
+
 Shard parse_shard(const std::string& option, const std::string& text) {
     constexpr auto kExpected = "a share k/n with 1 <= k <= n, such as 2/8";
     constexpr int kMost = 1 << 20;

@@ -43,6 +43,8 @@ CameraOverride parse_camera(const std::string& option, const std::string& text);
 EnvironmentOverride parse_environment(const std::string& option, const std::string& text);
 /// Reads an angle: a finite number of degrees.
 float parse_degrees(const std::string& option, const std::string& text);
+/// Reads a number in [least, most].
+float parse_number(const std::string& option, const std::string& text, float least, float most);
 /// Reads a shard "k/n" with 1 <= k <= n; the result's index begins at 0.
 Shard parse_shard(const std::string& option, const std::string& text);
 

@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -12,6 +13,7 @@
 #include "image/compare.h"
 #include "image/exr_names.h"
 #include "image/layer_names.h"
+#include "options.h"
 #include "planes.h"
 #include "python_lock.h"
 
@@ -135,9 +137,12 @@ void bind_image(py::module_& module) {
                         return std::make_shared<Planes>(std::move(image));
                     })
         .def("write",
-             [](const Planes& p, const std::filesystem::path& file) {
+             [](const Planes& p, const std::filesystem::path& file, float exposure,
+                const std::string& view) {
+                 require(std::isfinite(exposure), "exposure must be a finite number of stops");
+                 const DisplayOptions display{exposure, choice<ViewTransform>("view", view)};
                  const Unlocked unlocked;
-                 write_image(p.image(), file, ThreadLimit(0).threads());
+                 write_image(p.image(), file, ThreadLimit(0).threads(), display);
              })
         .def("channels", &channel_views)
         .def("layers", &layer_views)

@@ -6,12 +6,14 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
 
 from . import _covtrace
+from .arguments import text_of
+from .errors import UsageError
 
 Array = NDArray[numpy.float32]
 
@@ -125,11 +127,16 @@ class Image:
     def display_window(self) -> tuple[int, int, int, int]:
         return self._planes.display_window
 
-    def write(self, file: str | os.PathLike[str]) -> None:
-        """Writes the format that the name says: all layers (.exr, or no ending), the sRGB picture,
-        cut at white (.png), or the linear colour (.pfm, .hdr); beside and renamed. `UsageError`, a
-        `ValueError`, for other endings."""
-        self._planes.write(os.fspath(file))
+    def write(self, file: str | os.PathLike[str], *, exposure: float = 0,
+              view: Literal["srgb", "filmic", "agx"] = "srgb") -> None:
+        """Writes the format that the name says: all layers (.exr, or no ending), the sRGB picture
+        (.png), or the linear colour (.pfm, .hdr); beside and renamed. The picture alone is
+        brightened by `exposure` stops and shown by `view`, as by the options of `covtrace render`.
+        `UsageError`, a `ValueError`, for other endings."""
+        try:
+            self._planes.write(os.fspath(file), float(exposure), text_of("view", view))
+        except (TypeError, OverflowError) as e:
+            raise UsageError(f"exposure is {exposure!r}; expected a number of stops") from e
 
     def describe(self) -> str:
         """Several lines for people: windows, channels with their ranges, metadata."""

@@ -29,14 +29,15 @@ std::optional<WrittenFormat> written_format(const std::filesystem::path& file) {
     return std::nullopt;
 }
 
-void write_image(const Image& image, const std::filesystem::path& file, int threads) {
+void write_image(const Image& image, const std::filesystem::path& file, int threads,
+                 const DisplayOptions& display) {
     const auto format = written_format(file);
     if (!format) throw Error(ErrorKind::usage, "'" + file.string() + "' " + kExpectedImageName);
     switch (*format) {
         case WrittenFormat::exr:
             return write_exr(image, file, threads);
         case WrittenFormat::png:
-            return write_png(image, file);
+            return write_png(image, file, display);
         case WrittenFormat::pfm:
             return write_pfm(image, file);
         case WrittenFormat::hdr:

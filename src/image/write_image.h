@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "image/display.h"
 #include "image/image.h"
 
 namespace covtrace {
@@ -21,9 +22,11 @@ inline constexpr const char* kExpectedImageName =
     "names no format that is written; expected a name that ends in .exr (OpenEXR, with layers), "
     ".png, .pfm or .hdr (the colour alone)";
 
-/// Writes an image as write_exr, write_png, write_pfm or write_hdr do, by the file's name. Throws
-/// Error(usage) where the name says no format that is written, otherwise as those functions.
-void write_image(const Image& image, const std::filesystem::path& file, int threads = 1);
+/// Writes an image as write_exr, write_png, write_pfm or write_hdr do, by the file's name.
+/// `display` is that of a PNG; the others hold linear values as they are. Throws Error(usage) where
+/// the name says no format that is written, otherwise as those functions.
+void write_image(const Image& image, const std::filesystem::path& file, int threads = 1,
+                 const DisplayOptions& display = {});
 
 /// Writes 32-bit floats, bit by bit: the root channels R, G, B, or Y as a grey image. Written
 /// beside and renamed. Throws Error(io); Error(internal) for an image without these channels.

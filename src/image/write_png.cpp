@@ -1,9 +1,11 @@
 #include <png.h>
 
+#include <algorithm>
 #include <csetjmp>
+#include <cstddef>
 #include <new>
 
-#include "image/color_encoding.h"
+#include "image/display.h"
 #include "image/image.h"
 #include "image/output_file.h"
 #include "image/root_colour.h"
@@ -82,13 +84,20 @@ void write_png_rgb8(std::span<const uint8_t> rgb, int width, int height,
     output.commit();
 }
 
-void write_png(const Image& image, const std::filesystem::path& file) {
+void write_png(const Image& image, const std::filesystem::path& file,
+               const DisplayOptions& options) {
     const RootColour colour = root_colour(image, file);
+    const auto value = [&](size_t c, size_t i) { return colour.channels[c]->values[i]; };
     std::vector<uint8_t> rgb(image.pixel_count() * 3);
-    for (size_t i = 0; i < image.pixel_count(); ++i)
-        for (size_t c = 0; c < 3; ++c)
-            rgb[i * 3 + c] = srgb_encode_8bit(colour.channels[c]->values[i]);
+    for (size_t i = 0; i < image.pixel_count(); ++i) {
+        const auto shown = display_8bit({value(0, i), value(1, i), value(2, i)}, options);
+        std::copy(shown.begin(), shown.end(), rgb.begin() + std::ptrdiff_t(i * 3));
+    }
     write_png_rgb8(rgb, image.width(), image.height(), file);
+}
+
+void write_png(const Image& image, const std::filesystem::path& file) {
+    write_png(image, file, DisplayOptions{});
 }
 
 }  // namespace covtrace

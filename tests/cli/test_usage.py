@@ -29,7 +29,7 @@ class Help(CliTest):
         options = self.run_program("render", "--help").stdout
         for option in (
             "--output --method --spp --time --cov-spp --density --k --max-spp --filter --resolution --crop --max-depth --seed "
-            "--threads --isa --shutter --focus --fstop --camera --environment --environment-rotation --environment-scale --png --layers --layer-names --tev --tev-layers --progress --texture-memory --stats --reproducible "
+            "--threads --isa --shutter --focus --fstop --camera --environment --environment-rotation --environment-scale --png --exposure --view --layers --layer-names --tev --tev-layers --progress --texture-memory --stats --reproducible "
             "--film --checkpoint --every --resume --shard --max-memory --debug-pixel"
         ).split():
             self.assertIn(option, options)
@@ -133,7 +133,7 @@ class WrongCommandLines(CliTest):
     def test_every_option_may_be_given_twice(self):
         # What is missing is told after the command line was understood.
         values = {"WxH": "8x8", "x,y": "1,1", "x0,y0,x1,y1": "0,0,4,4", "T0,T1": "0,1", "LIST": "none", "DIR": ".", "HOST:PORT": "localhost:1",
-                  "SIZE": "1G", "FILE|COLOUR": "1", "TEXT": "eye 0,0,0 target 0,0,1 fov 40", "DEGREES": "1", "K/N": "1/2", "x,y,sample": "1,1,0", "N": "1", "T": "1s", "FILE": "f"}
+                  "SIZE": "1G", "FILE|COLOUR": "1", "TEXT": "eye 0,0,0 target 0,0,1 fov 40", "STOPS": "1", "DEGREES": "1", "K/N": "1/2", "x,y,sample": "1,1,0", "N": "1", "T": "1s", "FILE": "f"}
         given = {"--samples": "4096"}
         for command, files in (("render", ["none.pbrt"]), ("measure", ["none.pbrt"]), ("inspect", ["none.exr"]), ("compare", ["a.exr", "b.exr"]), ("merge", ["none.film"])):
             text = self.run_program(command, "--help").stdout

@@ -10,6 +10,22 @@ import covtrace
 
 
 class Images(unittest.TestCase):
+    def test_pictures_have_exposure_and_view(self):
+        image = covtrace.Image.from_arrays(numpy.full((2, 2, 3), 0.25))
+
+        def shown(**arguments):
+            with tempfile.TemporaryDirectory() as folder:
+                image.write(pathlib.Path(folder) / "a.png", **arguments)
+                return covtrace.Image.read(pathlib.Path(folder) / "a.png").rgb[0, 0, 0]
+
+        self.assertAlmostEqual(shown(), 0.25, delta=0.003)
+        self.assertAlmostEqual(shown(exposure=1), 0.5, delta=0.004)
+        self.assertAlmostEqual(shown(exposure=-1, view="srgb"), 0.125, delta=0.002)
+        self.assertNotAlmostEqual(shown(view="agx"), shown(view="filmic"), delta=0.01)
+        for wrong in ({"view": "raw"}, {"view": 3}, {"exposure": "x"}, {"exposure": None}, {"exposure": float("nan")}):
+            with self.subTest(wrong), self.assertRaises(covtrace.UsageError):
+                shown(**wrong)
+
     def test_round_trip(self):
         rng = numpy.random.default_rng(1)
         rgb = rng.random((5, 7, 3), dtype=numpy.float32)

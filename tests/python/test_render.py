@@ -389,9 +389,9 @@ class Package(unittest.TestCase):
         """All that change the image; files, messages and terminals are the program's alone."""
         import inspect
         of_program_alone = {
-            "checkpoint", "debug_pixel", "every", "film", "help", "layer_names", "layers",
+            "checkpoint", "debug_pixel", "every", "exposure", "film", "help", "layer_names", "layers",
             "max_memory", "output", "png", "quiet", "reproducible", "resume", "shard", "stats",
-            "tev", "tev_layers"}
+            "tev", "tev_layers", "view"}
         text = subprocess.run([os.environ["COVTRACE"], "render", "--help"], capture_output=True,
                               text=True, check=True).stdout
         options = {name.replace("-", "_") for name in re.findall(r"(?<=[ ,])--([a-z][a-z-]*)", text)}

@@ -1,0 +1,40 @@
+/// From linear colours to 8-bit display values: exposure, a view transform, the sRGB curve.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+
+#include "core/enum_names.h"
+#include "core/vec.h"
+#include "image/image.h"
+
+namespace covtrace {
+
+/// How the range of light is brought into that of a display.
+enum class ViewTransform {
+    srgb,    ///< as it is, cut at white
+    filmic,  ///< a film's curve for each channel, which keeps detail up to 5.6 times white
+    agx      ///< a curve over 16.5 stops in which bright colours become white
+};
+
+template <>
+inline constexpr auto kEnumNames<ViewTransform> =
+    enum_names<ViewTransform>({{ViewTransform::srgb, "srgb"},
+                               {ViewTransform::filmic, "filmic"},
+                               {ViewTransform::agx, "agx"}});
+
+struct DisplayOptions {
+    float exposure = 0;  ///< stops by which the picture is brightened
+    ViewTransform view = ViewTransform::srgb;
+};
+
+/// Display values (sRGB) of a linear Rec.709 colour. Negative values and NaN count as 0.
+std::array<uint8_t, 3> display_8bit(Rgb linear, const DisplayOptions& options);
+
+/// Writes a picture of the root channels R, G, B, or Y. Written beside and renamed. Throws as
+/// write_png of image.h, which shows it with the default options.
+void write_png(const Image& image, const std::filesystem::path& file,
+               const DisplayOptions& options);
+
+}  // namespace covtrace
