@@ -8,6 +8,7 @@
 #include "render/describe_state.h"
 #include "render/film_file.h"
 #include "render/scene_file.h"
+#include "scene/defaults.h"
 #include "scene/summary.h"
 
 namespace covtrace::cli {
@@ -23,8 +24,13 @@ void add_info(CLI::App& app, Invocation& invocation) {
                 fmt::print("{}", describe(read_film(path)));
                 return 0;
             }
-            fmt::print("{}", is_scene_file(path) ? summarize(read_scene_file(path))
-                                                 : describe(read_image(path)));
+            if (is_scene_file(path)) {
+                SceneDescription scene = read_scene_file(path);
+                complete(scene);
+                fmt::print("{}", summarize(scene));
+                return 0;
+            }
+            fmt::print("{}", describe(read_image(path)));
             return 0;
         };
     });

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -20,6 +21,7 @@
 #include "python_lock.h"
 #include "render/scene_file.h"
 #include "render/session.h"
+#include "scene/defaults.h"
 #include "scene/summary.h"
 
 namespace covtrace::python {
@@ -108,10 +110,14 @@ Rendered render_description(SceneDescription description, RenderOptions options,
     FoundDenoiser denoiser;
     if (options.method == Method::hybrid) denoiser = find_denoiser(search);
     options.denoiser = denoiser.denoiser;
+    const auto told = std::ptrdiff_t(description.warnings.size());
     apply(overrides, description);
+    // Stand-ins for a camera or lights are known only now.
+    Warnings warnings(description.warnings.begin() + told, description.warnings.end());
     RenderScene scene(std::move(description), isa, texture_bytes);
     RenderResult result = render(scene, options, monitor);
-    Warnings warnings = scene.materials.warnings();
+    const Warnings& of_materials = scene.materials.warnings();
+    warnings.insert(warnings.end(), of_materials.begin(), of_materials.end());
     if (denoiser.is_unusable) warnings.push_back({{}, "no denoiser is used: " + denoiser.why_none});
     std::string failure;
     if (const auto it = result.image.metadata.find("covtrace:denoiserFailure");
@@ -228,15 +234,22 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
                           texts_of(rendered->warnings));
 }
 
+/// The scene with stand-ins for a camera or lights that it does not have.
+SceneDescription completed(SceneDescription scene) {
+    complete(scene);
+    return scene;
+}
+
 std::shared_ptr<SceneDescription> read_file(const fs::path& file,
                                             const std::vector<fs::path>& search_paths,
                                             const std::optional<std::array<float, 2>>& shutter) {
     if (shutter) checked_shutter(*shutter);
     const Unlocked unlocked;
     auto scene = std::make_shared<SceneDescription>(read_scene_file(file, {search_paths, shutter}));
-    SceneOverrides overrides;
-    overrides.shutter = shutter;
-    apply(overrides, *scene);
+    if (shutter) {
+        scene->camera.shutter_open = (*shutter)[0];
+        scene->camera.shutter_close = (*shutter)[1];
+    }
     return scene;
 }
 
@@ -260,9 +273,11 @@ void bind_render(py::module_& module) {
         .def_property_readonly("max_depth", [](const SceneDescription& s) { return s.max_depth; })
         .def_property_readonly("content_hash",
                                [](const SceneDescription& s) { return s.content_hash; })
-        .def_property_readonly("warnings",
+        .def_property_readonly("told",
                                [](const SceneDescription& s) { return texts_of(s.warnings); })
-        .def("summary", &summarize);
+        .def_property_readonly(
+            "warnings", [](const SceneDescription& s) { return texts_of(completed(s).warnings); })
+        .def("summary", [](const SceneDescription& s) { return summarize(completed(s)); });
     module.def("is_gltf", &is_gltf);
     module.def("render", &render_scene);
 }

@@ -118,18 +118,25 @@ def _world_turn(node, warn):
 
 
 def write_world(out, world, folder, warn):
+    """Writes the light of the world; a black one, too, as covtrace lights scenes that have no light at all."""
+    if not _write_world_light(out, world, folder, warn):
+        out.write('LightSource "infinite" "rgb L" [0 0 0]\n')
+
+
+def _write_world_light(out, world, folder, warn):
+    """Whether the world has light that was written."""
     if world is None:
-        return
+        return False
     if not world.use_nodes or not world.node_tree:
         colour, strength, node = tuple(world.color), 1.0, None
     else:
         output = next((n for n in world.node_tree.nodes if n.type == "OUTPUT_WORLD" and n.is_active_output), None)
         if output is None or not output.inputs["Surface"].is_linked:
-            return
+            return False
         background = output.inputs["Surface"].links[0].from_node
         if background.type != "BACKGROUND":
             warn(f"world shader '{background.name}' is not supported; the world is black")
-            return
+            return False
         strength = background.inputs["Strength"].default_value
         if background.inputs["Strength"].is_linked:
             warn("what is linked to the world's Strength is not supported; the socket's own value is used")
@@ -142,16 +149,18 @@ def write_world(out, world, folder, warn):
         height, width, _ = values.shape
         if width != 2 * height:
             warn("the world's image is not twice as wide as high; it is left out")
-            return
+            return False
         # Blender's azimuth runs the other way, from the middle of the image.
         columns = (width // 2 - 1 - np.arange(width)) % width
         write_pfm(os.path.join(folder, "world.pfm"), values[:, columns])
         out.write(f'AttributeBegin\nConcatTransform [{numbers(turn.inverted()[row][column] for column in range(4) for row in range(4))}]\n'
                   'LightSource "infinite" "string filename" "world.pfm"\nAttributeEnd\n')
-        return
+        return True
     if node is not None and (temperature := blackbody_temperature(socket)) is not None:
         colour = blackbody(temperature)
     elif node is not None:
         warn(f"world node '{node.name}' is not supported; the background's own colour is used")
-    if max(colour) * strength > 0:
-        out.write(f'LightSource "infinite" "rgb L" [{numbers(c * strength for c in colour)}]\n')
+    if max(colour) * strength <= 0:
+        return False
+    out.write(f'LightSource "infinite" "rgb L" [{numbers(c * strength for c in colour)}]\n')
+    return True

@@ -15,8 +15,8 @@ class Scene:
     """A scene in the pbrt-v4 or glTF 2.0 format, read and checked, not yet built.
 
     `Scene(file)` reads a file and the meshes that it names; `Scene.from_string` a text (pbrt-v4).
-    `warnings` tells what the scene asks for and covtrace replaces or ignores; each is warned of,
-    too.
+    `warnings` tells what the scene asks for and covtrace replaces or ignores, and what stands in for
+    a camera or lights that it has not; each is warned of, too, the latter where it is rendered.
     """
 
     def __init__(self, file: str | os.PathLike[str],
@@ -43,7 +43,8 @@ class Scene:
 
     def _take(self, description: _covtrace.SceneDescription) -> None:
         self._description = description
-        for text in description.warnings:
+        # Stand-ins for a camera or lights are warned of when they are used: options may replace them.
+        for text in description.told:
             warnings.warn(text, SceneWarning, stacklevel=3)
 
     @property

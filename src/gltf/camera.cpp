@@ -116,8 +116,9 @@ void set_view(const Document& document, const std::vector<PlacedNode>& nodes, co
     const auto first = std::find_if(nodes.begin(), nodes.end(), has_camera);
     if (first == nodes.end()) {
         frame(document, bounds, scene);
-        log.add(document.place(""),
-                "the scene has no camera; one that sees all of it from the front takes its place");
+        scene.no_camera = {
+            document.place(""),
+            "the scene has no camera; one that sees all of it from the front takes its place"};
     } else {
         read_camera(document, *first, scene);
         const auto others = std::count_if(first + 1, nodes.end(), has_camera);

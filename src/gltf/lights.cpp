@@ -115,23 +115,4 @@ void scale_lights(const Document& document, const Bounds3& bounds, SceneDescript
                 " lux, physical units: candela and lux are divided by 683 lm/W");
 }
 
-void add_default_lights(const Document& document, const Transform& camera_to_world,
-                        SceneDescription& scene, WarningLog& log) {
-    constexpr float kSky = 0.4f;
-    LightDescription sky, key;
-    sky.where = key.where = document.place("");
-    InfiniteLight uniform;
-    uniform.radiance = Rgb(kSky);
-    sky.value = uniform;
-    DistantLight distant;
-    distant.radiance = Rgb((1 - kSky) * kPi);
-    distant.direction = normalize(camera_to_world.vector(normalize(Vec3{-0.5f, 0.7f, -0.6f})));
-    key.value = distant;
-    scene.lights.push_back(sky);
-    scene.lights.push_back(key);
-    log.add(document.place(""),
-            "the scene has no lights (KHR_lights_punctual, or an emissive strength above 1); a "
-            "grey sky and a key light from the upper left of the camera light it");
-}
-
 }  // namespace covtrace::gltf

@@ -21,9 +21,4 @@ void scale_lights(const Document& document, const Bounds3& bounds, SceneDescript
                   WarningLog& log);
 inline constexpr float kPhysicalLux = 100;
 
-/// A uniform sky and a key light from the upper left behind the camera, so that a white surface
-/// that faces the key has about the radiance 1. `camera_to_world` as in CameraDescription.
-void add_default_lights(const Document& document, const Transform& camera_to_world,
-                        SceneDescription& scene, WarningLog& log);
-
 }  // namespace covtrace::gltf

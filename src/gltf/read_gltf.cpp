@@ -195,7 +195,10 @@ SceneDescription read(const std::filesystem::path& file, const ReadOptions& opti
     }
     scale_lights(document, assembler.bounds(), scene, log);
     if (!assembler.has_lamps())
-        add_default_lights(document, scene.camera.camera_to_world.start(), scene, log);
+        scene.no_lights = {document.place(""),
+                           "the scene has no lights (KHR_lights_punctual, or an emissive strength "
+                           "above 1); a grey sky and a key light from the upper left of the camera "
+                           "light it"};
     scene.warnings = log.take();
     scene.content_hash = document.content_hash;
     scene.files = {document.files.begin(), document.files.end()};

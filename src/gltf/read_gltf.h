@@ -19,7 +19,8 @@ bool is_gltf(const std::filesystem::path& file);
 
 /// Reads a scene. Nodes that animations move are placed where they are at both ends of
 /// `options.shutter`, in seconds of the animations; at time 0 without it. Meshes are read, image
-/// files are not.
+/// files are not. What the file has no camera or lights for is left to `complete`
+/// (scene/defaults.h).
 ///
 /// Errors: Error(scene) as `file:line:column: …` for text that is no JSON, and as `file: place in
 /// the document: what is wrong; what was expected` for the rest; Error(limit) where the scene is

@@ -13,7 +13,8 @@
 
 namespace covtrace {
 
-/// Reads a scene and every file it includes; meshes too, but no images. Errors: Error(scene) as
+/// Reads a scene and every file it includes; meshes too, but no images. Without lights it is left to
+/// `complete` (scene/defaults.h). Errors: Error(scene) as
 /// `file:line:column: what is wrong; what was expected`, Error(limit) where the scene is too large,
 /// Error(io) where reading fails in the middle. No other exception leaves.
 SceneDescription read_pbrt(const std::filesystem::path& file, const ReadOptions& options = {});

@@ -322,6 +322,26 @@ void SceneBuilder::finish(const SourceLocation& end) {
     for (size_t i = 0; i < scene_.area_lights.size(); ++i)
         if (!used_area_lights_.contains(static_cast<int>(i)))
             context_.log.add(scene_.area_lights[i].where, "the area light has no shape");
+    note_what_is_missing(end);
+}
+
+void SceneBuilder::note_what_is_missing(const SourceLocation& end) {
+    const SourceLocation file{end.file, 0, 0};
+    if (!view_.camera.where.file)
+        scene_.no_camera = {file,
+                            "the scene has no Camera; as in pbrt-v4, one of 90 degrees at the "
+                            "origin looks along +z"};
+    const bool has_emitters =
+        std::any_of(scene_.shapes.begin(), scene_.shapes.end(),
+                    [](const ShapeDescription& s) { return s.area_light >= 0; }) ||
+        std::any_of(scene_.media.begin(), scene_.media.end(),
+                    [](const MediumDescription& m) { return !is_black(m.emission); });
+    const bool is_empty = scene_.shapes.empty() && scene_.instances.empty();
+    if (!is_empty && scene_.lights.empty() && !has_emitters)
+        scene_.no_lights = {file,
+                            "the scene has no lights, and pbrt-v4 renders it black; a grey sky and "
+                            "a key light from the upper left of the camera light it, unless an "
+                            "environment is given (0 is black)"};
 }
 
 }  // namespace covtrace

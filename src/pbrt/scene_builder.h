@@ -92,6 +92,8 @@ class SceneBuilder {
     bool resolve_alpha(PendingShape& pending);
     /// Leaves out all media, for integrators that see none.
     void drop_media();
+    /// Notes where the file has no camera, or nothing that emits light.
+    void note_what_is_missing(const SourceLocation& end);
     MediumId medium_named(const std::string& name, const SourceLocation& where) const;
 
     SceneDescription& scene_;

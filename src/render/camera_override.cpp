@@ -39,6 +39,7 @@ void override_camera(const CameraOverride& camera, SceneDescription& scene) {
     scene.camera = c;
     // What is up must not change with the direction of view.
     scene.up = nearest_axis(up);
+    scene.no_camera.reset();
     std::ostringstream description;
     description.precision(9);
     description << "eye " << text(camera.eye) << " target " << text(camera.target) << " fov "

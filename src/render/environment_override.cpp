@@ -64,6 +64,7 @@ void replace_environment(const EnvironmentOverride& environment, SceneDescriptio
             break;
         }
     std::erase_if(scene.lights, [](LightDescription& light) { return infinite(light) != nullptr; });
+    scene.no_lights.reset();
     if (!environment.image && is_black(environment.radiance)) return;
     InfiniteLight light;
     light.image = environment.image;

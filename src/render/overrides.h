@@ -43,9 +43,9 @@ struct SceneOverrides {
     static constexpr double kLeastOfLens = 1e-9;
 };
 
-/// Applies all of them. Throws Error(usage) for a crop outside the frame, a camera that looks
-/// nowhere, and for a rotation or scale of infinite lights that aren't there; Error(limit) for
-/// sizes that no machine holds.
+/// Applies all of them, and completes the scene (scene/defaults.h). Throws Error(usage) for a crop
+/// outside the frame, a camera that looks nowhere, and for a rotation or scale of infinite lights
+/// that aren't there; Error(limit) for sizes that no machine holds.
 void apply(const SceneOverrides& overrides, SceneDescription& scene);
 
 /// The pixels that a description asks for: its crop window or pixel bounds within the frame.

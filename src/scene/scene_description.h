@@ -392,8 +392,12 @@ struct SceneDescription {
     Warnings warnings;
     /// Hash of all bytes read for the description: scene files and meshes.
     uint64_t content_hash = 0;
-    /// What takes the place of the file's camera and environment, as text for a render's identity;
-    /// empty: its own.
+    /// Warnings of a file that has no camera, or no light at all: `complete` gives them out with
+    /// the defaults that it puts there. Empty where the file has one, or where another one took the
+    /// place.
+    std::optional<Warning> no_camera, no_lights;
+    /// Camera and environment in place of the file's, as text for a render's identity; empty: its
+    /// own.
     std::string camera_override, environment_override;
     /// All files that were read for the scene or that it names: scenes, meshes, spectra, lenses,
     /// buffers, images. Each once, by name.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gltf/read_gltf.h"
+#include "scene/defaults.h"
 #include "pbrt_test_support.h"
 
 namespace covtrace::test {
@@ -138,9 +139,12 @@ inline GltfFile wave_file(int n) {
     return file;
 }
 
+/// The scene with stand-ins for a camera or lights.
 inline SceneDescription read_text(const std::string& text, const ReadOptions& options = {}) {
     const TemporaryFolder folder;
-    return read_gltf(folder.write("t.gltf", text), options);
+    SceneDescription scene = read_gltf(folder.write("t.gltf", text), options);
+    complete(scene);
+    return scene;
 }
 inline SceneDescription read(const GltfFile& file, const ReadOptions& options = {}) {
     return read_text(file.text(), options);
