@@ -48,7 +48,7 @@ void add_method_options(CLI::App* c, RenderArguments& a) {
         ->option_text("N");
 }
 
-/// What is shown, and what of the scene something else takes the place of.
+/// The scene's files, the part of it that is shown, and the values that replace its own.
 void add_scene_options(CLI::App* c, RenderArguments& a) {
     add_override_options(c, a.overrides);
     c->add_option_function<std::string>(
@@ -63,7 +63,7 @@ void add_scene_options(CLI::App* c, RenderArguments& a) {
         ->option_text("DIR");
 }
 
-/// What is written beside the image, and what is told meanwhile.
+/// The files beside the image, and the messages meanwhile.
 void add_output_options(CLI::App* c, RenderArguments& a) {
     c->add_option("--png", a.png, "also an 8-bit sRGB picture, cut at white")
         ->check(not_empty())
@@ -83,7 +83,7 @@ void add_output_options(CLI::App* c, RenderArguments& a) {
     c->add_flag("--quiet", a.quiet, "errors only");
 }
 
-/// What the machine has to give.
+/// Limits of the machine's processors and memory.
 void add_machine_options(CLI::App* c, RenderArguments& a) {
     add_whole(c, "--threads", a.threads, 1, 4096, "worker threads (default: all cores)");
     add_choice(c, "--isa", a.isa, "instruction set of the ray tracing");

@@ -12,8 +12,7 @@ import numpy
 from numpy.typing import ArrayLike, NDArray
 
 from . import _covtrace
-from .arguments import text_of
-from .errors import UsageError
+from .arguments import refuse, text_of
 
 Array = NDArray[numpy.float32]
 
@@ -134,9 +133,10 @@ class Image:
         brightened by `exposure` stops and shown by `view`, as by the options of `covtrace render`.
         `UsageError`, a `ValueError`, for other endings."""
         try:
-            self._planes.write(os.fspath(file), float(exposure), text_of("view", view))
-        except (TypeError, OverflowError) as e:
-            raise UsageError(f"exposure is {exposure!r}; expected a number of stops") from e
+            stops = float(exposure)
+        except (TypeError, ValueError, OverflowError):
+            refuse("exposure", exposure, "a number of stops")
+        self._planes.write(os.fspath(file), stops, text_of("view", view))
 
     def describe(self) -> str:
         """Several lines for people: windows, channels with their ranges, metadata."""

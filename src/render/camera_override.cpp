@@ -37,7 +37,7 @@ void override_camera(const CameraOverride& camera, SceneDescription& scene) {
     c.shutter_close = old.shutter_close;
     c.medium = old.medium;
     scene.camera = c;
-    // What is up must not change with the direction of view.
+    // The direction that is up must not change with the direction of view.
     scene.up = nearest_axis(up);
     scene.no_camera.reset();
     std::ostringstream description;

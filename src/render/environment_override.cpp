@@ -39,7 +39,7 @@ void require_infinite(SceneDescription& scene, const char* option) {
                     "the scene has no light from all around; expected an environment, too");
 }
 
-/// What takes the place of the scene's own. An image is known by its content, not by its name.
+/// The override as text for a render's identity. An image is known by its content, not its name.
 std::string text(const SceneOverrides& overrides) {
     std::ostringstream out;
     out.precision(9);

@@ -131,7 +131,7 @@ class WrongCommandLines(CliTest):
         self.assertEqual(result.code, DONE, result)
 
     def test_every_option_may_be_given_twice(self):
-        # What is missing is told after the command line was understood.
+        # Missing files are told after the command line was understood.
         values = {"WxH": "8x8", "x,y": "1,1", "x0,y0,x1,y1": "0,0,4,4", "T0,T1": "0,1", "LIST": "none", "DIR": ".", "HOST:PORT": "localhost:1",
                   "SIZE": "1G", "FILE|COLOUR": "1", "TEXT": "eye 0,0,0 target 0,0,1 fov 40", "STOPS": "1", "DEGREES": "1", "K/N": "1/2", "x,y,sample": "1,1,0", "N": "1", "T": "1s", "FILE": "f"}
         given = {"--samples": "4096"}

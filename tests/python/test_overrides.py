@@ -1,0 +1,60 @@
+"""Keywords of covtrace.render by which something else takes the place of the scene's camera and light."""
+
+import pathlib
+import tempfile
+import unittest
+
+import numpy
+
+import covtrace
+import scenes
+
+
+class Overrides(unittest.TestCase):
+    def test_environment(self):
+        scene = covtrace.Scene.from_string(scenes.SKY)
+
+        def mean(**arguments):
+            return covtrace.render(scene, method="uniform", spp=1, **arguments).rgb.mean((0, 1))
+
+        numpy.testing.assert_allclose(mean(), 3, rtol=1e-4)
+        numpy.testing.assert_allclose(mean(environment=0.5), 0.5, rtol=1e-4)
+        numpy.testing.assert_allclose(mean(environment=(1, 2, 4), environment_scale=2), (2, 4, 8), rtol=1e-4)
+        numpy.testing.assert_allclose(mean(environment_scale=0.5, environment_rotation=90), 1.5, rtol=1e-4)
+        with tempfile.TemporaryDirectory() as folder:
+            sky = pathlib.Path(folder) / "sky.exr"
+            covtrace.Image.from_arrays(numpy.full((4, 8, 3), 7.0)).write(sky)
+            numpy.testing.assert_allclose(mean(environment=sky), 7, rtol=1e-4)
+            numpy.testing.assert_allclose(mean(environment=str(sky), environment_rotation=-30), 7, rtol=1e-4)
+
+    def test_camera(self):
+        scene = covtrace.Scene.from_string(scenes.SKY)
+
+        def sees_ball(**camera):
+            image = covtrace.render(scene, method="uniform", spp=1, camera=camera, max_depth=0)
+            return bool((image["Z"][2:4, 3:5] > 1).all())  # 0 is the sky
+
+        self.assertTrue(sees_ball(eye=(0, 0, 0), target=(0, 0, -9), fov=10))
+        self.assertFalse(sees_ball(eye=(0, 0, 0), target=(0, 0, 9), fov=10))
+        self.assertTrue(sees_ball(eye=(0, 9, -9), target=(0, 0, -9), fov=10, up=(1, 0, 0)))
+
+    def test_errors(self):
+        scene = covtrace.Scene.from_string(scenes.SKY)
+        for wrong in (
+                {"camera": "eye"}, {"camera": {"eye": (0, 0, 1), "fov": 40}},
+                {"camera": {"eye": (0, 0, 1), "target": (0, 0, 1), "fov": 40}},
+                {"camera": {"eye": (0, 0, 1), "target": (0, 0, 0), "fov": 180}},
+                {"camera": {"eye": (0, 0, 1), "target": (0, 0, 0), "fov": float("nan")}},
+                {"camera": {"eye": (0, 0, 1), "target": (0, 0, 0), "fov": 40, "up": (0, 0, 1)}},
+                {"camera": {"eye": (0, 0, 1), "target": (0, 0), "fov": 40}},
+                {"camera": {"eye": (0, 0, 1), "target": (0, 0, 0), "fov": 40, "roll": 1}},
+                {"environment": "no/such.exr"}, {"environment": -1}, {"environment": (1, 2)},
+                {"environment": (1, 2, -3)}, {"environment": float("nan")},
+                {"environment_rotation": "much"}, {"environment_rotation": float("inf")},
+                {"environment_scale": 0}, {"environment_scale": "x"}):
+            with self.subTest(wrong), self.assertRaises(covtrace.UsageError):
+                covtrace.render(scene, **wrong)
+
+
+if __name__ == "__main__":
+    unittest.main()
