@@ -20,7 +20,7 @@ FoundDenoiser find(const DenoiserArguments& a) {
     std::error_code ignored;
     const fs::path folder = fs::read_symlink("/proc/self/exe", ignored).parent_path();
     return find_denoiser(
-        {a.choice,
+        {a.choice.value_or(DenoiserChoice::automatic),
          a.library,
          {folder / "denoiser", folder / "../denoiser", folder / "../lib/covtrace/denoiser"}});
 }

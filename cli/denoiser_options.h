@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 #include "denoiser/find_denoiser.h"
@@ -10,8 +11,8 @@
 namespace covtrace::cli {
 
 struct DenoiserArguments {
-    DenoiserChoice choice = DenoiserChoice::automatic;
-    std::string library;  ///< file of the library; empty: looked for
+    std::optional<DenoiserChoice> choice;  ///< empty: automatic
+    std::string library;                   ///< file of the library; empty: looked for
 };
 
 /// Adds the options to a command; `arguments` must outlive the parser.

@@ -62,6 +62,8 @@ void write_text(const std::string& text, const fs::path& path) {
 
 void parse_texts(RenderArguments& a) {
     if (!a.seconds.empty()) a.options.seconds = parse_duration("--time", a.seconds);
+    if (a.preset && !a.denoiser.choice && !values_of(*a.preset).denoises)
+        a.denoiser.choice = DenoiserChoice::none;
     if (a.quiet && a.progress == ProgressStyle::automatic) a.progress = ProgressStyle::none;
     a.options.emitters_apart = names(a.layers, "inview") || names(a.tev_layers, "inview");
     for (const char* layer : {"featurealbedo", "featureN"})
@@ -142,6 +144,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
         a.scene, {{a.search_paths.begin(), a.search_paths.end()}, a.overrides.shutter});
     const double loaded = monitor.elapsed();
     apply(a.overrides, description);
+    if (a.preset) apply(*a.preset, description, a.options);
     const bool is_shard = a.film.shard.has_value();
     const fs::path output = is_shard ? fs::path() : image_path(a, description);
     check_outputs(a, output, description);

@@ -12,6 +12,7 @@ namespace {
 
 /// How much is sampled, and how the image is made of it.
 void add_method_options(CLI::App* c, RenderArguments& a) {
+    add_choice(c, "--preset", a.preset, "4, 32 or 512 samples; other options go first");
     add_choice(c, "--method", a.options.method, "plain, the thesis' method, or hybrid (default)");
     add_positive(c, "--spp", a.options.spp, 1 << 30,
                  "average samples per pixel (default: the scene's)");

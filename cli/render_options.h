@@ -18,6 +18,7 @@
 #include "image/layer_names.h"
 #include "render/options.h"
 #include "render/overrides.h"
+#include "render/preset.h"
 #include "texture/texture.h"
 
 namespace covtrace::cli {
@@ -26,6 +27,7 @@ inline constexpr size_t kNoMemoryLimit = std::numeric_limits<size_t>::max();
 
 struct RenderArguments {
     std::string scene, output, png, stats;
+    std::optional<Preset> preset;
     std::optional<InstructionSet> isa;
     std::string seconds, tev;
     FilmArguments film;

@@ -38,11 +38,20 @@ RenderOptions render_options(const py::dict& o) {
     return r;
 }
 
+std::optional<Preset> preset(const py::dict& o) {
+    if (!is_given(o, "preset")) return std::nullopt;
+    return choice<Preset>("preset", value_of<std::string>(o, "preset", "a text"));
+}
+
 DenoiserSearch denoiser_search(const py::dict& o) {
     namespace fs = std::filesystem;
     DenoiserSearch search;
-    search.choice =
-        choice<DenoiserChoice>("denoiser", value_of<std::string>(o, "denoiser", "a text"));
+    const std::optional<Preset> bundle = preset(o);
+    if (is_given(o, "denoiser"))
+        search.choice =
+            choice<DenoiserChoice>("denoiser", value_of<std::string>(o, "denoiser", "a text"));
+    else if (bundle && !values_of(*bundle).denoises)
+        search.choice = DenoiserChoice::none;
     if (is_given(o, "denoiser_library"))
         search.library = value_of<fs::path>(o, "denoiser_library", "a file's path");
     Dl_info module{};

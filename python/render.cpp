@@ -103,15 +103,16 @@ std::vector<std::string> texts_of(const Warnings& warnings) {
 
 /// Builds the scene and renders it, without Python.
 Rendered render_description(SceneDescription description, RenderOptions options,
-                            const DenoiserSearch& search, const SceneOverrides& overrides,
-                            int threads, const std::string& isa, size_t texture_bytes,
-                            Monitor& monitor) {
+                            const std::optional<Preset>& bundle, const DenoiserSearch& search,
+                            const SceneOverrides& overrides, int threads, const std::string& isa,
+                            size_t texture_bytes, Monitor& monitor) {
     const ThreadLimit limit(threads);
     FoundDenoiser denoiser;
     if (options.method == Method::hybrid) denoiser = find_denoiser(search);
     options.denoiser = denoiser.denoiser;
     const auto told = std::ptrdiff_t(description.warnings.size());
     apply(overrides, description);
+    if (bundle) apply(*bundle, description, options);
     // Stand-ins for a camera or lights are known only now.
     Warnings warnings(description.warnings.begin() + told, description.warnings.end());
     RenderScene scene(std::move(description), isa, texture_bytes);
@@ -187,6 +188,7 @@ py::dict statistics_dict(const Rendered& r, double elapsed) {
 
 py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
     const RenderOptions options = render_options(o);
+    const std::optional<Preset> bundle = preset(o);
     const DenoiserSearch search = denoiser_search(o);
     const SceneOverrides overrides = scene_overrides(o);
     const int threads = value_of<int>(o, "threads", "a whole number");
@@ -213,8 +215,9 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
     auto work = std::make_unique<Work>(monitor);
     std::thread worker([&, description = scene]() mutable {
         try {
-            rendered = render_description(std::move(description), options, search, overrides,
-                                          threads, isa_name(isa), texture_bytes, monitor);
+            rendered =
+                render_description(std::move(description), options, bundle, search, overrides,
+                                   threads, isa_name(isa), texture_bytes, monitor);
         } catch (...) {
             failure = std::current_exception();
         }

@@ -37,6 +37,7 @@ class Cancel(Protocol):
 
 
 def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
+           preset: Literal["draft", "preview", "final"] | None = None,
            method: Literal["uniform", "covariance", "hybrid"] = "hybrid",
            spp: float | None = None, time: float | None = None, error: float | None = None,
            cov_spp: float | None = None, max_spp: int | None = None, max_depth: int | None = None,
@@ -46,7 +47,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            texture_bandwidth: Literal["own", "highest"] = "own",
            filter: Literal["verified", "matched", "thesis"] = "verified", progressive: bool = False,
            even_counts: bool = False,
-           denoiser: Literal["auto", "oidn", "none"] = "auto",
+           denoiser: Literal["auto", "oidn", "none"] | None = None,
            denoiser_library: str | os.PathLike[str] | None = None,
            resolution: tuple[int, int] | None = None,
            crop: tuple[int, int, int, int] | None = None,
@@ -64,14 +65,16 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     """Renders a scene into an `Image`.
 
     scene: path of a pbrt-v4 or glTF 2.0 file, `Scene`, or `SceneBuilder`.
+    preset: "draft" (4 samples, a depth of at most 4, no denoiser), "preview" (32 samples, a depth of
+        at most 8) or "final" (512 samples), where the other arguments leave these open.
     method: "uniform" (the plain path tracer), "covariance" (the method of Belcour
         2012, section 5.1) or "hybrid".
     spp, time, error: budgets: average samples per pixel (default: the scene's), seconds, estimated
         sqrt(relMSE); of several the first one stops.
     k: with density "thesis", one more budget: k sqrt|S| samples in each pixel, whatever their mean;
         `image.statistics["k"]` tells it where another budget decided.
-    denoiser, denoiser_library: whether "hybrid" has Open Image Denoise as one more filter, "auto" where
-        it is found; `image.statistics["denoiser"]` tells. A warning where it is there but unusable.
+    denoiser, denoiser_library: whether "hybrid" has Open Image Denoise as one more filter, "auto" (the
+        default, but for drafts) where it is found; `image.statistics["denoiser"]` tells. A warning where it is there but unusable.
     resolution (w, h), crop (x0, y0, x1, y1), shutter (t0, t1), focus, fstop: in place of the scene's.
         The nodes of a glTF file are placed when it is read: give `shutter` with the file's path, or
         to `Scene`.
@@ -89,7 +92,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     Python's lock is released while it renders. An exception from `progress`, and Ctrl-C, end the
     render and come out of this call. Raises the classes of `covtrace.errors`.
     """
-    options = {"method": method, "spp": spp, "time": time, "error": error, "cov_spp": cov_spp,
+    options = {"preset": preset, "method": method, "spp": spp, "time": time, "error": error, "cov_spp": cov_spp,
                "max_spp": max_spp, "max_depth": max_depth, "density": density, "k": k,
                "occlusion": occlusion, "voxels": voxels, "brdf_covariance": brdf_covariance,
                "texture_bandwidth": texture_bandwidth, "filter": filter,

@@ -27,6 +27,13 @@ class Overrides(unittest.TestCase):
             numpy.testing.assert_allclose(mean(environment=sky), 7, rtol=1e-4)
             numpy.testing.assert_allclose(mean(environment=str(sky), environment_rotation=-30), 7, rtol=1e-4)
 
+    def test_preset(self):
+        scene = covtrace.Scene.from_string(scenes.SKY)
+        self.assertEqual(covtrace.render(scene, preset="draft").statistics["spp"], 4)
+        self.assertEqual(covtrace.render(scene, preset="final", spp=2).statistics["spp"], 2)
+        with self.assertRaises(covtrace.UsageError):
+            covtrace.render(scene, preset="best")
+
     def test_camera(self):
         scene = covtrace.Scene.from_string(scenes.SKY)
 
