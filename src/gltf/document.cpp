@@ -130,9 +130,9 @@ std::string_view json_chunk(std::string_view bytes, const std::string& name) {
 /// A binary file with another JSON chunk: its header's lengths are those of the new one.
 std::string with_json_chunk(std::string_view bytes, std::string_view old_json, std::string json) {
     const auto word = [](size_t v) {
-        const auto word = static_cast<uint32_t>(v);
-        std::string s(sizeof word, '\0');
-        std::memcpy(s.data(), &word, sizeof word);
+        const auto bits = static_cast<uint32_t>(v);
+        std::string s(sizeof bits, '\0');
+        std::memcpy(s.data(), &bits, sizeof bits);
         return s;
     };
     json.resize((json.size() + 3) / 4 * 4, ' ');

@@ -148,10 +148,11 @@ TEST(GltfMeshopt, NamesTheLibraryThatAStreamNeeds) {
     GltfFile newer = file;
     newer.buffer[at] = char(0xa1);
     const std::string error = gltf_error(newer);
-    if (MESHOPTIMIZER_VERSION < 230)
+    if (MESHOPTIMIZER_VERSION < 230) {
         EXPECT_EQ(error.substr(0, error.find(';')),
                   "t.gltf: bufferViews[0].extensions.KHR_meshopt_compression: version 1 of its "
                   "attributes needs libmeshoptimizer 0.23");
+    }
     // Uncompressed bytes serve where the file has them.
     const GltfFile plain = wave_file(5);
     const json& view = plain.root["bufferViews"][0];
