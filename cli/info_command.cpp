@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/scene_input.h"
 #include "image/image.h"
 #include "render/describe_state.h"
 #include "render/film_file.h"
@@ -16,16 +17,17 @@ namespace covtrace::cli {
 void add_info(CLI::App& app, Invocation& invocation) {
     auto file = std::make_shared<std::string>();
     CLI::App* c = app.add_subcommand("info", "Tell what a scene, image or film holds");
-    c->add_option("FILE", *file, "a scene, an image or a film")->required()->option_text(" ");
+    c->add_option("FILE", *file, "a scene or -, an image or a film")->required()->option_text(" ");
     c->callback([file, &invocation] {
         invocation.action = [file] {
             const std::filesystem::path path = *file;
-            if (is_film(path)) {
+            const bool is_piped = *file == kStandardInput;
+            if (!is_piped && is_film(path)) {
                 fmt::print("{}", describe(read_film(path)));
                 return 0;
             }
-            if (is_scene_file(path)) {
-                SceneDescription scene = read_scene_file(path);
+            if (is_piped || is_scene_file(path)) {
+                SceneDescription scene = read_scene(*file);
                 complete(scene);
                 fmt::print("{}", summarize(scene));
                 return 0;

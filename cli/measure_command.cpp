@@ -10,6 +10,7 @@
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/override_options.h"
+#include "cli/scene_input.h"
 #include "core/parallel.h"
 #include "geometry/instruction_set.h"
 #include "laboratory/filter_change.h"
@@ -17,7 +18,6 @@
 #include "laboratory/prediction.h"
 #include "occluders/voxel_grid.h"
 #include "render/overrides.h"
-#include "render/scene_file.h"
 #include "render/session.h"
 
 namespace covtrace::cli {
@@ -144,7 +144,7 @@ int measure_pixel(MeasureArguments a) {
     const ThreadLimit threads(a.threads);
     const std::array<int, 2> pixel = parse_pixel("--pixel", a.pixel);
 
-    SceneDescription description = read_scene_file(a.scene, {{}, a.overrides.shutter});
+    SceneDescription description = read_scene(a.scene, {{}, a.overrides.shutter});
     apply(a.overrides, description);
     const int width = description.film.width, height = description.film.height;
     if (pixel[0] < 0 || pixel[1] < 0 || pixel[0] >= width || pixel[1] >= height)
@@ -195,7 +195,7 @@ int measure_pixel(MeasureArguments a) {
 void add_measure(CLI::App& app, Invocation& invocation) {
     auto a = std::make_shared<MeasureArguments>();
     CLI::App* c = app.add_subcommand("measure", "Hold a pixel's prediction against measurement");
-    c->add_option("SCENE", a->scene, "the scene, a pbrt-v4 or glTF 2.0 file")
+    c->add_option("SCENE", a->scene, "the scene: a pbrt-v4 or glTF 2.0 file, or -")
         ->required()
         ->option_text(" ");
     c->add_option("--pixel", a->pixel, "the pixel whose middle is looked through")

@@ -24,6 +24,7 @@
 #include "cli/render_outputs.h"
 #include "cli/render_statistics.h"
 #include "cli/sample_description.h"
+#include "cli/scene_input.h"
 #include "core/memory_limit.h"
 #include "core/parallel.h"
 #include "image/image.h"
@@ -31,7 +32,6 @@
 #include "image/write_image.h"
 #include "preview/tev_client.h"
 #include "render/render_memory.h"
-#include "render/scene_file.h"
 #include "render/session.h"
 
 namespace covtrace::cli {
@@ -123,13 +123,40 @@ RenderScene& kept_scene(SceneDescription description, const RenderArguments& a) 
     return *kept;
 }
 
+/// Refuses what the processes of mpirun cannot do.
+void check_shared(const RenderArguments& a) {
+    if (a.film.shard)
+        throw Error(ErrorKind::usage, "--shard: the processes of mpirun share the tiles already");
+    if (a.scene == kStandardInput)
+        throw Error(
+            ErrorKind::usage,
+            "SCENE: only one of the processes of mpirun has standard input; expected a file");
+}
+
+/// Tells what was rendered, and what went wrong with it.
+void tell_outcome(const RenderResult& result, const RenderArguments& a, const fs::path& output,
+                  const Monitor& monitor) {
+    warn_of_rejected(result.statistics);
+    warn_of_replaced(result.image);
+    if (result.is_below_least)
+        say("warning: --time: the time was over before every pixel had the samples that an image "
+            "needs\n");
+    if (a.quiet) return;
+    warn_of_failed_denoiser(result.image);
+    say("{}: {:.4g} samples per pixel{} in {:.1f} s\n",
+        a.film.shard ? a.film.film : output.string(), result.statistics.samples_per_pixel,
+        result.statistics.density_factor
+            ? fmt::format(" (k = {:.4g})", *result.statistics.density_factor)
+            : "",
+        monitor.elapsed());
+}
+
 /// Renders a scene. `ranks`: the processes that share the work; may be null.
 int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLimit& threads,
                  const Ranks* ranks) {
     const bool is_first = !ranks || ranks->index() == 0;
     if (!is_first) be_silent(a);
-    if (ranks && a.film.shard)
-        throw Error(ErrorKind::usage, "--shard: the processes of mpirun share the tiles already");
+    if (ranks) check_shared(a);
     std::array<std::string, 2> tev_address;
     if (!a.tev.empty()) tev_address = parse_address("--tev", a.tev);
     ProgressLine progress(a.progress);
@@ -140,8 +167,8 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     const MemoryLimit memory(a.max_memory);
 
     // Read the scene, and check everything before hours of rendering
-    SceneDescription description = read_scene_file(
-        a.scene, {{a.search_paths.begin(), a.search_paths.end()}, a.overrides.shutter});
+    SceneDescription description =
+        read_scene(a.scene, {{a.search_paths.begin(), a.search_paths.end()}, a.overrides.shutter});
     const double loaded = monitor.elapsed();
     apply(a.overrides, description);
     if (a.preset) apply(*a.preset, description, a.options);
@@ -200,19 +227,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
         write_text(statistics_json(scene, result, denoiser, monitor).dump(2) + "\n", a.stats);
     if (result.complete || (is_shard && !monitor.cancelled()))
         progress.done(result.statistics.samples_per_pixel, monitor.elapsed(), monitor.error());
-    warn_of_rejected(result.statistics);
-    warn_of_replaced(result.image);
-    if (result.is_below_least)
-        say("warning: --time: the time was over before every pixel had the samples that an image "
-            "needs\n");
-    if (!a.quiet) warn_of_failed_denoiser(result.image);
-    if (!a.quiet)
-        say("{}: {:.4g} samples per pixel{} in {:.1f} s\n",
-            is_shard ? a.film.film : output.string(), result.statistics.samples_per_pixel,
-            result.statistics.density_factor
-                ? fmt::format(" (k = {:.4g})", *result.statistics.density_factor)
-                : "",
-            monitor.elapsed());
+    tell_outcome(result, a, output, monitor);
     // A viewer that still takes the last image may do so; all else is done.
     if (viewer) {
         viewer->finish(std::max(0.25, 0.01 * monitor.elapsed()));

@@ -108,7 +108,7 @@ void add_machine_options(CLI::App* c, RenderArguments& a) {
 }  // namespace
 
 void add_render_options(CLI::App* c, RenderArguments& a) {
-    c->add_option("SCENE", a.scene, "the scene: a pbrt-v4 or glTF 2.0 file")
+    c->add_option("SCENE", a.scene, "the scene: a pbrt-v4 or glTF 2.0 file, or -")
         ->required()
         ->option_text(" ");
     c->add_option("-o,--output", a.output, "the image: .exr .png .pfm .hdr (default: film's)")

@@ -203,15 +203,16 @@ void Document::refuse(const std::string& path, const std::string& text) const {
     throw Error(ErrorKind::scene, place(path), text);
 }
 
-Document read_document(const fs::path& file, const std::vector<fs::path>& search_paths,
-                       WarningLog& log) {
+namespace {
+
+Document document_of(std::string bytes, const std::string& name, const fs::path& folder,
+                     const std::vector<fs::path>& search_paths, SceneFiles& files,
+                     WarningLog& log) {
     Document document;
-    document.name = file.string();
-    document.folder = file.parent_path();
+    document.name = name;
+    document.folder = folder;
     document.roots = {document.folder};
     document.roots.insert(document.roots.end(), search_paths.begin(), search_paths.end());
-    SceneFiles files(document.folder, search_paths, log);
-    std::string bytes = files.read(file, {});
     if (bytes.size() > kLargestFile)
         throw Error(ErrorKind::limit, document.name + ": the file is larger than 4 GiB");
     document.bytes = bytes.size();
@@ -223,6 +224,22 @@ Document read_document(const fs::path& file, const std::vector<fs::path>& search
     decode(document, log);
     document.numbers = budget_of_numbers(document.bytes);
     return document;
+}
+
+}  // namespace
+
+Document read_document(const fs::path& file, const std::vector<fs::path>& search_paths,
+                       WarningLog& log) {
+    SceneFiles files(file.parent_path(), search_paths, log);
+    return document_of(files.read(file, {}), file.string(), file.parent_path(), search_paths, files,
+                       log);
+}
+
+Document parse_document(const std::string& bytes, const std::string& name, const fs::path& folder,
+                        const std::vector<fs::path>& search_paths, WarningLog& log) {
+    SceneFiles files(folder, search_paths, log);
+    files.add_to_hash(hash_of(bytes));
+    return document_of(bytes, name, folder, search_paths, files, log);
 }
 
 fs::path find_file(const Document& document, const std::string& uri, const std::string& place) {

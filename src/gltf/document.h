@@ -36,6 +36,11 @@ struct Document {
 Document read_document(const std::filesystem::path& file,
                        const std::vector<std::filesystem::path>& search_paths, WarningLog& log);
 
+/// The same of a file in memory, whose buffers are in `folder`.
+Document parse_document(const std::string& bytes, const std::string& name,
+                        const std::filesystem::path& folder,
+                        const std::vector<std::filesystem::path>& search_paths, WarningLog& log);
+
 /// The existing file that a URI means, percent signs decoded: in the scene's folder or a search
 /// path. Errors: Error(scene) where it is missing, absolute, has a scheme, or leaves all of them.
 std::filesystem::path find_file(const Document& document, const std::string& uri,

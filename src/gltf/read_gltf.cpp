@@ -166,11 +166,9 @@ class SceneAssembler {
     bool has_lamps_ = false;
 };
 
-SceneDescription read(const std::filesystem::path& file, const ReadOptions& options) {
-    WarningLog log;
-    const Document document = read_document(file, options.search_paths, log);
+SceneDescription read(const Document& document, const ReadOptions& options, WarningLog& log) {
     SceneDescription scene;
-    scene.name = file.stem().string();
+    scene.name = std::filesystem::path(document.name).stem().string();
     scene.up = Vec3{0, 1, 0};
     // Depth and samples are ours, as a format for interchange says nothing of quality: enough for
     // glass, and for a clean image.
@@ -205,6 +203,21 @@ SceneDescription read(const std::filesystem::path& file, const ReadOptions& opti
     return scene;
 }
 
+/// Runs the reader and turns the exceptions of the standard library for sizes beyond reach into the
+/// reader's own error.
+template <typename Read>
+SceneDescription with_limits(const std::string& name, Read read_it) {
+    try {
+        return read_it();
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::limit, name + ": not enough memory to read the scene");
+    } catch (const std::length_error&) {
+        throw Error(ErrorKind::limit, name + ": the scene is too large to read");
+    } catch (const std::filesystem::filesystem_error& e) {
+        throw Error(ErrorKind::scene, name + ": " + e.what());
+    }
+}
+
 }  // namespace
 }  // namespace gltf
 
@@ -216,15 +229,19 @@ bool is_gltf(const std::filesystem::path& file) {
 }
 
 SceneDescription read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
-    try {
-        return gltf::read(file, options);
-    } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::limit, file.string() + ": not enough memory to read the scene");
-    } catch (const std::length_error&) {
-        throw Error(ErrorKind::limit, file.string() + ": the scene is too large to read");
-    } catch (const std::filesystem::filesystem_error& e) {
-        throw Error(ErrorKind::scene, file.string() + ": " + e.what());
-    }
+    return gltf::with_limits(file.string(), [&] {
+        WarningLog log;
+        return gltf::read(gltf::read_document(file, options.search_paths, log), options, log);
+    });
+}
+
+SceneDescription read_gltf_bytes(const std::string& bytes, const std::string& name,
+                                 const std::filesystem::path& folder, const ReadOptions& options) {
+    return gltf::with_limits(name, [&] {
+        WarningLog log;
+        return gltf::read(gltf::parse_document(bytes, name, folder, options.search_paths, log),
+                          options, log);
+    });
 }
 
 }  // namespace covtrace

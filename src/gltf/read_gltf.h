@@ -8,6 +8,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "scene/read_options.h"
 #include "scene/scene_description.h"
@@ -26,5 +27,11 @@ bool is_gltf(const std::filesystem::path& file);
 /// the document: what is wrong; what was expected` for the rest; Error(limit) where the scene is
 /// too large. Files are looked for in the scene's folder and the search paths, and nowhere else.
 SceneDescription read_gltf(const std::filesystem::path& file, const ReadOptions& options = {});
+
+/// Reads a scene from memory, text or binary; messages call it `name`, and its files are looked for
+/// in `folder` and the search paths.
+SceneDescription read_gltf_bytes(const std::string& bytes, const std::string& name,
+                                 const std::filesystem::path& folder = {},
+                                 const ReadOptions& options = {});
 
 }  // namespace covtrace

@@ -34,6 +34,20 @@ constexpr std::array<ForeignFormat, 15> kForeign{{{".blend", "a file of Blender"
                                                   {".ma", "a file of Maya"},
                                                   {".mb", "a file of Maya"}}};
 
+/// The beginnings of such files, by which they are known without a name.
+struct ForeignBeginning {
+    std::string_view bytes, name;
+};
+constexpr std::array<ForeignBeginning, 8> kForeignBeginnings{
+    {{"BLENDER", "a file of Blender"},
+     {"\x28\xb5\x2f\xfd", "a file compressed by zstd, as Blender's,"},
+     {"#usda", "a USD stage"},
+     {"PXR-USDC", "a USD stage"},
+     {"PK\x03\x04", "a ZIP archive, as a USD package,"},
+     {"<", "XML, as a scene of Mitsuba,"},
+     {"ply", "a PLY mesh"},
+     {"\x1f\x8b", "a file compressed by gzip (zcat unpacks it)"}}};
+
 const ForeignFormat* foreign_format(const std::filesystem::path& file) {
     std::string ending = file.extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(),
@@ -62,6 +76,22 @@ SceneDescription read_scene_file(const std::filesystem::path& file, const ReadOp
                              ? "; the add-on in 'blender/' renders and exports from Blender"
                              : ""));
     return is_gltf(file) ? read_gltf(file, options) : read_pbrt(file, options);
+}
+
+SceneDescription read_scene_bytes(const std::string& bytes, const std::string& name,
+                                  const ReadOptions& options) {
+    for (const ForeignBeginning& foreign : kForeignBeginnings)
+        if (bytes.starts_with(foreign.bytes))
+            throw Error(ErrorKind::scene,
+                        name + ": " + std::string(foreign.name) +
+                            " is no scene of a format that is read; expected pbrt-v4 or glTF 2.0");
+    const size_t first = bytes.find_first_not_of(" \t\r\n");
+    const bool is_json = first != std::string::npos && bytes[first] == '{';
+    SceneDescription scene = is_json || bytes.starts_with("glTF")
+                                 ? read_gltf_bytes(bytes, name, {}, options)
+                                 : read_pbrt_string(bytes, name, {}, options);
+    scene.name = "scene";
+    return scene;
 }
 
 }  // namespace covtrace

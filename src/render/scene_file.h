@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "scene/read_options.h"
 #include "scene/scene_description.h"
@@ -16,5 +17,11 @@ bool is_scene_file(const std::filesystem::path& file);
 /// readers do, and Error(scene) for formats that are known but not read.
 SceneDescription read_scene_file(const std::filesystem::path& file,
                                  const ReadOptions& options = {});
+
+/// Reads a scene from memory, whose format its first bytes say: binary glTF, JSON as glTF, or else
+/// pbrt-v4. Its name is "scene", messages call it `name`, and the files that it names are looked
+/// for from the working folder on. Throws as read_scene_file.
+SceneDescription read_scene_bytes(const std::string& bytes, const std::string& name,
+                                  const ReadOptions& options = {});
 
 }  // namespace covtrace

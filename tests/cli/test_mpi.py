@@ -55,6 +55,13 @@ class Ranks(FilmTest):
                 self.assertEqual(done.returncode, code, done)
                 self.assertIn("covtrace: ", done.stderr)
 
+    def test_standard_input_is_refused(self):
+        """It would reach the first process alone."""
+        command = ["-" if word == "plain.pbrt" else word for word in self.command(2, "plain", "uniform", "--spp", "1")]
+        done = subprocess.run(command, cwd=self.folder, env=ENVIRONMENT, capture_output=True, timeout=60, text=True, input="WorldBegin")
+        self.assertEqual(done.returncode, USAGE, done)
+        self.assertIn("standard input", done.stderr)
+
     def test_ranks_that_do_not_begin_with_the_same(self):
         """The checkpoint is in a folder of the first process alone."""
         self.run_render("plain", "uniform", "--spp", "1", "--checkpoint", "c.film")
