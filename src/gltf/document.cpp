@@ -111,23 +111,33 @@ bool is_binary(std::string_view bytes) {
     return bytes.starts_with("glTF");
 }
 
-/// The JSON chunk of a binary file; the library checks the rest of its layout.
-std::string_view json_chunk(std::string_view bytes, const std::string& name) {
-    constexpr size_t kHeader = 20;
-    uint32_t version = 0, length = 0;
-    if (bytes.size() >= kHeader) {
-        std::memcpy(&version, bytes.data() + 4, sizeof version);
-        std::memcpy(&length, bytes.data() + 12, sizeof length);
-    }
-    if (bytes.size() < kHeader || length > bytes.size() - kHeader)
-        throw Error(ErrorKind::scene, name + ": the binary glTF file is cut short");
-    if (version != 2)
-        throw Error(ErrorKind::scene, name + ": binary glTF of version " + std::to_string(version) +
-                                          "; expected version 2");
-    return bytes.substr(kHeader, length);
+uint32_t word_at(std::string_view bytes, size_t offset) {
+    uint32_t word = 0;
+    if (offset + sizeof word <= bytes.size())
+        std::memcpy(&word, bytes.data() + offset, sizeof word);
+    return word;
 }
 
-/// A binary file with another JSON chunk: its header's lengths are those of the new one.
+/// The JSON chunk of a binary file. Its lengths are held against the bytes that are there: the
+/// library overlooks the eight bytes of the second chunk's header.
+std::string_view json_chunk(std::string_view bytes, const std::string& name) {
+    constexpr size_t kHeader = 12, kChunk = 8;
+    const size_t total = word_at(bytes, 8), length = word_at(bytes, kHeader);
+    const auto holds = [&](size_t begin, size_t size) {
+        return begin <= total && size <= total - begin;
+    };
+    const size_t second = kHeader + kChunk + length;
+    const bool has_second = holds(second, kChunk);
+    if (total > bytes.size() || !holds(kHeader + kChunk, length) ||
+        (has_second && !holds(second + kChunk, word_at(bytes, second))))
+        throw Error(ErrorKind::scene, name + ": the binary glTF file is cut short");
+    if (const uint32_t version = word_at(bytes, 4); version != 2)
+        throw Error(ErrorKind::scene, name + ": binary glTF of version " + std::to_string(version) +
+                                          "; expected version 2");
+    return bytes.substr(kHeader + kChunk, length);
+}
+
+/// A binary file, up to the end that its header tells, with another JSON chunk.
 std::string with_json_chunk(std::string_view bytes, std::string_view old_json, std::string json) {
     const auto word = [](size_t v) {
         const auto bits = static_cast<uint32_t>(v);
@@ -136,6 +146,7 @@ std::string with_json_chunk(std::string_view bytes, std::string_view old_json, s
         return s;
     };
     json.resize((json.size() + 3) / 4 * 4, ' ');
+    bytes = bytes.substr(0, word_at(bytes, 8));
     const auto rest = static_cast<size_t>(old_json.data() + old_json.size() - bytes.data());
     std::string all = std::string(bytes.substr(0, 8));
     all += word(20 + json.size() + bytes.size() - rest) + word(json.size()) + "JSON" + json;

@@ -18,6 +18,27 @@ TEST(GltfErrors, TellsWhereTheTextIsNoJson) {
     EXPECT_TRUE(contains(gltf_error("glTF\2"), "cut short"));
 }
 
+TEST(GltfErrors, HoldsTheLengthsOfBinaryFilesAgainstTheirBytes) {
+    const TemporaryFolder folder;
+    const std::string whole = square_file().binary();
+    uint32_t json_length = 0;
+    std::memcpy(&json_length, whole.data() + 12, sizeof json_length);
+    const auto with_more = [&](size_t at, uint32_t more) {
+        std::string bytes = whole;
+        uint32_t word = 0;
+        std::memcpy(&word, bytes.data() + at, sizeof word);
+        word += more;
+        std::memcpy(bytes.data() + at, &word, sizeof word);
+        return failure_of([&] { read_gltf(folder.write("t.glb", bytes)); }).message;
+    };
+    // The file's length, that of the JSON and that of the buffers, whose bytes end the file.
+    for (const size_t at : {size_t{8}, size_t{12}, size_t{20} + json_length})
+        for (const uint32_t more : {1000u, 1000000u})
+            EXPECT_TRUE(contains(with_more(at, more), "cut short")) << at << ' ' << more;
+    for (const uint32_t more : {4u, 8u})
+        EXPECT_TRUE(contains(with_more(20 + json_length, more), "cut short")) << more;
+}
+
 /// The square with one thing changed.
 template <typename Change>
 std::string changed(Change change) {
