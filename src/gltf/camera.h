@@ -11,9 +11,9 @@
 namespace covtrace::gltf {
 
 /// Sets camera and film by the first camera in the order of the nodes. Where there is none, by one
-/// from the front, to the right and above (assets face +z), which `no_camera` tells. The lens is closed; its
-/// focus lies at the depth of the scene's centre, for those who open it. `bounds`: of everything
-/// that is placed.
+/// from the front, to the right and above (assets face +z), which `no_camera` tells. The lens is
+/// closed; its focus lies at the depth of the scene's centre, for those who open it. `bounds`: of
+/// everything that is placed.
 void set_view(const Document& document, const std::vector<PlacedNode>& nodes, const Bounds3& bounds,
               SceneDescription& scene, WarningLog& log);
 

@@ -9,7 +9,7 @@
 
 namespace covtrace::gltf {
 
-/// What a primitive's COLOR_0 changes; nothing where all of it is white, or there is none.
+/// Changes that a primitive's COLOR_0 makes; none where all of it is white, or there is none.
 struct ColourUse {
     bool tints = false;      ///< whether any colour is not white
     bool has_holes = false;  ///< whether any alpha is below 1

@@ -15,7 +15,7 @@
 
 namespace covtrace::gltf {
 
-/// What the textures of a primitive's material read from its vertices.
+/// The vertex data that the textures of a primitive's material read.
 struct VertexLayout {
     static constexpr int kNoSet = -1;
     /// The set of texture coordinates that becomes the surface's (u, v).
@@ -32,7 +32,7 @@ class GeometryReader {
     GeometryReader(const Document& document, WarningLog& log)
         : document_(document), log_(log), bytes_(budget_of_meshes(document.bytes)) {}
 
-    /// What COLOR_0 of meshes[mesh].primitives[primitive] changes.
+    /// The changes that COLOR_0 of meshes[mesh].primitives[primitive] makes.
     ColourUse colours(int mesh, size_t primitive);
 
     /// The triangles of meshes[mesh].primitives[primitive] with the texture coordinates and colours

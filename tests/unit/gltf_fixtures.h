@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "gltf/read_gltf.h"
-#include "scene/defaults.h"
 #include "pbrt_test_support.h"
+#include "scene/defaults.h"
 
 namespace covtrace::test {
 
