@@ -123,6 +123,15 @@ RenderScene& kept_scene(SceneDescription description, const RenderArguments& a) 
     return *kept;
 }
 
+/// Reads the scene, with all that takes the place of its own values.
+SceneDescription read_described(RenderArguments& a) {
+    SceneDescription description =
+        read_scene(a.scene, {{a.search_paths.begin(), a.search_paths.end()}, a.overrides.shutter});
+    apply(a.overrides, description);
+    if (a.preset) apply(*a.preset, description, a.options);
+    return description;
+}
+
 /// Refuses what the processes of mpirun cannot do.
 void check_shared(const RenderArguments& a) {
     if (a.film.shard)
@@ -131,6 +140,13 @@ void check_shared(const RenderArguments& a) {
         throw Error(
             ErrorKind::usage,
             "SCENE: only one of the processes of mpirun has standard input; expected a file");
+}
+
+/// Refuses to write an image of nothing.
+void require_samples(const RenderResult& result, const Monitor& monitor) {
+    if (monitor.cancelled() && result.statistics.samples_per_pixel == 0)
+        throw Error(ErrorKind::interrupted,
+                    "interrupted before the first sample: nothing is written");
 }
 
 /// Tells what was rendered, and what went wrong with it.
@@ -167,11 +183,8 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     const MemoryLimit memory(a.max_memory);
 
     // Read the scene, and check everything before hours of rendering
-    SceneDescription description =
-        read_scene(a.scene, {{a.search_paths.begin(), a.search_paths.end()}, a.overrides.shutter});
+    SceneDescription description = read_described(a);
     const double loaded = monitor.elapsed();
-    apply(a.overrides, description);
-    if (a.preset) apply(*a.preset, description, a.options);
     const bool is_shard = a.film.shard.has_value();
     const fs::path output = is_shard ? fs::path() : image_path(a, description);
     check_outputs(a, output, description);
@@ -211,9 +224,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
         };
     }
     RenderResult result = render(scene, a.options, monitor, std::move(keeping));
-    if (monitor.cancelled() && result.statistics.samples_per_pixel == 0)
-        throw Error(ErrorKind::interrupted,
-                    "interrupted before the first sample: nothing is written");
+    require_samples(result, monitor);
     result.statistics.seconds[Phase::load] = loaded;
     result.statistics.seconds[Phase::build] = built - loaded;
     const double rendered = monitor.elapsed();

@@ -93,7 +93,7 @@ class Measure(CliTest):
 
     def test_darkness_is_said(self):
         dark = HEADER + "WorldBegin\nShape \"sphere\" \"float radius\" 1\n"
-        result = self.measure("--pixel", "12,8", *FAST, scene=dark)
+        result = self.measure("--pixel", "12,8", "--environment", "0", *FAST, scene=dark)
         self.assertEqual(result.code, DONE, result)
         self.assertIn("no light reaches pixel 12,8", result.stderr)
 
