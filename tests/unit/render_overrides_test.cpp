@@ -1,0 +1,97 @@
+// Camera and environment in place of a scene's own, and stand-ins for what a scene does not have.
+#include "render/overrides.h"
+
+#include <gtest/gtest.h>
+
+#include "pbrt_test_support.h"
+#include "scene/up_axis.h"
+
+namespace covtrace::test {
+namespace {
+
+SceneDescription seen(Vec3 eye, Vec3 target, Vec3 up) {
+    SceneDescription scene;
+    scene.camera.camera_to_world =
+        AnimatedTransform(Transform::look_at(eye, target, up)->inverse());
+    return scene;
+}
+
+TEST(UpAxis, IsTheAxisNearestToThePicturesTop) {
+    EXPECT_EQ(up_axis(seen({0, -4, 2}, {}, {0, 0, 1})), (Vec3{0, 0, 1}));
+    EXPECT_EQ(up_axis(seen({1, 2, 5}, {}, {0.2f, 1, 0})), (Vec3{0, 1, 0}));
+    EXPECT_EQ(up_axis(seen({0, 0, 5}, {}, {0, -1, 0})), (Vec3{0, -1, 0}));
+    EXPECT_EQ(up_axis(SceneDescription{}), (Vec3{0, 1, 0}));
+    SceneDescription told = seen({0, -4, 2}, {}, {0, 0, 1});
+    told.up = Vec3{1, 0, 0};
+    EXPECT_EQ(up_axis(told), (Vec3{1, 0, 0}));
+}
+
+TEST(CameraOverride, KeepsShutterMediumAndMirror) {
+    SceneDescription scene = seen({0, -4, 0}, {}, {0, 0, 1});
+    CameraDescription& own = scene.camera;
+    own.camera_to_world =
+        AnimatedTransform(own.camera_to_world.start() * Transform::scale(-1, 1, 1));
+    own.kind = CameraDescription::Kind::orthographic;
+    own.shutter_open = 2, own.shutter_close = 3;
+    own.medium = 1;
+    own.film_irradiance = 0.1f;
+    own.lens_radius = 2;
+    SceneOverrides overrides;
+    overrides.camera = CameraOverride{{3, 0, 4}, {3, 0, 0}, 30, Vec3{0, 1, 0}};
+    apply(overrides, scene);
+    const CameraDescription& camera = scene.camera;
+    EXPECT_EQ(camera.kind, CameraDescription::Kind::perspective);
+    EXPECT_EQ(camera.fov, 30);
+    EXPECT_EQ(camera.focal_distance, 4);
+    EXPECT_EQ(camera.lens_radius, 0);
+    EXPECT_EQ(camera.film_irradiance, 1);
+    EXPECT_EQ(camera.shutter_open, 2);
+    EXPECT_EQ(camera.shutter_close, 3);
+    EXPECT_EQ(camera.medium, 1);
+    const Transform& t = camera.camera_to_world.start();
+    EXPECT_TRUE(t.swaps_handedness());
+    EXPECT_EQ(t.point({}), (Vec3{3, 0, 4}));
+    EXPECT_EQ(t.vector({0, 0, 1}), (Vec3{0, 0, -1}));
+    EXPECT_EQ(t.vector({0, 1, 0}), (Vec3{0, 1, 0}));
+}
+
+TEST(CameraOverride, AsksTheScenesOwnCameraWhatIsUp) {
+    SceneDescription scene = seen({0, -4, 0}, {}, {0, 0, 1});
+    SceneOverrides overrides;
+    overrides.camera = CameraOverride{{0, -1, 9}, {}, 30, {}};  // looks down steeply
+    apply(overrides, scene);
+    EXPECT_EQ(up_axis(scene), (Vec3{0, 0, 1}));
+    EXPECT_GT(scene.camera.camera_to_world.start().vector({0, 1, 0}).z, 0);
+}
+
+TEST(EnvironmentOverride, ScalesWhatAnIlluminanceAsksFor) {
+    SceneDescription scene = read_world(R"(LightSource "infinite" "float illuminance" 3
+        LightSource "infinite" "rgb L" [1 2 3])");
+    SceneOverrides overrides;
+    overrides.environment_scale = 2;
+    apply(overrides, scene);
+    EXPECT_EQ(std::get<InfiniteLight>(scene.lights.at(0).value).illuminance, 6);
+    EXPECT_EQ(std::get<InfiniteLight>(scene.lights.at(1).value).radiance, (Rgb{2, 4, 6}));
+}
+
+TEST(Defaults, CountEveryEmitter) {
+    const std::string ball = "Shape \"sphere\"\n";
+    EXPECT_TRUE(read_world(ball).no_lights);
+    EXPECT_FALSE(read_world("").no_lights) << "nothing is there to be lit";
+    EXPECT_FALSE(read_world(ball + "LightSource \"point\"").no_lights);
+    EXPECT_FALSE(read_world(ball + "AreaLightSource \"diffuse\"\n" + ball).no_lights);
+    EXPECT_FALSE(read_world("MakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"rgb Le\" "
+                            "[1 1 1]\n" +
+                            ball)
+                     .no_lights);
+    EXPECT_TRUE(read_world("AreaLightSource \"diffuse\"\n").no_camera);
+    SceneDescription scene = read_world(ball);
+    apply({}, scene);
+    EXPECT_EQ(scene.lights.size(), 2u);
+    apply({}, scene);
+    EXPECT_EQ(scene.lights.size(), 2u);
+    EXPECT_EQ(scene.warnings.size(), 2u);
+}
+
+}  // namespace
+}  // namespace covtrace::test
