@@ -97,7 +97,7 @@ void add_merge(CLI::App& app, Invocation& invocation) {
     c->add_option("--film", a->film, "the joined film, to go on from")
         ->check(not_empty())
         ->option_text("FILE");
-    c->add_option("--png", a->png, "also an 8-bit sRGB picture, cut at white")
+    c->add_option("--png", a->png, "also an 8-bit sRGB picture")
         ->check(not_empty())
         ->option_text("FILE");
     add_display_options(c, a->display);

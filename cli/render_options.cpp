@@ -66,7 +66,7 @@ void add_scene_options(CLI::App* c, RenderArguments& a) {
 
 /// The files beside the image, and the messages meanwhile.
 void add_output_options(CLI::App* c, RenderArguments& a) {
-    c->add_option("--png", a.png, "also an 8-bit sRGB picture, cut at white")
+    c->add_option("--png", a.png, "also an 8-bit sRGB picture")
         ->check(not_empty())
         ->option_text("FILE");
     add_display_options(c, a.display);

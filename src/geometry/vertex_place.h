@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -23,6 +24,7 @@ inline std::array<Vec2, 3> uv_corners(const TriangleMesh& mesh, uint32_t triangl
     return {mesh.uvs[i[0]], mesh.uvs[i[1]], mesh.uvs[i[2]]};
 }
 
+/// A point of a triangle, by the mesh that has it and its barycentric coordinates.
 struct VertexPlace {
     const TriangleMesh* mesh = nullptr;  ///< null: no mesh, or one without values at its vertices
     uint32_t triangle = 0;

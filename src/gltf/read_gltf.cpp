@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
-#include <new>
-#include <stdexcept>
 
 #include "gltf/camera.h"
 #include "gltf/deformed_nodes.h"
@@ -13,6 +11,7 @@
 #include "gltf/lights.h"
 #include "gltf/materials.h"
 #include "gltf/nodes.h"
+#include "scene/with_limits.h"
 
 namespace covtrace {
 
@@ -203,21 +202,6 @@ SceneDescription read(const Document& document, const ReadOptions& options, Warn
     return scene;
 }
 
-/// Runs the reader and turns the exceptions of the standard library for sizes beyond reach into the
-/// reader's own error.
-template <typename Read>
-SceneDescription with_limits(const std::string& name, Read read_it) {
-    try {
-        return read_it();
-    } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::limit, name + ": not enough memory to read the scene");
-    } catch (const std::length_error&) {
-        throw Error(ErrorKind::limit, name + ": the scene is too large to read");
-    } catch (const std::filesystem::filesystem_error& e) {
-        throw Error(ErrorKind::scene, name + ": " + e.what());
-    }
-}
-
 }  // namespace
 }  // namespace gltf
 
@@ -229,7 +213,7 @@ bool is_gltf(const std::filesystem::path& file) {
 }
 
 SceneDescription read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
-    return gltf::with_limits(file.string(), [&] {
+    return with_limits(file.string(), [&] {
         WarningLog log;
         return gltf::read(gltf::read_document(file, options.search_paths, log), options, log);
     });
@@ -237,7 +221,7 @@ SceneDescription read_gltf(const std::filesystem::path& file, const ReadOptions&
 
 SceneDescription read_gltf_bytes(const std::string& bytes, const std::string& name,
                                  const std::filesystem::path& folder, const ReadOptions& options) {
-    return gltf::with_limits(name, [&] {
+    return with_limits(name, [&] {
         WarningLog log;
         return gltf::read(gltf::parse_document(bytes, name, folder, options.search_paths, log),
                           options, log);

@@ -1,9 +1,7 @@
 #include "pbrt/read_scene.h"
 
-#include <new>
-#include <stdexcept>
-
 #include "pbrt/scene_parser.h"
+#include "scene/with_limits.h"
 
 namespace covtrace {
 
@@ -25,21 +23,6 @@ SceneDescription read(std::string text, const std::string& name, SceneFiles& fil
     scene.content_hash = files.content_hash();
     scene.files = files.files();
     return scene;
-}
-
-/// Runs the reader and turns the exceptions of the standard library for sizes beyond reach into the
-/// reader's own error.
-template <typename Read>
-SceneDescription with_limits(const std::string& name, Read read_it) {
-    try {
-        return read_it();
-    } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::limit, name + ": not enough memory to read the scene");
-    } catch (const std::length_error&) {
-        throw Error(ErrorKind::limit, name + ": the scene is too large to read");
-    } catch (const fs::filesystem_error& e) {
-        throw Error(ErrorKind::scene, name + ": " + e.what());
-    }
 }
 
 }  // namespace
