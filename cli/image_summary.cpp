@@ -59,9 +59,11 @@ void add_filter(ImageSummary& summary, const Image& image) {
 }
 
 /// The worst pixels, no two of them closer than a small neighbourhood.
-std::vector<UncertainPixel> most_uncertain(const Image& image, const std::vector<double>& errors) {
+std::vector<UncertainPixel> most_uncertain(const Image& image, double whole) {
     constexpr size_t kCount = 5;
     constexpr int kApart = 8;
+    const std::vector<double> errors =
+        for_pixels(image, [&](size_t i) { return relative_error(image, i).value_or(0); });
     std::vector<size_t> order(errors.size());
     for (size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
@@ -75,24 +77,9 @@ std::vector<UncertainPixel> most_uncertain(const Image& image, const std::vector
         if (std::all_of(worst.begin(), worst.end(), [&](const UncertainPixel& w) {
                 return std::max(std::abs(w.x - x), std::abs(w.y - y)) >= kApart;
             }))
-            worst.push_back({x, y, errors[i]});
+            worst.push_back({x, y, *pixel_certainty(image, i, whole)});
     }
     return worst;
-}
-
-void add_errors(ImageSummary& summary, const Image& image) {
-    const Channel* error = image.find("error.Y");
-    if (!error || !image.find("R") || !image.find("G") || !image.find("B")) return;
-    constexpr double kFloor = 0.01;  // constant in the denominator of relMSE
-    std::vector<double> relative = for_pixels(image, [&](size_t i) {
-        const double l = luminance(image.rgb(i)), e = error->values[i];
-        const double r = e / std::sqrt(l * l + kFloor);
-        return std::isfinite(r) ? r : 0;
-    });
-    double sum = 0;
-    for (double r : relative) sum += r * r;
-    summary.estimated_error = std::sqrt(sum / double(relative.size()));
-    summary.uncertain = most_uncertain(image, relative);
 }
 
 std::string metadata_text(const Image& image, const std::string& key) {
@@ -136,7 +123,10 @@ ImageSummary summarize(const Image& image) {
     add_channel_quantity(summary, image, "density", "density.Y", "samples predicted");
     add_filter(summary, image);
     add_channel_quantity(summary, image, "error", "error.Y", "standard error");
-    add_errors(summary, image);
+    if (const auto error = image_error(image)) {
+        summary.estimated_error = *error;
+        summary.uncertain = most_uncertain(image, *error);
+    }
     return summary;
 }
 
@@ -153,10 +143,11 @@ std::string to_text(const ImageSummary& summary, const Image& image, const std::
     }
     if (!summary.uncertain.empty()) {
         text += "\nestimated error of the image, sqrt(relMSE): " +
-                format_number(summary.estimated_error) + "\nmost uncertain pixels:";
+                format_number(summary.estimated_error) + "\nmost uncertain pixels:\n";
         for (const UncertainPixel& p : summary.uncertain)
-            text += fmt::format("  {},{} ({})", p.x, p.y, format_number(p.relative_error));
-        text += fmt::format("\n  covtrace inspect {} --pixel {},{} tells more of one\n", name,
+            text +=
+                fmt::format("  {:<10} {}\n", fmt::format("{},{}", p.x, p.y), p.certainty.sentence);
+        text += fmt::format("  covtrace inspect {} --pixel {},{} tells more of one\n", name,
                             summary.uncertain[0].x, summary.uncertain[0].y);
     }
     if (summary.nonfinite > 0)
@@ -182,8 +173,11 @@ nlohmann::json to_json(const ImageSummary& summary, const Image& image, const st
     if (summary.uncertain.empty()) return j;
     j["estimated_error"] = summary.estimated_error;
     for (const UncertainPixel& p : summary.uncertain)
-        j["most_uncertain"].push_back(
-            {{"x", p.x}, {"y", p.y}, {"relative_error", p.relative_error}});
+        j["most_uncertain"].push_back({{"x", p.x},
+                                       {"y", p.y},
+                                       {"relative_error", p.certainty.relative_error},
+                                       {"samples_factor", p.certainty.samples_factor},
+                                       {"sentence", p.certainty.sentence}});
     return j;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/pixel_certainty.h"
 #include "image/image.h"
 
 namespace covtrace::cli {
@@ -24,7 +25,7 @@ struct Quantity {
 
 struct UncertainPixel {
     int x = 0, y = 0;
-    double relative_error = 0;  ///< estimated standard error over sqrt(luminance² + 0.01)
+    PixelCertainty certainty;
 };
 
 struct ImageSummary {

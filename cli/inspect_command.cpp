@@ -28,18 +28,17 @@ struct InspectArguments {
 std::vector<viewer::Fact> facts_of(const ImageSummary& summary) {
     std::vector<viewer::Fact> facts;
     for (const Quantity& q : summary.quantities)
-        facts.emplace_back(
-            q.title,
-            fmt::format("{} (from {} to {})", format_number(q.distribution.mean),
-                        format_number(q.distribution.least), format_number(q.distribution.most)));
+        facts.push_back(
+            {q.title,
+             fmt::format("{} (from {} to {})", format_number(q.distribution.mean),
+                         format_number(q.distribution.least), format_number(q.distribution.most))});
     if (!summary.uncertain.empty())
-        facts.emplace_back("estimated error, sqrt(relMSE)", format_number(summary.estimated_error));
-    std::string worst;
+        facts.push_back({"estimated error, sqrt(relMSE)", format_number(summary.estimated_error)});
     for (const UncertainPixel& p : summary.uncertain)
-        worst += fmt::format("{}{},{}", worst.empty() ? "" : "  ", p.x, p.y);
-    if (!worst.empty()) facts.emplace_back("most uncertain pixels", worst);
+        facts.push_back({fmt::format("uncertain: {},{}", p.x, p.y), p.certainty.sentence,
+                         std::array{p.x, p.y}});
     if (summary.nonfinite > 0)
-        facts.emplace_back("values that are not finite", std::to_string(summary.nonfinite));
+        facts.push_back({"values that are not finite", std::to_string(summary.nonfinite)});
     return facts;
 }
 

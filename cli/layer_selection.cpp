@@ -12,9 +12,9 @@ namespace covtrace::cli {
 
 namespace {
 
-constexpr std::array<std::string_view, 13> kStandard{
-    "A",       "Z",       "raw",    "albedo",   "N",   "variance", "error",
-    "samples", "density", "filter", "spectrum", "cov", "covweight"};
+constexpr std::array<std::string_view, 14> kStandard{
+    "A",       "Z",       "raw",    "albedo",   "N",   "variance",  "error",
+    "samples", "density", "filter", "spectrum", "cov", "covweight", "share"};
 /// Layers that must be asked for by name: those that tell emitters in view apart from scattered
 /// light, and those for denoisers alone.
 constexpr std::array<std::string_view, 6> kParts{

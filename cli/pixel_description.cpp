@@ -24,6 +24,13 @@ constexpr std::array<Axis, 5> kAxes{Axis{"image x", "cycles/pixel", 1},
                                     {"lens y", "cycles/aperture", 2},
                                     {"time", "cycles/shutter", 1}};
 
+/// The kinds of candidates, as channels of the layer `share` and for people.
+constexpr std::array<std::array<const char*, 2>, 4> kCandidateKinds{
+    {{"denoiser", "the denoiser"},
+     {"regression", "regressions"},
+     {"gaussian", "predicted Gaussians"},
+     {"raw", "the samples alone"}}};
+
 /// The value of a channel at an index of its pixels.
 std::optional<float> find_value(const Image& image, const std::string& channel, size_t index) {
     const Channel* c = image.find(channel);
@@ -142,6 +149,10 @@ PixelDescription describe_pixel(const Image& image, int x, int y) {
     p.samples = find_value(image, "samples.Y", i);
     p.density = find_value(image, "density.Y", i);
     p.error = find_value(image, "error.Y", i);
+    p.certainty = pixel_certainty(image, i, image_error(image).value_or(0));
+    for (const auto& [kind, title] : kCandidateKinds)
+        if (const auto share = find_value(image, "share." + std::string(kind), i))
+            p.shares.push_back({kind, title, *share});
     return p;
 }
 
@@ -152,7 +163,15 @@ std::string to_text(const PixelDescription& p) {
     if (p.samples) text += "samples: " + format_number(*p.samples) + " taken";
     if (p.samples && p.density) text += ", " + format_number(*p.density) + " predicted";
     if (p.samples) text += "\n";
+    if (p.certainty) text += p.certainty->sentence + "\n";
     if (p.error) text += "estimated standard error: " + format_number(*p.error) + "\n";
+    if (!p.shares.empty()) {
+        text += "made of";
+        for (const CandidateShare& s : p.shares)
+            text += fmt::format("{}{:.0f} % {}", &s == &p.shares[0] ? ": " : ", ", 100 * s.share,
+                                s.title);
+        text += "\n";
+    }
     if (p.filter)
         text += fmt::format(
             "filter: a Gaussian of {} by {} pixels (standard deviations), its long axis at {}°\n",
@@ -174,7 +193,7 @@ std::string to_text(const PixelDescription& p) {
             format_number(std::round(p.spectrum->angle * 10) / 10),
             format_number(p.spectrum->minor));
     if (p.hypercube) {
-        text += "samples per unit hypercube (pixel, aperture, shutter): sqrt|S| = " +
+        text += "samples per unit hypercube (pixel, aperture, shutter): sqrt|S + W| = " +
                 format_number(p.hypercube->density);
         if (p.hypercube->k)
             text += ", times k = " + format_number(*p.hypercube->k) + ": " +
@@ -200,6 +219,12 @@ nlohmann::json to_json(const PixelDescription& p) {
     if (p.samples) j["samples"] = number_or_null(*p.samples);
     if (p.density) j["density"] = number_or_null(*p.density);
     if (p.error) j["error"] = number_or_null(*p.error);
+    if (p.certainty) {
+        j["relative_error"] = number_or_null(p.certainty->relative_error);
+        j["samples_factor"] = number_or_null(p.certainty->samples_factor);
+        j["sentence"] = p.certainty->sentence;
+    }
+    for (const CandidateShare& s : p.shares) j["shares"][s.kind] = number_or_null(s.share);
     if (p.filter) j["filter"] = to_json(p.filter, "pixels");
     if (p.spectrum) j["spectrum"] = to_json(p.spectrum, "cycles/pixel");
     if (!p.covariance) return j;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/pixel_certainty.h"
 #include "image/image.h"
 
 namespace covtrace::cli {
@@ -39,6 +40,12 @@ struct HypercubeCount {
     std::optional<double> k;  ///< absent where the image was not planned by this density
 };
 
+/// What part of a pixel one kind of candidate made, from the layer `share`.
+struct CandidateShare {
+    std::string kind, title;  ///< the channel's name, and the kind for people
+    double share = 0;         ///< from 0 to 1
+};
+
 struct PixelDescription {
     int x = 0, y = 0;
     std::vector<std::pair<std::string, float>> values;  ///< all but those of `covariance`
@@ -53,6 +60,8 @@ struct PixelDescription {
     /// Samples taken, samples that the last plan asked for, and estimated standard error of the
     /// luminance; each absent without its layer.
     std::optional<float> samples, density, error;
+    std::optional<PixelCertainty> certainty;  ///< absent without the layer `error`
+    std::vector<CandidateShare> shares;       ///< empty but for images of `hybrid`
 };
 
 /// Describes a pixel by the layers that have the project's own names. Throws Error(usage) where the

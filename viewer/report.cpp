@@ -31,9 +31,9 @@ std::string component_of(const std::string& channel) {
 
 /// Rank of a layer by its importance for a page, 0 for the one that it needs most.
 size_t importance(const std::string& layer) {
-    constexpr std::array<std::string_view, 13> kOrder{
-        "",    "error", "samples", "density", "filter", "spectrum", "covweight",
-        "cov", "raw",   "albedo",  "N",       "Z",      "variance"};
+    constexpr std::array<std::string_view, 14> kOrder{
+        "",          "error", "samples", "density", "share", "filter", "spectrum",
+        "covweight", "cov",   "raw",     "albedo",  "N",     "Z",      "variance"};
     return size_t(std::find(kOrder.begin(), kOrder.end(), layer) - kOrder.begin());
 }
 
@@ -75,7 +75,10 @@ std::string text_of(const MetadataValue& value) {
 
 json to_json(const std::vector<Fact>& facts) {
     json list = json::array();
-    for (const auto& [name, value] : facts) list.push_back({name, value});
+    for (const Fact& fact : facts) {
+        list.push_back({fact.name, fact.value});
+        if (fact.pixel) list.back().push_back(*fact.pixel);
+    }
     return list;
 }
 

@@ -17,7 +17,11 @@
 namespace covtrace::viewer {
 
 /// A name and a value that are shown as they are; any text is safe.
-using Fact = std::pair<std::string, std::string>;
+struct Fact {
+    std::string name, value;
+    /// Pixel that the name leads to, in image coordinates.
+    std::optional<std::array<int, 2>> pixel = {};
+};
 
 struct ReportImage {
     std::string name;    ///< short: the file's name, a method

@@ -46,6 +46,8 @@ std::string blender_name(const std::string& name) {
         pass = (name == "Z" ? "Depth." : "Combined.") + name;
     else if (name.starts_with("cov."))
         pass = "cov " + name.substr(4) + ".X";
+    else if (name.starts_with("share."))
+        pass = "share " + name.substr(6) + ".X";
     else if (const auto number = translate(name, kBlenderNumbers, false))
         pass = *number;
     else if (const auto known = translate(name, kBlender, false))
@@ -58,6 +60,8 @@ std::string name_from_blender(const std::string& pass) {
         if (pass.starts_with(root)) return pass.substr(root.size());
     if (pass.starts_with("cov ") && pass.ends_with(".X"))
         return "cov." + pass.substr(4, pass.size() - 6);
+    if (pass.starts_with("share ") && pass.ends_with(".X"))
+        return "share." + pass.substr(6, pass.size() - 8);
     if (const auto number = translate(pass, kBlenderNumbers, true)) return *number;
     return translate(pass, kBlender, true).value_or(pass);
 }

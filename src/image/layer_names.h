@@ -14,7 +14,7 @@ enum class LayerNames {
     /// Blender's multilayer files, "layer.pass.channel" with one letter for the channel:
     /// ViewLayer.Combined.R, ViewLayer.Depth.Z, "ViewLayer.Denoising Normal.X", "ViewLayer.Noisy
     /// Image.R" (our raw) …; the entries of symmetric 2x2 layers become X, Y, Z, and each entry of
-    /// cov a pass of its own.
+    /// cov and share a pass of its own.
     blender
 };
 

@@ -27,6 +27,13 @@ FilterField predicted_filters(std::span<const covariance::Sym2<float>> spectrum,
 
 }  // namespace
 
+CandidateKind candidate_kind(const CandidateSettings& settings, size_t index) {
+    if (index == 0) return CandidateKind::raw;
+    if (index <= settings.gaussians.size()) return CandidateKind::gaussian;
+    return index <= settings.gaussians.size() + settings.fits.size() ? CandidateKind::regression
+                                                                     : CandidateKind::denoiser;
+}
+
 std::vector<Candidate> make_candidates(const Halves& halves,
                                        std::span<const covariance::Sym2<float>> spectrum,
                                        const CandidateSettings& settings) {

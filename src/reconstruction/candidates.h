@@ -1,6 +1,7 @@
 /// The candidates: ways to reconstruct, among which the hybrid method chooses.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,11 @@ struct CandidateSettings {
                           {1.0f, true},
                           {4.0f, true, FeatureNoise::filtered, PatchesOf::colors_or_light}};
 };
+
+enum class CandidateKind : uint8_t { raw, gaussian, regression, denoiser };
+
+/// Kind of the candidate at `index`; the denoiser's comes after those of make_candidates.
+CandidateKind candidate_kind(const CandidateSettings& settings, size_t index);
 
 /// Makes the candidates: the raw pixels, the Gaussians, the fits, in this order. `spectrum`: the
 /// predicted spectra after the integral over lens and shutter, (cycles/pixel)^2, one per pixel. The

@@ -14,8 +14,8 @@ namespace covtrace {
 
 namespace {
 
-FilterField predicted_filters(FilterRule rule, const CovarianceBuffer& buffer,
-                              const FilterSettings& settings) {
+FilterField filters_of_smoothed(FilterRule rule, const CovarianceBuffer& buffer,
+                                const FilterSettings& settings) {
     const Prediction p = preintegrated(smoothed(buffer));
     return filter_field(p.spectrum, p.width, p.height, rule, settings);
 }
@@ -83,7 +83,7 @@ Image gathered_image(const RenderState& state) {
                          settings_in_view = covariance::filter_settings_in_view(taken);
     const auto filters_of = [&](const std::vector<PackedCovariance>& part,
                                 const FilterSettings& its_settings) {
-        return predicted_filters(
+        return filters_of_smoothed(
             state.filter, unpack(part, state.region.width(), state.region.height()), its_settings);
     };
     FilterField field = filters_of(parts.scattered, settings);
@@ -115,7 +115,8 @@ Image mixed_image(const RenderState& state, const CovarianceBuffer& all,
         filter_field(prediction.spectrum, prediction.width, prediction.height, FilterRule::verified,
                      covariance::filter_settings(state.mean_count()));
     return make_layers(whole_film(state), state.display, state.has_holes,
-                       CovarianceLayers{all, raw, density_layer(state), field, delivered});
+                       CovarianceLayers{all, raw, density_layer(state), field, delivered, nullptr,
+                                        nullptr, &mixed.share});
 }
 
 /// Completes an image with the state's metadata. Every image of a render passes here, so that all

@@ -31,6 +31,14 @@ std::array<float, 3> array(const covariance::Sym2<float>& s) {
     return {s.xx, s.xy, s.yy};
 }
 
+/// What part of a pixel each kind of candidate made, in the order of CandidateKind.
+std::array<float, 4> shares_of_kinds(const std::vector<Plane>& shares, size_t pixel) {
+    std::array<float, 4> sums{};
+    for (size_t c = 0; c < shares.size(); ++c)
+        sums[size_t(candidate_kind(CandidateSettings(), c))] += shares[c][pixel];
+    return sums;
+}
+
 }  // namespace
 
 Image make_layers(const Film& film, PixelBounds display, bool has_holes,
@@ -87,6 +95,9 @@ Image make_layers(const Film& film, PixelBounds display, bool has_holes,
               [&](size_t i) { return covariance->buffer.covariance[i].values; });
     add_layer(image, "covweight.", std::array{"Y"},
               [&](size_t i) { return std::array{covariance->buffer.weight[i]}; });
+    if (covariance->shares)
+        add_layer(image, "share.", std::array{"raw", "gaussian", "regression", "denoiser"},
+                  [&](size_t i) { return shares_of_kinds(*covariance->shares, i); });
     if (!covariance->scattered) return image;
     add_layer(image, "inviewfilter.", kSymmetric,
               [&](size_t i) { return array(covariance->in_view_filter->covariance[i]); });

@@ -6,6 +6,7 @@
 
 #include "image/image.h"
 #include "prediction/covariance_buffer.h"
+#include "reconstruction/candidates.h"
 #include "reconstruction/gather.h"
 #include "render/film.h"
 
@@ -22,6 +23,8 @@ struct CovarianceLayers {
     /// no emitters are in view.
     const std::vector<PackedCovariance>* scattered = nullptr;
     const FilterField* in_view_filter = nullptr;
+    /// Shares of the candidates in the delivered image; null where it is no mixture.
+    const std::vector<Plane>* shares = nullptr;
 };
 
 /// Makes the layers. Root R G B (A where `has_holes`): the gathered image, or the raw film without

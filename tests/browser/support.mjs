@@ -57,8 +57,8 @@ export async function launch() {
     return chromium.launch({ executablePath: process.env.CHROMIUM, args: root ? ['--no-sandbox'] : [] });
 }
 
-/** The page of a report, painted. page.problems: errors; page.requests: everything that it asked for. */
-export async function open(browser, file, offline = true) {
+/** The page of a report, painted; `place` is what its address has behind the file. page.problems: errors; page.requests: everything that it asked for. */
+export async function open(browser, file, offline = true, place = '') {
     const context = await browser.newContext({ viewport: { width: 1200, height: 700 }, offline });
     const page = await context.newPage();
     page.problems = [];
@@ -67,7 +67,7 @@ export async function open(browser, file, offline = true) {
     page.on('console', (m) => m.type() === 'error' && page.problems.push(m.text()));
     page.on('dialog', (d) => { page.problems.push(`dialog ${d.message()}`); d.dismiss(); });
     page.on('request', (r) => page.requests.push(r.url()));
-    await page.goto(pathToFileURL(path.join(folder, file)).href);
+    await page.goto(pathToFileURL(path.join(folder, file)).href + place);
     await page.waitForSelector('#view[data-painted]');
     return page;
 }

@@ -164,6 +164,33 @@ test('a pixel tells what `inspect --pixel` tells', async () => {
     assert.ok(Math.abs(a - major) <= 1e-3 * major && Math.abs(b - minor) <= 1e-3 * minor, text);
     assert.ok(Math.abs(degrees - angle) <= 0.051, `${degrees} and ${angle}`);
     assert.ok(text.includes(`${pixel.samples} samples taken`), text);
+    const shares = ['denoiser', 'regression', 'gaussian', 'raw'].map((kind) => Math.round(100 * pixel.shares[kind]));
+    assert.deepEqual([...text.match(/Made of: (.*?)\./)[1].matchAll(/(\d+) %/g)].map((m) => Number(m[1])), shares);
+});
+
+test('uncertain pixels are links that zoom, with the sentence of `inspect`', async () => {
+    const { most_uncertain: uncertain } = JSON.parse(covtrace('inspect', 'out.exr', '--json'));
+    const page = await open(browser, 'out.html');
+    const pinned = () => page.$eval('#view', (canvas) => canvas.dataset.pinned);
+    for (const { x, y, sentence } of uncertain) {
+        await page.click(`#facts a[href="#${x},${y}"]`);
+        await page.waitForFunction((at) => document.getElementById('view').dataset.pinned === at, `${x},${y}`);
+        const shown = await page.textContent('#pixel .certainty');
+        assert.equal(shown.toLowerCase(), `${sentence}.`.toLowerCase());
+        const { left, top, scale } = await page.$eval('#view', (canvas) => ({ ...canvas.dataset }));
+        assert.ok(Number(scale) >= 16, scale);
+        const middle = await page.$eval('#view', (canvas) => [canvas.width / 2, canvas.height / 2]);
+        [[left, x], [top, y]].forEach(([from, at], k) => assert.ok(Math.abs(Number(from) + (at + 0.5) * scale - middle[k]) <= scale));
+    }
+    // A second click on the same link leads there again, and the address of a page may name a pixel
+    const [{ x, y }] = uncertain.slice(-1);
+    await clickPixel(page, x, y > 0 ? y - 1 : y + 1);
+    await page.click(`#facts a[href="#${x},${y}"]`);
+    await page.waitForFunction((at) => document.getElementById('view').dataset.pinned === at, `${x},${y}`);
+    const direct = await open(browser, 'out.html', true, '#3,5');
+    await direct.waitForFunction(() => document.getElementById('view').dataset.pinned === '3,5');
+    assert.equal(await pinned(), `${x},${y}`);
+    assert.deepEqual([...page.problems, ...direct.problems], []);
 });
 
 test('the filter is drawn as an ellipse of its size', async () => {

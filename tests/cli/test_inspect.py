@@ -91,9 +91,74 @@ class Inspect(CliTest):
             self.assertAlmostEqual(found["hypercube"]["k"] / float(k), 1, places=4)
             self.assertAlmostEqual(found["hypercube"]["samples"], found["hypercube"]["k"] * found["hypercube"]["sqrt_det"], places=6)
         text = self.run_program("inspect", "out.exr", "--pixel", "21,17").stdout
-        self.assertRegex(text, r"samples per unit hypercube .*sqrt\|S\| = \S+, times k = ")
+        self.assertRegex(text, r"samples per unit hypercube .*sqrt\|S \+ W\| = \S+, times k = ")
         self.rendered("--spp", "6", "--resolution", "40x30")
         self.assertEqual(set(self.inspect("--pixel", "21,17")["pixel"]["hypercube"]), {"sqrt_det"})
+
+    def relative_error(self, x, y):
+        light = 0.2126 * self.value("R", x, y) + 0.7152 * self.value("G", x, y) + 0.0722 * self.value("B", x, y)
+        return self.value("error.Y", x, y) / math.sqrt(light**2 + 0.01)
+
+    def test_certainty_of_a_pixel(self):
+        whole = self.inspect()["estimated_error"]
+        places = [(x, y) for y in range(30) for x in range(40)]
+        for x, y in (max(places, key=lambda p: self.relative_error(*p)), min(places, key=lambda p: self.relative_error(*p))):
+            found = self.inspect("--pixel", f"{x},{y}")["pixel"]
+            relative = self.relative_error(x, y)
+            self.assertAlmostEqual(found["relative_error"] / relative, 1, places=4)
+            self.assertAlmostEqual(found["samples_factor"] / max(1, (relative / whole) ** 2), 1, places=3)
+            self.assertIn(" times the samples would" if relative > whole else "no more than the image's", found["sentence"])
+            self.assertIn(found["sentence"], self.run_program("inspect", "out.exr", "--pixel", f"{x},{y}").stdout)
+        worst = self.inspect()["most_uncertain"][0]
+        self.assertIn(worst["sentence"], self.run_program("inspect", "out.exr").stdout)
+
+    def test_pixels_without_samples(self):
+        self.image = exr.read(self.rendered("--spp", "0.5", "--cov-spp", "0.5", "--resolution", "40x30"))
+        empty = self.image.pixels["samples.Y"].index(0)
+        found = self.inspect("--pixel", f"{empty % 40},{empty // 40}")["pixel"]
+        self.assertIn("no sample was taken here", found["sentence"])
+
+    def test_causes(self):
+        """A lens and a shutter that blur a wall of squares, and a spot of light that paths meet by chance alone."""
+        wall = """WorldBegin
+Texture "squares" "spectrum" "checkerboard" "float uscale" 40 "float vscale" 40
+LightSource "infinite" "rgb L" [1 1 1]
+Material "diffuse" "texture reflectance" "squares"
+{}
+Shape "bilinearmesh" "point3 P" [-2 -2 0  2 -2 0  -2 2 0  2 2 0]
+"""
+        lens = 'Camera "perspective" "float fov" 40 "float lensradius" 0.5 "float focaldistance" 2\n'
+        shutter = 'Camera "perspective" "float fov" 40\n'
+        moving = "ActiveTransform EndTime\nTranslate 1 0 0\nActiveTransform All"
+        film = 'LookAt 0 0 5 0 0 0 0 1 0\nFilm "rgb" "integer xresolution" 24 "integer yresolution" 24\n'
+        # Floor and ceiling, and on the ceiling a small spot of light, which alone lights the floor
+        rare = """WorldBegin
+LightSource "spot" "rgb I" [1000 1000 1000] "point3 from" [0 0 0.1] "point3 to" [0 0 1] "float coneangle" 4 "float conedeltaangle" 1
+Material "diffuse"
+Shape "bilinearmesh" "point3 P" [-2 -2 0  2 -2 0  -2 2 0  2 2 0]
+Shape "bilinearmesh" "point3 P" [-2 -2 1  2 -2 1  -2 2 1  2 2 1]
+"""
+        for text, cause in ((lens + film + wall.format(""), "out of focus: "), (shutter + film + wall.format(moving), "in motion: "),
+                            (shutter + film.replace("0 0 5", "0 0 0.9") + rare, "rare paths (single samples vary by ")):
+            lines = text.splitlines(keepends=True)
+            self.write("cause.pbrt", "".join(sorted(lines[:3], key=lambda line: line[0] != "L")) + "".join(lines[3:]))
+            self.assertEqual(self.run_program("render", "cause.pbrt", "-o", "out.exr", "--spp", "16", "--quiet").code, DONE)
+            sentences = [self.inspect("--pixel", f"{x},{y}")["pixel"]["sentence"] for x in (6, 12, 18) for y in (6, 12, 18)]
+            self.assertGreater(sum(s.startswith(cause) for s in sentences), 4, sentences)
+
+    def test_shares_of_the_candidates(self):
+        for x, y in ((21, 17), (5, 25)):
+            shares = self.inspect("--pixel", f"{x},{y}")["pixel"]["shares"]
+            self.assertEqual(set(shares), {"raw", "gaussian", "regression", "denoiser"})
+            self.assertAlmostEqual(sum(shares.values()), 1, places=4)
+            for kind, share in shares.items():
+                self.assertAlmostEqual(share, self.value(f"share.{kind}", x, y), places=6)
+        self.rendered("--spp", "8", "--resolution", "40x30", "--denoiser", "none")
+        without = self.inspect("--pixel", "21,17")["pixel"]["shares"]
+        self.assertEqual(without["denoiser"], 0)
+        self.assertIn("0 % the denoiser", self.run_program("inspect", "out.exr", "--pixel", "21,17").stdout)
+        self.rendered("--method", "uniform", "--spp", "8", "--resolution", "40x30")
+        self.assertNotIn("shares", self.inspect("--pixel", "21,17")["pixel"])
 
     def test_pixel_for_people(self):
         result = self.run_program("inspect", "out.exr", "--pixel", "21,17")

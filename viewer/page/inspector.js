@@ -1,5 +1,6 @@
 // The panel beside the canvas: everything that is known about the pinned pixel.
 
+import { certaintySentence } from './certainty.js';
 import { axes, bandwidth, bandwidthWords, ellipse, symmetricIndex } from './covariance.js';
 import { formatBriefly, formatExactly, formatNumber } from './format.js';
 import { layerValues } from './layers.js';
@@ -86,15 +87,32 @@ function bandwidthTable(planes, image, index) {
     return result;
 }
 
-/** Fills `panel` for the pixel with the given index. images: the images that are compared, each with a short name. */
-export function showPixel(panel, planes, images, index) {
+// The kinds of candidates, by the channels of the layer `share`.
+const kCandidateKinds = [['denoiser', 'the denoiser'], ['regression', 'regressions'], ['gaussian', 'predicted Gaussians'], ['raw', 'the samples alone']];
+
+function mixtureText(planes, image, index) {
+    const values = layerValues(planes, image, 'share', index);
+    if (!values) return undefined;
+    const names = image.layers.find((l) => l.name === 'share').channels.map((c) => c.name);
+    const parts = kCandidateKinds.filter(([kind]) => names.includes(kind))
+        .map(([kind, title]) => `${(100 * values[names.indexOf(kind)]).toFixed(0)} % ${title}`);
+    return `Made of: ${parts.join(', ')}.`;
+}
+
+/** Fills `panel` for the pixel with the given index. images: the images that are compared, each with a short name;
+ *  size: their width and height. */
+export function showPixel(panel, planes, images, index, size) {
     const parts = [];
     for (const image of images) {
         const section = [];
+        const certainty = certaintySentence(planes, image, index, size);
+        if (certainty) section.push(make('p', { class: 'certainty' }, `${certainty[0].toUpperCase()}${certainty.slice(1)}.`));
         const samples = samplesText(planes, image, index);
         if (samples) section.push(make('p', {}, samples + '.'));
         const filter = filterText(planes, image, index);
         if (filter) section.push(make('p', {}, filter));
+        const mixture = mixtureText(planes, image, index);
+        if (mixture) section.push(make('p', {}, mixture));
         section.push(...bandwidthTable(planes, image, index));
         if (section.length === 0) continue;
         if (images.length > 1) parts.push(make('h3', {}, image.short));

@@ -6,7 +6,7 @@ import { make, makeTable } from './inspector.js';
 import { keyTexts, onKey } from './keys.js';
 import { findLayer } from './layers.js';
 import { paint } from './painting.js';
-import { pin } from './pixel.js';
+import { pin, zoomTo } from './pixel.js';
 import { listenToCanvas } from './pointer.js';
 import { byId, imageA, images, layouts, report, several, state, viewport } from './session.js';
 
@@ -33,14 +33,28 @@ function listen() {
     byId('help-button').addEventListener('click', () => byId('help').showModal());
     byId('pixel-form').addEventListener('submit', () =>
         pin(Number(byId('pixel-x').value), Number(byId('pixel-y').value), true).catch(fail));
+    byId('facts').addEventListener('click', followLinks);
+    window.addEventListener('hashchange', () => { if (pixelOfAddress()) zoomTo(...pixelOfAddress())?.catch(fail); });
     new ResizeObserver(() => viewport.resize()).observe(byId('view'));
+}
+
+/** The pixel that the page's address names behind #, as in report.html#12,40. */
+const pixelOfAddress = () => location.hash.match(/^#(-?\d+),(-?\d+)$/)?.slice(1).map(Number);
+
+/** A row of facts; a fact with a pixel is a link to it. */
+const factRow = ([name, value, pixel]) => [pixel ? make('a', { href: `#${pixel.join(',')}` }, name) : name, value];
+
+/** Links lead to their pixel also when it is the address already. */
+function followLinks(event) {
+    const link = event.target.closest('a[href^="#"]');
+    if (link && link.hash === location.hash) zoomTo(...pixelOfAddress())?.catch(fail);
 }
 
 function showFacts() {
     const parts = [];
-    if (report.facts.length > 0) parts.push(makeTable('Measures', null, report.facts));
+    if (report.facts.length > 0) parts.push(makeTable('Measures', null, report.facts.map(factRow)));
     for (const image of images) {
-        if (image.facts.length > 0) parts.push(makeTable(several ? image.short : 'Summary', null, image.facts));
+        if (image.facts.length > 0) parts.push(makeTable(several ? image.short : 'Summary', null, image.facts.map(factRow)));
         if (image.omitted.length > 0)
             parts.push(make('p', {}, `Left out of ${image.short} to keep this page small: ${image.omitted.join(', ')}.`));
         if (image.metadata.length > 0)
@@ -69,6 +83,7 @@ function start() {
     paint().then(() => {
         showControls();
         viewport.fit();
+        if (pixelOfAddress()) return zoomTo(...pixelOfAddress());
         if (report.pixel) return pin(...report.pixel, true);
     }).catch(fail);
 }

@@ -47,9 +47,16 @@ export async function pin(x, y, reveal) {
     viewport.marks = { x: x - report.x0, y: y - report.y0, ellipse: filter };
     if (reveal) viewport.reveal(x - report.x0, y - report.y0);
     viewport.draw();
-    showPixel(byId('pixel'), planes, shown, index);
+    showPixel(byId('pixel'), planes, shown, index, report);
     byId('readout').textContent = readOut(x, y);
     byId('view').dataset.pinned = `${x},${y}`;
+}
+
+/** Shows a pixel large, in the middle, and chooses it. */
+export function zoomTo(x, y) {
+    if (!inside(x, y)) return undefined;
+    viewport.focus(x - report.x0, y - report.y0);
+    return pin(x, y, true);
 }
 
 /** Chooses the pixel that lies (dx, dy) from the chosen one, or from the middle. */

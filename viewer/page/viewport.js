@@ -1,6 +1,7 @@
 // The canvas: panes that show pictures of the same size with one pan and zoom, a split line, and marks.
 
 const kMostZoom = 128;  // screen pixels per image pixel
+const kCloseZoom = 16;  // the same where one pixel is looked at
 
 export class Viewport {
     /** Makes a viewport. canvas: the element; size: [width, height] of the images in pixels. */
@@ -107,6 +108,14 @@ export class Viewport {
         if (Math.abs(x - this.center[0]) < halfWidth && Math.abs(y - this.center[1]) < halfHeight) return;
         this.center = [x + 0.5, y + 0.5];
         this.fitted = false;
+    }
+
+    /** Shows a pixel in the middle of the panes, large enough to tell it from those around it. */
+    focus(x, y) {
+        this.scale = Math.max(this.scale, kCloseZoom);
+        this.center = [x + 0.5, y + 0.5];
+        this.fitted = false;
+        this.draw();
     }
 
     draw() {
