@@ -40,7 +40,7 @@ struct HypercubeCount {
     std::optional<double> k;  ///< absent where the image was not planned by this density
 };
 
-/// What part of a pixel one kind of candidate made, from the layer `share`.
+/// The part of a pixel that one kind of candidate made, from the layer `share`.
 struct CandidateShare {
     std::string kind, title;  ///< the channel's name, and the kind for people
     double share = 0;         ///< from 0 to 1

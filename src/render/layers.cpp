@@ -31,7 +31,7 @@ std::array<float, 3> array(const covariance::Sym2<float>& s) {
     return {s.xx, s.xy, s.yy};
 }
 
-/// What part of a pixel each kind of candidate made, in the order of CandidateKind.
+/// The parts of a pixel that the kinds of candidates made, in the order of CandidateKind.
 std::array<float, 4> shares_of_kinds(const std::vector<Plane>& shares, size_t pixel) {
     std::array<float, 4> sums{};
     for (size_t c = 0; c < shares.size(); ++c)
