@@ -53,6 +53,8 @@ int merge_films(const MergeArguments& a) {
     std::vector<std::filesystem::path> inputs(a.films.begin(), a.films.end());
     if (!a.denoiser.library.empty()) inputs.emplace_back(a.denoiser.library);
     require_distinct(outputs, inputs);
+    for (const std::string& file : {a.output, a.png, a.film})
+        if (!file.empty()) remove_leftovers(file);
     FilmMerge merge;
     for (const std::string& file : a.films) merge.add(file, read_film(file));
     const RenderState state = std::move(merge).result();

@@ -102,7 +102,13 @@ void require_distinct(const std::vector<NamedOutput>& outputs,
 void add_film(std::vector<NamedOutput>& outputs, const std::string& option, const fs::path& film) {
     if (film.empty()) return;
     outputs.push_back({option, film});
-    outputs.push_back({option + ", the earlier film", earlier_film(film)});
+    const fs::path earlier = earlier_film(film);
+    // A writer that was killed after it gave the older film its second name, and before the newer
+    // one took the first, left two names of one file. The next writer replaces either.
+    std::error_code error;
+    if (!is_same_file(film, earlier) || fs::is_symlink(earlier, error) ||
+        fs::is_symlink(film, error))
+        outputs.push_back({option + ", the earlier film", earlier});
 }
 
 }  // namespace covtrace::cli

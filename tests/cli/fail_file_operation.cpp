@@ -1,6 +1,8 @@
-// Preloaded into the program by test_file_failures.py: lets one operation on a file that is being
-// written fail, or every write be short.
+// Preloaded into the program by test_file_failures.py and test_killed_writers.py: lets one operation
+// on a file that is being written fail or end the program, or every write be short.
 //   COVTRACE_FAIL_AT=n         the n-th operation fails with EIO (a write with ENOSPC), from 0
+//   COVTRACE_KILL_AT=n         the process is killed before the n-th operation, or half-way through
+//                              it if it is a write
 //   COVTRACE_FAIL_LIST=FILE    the names of all operations go there, a line each
 //   COVTRACE_SHORT_WRITES=1    each write takes at most 1000 bytes
 #include <dlfcn.h>
@@ -10,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +20,17 @@
 namespace {
 
 std::atomic<long> operations{0};
+
+long number(const char* variable) {
+    const char* value = std::getenv(variable);
+    return value ? std::atol(value) : -1;
+}
+
+[[noreturn]] void die() {
+    kill(getpid(), SIGKILL);
+    for (;;) pause();
+}
+
 std::atomic<bool> written[1024];  // by descriptor: opened for writing
 std::atomic<bool> filled[1024];  // by descriptor: written to, too; only then does closing it matter
 
@@ -31,8 +45,8 @@ bool fails(const char* operation) {
             std::fprintf(out, "%s\n", operation);
             std::fclose(out);
         }
-    const char* at = std::getenv("COVTRACE_FAIL_AT");
-    return operations++ == (at ? std::atol(at) : -1);
+    if (operations == number("COVTRACE_KILL_AT")) die();
+    return operations++ == number("COVTRACE_FAIL_AT");
 }
 
 int failure(int error) {
@@ -65,6 +79,8 @@ int open(const char* path, int flags, ...) {
 
 ssize_t write(int descriptor, const void* bytes, size_t count) {
     if (is_written(descriptor)) {
+        if (operations == number("COVTRACE_KILL_AT"))
+            next<ssize_t (*)(int, const void*, size_t)>("write")(descriptor, bytes, count / 2);
         if (fails("write")) return failure(ENOSPC);
         filled[descriptor] = true;
         if (std::getenv("COVTRACE_SHORT_WRITES")) count = std::min<size_t>(count, 1000);

@@ -13,6 +13,10 @@ from dataclasses import dataclass
 
 PROGRAM = os.environ.get("COVTRACE", "covtrace")
 SANITIZED = os.environ.get("COVTRACE_SANITIZE") == "1"
+# The library that lets operations on files fail, and what loads it before others: the address
+# sanitizer wants to be the first.
+LIBRARY_OF_FAILURES = os.environ.get("COVTRACE_FAIL_FILE_OPERATION", "")
+PRELOAD = f"{os.environ.get('COVTRACE_PRELOAD', '')} {LIBRARY_OF_FAILURES}"
 SLOWER = 40 if SANITIZED else 1  # factor of time for a sanitized program on a loaded machine
 
 DONE, USAGE, SCENE, LIMIT, IO, INTERRUPTED, INTERNAL = 0, 2, 3, 4, 5, 6, 7

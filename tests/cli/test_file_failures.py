@@ -5,13 +5,10 @@ import unittest
 
 import exr
 from films import FilmTest
-from support import DONE, IO
-
-LIBRARY = os.environ.get("COVTRACE_FAIL_FILE_OPERATION", "")
-PRELOAD = f"{os.environ.get('COVTRACE_PRELOAD', '')} {LIBRARY}"  # the address sanitizer wants to be loaded first
+from support import DONE, IO, LIBRARY_OF_FAILURES, PRELOAD
 
 
-@unittest.skipUnless(os.path.exists(LIBRARY), "the library that lets operations fail is not built")
+@unittest.skipUnless(os.path.exists(LIBRARY_OF_FAILURES), "the library that lets operations fail is not built")
 class Failures(FilmTest):
     ARGUMENTS = ["--spp", "2", "--resolution", "24x16", "--film", "a.film", "--png", "out.png", "--stats", "s.json", "--reproducible"]
 
