@@ -4,8 +4,10 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "bindings.h"
@@ -75,8 +77,13 @@ py::dict channel_views(const SharedPlanes& planes) {
 
 using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
-/// Makes an image of (height, width) values by channel name, all of one size.
-SharedPlanes from_channels(const std::vector<std::pair<std::string, FloatArray>>& channels) {
+using Window = std::array<int, 4>;
+
+/// Makes an image of (height, width) values by channel name, all of one size. `data` and `display`
+/// are the windows (x0, y0, x1, y1); without them both begin at (0, 0).
+SharedPlanes from_channels(const std::vector<std::pair<std::string, FloatArray>>& channels,
+                           const std::optional<Window>& data,
+                           const std::optional<Window>& display) {
     if (channels.empty()) throw py::value_error("an image needs at least one channel");
     const FloatArray& first = channels.front().second;
     if (first.ndim() != 2)
@@ -84,6 +91,10 @@ SharedPlanes from_channels(const std::vector<std::pair<std::string, FloatArray>>
                               "' must be a (height, width) array");
     Image image;
     image.data = image.display = {0, 0, int(first.shape(1)), int(first.shape(0))};
+    if (display) image.display = {(*display)[0], (*display)[1], (*display)[2], (*display)[3]};
+    if (data) image.data = {(*data)[0], (*data)[1], (*data)[2], (*data)[3]};
+    if (image.width() != first.shape(1) || image.height() != first.shape(0))
+        throw py::value_error("the data window has not the size of the channels");
     std::set<std::string_view> names;
     for (const auto& [name, values] : channels) {
         if (name.empty() || name.size() > kExrNameLimit)
@@ -128,7 +139,8 @@ py::dict comparison(const SharedPlanes& image, const SharedPlanes& reference) {
 void bind_image(py::module_& module) {
     const auto window = [](const PixelBounds& b) { return py::make_tuple(b.x0, b.y0, b.x1, b.y1); };
     py::class_<Planes, SharedPlanes>(module, "Planes")
-        .def_static("from_channels", &from_channels)
+        .def_static("from_channels", &from_channels, py::arg("channels"),
+                    py::arg("data_window") = py::none(), py::arg("display_window") = py::none())
         .def_static("read",
                     [](const std::filesystem::path& file) {
                         const Unlocked unlocked;

@@ -39,6 +39,7 @@ struct Exchange {
     std::condition_variable changed;
     bool finished = false;
     std::optional<Progress> progress;
+    SharedPlanes preview;  ///< the image so far, until the caller has it
 };
 
 py::object progress_object(const Progress& p) {
@@ -52,23 +53,26 @@ py::object progress_object(const Progress& p) {
 /// Returns once the render has ended: the exception of the caller's functions, which cancels the
 /// render, or null.
 std::exception_ptr wait(Exchange& exchange, Monitor& monitor, const py::object& progress,
-                        const py::object& cancel) {
+                        const py::object& preview, const py::object& cancel) {
     const Calls calls;
     std::exception_ptr thrown;
     for (;;) {
         std::optional<Progress> latest;
+        SharedPlanes image;
         {
             const Unlocked unlocked(&calls);
             std::unique_lock lock(exchange.mutex);
             exchange.changed.wait_for(lock, std::chrono::milliseconds(50),
-                                      [&] { return exchange.finished; });
+                                      [&] { return exchange.finished || exchange.preview; });
             latest = std::exchange(exchange.progress, std::nullopt);
-            if (exchange.finished && (thrown || !latest)) return thrown;
+            image = std::exchange(exchange.preview, nullptr);
+            if (exchange.finished && (thrown || (!latest && !image))) return thrown;
         }
         if (thrown) continue;
         try {
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
             if (latest && !progress.is_none()) progress(progress_object(*latest));
+            if (image) preview(image);
             // The result of `is_set` is true or false as in an `if`.
             if (!cancel.is_none() && py::bool_(cancel.attr("is_set")())) monitor.cancel();
         } catch (...) {
@@ -200,7 +204,7 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
         is_given(o, "texture_memory")
             ? value_of<size_t>(o, "texture_memory", "a number of bytes, or a text such as '500M'")
             : kNoTextureLimit;
-    const py::object progress = o["progress"], cancel = o["cancel"];
+    const py::object progress = o["progress"], preview = o["preview"], cancel = o["cancel"];
 
     // Render in a thread of its own, and wait for it
     Exchange exchange;
@@ -210,6 +214,13 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
             exchange.progress = p;
         },
         0.1);
+    if (!preview.is_none())
+        monitor.watcher = [&exchange](Image image) {
+            auto planes = std::make_shared<Planes>(std::move(image));
+            const std::lock_guard lock(exchange.mutex);
+            exchange.preview = std::move(planes);
+            exchange.changed.notify_all();
+        };
     std::optional<Rendered> rendered;
     std::exception_ptr failure;
     auto work = std::make_unique<Work>(monitor);
@@ -228,7 +239,7 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
         exchange.finished = true;
         exchange.changed.notify_all();
     });
-    const std::exception_ptr thrown = wait(exchange, monitor, progress, cancel);
+    const std::exception_ptr thrown = wait(exchange, monitor, progress, preview, cancel);
     worker.join();
     if (thrown) std::rethrow_exception(thrown);
     if (failure) std::rethrow_exception(failure);

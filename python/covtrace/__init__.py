@@ -31,8 +31,9 @@ from .errors import (Error, FileError, InternalError, Interrupted, LimitError, S
 from .image import Comparison, Image, compare
 from .progress import Progress
 from .rendering import render
+from .running import RunningRender, start
 from .scene import Scene
 
 __all__ = ["Comparison", "Error", "FileError", "Image", "InternalError", "Interrupted",
-           "LimitError", "Progress", "Scene", "SceneBuilder", "SceneError", "SceneWarning",
-           "UsageError", "__version__", "compare", "covariance", "render"]
+           "LimitError", "Progress", "RunningRender", "Scene", "SceneBuilder", "SceneError", "SceneWarning",
+           "UsageError", "__version__", "compare", "covariance", "render", "start"]

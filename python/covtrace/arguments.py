@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NoReturn
 
@@ -56,6 +57,30 @@ def shutter_of(value: tuple[float, float] | None) -> tuple[float, float] | None:
         return float(begin), float(end)
     except (TypeError, ValueError, OverflowError):
         refuse("shutter", value, expected)
+
+
+_SECONDS = {"": 1, "s": 1, "m": 60, "h": 3600}
+
+
+def seconds_of(value: float | str | None) -> float | None:
+    """Seconds, as a number or as a text such as "2.5", "45s", "3m" or "1h30m"."""
+    if not isinstance(value, str):
+        return value
+    parts = re.findall(r"(\d+(?:\.\d+)?)([smh]?)", value)
+    # Without a unit only a single number is clear: "1h30" could mean minutes or seconds.
+    if "".join(number + unit for number, unit in parts) != value or (len(parts) != 1 and any(not u for _, u in parts)):
+        refuse("time", value, "seconds, or a text such as '45s', '3m' or '1h30m'")
+    return sum(float(number) * _SECONDS[unit] for number, unit in parts)
+
+
+def resolution_of(value: Any) -> Any:
+    """(width, height), also from a text such as "640x360"."""
+    if not isinstance(value, str):
+        return value
+    found = re.fullmatch(r"(\d+)x(\d+)", value)
+    if not found:
+        refuse("resolution", value, "(width, height), or a text such as '640x360'")
+    return int(found[1]), int(found[2])
 
 
 def vector_of(name: str, value: Any, expected: str) -> tuple[float, float, float]:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy
 from numpy.typing import ArrayLike
 
+from .builder_calls import BuilderCalls, describe_call
 from .errors import UsageError
 from .image import Image
 
@@ -100,10 +101,12 @@ class SceneBuilder:
     """
 
     def __init__(self) -> None:
-        self._view: list[str] = []
-        self._world: list[str] = []
+        # Lines of the text, each with the call that it comes from
+        self._view: list[tuple[str, str]] = []
+        self._world: list[tuple[str, str]] = []
         self._meshes: list[tuple[str, list[str], numpy.ndarray, numpy.ndarray]] = []
         self._textures: list[tuple[str, Image]] = []
+        self._files: dict[str, str] = {}  # the calls of meshes and textures, by file
         self._camera_given = False
         self._shutter = (0, 1)
 
@@ -115,7 +118,8 @@ class SceneBuilder:
         self._camera_given = True
         self._shutter = shutter
         width, height = resolution
-        self._view += [
+        call = describe_call("camera", kind)
+        self._view += [(line, call) for line in [
             "LookAt " + " ".join(repr(float(v)) for v in (*eye, *target, *up)),
             f"Camera {_quoted(kind)} "
             + _parameters({"float shutteropen": shutter[0], "float shutterclose": shutter[1],
@@ -124,11 +128,12 @@ class SceneBuilder:
             # The exposure is the shutter's length; the image should not depend on it.
             + ('' if shutter[1] == shutter[0]
                else f' "float iso" {100 / (shutter[1] - shutter[0])!r}'),
-        ]
+        ]]
 
     def integrator(self, max_depth: int = 8, spp: int = 16) -> None:
-        self._view += [f'Integrator "volpath" "integer maxdepth" {int(max_depth)}',
-                       f'Sampler "zsobol" "integer pixelsamples" {int(spp)}']
+        call = describe_call("integrator", max_depth, spp)
+        self._view += [(f'Integrator "volpath" "integer maxdepth" {int(max_depth)}', call),
+                       (f'Sampler "zsobol" "integer pixelsamples" {int(spp)}', call)]
 
     def texture(self, name: str, values: ArrayLike, **parameters: Any) -> None:
         """An image as texture: (height, width) or (height, width, 3), linear values; rows from the
@@ -142,18 +147,21 @@ class SceneBuilder:
         file = f"texture-{len(self._textures)}.exr"
         kind = "spectrum" if values.ndim == 3 else "float"
         self._textures.append((file, image))
-        self._world.append(f"Texture {_quoted(name)} \"{kind}\" \"imagemap\" "
-                           f"\"string filename\" \"{file}\" " + _parameters(parameters))
+        self._files[file] = call = describe_call("texture", name)
+        self._world.append((f"Texture {_quoted(name)} \"{kind}\" \"imagemap\" "
+                            f"\"string filename\" \"{file}\" " + _parameters(parameters), call))
 
     def material(self, name: str, kind: str, **parameters: Any) -> None:
         """Adds a named material; kind and parameters as pbrt's MakeNamedMaterial."""
-        self._world.append(f"MakeNamedMaterial {_quoted(name)} \"string type\" {_quoted(kind)} "
-                           + _parameters(parameters))
+        self._world.append((f"MakeNamedMaterial {_quoted(name)} \"string type\" {_quoted(kind)} "
+                            + _parameters(parameters), describe_call("material", name, kind)))
 
     def light(self, kind: str, transform: ArrayLike | None = None, **parameters: Any) -> None:
         """Adds a light; kind and parameters as pbrt's LightSource."""
-        self._world += ["AttributeBegin", *_moved(transform, None),
-                        f"LightSource {_quoted(kind)} " + _parameters(parameters), "AttributeEnd"]
+        call = describe_call("light", kind)
+        self._world += [(line, call) for line in [
+            "AttributeBegin", *_moved(transform, None),
+            f"LightSource {_quoted(kind)} " + _parameters(parameters), "AttributeEnd"]]
 
     def mesh(self, vertices: ArrayLike, triangles: ArrayLike, normals: ArrayLike | None = None,
              uv: ArrayLike | None = None, material: str | None = None,
@@ -178,17 +186,18 @@ class SceneBuilder:
         file = f"mesh-{len(self._meshes)}.ply"
         self._meshes.append((file, names, numpy.concatenate(columns, axis=1),
                              triangles.astype(numpy.int32)))
-        self._shape(f'Shape "plymesh" "string filename" "{file}"', material, emission, transform,
-                    end_transform, two_sided)
+        self._files[file] = call = describe_call("mesh")
+        self._shape(call, f'Shape "plymesh" "string filename" "{file}"', material, emission,
+                    transform, end_transform, two_sided)
 
     def shape(self, kind: str, material: str | None = None, emission: ArrayLike | None = None,
               transform: ArrayLike | None = None, end_transform: ArrayLike | None = None,
               two_sided: bool = False, **parameters: Any) -> None:
         """Adds a shape; kind and parameters as pbrt's Shape: sphere, disk, ..."""
-        self._shape(f"Shape {_quoted(kind)} " + _parameters(parameters), material, emission,
-                    transform, end_transform, two_sided)
+        self._shape(describe_call("shape", kind), f"Shape {_quoted(kind)} " + _parameters(parameters),
+                    material, emission, transform, end_transform, two_sided)
 
-    def _shape(self, directive, material, emission, transform, end_transform, two_sided):
+    def _shape(self, call, directive, material, emission, transform, end_transform, two_sided):
         lines = ["AttributeBegin", *_moved(transform, end_transform)]
         if material is not None:
             lines.append(f"NamedMaterial {_quoted(material)}")
@@ -196,16 +205,27 @@ class SceneBuilder:
             lines.append('AreaLightSource "diffuse" '
                          + _parameters({"L": numpy.broadcast_to(emission, 3),
                                         "twosided": bool(two_sided)}))
-        self._world += [*lines, directive, "AttributeEnd"]
+        self._world += [(line, call) for line in (*lines, directive, "AttributeEnd")]
 
     def text(self) -> str:
         """The scene as pbrt-v4 text; meshes and textures are files beside it."""
+        return "\n".join([*(line for line, _ in self._lines()), ""])
+
+    def _lines(self) -> list[tuple[str, str | None]]:
         if not self._camera_given:
             raise ValueError("the scene has no camera; call camera()")
         start, end = (float(t) for t in self._shutter)
         # The time of `end_transform` is the shutter's end, not the time 1 that pbrt would give it.
-        times = [f"TransformTimes {start!r} {end!r}"] if start < end else []
-        return "\n".join([*times, *self._view, "WorldBegin", *self._world, ""])
+        times = [(f"TransformTimes {start!r} {end!r}", None)] if start < end else []
+        return [*times, *self._view, ("WorldBegin", None), *self._world]
+
+    def written(self, folder: str | os.PathLike[str]) -> tuple[str, BuilderCalls]:
+        """Writes the scene as `write` does; returns its path, and the calls that it comes from."""
+        calls = BuilderCalls()
+        calls.text = self.write(folder)
+        calls.lines = [call for _, call in self._lines()]
+        calls.files = dict(self._files)
+        return calls.text, calls
 
     def write(self, folder: str | os.PathLike[str], name: str = "scene.pbrt") -> str:
         """Writes the scene with its meshes and textures into a folder; returns the scene's path.

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+import tempfile
+from collections.abc import ItemsView, Iterator, KeysView, Mapping, ValuesView
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _covtrace
 from .arguments import refuse, text_of
@@ -21,7 +22,9 @@ class Image:
     """A rendered or loaded image.
 
     Layers and channels are float32 views of the image's own memory: no copy is made, writing into
-    them changes the image. Rows run from the top, so `image.rgb[y, x]`.
+    them changes the image. Rows run from the top, so `image.rgb[y, x]`. `image[name]`, `keys`,
+    `items` and iteration are over layers, as of a dictionary; `numpy.asarray(image)` is `rgb`.
+    Images can be pickled and copied, and notebooks show them.
 
     rgb: (height, width, 3), the delivered image.
     layers: name -> (height, width, n), or (height, width) for layers of one channel such as "Z",
@@ -87,6 +90,40 @@ class Image:
     def __contains__(self, name: object) -> bool:
         return name in self.layers or name in self.channels
 
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.layers)
+
+    def __len__(self) -> int:
+        return len(self.layers)
+
+    def keys(self) -> KeysView[str]:
+        """The names of the layers, "" of the delivered image."""
+        return self.layers.keys()
+
+    def values(self) -> ValuesView[Array]:
+        return self.layers.values()
+
+    def items(self) -> ItemsView[str, Array]:
+        return self.layers.items()
+
+    def __array__(self, dtype: DTypeLike = None, copy: bool | None = None) -> NDArray[Any]:
+        """The delivered image, (height, width, 3): a view, unless another type or a copy is asked
+        for."""
+        rgb = self.rgb if dtype is None else self.rgb.astype(dtype, copy=False)
+        return rgb.copy() if copy else rgb
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (list(self.channels.items()), self.data_window, self.display_window,
+                           self.metadata, self.complete, self.statistics)
+
+    def _repr_png_(self) -> bytes:
+        """The picture that notebooks show: sRGB, without exposure."""
+        with tempfile.TemporaryDirectory(prefix="covtrace-") as folder:
+            file = os.path.join(folder, "image.png")
+            self.write(file)
+            with open(file, "rb") as picture:
+                return picture.read()
+
     @property
     def rgb(self) -> Array:
         root = self.layers.get("")
@@ -145,6 +182,15 @@ class Image:
     def __repr__(self) -> str:
         width, height = self.size
         return f"<covtrace.Image {width}x{height}, layers {', '.join(map(repr, self.layers))}>"
+
+
+def _restored(channels: list[tuple[str, Array]], data: tuple[int, int, int, int],
+              display: tuple[int, int, int, int], metadata: dict[str, Any], complete: bool,
+              statistics: dict[str, Any]) -> Image:
+    """The image that was pickled."""
+    planes = _covtrace.Planes.from_channels(channels, data, display)
+    planes.metadata = metadata
+    return Image(planes, complete, statistics)
 
 
 @dataclass(frozen=True)

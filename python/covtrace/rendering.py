@@ -10,7 +10,8 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, Protocol
 
 from . import _covtrace
-from .arguments import camera_of, cancel_of, environment_of, function_of, path_of, shutter_of
+from .arguments import (camera_of, cancel_of, environment_of, function_of, path_of, resolution_of,
+                        seconds_of, shutter_of)
 from .builder import SceneBuilder
 from .errors import SceneWarning, UsageError
 from .image import Image
@@ -39,7 +40,7 @@ class Cancel(Protocol):
 def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            preset: Literal["draft", "preview", "final"] | None = None,
            method: Literal["uniform", "covariance", "hybrid"] = "hybrid",
-           spp: float | None = None, time: float | None = None, error: float | None = None,
+           spp: float | None = None, time: float | str | None = None, error: float | None = None,
            cov_spp: float | None = None, max_spp: int | None = None, max_depth: int | None = None,
            density: Literal["tempered", "thesis"] = "tempered", k: float | None = None,
            occlusion: Literal["grid", "voxels", "query", "none"] = "query", voxels: int = 200,
@@ -49,7 +50,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            even_counts: bool = False,
            denoiser: Literal["auto", "oidn", "none"] | None = None,
            denoiser_library: str | os.PathLike[str] | None = None,
-           resolution: tuple[int, int] | None = None,
+           resolution: tuple[int, int] | str | None = None,
            crop: tuple[int, int, int, int] | None = None,
            shutter: tuple[float, float] | None = None, focus: float | None = None,
            fstop: float | None = None,
@@ -61,6 +62,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            texture_memory: int | str | None = None,
            search_paths: Iterable[str | os.PathLike[str]] = (),
            progress: Callable[[Progress], Any] | None = None,
+           preview: Callable[[Image], Any] | None = None,
            cancel: Cancel | None = None) -> Image:
     """Renders a scene into an `Image`.
 
@@ -70,12 +72,12 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     method: "uniform" (the plain path tracer), "covariance" (the method of Belcour
         2012, section 5.1) or "hybrid".
     spp, time, error: budgets: average samples per pixel (default: the scene's), seconds, estimated
-        sqrt(relMSE); of several the first one stops.
+        sqrt(relMSE); of several the first one stops. A time may be a text: "45s", "3m", "1h30m".
     k: with density "thesis", one more budget: k sqrt|S| samples in each pixel, whatever their mean;
         `image.statistics["k"]` tells it where another budget decided.
     denoiser, denoiser_library: whether "hybrid" has Open Image Denoise as one more filter, "auto" (the
         default, but for drafts) where it is found; `image.statistics["denoiser"]` tells. A warning where it is there but unusable.
-    resolution (w, h), crop (x0, y0, x1, y1), shutter (t0, t1), focus, fstop: in place of the scene's.
+    resolution (w, h) or "640x360", crop (x0, y0, x1, y1), shutter (t0, t1), focus, fstop: in place of the scene's.
         The nodes of a glTF file are placed when it is read: give `shutter` with the file's path, or
         to `Scene`.
     camera: {"eye": (x, y, z), "target": (x, y, z), "fov": degrees of the shorter side}, a pinhole in
@@ -85,6 +87,8 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
         the scene's own where no environment is given.
     threads: 0 for all cores; holds for the process while the render runs.
     progress: called with a `Progress` about ten times a second, in the calling thread.
+    preview: called between rounds with the `Image` of the samples so far, in the calling thread;
+        of images that come faster than it returns the latest.
     cancel: anything with `is_set()`, for example a threading.Event; the image that is there when it
         is set comes back with `complete` False.
     All other arguments are the options of `covtrace render`.
@@ -92,24 +96,27 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     Python's lock is released while it renders. An exception from `progress`, and Ctrl-C, end the
     render and come out of this call. Raises the classes of `covtrace.errors`.
     """
-    options = {"preset": preset, "method": method, "spp": spp, "time": time, "error": error, "cov_spp": cov_spp,
+    options = {"preset": preset, "method": method, "spp": spp, "time": seconds_of(time), "error": error, "cov_spp": cov_spp,
                "max_spp": max_spp, "max_depth": max_depth, "density": density, "k": k,
                "occlusion": occlusion, "voxels": voxels, "brdf_covariance": brdf_covariance,
                "texture_bandwidth": texture_bandwidth, "filter": filter,
                "progressive": progressive, "even_counts": even_counts, "denoiser": denoiser,
                "denoiser_library": None if denoiser_library is None
                else path_of("denoiser_library", denoiser_library),
-               "resolution": resolution,
+               "resolution": resolution_of(resolution),
                "crop": crop, "shutter": shutter_of(shutter), "focus": focus, "fstop": fstop,
                "camera": camera_of(camera), "environment": environment_of(environment),
                "environment_rotation": environment_rotation, "environment_scale": environment_scale,
                "seed": seed,
                "threads": threads, "isa": isa, "texture_memory": _bytes(texture_memory),
-               "progress": function_of("progress", progress), "cancel": cancel_of(cancel)}
+               "progress": function_of("progress", progress),
+               "preview": _with_images(function_of("preview", preview)), "cancel": cancel_of(cancel)}
     if isinstance(scene, SceneBuilder):
         # The files must last until the scene is built, which reads the textures.
         with tempfile.TemporaryDirectory(prefix="covtrace-") as folder:
-            return _render(Scene(scene.write(folder), search_paths), options)
+            file, calls = scene.written(folder)
+            with calls.name_errors():
+                return _render(Scene._of_builder(file, search_paths, calls), options)
     if not isinstance(scene, Scene):
         scene = Scene(path_of("scene", scene, "a file's path, a Scene or a SceneBuilder"),
                       search_paths, shutter)
@@ -119,8 +126,13 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     return _render(scene, options)
 
 
+def _with_images(preview: Callable[[Image], Any] | None) -> Callable[[_covtrace.Planes], Any] | None:
+    """The function for the renderer's own planes."""
+    return None if preview is None else lambda planes: preview(Image(planes))
+
+
 def _render(scene: Scene, options: dict[str, Any]) -> Image:
     planes, complete, statistics, texts = _covtrace.render(scene._description, options)
     for text in texts:
-        warnings.warn(text, SceneWarning, stacklevel=3)
+        warnings.warn(scene._named(text), SceneWarning, stacklevel=3)
     return Image(planes, complete, statistics)

@@ -45,6 +45,23 @@ AttributeBegin
 AttributeEnd
 """
 
+# A ball on a floor under a lamp, out of focus.
+LIT = """
+LookAt 0 1 6  0 0 0  0 1 0
+Camera "perspective" "float fov" 40 "float lensradius" 0.1 "float focaldistance" 5
+Film "rgb" "integer xresolution" 24 "integer yresolution" 16
+WorldBegin
+LightSource "infinite" "rgb L" [.1 .2 .3]
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [3 3 3]
+  Translate 0 3 0
+  Shape "sphere" "float radius" 0.5
+AttributeEnd
+Material "diffuse" "rgb reflectance" [.5 .4 .3]
+Shape "sphere" "float radius" 1
+Shape "trianglemesh" "point3 P" [-4 -1 -4  4 -1 -4  4 -1 4  -4 -1 4] "integer indices" [0 2 1  0 3 2]
+"""
+
 # A scene that is lit alike everywhere: a radiance of 0.25 in every pixel.
 FURNACE = """
 Camera "perspective" "float fov" 30

@@ -28,6 +28,46 @@ class Builder(unittest.TestCase):
         self.assertAlmostEqual(centre_spread(0.0), 0.6 / width + 1.5 / 60, delta=2.5 / 60)
         self.assertAlmostEqual(centre_spread(2.0), 2.6 / width + 1.5 / 60, delta=2.5 / 60)
 
+    def broken(self, break_it):
+        """A scene with a ball, broken by a function; returns the scene and the place of the breaking call."""
+        scene = covtrace.SceneBuilder()
+        scene.camera(eye=(0, 0, -5), target=(0, 0, 0), fov=40, resolution=(8, 8))
+        scene.light("infinite", L=(1, 1, 1))
+        scene.material("grey", "diffuse", reflectance=(0.5, 0.5, 0.5))
+        scene.shape("sphere", material="grey")
+        break_it(scene)
+        scene.shape("disk", material="grey")
+        return scene, f"{__file__}:{break_it.__code__.co_firstlineno}: SceneBuilder."
+
+    def test_errors_name_the_call(self):
+        triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+        for break_it, call in (
+            (lambda s: s.material("red", "no-such-kind"), "material('red', 'no-such-kind'): "),
+            (lambda s: s.shape("sphere", material="nobody"), "shape('sphere'): "),
+            (lambda s: s.light("point", I=(1, 1, 1), **{"float scale": "x"}), "light('point'): "),
+            (lambda s: s.mesh(triangle, [[0, 1, 2]], material="nobody"), "mesh(): "),
+        ):
+            scene, place = self.broken(break_it)
+            with self.subTest(call), self.assertRaises(covtrace.SceneError) as caught:
+                covtrace.render(scene, spp=1)
+            self.assertTrue(str(caught.exception).startswith(place + call), caught.exception)
+            self.assertEqual(caught.exception.file, __file__)
+            self.assertEqual(caught.exception.line, break_it.__code__.co_firstlineno)
+            self.assertNotIn("covtrace-", str(caught.exception))
+
+    def test_warnings_name_the_call(self):
+        scene, place = self.broken(lambda s: s.shape("sphere", material="grey", **{"float no-such": 1}))
+        with self.assertWarns(covtrace.SceneWarning) as caught:
+            covtrace.render(scene, spp=1)
+        self.assertTrue(str(caught.warning).startswith(place + "shape('sphere'): "), caught.warning)
+        self.assertEqual(caught.filename, __file__)
+        dark = covtrace.SceneBuilder()
+        dark.camera()
+        dark.shape("sphere")
+        with self.assertWarns(covtrace.SceneWarning) as caught:
+            covtrace.render(dark, spp=1, resolution=(4, 4))
+        self.assertTrue(str(caught.warning).startswith("SceneBuilder: the scene has no lights"), caught.warning)
+
     def test_end_transforms_hold_at_the_shutters_end(self):
         def columns(shutter):
             scene = covtrace.SceneBuilder()

@@ -1,12 +1,15 @@
 """covtrace.Image and covtrace.compare: files, arrays, layers, measures."""
 
+import copy
 import pathlib
+import pickle
 import tempfile
 import unittest
 
 import numpy
 
 import covtrace
+import scenes
 
 
 class Images(unittest.TestCase):
@@ -25,6 +28,49 @@ class Images(unittest.TestCase):
         for wrong in ({"view": "raw"}, {"view": 3}, {"exposure": "x"}, {"exposure": None}, {"exposure": float("nan")}):
             with self.subTest(wrong), self.assertRaises(covtrace.UsageError):
                 shown(**wrong)
+
+    def image(self):
+        rng = numpy.random.default_rng(2)
+        return covtrace.Image.from_arrays(rng.random((5, 7, 3)), {"N": {c: rng.random((5, 7)) for c in "XYZ"}, "Z": rng.random((5, 7))},
+                                          {"note": "hello"})
+
+    def test_layers_as_of_a_dictionary(self):
+        image = self.image()
+        self.assertEqual(list(image), ["", "Z", "N"])
+        self.assertEqual((list(image.keys()), len(image)), (list(image), 3))
+        for name, values in image.items():
+            numpy.testing.assert_array_equal(values, image[name])
+        self.assertEqual([v.shape for v in image.values()], [(5, 7, 3), (5, 7), (5, 7, 3)])
+
+    def test_arrays(self):
+        image = self.image()
+        view = numpy.asarray(image)
+        self.assertTrue(numpy.shares_memory(view, image.rgb))
+        self.assertEqual((view.shape, view.dtype), ((5, 7, 3), numpy.float32))
+        self.assertFalse(numpy.shares_memory(numpy.array(image), image.rgb))
+        self.assertEqual(numpy.asarray(image, dtype=float).dtype, float)
+        numpy.testing.assert_allclose(numpy.clip(image, 0.2, 0.4), image.rgb.clip(0.2, 0.4))
+
+    def test_pickles_and_copies(self):
+        text = scenes.LIT
+        rendered = covtrace.render(covtrace.Scene.from_string(text), spp=1, resolution=(16, 12), crop=(4, 2, 10, 9))
+        for image in (self.image(), rendered):
+            for again in (pickle.loads(pickle.dumps(image)), copy.copy(image), copy.deepcopy(image)):
+                self.assertEqual(list(again.channels), list(image.channels))
+                for name, values in image.channels.items():
+                    numpy.testing.assert_array_equal(again.channels[name], values)
+                    self.assertFalse(numpy.shares_memory(again.channels[name], values))
+                for what in ("metadata", "complete", "statistics", "data_window", "display_window"):
+                    self.assertEqual(getattr(again, what), getattr(image, what))
+        self.assertEqual(rendered.data_window, (4, 2, 10, 9))
+
+    def test_notebooks_show_the_picture(self):
+        image = self.image()
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "a.png"
+            file.write_bytes(image._repr_png_())
+            shown = covtrace.Image.read(file).rgb
+        numpy.testing.assert_allclose(shown, image.rgb, atol=0.005)
 
     def test_round_trip(self):
         rng = numpy.random.default_rng(1)

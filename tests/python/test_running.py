@@ -1,0 +1,120 @@
+"""covtrace.start: renders beside the program that started them, and images between rounds."""
+
+import asyncio
+import threading
+import unittest
+
+import numpy
+
+import covtrace
+import scenes
+
+LONG = {"method": "hybrid", "spp": 1e6, "resolution": (96, 64)}
+
+
+class Running(unittest.TestCase):
+    def scene(self):
+        return covtrace.Scene.from_string(scenes.LIT)
+
+    def test_the_result_is_that_of_render(self):
+        options = {"spp": 8, "resolution": (40, 30), "seed": 3}
+        running = covtrace.start(self.scene(), **options)
+        image = running.result(timeout=60)
+        self.assertTrue(running.done())
+        self.assertIs(running.image, image)
+        self.assertTrue(covtrace.compare(image, covtrace.render(self.scene(), **options)).identical)
+        self.assertIn("done", repr(running))
+
+    def test_images_and_progress_until_it_is_cancelled(self):
+        seen, told, several = [], [], threading.Event()
+
+        def preview(image):
+            seen.append(image)
+            if len(seen) > 2:
+                several.set()
+
+        running = covtrace.start(self.scene(), **LONG, preview=preview, progress=told.append)
+        self.assertTrue(several.wait(60))
+        self.assertFalse(running.done())
+        with self.assertRaises(TimeoutError):
+            running.result(timeout=0.01)
+        self.assertIn(running.progress.phase, repr(running))
+        self.assertIsInstance(running.image, covtrace.Image)
+        running.cancel()
+        image = running.result(timeout=60)
+        self.assertFalse(image.complete)
+        self.assertGreater(len(told), 0)
+        # Each image has more samples than the one before, and shows the same scene
+        counts = [float(i["samples"].mean()) for i in (*seen, image)]
+        self.assertEqual(counts, sorted(counts))
+        self.assertLess(counts[0], counts[2])
+        self.assertEqual(seen[0].rgb.shape, (64, 96, 3))
+        self.assertAlmostEqual(float(seen[0].rgb.mean() / image.rgb.mean()), 1, delta=0.2)
+
+    def test_coroutines(self):
+        async def both():
+            first, second = (covtrace.start(self.scene(), spp=2, resolution=(16, 12), seed=s) for s in (1, 2))
+            return await first, await second
+
+        first, second = asyncio.run(both())
+        self.assertFalse(covtrace.compare(first, second).identical)
+
+        async def given_up():
+            running = covtrace.start(self.scene(), **LONG)
+            with self.assertRaises(asyncio.TimeoutError):
+                await asyncio.wait_for(running, 0.2)
+            return running
+
+        # Who gives up waiting ends the render, too
+        self.assertFalse(asyncio.run(given_up()).result(timeout=60).complete)
+
+    def test_errors_come_with_the_result(self):
+        with self.assertRaises(covtrace.SceneError):
+            covtrace.start("no-such-file.pbrt").result(timeout=60)
+        with self.assertRaises(covtrace.UsageError):
+            covtrace.start(self.scene(), spp=-1).result(timeout=60)
+        with self.assertRaises(TypeError):
+            covtrace.start(self.scene(), cancel=threading.Event())
+
+        def failing(image):
+            raise ZeroDivisionError
+
+        with self.assertRaises(ZeroDivisionError):
+            covtrace.start(self.scene(), **LONG, preview=failing).result(timeout=60)
+
+    def test_done_callbacks(self):
+        called = threading.Event()
+        running = covtrace.start(self.scene(), spp=1, resolution=(8, 8))
+        running.add_done_callback(lambda r: called.set() if r is running else None)
+        self.assertTrue(called.wait(60))
+
+
+class Previews(unittest.TestCase):
+    def test_the_calling_thread_gets_images_of_every_method(self):
+        for method in ("uniform", "covariance", "hybrid"):
+            with self.subTest(method):
+                stop, threads, images = threading.Event(), set(), []
+
+                def preview(image):
+                    threads.add(threading.get_ident())
+                    images.append(image)
+                    stop.set()
+
+                options = {**LONG, "method": method, "max_spp": 10**6} if method == "covariance" else {**LONG, "method": method}
+                covtrace.render(covtrace.Scene.from_string(scenes.LIT), **options, preview=preview, cancel=stop)
+                self.assertEqual(threads, {threading.get_ident()})
+                self.assertTrue(numpy.isfinite(images[0].rgb).all())
+
+    def test_they_do_not_change_the_image(self):
+        scene, options = covtrace.Scene.from_string(scenes.LIT), {"spp": 64, "resolution": "40x30"}
+        images = []
+        watched = covtrace.render(scene, **options, preview=images.append)
+        self.assertTrue(covtrace.compare(watched, covtrace.render(scene, **options)).identical)
+
+    def test_only_functions(self):
+        with self.assertRaises(covtrace.UsageError):
+            covtrace.render(covtrace.Scene.from_string(scenes.LIT), preview=3)
+
+
+if __name__ == "__main__":
+    unittest.main()
