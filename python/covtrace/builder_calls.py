@@ -26,7 +26,7 @@ def describe_call(method: str, *arguments: object) -> str:
 
 
 class BuilderCalls:
-    """What of a scene that was written comes from which call: lines of its text, and its files."""
+    """The calls that a written scene comes from: those of its text's lines, and of its files."""
 
     def __init__(self) -> None:
         self.text = ""  #: the file of the scene's text

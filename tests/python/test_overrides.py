@@ -11,6 +11,16 @@ import scenes
 
 
 class Overrides(unittest.TestCase):
+    def test_texts_for_time_and_resolution(self):
+        scene = covtrace.Scene.from_string(scenes.LIT)
+        image = covtrace.render(scene, method="uniform", spp=1e9, time="0.3s", resolution="12x8")
+        self.assertEqual(image.size, (12, 8))
+        self.assertLess(image.statistics["seconds_total"], 30)
+        for wrong in ({"time": "3x"}, {"time": ""}, {"time": "1h30"}, {"time": "-1s"}, {"time": "0s"}, {"resolution": "12"},
+                      {"resolution": "12x"}, {"resolution": "0x4"}, {"resolution": "-3x4"}):
+            with self.subTest(wrong), self.assertRaises(covtrace.UsageError):
+                covtrace.render(scene, **wrong)
+
     def test_environment(self):
         scene = covtrace.Scene.from_string(scenes.SKY)
 
