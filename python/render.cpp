@@ -31,8 +31,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using SharedScene = std::shared_ptr<SceneDescription>;
-
 /// State that the thread that renders shares with the thread that waits for it.
 struct Exchange {
     std::mutex mutex;
@@ -92,6 +90,7 @@ struct Rendered {
     FoundDenoiser denoiser;
     std::string denoiser_failure;  ///< failure while the image was made
     std::optional<ReplacedPixels> replaced;
+    double building = 0;  ///< seconds from the description to what is rendered
 };
 
 std::string text_of(const Warning& w) {
@@ -119,7 +118,9 @@ Rendered render_description(SceneDescription description, RenderOptions options,
     if (bundle) apply(*bundle, description, options);
     // Stand-ins for a camera or lights are known only now.
     Warnings warnings(description.warnings.begin() + told, description.warnings.end());
+    const double begin = monitor.elapsed();
     RenderScene scene(std::move(description), isa, texture_bytes);
+    const double building = monitor.elapsed() - begin;
     RenderResult result = render(scene, options, monitor);
     const Warnings& of_materials = scene.materials.warnings();
     warnings.insert(warnings.end(), of_materials.begin(), of_materials.end());
@@ -139,7 +140,8 @@ Rendered render_description(SceneDescription description, RenderOptions options,
             std::move(warnings),
             std::move(denoiser),
             std::move(failure),
-            replaced};
+            replaced,
+            building};
 }
 
 py::dict pass_dict(const PassStatistics& s) {
@@ -178,6 +180,7 @@ py::dict replaced_dict(const std::optional<ReplacedPixels>& r) {
 py::dict statistics_dict(const Rendered& r, double elapsed) {
     py::dict d;
     d["seconds_total"] = elapsed;
+    d["seconds_scene"] = r.building;
     d["seconds"] = named(r.statistics.seconds);
     d["denoiser"] = denoiser_object(r);
     d["memory"] = r.statistics.memory;
@@ -270,8 +273,9 @@ std::shared_ptr<SceneDescription> read_file(const fs::path& file,
 }  // namespace
 
 void bind_render(py::module_& module) {
-    py::class_<SceneDescription, SharedScene>(module, "SceneDescription")
-        .def_static("read", &read_file)
+    SceneClass scene(module, "SceneDescription");
+    bind_scene_edit(scene);
+    scene.def_static("read", &read_file)
         .def_static("read_string",
                     [](const std::string& text, const std::string& name, const fs::path& folder,
                        const std::vector<fs::path>& search_paths) {

@@ -10,6 +10,7 @@ from . import _covtrace
 from .arguments import path_of, paths_of, shutter_of, text_of
 from .builder_calls import BuilderCalls
 from .errors import SceneWarning
+from .scene_parts import AreaLight, Camera, Instance, Light, Material, Parts, Shape
 
 
 class Scene:
@@ -18,6 +19,9 @@ class Scene:
     `Scene(file)` reads a file and the meshes that it names; `Scene.from_string` a text (pbrt-v4).
     `warnings` tells what the scene asks for and covtrace replaces or ignores, and what stands in for
     a camera or lights that it has not; each is warned of, too, the latter where it is rendered.
+
+    Camera, materials, lights and places of shapes can be changed, and the scene rendered again
+    without reading its files: `scene.materials["floor"]["reflectance"] = (0.2, 0.3, 0.1)`.
     """
 
     _named: Callable[[str], str]  # puts names into messages, for scenes of a SceneBuilder
@@ -78,6 +82,45 @@ class Scene:
     @property
     def warnings(self) -> list[str]:
         return [self._named(text) for text in self._description.warnings]
+
+    def copy(self) -> Scene:
+        """A scene that can be changed apart from this one; meshes are shared."""
+        scene = Scene.__new__(Scene)
+        scene._is_placed, scene._shutter, scene._named = self._is_placed, self._shutter, self._named
+        scene._description = self._description.copy()
+        return scene
+
+    @property
+    def camera(self) -> Camera:
+        return Camera(self._description)
+
+    @property
+    def materials(self) -> Parts:
+        """All materials, by index or name: `scene.materials["floor"]["roughness"] = 0.2`."""
+        return Parts(lambda i: Material(self._description, i),
+                     [name for name, _ in self._description.parts()["materials"]])
+
+    @property
+    def lights(self) -> Parts:
+        """Lights that are no shapes."""
+        return Parts(lambda i: Light(self._description, i), len(self._description.parts()["lights"]))
+
+    def remove_light(self, index: int) -> None:
+        """Removes one of `lights`; those behind it move up."""
+        self._description.remove_light(range(len(self.lights))[index])
+
+    @property
+    def area_lights(self) -> Parts:
+        return Parts(lambda i: AreaLight(self._description, i), self._description.parts()["area_lights"])
+
+    @property
+    def shapes(self) -> Parts:
+        """The shapes outside of objects."""
+        return Parts(lambda i: Shape(self._description, i), len(self._description.parts()["shapes"]))
+
+    @property
+    def instances(self) -> Parts:
+        return Parts(lambda i: Instance(self._description, i), self._description.parts()["instances"])
 
     def summary(self) -> str:
         """Several lines for people, as `covtrace info`."""

@@ -1,0 +1,170 @@
+"""The parts of a scene that can be changed between renders: camera, materials, lights, shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy
+from numpy.typing import ArrayLike, NDArray
+
+from . import _covtrace
+from .errors import UsageError
+
+Matrix = NDArray[numpy.float64]
+
+
+class Part:
+    """A part of a scene. Its values have the names of pbrt's parameters: `part["roughness"] = 0.2`.
+
+    A value is a number or a colour (r, g, b), linear Rec.709; None where a texture varies it, or
+    where it has none. Setting it replaces the texture. Changes are seen by the next render.
+    """
+
+    _kind: str
+
+    def __init__(self, description: _covtrace.SceneDescription, index: int = 0) -> None:
+        self._description = description
+        self._index = index
+
+    def keys(self) -> list[str]:
+        return list(self._description.values(self._kind, self._index))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.keys())
+
+    def __getitem__(self, name: str) -> float | tuple[float, float, float] | None:
+        values = self._description.values(self._kind, self._index)
+        if name not in values:
+            raise KeyError(f"there is no value {name!r}; there are {', '.join(values)}")
+        return values[name]
+
+    def __setitem__(self, name: str, value: ArrayLike) -> None:
+        self._description.set_value(self._kind, self._index, name, value)
+
+    def __repr__(self) -> str:
+        return f"<{self._kind} {dict(self._description.values(self._kind, self._index))}>"
+
+
+class Placed:
+    """A part with a place: `to_world` is its (4, 4) matrix for column vectors; `end_to_world` that at
+    the shutter's end, None where it rests."""
+
+    _kind: str
+    _index: int
+    _description: _covtrace.SceneDescription
+
+    @property
+    def to_world(self) -> Matrix:
+        return self._description.transforms(self._kind, self._index)[0]
+
+    @to_world.setter
+    def to_world(self, matrix: ArrayLike) -> None:
+        self.place(matrix)
+
+    @property
+    def end_to_world(self) -> Matrix | None:
+        return self._description.transforms(self._kind, self._index)[1]
+
+    def place(self, start: ArrayLike, end: ArrayLike | None = None) -> None:
+        """Places it; with `end` it moves from one matrix to the other while the shutter is open."""
+        self._description.set_transforms(self._kind, self._index, start, end)
+
+
+class Camera(Part, Placed):
+    """The camera: "fov" (degrees of the shorter side), "lensradius", "focaldistance"; x is right, y
+    up and z forward in its own space."""
+
+    _kind = "camera"
+
+    def look_at(self, eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 1, 0)) -> None:
+        """Places it at `eye`. `UsageError` where `target` is the same point, or straight above or
+        below."""
+        eye, target, up = (numpy.asarray(v, dtype=float) for v in (eye, target, up))
+        forward = target - eye
+        right = numpy.cross(up, forward)
+        if not numpy.linalg.norm(right) > 1e-12 * numpy.linalg.norm(up) * numpy.linalg.norm(forward):
+            raise UsageError(f"target is {target.tolist()}; expected a point apart from the eye, neither above nor below it")
+        # A pbrt camera is left-handed; a mirrored one keeps its handedness
+        hand = numpy.sign(numpy.linalg.det(self.to_world[:3, :3]))
+        forward, right = forward / numpy.linalg.norm(forward), right / numpy.linalg.norm(right)
+        matrix = numpy.eye(4)
+        matrix[:3, 0], matrix[:3, 1], matrix[:3, 2], matrix[:3, 3] = hand * right, numpy.cross(forward, right), forward, eye
+        self.place(matrix)
+
+
+class Material(Part):
+    """A material. `kind` is pbrt's name of its model."""
+
+    _kind = "material"
+
+    @property
+    def name(self) -> str:
+        return self._description.parts()["materials"][self._index][0]
+
+    @property
+    def kind(self) -> str:
+        return self._description.parts()["materials"][self._index][1]
+
+
+class Light(Part, Placed):
+    """A light that is no shape: "I" (radiant intensity) or "L" (radiance) by its kind."""
+
+    _kind = "light"
+
+    @property
+    def kind(self) -> str:
+        return self._description.parts()["lights"][self._index]
+
+
+class AreaLight(Part):
+    """The light of one or more shapes: "L", its radiance."""
+
+    _kind = "area_light"
+
+
+class Shape(Placed):
+    """A shape, in the order of the file. `material` is the index of its material, -1 for none."""
+
+    _kind = "shape"
+
+    def __init__(self, description: _covtrace.SceneDescription, index: int) -> None:
+        self._description, self._index = description, index
+
+    @property
+    def material(self) -> int:
+        return self._description.parts()["shapes"][self._index]
+
+    @material.setter
+    def material(self, index: int) -> None:
+        self._description.set_material(self._index, index)
+
+
+class Instance(Placed):
+    """An instance of an object."""
+
+    _kind = "instance"
+
+    def __init__(self, description: _covtrace.SceneDescription, index: int) -> None:
+        self._description, self._index = description, index
+
+
+class Parts(Sequence[Any]):
+    """All parts of one kind; those with names are found by their names, too."""
+
+    def __init__(self, make: Callable[[int], Any], names: Sequence[str] | int) -> None:
+        self._make = make
+        self._names = [""] * names if isinstance(names, int) else list(names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __getitem__(self, key: Any) -> Any:
+        if isinstance(key, str):
+            if not key or key not in self._names:
+                raise KeyError(f"there is no {key!r}; there are {', '.join(repr(n) for n in self._names if n)}")
+            return self._make(self._names.index(key))
+        if isinstance(key, slice):
+            return [self._make(i) for i in range(*key.indices(len(self)))]
+        index = range(len(self))[key]  # checks it, and counts from the end
+        return self._make(index)

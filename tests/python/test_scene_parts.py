@@ -1,0 +1,181 @@
+"""Scenes that are changed after they were read: the same bits as the file with these values gives."""
+
+import base64
+import json
+import struct
+import tempfile
+import unittest
+
+import numpy
+
+import covtrace
+
+TEXT = """
+LookAt {eye}  {target}  0 1 0
+Camera "perspective" "float fov" {fov} "float lensradius" {lens} "float focaldistance" {focus}
+Film "rgb" "integer xresolution" 24 "integer yresolution" 16
+WorldBegin
+LightSource "infinite" "rgb L" [{sky}]
+AttributeBegin
+  Translate {lamp}
+  LightSource "point" "rgb I" [10 10 10]
+AttributeEnd
+AttributeBegin
+  AreaLightSource "diffuse" "rgb L" [{area}]
+  Translate 0 3 0
+  Shape "sphere" "float radius" 0.5
+AttributeEnd
+Texture "checks" "spectrum" "checkerboard"
+MakeNamedMaterial "floor" "string type" "diffuse" {floor}
+MakeNamedMaterial "metal" "string type" "conductor" "rgb reflectance" [.9 .8 .7] "float roughness" {rough}
+NamedMaterial "{ball}"
+AttributeBegin
+  {place}
+  Shape "sphere" "float radius" 1
+AttributeEnd
+NamedMaterial "floor"
+Shape "trianglemesh" "point3 P" [-4 -1 -4  4 -1 -4  4 -1 4  -4 -1 4] "point2 uv" [0 0  4 0  4 4  0 4] "integer indices" [0 2 1  0 3 2]
+"""
+VALUES = {"eye": "0 1 6", "target": "0 0 0", "fov": 40, "lens": 0, "focus": 6, "sky": ".1 .2 .3", "lamp": "2 3 4", "area": "3 3 3",
+          "floor": '"texture reflectance" "checks"', "rough": 0.3, "ball": "metal", "place": "Translate 0.25 0 0"}
+
+
+def scene(**values):
+    return covtrace.Scene.from_string(TEXT.format(**{**VALUES, **values}))
+
+
+def moved(x, y, z):
+    matrix = numpy.eye(4)
+    matrix[:3, 3] = x, y, z
+    return matrix
+
+
+class Parts(unittest.TestCase):
+    def setUp(self):
+        self.scene = scene()
+
+    def render(self, which):
+        return covtrace.render(which, spp=4, seed=1)
+
+    def assert_like(self, **values):
+        image = self.render(self.scene)
+        self.assertTrue(covtrace.compare(image, self.render(scene(**values))).identical, values)
+        self.assertFalse(covtrace.compare(image, self.render(scene())).identical, "nothing was changed")
+
+    def test_material_values(self):
+        floor = self.scene.materials["floor"]
+        self.assertEqual((floor.name, floor.kind, list(floor)), ("floor", "diffuse", ["reflectance"]))
+        self.assertIsNone(floor["reflectance"])  # a checkerboard
+        floor["reflectance"] = 0.5, 0.25, 0.125
+        self.assertEqual(floor["reflectance"], (0.5, 0.25, 0.125))
+        metal = self.scene.materials["metal"]
+        self.assertAlmostEqual(metal["roughness"], 0.3, places=6)
+        metal["roughness"] = 0.0625
+        self.assertEqual([metal[n] for n in ("uroughness", "vroughness")], [0.0625] * 2)
+        self.assert_like(floor='"rgb reflectance" [.5 .25 .125]', rough=0.0625)
+
+    def test_lights(self):
+        sky, lamp = self.scene.lights
+        self.assertEqual([light.kind for light in self.scene.lights], ["infinite", "point"])
+        sky["L"] = 1, 0.5, 0.25
+        lamp.to_world = moved(-3, 2, 1)
+        self.scene.area_lights[0]["L"] = 5
+        self.assert_like(sky="1 .5 .25", lamp="-3 2 1", area="5 5 5")
+
+    def test_removed_lights(self):
+        self.scene.remove_light(-1)
+        self.assertEqual([light.kind for light in self.scene.lights], ["infinite"])
+        self.assertLess(self.render(self.scene).rgb.mean(), self.render(scene()).rgb.mean())
+
+    def test_camera(self):
+        camera = self.scene.camera
+        camera["fov"], camera["lensradius"], camera["focaldistance"] = 30, 0.125, 5
+        camera.look_at((3, 2, 5), (0, 0.5, 0))
+        self.assertEqual(dict((n, camera[n]) for n in camera), {"fov": 30, "lensradius": 0.125, "focaldistance": 5})
+        reference = scene(eye="3 2 5", target="0 .5 0", fov=30, lens=0.125, focus=5)
+        numpy.testing.assert_allclose(camera.to_world, reference.camera.to_world, atol=1e-6)
+        camera.to_world = reference.camera.to_world
+        self.assert_like(eye="3 2 5", target="0 .5 0", fov=30, lens=0.125, focus=5)
+
+    def test_shapes(self):
+        lamp, ball, floor = self.scene.shapes
+        numpy.testing.assert_array_equal(ball.to_world, moved(0.25, 0, 0))
+        self.assertIsNone(ball.end_to_world)
+        self.assertEqual(self.scene.materials[ball.material].name, "metal")
+        ball.to_world = moved(-1, 0.5, 0)
+        ball.material = floor.material
+        self.assert_like(place="Translate -1 .5 0", ball="floor")
+
+    def test_motion(self):
+        ball = self.scene.shapes[1]
+        ball.place(moved(0, 0, 0), moved(1, 0, 0))
+        numpy.testing.assert_array_equal(ball.end_to_world, moved(1, 0, 0))
+        self.assert_like(place="ActiveTransform EndTime\nTranslate 1 0 0\nActiveTransform All")
+
+    def test_copies_are_apart(self):
+        other = self.scene.copy()
+        other.materials["floor"]["reflectance"] = 0.5
+        self.assertIsNone(self.scene.materials["floor"]["reflectance"])
+        self.assertTrue(covtrace.compare(self.render(self.scene), self.render(scene())).identical)
+        self.assertFalse(covtrace.compare(self.render(other), self.render(scene())).identical)
+
+    def test_the_time_of_a_change(self):
+        """What a render spends on the scene is told, apart from the rendering."""
+        statistics = self.render(self.scene).statistics
+        self.assertGreater(statistics["seconds_scene"], 0)
+        self.assertLess(statistics["seconds_scene"], statistics["seconds_total"])
+
+    def test_refused(self):
+        floor, metal = self.scene.materials["floor"], self.scene.materials["metal"]
+        for part, name, value in ((floor, "reflectance", 1.5), (floor, "reflectance", (1, 2)), (floor, "reflectance", -0.1),
+                                  (floor, "reflectance", "red"), (floor, "reflectance", float("nan")), (metal, "roughness", (1, 2, 3)),
+                                  (self.scene.camera, "fov", 0), (self.scene.camera, "fov", 180), (self.scene.camera, "fov", None)):
+            with self.subTest(name=name, value=value), self.assertRaises(covtrace.UsageError):
+                part[name] = value
+        for action in (lambda: floor["colour"], lambda: self.scene.materials["wall"]):
+            with self.assertRaises(KeyError):
+                action()
+        with self.assertRaises(KeyError):
+            floor["colour"] = 1
+        for action in (lambda: self.scene.lights[2], lambda: self.scene.shapes[-4], lambda: self.scene.remove_light(2)):
+            with self.assertRaises(IndexError):
+                action()
+        with self.assertRaises(IndexError):
+            self.scene.shapes[0].material = 7
+        for matrix in (numpy.zeros((4, 4)), numpy.eye(3), numpy.full((4, 4), numpy.nan)):
+            with self.assertRaises(covtrace.UsageError):
+                self.scene.shapes[0].to_world = matrix
+        with self.assertRaises(covtrace.UsageError):
+            self.scene.camera.look_at((0, 0, 0), (0, 1, 0))
+        self.assertTrue(covtrace.compare(self.render(self.scene), self.render(scene())).identical)
+
+
+class Gltf(unittest.TestCase):
+    def test_look_at_does_not_mirror(self):
+        """A camera of glTF, whose world is right-handed: as the keyword `camera` of render shows it."""
+        positions = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
+        root = {"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1]}], "scene": 0,
+                "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 5]}],
+                "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}],
+                "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+                "materials": [{"name": "lamp", "emissiveFactor": [1, 1, 1], "doubleSided": True}],
+                "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+                "bufferViews": [{"buffer": 0, "byteLength": 36}],
+                "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + base64.b64encode(positions).decode()}]}
+        with tempfile.TemporaryDirectory() as folder:
+            file = f"{folder}/a.gltf"
+            with open(file, "w", encoding="utf-8") as out:
+                json.dump(root, out)
+            scene = covtrace.Scene(file)
+        options = {"spp": 4, "resolution": (24, 16), "environment": 0}
+        there = {"eye": (3, 1, 4), "target": (0.3, 0.3, 0)}
+        expected = covtrace.render(scene, **options, camera={**there, "fov": scene.camera["fov"]})
+        scene.camera.look_at(**there)
+        found = covtrace.render(scene, **options)
+        self.assertGreater(found.rgb.mean(), 0.01)
+        numpy.testing.assert_allclose(found.rgb, expected.rgb, atol=1e-3)
+        self.assertEqual(scene.materials["lamp"].name, "lamp")
+
+
+if __name__ == "__main__":
+    unittest.main()
