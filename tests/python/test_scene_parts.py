@@ -120,7 +120,7 @@ class Parts(unittest.TestCase):
         self.assertFalse(covtrace.compare(self.render(other), self.render(scene())).identical)
 
     def test_the_time_of_a_change(self):
-        """What a render spends on the scene is told, apart from the rendering."""
+        """The seconds that making the scene anew takes are told apart from the rendering."""
         statistics = self.render(self.scene).statistics
         self.assertGreater(statistics["seconds_scene"], 0)
         self.assertLess(statistics["seconds_scene"], statistics["seconds_total"])
