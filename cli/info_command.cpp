@@ -4,31 +4,45 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/override_options.h"
 #include "cli/scene_input.h"
 #include "image/image.h"
 #include "render/describe_state.h"
 #include "render/film_file.h"
+#include "render/overrides.h"
 #include "render/scene_file.h"
-#include "scene/defaults.h"
 #include "scene/summary.h"
 
 namespace covtrace::cli {
 
+namespace {
+
+struct InfoArguments {
+    std::string file;
+    SceneOverrides overrides;
+    ReadOptions reading;
+};
+
+}  // namespace
+
 void add_info(CLI::App& app, Invocation& invocation) {
-    auto file = std::make_shared<std::string>();
+    auto a = std::make_shared<InfoArguments>();
     CLI::App* c = app.add_subcommand("info", "Tell what a scene, image or film holds");
-    c->add_option("FILE", *file, "a scene or -, an image or a film")->required()->option_text(" ");
-    c->callback([file, &invocation] {
-        invocation.action = [file] {
-            const std::filesystem::path path = *file;
-            const bool is_piped = *file == kStandardInput;
+    c->add_option("FILE", a->file, "a scene or -, an image or a film")
+        ->required()
+        ->option_text(" ");
+    add_choice_options(c, a->overrides, a->reading);
+    c->callback([a, &invocation] {
+        invocation.action = [a] {
+            const std::filesystem::path path = a->file;
+            const bool is_piped = a->file == kStandardInput;
             if (!is_piped && is_film(path)) {
                 fmt::print("{}", describe(read_film(path)));
                 return 0;
             }
             if (is_piped || is_scene_file(path)) {
-                SceneDescription scene = read_scene(*file);
-                complete(scene);
+                SceneDescription scene = read_scene(a->file, a->reading);
+                apply(a->overrides, scene);
                 fmt::print("{}", summarize(scene));
                 return 0;
             }

@@ -30,6 +30,7 @@ struct MeasureArguments {
     Occlusion occlusion = RenderOptions{}.occlusion;
     BrdfCovariance brdf_covariance = RenderOptions{}.brdf_covariance;
     SceneOverrides overrides;
+    ReadOptions reading;
     MeasureOptions measure;
     std::optional<int> max_depth;
     int voxels = RenderOptions{}.voxels, threads = 0;
@@ -144,7 +145,8 @@ int measure_pixel(MeasureArguments a) {
     const ThreadLimit threads(a.threads);
     const std::array<int, 2> pixel = parse_pixel("--pixel", a.pixel);
 
-    SceneDescription description = read_scene(a.scene, {{}, a.overrides.shutter});
+    a.reading.shutter = a.overrides.shutter;
+    SceneDescription description = read_scene(a.scene, a.reading);
     apply(a.overrides, description);
     const int width = description.film.width, height = description.film.height;
     if (pixel[0] < 0 || pixel[1] < 0 || pixel[0] >= width || pixel[1] >= height)
@@ -217,7 +219,7 @@ void add_measure(CLI::App& app, Invocation& invocation) {
         ->option_text("N");
     add_whole(c, "--threads", a->threads, 1, 4096, "worker threads (default: all cores)");
     add_choice(c, "--isa", a->isa, "instruction set of the ray tracing");
-    add_override_options(c, a->overrides);
+    add_override_options(c, a->overrides, a->reading);
     c->add_flag("--json", a->json, "one JSON object on standard output");
     c->add_flag("--quiet", a->quiet, "errors only");
     c->callback([a, &invocation] { invocation.action = [a] { return measure_pixel(*a); }; });

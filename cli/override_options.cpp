@@ -23,9 +23,30 @@ void add_environment(CLI::App* c, SceneOverrides& o) {
     add_positive(c, "--environment-scale", o.environment_scale, 1e12, "make it brighter or darker");
 }
 
+/// Adds an option for the name or number of something in the file.
+void add_choice_of(CLI::App* c, const std::string& name, std::string& value,
+                   const std::string& help, const std::string& values) {
+    c->add_option(name, value, help)->check(not_empty())->option_text(values);
+}
+
 }  // namespace
 
-void add_override_options(CLI::App* c, SceneOverrides& o) {
+void add_choice_options(CLI::App* c, SceneOverrides& o, ReadOptions& r) {
+    // The last one of several holds, whether by name or by place.
+    const auto set_camera = [&o, &r](const std::string& text) {
+        const bool is_name = names_camera(text);
+        r.camera = is_name ? text : "";
+        o.camera = is_name ? std::nullopt : std::optional(parse_camera("--camera", text));
+    };
+    c->add_option_function<std::string>("--camera", set_camera,
+                                        "by name, or 'eye x,y,z target x,y,z fov N'")
+        ->option_text("NAME|N|TEXT");
+    add_choice_of(c, "--gltf-scene", r.gltf_scene, "one of a glTF file's scenes", "NAME|N");
+    add_choice_of(c, "--animation", r.animation, "one of a glTF file's animations",
+                  "NAME|N|none|all");
+}
+
+void add_override_options(CLI::App* c, SceneOverrides& o, ReadOptions& r) {
     c->add_option_function<std::string>(
          "--resolution",
          [&o](const std::string& text) { o.resolution = parse_resolution("--resolution", text); },
@@ -40,10 +61,7 @@ void add_override_options(CLI::App* c, SceneOverrides& o) {
                  SceneOverrides::kLeastOfLens);
     add_positive(c, "--fstop", o.f_number, 1e30, "lens by f-number (full-frame sensor, metres)",
                  SceneOverrides::kLeastOfLens);
-    c->add_option_function<std::string>(
-         "--camera", [&o](const std::string& text) { o.camera = parse_camera("--camera", text); },
-         "a pinhole: 'eye x,y,z target x,y,z fov N'")
-        ->option_text("TEXT");
+    add_choice_options(c, o, r);
     add_environment(c, o);
 }
 

@@ -125,8 +125,9 @@ RenderScene& kept_scene(SceneDescription description, const RenderArguments& a) 
 
 /// Reads the scene, with all that takes the place of its own values.
 SceneDescription read_described(RenderArguments& a) {
-    SceneDescription description =
-        read_scene(a.scene, {{a.search_paths.begin(), a.search_paths.end()}, a.overrides.shutter});
+    a.reading.search_paths = {a.search_paths.begin(), a.search_paths.end()};
+    a.reading.shutter = a.overrides.shutter;
+    SceneDescription description = read_scene(a.scene, a.reading);
     apply(a.overrides, description);
     if (a.preset) apply(*a.preset, description, a.options);
     return description;

@@ -51,7 +51,7 @@ void add_method_options(CLI::App* c, RenderArguments& a) {
 
 /// The scene's files, the part of it that is shown, and the values that replace its own.
 void add_scene_options(CLI::App* c, RenderArguments& a) {
-    add_override_options(c, a.overrides);
+    add_override_options(c, a.overrides, a.reading);
     c->add_option_function<std::string>(
          "--crop", [&a](const std::string& text) { a.overrides.crop = parse_crop("--crop", text); },
          "only these pixels, end exclusive")

@@ -19,6 +19,7 @@
 #include "render/options.h"
 #include "render/overrides.h"
 #include "render/preset.h"
+#include "scene/read_options.h"
 #include "texture/texture.h"
 
 namespace covtrace::cli {
@@ -40,6 +41,7 @@ struct RenderArguments {
     std::vector<std::string> search_paths;
     RenderOptions options;
     SceneOverrides overrides;
+    ReadOptions reading;
     ProgressStyle progress = ProgressStyle::automatic;
     int threads = 0;
     bool reproducible = false, quiet = false;

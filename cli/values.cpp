@@ -173,6 +173,14 @@ size_t parse_size(const std::string& option, const std::string& text) {
     return size_t(bytes);
 }
 
+bool names_camera(const std::string& text) {
+    std::istringstream words(text);
+    std::string first, second;
+    words >> first >> second;
+    const bool is_word = first == "eye" || first == "target" || first == "fov" || first == "up";
+    return !first.empty() && !(is_word && !second.empty());
+}
+
 CameraOverride parse_camera(const std::string& option, const std::string& text) {
     constexpr auto kExpected =
         "a camera such as 'eye 0,1,6 target 0,0,0 fov 40', with 'up 0,0,1' where that is up";

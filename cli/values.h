@@ -36,6 +36,9 @@ int64_t parse_whole(const std::string& option, const std::string& text, int64_t 
 double parse_paths(const std::string& option, const std::string& text);
 /// Reads a size in bytes: "500M", "2G", "64k", "1.5T" (powers of 1024) or a plain number.
 size_t parse_size(const std::string& option, const std::string& text);
+/// Whether a text is the name or number of one of the file's cameras: it does not begin, as
+/// parse_camera's do, with a word such as "eye" that others follow.
+bool names_camera(const std::string& text);
 /// Reads a camera "eye x,y,z target x,y,z fov N up x,y,z", in any order; "up" may be missing.
 CameraOverride parse_camera(const std::string& option, const std::string& text);
 /// Reads a light from all around: a colour "r,g,b" or one number, or the name of a file that is

@@ -259,10 +259,14 @@ SceneDescription completed(SceneDescription scene) {
 
 std::shared_ptr<SceneDescription> read_file(const fs::path& file,
                                             const std::vector<fs::path>& search_paths,
-                                            const std::optional<std::array<float, 2>>& shutter) {
+                                            const std::optional<std::array<float, 2>>& shutter,
+                                            const std::string& camera,
+                                            const std::string& gltf_scene,
+                                            const std::string& animation) {
     if (shutter) checked_shutter(*shutter);
     const Unlocked unlocked;
-    auto scene = std::make_shared<SceneDescription>(read_scene_file(file, {search_paths, shutter}));
+    auto scene = std::make_shared<SceneDescription>(
+        read_scene_file(file, {search_paths, shutter, camera, gltf_scene, animation}));
     if (shutter) {
         scene->camera.shutter_open = (*shutter)[0];
         scene->camera.shutter_close = (*shutter)[1];

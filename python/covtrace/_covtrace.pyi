@@ -35,7 +35,8 @@ class SceneDescription:
     @staticmethod
     def read(file: str | os.PathLike[str],
              search_paths: Sequence[str | os.PathLike[str]],
-             shutter: tuple[float, float] | None) -> SceneDescription: ...
+             shutter: tuple[float, float] | None, camera: str, gltf_scene: str,
+             animation: str) -> SceneDescription: ...
     @staticmethod
     def read_string(text: str, name: str, folder: str | os.PathLike[str],
                     search_paths: Sequence[str | os.PathLike[str]]) -> SceneDescription: ...

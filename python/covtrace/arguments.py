@@ -106,9 +106,21 @@ def environment_of(value: Any) -> str | tuple[float, float, float] | None:
         return vector_of("environment", value, expected)
 
 
+def choice_of(name: str, value: str | int | None) -> str:
+    """One of the file's: its name, or its number from 0; empty for the file's own choice."""
+    if value is None:
+        return ""
+    if isinstance(value, int) and not isinstance(value, bool) and value >= 0:
+        return str(value)
+    if not isinstance(value, str) or not text_of(name, value):
+        refuse(name, value, "a name or a number from 0")
+    return value
+
+
 def camera_of(value: Any) -> dict[str, Any] | None:
     """eye, target, fov and, where it is given, up."""
-    expected = "{'eye': (x, y, z), 'target': (x, y, z), 'fov': degrees}, 'up': (x, y, z) if need be"
+    expected = ("{'eye': (x, y, z), 'target': (x, y, z), 'fov': degrees}, 'up': (x, y, z) if need be, "
+                "or the name or number of one of the file's")
     if value is None:
         return None
     if not isinstance(value, Mapping) or not {"eye", "target", "fov"} <= set(value) <= {"eye", "target", "fov", "up"}:

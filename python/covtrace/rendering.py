@@ -54,7 +54,8 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            crop: tuple[int, int, int, int] | None = None,
            shutter: tuple[float, float] | None = None, focus: float | None = None,
            fstop: float | None = None,
-           camera: Mapping[str, Any] | None = None,
+           camera: Mapping[str, Any] | str | int | None = None,
+           gltf_scene: str | int | None = None, animation: str | int | None = None,
            environment: str | os.PathLike[str] | float | tuple[float, float, float] | None = None,
            environment_rotation: float | None = None, environment_scale: float | None = None,
            seed: int = 0, threads: int = 0,
@@ -81,7 +82,11 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
         The nodes of a glTF file are placed when it is read: give `shutter` with the file's path, or
         to `Scene`.
     camera: {"eye": (x, y, z), "target": (x, y, z), "fov": degrees of the shorter side}, a pinhole in
-        place of the scene's; "up" where it is not what is up in the scene.
+        place of the scene's; "up" where it is not what is up in the scene. Or one of a glTF file's
+        cameras, by its name or its number from 0.
+    gltf_scene, animation: one of a glTF file's, by its name or its number from 0; animations also
+        "none" and "all", the default. They and the camera are chosen when the file is read: give
+        them with its path, or to `Scene`.
     environment, environment_rotation, environment_scale: an image's path, a number or (r, g, b), in
         place of the scene's infinite lights; degrees about what is up; a factor. The last two change
         the scene's own where no environment is given.
@@ -96,6 +101,9 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     Python's lock is released while it renders. An exception from `progress`, and Ctrl-C, end the
     render and come out of this call. Raises the classes of `covtrace.errors`.
     """
+    is_choice = isinstance(camera, (str, int))
+    choices: dict[str, Any] = {"camera": camera if is_choice else None, "gltf_scene": gltf_scene,
+                               "animation": animation}
     options = {"preset": preset, "method": method, "spp": spp, "time": seconds_of(time), "error": error, "cov_spp": cov_spp,
                "max_spp": max_spp, "max_depth": max_depth, "density": density, "k": k,
                "occlusion": occlusion, "voxels": voxels, "brdf_covariance": brdf_covariance,
@@ -105,7 +113,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
                else path_of("denoiser_library", denoiser_library),
                "resolution": resolution_of(resolution),
                "crop": crop, "shutter": shutter_of(shutter), "focus": focus, "fstop": fstop,
-               "camera": camera_of(camera), "environment": environment_of(environment),
+               "camera": camera_of(None if is_choice else camera), "environment": environment_of(environment),
                "environment_rotation": environment_rotation, "environment_scale": environment_scale,
                "seed": seed,
                "threads": threads, "isa": isa, "texture_memory": _bytes(texture_memory),
@@ -116,13 +124,18 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
         with tempfile.TemporaryDirectory(prefix="covtrace-") as folder:
             file, calls = scene.written(folder)
             with calls.name_errors():
-                return _render(Scene._of_builder(file, search_paths, calls), options)
+                return _render(Scene._of_builder(file, search_paths, calls, choices), options)
     if not isinstance(scene, Scene):
         scene = Scene(path_of("scene", scene, "a file's path, a Scene or a SceneBuilder"),
-                      search_paths, shutter)
-    elif scene._is_placed and shutter is not None and options["shutter"] != scene._shutter:
-        raise UsageError(f"shutter is {shutter!r}, but the nodes of a glTF scene are placed when it "
-                         f"is read; expected Scene(file, shutter={shutter!r})")
+                      search_paths, shutter, **choices)
+    else:
+        for name, value in choices.items():
+            if value is not None:
+                raise UsageError(f"{name} is {value!r}, but the choice is made when the file is read; "
+                                 f"expected Scene(file, {name}={value!r})")
+        if scene._is_placed and shutter is not None and options["shutter"] != scene._shutter:
+            raise UsageError(f"shutter is {shutter!r}, but the nodes of a glTF scene are placed when "
+                             f"it is read; expected Scene(file, shutter={shutter!r})")
     return _render(scene, options)
 
 

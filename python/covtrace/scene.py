@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 from . import _covtrace
-from .arguments import path_of, paths_of, shutter_of, text_of
+from .arguments import choice_of, path_of, paths_of, shutter_of, text_of
 from .builder_calls import BuilderCalls
 from .errors import SceneWarning
 from .scene_parts import AreaLight, Camera, Instance, Light, Material, Parts, Shape
+
+
+def _read(file: str, search_paths: Iterable[str | os.PathLike[str]],
+          shutter: tuple[float, float] | None,
+          choices: Mapping[str, str | int | None]) -> _covtrace.SceneDescription:
+    chosen = [choice_of(name, choices[name]) for name in ("camera", "gltf_scene", "animation")]
+    return _covtrace.SceneDescription.read(file, paths_of("search_paths", search_paths), shutter, *chosen)
 
 
 class Scene:
@@ -28,24 +35,25 @@ class Scene:
 
     def __init__(self, file: str | os.PathLike[str],
                  search_paths: Iterable[str | os.PathLike[str]] = (),
-                 shutter: tuple[float, float] | None = None) -> None:
+                 shutter: tuple[float, float] | None = None, *, camera: str | int | None = None,
+                 gltf_scene: str | int | None = None, animation: str | int | None = None) -> None:
         """Reads a file. shutter: when it opens and closes, in place of the file's; seconds of glTF's
-        animations, whose nodes rest at 0 without it."""
+        animations, whose nodes rest at 0 without it. camera, gltf_scene, animation: one of a glTF
+        file's by its name or its number from 0; animations also "none" and "all", the default."""
         file = path_of("file", file)
         self._named = str
         self._is_placed = _covtrace.is_gltf(file)
         self._shutter = shutter_of(shutter)
-        self._take(_covtrace.SceneDescription.read(file, paths_of("search_paths", search_paths),
-                                                   self._shutter))
+        self._take(_read(file, search_paths, self._shutter,
+                         {"camera": camera, "gltf_scene": gltf_scene, "animation": animation}))
 
     @classmethod
     def _of_builder(cls, file: str, search_paths: Iterable[str | os.PathLike[str]],
-                    calls: BuilderCalls) -> Scene:
+                    calls: BuilderCalls, choices: Mapping[str, str | int | None]) -> Scene:
         """The scene that a SceneBuilder wrote; its warnings name the builder's calls."""
         scene = cls.__new__(cls)
         scene._is_placed, scene._shutter, scene._named = False, None, calls.named
-        scene._take(_covtrace.SceneDescription.read(file, paths_of("search_paths", search_paths), None),
-                    stacklevel=4)
+        scene._take(_read(file, search_paths, None, choices), stacklevel=4)
         return scene
 
     @classmethod

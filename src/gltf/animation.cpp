@@ -15,8 +15,9 @@ std::vector<double> slerp_values(double t, const float* a, const float* b) {
 
 }  // namespace
 
-Animations::Animations(const Document& document, WarningLog& log) {
-    for (size_t a = 0; a < document.model.animations.size(); ++a)
+Animations::Animations(const Document& document, const std::vector<size_t>& played,
+                       WarningLog& log) {
+    for (const size_t a : played)
         for (size_t c = 0; c < document.model.animations[a].channels.size(); ++c)
             read_channel(document, a, c, log);
 }

@@ -18,12 +18,12 @@ struct Pose {
     std::array<double, 3> scale{1, 1, 1};
 };
 
-/// All animations of the file at once, on one time line in seconds. Where two move the same
-/// property of a node, the first one counts, with a warning.
+/// Animations of the file at once, on one time line in seconds. Where two move the same property of
+/// a node, the first one counts, with a warning.
 class Animations {
   public:
-    /// Reads and checks all channels that move nodes.
-    Animations(const Document& document, WarningLog& log);
+    /// Reads and checks all channels of these animations that move nodes.
+    Animations(const Document& document, const std::vector<size_t>& played, WarningLog& log);
 
     bool empty() const { return channels_.empty(); }
     /// Whether a channel places the node, morphs it, or both.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gltf/choice.h"
 #include "gltf/units.h"
 
 namespace covtrace::gltf {
@@ -106,25 +107,48 @@ void frame(const Document& document, const Bounds3& bounds, SceneDescription& sc
     set_film(scene.film, 16.0 / 9);
 }
 
+/// The nodes that place cameras, in their order.
+std::vector<const PlacedNode*> nodes_with_cameras(const Document& document,
+                                                  const std::vector<PlacedNode>& nodes) {
+    std::vector<const PlacedNode*> found;
+    for (const PlacedNode& n : nodes)
+        if (document.model.nodes[static_cast<size_t>(n.node)].camera >= 0) found.push_back(&n);
+    return found;
+}
+
+/// The names of placed cameras: the nodes', and the cameras' own.
+std::vector<Choosable> names_of(const Document& document,
+                                const std::vector<const PlacedNode*>& placed) {
+    std::vector<Choosable> names;
+    for (const PlacedNode* p : placed) {
+        const auto index = static_cast<size_t>(p->node);
+        const tinygltf::Node& node = document.model.nodes[index];
+        names.push_back({node.name, at(document, document.model.cameras, node.camera, "cameras",
+                                       element("nodes", index) + ".camera")
+                                        .name});
+    }
+    return names;
+}
+
 }  // namespace
 
 void set_view(const Document& document, const std::vector<PlacedNode>& nodes, const Bounds3& bounds,
-              SceneDescription& scene, WarningLog& log) {
-    const auto has_camera = [&](const PlacedNode& n) {
-        return document.model.nodes[static_cast<size_t>(n.node)].camera >= 0;
-    };
-    const auto first = std::find_if(nodes.begin(), nodes.end(), has_camera);
-    if (first == nodes.end()) {
+              const std::string& choice, SceneDescription& scene, WarningLog& log) {
+    const std::vector<const PlacedNode*> placed = nodes_with_cameras(document, nodes);
+    const std::vector<Choosable> names = names_of(document, placed);
+    const size_t one = choice.empty() ? 0 : chosen({"camera"}, choice, names, "camera");
+    if (placed.empty()) {
         frame(document, bounds, scene);
         scene.no_camera = {
             document.place(""),
             "the scene has no camera; one that sees all of it from the front takes its place"};
     } else {
-        read_camera(document, *first, scene);
-        const auto others = std::count_if(first + 1, nodes.end(), has_camera);
-        if (others > 0)
-            log.add(document.place(element("nodes", static_cast<size_t>(first->node))),
-                    "the first of " + std::to_string(others + 1) + " cameras is used");
+        read_camera(document, *placed[one], scene);
+        if (one > 0) scene.camera_choice = text_of(one, names[one]);
+        if (choice.empty() && placed.size() > 1)
+            log.add(document.place(element("nodes", static_cast<size_t>(placed[0]->node))),
+                    "the first of " + std::to_string(placed.size()) + " cameras is used, " +
+                        text_of(0, names[0]) + "; the others are " + listed_without(names, 0));
     }
     const Transform& to_world = scene.camera.camera_to_world.start();
     const float depth = to_world.inverse().point(bounds.center()).z;

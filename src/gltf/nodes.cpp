@@ -35,13 +35,14 @@ Matrix4 matrix_of(const Pose& p) {
 
 class Placer {
   public:
-    Placer(const Document& document, const std::optional<std::array<float, 2>>& shutter,
-           WarningLog& log)
+    Placer(const Document& document, const Choice& choice,
+           const std::optional<std::array<float, 2>>& shutter, WarningLog& log)
         : document_(document),
           log_(log),
           shutter_(shutter),
+          scene_(choice.scene),
           parents_(document.model.nodes.size(), kNone),
-          placed_{{}, {}, Animations(document, log)} {
+          placed_{{}, {}, Animations(document, choice.animations, log)} {
         placed_.worlds.resize(parents_.size());
         if (!placed_.animations.empty() && !shutter)
             log.add(document.place("animations"),
@@ -92,16 +93,16 @@ class Placer {
     std::vector<int> roots() {
         const auto& model = document_.model;
         std::vector<int> roots;
-        if (model.scenes.empty()) {
+        if (scene_ < 0) {
             for (size_t i = 0; i < parents_.size(); ++i)
                 if (parents_[i] == kNone) roots.push_back(static_cast<int>(i));
             return roots;
         }
-        const int scene = model.defaultScene < 0 ? 0 : model.defaultScene;
-        const std::string place = element("scenes", static_cast<size_t>(scene)) + ".nodes";
+        const auto scene = static_cast<size_t>(scene_);
+        const std::string place = element("scenes", scene) + ".nodes";
         std::vector<bool> is_listed(parents_.size());
         std::vector<int> listed;
-        for (const int node : at(document_, model.scenes, scene, "scenes", "scene").nodes) {
+        for (const int node : model.scenes[scene].nodes) {
             at(document_, model.nodes, node, "nodes", place);
             if (is_listed[static_cast<size_t>(node)]) continue;
             is_listed[static_cast<size_t>(node)] = true;
@@ -209,6 +210,7 @@ class Placer {
     const Document& document_;
     WarningLog& log_;
     const std::optional<std::array<float, 2>> shutter_;
+    const int scene_;  ///< index, or -1 for all roots
     std::vector<int> parents_;
     PlacedNodes placed_;
 };
@@ -235,9 +237,9 @@ std::vector<double> morph_weights(const Document& document, const Animations& an
     return values;
 }
 
-PlacedNodes place_nodes(const Document& document,
+PlacedNodes place_nodes(const Document& document, const Choice& choice,
                         const std::optional<std::array<float, 2>>& shutter, WarningLog& log) {
-    return Placer(document, shutter, log).place();
+    return Placer(document, choice, shutter, log).place();
 }
 
 }  // namespace covtrace::gltf

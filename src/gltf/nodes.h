@@ -8,6 +8,7 @@
 
 #include "core/transform.h"
 #include "gltf/animation.h"
+#include "gltf/choice.h"
 #include "gltf/document.h"
 
 namespace covtrace::gltf {
@@ -32,14 +33,13 @@ struct PlacedNodes {
 std::vector<double> morph_weights(const Document& document, const Animations& animations, int node,
                                   double time);
 
-/// The nodes of the document's default scene (the first one, where none is named; all roots, where
-/// there are no scenes). A node that the scene lists beside one above it is placed once, by its
-/// parents; one whose parents are not in the scene by its own transform; both with a warning.
-/// Refuses nodes with two parents and cycles. Nodes that a scale of zero hides are left out of the
-/// placed ones.
+/// The nodes of the chosen scene (all roots, where there are no scenes), as the chosen animations
+/// move them. A node that the scene lists beside one above it is placed once, by its parents; one
+/// whose parents are not in the scene by its own transform; both with a warning. Refuses nodes with
+/// two parents and cycles. Nodes that a scale of zero hides are left out of the placed ones.
 ///
 /// `shutter`: both ends in seconds; none: at rest, as at time 0 of the animations.
-PlacedNodes place_nodes(const Document& document,
+PlacedNodes place_nodes(const Document& document, const Choice& choice,
                         const std::optional<std::array<float, 2>>& shutter, WarningLog& log);
 
 }  // namespace covtrace::gltf

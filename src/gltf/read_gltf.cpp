@@ -5,6 +5,7 @@
 #include <map>
 
 #include "gltf/camera.h"
+#include "gltf/choice.h"
 #include "gltf/deformed_nodes.h"
 #include "gltf/document.h"
 #include "gltf/geometry.h"
@@ -175,13 +176,14 @@ SceneDescription read(const Document& document, const ReadOptions& options, Warn
     scene.max_depth = kDepth;
     scene.samples_per_pixel = kSamples;
 
-    const PlacedNodes placed = place_nodes(document, options.shutter, log);
+    const Choice choice = choose(document, options, scene, log);
+    const PlacedNodes placed = place_nodes(document, choice, options.shutter, log);
     SceneAssembler assembler(document, placed, options.shutter.value_or(std::array<float, 2>{0, 0}),
                              scene, log);
     assembler.add();
     if (scene.shapes.empty() && scene.instances.empty())
         document.refuse("", "the scene has no triangles to render");
-    set_view(document, placed.nodes, assembler.bounds(), scene, log);
+    set_view(document, placed.nodes, assembler.bounds(), options.camera, scene, log);
     if (options.shutter) {
         const auto [open, close] = *options.shutter;
         scene.camera.shutter_open = open;

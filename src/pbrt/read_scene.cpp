@@ -1,6 +1,7 @@
 #include "pbrt/read_scene.h"
 
 #include "pbrt/scene_parser.h"
+#include "scene/names.h"
 #include "scene/with_limits.h"
 
 namespace covtrace {
@@ -25,9 +26,25 @@ SceneDescription read(std::string text, const std::string& name, SceneFiles& fil
     return scene;
 }
 
+/// Refuses choices that no pbrt file offers.
+void refuse_choices(const ReadOptions& options) {
+    if (!options.camera.empty())
+        throw Error(ErrorKind::usage, OptionName{"camera"},
+                    in_quotes(options.camera) +
+                        " names a camera, and pbrt files have one without a name; expected a "
+                        "pinhole such as 'eye 0,1,6 target 0,0,0 fov 40'");
+    if (!options.gltf_scene.empty())
+        throw Error(ErrorKind::usage, OptionName{"gltf_scene"},
+                    "pbrt files have one scene; expected a glTF file");
+    if (!options.animation.empty())
+        throw Error(ErrorKind::usage, OptionName{"animation"},
+                    "pbrt files have no animations by name; expected a glTF file");
+}
+
 }  // namespace
 
 SceneDescription read_pbrt(const fs::path& file, const ReadOptions& options) {
+    refuse_choices(options);
     const std::string name = file.string();
     return with_limits(name, [&] {
         WarningLog log;
@@ -39,6 +56,7 @@ SceneDescription read_pbrt(const fs::path& file, const ReadOptions& options) {
 
 SceneDescription read_pbrt_string(std::string_view text, std::string name, const fs::path& folder,
                                   const ReadOptions& options) {
+    refuse_choices(options);
     return with_limits(name, [&] {
         WarningLog log;
         SceneFiles files(folder, options.search_paths, log);

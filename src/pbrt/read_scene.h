@@ -16,7 +16,7 @@ namespace covtrace {
 /// Reads a scene and every file it includes; meshes too, but no images. Without lights it is left
 /// to `complete` (scene/defaults.h). Errors: Error(scene) as `file:line:column: what is wrong; what
 /// was expected`, Error(limit) where the scene is too large, Error(io) where reading fails in the
-/// middle. No other exception leaves.
+/// middle, Error(usage) for choices that only glTF files offer. No other exception leaves.
 SceneDescription read_pbrt(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// Reads a scene from memory; messages call the text `name`, and the files that it names are looked

@@ -55,7 +55,11 @@ RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& op
         {"lens radius (--fstop)", text(d.camera.lens_radius)},
     };
     id["--max-spp"] = text(options.max_spp);
-    id["--camera"] = d.camera_override.empty() ? "the scene's" : d.camera_override;
+    id["--camera"] = !d.camera_override.empty() ? d.camera_override
+                     : !d.camera_choice.empty() ? d.camera_choice
+                                                : "the scene's";
+    id["--gltf-scene"] = d.gltf_scene_choice.empty() ? "the file's own" : d.gltf_scene_choice;
+    id["--animation"] = d.animation_choice.empty() ? "all" : d.animation_choice;
     id["--environment"] = d.environment_override.empty() ? "the scene's" : d.environment_override;
     if (options.method == Method::uniform) {
         id["light of emitters (--layers)"] = options.emitters_apart ? "apart" : "not apart";

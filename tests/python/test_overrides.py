@@ -1,8 +1,10 @@
 """Keywords of covtrace.render by which something else takes the place of the scene's camera and light."""
 
+import json
 import pathlib
 import tempfile
 import unittest
+import warnings
 
 import numpy
 
@@ -54,6 +56,50 @@ class Overrides(unittest.TestCase):
         self.assertTrue(sees_ball(eye=(0, 0, 0), target=(0, 0, -9), fov=10))
         self.assertFalse(sees_ball(eye=(0, 0, 0), target=(0, 0, 9), fov=10))
         self.assertTrue(sees_ball(eye=(0, 9, -9), target=(0, 0, -9), fov=10, up=(1, 0, 0)))
+
+    def test_choices_of_gltf_files(self):
+        file = json.loads(scenes.gltf())
+        [seen] = [n for n, node in enumerate(file["nodes"]) if "camera" in node]
+        away = len(file["nodes"])
+        file["nodes"].append({**file["nodes"][seen], "name": "Away", "translation": [90, 0, 5]})
+        file["scenes"] = [{"name": "All", "nodes": list(range(away + 1))}, {"name": "Empty view", "nodes": [0, away]}]
+        file["nodes"][seen]["name"] = "Seen"
+        file["animations"][0]["name"] = "Slide"
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "two.gltf"
+            path.write_text(json.dumps(file))
+
+            def sees(what, **arguments):
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    return bool(covtrace.render(what, method="uniform", spp=1, resolution=(16, 16), environment=0,
+                                                **arguments).rgb.max() > 1)
+
+            self.assertTrue(sees(path))
+            self.assertTrue(sees(path, camera="Seen", gltf_scene="All", animation="Slide"))
+            self.assertTrue(sees(path, camera=0, gltf_scene=0, animation="none"))
+            for unseen in ({"camera": "Away"}, {"camera": 1}, {"gltf_scene": "Empty view"}, {"gltf_scene": 1}):
+                self.assertFalse(sees(path, **unseen), unseen)
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    scene = covtrace.Scene(path, **unseen)
+                self.assertFalse(sees(scene), unseen)
+                with self.assertRaisesRegex(covtrace.UsageError, "when the file is read"):
+                    sees(scene, **unseen)
+            with self.assertWarnsRegex(covtrace.SceneWarning, 'the others are 1 "Away"'):
+                covtrace.Scene(path)
+            with self.assertRaisesRegex(covtrace.UsageError, 'camera: there is no camera "Awry"; .* did you mean "Away"'):
+                covtrace.Scene(path, camera="Awry")
+            with self.assertRaisesRegex(covtrace.UsageError, 'gltf_scene: there is no scene "2"'):
+                covtrace.Scene(path, gltf_scene=2)
+            for wrong in (True, -1, "", 1.5, b"Away"):
+                for name in ("camera", "gltf_scene", "animation"):
+                    with self.assertRaisesRegex(covtrace.UsageError, name):
+                        covtrace.Scene(path, **{name: wrong})
+            pbrt = pathlib.Path(folder) / "sky.pbrt"
+            pbrt.write_text(scenes.SKY)
+            with self.assertRaisesRegex(covtrace.UsageError, "pbrt files have one"):
+                covtrace.Scene(pbrt, camera="Seen")
 
     def test_errors(self):
         scene = covtrace.Scene.from_string(scenes.SKY)
