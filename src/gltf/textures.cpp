@@ -112,9 +112,8 @@ std::optional<ImageTexture> TextureReader::image(const TextureUse& info, const s
         const tinygltf::Sampler& sampler =
             at(document_, model.samplers, texture.sampler, "samplers", texture_place + ".sampler");
         const std::string here = element("samplers", static_cast<size_t>(texture.sampler));
-        result.wrap = wrap_mode(document_, sampler.wrapS, here + ".wrapS");
-        if (wrap_mode(document_, sampler.wrapT, here + ".wrapT") != result.wrap)
-            log_.add(document_.place(here), "wrapS and wrapT differ; wrapS is used for both");
+        result.wrap = {wrap_mode(document_, sampler.wrapS, here + ".wrapS"),
+                       wrap_mode(document_, sampler.wrapT, here + ".wrapT")};
         if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST)
             result.filter = ImageTexture::Filter::point;
     }

@@ -93,7 +93,7 @@ ImageTexture image_texture(ParameterList& p, const SourceLocation& where,
                                {"black", Wrap::black},
                                {"clamp", Wrap::clamp},
                                {"octahedralsphere", Wrap::octahedral_sphere}}},
-                             t.wrap);
+                             Wrap::repeat);
     t.filter = choice<Filter, 5>(p, where, "filter",
                                  {{{"point", Filter::point},
                                    {"bilinear", Filter::bilinear},

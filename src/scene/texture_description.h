@@ -2,6 +2,7 @@
 /// those of scene_description.h.
 #pragma once
 
+#include <compare>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -33,6 +34,15 @@ struct ConstantTexture {
 struct ImageTexture {
     enum class Encoding { srgb, linear, gamma };
     enum class Wrap { repeat, black, clamp, octahedral_sphere, mirror };
+    /// How the image goes on beyond its borders, in s and in t. The octahedral sphere is both ways
+    /// or none.
+    struct Wraps {
+        Wrap s = Wrap::repeat, t = Wrap::repeat;
+        Wraps() = default;
+        Wraps(Wrap both) : s(both), t(both) {}
+        Wraps(Wrap in_s, Wrap in_t) : s(in_s), t(in_t) {}
+        friend auto operator<=>(const Wraps&, const Wraps&) = default;
+    };
     enum class Filter { point, bilinear, trilinear, ewa };
     /// Channel that a float texture reads. Automatic: alpha where there is one, else the mean of R,
     /// G, B.
@@ -43,7 +53,7 @@ struct ImageTexture {
     /// Encoding of the values; empty: sRGB for integer files; float files are always linear.
     std::optional<Encoding> encoding;
     float gamma = 1;
-    Wrap wrap = Wrap::repeat;
+    Wraps wrap;
     Filter filter = Filter::bilinear;
     Channel channel = Channel::automatic;  ///< float textures only
     std::optional<float> cutoff;           ///< float textures: 1 from there on, 0 below

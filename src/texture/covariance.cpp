@@ -108,22 +108,25 @@ struct Analyser {
         const StGradient gradient = st_gradient(node.mapping, at, dpdu, dpdv);
         Vec2 st = flip_t(map_to_st(node.mapping, at));
         float turns = -1;  // the image's rows run against t
-        if (image.wrap() == TextureImage::Wrap::mirror) {
-            if (runs_back(st.x) != runs_back(st.y)) turns = 1;
-            st = {mirrored(st.x), mirrored(st.y)};
-        }
+        const auto unmirror = [&turns](float& v, TextureImage::Wrap wrap) {
+            if (wrap != TextureImage::Wrap::mirror) return;
+            if (runs_back(v)) turns = -turns;
+            v = mirrored(v);
+        };
+        unmirror(st.x, image.wrap().s);
+        unmirror(st.y, image.wrap().t);
         const float pixel_uv = 2 * footprint_uv;
         SpatialCovariance2 c =
             spectrum.at(st.x, st.y, {pixel_uv * length(gradient.s), pixel_uv * length(gradient.t)});
         c.st *= turns;
         SpatialCovariance2 result = to_uv(c, gradient);
-        if (image.wrap() == TextureImage::Wrap::black) {
-            // An image without repetition ends in hard edges, which its own analysis, on clamped
-            // values, doesn't see.
-            result = result +
-                     edge(std::min(std::abs(st.x), std::abs(1 - st.x)), gradient.s, footprint_uv) +
-                     edge(std::min(std::abs(st.y), std::abs(1 - st.y)), gradient.t, footprint_uv);
-        }
+        // An image before black ends in hard edges, which its own analysis, on clamped values,
+        // doesn't see.
+        const auto rim = [&](float v, Vec2 gradient_of_v) {
+            return edge(std::min(std::abs(v), std::abs(1 - v)), gradient_of_v, footprint_uv);
+        };
+        if (image.wrap().s == TextureImage::Wrap::black) result = result + rim(st.x, gradient.s);
+        if (image.wrap().t == TextureImage::Wrap::black) result = result + rim(st.y, gradient.t);
         return result;
     }
 

@@ -61,8 +61,8 @@ Value TextureImage::ellipse(Vec2 st, const ImageFootprint& footprint, size_t lev
             const float weight = std::exp(-2 * r2) - std::exp(-2.0f);
             Taps taps;
             taps.level = level;
-            add_tap(taps, wrap_ == Wrap::repeat ? wrapped(i, l.width) : i,
-                    wrap_ == Wrap::repeat ? wrapped(j, l.height) : j, weight);
+            add_tap(taps, wrap_.s == Wrap::repeat ? wrapped(i, l.width) : i,
+                    wrap_.t == Wrap::repeat ? wrapped(j, l.height) : j, weight);
             sum += decoded<Value>(taps, channel);
             weights += weight;
         }

@@ -48,6 +48,18 @@ float fraction(float v) {
     return limit(v - std::floor(v), 0, 1);
 }
 
+/// Replaces the index of a texel, at most one image's size outside, by that of the one that stands
+/// for it; false where that is black.
+bool continue_axis(int& i, int size, ImageTexture::Wrap wrap) {
+    if (wrap == ImageTexture::Wrap::repeat) {
+        i += i < 0 ? size : (i >= size ? -size : 0);
+        return true;
+    }
+    if (wrap == ImageTexture::Wrap::black && (i < 0 || i >= size)) return false;
+    i = std::clamp(i, 0, size - 1);
+    return true;
+}
+
 }  // namespace
 
 float mirrored(float v) {
@@ -55,7 +67,7 @@ float mirrored(float v) {
     return there > 1 ? 2 - there : there;
 }
 
-TextureImage::TextureImage(RasterImage raster, Encoding encoding, float gamma, Wrap wrap,
+TextureImage::TextureImage(RasterImage raster, Encoding encoding, float gamma, Wraps wrap,
                            ColourSpace space)
     : channels_(kept_channels(raster)), is_8bit_(raster.is_8bit), wrap_(wrap), space_(space) {
     Level level;
@@ -134,41 +146,31 @@ size_t TextureImage::memory() const {
 }
 
 Vec2 TextureImage::wrap_st(Vec2 st) const {
-    if (wrap_ == Wrap::repeat) return {fraction(st.x), fraction(st.y)};
-    if (wrap_ == Wrap::mirror) return {mirrored(st.x), mirrored(st.y)};
-    // The lookup is limited to one image's size around the image, beyond which its values don't
-    // change any more.
-    return {limit(st.x, -1, 2), limit(st.y, -1, 2)};
+    const auto one_axis = [](float v, Wrap wrap) {
+        if (wrap == Wrap::repeat) return fraction(v);
+        if (wrap == Wrap::mirror) return mirrored(v);
+        // The lookup is limited to one image's size around the image, beyond which its values don't
+        // change any more.
+        return limit(v, -1, 2);
+    };
+    return {one_axis(st.x, wrap_.s), one_axis(st.y, wrap_.t)};
 }
 
 void TextureImage::add_tap(Taps& taps, int x, int y, float weight) const {
     const int width = levels_[taps.level].width, height = levels_[taps.level].height;
-    switch (wrap_) {
-        case Wrap::repeat:
-            x += x < 0 ? width : (x >= width ? -width : 0);
-            y += y < 0 ? height : (y >= height ? -height : 0);
-            break;
-        case Wrap::black:
-            if (x < 0 || y < 0 || x >= width || y >= height) return;
-            break;
-        case Wrap::octahedral_sphere:
-            // On the octahedral sphere a path across a border continues, mirrored, at the opposite
-            // half of the same border.
-            if (x < 0 || x >= width) {
-                x = x < 0 ? -1 - x : 2 * width - 1 - x;
-                y = height - 1 - y;
-            }
-            if (y < 0 || y >= height) {
-                y = y < 0 ? -1 - y : 2 * height - 1 - y;
-                x = width - 1 - x;
-            }
-            [[fallthrough]];
-        case Wrap::mirror:
-        case Wrap::clamp:
-            x = std::clamp(x, 0, width - 1);
-            y = std::clamp(y, 0, height - 1);
-            break;
+    if (wrap_.s == Wrap::octahedral_sphere) {
+        // On the octahedral sphere a path across a border continues, mirrored, at the opposite half
+        // of the same border.
+        if (x < 0 || x >= width) {
+            x = x < 0 ? -1 - x : 2 * width - 1 - x;
+            y = height - 1 - y;
+        }
+        if (y < 0 || y >= height) {
+            y = y < 0 ? -1 - y : 2 * height - 1 - y;
+            x = width - 1 - x;
+        }
     }
+    if (!continue_axis(x, width, wrap_.s) || !continue_axis(y, height, wrap_.t)) return;
     const auto i = size_t(taps.count++);
     taps.texel[i] = size_t(y) * size_t(width) + size_t(x);
     taps.weight[i] = weight;

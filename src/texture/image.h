@@ -29,12 +29,13 @@ class TextureImage {
   public:
     using Encoding = ImageTexture::Encoding;
     using Wrap = ImageTexture::Wrap;
+    using Wraps = ImageTexture::Wraps;
     using Filter = ImageTexture::Filter;
 
     /// Makes an image of one level, the finest. It takes over the raster's memory where that can
     /// be; 8-bit rasters stay 8-bit. `encoding` applies to all channels, alpha included, as in
     /// pbrt-v4. Colours are taken out of `space`.
-    TextureImage(RasterImage raster, Encoding encoding, float gamma, Wrap wrap,
+    TextureImage(RasterImage raster, Encoding encoding, float gamma, Wraps wrap,
                  ColourSpace space = ColourSpace::srgb);
 
     /// The texels that make up a value, with weights that sum to 1 less those of black
@@ -85,7 +86,7 @@ class TextureImage {
     int width() const { return levels_[0].width; }
     int height() const { return levels_[0].height; }
     size_t level_count() const { return levels_.size(); }
-    Wrap wrap() const { return wrap_; }
+    Wraps wrap() const { return wrap_; }
     bool is_paged() const { return levels_[0].pages != nullptr; }
     /// Bytes of all levels that are in memory.
     size_t memory() const;
@@ -148,7 +149,7 @@ class TextureImage {
 
     size_t channels_ = 1;
     bool is_8bit_ = false;
-    Wrap wrap_ = Wrap::repeat;
+    Wraps wrap_;
     ColourSpace space_ = ColourSpace::srgb;
     std::vector<Level> levels_;  ///< the finest first; at least one
     std::array<float, 256> decode_{};

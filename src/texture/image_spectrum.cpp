@@ -192,8 +192,10 @@ ImageSpectrum::ImageSpectrum(const std::function<float(size_t)>& luminance, int 
     const double mean = sum / double(texels);
     const int factor = (std::max(width, height) + kMaxAnalysedSize - 1) / kMaxAnalysedSize;
     // Values are taken about the mean, because variances are differences of squares.
+    const bool repeats_s = wrap == Wrap::repeat || wrap == Wrap::repeat_s;
+    const bool repeats_t = wrap == Wrap::repeat || wrap == Wrap::repeat_t;
     ScalarField field = box_reduced([&](size_t i) { return float(luminance(i) - mean); }, width,
-                                    height, wrap != Wrap::clamp, wrap == Wrap::repeat, factor);
+                                    height, repeats_s, repeats_t, factor);
 
     const auto pyramid = std::make_shared<Pyramid>();
     Vec2 per_unit{float(width) / float(factor), float(height) / float(factor)};

@@ -27,9 +27,9 @@ namespace covtrace {
 /// for what it sees, about as fine as its pixels. Any number of threads may ask.
 class ImageSpectrum {
   public:
-    /// How the image continues beyond its borders; `repeat_s` repeats in s and clamps in t, for
-    /// lat-long maps.
-    enum class Wrap { repeat, clamp, repeat_s };
+    /// How the image continues beyond its borders; `repeat_s` repeats in s and clamps in t, as
+    /// lat-long maps do, `repeat_t` the other way round.
+    enum class Wrap { repeat, clamp, repeat_s, repeat_t };
     /// Largest side that is analysed as it is; larger images are averaged over squares of texels
     /// first.
     static constexpr int kMaxAnalysedSize = 2048;

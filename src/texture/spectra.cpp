@@ -11,9 +11,11 @@
 namespace covtrace {
 namespace {
 
-ImageSpectrum::Wrap spectrum_wrap(TextureImage::Wrap wrap) {
-    return wrap == TextureImage::Wrap::repeat ? ImageSpectrum::Wrap::repeat
-                                              : ImageSpectrum::Wrap::clamp;
+ImageSpectrum::Wrap spectrum_wrap(TextureImage::Wraps wrap) {
+    const bool repeats_s = wrap.s == TextureImage::Wrap::repeat;
+    if (wrap.t == TextureImage::Wrap::repeat)
+        return repeats_s ? ImageSpectrum::Wrap::repeat : ImageSpectrum::Wrap::repeat_t;
+    return repeats_s ? ImageSpectrum::Wrap::repeat_s : ImageSpectrum::Wrap::clamp;
 }
 
 ImageSpectrum analyse(const TextureGraph& graph, const ImageNode& node) {

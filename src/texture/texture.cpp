@@ -19,7 +19,7 @@ using Encoding = ImageTexture::Encoding;
 /// Key of an image: textures with equal ones share it. The encoding is empty where the file
 /// decides.
 using ImageKey = std::tuple<std::filesystem::path, const std::string*, std::optional<Encoding>,
-                            float, ImageTexture::Wrap, bool>;
+                            float, ImageTexture::Wraps, bool>;
 
 ImageKey key_of(const ImageTexture& t) {
     const bool uses_gamma = t.encoding == Encoding::gamma;

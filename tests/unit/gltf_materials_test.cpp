@@ -74,6 +74,25 @@ TEST(GltfMaterials, ReadsWebpImages) {
     EXPECT_EQ(*images_of({{"source", 0}}, embedded).at(0).content, kImage);
 }
 
+TEST(GltfMaterials, WrapsEachAxisInItsOwnWay) {
+    GltfFile file;
+    file.root["images"] = {{{"bufferView", file.add_view(kImage)}, {"mimeType", "image/png"}}};
+    file.root["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}, {{"wrapT", 33071}}};
+    file.root["textures"] = {{{"source", 0}, {"sampler", 0}}, {{"source", 0}, {"sampler", 1}}};
+    file.root["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                               {"normalTexture", {{"index", 1}}}}};
+    file.add_node({{"mesh", file.add_square({{"material", 0}})}});
+    const auto scene = read(file);
+    const MaterialDescription& m = scene.materials.at(size_t(scene.shapes[0].material));
+    using Wrap = ImageTexture::Wrap;
+    EXPECT_EQ(
+        constant_as<ImageTexture>(scene, std::get<ConductorMaterial>(m.value).reflectance).wrap,
+        (ImageTexture::Wraps{Wrap::clamp, Wrap::mirror}));
+    EXPECT_EQ(constant_as<ImageTexture>(scene, m.normal_map).wrap,
+              (ImageTexture::Wraps{Wrap::repeat, Wrap::clamp}));
+    EXPECT_FALSE(contains(all_warnings(scene), "wrap"));
+}
+
 TEST(GltfMaterials, ReadsChannelsOfTextures) {
     const auto scene =
         with_material({{"pbrMetallicRoughness",

@@ -179,6 +179,37 @@ TEST(TextureCovariance, OfBlackSurroundingsSeesTheBorder) {
         EXPECT_NEAR(c.ss / edge(0.1f), 1, 1e-3);
         EXPECT_NEAR(c.tt / edge(0.5f), 1, 1e-3);
     }
+    texture.wrap = {ImageTexture::Wrap::repeat, ImageTexture::Wrap::black};
+    const TextureId band = scene.add(texture);
+    TextureStore more(scene.description);
+    const SpatialCovariance2 c = covariance(more, band, {{0.1f, 0.5f}, {}});
+    EXPECT_EQ(c.ss, 0);
+    EXPECT_NEAR(c.tt / edge(0.5f), 1, 1e-3);
+}
+
+TEST(TextureCovariance, OfAnImageMirroredInOneAxisIsMirroredThere) {
+    const TemporaryFolder folder("covariance_mirror");
+    TextureScene scene;
+    ImageTexture texture = image_texture(write_waves(folder, "waves.pfm", 6));
+    const auto with = [&](ImageTexture::Wraps wraps) {
+        texture.wrap = wraps;
+        return scene.add(texture);
+    };
+    const auto mirror = ImageTexture::Wrap::mirror, repeat = ImageTexture::Wrap::repeat;
+    const TextureId in_s = with({mirror, repeat}), in_t = with({repeat, mirror});
+    TextureStore store(scene.description);
+    const SpatialCovariance2 here = covariance(store, in_s, {{0.3f, 0.55f}, {}});
+    EXPECT_GT(here.st, 0.5f * here.ss);
+    const auto expect_turned = [&](TextureId id, Vec2 uv, float sign) {
+        const SpatialCovariance2 c = covariance(store, id, {uv, {}});
+        EXPECT_NEAR(c.ss / here.ss, 1, 0.1f);
+        EXPECT_NEAR(c.tt / here.tt, 1, 0.1f);
+        EXPECT_NEAR(c.st / here.st, sign, 0.1f);
+    };
+    expect_turned(in_s, {1.7f, 0.55f}, -1);
+    expect_turned(in_s, {0.3f, 1.55f}, 1);
+    expect_turned(in_t, {1.3f, 0.55f}, 1);
+    expect_turned(in_t, {0.3f, 1.45f}, -1);
 }
 
 TEST(TextureCovariance, OfProductsAddsAndOfMixturesWeighs) {

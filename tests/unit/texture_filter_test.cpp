@@ -16,7 +16,8 @@ using Wrap = TextureImage::Wrap;
 constexpr Filter kFilters[] = {Filter::point, Filter::bilinear, Filter::trilinear, Filter::ewa};
 
 template <typename F>
-TextureImage image_of(int width, int height, F value, bool is_8bit = false) {
+TextureImage image_of(int width, int height, F value, bool is_8bit = false,
+                      TextureImage::Wraps wraps = Wrap::repeat) {
     RasterImage r;
     r.width = width;
     r.height = height;
@@ -24,7 +25,7 @@ TextureImage image_of(int width, int height, F value, bool is_8bit = false) {
     r.is_8bit = is_8bit;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) add_value(r, value(x, y));
-    TextureImage image(r, TextureImage::Encoding::linear, 1, Wrap::repeat);
+    TextureImage image(r, TextureImage::Encoding::linear, 1, wraps);
     image.build_levels();
     return image;
 }
@@ -56,6 +57,22 @@ TEST(TextureFilter, APointReadsTheFinestLevelAsItIs) {
                 ASSERT_EQ(image.value(st, f, round_footprint(radius), 8), bilinear);
         ASSERT_EQ(image.value(st, Filter::point, {}, 8), image.value(image.nearest(st)));
     }
+}
+
+TEST(TextureFilter, AnEllipseWrapsEachAxisInItsOwnWay) {
+    // Beyond the border that is clamped lies the last texel alone, beyond the other one the image.
+    const auto last = [](int i) { return i < 32 ? 0.2f : 0.8f; };
+    const auto across =
+        image_of(64, 64, [&](int x, int) { return last(x); }, false, {Wrap::clamp, Wrap::repeat});
+    const auto along =
+        image_of(64, 64, [&](int, int y) { return last(y); }, false, {Wrap::repeat, Wrap::clamp});
+    const ImageFootprint footprint = round_footprint(0.15f);
+    for (const float beyond : {-3.5f, 1.3f, 1.5f, 7.5f})
+        for (const float inside : {0.1f, 0.5f, 1.5f}) {
+            const float expected = beyond < 0 ? 0.2f : 0.8f;
+            EXPECT_NEAR(across.value({beyond, inside}, Filter::ewa, footprint, 8), expected, 1e-5f);
+            EXPECT_NEAR(along.value({inside, beyond}, Filter::ewa, footprint, 8), expected, 1e-5f);
+        }
 }
 
 TEST(TextureFilter, LargeFootprintsSeeTheMean) {

@@ -219,6 +219,9 @@ TEST(ImageSpectrum, SeesTheSeamOfARepeatedImageOnly) {
     const Picture q(128, 128, [](float, float y) { return 0.2f + 0.6f * y / 128; });
     EXPECT_GT(per_texel(q.spectrum(Wrap::repeat), q, 64, 1).tt,
               100 * per_texel(q.spectrum(Wrap::repeat_s), q, 64, 1).tt);
+    EXPECT_GT(per_texel(q.spectrum(Wrap::repeat_t), q, 64, 1).tt,
+              100 * per_texel(q.spectrum(Wrap::repeat_s), q, 64, 1).tt);
+    EXPECT_GT(near_seam(Wrap::repeat).ss, 100 * near_seam(Wrap::repeat_t).ss);
 }
 
 TEST(ImageSpectrum, SaysTheSameInWhateverOrderItIsAsked) {

@@ -75,6 +75,25 @@ TEST(TextureImage, IsBlackOutsideWhereAsked) {
     EXPECT_FLOAT_EQ(bilinear(image, 0.5f / 3, 0.25f), 1);
 }
 
+TEST(TextureImage, WrapsEachAxisInItsOwnWay) {
+    // The texels are products f(s) g(t), which are interpolated each for itself.
+    const auto product = [](TextureImage::Wraps wraps) {
+        return TextureImage(raster(3, 2, 1, {1, 2, 3, 10, 20, 30}), Encoding::linear, 1, wraps);
+    };
+    const Wrap all[] = {Wrap::repeat, Wrap::black, Wrap::clamp, Wrap::mirror};
+    const float places[] = {-2.2f, -0.9f, -0.1f, 0.05f, 0.6f, 1.05f, 1.4f, 2.7f};
+    for (const Wrap in_s : all)
+        for (const Wrap in_t : all) {
+            const TextureImage mixed = product({in_s, in_t}), f = product(in_s), g = product(in_t);
+            for (const float s : places)
+                for (const float t : places) {
+                    EXPECT_NEAR(bilinear(mixed, s, t),
+                                bilinear(f, s, 0.25f) * bilinear(g, 0.5f / 3, t), 1e-4f);
+                    EXPECT_EQ(nearest(mixed, s, t), nearest(f, s, 0.25f) * nearest(g, 0.1f, t));
+                }
+        }
+}
+
 TEST(TextureImage, ContinuesAcrossTheBordersOfAnOctahedralMap) {
     std::vector<float> values(16);
     std::iota(values.begin(), values.end(), 0.0f);
