@@ -71,6 +71,16 @@ struct DielectricBsdf {
     Rgb transmittance{1};  ///< of light that crosses the border
 };
 class CoatTable;  // hemispherical transmission of a rough dielectric coat
+/// A coat's reflectance in place of its index' Fresnel reflectance F: w (r + (1 - r) x), with r the
+/// reflectance at the normal, w the weight, and x = (F - F0) / (1 - F0), which grows from 0 at the
+/// normal to 1 at grazing angles. It is exact in x, so that Schlick's (1 - cos)^5, which glTF's
+/// extensions have there, differs by the shape of Fresnel's curve alone.
+struct CoatTint {
+    Rgb normal_reflectance;  ///< r, in [0, 1]
+    float weight = 1;        ///< w, in [0, 1]
+    /// Table of a border that reflects everything; none: F itself is reflected.
+    const CoatTable* white = nullptr;
+};
 /// Lambertian base below a dielectric coat; two-sided. Made by make_coated_diffuse (coat_table.h).
 struct CoatedDiffuseBsdf {
     Rgb reflectance;  ///< of the base alone
@@ -82,6 +92,7 @@ struct CoatedDiffuseBsdf {
     float mean_transmission = 0;  ///< of the coat, at the mean roughness
     /// Whether all light that the coat doesn't reflect enters; see make_coated_total.
     bool is_total = false;
+    CoatTint tint;  ///< where it is total
 };
 struct DiffuseTransmissionBsdf {
     Rgb reflectance, transmittance;

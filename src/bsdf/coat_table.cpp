@@ -169,12 +169,19 @@ CoatedDiffuseBsdf make_coated_diffuse(const CoatTable& table, const ReflectanceP
 }
 
 CoatedDiffuseBsdf make_coated_total(const CoatTable& table, Rgb reflectance, float alpha_x,
-                                    float alpha_y) {
+                                    float alpha_y, const CoatTint& tint) {
     CoatedDiffuseBsdf b = coat_alone(table, alpha_x, alpha_y);
     b.reflectance = reflectance;
     b.is_total = true;
-    b.mean_transmission = 1 - table.mean_reflection(b.table_row);
-    b.base = reflectance * (kInvPi / b.mean_transmission);
+    b.tint = tint;
+    const float coat = table.mean_reflection(b.table_row);
+    b.mean_transmission =
+        1 -
+        (tint.white
+             ? max_component(tinted(tint, b.eta, coat, tint.white->mean_reflection(b.table_row)))
+             : coat);
+    // Nothing is left for the base where the coat reflects everything.
+    b.base = b.mean_transmission > 0 ? reflectance * (kInvPi / b.mean_transmission) : Rgb(0);
     return b;
 }
 

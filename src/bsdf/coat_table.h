@@ -25,6 +25,7 @@
 /// of the plane of incidence at grazing angles, the mean of both at the normal.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <vector>
@@ -84,9 +85,22 @@ class CoatTable {
 /// importance sampling"), so white reflects all light at any roughness. For a smooth coat without a
 /// gap this is the layered model with the base rho = reflectance / (1 - R_int + R_int reflectance);
 /// for a rough one it keeps the light that single scattering loses. The table's thickness doesn't
-/// count.
+/// count. Of a coat with a tint, E is the albedo in the channel that reflects most, so that the
+/// base keeps the hue of `reflectance`, as KHR_materials_specular has it.
 CoatedDiffuseBsdf make_coated_total(const CoatTable& table, Rgb reflectance, float alpha_x,
-                                    float alpha_y);
+                                    float alpha_y, const CoatTint& tint = {});
+
+/// Share that a tinted coat reflects of the light from one direction, or from any mean of them.
+/// `fresnel`: that of its border of index `eta` without tint; `white`: that of a white border.
+inline Rgb tinted(const CoatTint& tint, float eta, float fresnel, float white) {
+    const float f0 = sqr((eta - 1) / (eta + 1));
+    // x in place of F; rounding must not take it below 0.
+    const float grown = std::max(0.0f, (fresnel - f0 * white) / (1 - f0));
+    return tint.weight * (tint.normal_reflectance * (white - grown) + Rgb(grown));
+}
+
+/// Index of a border that reflects everything, as far as single precision tells: CoatTint::white.
+inline constexpr float kWhiteIndex = 1e6f;
 
 /// The tables of all coats of a scene, one for each distinct pair (eta, thickness).
 class CoatTables {

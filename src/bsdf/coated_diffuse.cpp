@@ -24,9 +24,28 @@ float table_row(const CoatedDiffuseBsdf& b, Vec3 w) {
         std::sqrt(x2 * sqr(w.x) + y2 * sqr(w.y) + 0.5f * (x2 + y2) * sqr(w.z)));
 }
 
-/// Shares of light along w that the coat reflects and lets through, for w.z > 0 as in the rest of
-/// these helpers: T of coat_table.h, or all that is not reflected where the coat is total.
+/// Reflectance of the coat's border at an angle.
+Rgb border(const CoatedDiffuseBsdf& b, float cosine) {
+    const float f = fresnel_dielectric(cosine, b.eta).reflectance;
+    return b.tint.white ? tinted(b.tint, b.eta, f, 1) : Rgb(f);
+}
+
+/// Share of light along w that a tinted coat reflects, for w.z > 0 as in the rest of these helpers.
+Rgb tinted_share(const CoatedDiffuseBsdf& b, Vec3 w) {
+    if (is_smooth(b)) return border(b, w.z);
+    const float row = table_row(b, w);
+    return tinted(b.tint, b.eta, b.table->shares(row, w.z).reflection,
+                  b.tint.white->shares(row, w.z).reflection);
+}
+
+/// Shares of light along w that the coat reflects and lets through: T of coat_table.h, or all that
+/// is not reflected where the coat is total. Of a tinted coat that of the channel that reflects
+/// most.
 CoatTable::Shares shares(const CoatedDiffuseBsdf& b, Vec3 w) {
+    if (b.tint.white) {
+        const float reflected = max_component(tinted_share(b, w));
+        return {1 - reflected, reflected};
+    }
     if (!is_smooth(b)) {
         CoatTable::Shares s = b.table->shares(table_row(b, w), w.z);
         if (b.is_total) s.transmission = 1 - s.reflection;
@@ -60,10 +79,11 @@ Rgb eval_base(const CoatedDiffuseBsdf& b, const Outgoing& out, Vec3 wi) {
     return b.base * (out.transmission * shares(b, wi).transmission * wi.z);
 }
 
-/// The coat's part of the value of a pair above the surface, the same for all colours; `d`: density
-/// of the normals that reflect it, `stretched`: Ggx::stretched_length of wo.
+/// The coat's part of the value of a pair above the surface; `d`: density of the normals that
+/// reflect it, `stretched`: Ggx::stretched_length of wo.
 struct CoatValue {
-    float value = 0, d = 0;
+    Rgb value;
+    float d = 0;
 };
 CoatValue eval_coat(const CoatedDiffuseBsdf& b, Vec3 wo, float stretched, Vec3 wi) {
     const Ggx ggx{b.alpha_x, b.alpha_y};
@@ -71,7 +91,7 @@ CoatValue eval_coat(const CoatedDiffuseBsdf& b, Vec3 wo, float stretched, Vec3 w
     const float d = ggx.d(m);
     const float masked =
         2 * wi.z / (stretched * wi.z + ggx.stretched_length(wi) * wo.z);  // divided by wo.z
-    return {0.25f * fresnel_dielectric(dot(wo, m), b.eta).reflectance * d * masked, d};
+    return {border(b, dot(wo, m)) * (0.25f * d * masked), d};
 }
 
 BsdfValue value_and_density(const CoatedDiffuseBsdf& b, const Outgoing& out, Vec3 wi) {
@@ -79,7 +99,7 @@ BsdfValue value_and_density(const CoatedDiffuseBsdf& b, const Outgoing& out, Vec
     const float base_pdf = (1 - out.choose_coat) * cosine_hemisphere_pdf(wi.z);
     if (is_smooth(b)) return {base, base_pdf};
     const CoatValue coat = eval_coat(b, out.wo, out.stretched, wi);
-    return {Rgb(coat.value) + base,
+    return {coat.value + base,
             out.choose_coat * coat.d / (2 * (out.wo.z + out.stretched)) + base_pdf};
 }
 
@@ -111,9 +131,8 @@ std::optional<BsdfSample> sample(const CoatedDiffuseBsdf& b, Vec3 wo, float u_lo
     if (!from_coat) {
         wi = square_to_cosine_hemisphere(u);
     } else if (is_smooth(b)) {
-        const float f = fresnel_dielectric(wo.z, b.eta).reflectance;
         return BsdfSample{{-wo.x, -wo.y, below ? -wo.z : wo.z},
-                          Rgb(f / choose_coat),
+                          border(b, wo.z) / choose_coat,
                           choose_coat,
                           LobeKind::specular_reflection};
     } else {
@@ -133,17 +152,18 @@ LobeShares lobe_shares(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi, Rgb value) 
     if (is_smooth(b)) return found;
     wo = to_upper_side(wo);
     const float stretched = Ggx{b.alpha_x, b.alpha_y}.stretched_length(wo);
-    const float coat = eval_coat(b, wo, stretched, to_upper_side(wi)).value;
-    const auto rest = [coat](float channel) { return std::max(0.0f, channel - coat); };
-    found.lobes[0].value = {rest(value.r), rest(value.g), rest(value.b)};
-    found.lobes[1] = {LobeKind::glossy_reflection, Rgb(coat), b.alpha_x, b.alpha_y, 1, b.eta};
+    const Rgb coat = eval_coat(b, wo, stretched, to_upper_side(wi)).value;
+    for (int c = 0; c < 3; ++c) found.lobes[0].value[c] = std::max(0.0f, value[c] - coat[c]);
+    found.lobes[1] = {LobeKind::glossy_reflection, coat, b.alpha_x, b.alpha_y, 1, b.eta};
     found.count = 2;
     return found;
 }
 
 Rgb albedo(const CoatedDiffuseBsdf& b, Vec3 wo) {
-    const auto [transmission, coat] = shares(b, to_upper_side(wo));
-    return Rgb(coat) + b.base * (kPi * transmission * b.mean_transmission);
+    wo = to_upper_side(wo);
+    const auto [transmission, coat] = shares(b, wo);
+    return (b.tint.white ? tinted_share(b, wo) : Rgb(coat)) +
+           b.base * (kPi * transmission * b.mean_transmission);
 }
 
 }  // namespace covtrace

@@ -54,6 +54,14 @@ struct CoatedDiffuseMaterial {
     /// diffuse under specular, as in glTF. Then `thickness`, `g`, `albedo`, `max_depth` and
     /// `samples` don't count.
     bool reflects_through_coat = false;
+    /// Reflectance of the coat at the normal, in place of that of `eta`, which then only says how
+    /// it grows to 1 at grazing angles; with `reflects_through_coat` only.
+    TextureId normal_reflectance = -1;
+    /// Factor on all that the coat reflects, in [0, 1]; none: 1. With `reflects_through_coat` only.
+    TextureId coat_weight = -1;
+    /// Whether the base keeps of `reflectance` what is left of 1 beside the largest channel of
+    /// `normal_reflectance`, as in glTF's specular-glossiness.
+    bool coat_dims_base = false;
 };
 struct DiffuseTransmissionMaterial {
     TextureId reflectance = -1, transmittance = -1;

@@ -38,6 +38,12 @@ struct Values {
     float number(TextureId id, float fallback) const {
         return id < 0 ? fallback : textures.eval_float(id, at);
     }
+    CoatTint tint(const CoatedDiffuseMaterial& m, const CoatTable* white) const {
+        // NaN becomes 0, so that a broken texel can't spread.
+        const auto share = [](float v) { return v > 0 ? std::min(v, 1.0f) : 0; };
+        const Rgb r = spectrum(m.normal_reflectance, sqr((m.eta - 1) / (m.eta + 1)));
+        return {{share(r.r), share(r.g), share(r.b)}, share(number(m.coat_weight, 1)), white};
+    }
     template <typename M>
     Vec2 alphas(const M& m) const {
         return ggx_alphas(number(m.u_roughness, 0), number(m.v_roughness, 0), m.remap_roughness);
@@ -50,15 +56,17 @@ float refractive_index(float eta) {
     return eta > 0 ? eta : 1;
 }
 
+using Coats = MaterialCoats;
+
 constexpr float kDefaultReflectance = 0.5f;
 constexpr float kDefaultTransmission = 0.25f;  // also the reflectance of what transmits
 constexpr float kDefaultThickness = 0.01f;
 
-Bsdf make(const DiffuseMaterial&, const Values& v, const CoatTable*) {
+Bsdf make(const DiffuseMaterial&, const Values& v, const Coats&) {
     return DiffuseBsdf{v.reflectance()};
 }
 
-Bsdf make(const ConductorMaterial& m, const Values& v, const CoatTable*) {
+Bsdf make(const ConductorMaterial& m, const Values& v, const Coats&) {
     const Vec2 alpha = v.alphas(m);
     if (m.reflectance < 0)
         return ConductorBsdf{v.spectrum(m.eta, 1), v.spectrum(m.k, 1), alpha.x, alpha.y};
@@ -69,30 +77,38 @@ Bsdf make(const ConductorMaterial& m, const Values& v, const CoatTable*) {
     return ConductorBsdf{Rgb(1), 2 * sqrt(r) / sqrt(Rgb(1) - r), alpha.x, alpha.y};
 }
 
-Bsdf make(const DielectricMaterial& m, const Values& v, const CoatTable*) {
+Bsdf make(const DielectricMaterial& m, const Values& v, const Coats&) {
     const Vec2 alpha = v.alphas(m);
     return DielectricBsdf{refractive_index(m.eta), alpha.x, alpha.y,
                           m.transmittance < 0 ? Rgb(1) : v.transmittance()};
 }
 
-Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const CoatTable* coat) {
+Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const Coats& coats) {
     const Vec2 alpha = v.alphas(m);
-    if (m.reflects_through_coat) return make_coated_total(*coat, v.reflectance(), alpha.x, alpha.y);
+    if (m.reflects_through_coat) {
+        Rgb reflectance = v.reflectance();
+        CoatTint tint;
+        if (coats.white) {
+            tint = v.tint(m, coats.white);
+            if (m.coat_dims_base) reflectance *= 1 - max_component(tint.normal_reflectance);
+        }
+        return make_coated_total(*coats.own, reflectance, alpha.x, alpha.y, tint);
+    }
     // The number of bounces is half of pbrt's depth, whose walk meets the base at every second of
     // its steps.
-    return make_coated_diffuse(*coat, v.powers_of_reflectance(), alpha.x, alpha.y,
+    return make_coated_diffuse(*coats.own, v.powers_of_reflectance(), alpha.x, alpha.y,
                                (m.max_depth + 1) / 2);
 }
 
-Bsdf make(const DiffuseTransmissionMaterial&, const Values& v, const CoatTable*) {
+Bsdf make(const DiffuseTransmissionMaterial&, const Values& v, const Coats&) {
     return DiffuseTransmissionBsdf{v.reflectance(), v.transmittance()};
 }
 
-Bsdf make(const CoatedConductorMaterial& m, const Values& v, const CoatTable*) {
+Bsdf make(const CoatedConductorMaterial& m, const Values& v, const Coats&) {
     const Vec2 coat = v.alphas(m);
     CoatedConductorBsdf b;
     b.coat = {refractive_index(m.eta), coat.x, coat.y};
-    b.metal = std::get<ConductorBsdf>(make(m.conductor, v, nullptr));
+    b.metal = std::get<ConductorBsdf>(make(m.conductor, v, {}));
     b.metal.eta *= 1 / b.coat.eta;
     b.metal.k *= 1 / b.coat.eta;
     b.thickness = std::max(0.0f, v.number(m.thickness, kDefaultThickness));
@@ -103,12 +119,12 @@ Bsdf make(const CoatedConductorMaterial& m, const Values& v, const CoatTable*) {
     return b;
 }
 
-Bsdf make(const ThinDielectricMaterial& m, const Values& v, const CoatTable*) {
+Bsdf make(const ThinDielectricMaterial& m, const Values& v, const Coats&) {
     return ThinDielectricBsdf{refractive_index(m.eta),
                               m.transmittance < 0 ? Rgb(1) : v.transmittance()};
 }
 
-Bsdf make(const InterfaceMaterial&, const Values&, const CoatTable*) {
+Bsdf make(const InterfaceMaterial&, const Values&, const Coats&) {
     return InterfaceBsdf{};
 }
 
@@ -129,7 +145,8 @@ bool is_constant(const TextureStore& t, const DielectricMaterial& m) {
     return all_constant(t, {m.u_roughness, m.v_roughness, m.transmittance});
 }
 bool is_constant(const TextureStore& t, const CoatedDiffuseMaterial& m) {
-    return all_constant(t, {m.reflectance, m.u_roughness, m.v_roughness});
+    return all_constant(
+        t, {m.reflectance, m.u_roughness, m.v_roughness, m.normal_reflectance, m.coat_weight});
 }
 bool is_constant(const TextureStore& t, const DiffuseTransmissionMaterial& m) {
     return all_constant(t, {m.reflectance, m.transmittance});
@@ -240,7 +257,9 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
                 m->reflects_through_coat
                     ? 0
                     : std::max(0.0f, at_middle.number(m->thickness, kDefaultThickness));
-            material.coat = &coats_.get(refractive_index(m->eta), thickness);
+            material.coats.own = &coats_.get(refractive_index(m->eta), thickness);
+            if (m->normal_reflectance >= 0 || m->coat_weight >= 0)
+                material.coats.white = &coats_.get(kWhiteIndex, 0);
             warn_of_gap(m->albedo, "coateddiffuse", description.where, textures, warnings_);
             if (m->thickness >= 0 && !textures.is_constant(m->thickness))
                 warnings_.push_back({description.where,
@@ -252,7 +271,7 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
         std::visit(
             [&](const auto& m) {
                 material.is_constant = is_constant(textures, m);
-                if (material.is_constant) material.constant = make(m, at_middle, material.coat);
+                if (material.is_constant) material.constant = make(m, at_middle, material.coats);
             },
             description.value);
     }
@@ -269,7 +288,7 @@ Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStor
         const TexturePoint at{hit.uv, hit.position, footprint_on(hit, w, width), hit.ng,
                               hit.vertices()};
         const Values values{textures, at, material.colours, adaptation_, powers_};
-        found = std::visit([&](const auto& m) { return make(m, values, material.coat); },
+        found = std::visit([&](const auto& m) { return make(m, values, material.coats); },
                            material.description.value);
     }
     if (auto* coated = std::get_if<CoatedConductorBsdf>(&found))

@@ -34,6 +34,12 @@ struct MaterialColours {
     ReflectancePowers fixed_powers{};  ///< of a reflectance below a coat that does not vary
 };
 
+/// The tables of a diffuse material's coat; none where it has no coat.
+struct MaterialCoats {
+    const CoatTable* own = nullptr;
+    const CoatTable* white = nullptr;  ///< CoatTint::white
+};
+
 /// The textures that modulate the light that a material's lobes reflect and transmit; -1 where
 /// nothing varies.
 struct MaterialTextures {
@@ -73,7 +79,7 @@ class MaterialStore {
     struct Material {
         MaterialDescription description;
         MaterialColours colours;
-        const CoatTable* coat = nullptr;
+        MaterialCoats coats;
         bool is_constant = false;
         Bsdf constant;  ///< where no texture varies
     };

@@ -34,7 +34,7 @@ Vec3 direction(double theta, double phi) {
 }
 
 std::vector<Case> all_cases() {
-    static const CoatTable coat(1.5f, 0.01f);
+    static const CoatTable coat(1.5f, 0.01f), white(kWhiteIndex, 0);
     const Rgb eta(0.2f, 0.92f, 1.1f), k(3.9f, 2.45f, 2.14f), tan(0.7f, 0.5f, 0.2f);
     struct Model {
         std::string name;
@@ -50,6 +50,8 @@ std::vector<Case> all_cases() {
         {"dielectric_thin", DielectricBsdf{1 / 1.33f, 0.2f, 0.2f}, 0.2f, 1 / 1.33f},
         {"coated_brushed", make_coated_diffuse(coat, reflectance_powers(tan), 0.1f, 0.3f, 5), 0.3f,
          1},
+        {"coated_tinted", make_coated_total(coat, tan, 0.1f, 0.3f, {{0.6f, 0.2f, 0}, 0.9f, &white}),
+         0.3f, 1},
     };
     for (float alpha : {0.02f, 0.1f, 0.3f, 1.0f}) {
         const std::string suffix = std::to_string(static_cast<int>(alpha * 100));

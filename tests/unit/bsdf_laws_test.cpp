@@ -23,6 +23,11 @@ const CoatTable& coat() {
     return table;
 }
 
+CoatTint tint() {
+    static const CoatTable white(kWhiteIndex, 0);
+    return {{0.6f, 0.2f, 0}, 0.9f, &white};
+}
+
 CoatedConductorBsdf coated_metal(float coat_x, float coat_y, float metal_x, float metal_y) {
     CoatedConductorBsdf b;
     b.coat = {1.5f, coat_x, coat_y};
@@ -56,6 +61,9 @@ std::vector<Case> all_cases() {
         {"matt", make_coated_diffuse(coat(), reflectance_powers(tan), 0.7f, 0.7f, 5)},
         {"brushed_coat", make_coated_diffuse(coat(), reflectance_powers(tan), 0.1f, 0.5f, 5)},
         {"coat_on_black", make_coated_diffuse(coat(), reflectance_powers(Rgb(0)), 0.1f, 0.1f, 5)},
+        {"tinted_varnish", make_coated_total(coat(), tan, 0, 0, tint())},
+        {"tinted_satin", make_coated_total(coat(), tan, 0.1f, 0.1f, tint())},
+        {"tinted_brushed", make_coated_total(coat(), tan, 0.1f, 0.5f, tint())},
         {"lacquer_on_mirror", coated_metal(0, 0, 0, 0)},
         {"lacquer_on_copper", coated_metal(0, 0, 0.2f, 0.2f)},
         {"frost_on_mirror", coated_metal(0.2f, 0.2f, 0, 0)},
