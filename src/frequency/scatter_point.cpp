@@ -21,7 +21,7 @@ cov::Sym2<double> texture_spectrum(const LitScene& scene, const TextureSpectra& 
 
 DifferentialGeometry geometry_at(const LitScene& scene, const PathVertex& vertex) {
     // Without a normal map the tangents are already those of the BSDF's frame.
-    return scene.materials.has_normal_map(vertex.material)
+    return scene.materials.turns_frame(vertex.material)
                ? scene.geometry.differential(vertex.hit)
                : scene.geometry.differential(vertex.hit, vertex.shading);
 }
@@ -52,7 +52,7 @@ ScatterPoint::ScatterPoint(const LitScene& scene, const TextureSpectra& spectra,
     : surface{d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}},
       shading(vertex.shading),
       leaving(cov::frame_along<double>(vertex.wo)) {
-    if (scene.materials.has_normal_map(vertex.material)) {
+    if (scene.materials.turns_frame(vertex.material)) {
         const NormalMap map(scene.materials.description(vertex.material), scene.textures,
                             scene.geometry.shapes()[vertex.hit.shape], vertex.hit, d, footprint);
         // Positions stay on the geometry; the normal turns by both shape operators.

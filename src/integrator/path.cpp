@@ -97,7 +97,7 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, M
 
 Frame PathTracer::frame_at(const SurfaceHit& hit, const PlacedShape& shape,
                            MaterialId material) const {
-    if (!scene_.materials.has_normal_map(material)) return shading_frame(hit);
+    if (!scene_.materials.turns_frame(material)) return shading_frame(hit);
     // The step of the map's differences is as long as pbrt's for 64 samples per pixel and more: an
     // eighth of half a pixel.
     const float footprint = scene_.camera.half_pixel(distance(camera_origin_, hit.position)) / 8;

@@ -105,6 +105,10 @@ struct MaterialDescription {
     /// Whether the map's y follows increasing v, on mirrored texture coordinates too; else it
     /// stands left of x on the surface, as in pbrt.
     bool normal_map_follows_v = false;
+    /// Angle from x = dp/du to the axis that u_roughness lies along, radians, towards a map's y.
+    float tangent_rotation = 0;
+    /// Image of that axis before the rotation: (x, y) = 2 (r, g) - 1, as those of a normal map.
+    TextureId tangent_direction = -1;
 };
 
 // ---- media: the same everywhere inside

@@ -308,8 +308,11 @@ MaterialId MaterialStore::at(MaterialId id, const SurfaceHit& hit,
     return id;
 }
 
-bool MaterialStore::has_normal_map(MaterialId id) const {
-    return id >= 0 && (description(id).displacement >= 0 || description(id).normal_map >= 0);
+bool MaterialStore::turns_frame(MaterialId id) const {
+    if (id < 0) return false;
+    const MaterialDescription& d = description(id);
+    return d.displacement >= 0 || d.normal_map >= 0 || d.tangent_direction >= 0 ||
+           d.tangent_rotation != 0;
 }
 
 MaterialTextures MaterialStore::textures(MaterialId id) const {

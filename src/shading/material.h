@@ -67,8 +67,9 @@ class MaterialStore {
               float width = 0) const;
     MaterialTextures textures(MaterialId id) const;
     bool is_interface(MaterialId id) const;
-    /// Whether a bump or normal map turns the normals; see normal_map.h.
-    bool has_normal_map(MaterialId id) const;
+    /// Whether a bump or normal map turns the normals, or the material the tangents; see
+    /// normal_map.h.
+    bool turns_frame(MaterialId id) const;
     const MaterialDescription& description(MaterialId id) const {
         return materials_[static_cast<size_t>(id)].description;
     }

@@ -75,7 +75,7 @@ float NormalMap::height(Vec2 shift) const {
 }
 
 Frame NormalMap::frame_at(Vec2 shift) const {
-    Vec3 normal, tangent = dpdu_;
+    Vec3 normal = hit_.ns, tangent = dpdu_;
     if (material_.normal_map >= 0) {
         const Rgb texel =
             textures_.eval(material_.normal_map, {hit_.uv + shift, hit_.position, {}, hit_.ng});
@@ -83,7 +83,7 @@ Frame NormalMap::frame_at(Vec2 shift) const {
         local.x *= material_.normal_scale;
         local.y *= material_.normal_scale * y_sign_;
         normal = normalize(Frame::from_z_x(hit_.ns, dpdu_).to_world(local));
-    } else {
+    } else if (material_.displacement >= 0) {
         const float here = height(shift);
         const float du = (height(shift + Vec2{step_.x, 0}) - here) / step_.x;
         const float dv = (height(shift + Vec2{0, step_.y}) - here) / step_.y;
@@ -93,6 +93,21 @@ Frame NormalMap::frame_at(Vec2 shift) const {
     if (!is_finite(normal) || normal == Vec3{}) normal = hit_.ns;
     if (dot(normal, hit_.ng) < 0) normal = -normal;
     return Frame::from_z_x(normal, tangent);
+}
+
+Frame NormalMap::frame() const {
+    const Frame mapped = frame_at({});
+    Vec2 axis{1, 0};
+    if (material_.tangent_direction >= 0) {
+        const Rgb texel = textures_.eval(material_.tangent_direction,
+                                         {hit_.uv, hit_.position, {}, hit_.ng, hit_.vertices()});
+        axis = {2 * texel.r - 1, 2 * texel.g - 1};
+    }
+    const float c = std::cos(material_.tangent_rotation), s = std::sin(material_.tangent_rotation);
+    const Vec3 turned_x =
+        mapped.x * (c * axis.x - s * axis.y) + mapped.y * (y_sign_ * (s * axis.x + c * axis.y));
+    const float size = length(turned_x);
+    return size > 0 && std::isfinite(size) ? Frame::from_z_x(mapped.z, turned_x) : mapped;
 }
 
 std::array<float, 3> NormalMap::curvature() const {

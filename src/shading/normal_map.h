@@ -1,4 +1,5 @@
-/// Bump and normal maps: the shading frame that they give a surface, and how fast it turns.
+/// Bump and normal maps, and turned tangents: the shading frame that they give a surface, and how
+/// fast it turns.
 ///
 /// In pbrt-v4, and so here, a displacement d along the shading normal n turns the tangents into
 ///
@@ -18,15 +19,14 @@ namespace covtrace {
 class NormalMap {
   public:
     /// Prepares a map. `base`: geometry of the unmapped surface at `hit`. `footprint`: distance
-    /// over which differences are taken, scene units, > 0. The material must have a bump or a
-    /// normal map.
+    /// over which differences are taken, scene units, > 0.
     NormalMap(const MaterialDescription& material, const TextureStore& textures,
               const PlacedShape& shape, const SurfaceHit& hit, const DifferentialGeometry& base,
               float footprint);
 
     /// The mapped frame. z: the new shading normal, in the hemisphere of hit.ng; x along the new
-    /// dp/du.
-    Frame frame() const { return frame_at({}); }
+    /// dp/du, turned as the material says.
+    Frame frame() const;
     /// Shape operator that the map adds to the base's, in (t1, t2) that span its tangent plane:
     /// k11, k12, k22, 1 / scene unit.
     std::array<float, 3> curvature() const;
