@@ -329,6 +329,8 @@ template std::array<double, 2> numbers(const Document&, const tinygltf::Value&, 
                                        std::array<double, 2>, double, const std::string&);
 template std::array<double, 3> numbers(const Document&, const tinygltf::Value&, const char*,
                                        std::array<double, 3>, double, const std::string&);
+template std::array<double, 4> numbers(const Document&, const tinygltf::Value&, const char*,
+                                       std::array<double, 4>, double, const std::string&);
 
 tinygltf::TextureInfo texture_info(const Document& document, const tinygltf::Value& object,
                                    const char* key, const std::string& place) {

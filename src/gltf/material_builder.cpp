@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "gltf/extensions.h"
 
@@ -10,12 +9,6 @@ namespace covtrace::gltf {
 namespace {
 
 using Channel = ImageTexture::Channel;
-
-/// Refractive index that stands for all larger ones: its border reflects 99.6 % at the normal, and
-/// what is below it keeps more than rounding errors of the rest.
-constexpr float kLargestIndex = 1000;
-/// Amplitude that the border of that index reflects at the normal.
-constexpr float kLargestRoot = (kLargestIndex - 1) / (kLargestIndex + 1);
 
 /// Checks a number that the library leaves unchecked: refuses it outside of [least, most].
 float in_range(const Document& document, double v, double least, double most,
@@ -47,8 +40,8 @@ tinygltf::TextureInfo plain_info(const tinygltf::NormalTextureInfo& normal) {
 Surface MaterialBuilder::build() {
     for (const auto& [name, unused] : material_.extensions)
         if (!is_supported(name)) warn("extension " + name + " is not supported and left out");
+    read_base();
     choose_uv_set();
-    base_factor_ = colour(document_, pbr_.baseColorFactor, 4, Rgb(1), pbr("baseColorFactor"));
     read_alpha();
     if (extension(material_.extensions, "KHR_materials_unlit")) {
         build_unlit();
@@ -56,16 +49,42 @@ Surface MaterialBuilder::build() {
     }
     read_emission();
     read_normal_map();
-    base_ =
-        tinted(textures_.colour(use(pbr_.baseColorTexture), base_factor_, pbr("baseColorTexture")));
+    base_ = tinted(
+        textures_.colour(use(base_colour_.texture), base_colour_.factor, base_colour_.place));
+    if (specular_glossiness()) {
+        read_specular_glossiness();
+        read_anisotropy();
+        surface_.material = add(dielectric(widths_));
+        return surface_;
+    }
     const auto mr = use(pbr_.metallicRoughnessTexture);
-    alpha_ = squared(mr, Channel::green,
-                     in_range(document_, pbr_.roughnessFactor, 0, 1, pbr("roughnessFactor")),
-                     pbr("metallicRoughnessTexture"));
+    widths_.u = widths_.v = squared(
+        mr, Channel::green, in_range(document_, pbr_.roughnessFactor, 0, 1, pbr("roughnessFactor")),
+        pbr("metallicRoughnessTexture"));
+    read_anisotropy();
     read_index();
+    read_specular();
     const float metallic = in_range(document_, pbr_.metallicFactor, 0, 1, pbr("metallicFactor"));
     surface_.material = with_clearcoat(metals_and_others(mr, metallic));
     return surface_;
+}
+
+void MaterialBuilder::read_base() {
+    if (const tinygltf::Value* e = specular_glossiness()) {
+        const std::string place = in(kSpecularGlossiness);
+        const auto v = numbers<4>(document_, *e, "diffuseFactor", {1, 1, 1, 1}, 0, place);
+        for (const double one : v) in_range(document_, one, 0, 1, place + ".diffuseFactor");
+        base_colour_ = {{float(v[0]), float(v[1]), float(v[2])},
+                        float(v[3]),
+                        texture_info(document_, *e, "diffuseTexture", place),
+                        place + ".diffuseTexture"};
+        return;
+    }
+    const auto& factor = pbr_.baseColorFactor;
+    const std::string place = pbr("baseColorFactor");
+    base_colour_ = {colour(document_, factor, 4, Rgb(1), place), 1, pbr_.baseColorTexture,
+                    pbr("baseColorTexture")};
+    if (factor.size() == 4) base_colour_.alpha = in_range(document_, factor[3], 0, 1, place);
 }
 
 MaterialId MaterialBuilder::add(decltype(MaterialDescription::value) model) {
@@ -76,6 +95,8 @@ MaterialId MaterialBuilder::add(decltype(MaterialDescription::value) model) {
     m.normal_map = normal_map_;
     m.normal_scale = normal_scale_;
     m.normal_map_follows_v = true;
+    m.tangent_rotation = tangent_rotation_;
+    m.tangent_direction = tangent_direction_;
     scene_.materials.push_back(std::move(m));
     return static_cast<MaterialId>(scene_.materials.size() - 1);
 }
@@ -98,12 +119,17 @@ void MaterialBuilder::choose_uv_set() {
     layout.has_colours = colours_.tints || colours_.has_holes;
     // The colours' slopes are told by the surface's (u, v). The file's own may be the same at all
     // corners, as those of models that are painted from a palette; a triangle's are not.
-    const bool keeps_own = layout.has_colours && material_.normalTexture.index < 0;
+    const tinygltf::Value* anisotropy = extension(material_.extensions, "KHR_materials_anisotropy");
+    const bool keeps_own = layout.has_colours && material_.normalTexture.index < 0 && !anisotropy;
     if (keeps_own) return;
     layout.uv_set = 0;
+    const tinygltf::TextureInfo direction =
+        anisotropy ? texture_info(document_, *anisotropy, "anisotropyTexture",
+                                  in("KHR_materials_anisotropy"))
+                   : none;
     for (const tinygltf::TextureInfo& info :
-         {plain_info(material_.normalTexture), pbr_.baseColorTexture, pbr_.metallicRoughnessTexture,
-          material_.emissiveTexture, transmitted}) {
+         {plain_info(material_.normalTexture), direction, base_colour_.texture,
+          pbr_.metallicRoughnessTexture, material_.emissiveTexture, transmitted}) {
         if (info.index < 0) continue;
         layout.uv_set = TextureReader::uv_set(document_, info, place_);
         break;
@@ -140,19 +166,15 @@ TextureId MaterialBuilder::squared(const TextureUse& info, Channel channel, floa
 void MaterialBuilder::read_alpha() {
     const std::string& mode = material_.alphaMode;
     if (mode == "OPAQUE" || mode.empty()) return;
-    const float factor =
-        pbr_.baseColorFactor.size() == 4
-            ? in_range(document_, pbr_.baseColorFactor[3], 0, 1, pbr("baseColorFactor"))
-            : 1;
+    const float factor = base_colour_.alpha;
     if (mode == "MASK") {
         read_mask(factor,
                   in_range(document_, material_.alphaCutoff, 0, 1e30, place_ + ".alphaCutoff"));
     } else if (mode == "BLEND") {
-        const TextureUse info = use(pbr_.baseColorTexture);
+        const TextureUse info = use(base_colour_.texture);
         surface_.is_visible = factor > 0;
         if (info.index >= 0)
-            surface_.alpha =
-                textures_.channel(info, Channel::alpha, factor, pbr("baseColorTexture"));
+            surface_.alpha = textures_.channel(info, Channel::alpha, factor, base_colour_.place);
         else if (factor < 1)
             surface_.alpha = textures_.constant(factor);
         if (colours_.has_holes)
@@ -171,8 +193,8 @@ void MaterialBuilder::read_mask(float factor, float cutoff) {
         return;
     }
     if (!(cutoff > 0)) return;
-    const TextureUse info = use(pbr_.baseColorTexture);
-    const std::string place = pbr("baseColorTexture");
+    const TextureUse info = use(base_colour_.texture);
+    const std::string& place = base_colour_.place;
     if (!colours_.has_holes) {
         if (info.index >= 0) surface_.alpha = textures_.mask(info, cutoff / factor, place);
         return;
@@ -197,11 +219,11 @@ void MaterialBuilder::build_unlit() {
         "KHR_materials_unlit: an emitter of the base colour takes its place, which also "
         "lights what is near");
     surface_.material = add(DiffuseMaterial{textures_.constant(Rgb(0), true)});
-    if (is_black(base_factor_)) return;
-    const TextureUse info = use(pbr_.baseColorTexture);
-    emit(base_factor_, info.index < 0 && !colours_.tints
-                           ? -1
-                           : tinted(textures_.colour(info, Rgb(1), pbr("baseColorTexture"))));
+    if (is_black(base_colour_.factor)) return;
+    const TextureUse info = use(base_colour_.texture);
+    emit(base_colour_.factor, info.index < 0 && !colours_.tints
+                                  ? -1
+                                  : tinted(textures_.colour(info, Rgb(1), base_colour_.place)));
 }
 
 void MaterialBuilder::read_emission() {
@@ -224,31 +246,6 @@ void MaterialBuilder::read_normal_map() {
         textures_.linear(use(plain_info(material_.normalTexture)), place_ + ".normalTexture");
     normal_scale_ = in_range(document_, material_.normalTexture.scale, -1e6, 1e6,
                              place_ + ".normalTexture.scale");
-}
-
-void MaterialBuilder::read_index() {
-    if (const auto* e = extension(material_.extensions, "KHR_materials_ior")) {
-        constexpr double kAny = std::numeric_limits<double>::max();
-        const double ior = number(document_, *e, "ior", 1.5, 0, kAny, in("KHR_materials_ior"));
-        if (ior > 0 && ior < 1)
-            document_.refuse(in("KHR_materials_ior"), "expected an ior of 0 or at least 1");
-        // An ior of 0 stands for a border that reflects everything, as it does in the limit of
-        // large ones.
-        eta_ = ior > 0 ? static_cast<float>(std::min(ior, double(kLargestIndex))) : kLargestIndex;
-    }
-    const auto* specular = extension(material_.extensions, "KHR_materials_specular");
-    if (!specular) return;
-    const std::string place = in("KHR_materials_specular");
-    const double factor = number(document_, *specular, "specularFactor", 1, 0, 1, place);
-    const auto tint = numbers<3>(document_, *specular, "specularColorFactor", {1, 1, 1}, 0, place);
-    if (specular->Has("specularTexture") || specular->Has("specularColorTexture") ||
-        tint[0] != tint[1] || tint[1] != tint[2])
-        warn("KHR_materials_specular: textures and colours are left out, their mean is used");
-    // The index is that of a border that reflects as much at the normal as the specular factors
-    // say.
-    const float mean = static_cast<float>(factor * (tint[0] + tint[1] + tint[2]) / 3);
-    const float root = std::min((eta_ - 1) / (eta_ + 1) * std::sqrt(mean), kLargestRoot);
-    eta_ = (1 + root) / (1 - root);
 }
 
 }  // namespace covtrace::gltf

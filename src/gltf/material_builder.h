@@ -56,9 +56,38 @@ class MaterialBuilder {
     void build_unlit();
     void read_emission();
     void read_normal_map();
-    void read_index();
 
-    CoatedDiffuseMaterial dielectric(TextureId roughness) const;
+    /// The colour of a material with its alpha: of its metallic-roughness values, or of
+    /// KHR_materials_pbrSpecularGlossiness in place of them.
+    struct BaseColour {
+        Rgb factor{1};
+        float alpha = 1;
+        tinygltf::TextureInfo texture;
+        std::string place;  ///< of the texture
+    };
+    void read_base();
+    /// The extension's values; null where the material has none.
+    const tinygltf::Value* specular_glossiness() const;
+
+    /// The border of what is no metal: its index and, where something else than the index says what
+    /// it reflects, the textures of CoatedDiffuseMaterial.
+    struct Border {
+        float eta = 1.5f;
+        TextureId normal_reflectance = -1, weight = -1;
+        bool dims_base = false;
+        float mean_eta = 1.5f;  ///< index that reflects the mean of all that at the normal
+    };
+    void read_index();
+    void read_specular();
+    void read_specular_glossiness();
+
+    /// Widths of GGX along the tangent and across it.
+    struct Widths {
+        TextureId u = -1, v = -1;
+    };
+    void read_anisotropy();
+
+    CoatedDiffuseMaterial dielectric(Widths widths) const;
     ConductorMaterial metal() const;
 
     /// A material in two versions: as it is, and under a clear coat.
@@ -86,6 +115,7 @@ class MaterialBuilder {
     Coatable metals_and_others(const TextureUse& texture, float metallic);
     MaterialId with_clearcoat(Coatable surface);
 
+    static constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
     /// Largest roughness of panes that are rendered clear: their blur is below 1/400 radian.
     static constexpr double kClearRoughness = 0.05;
 
@@ -98,11 +128,12 @@ class MaterialBuilder {
     const ColourUse colours_;
     const std::string place_;
     Surface surface_;
-    Rgb base_factor_;
-    TextureId base_ = -1, alpha_ = -1;
-    TextureId normal_map_ = -1;
-    float normal_scale_ = 1;
-    float eta_ = 1.5f;
+    BaseColour base_colour_;
+    TextureId base_ = -1;
+    Widths widths_;
+    TextureId normal_map_ = -1, tangent_direction_ = -1;
+    float normal_scale_ = 1, tangent_rotation_ = 0;
+    Border border_;
     std::optional<Clearcoat> clearcoat_;
 };
 

@@ -12,20 +12,25 @@ using Channel = ImageTexture::Channel;
 
 }  // namespace
 
-CoatedDiffuseMaterial MaterialBuilder::dielectric(TextureId roughness) const {
+CoatedDiffuseMaterial MaterialBuilder::dielectric(Widths widths) const {
     CoatedDiffuseMaterial m;
     m.reflectance = base_;
-    m.u_roughness = m.v_roughness = roughness;
+    m.u_roughness = widths.u;
+    m.v_roughness = widths.v;
     m.remap_roughness = false;
-    m.eta = eta_;
+    m.eta = border_.eta;
     m.reflects_through_coat = true;
+    m.normal_reflectance = border_.normal_reflectance;
+    m.coat_weight = border_.weight;
+    m.coat_dims_base = border_.dims_base;
     return m;
 }
 
 ConductorMaterial MaterialBuilder::metal() const {
     ConductorMaterial m;
     m.reflectance = base_;
-    m.u_roughness = m.v_roughness = alpha_;
+    m.u_roughness = widths_.u;
+    m.v_roughness = widths_.v;
     m.remap_roughness = false;
     return m;
 }
@@ -68,7 +73,11 @@ MaterialBuilder::Coatable MaterialBuilder::metal_surface() {
 }
 
 MaterialBuilder::Coatable MaterialBuilder::opaque_dielectric() {
-    return coatable(add(dielectric(alpha_)), dielectric(clearcoat_ ? clearcoat_->alpha : alpha_));
+    // The clear coat's border takes the place of the surface's own and of its tint.
+    CoatedDiffuseMaterial coated =
+        dielectric(clearcoat_ ? Widths{clearcoat_->alpha, clearcoat_->alpha} : widths_);
+    coated.normal_reflectance = coated.coat_weight = -1;
+    return coatable(add(dielectric(widths_)), coated);
 }
 
 MaterialId MaterialBuilder::glass() {
@@ -78,14 +87,19 @@ MaterialId MaterialBuilder::glass() {
     const bool is_rough =
         pbr_.metallicRoughnessTexture.index >= 0 || pbr_.roughnessFactor > kClearRoughness;
     if (has_volume) read_absorption(*volume);
-    if (!has_volume && !is_rough) return add(ThinDielectricMaterial{eta_, base_});
+    if (border_.normal_reflectance >= 0 || border_.weight >= 0)
+        warn(
+            "KHR_materials_specular: of a surface that transmits light, textures are left out and "
+            "colours become their mean");
+    if (!has_volume && !is_rough) return add(ThinDielectricMaterial{border_.mean_eta, base_});
     if (!has_volume)
         warn(
             "KHR_materials_transmission: a rough surface without KHR_materials_volume is "
             "rendered as the rough border of a solid body, which refracts");
     DielectricMaterial m;
-    m.eta = eta_;
-    m.u_roughness = m.v_roughness = alpha_;
+    m.eta = border_.mean_eta;
+    m.u_roughness = widths_.u;
+    m.v_roughness = widths_.v;
     m.remap_roughness = false;
     m.transmittance = base_;
     return add(m);

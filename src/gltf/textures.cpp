@@ -81,6 +81,10 @@ TextureId TextureReader::product(TextureId a, TextureId b, bool is_spectrum) {
     return add({{}, is_spectrum, ScaleTexture{a, b}, document_.place("")});
 }
 
+TextureId TextureReader::mixture(TextureId a, TextureId b, TextureId amount) {
+    return add({{}, false, MixTexture{a, b, amount}, document_.place("")});
+}
+
 TextureId TextureReader::vertex_colour(bool is_alpha) {
     return add({{}, !is_alpha, VertexColourTexture{is_alpha}, document_.place("")});
 }
@@ -153,6 +157,17 @@ TextureId TextureReader::channel(const TextureUse& info, ImageTexture::Channel w
     texture->channel = which;
     texture->scale = factor;
     return add({{}, false, *texture, document_.place(place)});
+}
+
+TextureId TextureReader::inverted_channel(const TextureUse& info, ImageTexture::Channel which,
+                                          float factor, const std::string& place) {
+    const TextureId id = channel(info, which, factor, place);
+    TextureDescription& texture = scene_.textures[static_cast<size_t>(id)];
+    if (auto* image = std::get_if<ImageTexture>(&texture.value))
+        image->invert = true;
+    else
+        texture.value = ConstantTexture{Rgb(1 - factor)};
+    return id;
 }
 
 TextureId TextureReader::mask(const TextureUse& info, float cutoff, const std::string& place) {

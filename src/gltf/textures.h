@@ -23,6 +23,8 @@ class TextureReader {
     TextureId constant(Rgb value, bool is_spectrum);
     TextureId constant(float value) { return constant(Rgb(value), false); }
     TextureId product(TextureId a, TextureId b, bool is_spectrum);
+    /// Float texture (1 - amount) a + amount b.
+    TextureId mixture(TextureId a, TextureId b, TextureId amount);
     /// The colours of vertices, or their alpha.
     TextureId vertex_colour(bool is_alpha);
     /// Texture that is 1 where another one is at least `cutoff`, 0 elsewhere.
@@ -35,6 +37,9 @@ class TextureReader {
     /// Texture of one channel of a linear image times factor.
     TextureId channel(const TextureUse& info, ImageTexture::Channel channel, float factor,
                       const std::string& place);
+    /// Texture of 1 less the channel of a linear image times factor.
+    TextureId inverted_channel(const TextureUse& info, ImageTexture::Channel channel, float factor,
+                               const std::string& place);
     /// Texture that is 1 where the image's alpha is at least `cutoff`, 0 elsewhere; -1 where there
     /// is no image.
     TextureId mask(const TextureUse& info, float cutoff, const std::string& place);

@@ -1,0 +1,171 @@
+"""glTF's extensions of materials against the formulas that Khronos gives for them, evaluated here.
+
+The square of gltf_file shows one value of the BRDF times the cosine: a directional light of 1, one direction of view.
+"""
+
+import functools
+import math
+import unittest
+
+import exr
+from gltf_file import direction, lit_square, normalized, png
+from support import DONE, CliTest
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def ggx(v, l, alpha_t, alpha_b, tangent):
+    """D V of KHR_materials_anisotropy for the normal +z; isotropic where both alphas are the same."""
+    n, t = (0, 0, 1), (math.cos(tangent), math.sin(tangent), 0)
+    b = (-t[1], t[0], 0)
+    h = normalized([x + y for x, y in zip(v, l)])
+    f = (dot(t, h) / alpha_t) ** 2 + (dot(b, h) / alpha_b) ** 2 + dot(n, h) ** 2
+    d = 1 / (math.pi * alpha_t * alpha_b * f * f)
+
+    def stretched(w):
+        return math.hypot(alpha_t * dot(t, w), alpha_b * dot(b, w), dot(n, w))
+
+    return d * 0.5 / (dot(n, l) * stretched(v) + dot(n, v) * stretched(l))
+
+
+def schlick(f0, f90, v, l):
+    h = normalized([x + y for x, y in zip(v, l)])
+    return [a + (f90 - a) * (1 - dot(v, h)) ** 5 for a in f0]
+
+
+@functools.cache
+def albedo(f0, alpha, cosine, side=64):
+    """Share of the light from this direction that the border reflects: the mean over cosine-weighted directions."""
+    v = (math.sqrt(1 - cosine * cosine), 0, cosine)
+    total = 0
+    for i in range(side):
+        r = math.sqrt((i + 0.5) / side)
+        for j in range(side):
+            phi = 2 * math.pi * (j + 0.5) / side
+            l = (r * math.cos(phi), r * math.sin(phi), math.sqrt(1 - r * r))
+            total += math.pi * ggx(v, l, alpha, alpha, 0) * schlick([f0], 1, v, l)[0]
+    return total / side**2
+
+
+@functools.cache
+def mean_albedo(f0, alpha, steps=12):
+    """The same of light from all around."""
+    return sum(albedo(f0, alpha, math.sqrt((i + 0.5) / steps)) for i in range(steps)) / steps
+
+
+PAIRS = ((direction(0, 0), direction(0, 0)), (direction(30, 40), direction(30, 40)), (direction(0, 20), direction(90, 35)),
+         (direction(100, 50), direction(70, 45)))
+BLACK = {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0, "roughnessFactor": 0.5}
+
+
+class GltfMaterials(CliTest):
+    def seen(self, material, v, l, **more):
+        self.write("a.gltf", lit_square(material, v, l, **more))
+        result = self.run_program("render", "a.gltf", "-o", "a.exr", "--method", "uniform", "--spp", "4", "--resolution", "4x4", "--max-depth", "1",
+                                  "--progress", "none")
+        self.assertEqual(result.code, DONE, result)
+        self.assertNotIn("left out", result.stderr)
+        pixels = exr.read(self.folder / "a.exr").pixels
+        return [pixels[c][5] for c in "RGB"]
+
+    def assert_close(self, found, expected, relative, about):
+        for a, b in zip(found, expected):
+            self.assertLess(abs(a - b), relative * abs(b) + 1e-5, f"{about}: {found}, expected {expected}")
+
+    def test_the_square_is_a_plain_material_first(self):
+        gold = [1, 0.6, 0.3]
+        for v, l in PAIRS:
+            found = self.seen({"pbrMetallicRoughness": {"baseColorFactor": [*gold, 1], "roughnessFactor": 0.6}}, v, l)
+            self.assert_close(found, [f * ggx(v, l, 0.36, 0.36, 0) * l[2] for f in schlick(gold, 1, v, l)], 0.02, (v, l))
+
+    def test_anisotropy(self):
+        gold, alpha = [1, 0.6, 0.3], 0.3 ** 2
+        # The texture turns the tangent by 90 degrees and halves the strength.
+        turned = png(2, 2, [(128, 255, 128, 255)] * 4)
+        for strength, rotation, textured in ((0.7, 0, False), (0.7, 0.6, False), (0.4, 1.5, False), (0.7, -2.2, False), (0.9, 0.4, True)):
+            extension = {"anisotropyStrength": strength, "anisotropyRotation": rotation}
+            if textured:
+                extension["anisotropyTexture"] = {"index": 0}
+            share = strength * (128 / 255 if textured else 1)
+            along = alpha + (1 - alpha) * share ** 2
+            tangent = rotation + (math.pi / 2 if textured else 0)
+            for v, l in PAIRS:
+                found = self.seen({"pbrMetallicRoughness": {"baseColorFactor": [*gold, 1], "roughnessFactor": 0.3},
+                                   "extensions": {"KHR_materials_anisotropy": extension}}, v, l, images=[turned] if textured else [])
+                expected = [f * ggx(v, l, along, alpha, tangent) * l[2] for f in schlick(gold, 1, v, l)]
+                self.assert_close(found, expected, 0.03, (strength, rotation, textured, v, l))
+
+    def test_anisotropy_follows_mirrored_coordinates(self):
+        # Where u runs to the left, so does the tangent; where v is turned, so is the bitangent.
+        mirrored_u = ((100, 100), (0, 100), (0, 0), (100, 0))
+        mirrored_v = ((0, 0), (100, 0), (100, 100), (0, 100))
+        v, l = direction(20, 30), direction(50, 40)
+        for uv, tangent in ((mirrored_u, math.pi - 0.5), (mirrored_v, -0.5)):
+            found = self.seen({"pbrMetallicRoughness": {"roughnessFactor": 0.3},
+                               "extensions": {"KHR_materials_anisotropy": {"anisotropyStrength": 0.8, "anisotropyRotation": 0.5}}}, v, l, uv=uv)
+            self.assert_close(found, [ggx(v, l, 0.09 + 0.91 * 0.64, 0.09, tangent) * l[2]] * 3, 0.03, uv)
+
+    def test_specular(self):
+        colour, factor, ior = [1, 0.5, 0.1], 0.6, 1.7
+        f0 = [min(1, c * ((ior - 1) / (ior + 1)) ** 2) * factor for c in colour]
+        extensions = {"KHR_materials_specular": {"specularFactor": factor, "specularColorFactor": colour}, "KHR_materials_ior": {"ior": ior}}
+        for v, l in PAIRS:
+            found = self.seen({"pbrMetallicRoughness": BLACK, "extensions": extensions}, v, l)
+            self.assert_close(found, [f * ggx(v, l, 0.25, 0.25, 0) * l[2] for f in schlick(f0, factor, v, l)], 0.04, (v, l))
+        # At grazing angles Fresnel's curve is not Schlick's.
+        v, l = direction(0, 75), direction(180, 75)
+        found = self.seen({"pbrMetallicRoughness": BLACK, "extensions": extensions}, v, l)
+        self.assert_close(found, [f * ggx(v, l, 0.25, 0.25, 0) * l[2] for f in schlick(f0, factor, v, l)], 0.2, (v, l))
+
+    def test_specular_textures(self):
+        # The alpha of one, and the sRGB colour of the other: 188 is 0.503 when it is decoded.
+        images = [png(2, 2, [(0, 0, 0, 51)] * 4), png(2, 2, [(255, 188, 0, 255)] * 4)]
+        extension = {"specularTexture": {"index": 0}, "specularColorTexture": {"index": 1}, "specularColorFactor": [1, 1, 1]}
+        v = l = direction(30, 40)
+        found = self.seen({"pbrMetallicRoughness": BLACK, "extensions": {"KHR_materials_specular": extension}}, v, l, images=images)
+        self.assert_close(found, [0.2 * 0.04 * c * ggx(v, l, 0.25, 0.25, 0) * l[2] for c in (1, 0.503, 0)], 0.03, "textures")
+
+    def test_specular_leaves_the_base_its_hue(self):
+        # Without any specular reflection all light is diffuse.
+        v, l = direction(0, 30), direction(90, 60)
+        white = {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 0, "roughnessFactor": 0.5}
+        found = self.seen({"pbrMetallicRoughness": white, "extensions": {"KHR_materials_specular": {"specularFactor": 0}}}, v, l)
+        self.assert_close(found, [l[2] / math.pi] * 3, 0.003, "no specular")
+        red = {"KHR_materials_specular": {"specularColorFactor": [20, 0, 0]}}
+        found = self.seen({"pbrMetallicRoughness": white | {"roughnessFactor": 0.1}, "extensions": red}, v, l)
+        # The light that the strongest channel reflects is missing from all of them (far from the highlight).
+        self.assertAlmostEqual(found[0], found[1], delta=0.002)
+        self.assert_close(found, [(1 - 0.8) * l[2] / math.pi] * 3, 0.1, "red specular")
+
+    def test_specular_glossiness(self):
+        diffuse, specular, glossiness = [0.8, 0.4, 0.1], [0.3, 0.2, 0.05], 0.6
+        alpha = (1 - glossiness) ** 2
+        extension = {"diffuseFactor": [*diffuse, 1], "specularFactor": specular, "glossinessFactor": glossiness}
+        material = {"extensions": {"KHR_materials_pbrSpecularGlossiness": extension}}
+        images = [png(1, 1, [(188, 188, 188, 255)]), png(1, 1, [(255, 255, 255, 128)])]
+        textured = {"extensions": {"KHR_materials_pbrSpecularGlossiness":
+                                   extension | {"diffuseTexture": {"index": 0}, "specularGlossinessTexture": {"index": 1}}}}
+        for v, l in PAIRS:
+            for what, of_diffuse, a, arguments in ((material, 1, alpha, {}), (textured, 0.503, (1 - glossiness * 128 / 255) ** 2, {"images": images})):
+                fresnel = schlick(specular, 1, v, l)
+                shine = [f * ggx(v, l, a, a, 0) for f in fresnel]
+                # Khronos has 1 - F for the light that reaches the base; what a rough border really leaves it is known by its albedo.
+                left = (1 - albedo(max(specular), a, v[2])) * (1 - albedo(max(specular), a, l[2])) / (1 - mean_albedo(max(specular), a))
+                self.assertLess(abs(left / (1 - max(fresnel)) - 1), 0.15)
+                base = [left * (1 - max(specular)) * of_diffuse * d / math.pi for d in diffuse]
+                self.assert_close(self.seen(what, v, l, **arguments), [(s + b) * l[2] for s, b in zip(shine, base)], 0.03, (v, l, what))
+
+    def test_alpha_of_specular_glossiness(self):
+        extension = {"diffuseFactor": [1, 1, 1, 0.2]}
+        v = l = direction(0, 30)
+        for mode, seen in (("MASK", False), ("OPAQUE", True)):
+            material = {"alphaMode": mode, "extensions": {"KHR_materials_pbrSpecularGlossiness": extension}}
+            self.write("a.gltf", lit_square(material, v, l))
+            told = self.run_program("info", "a.gltf")
+            self.assertEqual(told.code == DONE, seen, told)
+
+
+if __name__ == "__main__":
+    unittest.main()
