@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/transform.h"
+#include "gltf/extensions.h"
 
 namespace covtrace::gltf {
 namespace {
@@ -26,6 +27,7 @@ void Animations::read_channel(const Document& document, size_t a, size_t c, Warn
     const tinygltf::Animation& animation = document.model.animations[a];
     const tinygltf::AnimationChannel& channel = animation.channels[c];
     const std::string place = element("animations", a) + "." + element("channels", c);
+    warn_of_left_out(document, channel.target_extensions, place, log);
     if (channel.target_node < 0) return;  // the target belongs to an extension
     at(document, document.model.nodes, channel.target_node, "nodes", place + ".target.node");
     Path path{};

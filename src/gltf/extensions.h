@@ -1,7 +1,10 @@
-/// Private to this folder: which extensions of glTF are read.
+/// Private to this folder: which extensions of glTF are read, and what the others would add.
 #pragma once
 
+#include <string>
 #include <string_view>
+
+#include "gltf/document.h"
 
 namespace covtrace::gltf {
 
@@ -17,5 +20,10 @@ constexpr bool is_supported(std::string_view extension) {
         if (extension == name) return true;
     return false;
 }
+
+/// Warns of each extension of an element that is not read, and of what the picture lacks without
+/// it. The log makes one warning for each extension of it.
+void warn_of_left_out(const Document& document, const tinygltf::ExtensionMap& extensions,
+                      const std::string& place, WarningLog& log);
 
 }  // namespace covtrace::gltf

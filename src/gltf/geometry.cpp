@@ -176,11 +176,37 @@ void GeometryReader::read_vertex_values(const tinygltf::Primitive& primitive,
     require_count(document_, mesh.colours.size(), count, name);
 }
 
+void GeometryReader::count_left_out(const tinygltf::Primitive& primitive,
+                                    const std::string& place) {
+    const auto position = primitive.attributes.find("POSITION");
+    size_t count = 0;
+    if (primitive.indices >= 0)
+        count = accessor_count(document_, primitive.indices, place + ".indices");
+    else if (position != primitive.attributes.end())
+        count = accessor_count(document_, position->second, place + ".attributes.POSITION");
+    const bool is_points = primitive.mode == TINYGLTF_MODE_POINTS;
+    if (primitive.mode == TINYGLTF_MODE_LINE) count /= 2;
+    if (primitive.mode == TINYGLTF_MODE_LINE_STRIP && count > 0) --count;
+    LeftOut& kind = is_points ? points_ : lines_;
+    if (kind.primitives == 0) kind.first = place;
+    ++kind.primitives;
+    kind.elements += count;
+}
+
+void GeometryReader::tell_left_out() {
+    for (const auto& [kind, name] : {std::pair(&points_, "points"), {&lines_, "lines"}})
+        if (kind->primitives > 0)
+            warn(kind->first, std::string(name) +
+                                  " are not rendered: " + std::to_string(kind->elements) + " in " +
+                                  std::to_string(kind->primitives) +
+                                  (kind->primitives == 1 ? " primitive" : " primitives"));
+}
+
 GeometryReader::Entry GeometryReader::read(const tinygltf::Primitive& primitive,
                                            const VertexLayout& layout, const std::string& place) {
     const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
     if (mode < TINYGLTF_MODE_TRIANGLES) {
-        warn(place, "points and lines are not rendered");
+        count_left_out(primitive, place);
         return {};
     }
     if (mode > TINYGLTF_MODE_TRIANGLE_FAN)

@@ -36,9 +36,9 @@ class GeometryReader {
     ColourUse colours(int mesh, size_t primitive);
 
     /// The triangles of meshes[mesh].primitives[primitive] with the texture coordinates and colours
-    /// of the layout, v upwards as everywhere else here (glTF's runs down). Null for points,
-    /// lines and primitives without triangles, with a warning where something is left out. Throws
-    /// Error(limit) where all meshes are too large for the file.
+    /// of the layout, v upwards as everywhere else here (glTF's runs down). Null for points and
+    /// lines, which are counted, and for primitives without triangles. Throws Error(limit) where
+    /// all meshes are too large for the file.
     std::shared_ptr<const TriangleMesh> mesh(int mesh, size_t primitive,
                                              const VertexLayout& layout);
 
@@ -49,6 +49,9 @@ class GeometryReader {
                           const std::string& place);
     bool has_joints(int mesh, size_t primitive, const VertexLayout& layout);
 
+    /// Warns of the points and lines that were asked for, with their numbers.
+    void tell_left_out();
+
   private:
     struct Entry {
         std::shared_ptr<const TriangleMesh> mesh;
@@ -57,10 +60,17 @@ class GeometryReader {
         std::optional<Deformation> deformation;  ///< set once it was asked for
     };
 
+    /// Primitives of one kind that are not rendered.
+    struct LeftOut {
+        size_t primitives = 0, elements = 0;
+        std::string first;  ///< place of the first one
+    };
+
     Entry& entry(int mesh, size_t primitive, const VertexLayout& layout);
     const Deformation& deformation(int mesh, size_t primitive, const VertexLayout& layout);
     Entry read(const tinygltf::Primitive& primitive, const VertexLayout& layout,
                const std::string& place);
+    void count_left_out(const tinygltf::Primitive& primitive, const std::string& place);
     void read_vertex_values(const tinygltf::Primitive& primitive, const VertexLayout& layout,
                             TriangleMesh& mesh, const std::string& place);
     /// Takes a mesh's bytes from the budget. Errors: Error(limit) where the budget of meshes is
@@ -74,7 +84,8 @@ class GeometryReader {
     WarningLog& log_;
     std::map<std::tuple<int, size_t, VertexLayout>, Entry> meshes_;
     std::map<int, ColourUse> colours_;  ///< by accessor
-    Budget bytes_;                      ///< budget of what meshes may still take
+    LeftOut points_, lines_;
+    Budget bytes_;  ///< budget of what meshes may still take
 };
 
 }  // namespace covtrace::gltf

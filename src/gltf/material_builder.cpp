@@ -38,8 +38,7 @@ tinygltf::TextureInfo plain_info(const tinygltf::NormalTextureInfo& normal) {
 }  // namespace
 
 Surface MaterialBuilder::build() {
-    for (const auto& [name, unused] : material_.extensions)
-        if (!is_supported(name)) warn("extension " + name + " is not supported and left out");
+    warn_of_left_out(document_, material_.extensions, place_, log_);
     read_base();
     choose_uv_set();
     read_alpha();

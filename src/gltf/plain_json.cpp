@@ -9,6 +9,7 @@ using nlohmann::json;
 
 constexpr std::string_view kWebpData = "data:image/webp;base64,";
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
+constexpr const char* kPointer = "KHR_animation_pointer";
 constexpr const char* kMeshopt = "meshopt_compression";  ///< behind EXT_ or KHR_
 
 /// The value of a key, null where there is none or `object` is no object.
@@ -80,11 +81,23 @@ void rename_webp_data(json& root) {
     });
 }
 
+/// Gives a node to the targets of animations that an extension points elsewhere: none, -1.
+void fill_targets(json& root) {
+    visit_objects(value(root, "animations"), [](json& animation, size_t) {
+        visit_objects(value(animation, "channels"), [](json& channel, size_t) {
+            json* target = value(channel, "target");
+            if (target && target->is_object() && value(*target, "extensions"))
+                target->emplace("node", -1);
+        });
+    });
+}
+
 }  // namespace
 
 std::optional<std::string> plain_json(std::string_view text, bool has_chunk) {
     if (text.find(kDraco) == std::string_view::npos &&
         text.find(kMeshopt) == std::string_view::npos &&
+        text.find(kPointer) == std::string_view::npos &&
         text.find("webp") == std::string_view::npos)
         return std::nullopt;
     json root = json::parse(text.begin(), text.end(), nullptr, false);
@@ -92,6 +105,7 @@ std::optional<std::string> plain_json(std::string_view text, bool has_chunk) {
     remove_draco_indices(root);
     fill_placeholders(root, has_chunk);
     rename_webp_data(root);
+    fill_targets(root);
     return root.dump();
 }
 

@@ -8,6 +8,7 @@
 #include "gltf/choice.h"
 #include "gltf/deformed_nodes.h"
 #include "gltf/document.h"
+#include "gltf/extensions.h"
 #include "gltf/geometry.h"
 #include "gltf/lights.h"
 #include "gltf/materials.h"
@@ -37,9 +38,12 @@ class SceneAssembler {
         for (const PlacedNode& n : placed_.nodes)
             if (node(n).mesh >= 0) ++uses[node(n).mesh];
         for (const PlacedNode& n : placed_.nodes) {
+            warn_of_left_out(document_, node(n).extensions,
+                             element("nodes", static_cast<size_t>(n.node)), log_);
             if (node(n).mesh >= 0) add_mesh(n, uses[node(n).mesh] > 1);
             add_light(document_, n, scene_, log_);
         }
+        geometry_.tell_left_out();
     }
 
     const Bounds3& bounds() const { return bounds_; }
@@ -125,10 +129,11 @@ class SceneAssembler {
     std::optional<Part> part_of(int mesh, size_t index) {
         const std::string place =
             element("meshes", static_cast<size_t>(mesh)) + "." + element("primitives", index);
-        const int material =
-            document_.model.meshes[static_cast<size_t>(mesh)].primitives[index].material;
+        const tinygltf::Primitive& primitive =
+            document_.model.meshes[static_cast<size_t>(mesh)].primitives[index];
+        warn_of_left_out(document_, primitive.extensions, place, log_);
         const Surface& surface =
-            materials_.surface(material, geometry_.colours(mesh, index), place);
+            materials_.surface(primitive.material, geometry_.colours(mesh, index), place);
         if (!surface.is_visible) return std::nullopt;
         auto triangles = geometry_.mesh(mesh, index, surface.layout);
         if (!triangles) return std::nullopt;
@@ -177,6 +182,11 @@ SceneDescription read(const Document& document, const ReadOptions& options, Warn
     scene.samples_per_pixel = kSamples;
 
     const Choice choice = choose(document, options, scene, log);
+    if (choice.scene >= 0) {
+        const auto index = static_cast<size_t>(choice.scene);
+        warn_of_left_out(document, document.model.scenes[index].extensions,
+                         element("scenes", index), log);
+    }
     const PlacedNodes placed = place_nodes(document, choice, options.shutter, log);
     SceneAssembler assembler(document, placed, options.shutter.value_or(std::array<float, 2>{0, 0}),
                              scene, log);

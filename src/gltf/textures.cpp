@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "gltf/extensions.h"
+
 namespace covtrace::gltf {
 namespace {
 
@@ -99,6 +101,7 @@ std::optional<ImageTexture> TextureReader::image(const TextureUse& info, const s
     const tinygltf::Texture& texture =
         at(document_, model.textures, info.index, "textures", place + ".index");
     const std::string texture_place = element("textures", static_cast<size_t>(info.index));
+    warn_of_left_out(document_, texture.extensions, texture_place, log_);
     const int source_index = source_of(document_, texture, texture_place);
     if (source_index < 0) {
         log_.add(document_.place(texture_place),

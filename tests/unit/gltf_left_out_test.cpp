@@ -1,0 +1,84 @@
+// Warnings of what glTF files hold and covtrace does not render: one for each extension and file.
+#include "gltf_fixtures.h"
+
+namespace covtrace::test {
+namespace {
+
+/// Lines of the warnings that hold a text.
+std::vector<std::string> warnings_with(const SceneDescription& scene, const std::string& text) {
+    std::vector<std::string> found;
+    for (const Warning& w : scene.warnings)
+        if (contains(w.text, text)) found.push_back(w.text);
+    return found;
+}
+
+TEST(GltfLeftOut, EachExtensionIsToldOnceWithItsLoss) {
+    GltfFile file;
+    for (int i = 0; i < 3; ++i) {
+        json extensions = {{"KHR_materials_sheen", json::object()}};
+        if (i == 2) extensions["KHR_materials_iridescence"] = json::object();
+        if (i == 2) extensions["ACME_paint"] = json::object();
+        file.root["materials"].push_back({{"extensions", extensions}});
+        file.add_node({{"mesh", file.add_square({{"material", i}})}});
+    }
+    const auto scene = read(file);
+    EXPECT_EQ(warnings_with(scene, "KHR_materials_sheen"),
+              (std::vector<std::string>{"extension KHR_materials_sheen is left out: the soft shine "
+                                        "of cloth at grazing angles is missing (and in 2 more "
+                                        "places)"}));
+    EXPECT_EQ(warnings_with(scene, "KHR_materials_iridescence"),
+              (std::vector<std::string>{"extension KHR_materials_iridescence is left out: the "
+                                        "colours of thin films are missing"}));
+    EXPECT_EQ(
+        warnings_with(scene, "ACME_paint"),
+        (std::vector<std::string>{"extension ACME_paint is left out: what it adds is missing"}));
+}
+
+TEST(GltfLeftOut, ExtensionsOutsideOfMaterialsAreTold) {
+    GltfFile file;
+    const int mesh = file.add_square(
+        {{"extensions", {{"KHR_materials_variants", {{"mappings", json::array()}}}}}});
+    file.add_node(
+        {{"mesh", mesh},
+         {"extensions",
+          {{"EXT_mesh_gpu_instancing", json::object()}, {"KHR_xmp_json_ld", json::object()}}}});
+    file.root["scenes"] = {
+        {{"nodes", {0}}, {"extensions", {{"EXT_lights_image_based", {{"light", 0}}}}}}};
+    const int time = file.add_floats({0}, "SCALAR", 1), value = file.add_floats({1}, "SCALAR", 1);
+    const json pointer = {{"KHR_animation_pointer", {{"pointer", "/materials/0/alphaCutoff"}}}};
+    file.root["animations"] = {
+        {{"samplers", {{{"input", time}, {"output", value}}}},
+         {"channels",
+          {{{"sampler", 0}, {"target", {{"path", "pointer"}, {"extensions", pointer}}}}}}}};
+    const auto scene = read(file);
+    for (const char* name : {"KHR_materials_variants", "EXT_mesh_gpu_instancing",
+                             "EXT_lights_image_based", "KHR_animation_pointer"})
+        EXPECT_EQ(warnings_with(scene, std::string("extension ") + name + " is left out: ").size(),
+                  1u)
+            << name << "\n"
+            << all_warnings(scene);
+    // Descriptions change no picture.
+    EXPECT_TRUE(warnings_with(scene, "KHR_xmp_json_ld").empty());
+}
+
+TEST(GltfLeftOut, PointsAndLinesAreCounted) {
+    GltfFile file = square_file();
+    const int p = file.add_floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, "VEC3", 3);
+    const int corners = file.add<uint8_t>({0, 1, 2, 3, 0, 1}, 5121, "SCALAR", 1);
+    json primitives = json::array();
+    for (const int mode : {0, 0, 1, 2, 3})
+        primitives.push_back({{"attributes", {{"POSITION", p}}}, {"mode", mode}});
+    primitives.push_back({{"attributes", {{"POSITION", p}}}, {"mode", 1}, {"indices", corners}});
+    file.root["meshes"].push_back({{"primitives", primitives}});
+    file.add_node({{"mesh", 1}});
+    const auto scene = read(file);
+    EXPECT_EQ(warnings_with(scene, "points are not rendered"),
+              (std::vector<std::string>{"points are not rendered: 8 in 2 primitives"}));
+    // The numbers are 2 pairs, a loop of 4, a strip of 3, and 3 pairs.
+    EXPECT_EQ(warnings_with(scene, "lines are not rendered"),
+              (std::vector<std::string>{"lines are not rendered: 12 in 4 primitives"}));
+    EXPECT_TRUE(contains(all_warnings(scene), "meshes[1].primitives[2]: lines"));
+}
+
+}  // namespace
+}  // namespace covtrace::test
