@@ -45,6 +45,7 @@ void Animations::read_channel(const Document& document, size_t a, size_t c, Warn
                 "rest is left out");
         return;
     }
+    at(document, document.model.nodes, channel.target_node, "nodes", place + ".target.node");
     Channel read;
     read.path = path;
     const tinygltf::AnimationSampler& sampler =

@@ -9,7 +9,6 @@ using nlohmann::json;
 
 constexpr std::string_view kWebpData = "data:image/webp;base64,";
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
-constexpr const char* kPointer = "KHR_animation_pointer";
 constexpr const char* kMeshopt = "meshopt_compression";  ///< behind EXT_ or KHR_
 
 /// The value of a key, null where there is none or `object` is no object.
@@ -81,31 +80,38 @@ void rename_webp_data(json& root) {
     });
 }
 
-/// Gives a node to the targets of animations that an extension points elsewhere: none, -1.
-void fill_targets(json& root) {
-    visit_objects(value(root, "animations"), [](json& animation, size_t) {
-        visit_objects(value(animation, "channels"), [](json& channel, size_t) {
+/// Gives skins without inverse bind matrices and channels without a node the index -1, which stands
+/// for none: glTF 2.0 has both optional, the library has not. Returns whether there were any.
+bool fill_optional_indices(json& root) {
+    bool has_filled = false;
+    const auto fill = [&](json& object, const char* key) {
+        if (object.contains(key)) return;
+        object[key] = -1;
+        has_filled = true;
+    };
+    visit_objects(value(root, "skins"),
+                  [&](json& skin, size_t) { fill(skin, "inverseBindMatrices"); });
+    visit_objects(value(root, "animations"), [&](json& animation, size_t) {
+        visit_objects(value(animation, "channels"), [&](json& channel, size_t) {
             json* target = value(channel, "target");
-            if (target && target->is_object() && value(*target, "extensions"))
-                target->emplace("node", -1);
+            if (target && target->is_object()) fill(*target, "node");
         });
     });
+    return has_filled;
 }
 
 }  // namespace
 
 std::optional<std::string> plain_json(std::string_view text, bool has_chunk) {
-    if (text.find(kDraco) == std::string_view::npos &&
-        text.find(kMeshopt) == std::string_view::npos &&
-        text.find(kPointer) == std::string_view::npos &&
-        text.find("webp") == std::string_view::npos)
-        return std::nullopt;
+    const auto holds = [&](std::string_view word) { return text.find(word) != text.npos; };
+    const bool is_encoded = holds(kDraco) || holds(kMeshopt) || holds("webp");
+    if (!is_encoded && !holds("\"skins\"") && !holds("\"animations\"")) return std::nullopt;
     json root = json::parse(text.begin(), text.end(), nullptr, false);
     if (!root.is_object()) return std::nullopt;
+    if (!fill_optional_indices(root) && !is_encoded) return std::nullopt;
     remove_draco_indices(root);
     fill_placeholders(root, has_chunk);
     rename_webp_data(root);
-    fill_targets(root);
     return root.dump();
 }
 

@@ -191,9 +191,12 @@ SceneDescription read(const Document& document, const ReadOptions& options, Warn
     SceneAssembler assembler(document, placed, options.shutter.value_or(std::array<float, 2>{0, 0}),
                              scene, log);
     assembler.add();
-    if (scene.shapes.empty() && scene.instances.empty())
-        document.refuse("", "the scene has no triangles to render");
-    set_view(document, placed.nodes, assembler.bounds(), options.camera, scene, log);
+    Bounds3 bounds = assembler.bounds();
+    if (bounds.empty()) {
+        log.add(document.place(""), "the scene has no triangles to render; nothing is to be seen");
+        bounds = {Vec3{-1, -1, -1}, Vec3{1, 1, 1}};
+    }
+    set_view(document, placed.nodes, bounds, options.camera, scene, log);
     if (options.shutter) {
         const auto [open, close] = *options.shutter;
         scene.camera.shutter_open = open;
@@ -202,7 +205,7 @@ SceneDescription read(const Document& document, const ReadOptions& options, Warn
         // is to change the blur alone.
         scene.film.iso = 100 / (close - open);
     }
-    scale_lights(document, assembler.bounds(), scene, log);
+    scale_lights(document, bounds, scene, log);
     if (!assembler.has_lamps())
         scene.no_lights = {document.place(""),
                            "the scene has no lights (KHR_lights_punctual, or an emissive strength "

@@ -75,6 +75,16 @@ TEST(GltfDeformation, JointsPlaceVertices) {
     EXPECT_EQ(all_warnings(scene).find("skin"), std::string::npos) << all_warnings(scene);
 }
 
+/// glTF 2.0, section 3.7.3.1: matrices that are not given are the identity.
+TEST(GltfDeformation, JointsNeedNoInverseBindMatrices) {
+    GltfFile file = skinned_file();
+    file.root["skins"][0].erase("inverseBindMatrices");
+    const TriangleMesh& mesh = mesh_of(read(file).shapes[0]);
+    // The second joint, at x = 2, carries the vertices of the end along.
+    EXPECT_NEAR(mesh.positions.front().x, 0, 1e-6f);
+    EXPECT_NEAR(mesh.positions.back().x, 6, 1e-6f);
+}
+
 TEST(GltfDeformation, WhatJointsBendMovesInPieces) {
     GltfFile file = skinned_file();
     animate(file);

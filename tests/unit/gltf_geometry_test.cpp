@@ -219,6 +219,35 @@ TEST(GltfGeometry, MovesNodesOverTheShutter) {
     expect_near(step.shapes[0].object_to_world.end().point({0, 0, 0}), {8, 0, 0}, 0);
 }
 
+TEST(GltfGeometry, LeavesOutAnimationsOfOtherThanNodes) {
+    GltfFile file = square_file();
+    const int times = file.add_floats({0, 1}, "SCALAR", 1);
+    const int values = file.add_floats({0, 1}, "SCALAR", 1);
+    const json pointer = {{"KHR_animation_pointer", {{"pointer", "/materials/0/alphaCutoff"}}}};
+    file.root["animations"] = {
+        {{"channels",
+          {{{"sampler", 0}, {"target", {{"path", "pointer"}, {"extensions", pointer}}}}}},
+         {"samplers", {{{"input", times}, {"output", values}}}}}};
+    EXPECT_TRUE(contains(all_warnings(read(file)), "animations[0].channels[0]: only translation"));
+    // One that names neither a node nor an extension is to be ignored.
+    file.root["animations"][0]["channels"][0]["target"] = {{"path", "translation"}};
+    EXPECT_FALSE(contains(all_warnings(read(file)), "only translation"));
+}
+
+TEST(GltfGeometry, ReadsScenesWithoutTriangles) {
+    GltfFile points = square_file();
+    points.root["meshes"][0]["primitives"][0]["mode"] = 0;
+    GltfFile empty;
+    empty.add_node({{"name", "nothing"}});
+    for (const GltfFile& file : {points, empty}) {
+        const SceneDescription scene = read(file);
+        EXPECT_TRUE(scene.shapes.empty() && scene.instances.empty());
+        EXPECT_TRUE(contains(all_warnings(scene), "no triangles to render"));
+        EXPECT_TRUE(is_finite(scene.camera.camera_to_world.start().point({0, 0, 0})));
+    }
+    EXPECT_TRUE(contains(all_warnings(read(points)), "points and lines are not rendered"));
+}
+
 TEST(GltfGeometry, HidesWhatHasNoSize) {
     GltfFile file = square_file();
     file.add_node({{"mesh", 0}, {"scale", {0, 0, 0}}});

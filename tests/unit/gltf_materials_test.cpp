@@ -129,7 +129,7 @@ TEST(GltfMaterials, CutsAndBlendsByAlpha) {
     const auto& mask = constant_as<ImageTexture>(masked, masked.shapes[0].alpha);
     EXPECT_EQ(mask.channel, ImageTexture::Channel::alpha);
     EXPECT_NEAR(*mask.cutoff, 0.5f / 0.8f, 1e-6f);
-    EXPECT_TRUE(contains(failure_of([&] { alpha("MASK", 0.4, false); }).message, "no triangles"));
+    EXPECT_TRUE(alpha("MASK", 0.4, false).shapes.empty());
     const auto blended = alpha("BLEND", 0.25, false);
     EXPECT_EQ(constant_value(blended, blended.shapes[0].alpha).r, 0.25f);
     const auto opaque = alpha("OPAQUE", 0.25, true);
