@@ -1,4 +1,4 @@
-"""What became of a scene file: opened as it is, with something replaced, refused."""
+"""Outcomes of opening a scene file: native, with something replaced, refused, not counted."""
 import re
 
 NATIVE, REPLACED = "native", "replaced"
@@ -53,7 +53,7 @@ def text_of(message):
 
 
 def outcome(exit_code, errors, warnings):
-    """What became of a file and why, of the program's exit code, error message and warnings.
+    """The outcome of a file and its reasons, by the exit code, error message and warnings of the program.
 
     The reasons of a replacement are its warnings; those of a refusal the message or the extensions.
     """
