@@ -15,6 +15,9 @@ struct Prefix {
 constexpr std::array<Prefix, 3> kPbrt{
     Prefix{"albedo.", "Albedo."}, {"N.", "Ns."}, {"variance.", "Variance."}};
 
+/// pbrt's own files have the geometric normal, too, under the name of our shading normal.
+constexpr std::array<Prefix, 4> kPbrtRead{kPbrt[0], kPbrt[1], kPbrt[2], Prefix{"Ng.", "N."}};
+
 // Names are renamed by the first prefix that fits. Whole names come first: no name may begin with
 // an earlier prefix that means something else.
 constexpr std::string_view kViewLayer = "ViewLayer.";
@@ -77,7 +80,8 @@ void rename_layers(Image& image, LayerNames names) {
 
 void restore_layer_names(Image& image) {
     if (image.find("Albedo.R")) {
-        for (Channel& c : image.channels) c.name = translate(c.name, kPbrt, true).value_or(c.name);
+        for (Channel& c : image.channels)
+            c.name = translate(c.name, kPbrtRead, true).value_or(c.name);
         return;
     }
     constexpr std::string_view kCombined = ".Combined.R";
