@@ -21,6 +21,13 @@ constexpr size_t kBytes = 700;
 /// Memory of the library and its weights.
 constexpr size_t kLibraryBytes = size_t(64) << 20;
 
+/// Whether a feature tells anything: one that is 0 everywhere is not known.
+bool is_known(const std::array<Plane, 3>& feature) {
+    return std::any_of(feature.begin(), feature.end(), [](const Plane& p) {
+        return std::any_of(p.values.begin(), p.values.end(), [](float v) { return v != 0; });
+    });
+}
+
 /// Three planes in the layout of the library's pixels.
 class Pixels {
   public:
@@ -111,7 +118,7 @@ struct OidnDenoiser::Impl {
         Pixels& pixels;
     };
     /// Denoises the first input in place, guided by the others.
-    void filter(std::initializer_list<Input> inputs, bool hdr, oidn::Quality quality) const {
+    void filter(const std::vector<Input>& inputs, bool hdr, oidn::Quality quality) const {
         const auto release = [this](oidn::Filter f) { api.release_filter(f); };
         const std::unique_ptr<oidn::OIDNFilterImpl, decltype(release)> f(
             api.new_filter(device, "RT"), release);
@@ -121,10 +128,9 @@ struct OidnDenoiser::Impl {
         };
         for (const Input& input : inputs) set(input.name, input.pixels);
         set("output", inputs.begin()->pixels);
-        if (hdr) {
-            api.set_filter_bool(f.get(), "hdr", true);
-            api.set_filter_bool(f.get(), "cleanAux", true);
-        }
+        if (hdr) api.set_filter_bool(f.get(), "hdr", true);
+        // The library has weights for features without noise where it gets both of them.
+        if (inputs.size() == 3) api.set_filter_bool(f.get(), "cleanAux", true);
         api.set_filter_int(f.get(), "quality", quality);
         api.set_filter_int(f.get(), "maxMemoryMB", kMostMegabytes);
         api.commit_filter(f.get());
@@ -148,8 +154,11 @@ std::vector<ColorPlanes> OidnDenoiser::denoise(const NoisyFeatures& features,
                                                std::vector<NoisyImage> images) const try {
     Pixels albedo(features.albedo, InputRange()), normal(features.normal, InputRange());
     const oidn::Quality quality = features.draft ? oidn::kBalanced : oidn::kHigh;
-    impl_->filter({{"albedo", albedo}}, false, quality);
-    impl_->filter({{"normal", normal}}, false, quality);
+    // The library takes normals only beside an albedo.
+    const bool has_albedo = is_known(features.albedo),
+               has_normal = has_albedo && is_known(features.normal);
+    if (has_albedo) impl_->filter({{"albedo", albedo}}, false, quality);
+    if (has_normal) impl_->filter({{"normal", normal}}, false, quality);
     bool turned = false;
     std::vector<ColorPlanes> results;
     for (NoisyImage& image : images) {
@@ -166,8 +175,10 @@ std::vector<ColorPlanes> OidnDenoiser::denoise(const NoisyFeatures& features,
             turned = image.turned;
         }
         if (turned) color.turn();
-        impl_->filter({{"color", color}, {"albedo", albedo}, {"normal", normal}}, true,
-                      image.draft ? oidn::kBalanced : oidn::kHigh);
+        std::vector<Impl::Input> inputs{{"color", color}};
+        if (has_albedo) inputs.push_back({"albedo", albedo});
+        if (has_normal) inputs.push_back({"normal", normal});
+        impl_->filter(inputs, true, image.draft ? oidn::kBalanced : oidn::kHigh);
         results.push_back(color.planes());
         image = {};
     }

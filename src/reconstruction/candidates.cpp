@@ -39,22 +39,26 @@ std::vector<Candidate> make_candidates(const Halves& halves,
                                        const CandidateSettings& settings) {
     const int w = halves[0].count.width, h = halves[0].count.height;
     std::vector<Candidate> candidates{{halves[0].color, halves[1].color}};
+    const bool is_predicted = !spectrum.empty();
     // The scales are those of the Gaussians and, last, that of the regressions' windows.
-    std::vector<float> scales = settings.gaussians;
-    scales.push_back(1);
+    std::vector<float> scales;
+    if (is_predicted) {
+        scales = settings.gaussians;
+        scales.push_back(1);
+    }
     std::vector<FilterField> fields(scales.size());
     parallel_for(int64_t(scales.size()), [&](int64_t k) {
         fields[size_t(k)] = predicted_filters(spectrum, w, h, scales[size_t(k)]);
     });
-    const FilterField& shape = fields.back();
-    for (size_t k = 0; k < settings.gaussians.size(); ++k) {
+    const FilterField* shape = is_predicted ? &fields.back() : nullptr;
+    for (size_t k = 0; k + 1 < fields.size(); ++k) {
         candidates.push_back(gather(halves, fields[k]));
         fields[k] = {};  // free it: it is large and not needed any more
     }
     std::vector<RegressionWindow> windows;
     for (const auto& fit : settings.fits)
         windows.push_back(
-            {fit.k, fit.shaped ? &shape : nullptr, kWindowWidening, fit.noise, fit.patches});
+            {fit.k, fit.shaped ? shape : nullptr, kWindowWidening, fit.noise, fit.patches});
     const std::array<FeaturePlanes, 2> features = filter_features(halves);
     auto a = regress(halves[0], halves[1], features[0], windows);
     auto b = regress(halves[1], halves[0], features[1], windows);

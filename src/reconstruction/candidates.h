@@ -40,7 +40,8 @@ enum class CandidateKind : uint8_t { raw, gaussian, regression, denoiser };
 CandidateKind candidate_kind(const CandidateSettings& settings, size_t index);
 
 /// Makes the candidates: the raw pixels, the Gaussians, the fits, in this order. `spectrum`: the
-/// predicted spectra after the integral over lens and shutter, (cycles/pixel)^2, one per pixel. The
+/// predicted spectra after the integral over lens and shutter, (cycles/pixel)^2, one per pixel; empty
+/// where there is no prediction: then there are no Gaussians, and all windows are plain. The
 /// variances of the halves are smoothed: variances that know of their own pixel's mean would let
 /// bright pixels accept dark ones and not the other way round.
 std::vector<Candidate> make_candidates(const Halves& halves,

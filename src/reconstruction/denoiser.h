@@ -11,7 +11,7 @@
 namespace covtrace {
 
 /// Features of the surfaces that a denoiser is told of: albedo in [0, 1], normals in [-1, 1], with
-/// the noise of lens and shutter.
+/// the noise of lens and shutter. A feature that is 0 everywhere is not known.
 struct NoisyFeatures {
     std::array<Plane, 3> albedo, normal;
     /// Whether the features are freed of their noise in about a third of the time, and a little

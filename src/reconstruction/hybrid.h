@@ -35,8 +35,8 @@ struct HybridImage {
 };
 
 /// Reconstructs the image. `halves` have the variances of their samples; `spectrum`: the predicted
-/// spectra after the integral over lens and shutter, (cycles/pixel)^2, one per pixel. The result
-/// depends on nothing else, and on no number of threads. With many samples it becomes the mean of
+/// spectra after the integral over lens and shutter, (cycles/pixel)^2, one per pixel; empty where
+/// there is no prediction, and then no candidate that needs one. The result depends on nothing else, and on no number of threads. With many samples it becomes the mean of
 /// the halves, wherever the candidates are off by more than the noise of the raw pixels.
 HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> spectrum,
                         const HybridSettings& settings = {});

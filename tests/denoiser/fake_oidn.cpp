@@ -1,6 +1,7 @@
 // The part of Open Image Denoise's interface that covtrace uses, around a box of 3 x 3 pixels. One
 // of the definitions FAKE_… says what is wrong with it. Where the environment has
-// FAKE_OIDN_THREADS, no other number of threads is accepted.
+// FAKE_OIDN_THREADS, no other number of threads is accepted; where it has FAKE_OIDN_IMAGES, "color
+// albedo", no others for light.
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -28,6 +29,7 @@ struct Filter {
     const float* input = nullptr;
     float* output = nullptr;
     size_t width = 0, height = 0;
+    std::string images;  // the names of its inputs, in order
 };
 
 #ifdef FAKE_NO_DEVICE
@@ -106,6 +108,8 @@ void oidnReleaseFilter(Filter* filter) {
 
 void oidnSetSharedFilterImage(Filter* filter, const char* name, void* data, int, size_t width,
                               size_t height, size_t, size_t, size_t) {
+    if (std::strcmp(name, "output") != 0)
+        filter->images += (filter->images.empty() ? "" : " ") + std::string(name);
     if (std::strcmp(name, "output") == 0)
         filter->output = static_cast<float*>(data);
     else if (std::strcmp(name, "color") == 0 || !filter->input)
@@ -122,6 +126,9 @@ void oidnCommitFilter(Filter*) {}
 #endif
 
 void oidnExecuteFilter(Filter* filter) {
+    const char* images = std::getenv("FAKE_OIDN_IMAGES");
+    if (images && filter->images.starts_with("color") && filter->images != images)
+        filter->device->error = "the filter gets other images";
 #ifdef FAKE_EXECUTE_FAILS
     filter->device->error = "the filter is out of order";
 #else

@@ -36,6 +36,20 @@ TEST_F(Oidn, TakesNoiseAway) {
     EXPECT_NEAR(mean(clean[1]), mean(image.color[1]), 0.1f * mean(image.color[1]));
 }
 
+TEST_F(Oidn, TakesNoiseAwayWithoutFeatures) {
+    const Plane black(96, 64);
+    for (bool albedo : {false, true}) {
+        NoisyView image = noisy_view(96, 64);
+        if (!albedo) image.features.albedo.fill(black);
+        image.features.normal.fill(black);
+        const ColorPlanes clean = denoised(image);
+        for (int x = 8; x < 88; ++x) {
+            const float truth = 0.1f + 1.9f * float(x) / 96;
+            EXPECT_NEAR(clean[1](x, 32), truth, 0.5f * truth) << x;
+        }
+    }
+}
+
 TEST_F(Oidn, SizesOfAllKinds) {
     for (auto [width, height] : {std::pair(1, 1), {3, 2}, {400, 1}, {1, 400}, {17, 15}}) {
         const ColorPlanes clean = denoised(noisy_view(width, height));

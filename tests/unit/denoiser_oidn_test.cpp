@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "core/error.h"
 #include "denoiser/oidn_denoiser.h"
 #include "tests/denoiser/noisy_images.h"
@@ -28,6 +30,25 @@ TEST(OidnDenoiser, GivesWhatTheLibraryMakesOfTheLight) {
                 for (size_t k : {0, 2})  // a box has no upside
                     EXPECT_NEAR(clean[k][c](x, y), expected(x, y), 1e-5f * expected(x, y));
     }
+}
+
+TEST(OidnDenoiser, FeaturesThatAreNotKnownAreLeftOut) {
+    const OidnDenoiser denoiser = fake("good");
+    const Plane black(9, 7);
+    const auto images_are = [&](const char* images, bool albedo, bool normal) {
+        NoisyView view = noisy_view(9, 7);
+        if (!albedo) view.features.albedo.fill(black);
+        if (!normal) view.features.normal.fill(black);
+        ::setenv("FAKE_OIDN_IMAGES", images, 1);
+        EXPECT_NO_THROW(denoised(denoiser, view)) << images;
+        ::setenv("FAKE_OIDN_IMAGES", "others", 1);
+        EXPECT_THROW(denoised(denoiser, view), Error);
+        ::unsetenv("FAKE_OIDN_IMAGES");
+    };
+    images_are("color albedo normal", true, true);
+    images_are("color albedo", true, false);
+    images_are("color", false, false);
+    images_are("color", false, true);  // the library takes no normals without an albedo
 }
 
 TEST(OidnDenoiser, WhatIsNoNumberIsThePixelOfBefore) {

@@ -158,6 +158,12 @@ TEST(Hybrid, CleansASmoothImage) {
     EXPECT_LT(mean_squared_error(reconstruct(halves, kSpectrum).color, smooth_truth), 0.1 * raw);
 }
 
+TEST(Hybrid, WithoutAPredictionItCleansByFitsAlone) {
+    const HybridImage image = reconstruct(noisy_halves(kSize, kSize, smooth_truth, 0.3f, 3), {});
+    EXPECT_LT(mean_squared_error(image.color, smooth_truth), 0.06 * 0.5 * 0.3 * 0.3);
+    EXPECT_EQ(image.share.size(), 1 + CandidateSettings().fits.size());  // the raw pixels, the fits
+}
+
 TEST(Hybrid, IsNeverWorseThanThePixelsAndBecomesThem) {
     // The noise is that of n = 4 ... 16384 samples. The predicted filters of 0.8 pixels blur these
     // squares whatever the noise; the error must fall with it all the same.
