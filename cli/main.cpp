@@ -59,6 +59,7 @@ int run(int argc, char** argv) {
     app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
     covtrace::cli::add_render(app, invocation);
     covtrace::cli::add_merge(app, invocation);
+    covtrace::cli::add_denoise(app, invocation);
     covtrace::cli::add_compare(app, invocation);
     covtrace::cli::add_measure(app, invocation);
     covtrace::cli::add_inspect(app, invocation);

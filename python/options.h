@@ -49,6 +49,13 @@ inline bool is_given(const py::dict& options, const char* name) {
     return !options[name].is_none();
 }
 
+/// The number of worker threads, 0 for all cores.
+inline int thread_count(const py::dict& options) {
+    const int threads = value_of<int>(options, "threads", "a whole number");
+    require(threads >= 0 && threads <= 4096, "threads must be from 0 to 4096");
+    return threads;
+}
+
 /// A finite number above zero and not below `least`.
 template <typename T>
 std::optional<T> positive(const py::dict& options, const char* name, double least = 0) {

@@ -198,8 +198,7 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
     const std::optional<Preset> bundle = preset(o);
     const DenoiserSearch search = denoiser_search(o);
     const SceneOverrides overrides = scene_overrides(o);
-    const int threads = value_of<int>(o, "threads", "a whole number");
-    require(threads >= 0 && threads <= 4096, "threads must be from 0 to 4096");
+    const int threads = thread_count(o);
     std::optional<InstructionSet> isa;
     if (is_given(o, "isa"))
         isa = choice<InstructionSet>("isa", value_of<std::string>(o, "isa", "a text"));

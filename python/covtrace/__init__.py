@@ -26,6 +26,7 @@ except ModuleNotFoundError as missing:
 
 from . import covariance
 from .builder import SceneBuilder
+from .denoising import denoise
 from .errors import (Error, FileError, InternalError, Interrupted, LimitError, SceneError,
                      SceneWarning, UsageError)
 from .image import Comparison, Image, compare
@@ -36,4 +37,4 @@ from .scene import Scene
 
 __all__ = ["Comparison", "Error", "FileError", "Image", "InternalError", "Interrupted",
            "LimitError", "Progress", "RunningRender", "Scene", "SceneBuilder", "SceneError", "SceneWarning",
-           "UsageError", "__version__", "compare", "covariance", "render", "start"]
+           "UsageError", "__version__", "compare", "covariance", "denoise", "render", "start"]

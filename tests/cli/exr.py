@@ -1,4 +1,4 @@
-"""Reads the EXR files that the program writes: one part, 32-bit float, scan lines, ZIP or none.
+"""Reads the EXR files that the program writes, and writes such ones: one part, 32-bit float, scan lines, ZIP or none.
 
 Written from the description of the file layout at openexr.com, without a library, so that it is a second opinion."""
 
@@ -131,3 +131,31 @@ def read(path):
                 image.pixels[name][row * image.width : (row + 1) * image.width] = values
                 position += row_bytes
     return image
+
+
+def write(path, width, height, channels, metadata):
+    """Writes channels {name: values row by row} without compression; metadata are whole numbers and texts."""
+    def attribute(name, kind, value):
+        return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+
+    names = sorted(channels, key=str.encode)
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    header = struct.pack("<II", MAGIC, 2 | (0x400 if any(len(n) > 31 for n in names) else 0))
+    listed = b"".join(n.encode() + b"\0" + struct.pack("<iB3xii", FLOAT, 0, 1, 1) for n in names) + b"\0"
+    header += attribute("channels", "chlist", listed) + attribute("compression", "compression", bytes([NO_COMPRESSION]))
+    header += attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window)
+    header += attribute("lineOrder", "lineOrder", b"\0") + attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
+    header += attribute("screenWindowCenter", "v2f", bytes(8)) + attribute("screenWindowWidth", "float", struct.pack("<f", 1))
+    for name, value in metadata.items():
+        is_number = isinstance(value, int)
+        header += attribute(name, "int" if is_number else "string", struct.pack("<i", value) if is_number else value.encode())
+    header += b"\0"
+    row_bytes = 4 * width * len(names)
+    first = len(header) + 8 * height
+    offsets = struct.pack(f"<{height}Q", *(first + y * (8 + row_bytes) for y in range(height)))
+    rows = []
+    for y in range(height):
+        values = [v for name in names for v in channels[name][y * width : (y + 1) * width]]
+        rows.append(struct.pack(f"<ii{len(values)}f", y, row_bytes, *values))
+    with open(path, "wb") as file:
+        file.write(header + offsets + b"".join(rows))

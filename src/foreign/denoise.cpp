@@ -1,0 +1,232 @@
+#include "foreign/denoise.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "foreign/image_halves.h"
+#include "image/finite_pixels.h"
+#include "reconstruction/hybrid.h"
+#include "reconstruction/luminance.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Median luminances between which an image is taken as it is. Dark is what is below 0.1 for the
+/// reconstruction and for the measures of `compare`, as renders have it whose exposure is for eyes.
+constexpr float kDarkest = 1 / 16.0f, kBrightest = 16;
+
+std::string size_of(const Image& image) {
+    return std::to_string(image.width()) + "x" + std::to_string(image.height());
+}
+
+void require_same_window(const NamedImage& a, const NamedImage& b) {
+    const auto refuse = [&](const std::string& what) {
+        throw Error(ErrorKind::usage, b.name + ": expected another render of the picture of " +
+                                          a.name + ", but " + what);
+    };
+    if (a.image.width() != b.image.width() || a.image.height() != b.image.height())
+        refuse("it has " + size_of(b.image) + " pixels, that has " + size_of(a.image));
+    if (!(a.image.data == b.image.data) || !(a.image.display == b.image.display))
+        refuse("their pixels are in different places of the frame");
+}
+
+void require_other_noise(const NamedImage& a, const FoundLayers& of_a, const NamedImage& b,
+                         const FoundLayers& of_b) {
+    for (size_t k = 0; k < 3; ++k)
+        for (size_t i = 0; i < a.image.pixel_count(); ++i) {
+            const float va = of_a.color[k]->values[i], vb = of_b.color[k]->values[i];
+            if (va != vb && !(std::isnan(va) && std::isnan(vb))) return;
+        }
+    throw Error(ErrorKind::usage, b.name + " has the same pixels as " + a.name +
+                                      "; expected a render with another seed, whose noise tells "
+                                      "how much of it is left");
+}
+
+SampledImage sampled(const NamedImage& named, const DenoiseOptions& options) {
+    SampledImage s{named.image, find_layers(named.image, options.layers, named.name), {}};
+    s.samples = options.samples;
+    if (!s.samples && !s.layers.samples) s.samples = samples_in_metadata(named.image);
+    if (!options.layers.variance.empty()) s.layers.is_variance_of_one = false;
+    return s;
+}
+
+void require_variance(const NamedImage& named, const SampledImage& s) {
+    const auto has_noise = [](const Channel* c) {
+        return std::any_of(c->values.begin(), c->values.end(), [](float v) { return v > 0; });
+    };
+    if (!s.layers.variance ||
+        std::none_of(s.layers.variance->begin(), s.layers.variance->end(), has_noise))
+        throw Error(ErrorKind::usage,
+                    named.name + (s.layers.variance ? " has a variance of 0" : " has no variance") +
+                        "; expected a second render with another seed, or a layer with the "
+                        "variance of the pixels");
+    if (s.layers.is_variance_of_one && !s.samples)
+        throw Error(ErrorKind::usage, OptionName{"samples"},
+                    named.name + " has the variance of one sample; expected the samples per pixel");
+}
+
+float median_luminance(const Halves& halves) {
+    std::vector<float> bright;
+    for (size_t i = 0; i < halves[0].count.size(); ++i) {
+        Rgb c;
+        for (size_t k = 0; k < 3; ++k)
+            c[int(k)] = 0.5f * (halves[0].color[k][i] + halves[1].color[k][i]);
+        bright.push_back(luminance(c));
+    }
+    const auto middle = bright.begin() + std::ptrdiff_t(bright.size() / 2);
+    std::nth_element(bright.begin(), middle, bright.end());
+    if (*middle > 0) return *middle;
+    double sum = 0;
+    for (float v : bright) sum += double(v);
+    const double mean = sum / double(bright.size());
+    return mean > 0 ? float(mean) : 1.0f;
+}
+
+/// A power of two that brings the image's brightness near 1 where it is far from it, else 1.
+float exposure_of(const Halves& halves) {
+    const float median = median_luminance(halves);
+    if (median >= kDarkest && median <= kBrightest) return 1;
+    return std::exp2(-std::round(std::log2(median)));
+}
+
+void scale_by(float scale, Halves& halves) {
+    for (HalfBuffer& half : halves)
+        for (size_t k = 0; k < 3; ++k)
+            for (size_t i = 0; i < half.count.size(); ++i) {
+                half.color[k][i] *= scale;
+                half.color_variance[k][i] *= scale * scale;
+            }
+}
+
+void add(Image& image, std::string name, std::vector<float> values) {
+    image.add_channel(std::move(name)).values = std::move(values);
+}
+
+/// Takes the camera and the colour space over, which are those of the picture; what else files tell
+/// is of one render.
+void take_metadata(const Image& from, Image& to) {
+    for (const char* key : {kChromaticities, "worldToCamera", "worldToNDC"})
+        if (const auto it = from.metadata.find(key); it != from.metadata.end())
+            to.metadata.insert(*it);
+}
+
+void add_alpha(std::span<const NamedImage> images, Image& result) {
+    std::vector<float> mean(result.pixel_count());
+    for (const NamedImage& named : images) {
+        const Channel* alpha = named.image.find("A");
+        if (!alpha) return;
+        for (size_t i = 0; i < mean.size(); ++i) mean[i] += alpha->values[i] / float(images.size());
+    }
+    add(result, "A", std::move(mean));
+}
+
+/// The mean of both halves.
+ColorPlanes mean_of(const ColorPlanes& a, const ColorPlanes& b) {
+    ColorPlanes mean = a;
+    for (size_t k = 0; k < 3; ++k)
+        for (size_t i = 0; i < mean[k].size(); ++i) mean[k][i] = 0.5f * (a[k][i] + b[k][i]);
+    return mean;
+}
+
+double samples_per_pixel(const Halves& halves) {
+    double count = 0;
+    for (const HalfBuffer& half : halves)
+        for (float n : half.count.values) count += double(n);
+    return count / double(halves[0].count.size());
+}
+
+void add_channels(ColorPlanes planes, const std::string& layer, float scale, Image& image) {
+    for (size_t k = 0; k < 3; ++k) {
+        for (float& v : planes[k].values) v *= scale;
+        add(image, layer + "RGB"[k], std::move(planes[k].values));
+    }
+}
+
+/// Root of the mean relative squared error of the luminance.
+double relative_error(const HybridImage& mixed) {
+    const Plane bright = luminance(mixed.color);
+    double sum = 0, known = 0;
+    for (size_t i = 0; i < bright.size(); ++i) {
+        const float e = mixed.variance[i] / (sqr(bright[i]) + kDarkSquared);
+        if (!std::isfinite(e)) continue;  // brighter than squares can hold
+        sum += double(e);
+        ++known;
+    }
+    return std::sqrt(sum / known);
+}
+
+void warn_of_missing_features(const FoundLayers& layers, DenoisedImage& result) {
+    std::string missing;
+    const auto miss = [&](bool has, const char* name) {
+        if (!has) missing += (missing.empty() ? "" : ", ") + std::string(name);
+    };
+    miss(layers.albedo.has_value(), "albedo");
+    miss(layers.normal.has_value(), "normal");
+    miss(layers.depth || layers.place, "depth");
+    if (!missing.empty())
+        result.warnings.push_back(
+            {{},
+             "no layer is known as " + missing + ": edges and textures keep more noise without"});
+}
+
+/// Halves of one image or of two, which are checked.
+ImageHalves halves_of(std::span<const NamedImage> images, std::span<const SampledImage> samples) {
+    if (images.size() == 1) {
+        require_variance(images[0], samples[0]);
+        return halves_of_one(samples[0]);
+    }
+    require_same_window(images[0], images[1]);
+    require_other_noise(images[0], samples[0].layers, images[1], samples[1].layers);
+    return halves_of_two(samples[0], samples[1]);
+}
+
+}  // namespace
+
+DenoisedImage denoise(std::span<const NamedImage> images, const DenoiseOptions& options) {
+    if (images.empty() || images.size() > 2)
+        throw Error(ErrorKind::usage, "expected one image with its variance, or two images");
+    std::vector<SampledImage> samples;
+    for (const NamedImage& named : images) samples.push_back(sampled(named, options));
+    auto [halves, lost, are_samples_known] = halves_of(images, samples);
+    DenoisedImage result;
+    warn_of_missing_features(samples[0].layers, result);
+    if (lost > 0)
+        result.warnings.push_back({{},
+                                   std::to_string(lost) + " pixel" + (lost == 1 ? " is" : "s are") +
+                                       " not finite: lost samples"});
+    Image& image = result.image;
+    image.data = images[0].image.data;
+    image.display = images[0].image.display;
+    take_metadata(images[0].image, image);
+    if (are_samples_known) image.metadata["spp"] = float(samples_per_pixel(halves));
+
+    const float scale = exposure_of(halves);
+    scale_by(scale, halves);
+    ColorPlanes raw = mean_of(halves[0].color, halves[1].color),
+                variance = mean_of(halves[0].color_variance, halves[1].color_variance);
+    HybridSettings settings;
+    settings.denoiser = options.denoiser;
+    HybridImage mixed = reconstruct(std::move(halves), {}, settings);
+    if (!mixed.denoiser_failure.empty())
+        image.metadata["covtrace:denoiserFailure"] = mixed.denoiser_failure;
+    else if (options.denoiser)
+        image.metadata["covtrace:denoiser"] = options.denoiser->name();
+
+    result.error = relative_error(mixed);
+    add_channels(std::move(mixed.color), "", 1 / scale, image);
+    add_alpha(images, image);
+    add_channels(std::move(raw), "raw.", 1 / scale, image);
+    // The mean of both halves has half the variance of each
+    add_channels(std::move(variance), "variance.", 0.5f / (scale * scale), image);
+    for (float& v : mixed.variance.values) v = std::sqrt(v) / scale;
+    add(image, "error.Y", std::move(mixed.variance.values));
+    replace_nonfinite(image);
+    return result;
+}
+
+}  // namespace covtrace

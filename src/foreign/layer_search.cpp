@@ -1,0 +1,139 @@
+#include "foreign/layer_search.h"
+
+#include <charconv>
+#include <initializer_list>
+#include <set>
+#include <string_view>
+
+#include "core/error.h"
+
+namespace covtrace {
+
+namespace {
+
+using Names = std::initializer_list<std::string_view>;
+
+// Names in the order in which they are preferred.
+constexpr Names kColor{"raw", ""};
+constexpr Names kVariance{"variance", "Variance"};
+constexpr Names kAlbedo{"featurealbedo", "albedo", "Albedo", "Denoising Albedo"};
+constexpr Names kNormal{"featureN", "Ns",     "N",  "Denoising Normal", "normal",
+                        "normals",  "Normal", "nn", "sh_normal"};
+constexpr Names kDepth{"Z", "Denoising Depth", "depth", "Depth", "dd", "dd.y"};
+constexpr Names kPlace{"P"};
+
+/// The channel `suffix` of a layer. The root's have no dot, and pbrt-v4 wrote "Nsx" once.
+const Channel* channel_of(const Image& image, std::string_view layer, char suffix) {
+    if (layer.empty()) return image.find(std::string(1, suffix));
+    if (const Channel* c = image.find(std::string(layer) + "." + suffix)) return c;
+    if (suffix >= 'X' && suffix <= 'Z')
+        return image.find(std::string(layer) + char(suffix - 'X' + 'x'));
+    return nullptr;
+}
+
+std::optional<LayerChannels> triple(const Image& image, std::string_view layer) {
+    for (std::string_view suffixes : {"RGB", "XYZ"}) {
+        LayerChannels found{};
+        for (size_t k = 0; k < 3; ++k) found[k] = channel_of(image, layer, suffixes[k]);
+        if (found[0] && found[1] && found[2]) return found;
+    }
+    return std::nullopt;
+}
+
+/// The only channel of a layer, whatever its letter is.
+const Channel* single(const Image& image, std::string_view layer) {
+    if (const Channel* whole = image.find(layer)) return whole;
+    const Channel* found = nullptr;
+    for (const Channel& c : image.channels) {
+        const size_t dot = c.name.rfind('.');
+        if (dot == std::string::npos || std::string_view(c.name).substr(0, dot) != layer) continue;
+        if (found) return nullptr;
+        found = &c;
+    }
+    return found;
+}
+
+std::string layers_of(const Image& image) {
+    std::set<std::string> names;
+    for (const Channel& c : image.channels) {
+        const size_t dot = c.name.rfind('.');
+        names.insert(dot == std::string::npos ? c.name : c.name.substr(0, dot));
+    }
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
+/// The layer of three channels that the user named, or else the first known one; empty where there
+/// is none.
+std::optional<LayerChannels> search(const Image& image, const std::string& named, Names known,
+                                    std::string_view option, const std::string& file) {
+    if (named == "none") return std::nullopt;
+    if (!named.empty()) {
+        const auto found = triple(image, named == "root" ? "" : named);
+        if (!found)
+            throw Error(ErrorKind::usage, OptionName{option},
+                        file + " has no layer '" + named +
+                            "' with the channels R, G, B or X, Y, Z; there are " +
+                            layers_of(image));
+        return found;
+    }
+    for (std::string_view name : known)
+        if (const auto found = triple(image, name)) return found;
+    return std::nullopt;
+}
+
+void search_depth(const Image& image, const std::string& named, const std::string& file,
+                  FoundLayers& found) {
+    if (named == "none") return;
+    if (!named.empty()) {
+        found.depth = single(image, named);
+        if (!found.depth) found.place = triple(image, named);
+        if (!found.depth && !found.place)
+            throw Error(ErrorKind::usage, OptionName{"depth"},
+                        file + " has no layer '" + named +
+                            "' with one channel, or with X, Y, Z; there are " + layers_of(image));
+        return;
+    }
+    for (std::string_view name : kDepth)
+        if ((found.depth = single(image, name))) return;
+    for (std::string_view name : kPlace)
+        if ((found.place = triple(image, name))) return;
+}
+
+}  // namespace
+
+FoundLayers find_layers(const Image& image, const LayerNaming& naming, const std::string& file) {
+    FoundLayers found;
+    const auto color = search(image, naming.color, kColor, "color", file);
+    if (!color)
+        throw Error(ErrorKind::usage,
+                    file + ": expected the channels R, G, B; the layers are " + layers_of(image));
+    found.color = *color;
+    found.variance = search(image, naming.variance, kVariance, "variance", file);
+    found.albedo = search(image, naming.albedo, kAlbedo, "albedo", file);
+    found.normal = search(image, naming.normal, kNormal, "normal", file);
+    search_depth(image, naming.depth, file, found);
+    found.samples = single(image, "samples");
+    found.is_variance_of_one = image.metadata.contains("samplesPerPixel");
+    return found;
+}
+
+std::optional<float> samples_in_metadata(const Image& image) {
+    for (const auto& [key, value] : image.metadata) {
+        if (key == "spp" || key == "samplesPerPixel") {
+            if (const float* number = std::get_if<float>(&value)) return *number;
+            if (const int* number = std::get_if<int>(&value)) return float(*number);
+        }
+        // Cycles: "cycles.ViewLayer.samples", a text
+        const std::string* text = std::get_if<std::string>(&value);
+        if (!text || !key.starts_with("cycles.") || !key.ends_with(".samples")) continue;
+        int number = 0;
+        const auto [end, error] =
+            std::from_chars(text->data(), text->data() + text->size(), number);
+        if (error == std::errc() && end == text->data() + text->size()) return float(number);
+    }
+    return std::nullopt;
+}
+
+}  // namespace covtrace
