@@ -37,7 +37,7 @@ float log_depth(const FoundLayers& layers, size_t i) {
 
 float samples_of(const SampledImage& s, size_t i) {
     if (s.samples) return *s.samples;
-    return s.layers.samples ? s.layers.samples->values[i] : kUnknownSamples;
+    return s.layers.samples ? s.layers.samples_unit * s.layers.samples->values[i] : kUnknownSamples;
 }
 
 bool are_samples_known(const SampledImage& s) {

@@ -101,6 +101,19 @@ void search_depth(const Image& image, const std::string& named, const std::strin
         if ((found.place = triple(image, name))) return;
 }
 
+/// The entry "cycles.ViewLayer.samples", a text: the most samples that a pixel may get.
+std::optional<float> cycles_samples(const Image& image) {
+    for (const auto& [key, value] : image.metadata) {
+        const std::string* text = std::get_if<std::string>(&value);
+        if (!text || !key.starts_with("cycles.") || !key.ends_with(".samples")) continue;
+        int number = 0;
+        const auto [end, error] =
+            std::from_chars(text->data(), text->data() + text->size(), number);
+        if (error == std::errc() && end == text->data() + text->size()) return float(number);
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 FoundLayers find_layers(const Image& image, const LayerNaming& naming, const std::string& file) {
@@ -115,25 +128,19 @@ FoundLayers find_layers(const Image& image, const LayerNaming& naming, const std
     found.normal = search(image, naming.normal, kNormal, "normal", file);
     search_depth(image, naming.depth, file, found);
     found.samples = single(image, "samples");
+    found.samples_unit = cycles_samples(image).value_or(1);
     found.is_variance_of_one = image.metadata.contains("samplesPerPixel");
     return found;
 }
 
 std::optional<float> samples_in_metadata(const Image& image) {
-    for (const auto& [key, value] : image.metadata) {
-        if (key == "spp" || key == "samplesPerPixel") {
-            if (const float* number = std::get_if<float>(&value)) return *number;
-            if (const int* number = std::get_if<int>(&value)) return float(*number);
-        }
-        // Cycles: "cycles.ViewLayer.samples", a text
-        const std::string* text = std::get_if<std::string>(&value);
-        if (!text || !key.starts_with("cycles.") || !key.ends_with(".samples")) continue;
-        int number = 0;
-        const auto [end, error] =
-            std::from_chars(text->data(), text->data() + text->size(), number);
-        if (error == std::errc() && end == text->data() + text->size()) return float(number);
+    for (const char* key : {"spp", "samplesPerPixel"}) {
+        const auto it = image.metadata.find(key);
+        if (it == image.metadata.end()) continue;
+        if (const float* number = std::get_if<float>(&it->second)) return *number;
+        if (const int* number = std::get_if<int>(&it->second)) return float(*number);
     }
-    return std::nullopt;
+    return cycles_samples(image);
 }
 
 }  // namespace covtrace

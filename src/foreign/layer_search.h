@@ -26,7 +26,9 @@ struct FoundLayers {
     /// the distance.
     std::optional<LayerChannels> place;
     const Channel* depth = nullptr;
-    const Channel* samples = nullptr;  ///< samples per pixel
+    const Channel* samples = nullptr;  ///< samples per pixel, over samples_unit
+    /// Samples that 1 stands for: Cycles divides its counts by the most that a pixel may get.
+    float samples_unit = 1;
     /// Whether the variance is that of one sample, as pbrt writes it, and not of the pixel's mean.
     bool is_variance_of_one = false;
 };

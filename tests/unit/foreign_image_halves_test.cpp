@@ -58,6 +58,14 @@ TEST(ImageHalves, TakeTheVarianceThatTheDifferenceSuggests) {
     EXPECT_NEAR(made.halves[0].color_variance[0](48, 16) / (deviation * deviation), 1, 0.45);
 }
 
+TEST(ImageHalves, CyclesTellsShares) {
+    Image image = noisy_image({});
+    image.add_channel("samples.Y").values.assign(image.pixel_count(), 0.5f);
+    image.metadata["cycles.ViewLayer.samples"] = std::string("64");
+    const FoundLayers layers = find_layers(image, {}, "a");
+    EXPECT_EQ(halves_of_two({image, layers, {}}, {image, layers, {}}).halves[0].count[7], 32);
+}
+
 TEST(ImageHalves, PbrtsVarianceIsOfASample) {
     Image image = noisy_image({});
     SampledImage s = sampled(image, 16);

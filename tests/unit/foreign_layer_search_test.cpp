@@ -119,9 +119,11 @@ TEST(LayerSearch, KnowsCycles) {
     for (const char* c : {"R", "G", "B", "A"})
         channels.push_back("View Layer.001.Noisy Image." + std::string(c));
     EXPECT_EQ(found_in(image_with(channels)).color, "raw.R raw.G raw.B");
-    Image image = image_with({"R", "G", "B"});
+    Image image = image_with(channels);
     image.metadata["cycles.View Layer.samples"] = std::string("128");
     EXPECT_EQ(samples_in_metadata(image), 128.0f);
+    restore_layer_names(image);
+    EXPECT_EQ(find_layers(image, {}, "a").samples_unit, 128);
 }
 
 TEST(LayerSearch, TakesOurNoisyPixelsAndWhatMirrorsShow) {
