@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "colour/sensor_matrix.h"
 #include "colour/white_balance.h"
 #include "pbrt/lens_file.h"
 #include "pbrt/version_three.h"
@@ -16,14 +17,6 @@
 namespace covtrace {
 
 namespace {
-
-/// Names of pbrt-v4's sensors, beside "cie1931".
-constexpr std::array<const char*, 17> kSensors{
-    "canon_eos_100d", "canon_eos_1dx_mkii", "canon_eos_200d",     "canon_eos_200d_mkii",
-    "canon_eos_5d",   "canon_eos_5d_mkii",  "canon_eos_5d_mkiii", "canon_eos_5d_mkiv",
-    "canon_eos_5ds",  "canon_eos_m",        "hasselblad_l1d_20c", "nikon_d810",
-    "nikon_d850",     "sony_ilce_6400",     "sony_ilce_7m3",      "sony_ilce_7rm3",
-    "sony_ilce_9"};
 
 [[noreturn]] void refuse(const Entity& e, std::string_view parameter, const std::string& text) {
     throw Error(ErrorKind::scene, e.parameters.where(parameter, e.where), text);
@@ -191,6 +184,19 @@ void set_crop(Entity& e, FilmDescription& film, WarningLog& log) {
     }
 }
 
+void set_sensor(Entity& e, FilmDescription& film) {
+    ParameterList& p = e.parameters;
+    const float balance = p.number("whitebalance", 0);
+    if (balance < 0) refuse(e, "whitebalance", "parameter \"whitebalance\" must not be negative");
+    if (const std::string name = p.text("sensor", "cie1931"); name != "cie1931") {
+        const SensorCurves* sensor = find_sensor(name);
+        if (!sensor) refuse(e, "sensor", unknown_name("sensor", name, sensor_names()));
+        film.sensor = sensor_matrix(*sensor, balance > 0 ? balance : 6500);
+    } else if (balance > 0) {
+        film.sensor = white_balance(balance);
+    }
+}
+
 void build_film(ViewEntities& view, BuildContext& context) {
     Entity& e = view.film;
     ParameterList& p = e.parameters;
@@ -217,20 +223,7 @@ void build_film(ViewEntities& view, BuildContext& context) {
     film.iso = positive(e, "iso", 100);
     film.max_component_value = positive(e, "maxcomponentvalue", kInfinity);
     set_crop(e, film, context.log);
-    float balance = p.number("whitebalance", 0);
-    if (balance < 0) refuse(e, "whitebalance", "parameter \"whitebalance\" must not be negative");
-    if (const std::string sensor = p.text("sensor", "cie1931"); sensor != "cie1931") {
-        if (std::find(kSensors.begin(), kSensors.end(), sensor) == kSensors.end())
-            refuse(e, "sensor", unknown_name("sensor", sensor, {kSensors.begin(), kSensors.end()}));
-        // pbrt solves for a matrix that brings the sensor's colours to those of the standard
-        // observer, under the light of the white balance.
-        context.log.add(
-            p.where("sensor", e.where),
-            "sensor " + in_quotes(sensor) +
-                " is not supported; \"cie1931\" with its white balance takes its place");
-        if (balance == 0) balance = 6500;
-    }
-    if (balance > 0) film.white_balance = white_balance(balance);
+    set_sensor(e, film);
     if (view.film_colour_space != ColourSpace::srgb)
         context.log.add(e.where,
                         "the image is written in linear Rec.709, not in the film's colour space");

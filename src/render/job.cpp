@@ -22,7 +22,7 @@ PassContext pass_context(const RenderScene& scene, const RenderOptions& options)
             options.max_depth.value_or(d.max_depth),
             imaging_scale(d),
             d.film.max_component_value,
-            d.film.white_balance,
+            d.film.sensor,
             {}};
 }
 

@@ -138,16 +138,16 @@ FilmSample take_sample(const PassContext& context, int x, int y, uint32_t index,
     path = trace_path(context.scene, ray, sampler, context.max_depth, record);
     FilmSample s;
     s.rays = uint32_t(path.rays.total());
-    const auto balanced = [&context](Rgb c) {
+    const auto exposed = [&context](Rgb c) {
         const Rgb light = c * context.imaging_scale;
         const auto channel = [&](size_t i) {
-            const auto& row = context.white_balance[i];
+            const auto& row = context.sensor[i];
             return row[0] * light.r + row[1] * light.g + row[2] * light.b;
         };
         return Rgb{channel(0), channel(1), channel(2)};
     };
-    s.radiance = balanced(path.radiance);
-    s.in_view = balanced(path.in_view);
+    s.radiance = exposed(path.radiance);
+    s.in_view = exposed(path.in_view);
     const float largest = max_component(s.radiance);
     const float limit = largest > context.max_component ? context.max_component / largest : 1.0f;
     s.radiance *= limit;

@@ -50,7 +50,7 @@ struct PassContext {
     uint64_t seed = 0;
     int max_depth = 5;
     float imaging_scale = 1, max_component = kInfinity;
-    std::array<std::array<float, 3>, 3> white_balance{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    std::array<std::array<float, 3>, 3> sensor{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     Shard shard = {};  ///< the tiles to trace
     uint32_t half = 0, halves = 1;
 

@@ -271,8 +271,8 @@ struct FilmDescription {
     std::optional<std::array<int, 4>> pixel_bounds;  ///< x0, x1, y0, y1 in pixels, end exclusive
     std::string filename;                            ///< empty: not given
     float iso = 100;
-    /// Matrix from linear Rec.709 to linear Rec.709 as the sensor's white balance shows it.
-    std::array<std::array<float, 3>, 3> white_balance{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    /// Matrix from linear Rec.709 to linear Rec.709 as the sensor and its white balance show it.
+    std::array<std::array<float, 3>, 3> sensor{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     float max_component_value = kInfinity;  ///< largest value of a sample's channels
     SourceLocation where;
 };

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "colour/sensor_matrix.h"
 #include "colour/spectrum.h"
 #include "pbrt_test_support.h"
 
@@ -99,12 +100,20 @@ TEST(SceneView, WhatIsNotRenderedIsReplacedWithAWarning) {
          {"Integrator \"bdpt\" \"bool visualizestrategies\" true", "Integrator \"sppm\"",
           "Film \"gbuffer\" \"string coordinatesystem\" \"world\"", "Film \"spectral\"",
           "Camera \"realistic\" \"string lensfile\" \"x.dat\"",
-          "Film \"rgb\" \"string sensor\" \"canon_eos_5d\"",
           "Integrator \"path\" \"bool regularize\" true", "ColorSpace \"rec2020\" Film \"rgb\"",
           "Film \"rgb\" \"float scale\" 2"}) {
         const auto scene = read_options(text);
         EXPECT_EQ(scene.warnings.size(), 1u) << text << "\n" << warnings_of(scene);
     }
+}
+
+TEST(SceneView, NamedSensorsReplaceTheWhiteBalance) {
+    const auto scene = read_options("Film \"rgb\" \"string sensor\" \"nikon_d850\"");
+    EXPECT_EQ(warnings_of(scene), "");
+    EXPECT_EQ(scene.film.sensor, sensor_matrix(*find_sensor("nikon_d850"), 6500));
+    const auto warm =
+        read_options("Film \"rgb\" \"string sensor\" \"nikon_d850\" \"float whitebalance\" 3200");
+    EXPECT_EQ(warm.film.sensor, sensor_matrix(*find_sensor("nikon_d850"), 3200));
 }
 
 TEST(SceneView, SphericalCameras) {
@@ -151,10 +160,9 @@ WorldBegin
 TEST(SceneView, WhiteBalanceMakesDaylightWhite) {
     const auto scene = read_options("Film \"rgb\" \"float whitebalance\" 6504");
     for (size_t i = 0; i < 3; ++i)
-        for (size_t j = 0; j < 3; ++j)
-            EXPECT_NEAR(scene.film.white_balance[i][j], i == j ? 1 : 0, 2e-3f);
+        for (size_t j = 0; j < 3; ++j) EXPECT_NEAR(scene.film.sensor[i][j], i == j ? 1 : 0, 2e-3f);
     // The light is a candle's, and the image is balanced for it.
-    const auto warm = read_options("Film \"rgb\" \"float whitebalance\" 2800").film.white_balance;
+    const auto warm = read_options("Film \"rgb\" \"float whitebalance\" 2800").film.sensor;
     const Rgb candle = emission_colour(blackbody_spectrum(2800));
     for (const auto& row : warm)
         EXPECT_NEAR(row[0] * candle.r + row[1] * candle.g + row[2] * candle.b, 1, 5e-3f);

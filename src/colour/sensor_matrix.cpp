@@ -1,0 +1,123 @@
+#include "colour/sensor_matrix.h"
+
+#include <vector>
+
+#include "colour/chart_reflectances.h"
+#include "colour/daylight.h"
+#include "colour/matrix3.h"
+#include "colour/sigmoid_spectrum.h"
+#include "colour/spectrum.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Values at the wavelengths of observer_samples().
+using Samples = std::vector<double>;
+
+template <size_t Count>
+double interpolated(const std::array<uint16_t, Count>& table, double unit, double wavelength) {
+    constexpr double kFirst = 380, kStep = 10;
+    const double x = (wavelength - kFirst) / kStep;
+    const auto i = static_cast<size_t>(x);
+    if (i + 1 > Count - 1) return i == Count - 1 && x == double(i) ? unit * table[i] : 0;
+    const double t = x - static_cast<double>(i);
+    return unit * ((1 - t) * table[i] + t * table[i + 1]);
+}
+
+template <typename Function>
+Samples sampled(Function f) {
+    Samples s;
+    for (const ObserverSample& o : observer_samples()) s.push_back(f(o.wavelength));
+    return s;
+}
+
+/// Light of which the part `factor` arrives, both at the wavelengths of observer_samples().
+class Eye {
+  public:
+    explicit Eye(const SensorCurves& sensor) {
+        for (size_t c = 0; c < 3; ++c)
+            curves_[c] = sampled([&](double l) { return interpolated(sensor.values[c], 1e-4, l); });
+        d65_ = sampled([s = daylight_spectrum(6500)](double l) { return s.at(l); });
+    }
+    const Samples& d65() const { return d65_; }
+    /// Linear Rec.709 of the standard observer, white for D65.
+    Triple colour(const Samples& light, const Samples& factor) const {
+        Triple sum{};
+        for (size_t i = 0; i < light.size(); ++i)
+            for (size_t c = 0; c < 3; ++c)
+                sum[c] += observer_samples()[i].weight[c] * factor[i] * light[i] / d65_[i];
+        return sum;
+    }
+    /// The sensor's three values, in any unit.
+    Triple response(const Samples& light, const Samples& factor) const {
+        Triple sum{};
+        for (size_t i = 0; i < light.size(); ++i)
+            for (size_t c = 0; c < 3; ++c) sum[c] += curves_[c][i] * factor[i] * light[i];
+        return sum;
+    }
+
+  private:
+    std::array<Samples, 3> curves_;
+    Samples d65_;
+};
+
+std::vector<Samples> patches() {
+    std::vector<Samples> list;
+    for (const ChartReflectance& patch : chart_reflectances())
+        list.push_back(sampled([&](double l) { return interpolated(patch, 1e-3, l); }));
+    return list;
+}
+
+/// Smooth spectra of colours all over Rec.709.
+std::vector<Samples> smooth_spectra() {
+    constexpr std::array<float, 3> kLevels{0.05f, 0.35f, 0.8f};
+    std::vector<Samples> list;
+    for (const float r : kLevels)
+        for (const float g : kLevels)
+            for (const float b : kLevels)
+                list.push_back(
+                    sampled([s = sigmoid_spectrum({r, g, b})](double l) { return s.at(l); }));
+    return list;
+}
+
+double luminance_of(const Triple& c) {
+    return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+}
+
+}  // namespace
+
+std::array<std::array<float, 3>, 3> sensor_matrix(const SensorCurves& sensor, float kelvin) {
+    const Eye eye(sensor);
+    const Samples balanced = sampled([s = daylight_spectrum(kelvin)](double l) { return s.at(l); });
+    const Samples white(balanced.size(), 1);
+
+    // pbrt's matrix, times the one from XYZ to Rec.709
+    LeastSquares calibration;
+    const double brightness = luminance_of(eye.colour(balanced, white));
+    for (const Samples& patch : patches()) {
+        Triple target = eye.colour(eye.d65(), patch);
+        for (double& c : target) c *= brightness;
+        calibration.add(eye.response(balanced, patch), target);
+    }
+    const Matrix3 from_sensor = calibration.solve();
+
+    // The image's colours in place of the sensor's. Light itself, which greys show, counts so much
+    // that it is left as pbrt shows it.
+    constexpr double kWeightOfWhite = 1000;
+    std::vector<Samples> spectra = patches();
+    for (Samples& s : smooth_spectra()) spectra.push_back(std::move(s));
+    LeastSquares whole;
+    for (const Samples* light : {&eye.d65(), &balanced}) {
+        const double scale = 1 / luminance_of(eye.colour(*light, white));
+        const auto add = [&](const Samples& factor, double weight) {
+            whole.add(eye.colour(*light, factor),
+                      product(from_sensor, eye.response(*light, factor)), weight * scale * scale);
+        };
+        add(white, kWeightOfWhite);
+        for (const Samples& factor : spectra) add(factor, 1);
+    }
+    return single_precision(whole.solve());
+}
+
+}  // namespace covtrace

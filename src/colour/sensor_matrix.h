@@ -1,0 +1,22 @@
+/// The sensor of a camera, as a matrix on the colours of an image.
+#pragma once
+
+#include <array>
+
+#include "colour/sensor_curves.h"
+
+namespace covtrace {
+
+/// Matrix from linear Rec.709 to linear Rec.709 as the sensor shows it, balanced for daylight of
+/// this correlated colour temperature (kelvin, > 0; a black body below 4000 K).
+///
+/// pbrt-v4 integrates light with the sensor's curves and brings the result to XYZ by a matrix,
+/// fitted to the patches of a colour checker: under the light of the balance they shall look as the
+/// standard observer sees them under D65. Here the image has colours in place of spectra, so a
+/// matrix takes the place of the curves, too. It is fitted to the spectra that colours come from:
+/// the patches, and the smooth ones of colour/sigmoid_spectrum.h, each under D65 and under the
+/// light of the balance. Both lights themselves are within 1 % of pbrt's. How far single colours
+/// are from the spectral result is in docs/decisions/0100-sensors-as-matrices.md.
+std::array<std::array<float, 3>, 3> sensor_matrix(const SensorCurves& sensor, float kelvin);
+
+}  // namespace covtrace
