@@ -17,7 +17,7 @@ void PathTracer::escape() {
     // Weight it against light sampling, which could not find it by a specular lobe
     float weight = 1;
     if (specular_) {
-        sky.radiance = scene_.lights.environment(ray_.direction);
+        sky.radiance = scene_.lights.environment(ray_.origin, ray_.direction);
     } else {
         sky = scene_.lights.sky(previous_position_, previous_normal_, ray_.direction);
         weight = power_heuristic(pdf_, sky.pdf);

@@ -10,6 +10,12 @@ namespace covtrace {
 
 namespace {
 
+/// Cells per axis of a portal's table: as fine as the image, within limits.
+constexpr int kLeastCells = 256, kMostCells = 1024;
+/// Directions per axis and cell: with one, a cell that the edge of a sun crosses would now and then
+/// be taken for dark, and its light found too seldom.
+constexpr int kLeastTaps = 3;
+
 /// Whether the linear part of t is a rotation or reflection, to single precision.
 bool preserves_lengths(const Transform& t) {
     const Vec3 x = t.vector({1, 0, 0}), y = t.vector({0, 1, 0}), z = t.vector({0, 0, 1});
@@ -33,19 +39,37 @@ Environment::Environment(const InfiniteLight& light, const Transform& light_to_w
         const Rgb measured = scale_ * (map_ ? map_->irradiance_from_above() : Rgb(kPi));
         scale_ *= normalisation(*light.illuminance, luminance(measured));
     }
+    if (light.portal) {
+        const int rows = map_ ? map_->height() : 1;
+        const int cells = std::clamp(rows, kLeastCells, kMostCells);
+        portal_.emplace(
+            *light.portal, [this](Vec3 w) { return sky(w); }, cells,
+            std::max(kLeastTaps, (rows + cells - 1) / cells + 1), where);
+    }
 }
 
 Environment::Linear Environment::linear(const Transform& t) {
     return {t.vector({1, 0, 0}), t.vector({0, 1, 0}), t.vector({0, 0, 1})};
 }
 
-Vec3 Environment::direction(Vec3 n, const EnvironmentMap::Draw& draw) const {
+Vec3 Environment::direction(Vec3 p, Vec3 n, const EnvironmentMap::Draw& draw) const {
+    if (portal_) {
+        const auto view = portal_->view(p);
+        return view ? portal_->sample(*view, draw.u) : Vec3{0, 0, 1};
+    }
     if (map_) return normalize(to_world_(map_->direction(draw)));
     if (n == Vec3{}) return square_to_sphere(draw.u);
     return normalize(Frame::from_z(n).to_world(square_to_cosine_hemisphere(draw.u)));
 }
 
-EnvironmentMap::Sight Environment::look(Vec3 n, Vec3 w) const {
+EnvironmentMap::Sight Environment::look(Vec3 p, Vec3 n, Vec3 w) const {
+    if (!portal_) return look_at_sky(n, w);
+    if (!portal_->is_open(p, w)) return {};
+    const auto view = portal_->view(p);
+    return {sky(w), view ? portal_->pdf(*view, w) : 0.0f};
+}
+
+EnvironmentMap::Sight Environment::look_at_sky(Vec3 n, Vec3 w) const {
     if (!map_) return {scale_, n == Vec3{} ? kUniformSpherePdf : cosine_hemisphere_pdf(dot(n, w))};
     Vec3 local = to_light_(w);
     float stretch = 1;
@@ -61,12 +85,18 @@ EnvironmentMap::Sight Environment::look(Vec3 n, Vec3 w) const {
     return sight;
 }
 
-Rgb Environment::mean_radiance() const {
-    return map_ ? scale_ * map_->mean() : scale_;
+float Environment::irradiance(Vec3 p) const {
+    if (portal_) {
+        const auto view = portal_->view(p);
+        return view ? static_cast<float>(view->light) : 0.0f;
+    }
+    return map_ ? kPi * choice_weight(scale_ * map_->mean()) * map_->drawn_share()
+                : kPi * choice_weight(scale_);
 }
 
-float Environment::irradiance() const {
-    return kPi * choice_weight(mean_radiance()) * (map_ ? map_->drawn_share() : 1.0f);
+Rgb Environment::power(float radius) const {
+    if (portal_) return portal_->area() * portal_->fluence();
+    return 4 * sqr(kPi * radius) * (map_ ? scale_ * map_->mean() : scale_);
 }
 
 }  // namespace covtrace

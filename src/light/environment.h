@@ -1,4 +1,5 @@
-/// An infinite light: the same radiance from everywhere, or an image around the scene.
+/// An infinite light: the same radiance from everywhere, or an image around the scene; perhaps seen
+/// through a portal only.
 #pragma once
 
 #include <optional>
@@ -6,6 +7,7 @@
 #include "core/frame.h"
 #include "core/transform.h"
 #include "light/environment_map.h"
+#include "light/portal.h"
 #include "scene/scene_description.h"
 
 namespace covtrace {
@@ -18,26 +20,33 @@ class Environment {
     Environment(const InfiniteLight& light, const Transform& light_to_world,
                 const SourceLocation& where, Warnings& warnings);
 
-    Rgb radiance(Vec3 w) const { return look({}, w).radiance; }
-    /// A direction for a surface with the unit normal n; with n zero, for light from all sides.
-    /// Uniform light is sampled by the cosine to n, an image as EnvironmentMap does, in the same
-    /// three steps.
+    /// Radiance that comes to the point p: none past the portal, if there is one.
+    Rgb radiance(Vec3 p, Vec3 w) const { return is_open(p, w) ? sky(w) : Rgb(); }
+    /// Radiance as if there were no portal.
+    Rgb sky(Vec3 w) const { return look_at_sky({}, w).radiance; }
+    /// A direction for a surface at p with the unit normal n; with n zero, for light from all
+    /// sides. Uniform light is sampled by the cosine to n, an image as EnvironmentMap does, in the
+    /// same three steps, and what comes through a portal as Portal does, from `u` alone.
     EnvironmentMap::Draw begin_draw(Vec2 u) const {
-        return map_ ? map_->begin_draw(u) : EnvironmentMap::Draw{u};
+        return is_map() ? map_->begin_draw(u) : EnvironmentMap::Draw{u};
     }
     void choose_texel(EnvironmentMap::Draw& draw) const {
-        if (map_) map_->choose_texel(draw);
+        if (is_map()) map_->choose_texel(draw);
     }
-    Vec3 direction(Vec3 n, const EnvironmentMap::Draw& draw) const;
-    bool is_map() const { return map_.has_value(); }
-    float pdf(Vec3 n, Vec3 w) const { return look(n, w).pdf; }
+    Vec3 direction(Vec3 p, Vec3 n, const EnvironmentMap::Draw& draw) const;
+    /// Whether directions are drawn from the image alone.
+    bool is_map() const { return map_ && !portal_; }
+    /// Whether the light is the same from everywhere.
+    bool is_even() const { return !map_ && !portal_; }
+    float pdf(Vec3 p, Vec3 n, Vec3 w) const { return look(p, n, w).pdf; }
     /// Radiance and density together, for less than both one by one.
-    EnvironmentMap::Sight look(Vec3 n, Vec3 w) const;
-    /// Mean radiance over all directions, where the transform is rigid.
-    Rgb mean_radiance() const;
-    /// Rough irradiance of any surface, mean of the channels: of a map, by the part of its light
-    /// that directions are drawn for. 0 where the light is black.
-    float irradiance() const;
+    EnvironmentMap::Sight look(Vec3 p, Vec3 n, Vec3 w) const;
+    /// Rough irradiance of any surface at p, mean of the channels: of a map, by the part of its
+    /// light that directions are drawn for. 0 where no light comes.
+    float irradiance(Vec3 p) const;
+    /// Power that enters a scene with the given radius, or that comes through the portal. Exact
+    /// where the transform is rigid.
+    Rgb power(float radius) const;
 
     /// The image by directions of light space, before `scale`; null where the light is uniform.
     const EnvironmentMap* map() const { return map_ ? &*map_ : nullptr; }
@@ -47,6 +56,8 @@ class Environment {
     const Transform& light_to_world() const { return light_to_world_; }
 
   private:
+    bool is_open(Vec3 p, Vec3 w) const { return !portal_ || portal_->is_open(p, w); }
+    EnvironmentMap::Sight look_at_sky(Vec3 n, Vec3 w) const;
     /// The linear part of a transform, in single precision: enough for directions.
     struct Linear {
         Vec3 x, y, z;  ///< columns
@@ -60,6 +71,7 @@ class Environment {
     float determinant_ = 1;  // of the map from world to light, absolute value
     Rgb scale_{1};
     std::optional<EnvironmentMap> map_;
+    std::optional<Portal> portal_;
 };
 
 }  // namespace covtrace

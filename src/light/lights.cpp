@@ -135,10 +135,10 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
     tree = LightTree(finite);
 }
 
-float Lights::Impl::infinite_weight(const InfiniteShare& share, size_t i, Vec3 n) const {
+float Lights::Impl::infinite_weight(const InfiniteShare& share, size_t i, Vec3 p, Vec3 n) const {
     if (i >= distants.size()) {
         const Environment& e = environments[i - distants.size()];
-        return e.irradiance() * (e.is_map() ? 1.0f : share.even);
+        return e.irradiance(p) * (e.is_even() ? share.even : 1.0f);
     }
     const float facing = choice_weight(distants[i].irradiance);
     return n == Vec3{} ? facing : facing * side_weight(dot(distants[i].direction, n));
@@ -149,8 +149,8 @@ InfiniteShare Lights::Impl::infinite_share(Vec3 p, Vec3 n) const {
     if (infinite_count() == 0) return share;
     float even = 0;
     for (size_t i = 0; i < infinite_count(); ++i) {
-        const bool is_even = i >= distants.size() && !environments[i - distants.size()].is_map();
-        (is_even ? even : share.weight) += infinite_weight(share, i, n);
+        const bool is_even = i >= distants.size() && environments[i - distants.size()].is_even();
+        (is_even ? even : share.weight) += infinite_weight(share, i, p, n);
     }
     const float finite = tree.irradiance(p, n);
     const bool has_uneven = share.weight > 0;
@@ -169,17 +169,17 @@ InfiniteShare Lights::Impl::infinite_share(Vec3 p, Vec3 n) const {
     return share;
 }
 
-Rgb Lights::Impl::environment(Vec3 w) const {
+Rgb Lights::Impl::environment(Vec3 p, Vec3 w) const {
     Rgb sum;
-    for (const Environment& e : environments) sum += e.radiance(w);
+    for (const Environment& e : environments) sum += e.radiance(p, w);
     return sum;
 }
 
-Lights::Sky Lights::Impl::sky(const InfiniteShare& share, Vec3 n, Vec3 w) const {
+Lights::Sky Lights::Impl::sky(const InfiniteShare& share, Vec3 p, Vec3 n, Vec3 w) const {
     Sky sky;
     for (size_t i = 0; i < environments.size(); ++i) {
-        const EnvironmentMap::Sight sight = environments[i].look(n, w);
-        const float weight = infinite_weight(share, distants.size() + i, n);
+        const EnvironmentMap::Sight sight = environments[i].look(p, n, w);
+        const float weight = infinite_weight(share, distants.size() + i, p, n);
         sky.radiance += sight.radiance;
         if (weight > 0) sky.pdf += weight * sight.pdf;
     }
@@ -239,13 +239,13 @@ std::optional<LightSample> Lights::Impl::sample_point(int light, float probabili
     return s;
 }
 
-std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& share, Vec3 n,
+std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& share, Vec3 p, Vec3 n,
                                                          float u_select, Draw draw) const {
     // The last light with any weight takes the probability that rounding leaves over.
     float rest = u_select * share.weight, chosen_weight = 0;
     size_t chosen = 0;
     for (size_t i = 0; i < infinite_count(); ++i) {
-        const float weight = infinite_weight(share, i, n);
+        const float weight = infinite_weight(share, i, p, n);
         if (!(weight > 0)) continue;
         chosen = i;
         chosen_weight = weight;
@@ -263,8 +263,8 @@ std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& sh
     }
     const Environment& environment_light = environments[chosen - distants.size()];
     advance(environment_light, draw, 2);
-    s.wi = environment_light.direction(n, draw.sky);
-    const Sky there = sky(share, n, s.wi);
+    s.wi = environment_light.direction(p, n, draw.sky);
+    const Sky there = sky(share, p, n, s.wi);
     s.radiance = there.radiance;
     s.pdf = there.pdf;
     if (!(s.pdf > 0) || is_black(s.radiance)) return std::nullopt;
@@ -313,7 +313,7 @@ std::optional<LightSample> Lights::finish_draw(Vec3 p, Vec3 n, float time, float
                                                Draw draw) const {
     const InfiniteShare share = impl_->infinite_share(p, n);
     if (u_select < share.probability)
-        return impl_->sample_infinite(share, n, u_select / share.probability, draw);
+        return impl_->sample_infinite(share, p, n, u_select / share.probability, draw);
     const float finite = 1 - share.probability;
     if (!(finite > 0)) return std::nullopt;
     const float u_tree = std::min((u_select - share.probability) / finite, kLargestBelowOne);
@@ -349,17 +349,17 @@ float Lights::selection_probability(Vec3 p, Vec3 n, int light) const {
         return (1 - share.probability) * impl_->tree.probability(p, n, light);
     if (!(share.probability > 0)) return 0;
     const auto i = static_cast<size_t>(light - impl_->first_distant());
-    return share.probability * impl_->infinite_weight(share, i, n) / share.weight;
+    return share.probability * impl_->infinite_weight(share, i, p, n) / share.weight;
 }
 
 bool Lights::has_environment() const {
     return !impl_->environments.empty();
 }
-Rgb Lights::environment(Vec3 w) const {
-    return impl_->environment(w);
+Rgb Lights::environment(Vec3 p, Vec3 w) const {
+    return impl_->environment(p, w);
 }
 Lights::Sky Lights::sky(Vec3 p, Vec3 n, Vec3 w) const {
-    return impl_->sky(impl_->infinite_share(p, n), n, w);
+    return impl_->sky(impl_->infinite_share(p, n), p, n, w);
 }
 std::vector<DistantView> Lights::distant_views() const {
     std::vector<DistantView> views;
@@ -388,9 +388,9 @@ Rgb Lights::total_power() const {
         sum += static_cast<float>(total_area(area.emitter)) *
                exitance(area.radiance * area.mean_factor, area.two_sided);
     for (const PointEmitter& point : impl_->points) sum += power(point);
-    const float disk = kPi * sqr(impl_->geometry->bounds().radius());
-    for (const DistantEmitter& distant : impl_->distants) sum += disk * distant.irradiance;
-    for (const Environment& e : impl_->environments) sum += disk * 4 * kPi * e.mean_radiance();
+    const float radius = impl_->geometry->bounds().radius();
+    for (const DistantEmitter& d : impl_->distants) sum += kPi * sqr(radius) * d.irradiance;
+    for (const Environment& e : impl_->environments) sum += e.power(radius);
     return sum;
 }
 int Lights::count() const {

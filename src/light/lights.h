@@ -70,8 +70,9 @@ class Lights {
         EnvironmentMap::Draw sky;
         int steps = 0;  ///< steps of the draw that are done
     };
-    /// Whether drawing ahead gains anything: the scene has an environment map and no other infinite
-    /// light, so it is known which one a draw is from. Finite lights do not matter.
+    /// Whether drawing ahead gains anything: the scene has an environment map without a portal and
+    /// no other infinite light, so it is known which one a draw is from. Finite lights do not
+    /// matter.
     bool draws_ahead() const;
     /// Does the first step of a draw.
     Draw begin_draw(Vec2 u) const;
@@ -90,9 +91,9 @@ class Lights {
 
     /// Whether there is a uniform infinite light or an environment map.
     bool has_environment() const;
-    /// Radiance of all uniform infinite lights and environment maps from the direction `w` (unit,
-    /// away from the scene). Distant lights have none.
-    Rgb environment(Vec3 w) const;
+    /// Radiance of all uniform infinite lights and environment maps that comes to the point p from
+    /// the direction `w` (unit, away from the scene). Distant lights have none.
+    Rgb environment(Vec3 p, Vec3 w) const;
     /// Radiance from one direction as `environment` has it, and the density per solid angle with
     /// which `sample(p, n)` finds that direction.
     struct Sky {
@@ -106,7 +107,7 @@ class Lights {
     std::vector<DistantView> distant_views() const;
 
     /// Power (radiant flux) that all lights emit; infinite and distant lights count with what
-    /// enters the sphere around the scene.
+    /// enters the sphere around the scene, or what comes through their portal.
     Rgb total_power() const;
     /// Number of lights: every emissive triangle, patch half, sphere and disk counts as one of its
     /// own.

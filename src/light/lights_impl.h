@@ -49,16 +49,16 @@ struct Lights::Impl {
                                            Vec2 u) const;
     std::optional<LightSample> sample_point(int light, float probability, Vec3 p) const;
     /// Chooses an infinite light by its weight, then a direction.
-    std::optional<LightSample> sample_infinite(const InfiniteShare& share, Vec3 n, float u_select,
-                                               Draw draw) const;
+    std::optional<LightSample> sample_infinite(const InfiniteShare& share, Vec3 p, Vec3 n,
+                                               float u_select, Draw draw) const;
     /// Takes a draw of `light` up to the given number of steps (Lights::Draw::steps).
     void advance(const Environment& light, Draw& draw, int steps) const;
 
     InfiniteShare infinite_share(Vec3 p, Vec3 n) const;
     /// Weight of infinite light i (distant ones come first) for choosing among them.
-    float infinite_weight(const InfiniteShare& share, size_t i, Vec3 n) const;
-    Sky sky(const InfiniteShare& share, Vec3 n, Vec3 w) const;
-    Rgb environment(Vec3 w) const;
+    float infinite_weight(const InfiniteShare& share, size_t i, Vec3 p, Vec3 n) const;
+    Sky sky(const InfiniteShare& share, Vec3 p, Vec3 n, Vec3 w) const;
+    Rgb environment(Vec3 p, Vec3 w) const;
 
     /// The area light of the shape that was hit; null where the shape does not emit.
     const AreaLight* area_light_of(const SurfaceHit& hit) const;

@@ -78,7 +78,7 @@ SourceSpectrum LightSpectra::environment_spectrum(Vec3 w) const {
     s.tangent = Frame::from_z(-w);
     float total = 0;
     for (size_t i = 0; i < environments_.size(); ++i) {
-        const float weight = luminance(lights_->environments[i].radiance(w));
+        const float weight = luminance(lights_->environments[i].sky(w));
         if (!(weight > 0)) continue;
         const AngularCovariance a = environments_[i].at(w);
         if (total == 0) s.tangent = a.tangent;

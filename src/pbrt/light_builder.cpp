@@ -1,5 +1,8 @@
 #include "pbrt/light_builder.h"
 
+#include <array>
+#include <cmath>
+
 #include "pbrt/spectrum_parameter.h"
 #include "pbrt/version_three.h"
 #include "scene/names.h"
@@ -82,6 +85,25 @@ DistantLight distant_light(Entity& e, BuildContext& context) {
     return light;
 }
 
+/// The corners of a rectangle, in the order around it.
+std::array<Vec3, 4> portal(Entity& e) {
+    const std::vector<Vec3> p = e.parameters.triples("portal");
+    const SourceLocation where = e.parameters.where("portal", e.where);
+    if (p.size() != 4)
+        throw Error(ErrorKind::scene, where,
+                    "a portal has " + std::to_string(p.size()) + " corners; expected 4");
+    // Sides and corners are as exact as pbrt wants them.
+    constexpr float kTolerance = 1e-3f;
+    std::array<Vec3, 4> sides;
+    for (size_t i = 0; i < 4; ++i) sides[i] = normalize(p[(i + 1) % 4] - p[i]);
+    for (size_t i = 0; i < 4; ++i)
+        if (!(std::abs(dot(sides[i], sides[(i + 1) % 4])) <= kTolerance &&
+              dot(sides[i], sides[(i + 2) % 4]) <= kTolerance - 1))
+            throw Error(ErrorKind::scene, where,
+                        "a portal must be a rectangle, with its corners in the order around it");
+    return {p[0], p[1], p[2], p[3]};
+}
+
 InfiniteLight infinite_light(Entity& e, BuildContext& context) {
     ParameterList& p = e.parameters;
     if (p.has("mapname"))
@@ -97,10 +119,7 @@ InfiniteLight infinite_light(Entity& e, BuildContext& context) {
                         "an infinite light has both \"L\" and \"filename\"; expected one of them");
         light.image = context.files.find(file, p.where("filename", e.where));
     }
-    if (p.has("portal"))
-        context.log.add(p.where("portal", e.where),
-                        "portals are not supported; the light is sampled over the whole sky");
-    p.ignore({"portal"});
+    if (p.has("portal")) light.portal = portal(e);
     return light;
 }
 

@@ -228,6 +228,9 @@ struct InfiniteLight {
     /// Illuminance on a surface that faces +z of light space, which scales the whole light, colour
     /// and "scale" included.
     std::optional<float> illuminance;
+    /// Corners, in world space, of a rectangle that all of the light comes through, in the
+    /// direction (p3 - p0) x (p1 - p0) seen from what it lights; opposite ones are 0 and 2.
+    std::optional<std::array<Vec3, 4>> portal = {};
 };
 struct LightDescription {
     std::variant<PointLight, SpotLight, GoniometricLight, ProjectionLight, DistantLight,

@@ -94,6 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Known{"light-infinite-illuminance", Where::everywhere, Rgb(0.5f)},
                     Known{"light-infinite-image", Where::everywhere, Rgb(1), 0.02},
                     Known{"light-infinite-image-illuminance", Where::everywhere, Rgb(1), 0.01},
+                    Known{"light-portal", Where::everywhere, Rgb(0.239456f)},
                     Known{"light-scale", Where::everywhere, 0.375f * kLit},
                     Known{"light-area-power", Where::everywhere, Rgb(1)},
                     Known{"light-area-twosided", Where::everywhere, Rgb(0.5f)},

@@ -59,6 +59,12 @@ std::vector<Case> all_cases() {
         };
     };
     const Transform tilted = Transform::rotate(50, {1, 2, 3});
+    const auto portal = [](const TemporaryImage* image, const Transform& t) {
+        InfiniteLight light;
+        if (image) light.image = image->path();
+        light.portal = {{{-1, -0.5f, 2}, {-1, 0.5f, 2}, {1, 0.5f, 2}, {1, -0.5f, 2}}};
+        return [light, t](LightScene& s) { s.add_light(light, t); };
+    };
     const Sphere bowl{1, -1, 0.3f, 250};
     const Disk ring{0, 1, 0.4f, 300};
     AnimatedTransform moving(
@@ -186,10 +192,16 @@ std::vector<Case> all_cases() {
         {"square_map_sheared", sky(square_map(), tilted * Transform::scale(1, 2, 0.7)), {}, up},
         {"lat_long_map", sky(lat_long_map(), {}), {}, up},
         {"lat_long_map_mirrored", sky(lat_long_map(), Transform::scale(-1, 1, 1)), {}, up},
+        {"portal", portal(nullptr, {}), {0.3f, 0, 0}, up, up, 50},
+        {"portal_close", portal(nullptr, {}), {0.3f, 0.4f, 1.9f}, {}, up, 88},
+        {"portal_aside", portal(nullptr, {}), {4, 1, 1.5f}, {-1, 0, 0}, {-4, -1, 0.5f}, 14},
+        {"portal_and_square", portal(&square_map(), tilted), {0.3f, 0, 0}, up, up, 50},
+        {"portal_and_lat_long", portal(&lat_long_map(), {}), {0.3f, 0, 0}, up, up, 50},
         {"everything",
          [=](LightScene& s) {
              sky(square_map(), tilted)(s);
              sky(lat_long_map(), {})(s);
+             portal(&lat_long_map(), tilted)(s);
              s.add_light(InfiniteLight{});
              s.add_light(DistantLight{});
              s.add_light(PointLight{});
@@ -321,7 +333,7 @@ TEST_P(LightSampling, DensityOfAHitIsThatOfTheSample) {
         if (!sample || sample->is_delta) continue;
         if (sample->distance == kInfinity) {
             ASSERT_NEAR(s.lights->environment_pdf(p, n, sample->wi) / sample->pdf, 1, 1e-4);
-            ASSERT_EQ(s.lights->environment(sample->wi), sample->radiance);
+            ASSERT_EQ(s.lights->environment(p, sample->wi), sample->radiance);
             continue;
         }
         SurfaceHit hit;

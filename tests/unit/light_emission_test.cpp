@@ -282,7 +282,7 @@ TEST(Emission, ASceneWithoutLightsHasNoSamples) {
     EXPECT_EQ(s.lights->count(), 0);
     EXPECT_FALSE(s.lights->has_environment());
     EXPECT_FALSE(s.lights->sample({}, {0, 0, 1}, 0, 0.5f, {0.5f, 0.5f}));
-    EXPECT_EQ(s.lights->environment({0, 0, 1}), Rgb(0));
+    EXPECT_EQ(s.lights->environment({}, {0, 0, 1}), Rgb(0));
     EXPECT_EQ(s.lights->environment_pdf({}, {0, 0, 1}, {0, 0, 1}), 0);
 }
 

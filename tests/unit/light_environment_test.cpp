@@ -216,10 +216,10 @@ TEST(Environment, TheTransformTurnsTheImage) {
     const TemporaryImage image(
         texels_of(64, 32, [](Vec3 w) { return Rgb(w.x > 0.9f ? 10.0f : 1.0f); }), 64, 32);
     const Environment turned = environment(image_light(image), Transform::rotate(90, {0, 0, 1}));
-    EXPECT_NEAR(turned.radiance({0, 1, 0}).r, 10, 1e-4);
-    EXPECT_NEAR(turned.radiance({1, 0, 0}).r, 1, 1e-4);
+    EXPECT_NEAR(turned.sky({0, 1, 0}).r, 10, 1e-4);
+    EXPECT_NEAR(turned.sky({1, 0, 0}).r, 1, 1e-4);
     const Environment mirrored = environment(image_light(image), Transform::scale(-1, 1, 1));
-    EXPECT_NEAR(mirrored.radiance({-1, 0, 0}).r, 10, 1e-4);
+    EXPECT_NEAR(mirrored.sky({-1, 0, 0}).r, 10, 1e-4);
 }
 
 TEST(Environment, IlluminanceScalesTheImage) {
@@ -233,12 +233,65 @@ TEST(Environment, IlluminanceScalesTheImage) {
     double sum = 0;
     constexpr int kSamples = 100000;
     for (int i = 0; i < kSamples; ++i)
-        sum +=
-            double(luminance(e.radiance(square_to_cosine_hemisphere(rng.next_2d())))) * double(kPi);
+        sum += double(luminance(e.sky(square_to_cosine_hemisphere(rng.next_2d())))) * double(kPi);
     EXPECT_NEAR(sum / kSamples, 1000, 5);
 }
 
 // ---- Spectrum
+
+/// The square of side 2 at z = 1 around the z axis, that lets light through downwards.
+InfiniteLight behind_a_square(InfiniteLight light) {
+    light.portal = {{{-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, {1, -1, 1}}};
+    return light;
+}
+
+TEST(Environment, LightComesThroughThePortalAlone) {
+    const TemporaryImage image(sky_with_sun(64, 32, 9, 3, 50), 64, 32);
+    const Environment open = environment(image_light(image)),
+                      light = environment(behind_a_square(image_light(image)));
+    Rng rng(8);
+    int seen = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const Vec2 a = rng.next_2d(), b = rng.next_2d();
+        const Vec3 p{4 * a.x - 2, 4 * a.y - 2, 4 * b.x - 2}, w = square_to_sphere(rng.next_2d());
+        const float t = (1 - p.z) / w.z;
+        const Vec3 q = p + w * t;
+        const bool expected = t > 0 && w.z > 0 && std::max(std::abs(q.x), std::abs(q.y)) < 1;
+        if (std::abs(std::max(std::abs(q.x), std::abs(q.y)) - 1) < 1e-4f) continue;
+        ASSERT_EQ(light.radiance(p, w), expected ? open.sky(w) : Rgb()) << i;
+        ASSERT_EQ(light.pdf(p, {}, w) > 0, expected) << i;
+        seen += expected;
+    }
+    EXPECT_GT(seen, 500);
+    EXPECT_EQ(light.irradiance({0, 0, 1.001f}), 0);
+    EXPECT_EQ(light.pdf({0, 0, 3}, {}, {0, 0, 1}), 0);
+}
+
+TEST(Environment, PortalsAreSampledByWhatComesThrough) {
+    // The sun is above: of a map that is even else, and of which a portal shows one part, samples
+    // find what shines there.
+    const auto sky = [](Vec3 w) { return w.z > 0.97f ? Rgb(100) : Rgb(0.1f, 0.2f, 0.3f); };
+    const TemporaryImage image(texels_of(256, 128, sky), 256, 128);
+    const Environment light = environment(behind_a_square(image_light(image)));
+    Rng rng(9);
+    for (const Vec3 p : {Vec3{0, 0, 0}, Vec3{0.3f, -0.4f, -2}, Vec3{2, 1, 0}}) {
+        double sum = 0, square = 0;
+        constexpr int kSamples = 4000;
+        for (int i = 0; i < kSamples; ++i) {
+            const Vec3 w = light.direction(p, {}, light.begin_draw(rng.next_2d()));
+            const auto sight = light.look(p, {}, w);
+            const double v =
+                sight.pdf > 0
+                    ? (sight.radiance.r + sight.radiance.g + sight.radiance.b) / 3.0 / sight.pdf
+                    : 0;
+            sum += v;
+            square += v * v;
+        }
+        const double mean = sum / kSamples;
+        EXPECT_NEAR(mean / light.irradiance(p), 1, 0.02) << p.x;
+        EXPECT_LT(square / kSamples / (mean * mean) - 1, 0.05) << p.x;
+    }
+}
 
 TEST(EnvironmentSpectrum, UniformLightHasNone) {
     const Environment e = environment(InfiniteLight{});
@@ -309,7 +362,7 @@ TEST(EnvironmentSpectrum, SeveralLightsAreAveragedByRadiance) {
                          b = both.spectra->environment_spectrum(w);
     EXPECT_EQ(a.kind, SourceSpectrum::Kind::environment);
     ASSERT_GT(a.a11, 0);
-    const float l = luminance(one.lights->environment(w));
+    const float l = luminance(one.lights->environment({}, w));
     EXPECT_NEAR(b.a11, a.a11 * l / (l + 2), 0.02f * a.a11);
 }
 

@@ -82,14 +82,35 @@ TEST(SceneLights, InfiniteLightsAreUniformOrAnImage) {
     const auto main = folder.write(
         "main.pbrt",
         "WorldBegin Translate 1 2 3 LightSource \"infinite\" \"string filename\" \"sky.exr\" "
-        "\"float scale\" 2 \"float illuminance\" 5 \"point3 portal\" [ 0 0 0 ]");
+        "\"float scale\" 2 \"float illuminance\" 5");
     const auto scene = read_pbrt(main);
     const auto& light = std::get<InfiniteLight>(scene.lights.at(0).value);
     EXPECT_EQ(light.image, image.lexically_normal());
     EXPECT_EQ(light.radiance, Rgb{2});
     EXPECT_NEAR(light.illuminance.value(), 10, 1e-4f);
     expect_near(scene.lights[0].light_to_world.point({}), {1, 2, 3}, 0);
-    EXPECT_TRUE(contains(warnings_of(scene), "portals are not supported"));
+    EXPECT_EQ(warnings_of(scene), "");
+}
+
+TEST(SceneLights, PortalsAreRectanglesInTheWorld) {
+    const auto scene = read_world(
+        "Translate 1 2 3 LightSource \"infinite\" "
+        "\"point3 portal\" [ 0 0 2  0 1 2  3 1 2  3 0 2 ] Shape \"sphere\"");
+    const auto& light = std::get<InfiniteLight>(scene.lights.at(0).value);
+    ASSERT_TRUE(light.portal.has_value());
+    EXPECT_EQ((*light.portal)[2], (Vec3{3, 1, 2}));
+    EXPECT_EQ(warnings_of(scene), "");
+    for (const auto& [corners, message] :
+         {std::pair{"0 0 2  0 1 2  3 1 2", "a portal has 3 corners; expected 4"},
+          {"0 0 2  0 1 2  3 1 2  4 0 2", "a portal must be a rectangle"},
+          {"0 0 2  3 1 2  0 1 2  3 0 2", "a portal must be a rectangle"},
+          {"0 0 2  0 0 2  3 0 2  3 0 2", "a portal must be a rectangle"},
+          {"0 0 2  0 1 2  3 1 2.1  3 0 2", "a portal must be a rectangle"}})
+        EXPECT_TRUE(
+            contains(world_error(std::string("LightSource \"infinite\" \"point3 portal\" [ ") +
+                                 corners + " ]"),
+                     message))
+            << corners;
 }
 
 TEST(SceneLights, SpectraAndBlackbodiesHaveLuminanceOne) {

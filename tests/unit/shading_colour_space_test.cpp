@@ -96,13 +96,13 @@ TEST(ColourSpaces, OfTheSky) {
         const Picture picture(chromaticities);
         LightScene scene;
         build_sky(scene, picture);
-        expect_equal(scene.lights->environment({0, 0, 1}), to_rec709(kColour, space));
+        expect_equal(scene.lights->environment({}, {0, 0, 1}), to_rec709(kColour, space));
         EXPECT_TRUE(scene.lights->warnings().empty());
     }
     const Picture picture(kAcesCg);
     LightScene scene;
     build_sky(scene, picture);
-    expect_equal(scene.lights->environment({0, 0, 1}), kColour);
+    expect_equal(scene.lights->environment({}, {0, 0, 1}), kColour);
     EXPECT_EQ(scene.lights->warnings().size(), 1u);
 }
 
