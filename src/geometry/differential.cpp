@@ -14,7 +14,7 @@ float finite(double v) {
 }  // namespace
 
 DifferentialGeometry Geometry::differential(const SurfaceHit& hit) const {
-    return differential(hit, Frame::from_z_x(hit.ns, hit.dpdu));
+    return differential(hit, Frame::from_z_x(hit.ns, hit.tangent));
 }
 
 DifferentialGeometry Geometry::differential(const SurfaceHit& hit, const Frame& tangent) const {

@@ -65,6 +65,7 @@ void place(SurfacePoint& point, const Affine& world_from_local, const Affine& lo
     if (dot(point.ng, point.ns) < 0) point.ns = point.ns * -1.0;
     point.dpdu = map.vector(point.dpdu);
     point.dpdv = map.vector(point.dpdv);
+    point.tangent = map.vector(point.tangent);
 }
 
 /// Writes `point`, which is in the world, into a hit.
@@ -74,6 +75,8 @@ void fill_hit(const SurfacePoint& point, SurfaceHit& hit) {
     hit.ns = point.ns.to_float();
     hit.dpdu = point.dpdu.to_float();
     hit.dpdv = point.dpdv.to_float();
+    hit.tangent = point.tangent.to_float();
+    if (!(length_squared(hit.tangent) > 0)) hit.tangent = hit.dpdu;
     hit.uv = point.uv;
     hit.mesh = point.vertices.mesh;
     const double rounding = kHalfUlp * dot(abs(point.ng), abs(point.position));

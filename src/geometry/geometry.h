@@ -60,7 +60,7 @@ class Geometry {
     static Vec3 offset_origin(const SurfaceHit& hit, Vec3 direction);
 
     DifferentialGeometry differential(const SurfaceHit& hit) const;
-    /// Second-order geometry at a hit, where the frame of hit.ns and hit.dpdu is known.
+    /// Second-order geometry at a hit, where the frame of hit.ns and hit.tangent is known.
     DifferentialGeometry differential(const SurfaceHit& hit, const Frame& tangent) const;
 
     const std::vector<PlacedShape>& shapes() const;

@@ -26,6 +26,7 @@ struct SurfaceHit {
               ///< viewer
     Vec3 ns;  ///< unit shading normal in the hemisphere of ng
     Vec3 dpdu, dpdv;  ///< derivatives of the position by `uv`
+    Vec3 tangent;     ///< of shading: the mesh's own, else dpdu
     Vec2 uv;
     float time = 0;
     uint32_t shape = 0;      ///< index into Geometry::shapes()

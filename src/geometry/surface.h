@@ -22,7 +22,8 @@ struct TriangleShape {
     std::vector<Vec3> positions;  ///< local; one spare element, for Embree's wide loads
     /// Maps the mesh's normals to local ones; turned where the orientation is reversed.
     Affine normal_map;
-    bool flip = false;  ///< whether the outside is opposite to (p1 - p0) x (p2 - p0)
+    Affine tangent_map;  ///< maps the mesh's tangents to local ones
+    bool flip = false;   ///< whether the outside is opposite to (p1 - p0) x (p2 - p0)
 };
 
 struct PatchShape {
@@ -59,6 +60,7 @@ struct SurfacePoint {
     Vec3d ng;          ///< unit, on the outside
     Vec3d ns;          ///< unit, in the hemisphere of ng
     Vec3d dpdu, dpdv;
+    Vec3d tangent;  ///< the mesh's own; 0: dpdu
     Vec2 uv;
     VertexPlace vertices;
 };

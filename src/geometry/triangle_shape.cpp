@@ -41,6 +41,7 @@ TriangleShape make_triangle_shape(const std::shared_ptr<const TriangleMesh>& mes
     shape.normal_map = Affine::from_matrix(transpose(local_from_object.inverse_matrix()));
     if (reverse)
         for (Vec3d& row : shape.normal_map.row) row = row * -1.0;
+    shape.tangent_map = Affine::from_matrix(local_from_object.matrix());
     shape.flip = reverse != local_from_object.swaps_handedness();
     return shape;
 }
@@ -56,11 +57,12 @@ SurfacePoint triangle_point(const TriangleShape& shape, uint32_t primitive, Vec2
     point.ng = normalize(cross(c.e1, c.e2));
     if (shape.flip) point.ng = point.ng * -1.0;
     point.ns = point.ng;
+    const auto interpolated = [&](const std::vector<Vec3>& v) {
+        return Vec3d(v[c.index[0]]) * (1 - b1 - b2) + Vec3d(v[c.index[1]]) * b1 +
+               Vec3d(v[c.index[2]]) * b2;
+    };
     if (!shape.mesh->normals.empty()) {
-        const auto& n = shape.mesh->normals;
-        const Vec3d mean = Vec3d(n[c.index[0]]) * (1 - b1 - b2) + Vec3d(n[c.index[1]]) * b1 +
-                           Vec3d(n[c.index[2]]) * b2;
-        const Vec3d ns = normalize(shape.normal_map.vector(mean));
+        const Vec3d ns = normalize(shape.normal_map.vector(interpolated(shape.mesh->normals)));
         if (dot(ns, ns) > 0.5) {
             // The outside is the side of the vertex normals, as in pbrt.
             point.ns = ns;
@@ -70,6 +72,8 @@ SurfacePoint triangle_point(const TriangleShape& shape, uint32_t primitive, Vec2
     if (has_vertex_values(*shape.mesh)) point.vertices = {shape.mesh.get(), primitive, barycentric};
     point.uv = c.uv0 + c.duv1 * barycentric.x + c.duv2 * barycentric.y;
     solve_tangents(c.e1, c.e2, c.duv1, c.duv2, point.ng, point.dpdu, point.dpdv);
+    if (!shape.mesh->tangents.empty())
+        point.tangent = shape.tangent_map.vector(interpolated(shape.mesh->tangents));
     return point;
 }
 

@@ -106,10 +106,9 @@ std::vector<ShapeGeometry> ShapeBuilder::triangle_mesh(Entity& e) {
     TriangleMesh mesh;
     vertices(mesh, e, context_.log);
     mesh.triangles = faces<3>(e, mesh.positions.size(), context_.log);
-    if (e.parameters.has("S"))
-        context_.log.add(e.parameters.where("S", e.where),
-                         "tangents \"S\" of triangles are not supported; those of \"uv\" hold");
-    e.parameters.ignore({"S", "faceIndices"});
+    mesh.tangents = e.parameters.triples("S");
+    match_positions(mesh.tangents, mesh.positions.size(), "S", e, context_.log);
+    e.parameters.ignore({"faceIndices"});
     return {std::make_shared<const TriangleMesh>(std::move(mesh))};
 }
 

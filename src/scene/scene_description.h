@@ -133,6 +133,8 @@ struct TriangleMesh {
     std::vector<Vec3> normals;  ///< empty or one per position
     std::vector<Vec2> uvs;      ///< empty or one per position
     std::vector<std::array<uint32_t, 3>> triangles;
+    /// Shading tangents in place of those of the uvs: empty or one per position; 0 for none.
+    std::vector<Vec3> tangents = {};
     std::vector<std::vector<Vec2>> more_uvs = {};  ///< sets of coordinates, one per position each
     std::vector<VertexColour> colours = {};        ///< empty or one per position
     /// Contrasts of the colours across the side opposite each corner, in [0, kLargestColourStep];

@@ -218,7 +218,7 @@ uint64_t hash_of_position(const SurfaceHit& hit, uint64_t key) {
 }  // namespace
 
 Frame shading_frame(const SurfaceHit& hit) {
-    return Frame::from_z_x(hit.ns, hit.dpdu);
+    return Frame::from_z_x(hit.ns, hit.tangent);
 }
 
 Vec2 ggx_alphas(float u_roughness, float v_roughness, bool remap) {

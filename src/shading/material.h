@@ -15,8 +15,8 @@
 
 namespace covtrace {
 
-/// The local frame of a hit's BSDF, right-handed: z = ns, x = dpdu made orthogonal to it. alpha_x
-/// lies along x.
+/// The local frame of a hit's BSDF, right-handed: z = ns, x = the hit's tangent made orthogonal to
+/// it. alpha_x lies along x.
 Frame shading_frame(const SurfaceHit& hit);
 
 /// GGX widths for a pair of pbrt's roughnesses: alpha = sqrt(roughness) where they are remapped;

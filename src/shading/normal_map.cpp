@@ -18,6 +18,11 @@ bool has_vertex_normals(const ShapeDescription& shape) {
     return mesh && !(*mesh)->normals.empty();
 }
 
+bool has_tangents(const ShapeDescription& shape) {
+    const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape.geometry);
+    return mesh && !(*mesh)->tangents.empty();
+}
+
 /// The vector v, turned by the smallest rotation that takes the unit vector `from` to `to`.
 Vec3 turned(Vec3 v, Vec3 from, Vec3 to) {
     const Vec3 axis = cross(from, to), across = cross(axis, v);
@@ -54,10 +59,10 @@ NormalMap::NormalMap(const MaterialDescription& material, const TextureStore& te
             dpdv_ = turned(hit.dpdv, normalize(flat), hit.ns);
         }
     }
-    if (has_vertex_normals<TriangleMesh>(shape.description)) {
-        // Meshes with vertex normals have pbrt's shading tangents: orthogonal to the normal and to
-        // each other, both as long as dp/du.
-        const Vec3 t = cross(hit.ns, hit.dpdu);
+    if (has_vertex_normals<TriangleMesh>(shape.description) || has_tangents(shape.description)) {
+        // Meshes with values at their vertices have pbrt's shading tangents: orthogonal to the
+        // normal and to each other, both as long as the mesh's own tangent, or as dp/du.
+        const Vec3 t = cross(hit.ns, hit.tangent);
         if (length_squared(t) > 0) {
             dpdv_ = t;
             dpdu_ = cross(t, hit.ns);

@@ -14,13 +14,22 @@ TEST(SceneShapes, TriangleMeshesKeepTheirData) {
         "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 0 ] \"integer indices\" [ 0 1 "
         "2 1 3 2 ]\n"
         "\"point2 uv\" [ 0 0 1 0 0 1 1 1 ] \"normal N\" [ 0 0 1 0 0 1 0 0 1 0 0 1 ] \"vector3 S\" "
-        "[ 1 0 0 ]");
+        "[ 1 0 0 1 0 0 1 0 0 0 2 0 ]");
     const TriangleMesh& m = mesh_of(scene);
     EXPECT_EQ(m.positions.size(), 4u);
     EXPECT_EQ(m.positions[3], (Vec3{1, 1, 0}));
     EXPECT_EQ(m.triangles, (std::vector<std::array<uint32_t, 3>>{{0, 1, 2}, {1, 3, 2}}));
     EXPECT_EQ(m.normals.size(), 4u);
     EXPECT_EQ(m.uvs.size(), 4u);
+    ASSERT_EQ(m.tangents.size(), 4u);
+    EXPECT_EQ(m.tangents[3], (Vec3{0, 2, 0}));
+    EXPECT_EQ(warnings_of(scene), "");
+}
+
+TEST(SceneShapes, TangentsOfAnotherNumberThanThePositionsAreIgnored) {
+    const auto scene = read_world(
+        "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"vector3 S\" [ 1 0 0 ]");
+    EXPECT_TRUE(mesh_of(scene).tangents.empty());
     ASSERT_EQ(scene.warnings.size(), 1u) << warnings_of(scene);
     EXPECT_NE(scene.warnings[0].text.find("\"S\""), std::string::npos);
 }

@@ -198,14 +198,14 @@ TEST(ShadingFrame, FollowsNormalAndParameterisation) {
     SurfaceHit hit;
     hit.ng = {0, 0, 1};
     hit.ns = normalize({0.2f, -0.1f, 1});
-    hit.dpdu = {3, 0.5f, 0.1f};
+    hit.tangent = {3, 0.5f, 0.1f};
     const Frame f = shading_frame(hit);
     EXPECT_EQ(f.z, hit.ns);
     EXPECT_NEAR(dot(f.x, f.z), 0, 1e-6f);
-    EXPECT_GT(dot(f.x, hit.dpdu), 0);
+    EXPECT_GT(dot(f.x, hit.tangent), 0);
     EXPECT_NEAR(dot(cross(f.x, f.y), f.z), 1, 1e-6f);
     // A surface without a usable parameterisation still has a frame.
-    hit.dpdu = {};
+    hit.tangent = {};
     const Frame g = shading_frame(hit);
     EXPECT_NEAR(dot(cross(g.x, g.y), g.z), 1, 1e-6f);
 }

@@ -110,6 +110,22 @@ TEST(NormalMap, ImagesHoldNormalsInTheFrameOfTheSurface) {
     expect_near(r.map().frame().z, {0.6f, 0, -0.8f}, 1e-3f);
 }
 
+TEST(NormalMap, TangentsOfAMeshHoldInPlaceOfTheParameters) {
+    // The map's x points along the mesh's own tangent, which is turned against u and not of unit
+    // length.
+    const TemporaryImage normals({Rgb(0.8f, 0.5f, 0.9f)}, 1, 1);
+    TriangleMesh mesh = unit_square();
+    mesh.tangents.assign(4, {0, 2, 0});
+    expect_near(Mapped(normals, false, 1, {0.5f, 0.5f, 0}, mesh_of(mesh)).map().frame().z,
+                {0, 0.6f, 0.8f}, 1e-3f);
+    // The height is taken along u and v, but raises the tangents: S and n x S, both as long as S.
+    const TemporaryImage heights(saddle(), 2, 2);
+    constexpr float kScale = 0.3f, u = 0.6f, v = 0.4f;
+    const Mapped m(heights, true, kScale, {u, v, 0}, mesh_of(mesh));
+    const float du = kScale * 2 * (2 * v - 0.5f), dv = kScale * 2 * (2 * u - 0.5f);
+    expect_near(m.map().frame().z, normalize(cross(Vec3{0, 2, du}, Vec3{-2, 0, dv})), 2e-3f);
+}
+
 TEST(NormalMap, NormalsThatLieBelowTheSurfaceAreTurned) {
     const TemporaryImage image({Rgb(0.9f, 0.5f, 0.2f)}, 1, 1);
     const Mapped m(image, false, 1, {0.5f, 0.5f, 0});
