@@ -67,8 +67,8 @@ void add_reproduce(CLI::App& app, Invocation& invocation) {
     add_whole(c, "--threads", a->threads, 1, 4096, "worker threads (default: all cores)");
     c->add_flag("--quiet", a->quiet, "errors only");
     c->footer(
-        "Experiments: pipeline lens motion shininess snooker helicopter table voxels\n"
-        "progressive.");
+        "Experiments: pipeline slice sampling lens motion shininess snooker helicopter\n"
+        "table voxels progressive.");
     c->callback([a, &invocation] {
         invocation.action = [a, &invocation] { return reproduce_results(*a, invocation); };
     });

@@ -7,6 +7,10 @@
 
 namespace covtrace::reproduce {
 
+/// Experiment on space, time and the shutter (figures before 5.6).
+Section slice(Workshop& workshop);
+/// Experiment on combs of samples and their replicas (figures before 5.6).
+Section sampling(Workshop& workshop);
 /// Experiment on filters under a small and a large lens (figure 5.6).
 Section lens(Workshop& workshop);
 /// Experiment on filters of a moving checkerboard (figure 5.7).

@@ -81,6 +81,7 @@ Section lens(Workshop& workshop) {
         "with the circle of confusion. It forces the texture to the image's highest frequency, so "
         "that a filter shows what the lens does and nothing else.";
     const auto size = workshop.settings.board;
+    s.resolution = size;
     Sheet sheet(size, 2, 2, 3);
     Figure figure{"lens", "", Drawing(1, 1), {}};
     std::vector<Forced> of_one_path, of_own_choice;

@@ -52,6 +52,7 @@ Section motion(Workshop& workshop) {
         "The thesis shows a diffuse checkerboard that moves along the image's y axis: its filters "
         "stretch along y.";
     const auto size = workshop.settings.board;
+    s.resolution = size;
     Sheet sheet(size, 1.6f, 4, 3);
     Figure figure{"motion", "", Drawing(1, 1), {}};
     Table table{

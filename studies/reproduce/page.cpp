@@ -26,6 +26,7 @@ details{margin:.3rem 0;font-size:.9rem}details code{display:block;margin:.2rem 0
 .yes{color:#0a6b2d;font-weight:600}.no{color:#a61b12;font-weight:600}.note{background:#fff8e0;padding:.5rem .8rem;border-left:4px solid #e0b400}
 .thesis{background:#eef4fb;padding:.5rem .8rem;border-left:4px solid #4a7fb5}
 nav a{margin-right:1rem}
+@media(max-width:900px){body{padding:.7rem}h1{font-size:1.3rem}figure svg{max-width:none;width:900px}}
 @media print{details{display:none}})";
 
 std::string commands_html(const std::vector<std::string>& commands) {
@@ -75,7 +76,8 @@ std::string section_html(const Section& section) {
     if (!section.failure.empty())
         s += "<p class=\"no\">Not run: " + escaped(section.failure) + "</p>\n";
     for (const Figure& f : section.figures) {
-        s += "<figure>\n" + f.drawing.svg() + "<figcaption>" + escaped(f.caption) +
+        s += "<figure>\n<div class=\"scroll\">" + f.drawing.svg() + "</div><figcaption>" +
+             escaped(f.caption) +
              fmt::format(
                  " Files: <a href=\"figures/{0}.png\">PNG</a>, <a "
                  "href=\"figures/{0}.svg\">SVG</a>.</figcaption>\n",
@@ -108,7 +110,8 @@ void write_page(const std::vector<Section>& sections, const PageFacts& facts,
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
         "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
         "'unsafe-inline'; img-src data:\">\n<meta name=\"viewport\" "
-        "content=\"width=device-width\">\n<title>Covariance tracing: the thesis' results, "
+        "content=\"width=device-width,initial-scale=1\">\n<title>Covariance tracing: the thesis' "
+        "results, "
         "reproduced</title>\n<style>" +
         std::string(kStyle) + "</style>\n</head>\n<body>\n";
     s +=
@@ -116,10 +119,10 @@ void write_page(const std::vector<Section>& sections, const PageFacts& facts,
     s += "<p>Made by <code>" + escaped(facts.command) + "</code>, size “" + escaped(facts.size) +
          "”. Every figure, table and claim carries the command that makes it.";
     if (!facts.complete) s += " <strong class=\"no\">Not complete: the run has not ended.</strong>";
-    s += "</p>\n<table>";
+    s += "</p>\n<div class=\"scroll\"><table>";
     for (const auto& [name, value] : facts.facts)
         s += "<tr><th>" + escaped(name) + "</th><td>" + escaped(value) + "</td></tr>\n";
-    s += "</table>\n<nav>";
+    s += "</table></div>\n<nav>";
     for (const Section& section : sections)
         s += fmt::format("<a href=\"#{0}\">{0}</a> ", escaped(section.name));
     s += "</nav>\n";
@@ -137,9 +140,11 @@ void write_results(const std::vector<Section>& sections, const PageFacts& facts,
     for (const auto& [name, value] : facts.facts) all["facts"][name] = value;
     for (const Section& section : sections) {
         json& e = all["experiments"][section.name];
-        e = {{"title", section.title},     {"notes", section.notes},  {"data", section.data},
-             {"seconds_cpu", section.cpu}, {"seconds", section.wall}, {"claims", json::object()},
-             {"figures", json::array()},   {"tables", json::array()}};
+        e = {{"title", section.title},     {"resolution", section.resolution},
+             {"notes", section.notes},     {"data", section.data},
+             {"seconds_cpu", section.cpu}, {"seconds", section.wall},
+             {"claims", json::object()},   {"figures", json::array()},
+             {"tables", json::array()}};
         if (!section.failure.empty()) e["failure"] = section.failure;
         for (const Claim& c : section.claims)
             e["claims"][c.name] = {{"statement", c.statement},

@@ -11,6 +11,22 @@ namespace {
 
 constexpr float kMargin = 8, kTitle = 18, kCapitals = 8;
 
+/// The ellipse p' C^-1 p = 1 around its middle, pixels.
+struct Ellipse {
+    Vec2 middle;
+    covariance::Sym2<float> c;
+};
+
+/// Whether two ellipses may overlap: they are apart where what they reach towards each other is
+/// less than their distance.
+bool overlap(const Ellipse& a, const Ellipse& b) {
+    const Vec2 d = a.middle - b.middle;
+    const auto reach = [d](const covariance::Sym2<float>& c) {
+        return std::sqrt(c.xx * d.x * d.x + 2 * c.xy * d.x * d.y + c.yy * d.y * d.y);
+    };
+    return reach(a.c) + reach(b.c) > dot(d, d);
+}
+
 }  // namespace
 
 Picture display(const Image& image, float dim) {
@@ -88,22 +104,34 @@ void Sheet::ellipses(int column, int row, const std::vector<covariance::Sym2<flo
                      int across, float deviations, Ink ink) {
     const Vec2 at = corner(column, row);
     const float step = float(panel_[0]) / float(across);
-    const float square = scale_ * scale_ * deviations * deviations;
     const int down = std::max(1, int(std::lround(float(panel_[1]) / step)));
+    std::vector<Ellipse> candidates;
     for (int j = 0; j < down; ++j)
         for (int i = 0; i < across; ++i) {
             const int x = std::min(int((float(i) + 0.5f) * step), panel_[0] - 1);
             const int y =
                 std::min(int((float(j) + 0.5f) * float(panel_[1]) / float(down)), panel_[1] - 1);
             const auto& f = filters[size_t(y) * size_t(panel_[0]) + size_t(x)];
+            const Ellipse e{{float(x) + 0.5f, float(y) + 0.5f}, deviations * deviations * f};
             // Leave out ellipses that would cross the border of the panel
-            const float rx = deviations * std::sqrt(f.xx), ry = deviations * std::sqrt(f.yy);
-            if (float(x) + 0.5f < rx || float(y) + 0.5f < ry ||
-                float(x) + 0.5f + rx > float(panel_[0]) || float(y) + 0.5f + ry > float(panel_[1]))
-                continue;
-            drawing.ellipse(at.x + scale_ * (float(x) + 0.5f), at.y + scale_ * (float(y) + 0.5f),
-                            square * f, ink, 1.2f);
+            const float rx = std::sqrt(e.c.xx), ry = std::sqrt(e.c.yy);
+            if (e.middle.x >= rx && e.middle.y >= ry && e.middle.x + rx <= float(panel_[0]) &&
+                e.middle.y + ry <= float(panel_[1]))
+                candidates.push_back(e);
         }
+    // Small ones first: a large one beside them would hide that there is detail.
+    std::stable_sort(candidates.begin(), candidates.end(), [](const Ellipse& a, const Ellipse& b) {
+        return covariance::det(a.c) < covariance::det(b.c);
+    });
+    std::vector<Ellipse> drawn;
+    for (const Ellipse& e : candidates) {
+        if (std::any_of(drawn.begin(), drawn.end(),
+                        [&e](const Ellipse& other) { return overlap(e, other); }))
+            continue;
+        drawn.push_back(e);
+        drawing.ellipse(at.x + scale_ * e.middle.x, at.y + scale_ * e.middle.y,
+                        scale_ * scale_ * e.c, ink, 1.2f);
+    }
 }
 
 void Sheet::mark(int column, int row, const PixelBounds& b, Ink ink) {

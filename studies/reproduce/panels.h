@@ -39,6 +39,8 @@ class Sheet {
     Drawing drawing;
     /// Upper left corner of a panel.
     Vec2 corner(int column, int row) const;
+    /// Pixels of one picture.
+    std::array<int, 2> panel() const { return panel_; }
     float width() const { return scale_ * float(panel_[0]); }
     float height() const { return scale_ * float(panel_[1]); }
 
@@ -46,8 +48,8 @@ class Sheet {
     /// Adds a map of values with its legend.
     void map(int column, int row, const std::string& title, const std::vector<float>& values,
              const ColourMap& map);
-    /// Adds ellipses where the filters reach `deviations` standard deviations, about `across` in a
-    /// row.
+    /// Adds ellipses where the filters reach `deviations` standard deviations, at about `across`
+    /// places in a row; none that would overlap another or leave the panel.
     void ellipses(int column, int row, const std::vector<covariance::Sym2<float>>& filters,
                   int across, float deviations, Ink ink);
     /// Adds a frame around pixels.

@@ -19,6 +19,41 @@ std::vector<float> bandwidth(const Image& image, const std::string& a, const std
     return sum;
 }
 
+/// The whole way in one figure: 1 to 3 what the paths of the analysis say, 4 to 6 what follows from
+/// it.
+Figure whole_way(const Timed& timed) {
+    const Image& image = timed.result.image;
+    Sheet sheet({image.width(), image.height()}, 360.0f / float(image.width()), 3, 2, {true, true});
+    const auto add = [&](int column, int row, const std::string& title,
+                         const std::vector<float>& values, const std::string& unit) {
+        sheet.map(column, row, title, values, map_for(values, unit));
+    };
+    add(0, 0, "1 covariance buffer", bandwidth(image, "cov.00", "cov.11"),
+        "bandwidth, cycles per pixel");
+    add(1, 0, "2 after lens and shutter", bandwidth(image, "spectrum.xx", "spectrum.yy"),
+        "bandwidth, cycles per pixel");
+    add(2, 0, "3 density of samples", image.find("samples.Y")->values, "samples per pixel");
+    Image raw;
+    raw.data = image.data;
+    raw.display = image.display;
+    for (const char* c : {"R", "G", "B"})
+        raw.add_channel(c).values = image.find(std::string("raw.") + c)->values;
+    sheet.picture(0, 1, "4 samples", display(raw));
+    sheet.picture(1, 1, "5 filters", display(image, 0.5f));
+    sheet.ellipses(1, 1, matrices(image, "filter."), 24, 1, kOrange);
+    sheet.picture(2, 1, "6 image", display(image));
+    return {"pipeline",
+            fmt::format(
+                "From the covariance to the image, {:.3g} samples a pixel: a few paths bring the "
+                "covariance of the light field over pixel, lens and shutter (1); lens and shutter "
+                "take the frequencies away that they average (2); the density follows (3), the "
+                "samples are taken (4), and each pixel gathers those that its filter reaches (5, "
+                "at one deviation) into the image (6).",
+                timed.result.statistics.samples_per_pixel),
+            sheet.drawing,
+            {timed.command}};
+}
+
 }  // namespace
 
 Section pipeline(Workshop& workshop) {
@@ -52,7 +87,9 @@ Section pipeline(Workshop& workshop) {
     const Timed letter = workshop.render(scene, options);
 
     const auto size = scene.resolution;
+    s.resolution = size;
     const Image &image = verified.result.image, &few = sparse.result.image;
+    s.figures.push_back(whole_way(verified));
     Sheet buffer(size, 540.0f / float(size[0]), 2, 3, {true, true, true});
     const auto add = [&](int column, int row, const std::string& title,
                          const std::vector<float>& values, const std::string& unit) {

@@ -97,6 +97,7 @@ Section progressive(Workshop& workshop) {
     }
 
     const auto size = scene.resolution;
+    s.resolution = size;
     const Image &a = capped.first.result.image, &b = demand.first.result.image;
     Sheet sheet(size, 540.0f / float(size[0]), 2, 2, {false, true});
     const std::vector<std::string> commands{capped.first.command, demand.first.command};

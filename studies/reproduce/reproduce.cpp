@@ -19,15 +19,17 @@ struct Experiment {
     Section (*run)(Workshop&);
 };
 
-const std::array<Experiment, 9> kExperiments{{{"pipeline", "figure 5.1, equation 5.7", pipeline},
-                                              {"lens", "figure 5.6", lens},
-                                              {"motion", "figure 5.7", motion},
-                                              {"shininess", "figure 5.8", shininess},
-                                              {"snooker", "figures 5.9 and 5.10", snooker},
-                                              {"helicopter", "figure 5.11", helicopter},
-                                              {"table", "table 5.1", table},
-                                              {"voxels", "figure 5.12", voxels},
-                                              {"progressive", "section 5.1.3", progressive}}};
+const std::array<Experiment, 11> kExperiments{{{"pipeline", "figure 5.1, equation 5.7", pipeline},
+                                               {"slice", "figures before 5.6", slice},
+                                               {"sampling", "figures before 5.6", sampling},
+                                               {"lens", "figure 5.6", lens},
+                                               {"motion", "figure 5.7", motion},
+                                               {"shininess", "figure 5.8", shininess},
+                                               {"snooker", "figures 5.9 and 5.10", snooker},
+                                               {"helicopter", "figure 5.11", helicopter},
+                                               {"table", "table 5.1", table},
+                                               {"voxels", "figure 5.12", voxels},
+                                               {"progressive", "section 5.1.3", progressive}}};
 
 std::vector<const Experiment*> chosen(const std::vector<std::string>& names) {
     std::string known;

@@ -104,8 +104,14 @@ fs::path SceneSource::generated(const std::string& name) {
     return file;
 }
 
-fs::path SceneSource::written(const std::string& name, const std::string& text) {
+fs::path SceneSource::written(const std::string& name, const std::string& text,
+                              const std::map<std::string, std::string>& beside) {
     make_folder(made_in_ / name);
+    for (const auto& [file_name, bytes] : beside) {
+        OutputFile other(made_in_ / name / file_name);
+        other.write(bytes.data(), bytes.size());
+        other.commit();
+    }
     OutputFile file(made_in_ / name / "scene.pbrt");
     file.write(text.data(), text.size());
     file.commit();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 
@@ -20,8 +21,10 @@ class SceneSource {
     /// A generated scene, made once per run, or found in the given folder. Throws Error(scene)
     /// where it is not there or the generator fails.
     fs::path generated(const std::string& name);
-    /// A scene of the given text, written to a file. Throws Error(io).
-    fs::path written(const std::string& name, const std::string& text);
+    /// A scene of the given text, written to a file, with the files beside it, bytes by name.
+    /// Throws Error(io).
+    fs::path written(const std::string& name, const std::string& text,
+                     const std::map<std::string, std::string>& beside = {});
 
   private:
     fs::path given_, made_in_;

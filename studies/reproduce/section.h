@@ -1,6 +1,7 @@
 /// The result of an experiment, which the page shows and results.json holds.
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -38,7 +39,8 @@ struct Claim {
 
 struct Section {
     std::string name, title;
-    std::string thesis;              ///< the result that Belcour 2012 shows
+    std::string thesis;               ///< the result that Belcour 2012 shows
+    std::array<int, 2> resolution{};  ///< of its images, pixels
     std::vector<std::string> notes;  ///< remarks; also: parts that could not be reproduced, and why
     std::vector<Figure> figures;
     std::vector<Table> tables;

@@ -57,6 +57,7 @@ Section snooker(Workshop& workshop) {
                  "The snooker table, a lit room as environment, an open lens, a rolling ball.");
     s.tables.push_back(comparison_table(study));
     s.data = to_json(study);
+    s.resolution = study.scene->resolution;
     add_equal_error_claims(s, study, {{"covariance", 3.0}, {"hybrid", 5.8}},
                            "5.8 times (2 h 25 min over 25 min)", workshop);
     add_share_claims(s, study);

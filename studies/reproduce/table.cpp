@@ -74,6 +74,7 @@ Section table(Workshop& workshop) {
             "analysis are for spectra of textures and environment, whatever the image's size.",
             name, study.scene->load_cpu, study.methods.front().breakdown.spectra));
         s.data[name] = to_json(study);
+        s.resolution = study.scene->resolution;
     }
     s.tables.push_back(std::move(t));
     s.notes.push_back(

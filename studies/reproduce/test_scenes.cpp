@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <vector>
 
 namespace covtrace::reproduce {
 
@@ -87,6 +90,58 @@ std::string MovingBoard::text(std::array<int, 2> resolution) const {
                kFov, kSky, -dx, -dy, kDistance, dx, dy, kDistance, board(6, 0.15));
 }
 
+std::string MovingPattern::text(std::array<int, 2> resolution) {
+    const double height = 2 * kDistance * std::tan(radians(kFov) / 2);
+    const double dx = (0.5 + kAround) * kWay * height, half = 6;
+    return "# A smooth pattern that moves while the shutter is open, seen by a pinhole; metres.\n" +
+           film("slice", resolution) +
+           fmt::format(
+               "Integrator \"path\" \"integer maxdepth\" 1\n"
+               "Camera \"perspective\" \"float fov\" {} \"float shutteropen\" 0 \"float "
+               "shutterclose\" 1\nTransformTimes {} {}\nWorldBegin\n{}"
+               "ActiveTransform StartTime\nTranslate {} 0 {}\n"
+               "ActiveTransform EndTime\nTranslate {} 0 {}\nActiveTransform All\n",
+               kFov, -kAround, 1 + kAround, kSky, -dx, kDistance, dx, kDistance) +
+           fmt::format(
+               "Texture \"pattern\" \"spectrum\" \"imagemap\" \"string filename\" \"{}\" "
+               "\"string encoding\" \"linear\"\n    \"float uscale\" {} \"float vscale\" {}\n"
+               "Material \"diffuse\" \"texture reflectance\" \"pattern\"\n"
+               "Shape \"trianglemesh\" \"point3 P\" [ -{} -{} 0  {} -{} 0  {} {} 0  -{} {} 0 ]\n"
+               "    \"point2 uv\" [ 0 0 1 0 1 1 0 1 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n",
+               kFile, 2 * half / kTile, 2 * half / kTile, half, half, half, half, half, half, half,
+               half);
+}
+
+std::string MovingPattern::pattern() {
+    constexpr int kSide = 128, kMost = 3 * int(kBandwidth);
+    constexpr double kMean = 0.45, kDeviation = 0.13;
+    std::mt19937 random(1);
+    std::vector<double> values(size_t(kSide) * kSide, 0);
+    double energy = 0;
+    for (int ky = 0; ky <= kMost; ++ky)
+        for (int kx = -kMost; kx <= kMost; ++kx) {
+            if (ky == 0 && kx <= 0) continue;  // the mean, and what mirrors the others
+            const double amplitude =
+                std::exp(-0.5 * (kx * kx + ky * ky) / (kBandwidth * kBandwidth));
+            const double phase = 2 * std::numbers::pi * double(random()) / double(random.max());
+            energy += 0.5 * amplitude * amplitude;
+            for (int y = 0; y < kSide; ++y)
+                for (int x = 0; x < kSide; ++x)
+                    values[size_t(y) * kSide + size_t(x)] +=
+                        amplitude *
+                        std::cos(2 * std::numbers::pi * (kx * x + ky * y) / kSide + phase);
+        }
+    std::string bytes = fmt::format("P5\n{} {}\n255\n", kSide, kSide);
+    for (const double v : values)
+        bytes += char(
+            std::lround(255 * std::clamp(kMean + kDeviation * v / std::sqrt(energy), 0.0, 1.0)));
+    return bytes;
+}
+
+double MovingPattern::bandwidth(int image_height) {
+    return kBandwidth / kTile * 2 * kDistance * std::tan(radians(kFov) / 2) / image_height;
+}
+
 double SphereRows::roughness(double exponent) {
     return 1 / std::sqrt(exponent);
 }
@@ -100,7 +155,7 @@ std::string SphereRows::text(std::array<int, 2> resolution) const {
         fmt::format(
             "Integrator \"path\" \"integer maxdepth\" 2\nLookAt 0 0 -{}  0 0 0  0 1 0\n"
             "Camera \"perspective\" \"float fov\" {}\nWorldBegin\n"
-            "LightSource \"infinite\" \"rgb L\" [ .2 .22 .25 ]\n"
+            "LightSource \"infinite\" \"rgb L\" [ .38 .4 .44 ]\n"
             "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [ 60 57 52 ] \"bool twosided\" "
             "true\nMaterial \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\n"
             "Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 0 2 3 ]\n    \"point3 P\" "
@@ -116,7 +171,7 @@ std::string SphereRows::text(std::array<int, 2> resolution) const {
                 row == 0 ? 0.5 * kRowStep : -0.5 * kRowStep,
                 row == 0 ? "\"conductor\" \"spectrum eta\" \"metal-Al-eta\" \"spectrum k\" "
                            "\"metal-Al-k\""
-                         : "\"coateddiffuse\" \"rgb reflectance\" [ .35 .08 .05 ]",
+                         : "\"coateddiffuse\" \"rgb reflectance\" [ .5 .17 .1 ]",
                 roughness(kExponents[i]), kRadius);
     return s;
 }

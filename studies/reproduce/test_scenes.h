@@ -25,6 +25,24 @@ struct MovingBoard {
     std::string text(std::array<int, 2> resolution) const;
 };
 
+/// A board with a smooth pattern, parallel to the film, that moves to the right before, while and
+/// after the shutter is open, seen by a pinhole. The pattern's amplitudes are a Gaussian of its
+/// frequencies.
+struct MovingPattern {
+    /// Way in one shutter interval, as share of the image's height; intervals before and after.
+    static constexpr double kWay = 0.12, kAround = 1;
+    static constexpr double kFov = 30, kDistance = 2;
+    /// Deviation of the amplitudes along each axis, periods in a tile of kTile metres.
+    static constexpr double kBandwidth = 5, kTile = 1;
+    static constexpr const char* kFile = "pattern.pgm";
+    /// The scene's text, which names the pattern's file beside it.
+    static std::string text(std::array<int, 2> resolution);
+    /// The bytes of the pattern's file.
+    static std::string pattern();
+    /// The deviation of the amplitudes in the image, cycles per pixel.
+    static double bandwidth(int image_height);
+};
+
 /// Spheres in two rows under a square light: metal with one lobe, above a diffuse base with a coat;
 /// their sharpness rises from left to right.
 struct SphereRows {

@@ -6,14 +6,6 @@ namespace covtrace::reproduce {
 
 namespace {
 
-/// The experiment's own command, which finds the match again.
-std::string search_command(const SceneStudy& study, const Workshop& workshop) {
-    return fmt::format("covtrace reproduce {} -o {}{}", study.name, workshop.output.string(),
-                       workshop.size == Size::full    ? ""
-                       : workshop.size == Size::quick ? " --quick"
-                                                      : " --tiny");
-}
-
 std::string at_least(double least, const Workshop& workshop) {
     return fmt::format("at least {:g}{}", least,
                        workshop.size == Size::full ? "" : " at the full size");
@@ -33,7 +25,7 @@ void add_equal_error_claims(Section& section, const SceneStudy& study,
                                   study.name, m.name);
         c.thesis = thesis;
         c.required = at_least(required->second, workshop);
-        c.command = search_command(study, workshop);
+        c.command = reproduce_command(workshop, study.name);
         bool above_floor = true;
         const bool is_measured = m.ours.mean_error() > 0;
         std::string floor;
@@ -74,7 +66,7 @@ void add_equal_time_claims(Section& section, const SceneStudy& study,
                                   study.name, m.name);
         c.thesis = "shown, without figures";
         c.required = at_least(required->second, workshop);
-        c.command = search_command(study, workshop);
+        c.command = reproduce_command(workshop, study.name);
         c.value = r.mean;
         c.found =
             r.text() + " times" +

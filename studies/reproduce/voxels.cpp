@@ -68,6 +68,7 @@ Section voxels(Workshop& workshop) {
         "costs "
         "samples.";
     const auto size = workshop.settings.shadows;
+    s.resolution = size;
     LoadedScene scene = workshop.load("foliage", workshop.scenes.generated("foliage"), size);
     const Reference reference(workshop, scene);
     Sheet sheet(size, 1.5f, 3, 5, {false, true, true, true, true});

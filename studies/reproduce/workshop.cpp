@@ -42,11 +42,13 @@ Workshop::Workshop(Size chosen, fs::path folder, const fs::path& given_scenes,
       interrupted_(interrupted) {}
 
 LoadedScene Workshop::load(const std::string& name, const fs::path& file,
-                           std::array<int, 2> resolution) {
+                           std::array<int, 2> resolution,
+                           std::optional<std::array<float, 2>> shutter) {
     const double start = cpu_seconds();
     SceneDescription description = read_pbrt(file);
     SceneOverrides overrides;
     overrides.resolution = resolution;
+    overrides.shutter = shutter;
     apply(overrides, description);
     LoadedScene loaded{name, file, resolution,
                        std::make_unique<RenderScene>(std::move(description)), 0};
@@ -67,6 +69,12 @@ Timed Workshop::render(LoadedScene& scene, const RenderOptions& options,
     timed.wall = monitor.elapsed();
     if (interrupted_) throw Error(ErrorKind::interrupted, "interrupted");
     return timed;
+}
+
+std::string reproduce_command(const Workshop& workshop, const std::string& experiment) {
+    return fmt::format("covtrace reproduce {} -o {}{}", experiment,
+                       quoted(workshop.output.string()),
+                       workshop.size == Size::full ? "" : " --" + name_of(workshop.size));
 }
 
 std::string render_command(const LoadedScene& scene, const RenderOptions& o) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,9 @@ class Workshop {
     /// Tells in one line what is being done.
     void tell(const std::string& line) const { say_(line); }
 
-    LoadedScene load(const std::string& name, const fs::path& file, std::array<int, 2> resolution);
+    /// Loads a scene; with a shutter in place of its own where one is given.
+    LoadedScene load(const std::string& name, const fs::path& file, std::array<int, 2> resolution,
+                     std::optional<std::array<float, 2>> shutter = std::nullopt);
     /// Renders a scene. Throws Error(interrupted) once the workshop is interrupted. `watcher` is
     /// called as Monitor's.
     Timed render(LoadedScene& scene, const RenderOptions& options,
@@ -72,6 +75,9 @@ class Workshop {
     const std::atomic<bool>& interrupted_;
     std::map<std::string, std::shared_ptr<void>> shared_;
 };
+
+/// The command that runs one experiment again into the same folder.
+std::string reproduce_command(const Workshop& workshop, const std::string& experiment);
 
 /// The command `covtrace render …` with all options that are not the defaults.
 std::string render_command(const LoadedScene& scene, const RenderOptions& options);

@@ -41,6 +41,19 @@ class Reproduce(CliTest):
             self.assertEqual(area, sorted(area, reverse=True), kind)
             self.assertLess(area[-1], area[0] / 2, kind)
 
+    def test_space_and_time_before_and_behind_the_shutter(self):
+        self.assertEqual(self.run_program("reproduce", "slice", "--tiny", "-o", "out", timeout=100).code, DONE)
+        experiment = self.results("out")["experiments"]["slice"]
+        self.assertEqual(experiment["resolution"], [64, 36])
+        data = experiment["data"]
+        predicted, measured = data["predicted"], data["measured"]
+        for covariance in (predicted, measured):
+            self.assertAlmostEqual(-covariance["xt"] / covariance["xx"] / data["way"], 1, delta=0.03)
+            self.assertLess(covariance["behind"], covariance["xx"])
+        for part in ("xx", "behind"):
+            self.assertAlmostEqual((predicted[part] / measured[part]) ** 0.5, 1, delta=0.3, msg=part)
+        self.assertLess(data["image_difference"], 0.03)
+
     def test_page_is_self_contained_and_safe(self):
         folder = "a <b>&'\" c"
         self.assertEqual(self.run_program("reproduce", "motion", "--tiny", "--quiet", "-o", folder).code, DONE)
@@ -71,7 +84,7 @@ class Reproduce(CliTest):
         self.assertTrue(results["complete"])
         self.assertEqual(
             set(results["experiments"]),
-            {"pipeline", "lens", "motion", "shininess", "snooker", "helicopter", "table", "voxels", "progressive"},
+            {"pipeline", "slice", "sampling", "lens", "motion", "shininess", "snooker", "helicopter", "table", "voxels", "progressive"},
         )
         page = (Path(self.folder) / "out/index.html").read_text()
         for name, experiment in results["experiments"].items():
