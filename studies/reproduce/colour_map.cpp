@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "reproduce/stroke_font.h"
+
 namespace covtrace::reproduce {
 
 namespace {
@@ -67,18 +69,28 @@ void draw_legend(Drawing& drawing, const ColourMap& map, float x, float y, float
         drawing.fill(x + width * float(i) / kSteps, y + 4, width / kSteps + 0.5f, 8, c);
     }
     const float range = std::log(map.most / map.least);
-    float last = -1e9f;
+    const auto width_of = [](const std::string& text, float size) {
+        return size / kCapital * kAdvance * float(letters_in(text));
+    };
+    constexpr float kNumber = 6, kQuantity = 6.5f, kGap = 5;
+    float free_from = x;
     for (int power = -12; power <= 12; ++power)
         for (const float digit : {1.0f, 2.0f, 5.0f}) {
             const float value = digit * std::pow(10.0f, float(power));
             if (value < map.least || value > map.most) continue;
             const float at = x + width * std::log(value / map.least) / range;
             drawing.line({at, y + 12}, {at, y + 15}, kBlack, 1);
-            if (at - last < 34) continue;  // room for the number
-            last = at;
-            drawing.text(at, y + 24, 6, fmt::format("{:.4g}", value), kBlack, Anchor::middle);
+            // A number stays within the bar's ends, where a panel's neighbour begins.
+            const std::string number = fmt::format("{:.4g}", value);
+            const float half = 0.5f * width_of(number, kNumber);
+            const float middle = std::clamp(at, x + half, std::max(x + half, x + width - half));
+            if (middle - half < free_from) continue;
+            free_from = middle + half + kGap;
+            drawing.text(middle, y + 24, kNumber, number, kBlack, Anchor::middle);
         }
-    drawing.text(x + 0.5f * width, y + 35, 6.5f, map.quantity, kBlack, Anchor::middle);
+    const float shrink = std::min(1.0f, width / width_of(map.quantity, kQuantity));
+    drawing.text(x + 0.5f * width, y + 35, shrink * kQuantity, map.quantity, kBlack,
+                 Anchor::middle);
 }
 
 }  // namespace covtrace::reproduce

@@ -50,10 +50,11 @@ Section shininess(Workshop& workshop) {
         "the highlight get smaller. It takes a BRDF's covariance at its peak for all directions "
         "(global), and names the small filters beside the highlight as a limitation.";
     const auto size = workshop.settings.spheres;
+    s.resolution = size;
     const SphereRows rows;
     LoadedScene scene = workshop.load(
         "shininess-rows", workshop.scenes.written("shininess-rows", rows.text(size)), size);
-    Sheet sheet(size, 1.8f, 2, 2, {false, true});
+    Sheet sheet(size, 540.0f / float(size[0]), 2, 3, {false, false, true});
     Figure figure{"shininess", "", Drawing(1, 1), {}};
     Table table{"Mean area of the filters on a sphere's highlight, pixels²",
                 {"exponent", "GGX roughness", "metal, local", "metal, global", "coated, local",
@@ -83,18 +84,20 @@ Section shininess(Workshop& workshop) {
         const Image& image = timed[size_t(rule)].result.image;
         const std::string label = rule == 0 ? "local BRDF covariance" : "global, as in the thesis";
         const auto filters = matrices(image, "filter.");
-        sheet.picture(rule, 0, label, display(image, 0.7f));
-        sheet.ellipses(rule, 0, filters, 36, 2, rule == 0 ? kOrange : kCyan);
-        sheet.map(rule, 1, "sizes", sizes_of(filters), map);
+        sheet.picture(rule, 0, label, display(image));
+        sheet.picture(rule, 1, "its filters, 2 deviations", display(image, 0.6f));
+        sheet.ellipses(rule, 1, filters, 30, 2, rule == 0 ? kOrange : kCyan);
+        sheet.map(rule, 2, "their sizes", sizes_of(filters), map);
     }
     figure.drawing = sheet.drawing;
     figure.commands = table.commands;
     figure.caption = fmt::format(
         "Spheres of Phong exponents 16, 64, 256, 1024 and 4096 (as GGX roughness 1/√e), metal "
         "above, "
-        "a coat over a diffuse base below, under one square light, {:g} samples a pixel. Filters "
-        "at "
-        "two standard deviations over the dimmed image, and their sizes.",
+        "a coat over a diffuse base below, under one square light, {:g} samples a pixel. Top: the "
+        "delivered image. Middle: filters at two standard deviations, the smaller of those that "
+        "would overlap. "
+        "Bottom: their sizes.",
         workshop.settings.board_spp);
     s.figures.push_back(std::move(figure));
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "reproduce/colour_map.h"
+#include "reproduce/panels.h"
 #include "reproduce/stroke_font.h"
 
 namespace covtrace::reproduce {
@@ -50,6 +51,43 @@ TEST(Drawing, MagnifiesAnImageWithoutSmoothing) {
     EXPECT_EQ(ink_at(p, 1, 1), 255);
     EXPECT_EQ(ink_at(p, 4, 3), 255);
     EXPECT_EQ(ink_at(p, 5, 1), 0);
+}
+
+size_t count(const std::string& text, const std::string& word) {
+    size_t n = 0;
+    for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++n;
+    return n;
+}
+
+TEST(Sheet, DrawsNoEllipsesThatOverlapAndKeepsTheSmallOnes) {
+    const auto drawn = [](const std::vector<covariance::Sym2<float>>& filters) {
+        Sheet sheet({40, 20}, 2, 1, 1);
+        sheet.ellipses(0, 0, filters, 20, 2, kBlack);
+        return count(sheet.drawing.svg(), "<polygon");
+    };
+    std::vector<covariance::Sym2<float>> filters(40 * 20, {0.09f, 0, 0.09f});
+    // 2 pixels apart and 1.2 across; the last of a row and of a column would leave the panel.
+    EXPECT_EQ(drawn(filters), 19u * 9u);
+    std::fill(filters.begin(), filters.end(), covariance::Sym2<float>{9, 0, 9});
+    const size_t wide = drawn(filters);  // 12 across: three beside each other
+    EXPECT_GE(wide, 1u);
+    EXPECT_LE(wide, 3u);
+    // A row of small ones through the middle leaves no room for wide ones.
+    for (int y = 9; y < 12; ++y)
+        for (int x = 0; x < 40; ++x) filters[size_t(40 * y + x)] = {0.09f, 0, 0.09f};
+    EXPECT_GE(drawn(filters), 20u);
+}
+
+TEST(ColourMap, LabelsStayWithinTheBarAndApart) {
+    Drawing drawing(400, 60);
+    draw_legend(drawing, {0.0001f, 0.2f, "a quantity"}, 100, 10, 200);
+    const Picture p = drawing.pixels();
+    for (int y = 0; y < p.height; ++y)
+        for (int x = 0; x < p.width; ++x)
+            if (x < 98 || x > 302) {
+                ASSERT_EQ(ink_at(p, x, y), 0) << x << " " << y;
+            }
+    EXPECT_GE(count(drawing.svg(), "<text"), 4u);
 }
 
 TEST(StrokeFont, HasLettersDigitsAndSigns) {
