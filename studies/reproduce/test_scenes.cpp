@@ -155,8 +155,8 @@ std::string SphereRows::text(std::array<int, 2> resolution) const {
         fmt::format(
             "Integrator \"path\" \"integer maxdepth\" 2\nLookAt 0 0 -{}  0 0 0  0 1 0\n"
             "Camera \"perspective\" \"float fov\" {}\nWorldBegin\n"
-            "LightSource \"infinite\" \"rgb L\" [ .38 .4 .44 ]\n"
-            "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [ 60 57 52 ] \"bool twosided\" "
+            "LightSource \"infinite\" \"rgb L\" [ .4 .44 .5 ]\n"
+            "AttributeBegin\nAreaLightSource \"diffuse\" \"rgb L\" [ 120 114 104 ] \"bool twosided\" "
             "true\nMaterial \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\n"
             "Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 0 2 3 ]\n    \"point3 P\" "
             "[ -.5 4.376 -4.381  -.5 5.024 -3.619  .5 5.024 -3.619  .5 4.376 -4.381 ]\n"
@@ -171,7 +171,7 @@ std::string SphereRows::text(std::array<int, 2> resolution) const {
                 row == 0 ? 0.5 * kRowStep : -0.5 * kRowStep,
                 row == 0 ? "\"conductor\" \"spectrum eta\" \"metal-Al-eta\" \"spectrum k\" "
                            "\"metal-Al-k\""
-                         : "\"coateddiffuse\" \"rgb reflectance\" [ .5 .17 .1 ]",
+                         : "\"coateddiffuse\" \"rgb reflectance\" [ .35 .08 .05 ]",
                 roughness(kExponents[i]), kRadius);
     return s;
 }

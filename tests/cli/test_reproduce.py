@@ -52,7 +52,7 @@ class Reproduce(CliTest):
             self.assertLess(covariance["behind"], covariance["xx"])
         for part in ("xx", "behind"):
             self.assertAlmostEqual((predicted[part] / measured[part]) ** 0.5, 1, delta=0.3, msg=part)
-        self.assertLess(data["image_difference"], 0.03)
+        self.assertLess(data["image_difference"], 0.1)  # 16 samples a pixel
 
     def test_page_is_self_contained_and_safe(self):
         folder = "a <b>&'\" c"
