@@ -12,13 +12,14 @@ namespace covtrace::cli {
 
 namespace {
 
-constexpr std::array<std::string_view, 14> kStandard{
-    "A",       "Z",       "raw",    "albedo",   "N",   "variance",  "error",
-    "samples", "density", "filter", "spectrum", "cov", "covweight", "share"};
+constexpr std::array<std::string_view, 13> kStandard{
+    "A",       "Z",       "raw",    "albedo",   "N",   "variance", "error",
+    "samples", "density", "filter", "spectrum", "cov", "covweight"};
 /// Layers that must be asked for by name: those that tell emitters in view apart from scattered
-/// light, and those for denoisers alone.
-constexpr std::array<std::string_view, 6> kParts{
-    "inview", "inviewfilter", "scatteredcov", "scatteredcovweight", "featurealbedo", "featureN"};
+/// light, those for denoisers alone, and what each kind of candidate made.
+constexpr std::array<std::string_view, 7> kParts{
+    "inview",        "inviewfilter", "scatteredcov", "scatteredcovweight",
+    "featurealbedo", "featureN",     "share"};
 
 template <typename Names>
 bool contains(const Names& names, std::string_view name) {

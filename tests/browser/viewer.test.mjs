@@ -23,7 +23,7 @@ let browser;
 before(async () => {
     writeImage('a.pfm', kWidth, kHeight, pattern);
     writeImage('b.pfm', kWidth, kHeight, other);
-    renderScene('out.exr');
+    renderScene('out.exr', '--layers', 'all,share');
     covtrace('inspect', 'a.pfm', '--report', 'a.html');
     covtrace('compare', 'a.pfm', 'b.pfm', '--report', 'ab.html');
     covtrace('inspect', 'out.exr', '--report', 'out.html');

@@ -147,17 +147,19 @@ Shape "bilinearmesh" "point3 P" [-2 -2 1  2 -2 1  -2 2 1  2 2 1]
             self.assertGreater(sum(s.startswith(cause) for s in sentences), 4, sentences)
 
     def test_shares_of_the_candidates(self):
+        self.assertNotIn("shares", self.inspect("--pixel", "21,17")["pixel"])
+        self.image = exr.read(self.rendered("--spp", "8", "--resolution", "40x30", "--layers", "all,share"))
         for x, y in ((21, 17), (5, 25)):
             shares = self.inspect("--pixel", f"{x},{y}")["pixel"]["shares"]
             self.assertEqual(set(shares), {"raw", "gaussian", "regression", "denoiser"})
             self.assertAlmostEqual(sum(shares.values()), 1, places=4)
             for kind, share in shares.items():
                 self.assertAlmostEqual(share, self.value(f"share.{kind}", x, y), places=6)
-        self.rendered("--spp", "8", "--resolution", "40x30", "--denoiser", "none")
+        self.rendered("--spp", "8", "--resolution", "40x30", "--denoiser", "none", "--layers", "all,share")
         without = self.inspect("--pixel", "21,17")["pixel"]["shares"]
         self.assertEqual(without["denoiser"], 0)
         self.assertIn("0 % the denoiser", self.run_program("inspect", "out.exr", "--pixel", "21,17").stdout)
-        self.rendered("--method", "uniform", "--spp", "8", "--resolution", "40x30")
+        self.rendered("--method", "covariance", "--spp", "8", "--resolution", "40x30", "--layers", "share")
         self.assertNotIn("shares", self.inspect("--pixel", "21,17")["pixel"])
 
     def test_pixel_for_people(self):

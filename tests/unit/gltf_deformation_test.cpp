@@ -79,7 +79,8 @@ TEST(GltfDeformation, JointsPlaceVertices) {
 TEST(GltfDeformation, JointsNeedNoInverseBindMatrices) {
     GltfFile file = skinned_file();
     file.root["skins"][0].erase("inverseBindMatrices");
-    const TriangleMesh& mesh = mesh_of(read(file).shapes[0]);
+    const SceneDescription scene = read(file);
+    const TriangleMesh& mesh = mesh_of(scene.shapes[0]);
     // The second joint, at x = 2, carries the vertices of the end along.
     EXPECT_NEAR(mesh.positions.front().x, 0, 1e-6f);
     EXPECT_NEAR(mesh.positions.back().x, 6, 1e-6f);
