@@ -9,7 +9,7 @@ namespace covtrace {
 
 namespace {
 
-// Callbacks always get N = 1, because only single rays are traced.
+// Callbacks always get N = 1, because rays meet these shapes one by one.
 
 Vec3d origin_of(const RTCRay& ray) {
     return {ray.org_x, ray.org_y, ray.org_z};
@@ -135,6 +135,11 @@ GeometryHandle new_shape_geometry(const EmbreeDevice& device, const LocalShape& 
     rtcCommitGeometry(geometry.get());
     device.check();
     return geometry;
+}
+
+bool is_intersected_by_embree(const LocalShape& shape) {
+    const auto* patches = std::get_if<PatchShape>(&shape);
+    return std::holds_alternative<TriangleShape>(shape) || (patches && patches->parallelograms);
 }
 
 }  // namespace covtrace

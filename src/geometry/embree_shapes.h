@@ -15,4 +15,7 @@ inline constexpr unsigned kSolidMask = 1, kInterfaceMask = 2, kAlphaMask = 4, kE
 GeometryHandle new_shape_geometry(const EmbreeDevice& device, const LocalShape& shape,
                                   unsigned mask);
 
+/// Whether Embree has an intersection of its own for a shape: it calls ours for the others.
+bool is_intersected_by_embree(const LocalShape& shape);
+
 }  // namespace covtrace

@@ -83,15 +83,6 @@ void fill_hit(const SurfacePoint& point, SurfaceHit& hit) {
     hit.position_error = static_cast<float>(point.error + rounding);
 }
 
-/// Whether a surface holds a point for all that single precision can tell: the distance of the
-/// point to the plane of the hit is within the roundings of both. The point's own roundings count
-/// four times: it was written down with so many digits and has gone through the camera's matrix.
-bool lies_in(Vec3 point, const SurfaceHit& hit) {
-    const Vec3d ng(hit.ng), origin(point);
-    const double rounding = double(hit.position_error) + 4 * kHalfUlp * dot(abs(ng), abs(origin));
-    return std::abs(dot(ng, origin - Vec3d(hit.position))) <= rounding;
-}
-
 /// Finds the nearest hit, by `find(ray, hit)`, at which `stops(ray, hit)` says that the ray ends;
 /// the ray goes on behind all other hits.
 template <typename Find, typename Stops>
@@ -112,6 +103,12 @@ bool first_that_stops(Ray ray, SurfaceHit& hit, const Find& find, const Stops& s
 }
 
 }  // namespace
+
+bool lies_in(Vec3 point, const SurfaceHit& hit) {
+    const Vec3d ng(hit.ng), origin(point);
+    const double rounding = double(hit.position_error) + 4 * kHalfUlp * dot(abs(ng), abs(origin));
+    return std::abs(dot(ng, origin - Vec3d(hit.position))) <= rounding;
+}
 
 Geometry::Geometry(const SceneDescription& scene, const std::string& isa)
     : impl_(std::make_unique<Impl>(scene, isa)) {}
@@ -153,27 +150,36 @@ bool Geometry::Impl::nearest(const Ray& ray, unsigned mask, SurfaceHit& hit) con
     rtcIntersect1(top.scene.get(), &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
 
-    hit.t = query.ray.tfar;
+    fill({query.ray.tfar,
+          query.hit.geomID,
+          query.hit.instID[0],
+          query.hit.primID,
+          {query.hit.u, query.hit.v}},
+         ray, hit);
+    return true;
+}
+
+void Geometry::Impl::fill(const EmbreeHit& found, const Ray& ray, SurfaceHit& hit) const {
+    hit.t = found.t;
     hit.time = ray.time;
-    hit.primitive = query.hit.primID;
-    hit.barycentric = {query.hit.u, query.hit.v};
+    hit.primitive = found.primitive;
+    hit.barycentric = found.barycentric;
     const Vec3d near = Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t);
-    if (query.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
+    if (found.instance == RTC_INVALID_GEOMETRY_ID) {
         hit.instance = 0;
-        hit.shape = top.shape_of_geometry[query.hit.geomID];
+        hit.shape = top.shape_of_geometry[found.geometry];
         fill_hit(surface_point(local[hit.shape], hit.primitive, hit.barycentric, near), hit);
-        return true;
+        return;
     }
-    hit.instance = query.hit.instID[0] + 1;
-    const EmbreeInstance& instance = instances[query.hit.instID[0]];
-    hit.shape = scenes[instance.scene].shape_of_geometry[query.hit.geomID];
+    hit.instance = found.instance + 1;
+    const EmbreeInstance& instance = instances[found.instance];
+    hit.shape = scenes[instance.scene].shape_of_geometry[found.geometry];
     const Affine map = world_from_local(instance, ray.time);
     const Affine inverse = map.inverse();
     SurfacePoint point =
         surface_point(local[hit.shape], hit.primitive, hit.barycentric, inverse.point(near));
     place(point, map, inverse);
     fill_hit(point, hit);
-    return true;
 }
 
 bool Geometry::occluded(const Ray& ray) const {

@@ -1,5 +1,6 @@
 /// The geometry's construction: shapes, alpha and motion as Embree gets them. Rays are in
 /// geometry.cpp.
+#include <algorithm>
 #include <new>
 
 #include "geometry/embree_instances.h"
@@ -210,6 +211,8 @@ struct Geometry::Impl::Builder {
                 !moves(g.placed[i].description.object_to_world))
                 add(g.top, i);
         g.device.commit(g.top.scene.get());
+        g.packets_are_exact = g.instances.empty() && g.device.isa() != "sse2" &&
+                              std::all_of(g.local.begin(), g.local.end(), is_intersected_by_embree);
     }
 };
 

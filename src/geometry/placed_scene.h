@@ -33,6 +33,18 @@ struct EmbreeInstance {
     Motion motion;  ///< its motion, where it moves; refers to Geometry::Impl's transforms
 };
 
+/// Whether a surface holds a point for all that single precision can tell: the distance of the
+/// point to the plane of the hit is within the roundings of both. The point's own roundings count
+/// four times: it was written down with so many digits and has gone through the camera's matrix.
+bool lies_in(Vec3 point, const SurfaceHit& hit);
+
+/// A hit as Embree tells it.
+struct EmbreeHit {
+    float t = 0;
+    unsigned geometry = 0, instance = 0, primitive = 0;
+    Vec2 barycentric;
+};
+
 struct Geometry::Impl {
     Impl(const SceneDescription& scene, const std::string& isa);
 
@@ -43,6 +55,8 @@ struct Geometry::Impl {
     std::vector<bool> is_interface;
     bool any_alpha = false;
     bool any_interface = false;
+    /// Whether Embree traces rays in packets to the bits of single rays (docs/decisions/0102).
+    bool packets_are_exact = false;
     AlphaLookup alpha;
     std::vector<AnimatedTransform> instance_motions;
     std::vector<ShapeScene> scenes;  ///< one for each object and each moving shape
@@ -63,6 +77,11 @@ struct Geometry::Impl {
     }
     /// Finds the nearest hit of the shapes in `mask`, whatever alpha says there.
     bool nearest(const Ray& ray, unsigned mask, SurfaceHit& hit) const;
+    /// Describes the place of a hit of `ray`.
+    void fill(const EmbreeHit& found, const Ray& ray, SurfaceHit& hit) const;
+    /// Do for a packet of rays at most what `nearest` and `occluded` do for one, apart from alpha.
+    void find_nearest(std::span<HitQuery> packet) const;
+    void find_solid(std::span<OcclusionQuery> packet) const;
     /// Finds the nearest hit of the shapes in `mask` that alpha does not let through.
     bool nearest_opaque(const Ray& ray, unsigned mask, SurfaceHit& hit) const;
 

@@ -17,27 +17,21 @@ bool transmits(const Bsdf& bsdf) {
 
 }  // namespace
 
-const PathResult& PathTracer::run() {
-    if (record_) {
-        record_->clear();
-        record_->camera_ray = ray_;
-    }
-    while (step()) {
-    }
-    return result_;
-}
-
-bool PathTracer::step() {
-    SurfaceHit hit;
+const Ray& PathTracer::next_ray() {
     ++(depth_ == 0 ? result_.rays.camera : result_.rays.bounce);
     // Begin the light sampling of the vertex to come; it uses that vertex' second pair of numbers
     if (draws_ahead_)
         light_draw_ = scene_.lights.begin_draw(
             sampler_.pair(static_cast<uint32_t>(depth_ + 1) * kPairsPerBounce + 1));
-    // Find the nearest surface
-    const bool found = depth_ == 0 && passed_interfaces_ == 0
-                           ? scene_.geometry.intersect_seen(ray_, hit)
-                           : scene_.geometry.intersect(ray_, hit);
+    return ray_;
+}
+
+void PathTracer::prefetch() {
+    if (draws_ahead_) scene_.lights.continue_draw(light_draw_);
+}
+
+bool PathTracer::meet(bool found) {
+    const SurfaceHit& hit = hit_;
     // Cross the medium, which may scatter the path before it gets there
     if (medium_ >= 0) {
         const float length = found ? hit.t : scene_.unbounded_distance;
@@ -48,7 +42,6 @@ bool PathTracer::step() {
         escape();
         return false;
     }
-    if (draws_ahead_) scene_.lights.continue_draw(light_draw_);
     const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
     const MaterialId material =
         scene_.materials.at(shape.description.material, hit, scene_.textures);
@@ -152,11 +145,6 @@ bool PathTracer::survives(float u) {
     if (u < end) return false;
     beta_ *= 1 / (1 - end);
     return true;
-}
-
-PathResult trace_path(const LitScene& scene, const CausticGuide& guide, Ray ray, Sampler& sampler,
-                      int max_depth, PathRecord* record) {
-    return PathTracer(scene, guide, ray, sampler, max_depth, record).run();
 }
 
 }  // namespace covtrace

@@ -53,11 +53,11 @@ struct PathResult {
 /// that leads it. `max_depth` counts scattering events as pbrt does: 0 shows emitters alone.
 /// `record` may be null; then nothing is recorded and nothing is paid for it. Non-finite estimates
 /// are returned as they are: the caller counts them.
-PathResult trace_path(const LitScene& scene, const CausticGuide& guide, Ray ray, Sampler& sampler,
-                      int max_depth, PathRecord* record);
+PathResult trace_path(const LitScene& scene, const CausticGuide& guide, Ray ray,
+                      const Sampler& sampler, int max_depth, PathRecord* record);
 /// Traces one path, led by the guide of the scene.
-inline PathResult trace_path(const RenderScene& scene, Ray ray, Sampler& sampler, int max_depth,
-                             PathRecord* record) {
+inline PathResult trace_path(const RenderScene& scene, Ray ray, const Sampler& sampler,
+                             int max_depth, PathRecord* record) {
     return trace_path(scene, scene.guide, ray, sampler, max_depth, record);
 }
 

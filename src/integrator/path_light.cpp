@@ -63,12 +63,12 @@ void PathTracer::add_direct(const Surface& surface, float u_select, Vec2 u, Path
     shadow.origin = Geometry::offset_origin(hit, light->wi);
     shadow.time = hit.time;
     const MediumId medium = medium_beyond(surface.shape, hit, light->wi, medium_);
-    if (add_light(*light, value, shadow, medium, vertex) && vertex)
+    if (keep_light(*light, value, shadow, medium, vertex) && vertex)
         vertex->direct_event.lobes = lobe_shares(surface.bsdf, surface.wo, wi_local, value.f);
 }
 
-bool PathTracer::add_light(const LightSample& light, const BsdfValue& value, Ray shadow,
-                           MediumId medium, PathVertex* vertex) {
+bool PathTracer::keep_light(const LightSample& light, const BsdfValue& value, Ray shadow,
+                            MediumId medium, PathVertex* vertex) {
     if (is_black(light.radiance) || !(light.pdf > 0)) return false;
     shadow.direction = light.wi;
     if (std::isfinite(light.distance)) {
@@ -79,18 +79,28 @@ bool PathTracer::add_light(const LightSample& light, const BsdfValue& value, Ray
         shadow.direction = to_light / d;
         shadow.t_max = d * (1 - 1e-4f);
     }
-    uint32_t rays = 0;
-    const Rgb visible = visibility(scene_, shadow, light.distance, medium, rays);
-    result_.rays.shadow += rays;
-    if (is_black(visible)) return false;
     const float weight = light.is_delta ? 1.0f : power_heuristic(light.pdf, value.pdf);
-    const Rgb contribution = beta_ * value.f * light.radiance * visible * (weight / light.pdf);
-    result_.radiance += contribution;
-    if (!vertex) return true;
-    vertex->direct = luminance(contribution);
-    vertex->light = light;
-    vertex->direct_event = {light.wi, {}};
+    sampled_light_ = {
+        shadow, light.distance, medium, beta_ * value.f * light.radiance, weight / light.pdf,
+        vertex};
+    if (vertex) {
+        vertex->light = light;
+        vertex->direct_event = {light.wi, {}};
+    }
     return true;
+}
+
+void PathTracer::add_sampled_light(bool occluded) {
+    const SampledLight light = *sampled_light_;
+    sampled_light_.reset();
+    ++result_.rays.shadow;
+    if (occluded) return;
+    const Rgb visible =
+        visibility(scene_, light.ray, light.distance, light.medium, result_.rays.shadow);
+    if (is_black(visible)) return;
+    const Rgb contribution = light.light * visible * light.weight;
+    result_.radiance += contribution;
+    if (light.vertex) light.vertex->direct = luminance(contribution);
 }
 
 }  // namespace covtrace

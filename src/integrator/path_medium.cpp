@@ -46,7 +46,7 @@ bool PathTracer::scatter_in_medium(float distance) {
     if (const auto light =
             scene_.lights.sample(place.position, {}, place.time, u_choice.x, u_light)) {
         const float p = henyey_greenstein(medium.g, -dot(wo, light->wi));
-        add_light(*light, {Rgb(p), p}, shadow, medium_, vertex);
+        keep_light(*light, {Rgb(p), p}, shadow, medium_, vertex);
     }
     // Sample the phase function for the next direction
     const Vec3 wi = sample_phase(medium.g, wo, u_phase);

@@ -1,5 +1,4 @@
-/// A path in the making: the state of one call of trace_path. Only for the files path*.cpp of this
-/// folder.
+/// A path in the making, cut at its rays. Only for the files path*.cpp of this folder.
 #pragma once
 
 #include <optional>
@@ -31,7 +30,7 @@ inline float power_heuristic(float a, float b) {
 /// all light behind specular lobes, and the glow of media, by the path alone.
 class PathTracer {
   public:
-    PathTracer(const LitScene& scene, const CausticGuide& guide, Ray ray, Sampler& sampler,
+    PathTracer(const LitScene& scene, const CausticGuide& guide, Ray ray, const Sampler& sampler,
                int max_depth, PathRecord* record)
         : scene_(scene),
           caustic_guide_(guide),
@@ -42,9 +41,27 @@ class PathTracer {
           draws_ahead_(scene.lights.draws_ahead()) {
         camera_origin_ = ray.origin;
         medium_ = scene.description.camera.medium;
+        if (record_) {
+            record_->clear();
+            record_->camera_ray = ray;
+        }
     }
 
-    const PathResult& run();
+    /// The ray to the next place where the path meets something.
+    const Ray& next_ray();
+    /// Where the nearest hit of that ray goes.
+    SurfaceHit& hit() { return hit_; }
+    /// Asks for memory that the path needs where it has hit something.
+    void prefetch();
+    /// Goes on to the next ray, given what has become of the last one; returns false where the path
+    /// ends. Either way it may have a ray to a light to be followed first.
+    bool meet(bool found);
+    /// The ray to the light sampled at the current vertex; null where none was.
+    const Ray* ray_to_light() const { return sampled_light_ ? &sampled_light_->ray : nullptr; }
+    /// Adds the sampled light, unless something solid is in its way.
+    void add_sampled_light(bool occluded);
+
+    const PathResult& result() const { return result_; }
 
   private:
     static constexpr uint32_t kPairsPerBounce = 4;
@@ -62,10 +79,17 @@ class PathTracer {
         Vec3 wo;  ///< direction towards the viewer, in the frame
     };
 
+    /// Light sampled at a vertex, as it is if nothing is in its way.
+    struct SampledLight {
+        Ray ray;  ///< towards the light, up to just before it
+        float distance = kInfinity;
+        MediumId medium = -1;  ///< around the origin of the ray
+        Rgb light;             ///< the light times what the path scatters of it
+        float weight = 1;      ///< weight of the sample
+        PathVertex* vertex = nullptr;
+    };
+
     // ---- path.cpp
-    /// Follows the ray to the next place where it meets something; returns false where the path
-    /// ends.
-    bool step();
     bool meet_surface(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material,
                       const Bsdf& bsdf);
     /// The frame of the BSDF, with the material's bump or normal map.
@@ -83,11 +107,11 @@ class PathTracer {
     void escape();
     void add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex);
     void add_direct(const Surface& surface, float u_select, Vec2 u, PathVertex* vertex);
-    /// Adds the light sampled at a vertex that scatters the part `value.f` of it into the path and
-    /// would have found its direction with density `value.pdf`. Returns false where nothing of it
-    /// arrives.
-    bool add_light(const LightSample& light, const BsdfValue& value, Ray shadow, MediumId medium,
-                   PathVertex* vertex);
+    /// Keeps the light sampled at a vertex, which scatters the part `value.f` of it into the path
+    /// and would have found its direction with density `value.pdf`, until it is known whether
+    /// anything is in its way. `shadow` starts there, in `medium`. Returns false for no light.
+    bool keep_light(const LightSample& light, const BsdfValue& value, Ray shadow, MediumId medium,
+                    PathVertex* vertex);
 
     // ---- path_scatter.cpp: where the path goes on
     /// Density of sample_direction to return a direction by other than specular lobes, given the
@@ -108,10 +132,12 @@ class PathTracer {
     const LitScene& scene_;
     const CausticGuide& caustic_guide_;
     Ray ray_;
-    Sampler& sampler_;
+    Sampler sampler_;
     const int max_depth_;
     PathRecord* const record_;
 
+    SurfaceHit hit_;
+    std::optional<SampledLight> sampled_light_;
     PathResult result_;
     Rgb beta_{1};
     float pdf_ = 0;  // density of the last sampled direction

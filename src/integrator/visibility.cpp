@@ -16,9 +16,7 @@ Rgb transmittance(const LitScene& scene, MediumId medium, float distance) {
                          std::isfinite(distance) ? distance : scene.unbounded_distance);
 }
 
-Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, uint32_t& rays) {
-    ++rays;
-    if (scene.geometry.occluded(ray)) return Rgb(0);
+Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, uint64_t& rays) {
     if (!scene.has_interfaces) return transmittance(scene, medium, distance);
     // Walk through the rest of the way: it holds only interfaces, and mixes that are interfaces in
     // places

@@ -16,9 +16,9 @@ Rgb transmittance(const LitScene& scene, MediumId medium, float distance);
 
 /// Share of light per channel that comes along `ray` from `distance` away (infinite for lights
 /// without a place), `medium` being around the ray's origin. `ray.t_max` ends just short of the
-/// light; surfaces before it take all light, interfaces let it pass into the next medium. The rays
-/// that are traced are added to `rays`.
-Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, uint32_t& rays);
+/// light, and Geometry::occluded has found nothing before it; interfaces let light pass into the
+/// next medium, other surfaces take all of it. The rays that are traced are added to `rays`.
+Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, uint64_t& rays);
 
 /// Most interfaces on a path or on the way to a light: beyond them the ray is caught between
 /// coincident ones.

@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "frequency/replay.h"
+#include "integrator/path_batch.h"
 
 namespace covtrace {
 
@@ -36,8 +37,8 @@ class Stop {
         return monitor_.cancelled() ||
                (taken_.load(std::memory_order_relaxed) && paused_.load(std::memory_order_relaxed));
     }
-    void took_samples() {
-        taken_.store(true, std::memory_order_relaxed);
+    void took_samples() { taken_.store(true, std::memory_order_relaxed); }
+    void look_at_clock() {
         if (monitor_.pause_is_due()) paused_.store(true, std::memory_order_relaxed);
     }
 
@@ -46,15 +47,11 @@ class Stop {
     std::atomic<bool> taken_{false}, paused_{false};
 };
 
-/// Takes samples up to `counts` by take(film pixel index, x, y, statistics), tile by tile, and sums
-/// the statistics in tile order.
+/// Calls take(tile, stop, statistics) for the context's tiles, which takes their samples and
+/// returns false where it was stopped; sums the statistics in tile order.
 template <typename Take>
-PassStatistics take_samples(const PassContext& context, const Film& film,
-                            std::span<const uint32_t> counts, const Monitor& monitor,
-                            const PassProgress& progress, const Take& take) {
-    // Rays traced between looks at the clock. Samples are no measure: one takes a single ray or,
-    // where it meets many interfaces of media, thousands.
-    constexpr uint64_t kRaysBetweenLooks = 256;
+PassStatistics for_each_tile(const PassContext& context, const Film& film, const Monitor& monitor,
+                             const PassProgress& progress, const Take& take) {
     const Tiles tiles(film.bounds);
     std::vector<PassStatistics> per_tile(static_cast<size_t>(tiles.count()));
     const double own_tiles = double(tiles.count(context.shard));
@@ -64,33 +61,17 @@ PassStatistics take_samples(const PassContext& context, const Film& film,
         if (!tiles.belongs_to(tile, context.shard)) return;
         PassStatistics& statistics = per_tile[static_cast<size_t>(tile)];
         const Stopwatch watch(statistics.seconds);
-        const PixelBounds b = tiles.bounds(tile);
-        uint64_t look_at = 0;
-        for (int y = b.y0; y < b.y1; ++y)
-            for (int x = b.x0; x < b.x1; ++x) {
-                const size_t i = film.index(x, y);
-                while (film.pixels[i].count < counts[i]) {
-                    if (stop()) return;
-                    take(i, x, y, statistics);
-                    const uint64_t rays = statistics.rays.total();
-                    if (rays < look_at) continue;
-                    stop.took_samples();
-                    look_at = rays + kRaysBetweenLooks;
-                }
-            }
-        progress(double(++done) / own_tiles);
+        if (take(tiles.bounds(tile), stop, statistics)) progress(double(++done) / own_tiles);
     });
     PassStatistics sum;
     for (const PassStatistics& s : per_tile) sum.add(s);
     return sum;
 }
 
-/// Takes the pixel's next sample into the film.
-void sample_pixel(const PassContext& context, Film& film, size_t pixel, int x, int y,
-                  PathRecord* record, PassStatistics& statistics) {
-    PathResult path;
+/// Adds the pixel's next sample to the film.
+void add_sample(const PassContext& context, Film& film, size_t pixel, int x, int y,
+                const PathResult& path, FilmSample s, PassStatistics& statistics) {
     const uint32_t index = film.pixels[pixel].count;
-    FilmSample s = take_sample(context, x, y, index, record, path);
     ++statistics.samples;
     statistics.rays.add(path.rays);
     statistics.vertices += path.vertices;
@@ -111,6 +92,50 @@ void sample_pixel(const PassContext& context, Film& film, size_t pixel, int x, i
     film.add(pixel, s);
 }
 
+/// The beginning of a sample's path.
+struct CameraPath {
+    Ray ray;
+    Sampler sampler;
+    float weight = 1;  ///< of the place in the pixel, by its filter
+};
+
+CameraPath begin_path(const PassContext& context, int x, int y, uint32_t index) {
+    Sampler sampler(context.seed, x, y, context.sequence_index(index));
+    const Sampler::CameraSample u = context.scene.has_lens_or_motion
+                                        ? sampler.camera()
+                                        : Sampler::CameraSample{sampler.film(), {}, 0};
+    const PixelFilter::Sample position = context.scene.filter.sample(u.film);
+    const Vec2 film{float(x) + 0.5f + position.offset.x, float(y) + 0.5f + position.offset.y};
+    return {context.scene.camera.generate_ray(film, u.lens, u.time), sampler, position.weight};
+}
+
+/// Makes a sample for the film from a path.
+FilmSample film_sample(const PassContext& context, const PathResult& path, float weight) {
+    FilmSample s;
+    s.rays = uint32_t(path.rays.total());
+    const auto exposed = [&context](Rgb c) {
+        const Rgb light = c * context.imaging_scale;
+        const auto channel = [&](size_t i) {
+            const auto& row = context.sensor[i];
+            return row[0] * light.r + row[1] * light.g + row[2] * light.b;
+        };
+        return Rgb{channel(0), channel(1), channel(2)};
+    };
+    s.radiance = exposed(path.radiance);
+    s.in_view = exposed(path.in_view);
+    const float largest = max_component(s.radiance);
+    const float limit = largest > context.max_component ? context.max_component / largest : 1.0f;
+    s.radiance *= limit;
+    s.in_view *= limit;
+    s.weight = weight;
+    s.albedo = path.albedo;
+    s.normal = path.normal;
+    s.depth = path.depth;
+    s.hit = path.hit;
+    s.features = path.features;
+    return s;
+}
+
 }  // namespace
 
 void PassStatistics::add(const PassStatistics& other) {
@@ -128,46 +153,77 @@ void PassStatistics::add(const PassStatistics& other) {
 
 FilmSample take_sample(const PassContext& context, int x, int y, uint32_t index, PathRecord* record,
                        PathResult& path) {
-    Sampler sampler(context.seed, x, y, context.sequence_index(index));
-    const Sampler::CameraSample u = context.scene.has_lens_or_motion
-                                        ? sampler.camera()
-                                        : Sampler::CameraSample{sampler.film(), {}, 0};
-    const PixelFilter::Sample position = context.scene.filter.sample(u.film);
-    const Vec2 film{float(x) + 0.5f + position.offset.x, float(y) + 0.5f + position.offset.y};
-    const Ray ray = context.scene.camera.generate_ray(film, u.lens, u.time);
-    path = trace_path(context.scene, ray, sampler, context.max_depth, record);
-    FilmSample s;
-    s.rays = uint32_t(path.rays.total());
-    const auto exposed = [&context](Rgb c) {
-        const Rgb light = c * context.imaging_scale;
-        const auto channel = [&](size_t i) {
-            const auto& row = context.sensor[i];
-            return row[0] * light.r + row[1] * light.g + row[2] * light.b;
-        };
-        return Rgb{channel(0), channel(1), channel(2)};
-    };
-    s.radiance = exposed(path.radiance);
-    s.in_view = exposed(path.in_view);
-    const float largest = max_component(s.radiance);
-    const float limit = largest > context.max_component ? context.max_component / largest : 1.0f;
-    s.radiance *= limit;
-    s.in_view *= limit;
-    s.weight = position.weight;
-    s.albedo = path.albedo;
-    s.normal = path.normal;
-    s.depth = path.depth;
-    s.hit = path.hit;
-    s.features = path.features;
-    return s;
+    const CameraPath start = begin_path(context, x, y, index);
+    path = trace_path(context.scene, start.ray, start.sampler, context.max_depth, record);
+    return film_sample(context, path, start.weight);
 }
+
+namespace {
+
+/// Takes samples of a tile by batches of paths.
+class BatchSampler {
+  public:
+    BatchSampler(const PassContext& context, Film& film, Stop& stop, PassStatistics& statistics)
+        : context_(context), film_(film), stop_(stop), statistics_(statistics) {}
+
+    /// Takes the tile's samples up to `counts`; returns false where it was stopped.
+    bool take(const PixelBounds& tile, std::span<const uint32_t> counts) {
+        for (int y = tile.y0; y < tile.y1; ++y)
+            for (int x = tile.x0; x < tile.x1; ++x) {
+                const size_t pixel = film_.index(x, y);
+                for (uint32_t i = film_.pixels[pixel].count; i < counts[pixel]; ++i) {
+                    const CameraPath start = begin_path(context_, x, y, i);
+                    batch_.add(start.ray, start.sampler);
+                    places_.push_back({pixel, x, y, start.weight});
+                    if (batch_.full() && !trace()) return false;
+                }
+            }
+        return trace();
+    }
+
+  private:
+    struct Place {
+        size_t pixel;
+        int x, y;
+        float weight;
+    };
+
+    bool trace() {
+        const auto stops = [this] {
+            stop_.look_at_clock();
+            return stop_();
+        };
+        if (!batch_.trace(stops)) return false;
+        for (size_t i = 0; i < places_.size(); ++i) {
+            const Place& p = places_[i];
+            const PathResult& path = batch_.result(i);
+            add_sample(context_, film_, p.pixel, p.x, p.y, path,
+                       film_sample(context_, path, p.weight), statistics_);
+        }
+        if (!places_.empty()) stop_.took_samples();
+        batch_.clear();
+        places_.clear();
+        return true;
+    }
+
+    const PassContext& context_;
+    Film& film_;
+    Stop& stop_;
+    PassStatistics& statistics_;
+    PathBatch batch_{context_.scene, context_.max_depth};
+    std::vector<Place> places_;
+};
+
+}  // namespace
 
 PassStatistics radiance_pass(const PassContext& context, Film& film,
                              std::span<const uint32_t> counts, const Monitor& monitor,
                              const PassProgress& progress) {
-    return take_samples(context, film, counts, monitor, progress,
-                        [&](size_t i, int x, int y, PassStatistics& statistics) {
-                            sample_pixel(context, film, i, x, y, nullptr, statistics);
-                        });
+    return for_each_tile(
+        context, film, monitor, progress,
+        [&](const PixelBounds& tile, Stop& stop, PassStatistics& statistics) {
+            return BatchSampler(context, film, stop, statistics).take(tile, counts);
+        });
 }
 
 namespace {
@@ -198,20 +254,42 @@ void add_path(PackedCovariance& mean, uint32_t paths, const PathCovariance& path
 PassStatistics covariance_pass(const PassContext& context, const PathReplay& replay, Film& film,
                                std::span<const uint32_t> counts, const CovarianceTarget& target,
                                const Monitor& monitor, const PassProgress& progress) {
-    return take_samples(context, film, counts, monitor, progress,
-                        [&](size_t i, int x, int y, PassStatistics& statistics) {
-                            static thread_local PathRecord record;
-                            const uint32_t paths = film.pixels[i].count +
-                                                   (target.earlier.empty() ? 0 : target.earlier[i]);
-                            sample_pixel(context, film, i, x, y, &record, statistics);
-                            const Stopwatch watch(statistics.replay_seconds);
-                            add_path(target.buffers.scattered[i], paths,
-                                     replay(record, LightPart::scattered), target.weight_limit);
-                            const PathCovariance in_view = shows_emitter(record)
-                                                               ? replay(record, LightPart::in_view)
-                                                               : PathCovariance{};
-                            add_path(target.buffers.in_view[i], paths, in_view, kInfinity);
-                        });
+    const auto take = [&](size_t i, int x, int y, PassStatistics& statistics) {
+        static thread_local PathRecord record;
+        const uint32_t index = film.pixels[i].count;
+        const uint32_t paths = index + (target.earlier.empty() ? 0 : target.earlier[i]);
+        PathResult path;
+        const FilmSample s = take_sample(context, x, y, index, &record, path);
+        add_sample(context, film, i, x, y, path, s, statistics);
+        const Stopwatch watch(statistics.replay_seconds);
+        add_path(target.buffers.scattered[i], paths, replay(record, LightPart::scattered),
+                 target.weight_limit);
+        const PathCovariance in_view =
+            shows_emitter(record) ? replay(record, LightPart::in_view) : PathCovariance{};
+        add_path(target.buffers.in_view[i], paths, in_view, kInfinity);
+    };
+    return for_each_tile(context, film, monitor, progress,
+                         [&](const PixelBounds& tile, Stop& stop, PassStatistics& statistics) {
+                             // Rays traced between looks at the clock. Samples are no measure: one
+                             // takes a single ray or, where it meets many interfaces of media,
+                             // thousands.
+                             constexpr uint64_t kRaysBetweenLooks = 256;
+                             uint64_t look_at = 0;
+                             for (int y = tile.y0; y < tile.y1; ++y)
+                                 for (int x = tile.x0; x < tile.x1; ++x) {
+                                     const size_t i = film.index(x, y);
+                                     while (film.pixels[i].count < counts[i]) {
+                                         if (stop()) return false;
+                                         take(i, x, y, statistics);
+                                         stop.took_samples();
+                                         const uint64_t rays = statistics.rays.total();
+                                         if (rays < look_at) continue;
+                                         stop.look_at_clock();
+                                         look_at = rays + kRaysBetweenLooks;
+                                     }
+                                 }
+                             return true;
+                         });
 }
 
 double limit_weights(const Film& film, CovarianceBuffers& buffers) {
