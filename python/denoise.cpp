@@ -10,6 +10,7 @@
 
 #include "bindings.h"
 #include "core/parallel.h"
+#include "image/finite_pixels.h"
 #include "options.h"
 #include "planes.h"
 #include "python_lock.h"
@@ -64,6 +65,12 @@ py::tuple denoise_images(const std::vector<std::tuple<std::string, SharedPlanes,
     std::vector<std::string> warnings;
     if (denoiser.is_unusable) warnings.push_back("no denoiser is used: " + denoiser.why_none);
     for (const Warning& w : result.warnings) warnings.push_back(w.text);
+    if (const auto it = result.image.metadata.find("covtrace:denoiserFailure");
+        it != result.image.metadata.end())
+        warnings.push_back("the image is without the denoiser: " +
+                           std::get<std::string>(it->second));
+    if (const auto replaced = replaced_pixels(result.image.metadata))
+        warnings.push_back(describe(*replaced));
     return py::make_tuple(std::make_shared<Planes>(std::move(result.image)), result.error,
                           warnings);
 }

@@ -193,6 +193,9 @@ DenoisedImage denoise(std::span<const NamedImage> images, const DenoiseOptions& 
     std::vector<SampledImage> samples;
     for (const NamedImage& named : images) samples.push_back(sampled(named, options));
     auto [halves, lost, are_samples_known] = halves_of(images, samples);
+    for (size_t k = 0; k < images.size(); ++k)
+        if (is_empty(halves[k]))
+            throw Error(ErrorKind::usage, images[k].name + " has no pixel that is finite");
     DenoisedImage result;
     warn_of_missing_features(samples[0].layers, result);
     if (lost > 0)
@@ -205,10 +208,10 @@ DenoisedImage denoise(std::span<const NamedImage> images, const DenoiseOptions& 
     take_metadata(images[0].image, image);
     if (are_samples_known) image.metadata["spp"] = float(samples_per_pixel(halves));
 
-    const float scale = exposure_of(halves);
-    scale_by(scale, halves);
     ColorPlanes raw = mean_of(halves[0].color, halves[1].color),
                 variance = mean_of(halves[0].color_variance, halves[1].color_variance);
+    const float scale = exposure_of(halves);
+    scale_by(scale, halves);
     HybridSettings settings;
     settings.denoiser = options.denoiser;
     HybridImage mixed = reconstruct(std::move(halves), {}, settings);
@@ -220,9 +223,9 @@ DenoisedImage denoise(std::span<const NamedImage> images, const DenoiseOptions& 
     result.error = relative_error(mixed);
     add_channels(std::move(mixed.color), "", 1 / scale, image);
     add_alpha(images, image);
-    add_channels(std::move(raw), "raw.", 1 / scale, image);
+    add_channels(std::move(raw), "raw.", 1, image);
     // The mean of both halves has half the variance of each
-    add_channels(std::move(variance), "variance.", 0.5f / (scale * scale), image);
+    add_channels(std::move(variance), "variance.", 0.5f, image);
     for (float& v : mixed.variance.values) v = std::sqrt(v) / scale;
     add(image, "error.Y", std::move(mixed.variance.values));
     replace_nonfinite(image);

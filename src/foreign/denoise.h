@@ -40,7 +40,8 @@ struct DenoisedImage {
 /// scaled meanwhile.
 ///
 /// Throws Error(usage), which names the image: layers that are missing, sizes that differ, two
-/// images with the same pixels, one image without variance, no image or more than two.
+/// images with the same pixels, no pixel that is finite, one image without variance, no image or
+/// more than two.
 DenoisedImage denoise(std::span<const NamedImage> images, const DenoiseOptions& options = {});
 
 }  // namespace covtrace

@@ -7,6 +7,7 @@ import unittest
 
 import exr
 from support import DONE, SCENE, USAGE, CliTest, warnings_of
+from test_denoiser import FAKE_NAME, FAKES, NAME
 
 WIDTH, HEIGHT = 48, 32
 
@@ -126,6 +127,20 @@ class Denoise(CliTest):
         image, _, warnings = self.denoise("1.exr", "2.exr")
         self.assertEqual(warnings, [])
         self.assertEqual(image.value("spp"), 8)
+
+    def test_a_denoiser(self):
+        files = [self.image(f"{k}.exr", mitsuba(k)) for k in (1, 2)]
+        arguments = ("denoise", *files, "-o", "out.exr", "--denoiser-library")
+        result = self.run_program(*arguments, FAKES / "good" / NAME)
+        self.assertEqual((result.code, warnings_of(result)), (DONE, []), result)
+        self.assertTrue(result.stderr.endswith(f", {FAKE_NAME}\n"), result)
+        with_it = exr.read(self.folder / "out.exr")
+        self.assertEqual(with_it.value("covtrace:denoiser"), FAKE_NAME)
+        self.assertNotEqual(with_it.pixels["R"], self.denoise(*files)[0].pixels["R"])
+        result = self.run_program(*arguments, FAKES / "execute-fails" / NAME)
+        self.assertEqual(result.code, DONE, result)
+        self.assertIn("without the denoiser", warnings_of(result)[0][1])
+        self.assertTrue(result.stderr.endswith(", no denoiser\n"), result)
 
     def test_lost_pixels(self):
         channels = mitsuba(1)

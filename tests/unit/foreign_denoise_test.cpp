@@ -74,6 +74,20 @@ TEST(Denoise, TextureIsKeptByItsAlbedoAlone) {
     EXPECT_NE(without.warnings[0].text.find("albedo, normal, depth"), std::string::npos);
 }
 
+TEST(Denoise, RawAndVarianceAreOfTheImagesThemselves) {
+    const std::vector<NamedImage> images = two({.scale = 1e-5f});
+    const Image result = denoise(images).image;
+    for (size_t i : {0u, 999u, 6000u}) {
+        const auto mean = [&](const char* name) {
+            return 0.5f *
+                   (images[0].image.find(name)->values[i] + images[1].image.find(name)->values[i]);
+        };
+        EXPECT_FLOAT_EQ(result.find("raw.G")->values[i], mean("G"));
+        // A half of each one's variance, an eighth of which is lent by the pixels around
+        EXPECT_NEAR(result.find("variance.G")->values[i] / (0.5f * mean("variance.G")), 1, 0.5);
+    }
+}
+
 TEST(Denoise, BrightnessDoesNotMatter) {
     const double at_one = relative_error(denoise(two()).image);
     for (float scale : {1e-5f, 3e4f}) {
@@ -136,6 +150,9 @@ TEST(Denoise, RefusesWhatCannotTellItsNoise) {
     one[0].image = noisy_image({.relative = 0});
     EXPECT_NE(message_of(one).find("a.exr has a variance of 0"), std::string::npos);
     EXPECT_NE(message_of({}), "");
+    std::vector<NamedImage> lost = two();
+    for (float& v : lost[1].image.channels[0].values) v = std::numeric_limits<float>::infinity();
+    EXPECT_EQ(message_of(lost), "b.exr has no pixel that is finite");
     std::vector<NamedImage> sizes{{"a.exr", noisy_image({})},
                                   {"b.exr", image_with({"R", "G", "B"})}};
     EXPECT_EQ(message_of(sizes),
