@@ -15,6 +15,8 @@ namespace {
 constexpr std::array<std::string_view, 13> kStandard{
     "A",       "Z",       "raw",    "albedo",   "N",   "variance", "error",
     "samples", "density", "filter", "spectrum", "cov", "covweight"};
+/// Layers of the first surfaces, which are made where they are named and for pbrt's "gbuffer".
+constexpr std::array<std::string_view, 5> kSurfaces{"P", "Ng", "uv", "dz", "relvariance"};
 /// Layers that must be asked for by name: those that tell emitters in view apart from scattered
 /// light, those for denoisers alone, and what each kind of candidate made.
 constexpr std::array<std::string_view, 7> kParts{
@@ -47,14 +49,14 @@ LayerSelection parse_layers(const std::string& option, const std::string& text) 
         const std::string name = text.substr(from, to - from);
         if (name == "all")
             selection.all = true;
-        else if (contains(kStandard, name) || contains(kParts, name))
+        else if (contains(kStandard, name) || contains(kSurfaces, name) || contains(kParts, name))
             selection.names.push_back(name);
         else
-            throw Error(
-                ErrorKind::usage,
-                fmt::format("{}: there is no layer '{}'; expected none, all, or some of "
-                            "{},{}",
-                            option, name, fmt::join(kStandard, ","), fmt::join(kParts, ",")));
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: there is no layer '{}'; expected none, all, or some of "
+                                    "{},{},{}",
+                                    option, name, fmt::join(kStandard, ","),
+                                    fmt::join(kSurfaces, ","), fmt::join(kParts, ",")));
         from = to + 1;
     }
     return selection;
@@ -70,6 +72,11 @@ void add_layers(CLI::App* c, const std::string& name, LayerSelection& selection,
 
 bool names(const LayerSelection& selection, const std::string& layer) {
     return contains(selection.names, layer);
+}
+
+bool names_surfaces(const LayerSelection& selection) {
+    return std::any_of(selection.names.begin(), selection.names.end(),
+                       [](const std::string& name) { return contains(kSurfaces, name); });
 }
 
 void warn_of_absent_layers(const Image& image, const LayerSelection& selection) {

@@ -26,6 +26,8 @@ void add_layers(CLI::App* command, const std::string& name, LayerSelection& sele
 
 /// Whether a layer is among the selection's names.
 bool names(const LayerSelection& selection, const std::string& layer);
+/// Whether it names a layer of the first surfaces.
+bool names_surfaces(const LayerSelection& selection);
 
 /// Warns of each named layer that the image has not: not every method makes every layer.
 void warn_of_absent_layers(const Image& image, const LayerSelection& selection);

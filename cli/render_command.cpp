@@ -69,6 +69,7 @@ void parse_texts(RenderArguments& a) {
     for (const char* layer : {"featurealbedo", "featureN"})
         a.options.features =
             a.options.features || names(a.layers, layer) || names(a.tev_layers, layer);
+    a.options.surfaces = names_surfaces(a.layers) || names_surfaces(a.tev_layers);
     check(a.film);
     if (a.film.shard && !(a.output.empty() && a.png.empty() && a.tev.empty()))
         throw Error(
@@ -77,18 +78,26 @@ void parse_texts(RenderArguments& a) {
             "'covtrace merge' of all shards");
 }
 
-/// Writes the image, with the layers that were asked for, and its PNG.
-void deliver(RenderResult& result, const RenderArguments& a, const fs::path& output,
-             const Monitor& monitor, const std::string& command, int threads) {
+/// Writes the image, with the layers that were asked for, and its PNG. `names`: those of the
+/// layers.
+void deliver(RenderResult& result, const RenderArguments& a, LayerNames names,
+             const fs::path& output, const Monitor& monitor, const std::string& command,
+             int threads) {
     if (!a.quiet) warn_of_absent_layers(result.image, a.layers);
     if (!a.quiet) warn_of_no_picture(a.display, output, a.png);
     keep_layers(result.image, a.layers);
     if (!a.reproducible) describe_making(result.image, monitor, command);
     const bool has_layers = written_format(output) == WrittenFormat::exr;
-    if (has_layers) rename_layers(result.image, a.layer_names);
+    if (has_layers) rename_layers(result.image, names);
     write_image(result.image, output, threads, a.display);
     if (has_layers) restore_layer_names(result.image);
     if (!a.png.empty()) write_png(result.image, a.png, a.display);
+}
+
+/// The names that the layers get: pbrt's where the scene's film is its "gbuffer".
+LayerNames names_of_layers(const RenderArguments& a, const SceneDescription& scene) {
+    const bool is_pbrts = scene.film.surfaces != FilmDescription::Surfaces::none;
+    return a.layer_names.value_or(is_pbrts ? LayerNames::pbrt : LayerNames::standard);
 }
 
 /// Warns once of a viewer that is not there: it may come later, and the render needs none.
@@ -233,7 +242,8 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     progress.clear();
     if (viewer) viewer->show(copy_layers(result.image, a.tev_layers));
     if (!is_shard && is_first)
-        deliver(result, a, output, monitor, invocation.command_line, threads.threads());
+        deliver(result, a, names_of_layers(a, scene.description), output, monitor,
+                invocation.command_line, threads.threads());
     result.statistics.seconds[Phase::write] = monitor.elapsed() - rendered;
     if (!a.stats.empty())
         write_text(statistics_json(scene, result, denoiser, monitor).dump(2) + "\n", a.stats);

@@ -36,7 +36,7 @@ struct RenderArguments {
     std::optional<DebugPixel> debug_pixel;
     LayerSelection layers{true, {}}, tev_layers;
     DisplayOptions display;
-    LayerNames layer_names = LayerNames::standard;
+    std::optional<LayerNames> layer_names;  ///< none: the scene decides
     size_t texture_bytes = kNoTextureLimit, max_memory = kNoMemoryLimit;
     std::vector<std::string> search_paths;
     RenderOptions options;

@@ -7,16 +7,21 @@ namespace covtrace {
 
 namespace {
 
-/// Two texts that begin a channel's name: in our images, and in those of another convention.
+/// Two texts that begin a channel's name, or are all of it where they don't end in a dot: in our
+/// images, and in those of another convention.
 struct Prefix {
     std::string_view ours, theirs;
 };
 
-constexpr std::array<Prefix, 3> kPbrt{
-    Prefix{"albedo.", "Albedo."}, {"N.", "Ns."}, {"variance.", "Variance."}};
-
-/// pbrt's own files have the geometric normal, too, under the name of our shading normal.
-constexpr std::array<Prefix, 4> kPbrtRead{kPbrt[0], kPbrt[1], kPbrt[2], Prefix{"Ng.", "N."}};
+constexpr std::array<Prefix, 9> kPbrt{Prefix{"albedo.", "Albedo."},
+                                      {"N.", "Ns."},
+                                      {"Ng.", "N."},
+                                      {"variance.", "Variance."},
+                                      {"relvariance.", "RelativeVariance."},
+                                      {"uv.X", "u"},
+                                      {"uv.Y", "v"},
+                                      {"dz.X", "dzdx"},
+                                      {"dz.Y", "dzdy"}};
 
 // Names are renamed by the first prefix that fits. Whole names come first: no name may begin with
 // an earlier prefix that means something else.
@@ -38,7 +43,8 @@ std::optional<std::string> translate(const std::string& name, const std::array<P
                                      bool inverse) {
     for (const auto& [ours, theirs] : table) {
         const std::string_view from = inverse ? theirs : ours, to = inverse ? ours : theirs;
-        if (name.starts_with(from)) return std::string(to) + name.substr(from.size());
+        if (from.ends_with('.') ? name.starts_with(from) : name == from)
+            return std::string(to) + name.substr(from.size());
     }
     return std::nullopt;
 }
@@ -80,8 +86,7 @@ void rename_layers(Image& image, LayerNames names) {
 
 void restore_layer_names(Image& image) {
     if (image.find("Albedo.R")) {
-        for (Channel& c : image.channels)
-            c.name = translate(c.name, kPbrtRead, true).value_or(c.name);
+        for (Channel& c : image.channels) c.name = translate(c.name, kPbrt, true).value_or(c.name);
         return;
     }
     constexpr std::string_view kCombined = ".Combined.R";

@@ -74,6 +74,10 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, M
     // Describe the surface to filters and denoisers
     if (seen_clearly_)
         describe_vertex(hit.position, albedo(bsdf, surface.wo), face_forward(frame.z, wo));
+    if (depth_ == 0) {
+        result_.geometric_normal = face_forward(hit.ng, wo);
+        result_.uv = hit.uv;
+    }
     if (vertex) vertex->shading = frame;
     if (depth_++ == max_depth_) return false;
     sampler_.set_dimension(static_cast<uint32_t>(depth_) * kPairsPerBounce);
@@ -120,6 +124,7 @@ PathVertex* PathTracer::begin_vertex(const SurfaceHit& hit, MediumId medium, Vec
 void PathTracer::describe_vertex(Vec3 position, Rgb albedo, Vec3 normal) {
     if (depth_ == 0) {
         result_.hit = true;
+        result_.position = position;
         result_.albedo = albedo;
         result_.normal = normal;
         result_.depth = travelled_ = distance(camera_origin_, position);

@@ -44,6 +44,9 @@ struct PathResult {
     Vec3 normal;      ///< shading normal of the first vertex towards the viewer; 0 in a medium
     float depth = 0;  ///< distance of the first vertex from the camera, 0 where there is none
     bool hit = false;
+    Vec3 position;          ///< of the first vertex
+    Vec3 geometric_normal;  ///< of the first vertex towards the viewer; 0 in a medium
+    Vec2 uv;                ///< of the first vertex; 0 in a medium
     PathFeatures features;
     RayCounts rays;
     uint32_t vertices = 0;

@@ -184,6 +184,14 @@ void set_crop(Entity& e, FilmDescription& film, WarningLog& log) {
     }
 }
 
+FilmDescription::Surfaces gbuffer_space(Entity& e) {
+    const std::string space = e.parameters.text("coordinatesystem", "camera");
+    if (space == "world") return FilmDescription::Surfaces::world;
+    if (space == "camera") return FilmDescription::Surfaces::camera;
+    refuse(e, "coordinatesystem",
+           unknown_name("coordinate system of a gbuffer film", space, {"camera", "world"}));
+}
+
 void set_sensor(Entity& e, FilmDescription& film) {
     ParameterList& p = e.parameters;
     const float balance = p.number("whitebalance", 0);
@@ -202,10 +210,11 @@ void build_film(ViewEntities& view, BuildContext& context) {
     ParameterList& p = e.parameters;
     FilmDescription& film = context.scene.film;
     film.where = e.where;
-    if (e.type == "gbuffer" || e.type == "spectral") {
-        context.log.add(e.where,
-                        "film " + in_quotes(e.type) + " is not supported; \"rgb\" takes its place");
-        p.ignore({"coordinatesystem", "nbuckets", "lambdamin", "lambdamax"});
+    if (e.type == "gbuffer") {
+        film.surfaces = gbuffer_space(e);
+    } else if (e.type == "spectral") {
+        context.log.add(e.where, "film \"spectral\" is not supported; \"rgb\" takes its place");
+        p.ignore({"nbuckets", "lambdamin", "lambdamax"});
     } else if (e.type != "rgb") {
         throw unknown_type_error(e.where, "film", e.type, {"rgb", "gbuffer", "spectral"});
     }

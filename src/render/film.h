@@ -8,6 +8,7 @@
 #include "core/vec.h"
 #include "image/image.h"
 #include "integrator/path.h"
+#include "render/first_surface.h"
 
 namespace covtrace {
 
@@ -22,6 +23,7 @@ struct FilmSample {
     float depth = 0;
     bool hit = false;
     PathFeatures features;
+    FirstSurface surface;  ///< where FilmParts::surfaces asks for it
 };
 
 /// Running means over a pixel's samples in index order (Welford 1962). 60 bytes.
@@ -56,6 +58,7 @@ struct FeatureSquares {
 struct FilmParts {
     bool in_view = false;   ///< the light of emitters in view
     bool features = false;  ///< means and deviations of the features, and the rays
+    bool surfaces = false;  ///< the first surfaces
     bool operator==(const FilmParts&) const = default;
 };
 
@@ -68,6 +71,7 @@ struct Film {
             feature_squares.resize(pixels.size());
             rays.resize(pixels.size());
         }
+        if (parts.surfaces) surfaces.resize(pixels.size());
     }
     PixelBounds bounds;
     std::vector<FilmPixel> pixels;
@@ -76,7 +80,8 @@ struct Film {
     /// Means; the depth's is over the samples that hit something.
     std::vector<PathFeatures> features;
     std::vector<FeatureSquares> feature_squares;
-    std::vector<uint32_t> rays;  ///< rays of all samples of a pixel
+    std::vector<uint32_t> rays;          ///< rays of all samples of a pixel
+    std::vector<FirstSurface> surfaces;  ///< means over the samples that hit something
 
     /// Index of the pixel (x, y), in [bounds.x0, bounds.x1) x [bounds.y0, bounds.y1), in `pixels`.
     size_t index(int x, int y) const {
@@ -88,7 +93,8 @@ struct Film {
     size_t memory() const {  ///< bytes
         return pixels.size() * sizeof(FilmPixel) + in_view.size() * sizeof(Rgb) +
                features.size() * sizeof(PathFeatures) +
-               feature_squares.size() * sizeof(FeatureSquares) + rays.size() * sizeof(uint32_t);
+               feature_squares.size() * sizeof(FeatureSquares) + rays.size() * sizeof(uint32_t) +
+               surfaces.size() * sizeof(FirstSurface);
     }
 };
 

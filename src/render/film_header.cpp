@@ -91,6 +91,7 @@ void add_arrays(RenderState& s, const json& arrays, uint32_t format) {
         kept.in_view = has("film0.in_view");
         kept.features = has("film0.features");
     }
+    kept.surfaces = has("film0.surfaces");
     for (size_t k = 0; k < (s.method == Method::hybrid ? 2 : 1); ++k) {
         s.films.emplace_back(s.region, kept);
         if (format == 3) s.films.back().features = {};

@@ -23,12 +23,15 @@ uint32_t place_in_sequence(uint32_t half, uint32_t index) {
 Film merged(std::span<const Film> half) {
     Film film(half[0].bounds);
     if (!half[0].features.empty()) film.features.resize(film.pixels.size());
+    if (!half[0].surfaces.empty()) film.surfaces.resize(film.pixels.size());
     for (size_t i = 0; i < film.pixels.size(); ++i) {
         const FilmPixel &a = half[0].pixels[i], &b = half[1].pixels[i];
         FilmPixel& p = film.pixels[i];
         if (a.count == 0 || b.count == 0) {
             p = a.count == 0 ? b : a;
-            if (!film.features.empty()) film.features[i] = half[a.count == 0 ? 1 : 0].features[i];
+            const Film& whole = half[a.count == 0 ? 1 : 0];
+            if (!film.features.empty()) film.features[i] = whole.features[i];
+            if (!film.surfaces.empty()) film.surfaces[i] = whole.surfaces[i];
             continue;
         }
         p.count = a.count + b.count;
@@ -40,14 +43,18 @@ Film merged(std::span<const Film> half) {
         p.normal = 0.5f * (a.normal + b.normal);
         p.coverage = 0.5f * (a.coverage + b.coverage);
         const float hit = a.coverage + b.coverage;
-        const auto depth = [&](float of_a, float of_b) {
-            return hit > 0 ? (a.coverage * of_a + b.coverage * of_b) / hit : 0.0f;
+        const auto of_hits = [&](auto of_a, auto of_b) {
+            return hit > 0 ? (a.coverage * of_a + b.coverage * of_b) / hit : decltype(of_a){};
         };
-        p.depth = depth(a.depth, b.depth);
+        p.depth = of_hits(a.depth, b.depth);
+        if (!film.surfaces.empty()) {
+            film.surfaces[i] = half[0].surfaces[i];
+            film.surfaces[i].approach(half[1].surfaces[i], hit > 0 ? b.coverage / hit : 0.0f);
+        }
         if (film.features.empty()) continue;
         const PathFeatures &fa = half[0].features[i], &fb = half[1].features[i];
         film.features[i] = {0.5f * (fa.albedo + fb.albedo), 0.5f * (fa.normal + fb.normal),
-                            depth(fa.depth, fb.depth)};
+                            of_hits(fa.depth, fb.depth)};
     }
     return film;
 }

@@ -20,12 +20,16 @@ void add_layer(Image& image, const std::string& prefix, const std::array<const c
 }
 
 constexpr std::array<const char*, 3> kRgb{"R", "G", "B"};
+constexpr std::array<const char*, 3> kXyz{"X", "Y", "Z"};
 constexpr std::array<const char*, 3> kSymmetric{"xx", "xy", "yy"};
 constexpr std::array<const char*, 15> kFive{"00", "01", "02", "03", "04", "11", "12", "13",
                                             "14", "22", "23", "24", "33", "34", "44"};
 
 std::array<float, 3> array(Rgb c) {
     return {c.r, c.g, c.b};
+}
+std::array<float, 3> array(Vec3 v) {
+    return {v.x, v.y, v.z};
 }
 std::array<float, 3> array(const covariance::Sym2<float>& s) {
     return {s.xx, s.xy, s.yy};
@@ -37,6 +41,26 @@ std::array<float, 4> shares_of_kinds(const std::vector<Plane>& shares, size_t pi
     for (size_t c = 0; c < shares.size(); ++c)
         sums[size_t(candidate_kind(CandidateSettings(), c))] += shares[c][pixel];
     return sums;
+}
+
+/// Adds what pbrt's "gbuffer" has beyond the other layers.
+void add_surfaces(Image& image, const Film& film) {
+    const auto& surfaces = film.surfaces;
+    add_layer(image, "P.", kXyz, [&](size_t i) { return array(surfaces[i].position); });
+    add_layer(image, "Ng.", kXyz,
+              [&](size_t i) { return array(normalize(surfaces[i].geometric_normal)); });
+    add_layer(image, "uv.", std::array{"X", "Y"}, [&](size_t i) {
+        return std::array{surfaces[i].uv.x, surfaces[i].uv.y};
+    });
+    add_layer(image, "dz.", std::array{"X", "Y"}, [&](size_t i) {
+        return std::array{std::abs(surfaces[i].slope.x), std::abs(surfaces[i].slope.y)};
+    });
+    add_layer(image, "relvariance.", kRgb, [&](size_t i) {
+        const Rgb variance = film.pixels[i].variance_of_mean(), mean = film.pixels[i].mean;
+        Rgb ratio;
+        for (int c = 0; c < 3; ++c) ratio[c] = mean[c] != 0 ? variance[c] / mean[c] : 0.0f;
+        return array(ratio);
+    });
 }
 
 }  // namespace
@@ -63,21 +87,19 @@ Image make_layers(const Film& film, PixelBounds display, bool has_holes,
     if (!film.in_view.empty())
         add_layer(image, "inview.", kRgb, [&](size_t i) { return array(film.in_view[i]); });
     add_layer(image, "albedo.", kRgb, [&](size_t i) { return array(pixels[i].albedo); });
-    add_layer(image, "N.", std::array{"X", "Y", "Z"}, [&](size_t i) {
-        return std::array{pixels[i].normal.x, pixels[i].normal.y, pixels[i].normal.z};
+    add_layer(image, "N.", kXyz, [&](size_t i) {
+        return array(film.surfaces.empty() ? pixels[i].normal : normalize(film.surfaces[i].normal));
     });
     add_layer(image, "", std::array{"Z"}, [&](size_t i) { return std::array{pixels[i].depth}; });
     if (!film.features.empty()) {
         const auto& features = film.features;
         add_layer(image, "featurealbedo.", kRgb,
                   [&](size_t i) { return array(features[i].albedo); });
-        add_layer(image, "featureN.", std::array{"X", "Y", "Z"}, [&](size_t i) {
-            const Vec3 n = features[i].normal;
-            return std::array{n.x, n.y, n.z};
-        });
+        add_layer(image, "featureN.", kXyz, [&](size_t i) { return array(features[i].normal); });
     }
     add_layer(image, "variance.", kRgb,
               [&](size_t i) { return array(pixels[i].variance_of_mean()); });
+    if (!film.surfaces.empty()) add_surfaces(image, film);
     add_layer(image, "error.", std::array{"Y"}, [&](size_t i) {
         return std::array{
             std::sqrt(covariance ? covariance->gathered.variance[i] : luminance_variance(i))};

@@ -28,8 +28,9 @@ struct CovarianceLayers {
 };
 
 /// Makes the layers. Root R G B (A where `has_holes`): the gathered image, or the raw film without
-/// `covariance`; then raw, inview where the film knows it, albedo, N, Z, variance, error, samples,
-/// and the layers of `covariance` (docs/reference/layers.md).
+/// `covariance`; then raw, inview where the film knows it, albedo, N, Z, variance, what the film
+/// knows of the first surfaces, error, samples, and the layers of `covariance`
+/// (docs/reference/layers.md).
 Image make_layers(const Film& film, PixelBounds display, bool has_holes,
                   const std::optional<CovarianceLayers>& covariance);
 

@@ -76,8 +76,13 @@ struct RenderOptions {
     bool even_counts = false;     ///< hybrid: every pixel the same count, for comparisons
     bool emitters_apart = false;  ///< uniform: keeps the light of emitters in view apart
     bool features = false;        ///< keeps what denoisers are told of each pixel, for the layers
+    /// Keeps the first surfaces for the layers, in world space unless the scene says otherwise.
+    bool surfaces = false;
     uint64_t seed = 0;
 };
+
+/// The space in which a film keeps the first surfaces, if it does.
+FilmDescription::Surfaces kept_surfaces(const FilmDescription& film, const RenderOptions& options);
 
 /// The average of samples per pixel that is asked for; none where time, error or the factor of the
 /// density alone decide.

@@ -94,6 +94,8 @@ void add_sample(const PassContext& context, Film& film, size_t pixel, int x, int
 
 /// The beginning of a sample's path.
 struct CameraPath {
+    Vec2 film, lens;
+    float time = 0;
     Ray ray;
     Sampler sampler;
     float weight = 1;  ///< of the place in the pixel, by its filter
@@ -106,11 +108,14 @@ CameraPath begin_path(const PassContext& context, int x, int y, uint32_t index) 
                                         : Sampler::CameraSample{sampler.film(), {}, 0};
     const PixelFilter::Sample position = context.scene.filter.sample(u.film);
     const Vec2 film{float(x) + 0.5f + position.offset.x, float(y) + 0.5f + position.offset.y};
-    return {context.scene.camera.generate_ray(film, u.lens, u.time), sampler, position.weight};
+    return {film,    u.lens,
+            u.time,  context.scene.camera.generate_ray(film, u.lens, u.time),
+            sampler, position.weight};
 }
 
 /// Makes a sample for the film from a path.
-FilmSample film_sample(const PassContext& context, const PathResult& path, float weight) {
+FilmSample film_sample(const PassContext& context, const CameraPath& start,
+                       const PathResult& path) {
     FilmSample s;
     s.rays = uint32_t(path.rays.total());
     const auto exposed = [&context](Rgb c) {
@@ -127,12 +132,19 @@ FilmSample film_sample(const PassContext& context, const PathResult& path, float
     const float limit = largest > context.max_component ? context.max_component / largest : 1.0f;
     s.radiance *= limit;
     s.in_view *= limit;
-    s.weight = weight;
+    s.weight = start.weight;
     s.albedo = path.albedo;
     s.normal = path.normal;
     s.depth = path.depth;
     s.hit = path.hit;
     s.features = path.features;
+    if (context.surfaces != FilmDescription::Surfaces::none) {
+        const auto beside = [&](Vec2 step) {
+            return context.scene.camera.generate_ray(start.film + step, start.lens, start.time);
+        };
+        s.surface = first_surface(context.scene, context.surfaces, start.ray,
+                                  {beside({1, 0}), beside({0, 1})}, path);
+    }
     return s;
 }
 
@@ -155,7 +167,7 @@ FilmSample take_sample(const PassContext& context, int x, int y, uint32_t index,
                        PathResult& path) {
     const CameraPath start = begin_path(context, x, y, index);
     path = trace_path(context.scene, start.ray, start.sampler, context.max_depth, record);
-    return film_sample(context, path, start.weight);
+    return film_sample(context, start, path);
 }
 
 namespace {
@@ -174,7 +186,7 @@ class BatchSampler {
                 for (uint32_t i = film_.pixels[pixel].count; i < counts[pixel]; ++i) {
                     const CameraPath start = begin_path(context_, x, y, i);
                     batch_.add(start.ray, start.sampler);
-                    places_.push_back({pixel, x, y, start.weight});
+                    places_.push_back({pixel, x, y, start});
                     if (batch_.full() && !trace()) return false;
                 }
             }
@@ -185,7 +197,7 @@ class BatchSampler {
     struct Place {
         size_t pixel;
         int x, y;
-        float weight;
+        CameraPath start;
     };
 
     bool trace() {
@@ -198,7 +210,7 @@ class BatchSampler {
             const Place& p = places_[i];
             const PathResult& path = batch_.result(i);
             add_sample(context_, film_, p.pixel, p.x, p.y, path,
-                       film_sample(context_, path, p.weight), statistics_);
+                       film_sample(context_, p.start, path), statistics_);
         }
         if (!places_.empty()) stop_.took_samples();
         batch_.clear();

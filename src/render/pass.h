@@ -51,7 +51,8 @@ struct PassContext {
     int max_depth = 5;
     float imaging_scale = 1, max_component = kInfinity;
     std::array<std::array<float, 3>, 3> sensor{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    Shard shard = {};  ///< the tiles to trace
+    FilmDescription::Surfaces surfaces = FilmDescription::Surfaces::none;  ///< FilmSample::surface
+    Shard shard = {};                                                      ///< the tiles to trace
     uint32_t half = 0, halves = 1;
 
     /// Number by which people name a sample: the halves take turns, so that one number finds it

@@ -61,6 +61,10 @@ RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& op
     id["--gltf-scene"] = d.gltf_scene_choice.empty() ? "the file's own" : d.gltf_scene_choice;
     id["--animation"] = d.animation_choice.empty() ? "all" : d.animation_choice;
     id["--environment"] = d.environment_override.empty() ? "the scene's" : d.environment_override;
+    using Surfaces = FilmDescription::Surfaces;
+    if (const Surfaces kept = kept_surfaces(d.film, options); kept != Surfaces::none)
+        id["first surfaces (--layers)"] =
+            kept == Surfaces::camera ? "in the camera's space" : "in the world";
     if (options.method == Method::uniform) {
         id["light of emitters (--layers)"] = options.emitters_apart ? "apart" : "not apart";
         id["features (--layers)"] = options.features ? "kept" : "not kept";

@@ -36,29 +36,31 @@ size_t denoiser_bytes(const Denoiser& denoiser, size_t pixels) {
 
 }  // namespace
 
-size_t film_bytes_per_pixel(Method method, FilmParts uniform_parts) {
+size_t film_bytes_per_pixel(Method method, FilmParts parts) {
     constexpr size_t kPlan = sizeof(uint32_t), kDensity = sizeof(float),
                      kCovariance = sizeof(PackedCovariance),
                      kFeatureRecords =
                          sizeof(PathFeatures) + sizeof(FeatureSquares) + sizeof(uint32_t);
+    const size_t surfaces = parts.surfaces ? sizeof(FirstSurface) : 0;
     switch (method) {
         case Method::uniform:
-            return sizeof(FilmPixel) + (uniform_parts.in_view ? sizeof(Rgb) : 0) +
-                   (uniform_parts.features ? kFeatureRecords : 0) + kPlan;
+            return sizeof(FilmPixel) + (parts.in_view ? sizeof(Rgb) : 0) +
+                   (parts.features ? kFeatureRecords : 0) + surfaces + kPlan;
         case Method::covariance:
-            return sizeof(FilmPixel) + sizeof(Rgb) + kPlan + kDensity + 2 * kCovariance;
+            return sizeof(FilmPixel) + sizeof(Rgb) + surfaces + kPlan + kDensity + 2 * kCovariance;
         case Method::hybrid:
             break;
     }
-    const size_t half = sizeof(FilmPixel) + kFeatureRecords + kPlan;
+    const size_t half = sizeof(FilmPixel) + kFeatureRecords + surfaces + kPlan;
     // Both parts of the light are kept up to the end of the pilot; then their sum, and densities.
     return 2 * half + std::max(2 * kCovariance, kCovariance + kDensity);
 }
 
 std::map<std::string, size_t> render_memory(const FilmDescription& film,
                                             const RenderOptions& options) {
-    const size_t kept =
-        film_bytes_per_pixel(options.method, {options.emitters_apart, options.features});
+    const size_t kept = film_bytes_per_pixel(
+        options.method, {options.emitters_apart, options.features,
+                         kept_surfaces(film, options) != FilmDescription::Surfaces::none});
     const PixelBounds region = render_region(film);
     const size_t pixels = size_t(region.width()) * size_t(region.height());
     std::map<std::string, size_t> bytes{

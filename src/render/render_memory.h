@@ -12,8 +12,9 @@
 namespace covtrace {
 
 /// Bytes that a render keeps for each pixel, plan and prediction included, at the moment when they
-/// are most. `uniform_parts`: the records that `uniform` keeps beside its pixels.
-size_t film_bytes_per_pixel(Method method, FilmParts uniform_parts = {});
+/// are most. `parts`: the records that are kept beside
+/// pixels; of the first two the other methods have their own.
+size_t film_bytes_per_pixel(Method method, FilmParts parts = {});
 
 /// Bytes that a render takes beside its scene: "film", with plan and prediction, and "image": the
 /// layers and the buffers of the reconstruction, as measured; "denoiser" where there is one.

@@ -83,6 +83,8 @@ RenderState::RenderState(const RenderScene& scene, const RenderOptions& options)
     covariance_spp = covariance_paths(options, spp);
     FilmParts kept = film_parts(method);
     if (method == Method::uniform) kept = {options.emitters_apart, options.features};
+    kept.surfaces =
+        kept_surfaces(scene.description.film, options) != FilmDescription::Surfaces::none;
     for (int k = 0; k < (method == Method::hybrid ? 2 : 1); ++k) films.emplace_back(region, kept);
     if (method != Method::uniform) covariances = CovarianceBuffers(region.width(), region.height());
 }
@@ -132,6 +134,7 @@ void RenderState::keep_only(const Shard& shard) {
             clear_at(film.features, i);
             clear_at(film.feature_squares, i);
             clear_at(film.rays, i);
+            clear_at(film.surfaces, i);
         }
         for (auto& counts : plan) clear_at(counts, i);
         if (auto* parts = std::get_if<CovarianceBuffers>(&covariances)) {

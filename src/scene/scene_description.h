@@ -267,6 +267,9 @@ struct CameraDescription {
 };
 
 struct FilmDescription {
+    /// Space of the layers that tell of the first surfaces, where the scene asks for them (pbrt's
+    /// "gbuffer").
+    enum class Surfaces { none, camera, world };
     int width = 1280, height = 720;
     static constexpr const char* kLargest = "at most 65536 pixels a side and 2^30 in all";
     bool is_too_large() const {
@@ -279,6 +282,7 @@ struct FilmDescription {
     /// Matrix from linear Rec.709 to linear Rec.709 as the sensor and its white balance show it.
     std::array<std::array<float, 3>, 3> sensor{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     float max_component_value = kInfinity;  ///< largest value of a sample's channels
+    Surfaces surfaces = Surfaces::none;
     SourceLocation where;
 };
 

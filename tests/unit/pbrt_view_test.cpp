@@ -98,13 +98,22 @@ TEST(SceneView, SamplersSayHowManySamples) {
 TEST(SceneView, WhatIsNotRenderedIsReplacedWithAWarning) {
     for (const char* text :
          {"Integrator \"bdpt\" \"bool visualizestrategies\" true", "Integrator \"sppm\"",
-          "Film \"gbuffer\" \"string coordinatesystem\" \"world\"", "Film \"spectral\"",
-          "Camera \"realistic\" \"string lensfile\" \"x.dat\"",
+          "Film \"spectral\"", "Camera \"realistic\" \"string lensfile\" \"x.dat\"",
           "Integrator \"path\" \"bool regularize\" true", "ColorSpace \"rec2020\" Film \"rgb\"",
           "Film \"rgb\" \"float scale\" 2"}) {
         const auto scene = read_options(text);
         EXPECT_EQ(scene.warnings.size(), 1u) << text << "\n" << warnings_of(scene);
     }
+}
+
+TEST(SceneView, GBuffersKeepTheFirstSurfaces) {
+    using Surfaces = FilmDescription::Surfaces;
+    EXPECT_EQ(read_options("Film \"rgb\"").film.surfaces, Surfaces::none);
+    const auto scene = read_options("Film \"gbuffer\"");
+    EXPECT_EQ(scene.film.surfaces, Surfaces::camera);
+    EXPECT_EQ(warnings_of(scene), "");
+    const char* world = "Film \"gbuffer\" \"string coordinatesystem\" \"world\"";
+    EXPECT_EQ(read_options(world).film.surfaces, Surfaces::world);
 }
 
 TEST(SceneView, NamedSensorsReplaceTheWhiteBalance) {
@@ -193,6 +202,8 @@ TEST(SceneView, ErrorsNameThePlace) {
         {"Film \"rgb\" \"float iso\" 0", "must be greater than 0"},
         {"Film \"rgb\" \"string sensor\" \"nikon_d850x\"",
          "test.pbrt:1:12: unknown sensor \"nikon_d850x\""},
+        {"Film \"gbuffer\" \"string coordinatesystem\" \"object\"",
+         "test.pbrt:1:16: unknown coordinate system of a gbuffer film \"object\""},
         {"PixelFilter \"cubic\"", "unknown filter \"cubic\""},
         {"PixelFilter \"box\" \"float xradius\" 0", "must be greater than 0"},
         {"Sampler \"random\"", "pbrt-v3"},

@@ -138,6 +138,7 @@ TEST(BytesPerPixel, AreAsTheRecordsSay) {
     EXPECT_EQ(sizeof(FilmPixel), 60u);
     EXPECT_EQ(sizeof(PathFeatures), 28u);
     EXPECT_EQ(sizeof(FeatureSquares), 20u);
+    EXPECT_EQ(sizeof(FirstSurface), 52u);
     EXPECT_EQ(sizeof(PackedCovariance), 40u);
     const std::pair<Method, size_t> expected[] = {
         {Method::uniform, 64}, {Method::covariance, 160}, {Method::hybrid, 312}};
@@ -155,6 +156,9 @@ TEST(BytesPerPixel, AreAsTheRecordsSay) {
     }
     EXPECT_EQ(film_bytes_per_pixel(Method::uniform, {.in_view = true}), 76u);
     EXPECT_EQ(film_bytes_per_pixel(Method::uniform, {.features = true}), 116u);
+    for (const Method method : {Method::uniform, Method::covariance, Method::hybrid})
+        EXPECT_EQ(film_bytes_per_pixel(method, {.surfaces = true}),
+                  film_bytes_per_pixel(method) + (method == Method::hybrid ? 2 : 1) * 52u);
 }
 
 }  // namespace
