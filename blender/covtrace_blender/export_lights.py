@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from mathutils import Euler, Matrix
 
-from .blackbody import blackbody, blackbody_temperature
+from .shader_nodes.blackbody import blackbody, blackbody_temperature
 from .export_materials import numbers
 from .export_textures import pixels, write_pfm
 

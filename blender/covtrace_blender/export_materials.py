@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from .baking import Baker, Surface
 from .export_sockets import PLAIN_MAPPING, SocketReader, Value
 from .export_textures import TextureFiles
 
@@ -40,14 +41,24 @@ class MaterialExporter(SocketReader):
     def __init__(self, out, folder, warn):
         self.out, self.warn = out, warn
         self.files = TextureFiles(folder)
-        self.known = {}
+        self.baker = Baker(self.files.source)
+        self.known, self.of_objects = {}, set()
         self.count = 0
 
-    def material(self, material):
-        """(pbrt name, Emission or None, alpha parameter text, names of the UV maps that it reads; "" is the mesh's)."""
-        key = material.name_full if material else None
+    def material(self, material, object_name="", surface_of=lambda material_name: Surface()):
+        """(pbrt name, Emission or None, alpha parameter text, names of the UV maps that it reads; "" is the mesh's).
+
+        object_name: the object that it is on, for what hangs on it. surface_of(name of the material): its Surface there.
+        """
+        name = material.name_full if material else None
+        key = (name, object_name if name in self.of_objects else None)
         if key not in self.known:
-            self.known[key] = self._export(material)
+            self.surface, self.hangs_on_object = surface_of(name), False
+            exported = self._export(material)
+            if self.hangs_on_object:
+                self.of_objects.add(name)
+                key = (name, object_name)
+            self.known[key] = exported
         return self.known[key]
 
     # -- text

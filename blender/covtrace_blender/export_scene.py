@@ -6,7 +6,8 @@ import os
 import numpy as np
 from mathutils import Matrix
 
-from . import export_lights, export_meshes, export_motion, export_strands, ply
+from . import export_lights, export_meshes, export_motion, export_strands, ply, surface_coordinates
+from .baking import Surface
 from .export_materials import MaterialExporter, numbers
 
 # Blender's cameras look along -z, pbrt's along +z; both have x to the right and y up.
@@ -78,6 +79,7 @@ class SceneExporter:
             out.write("WorldBegin\n")
             self.materials = MaterialExporter(out, self.folder, self.warn)
             export_lights.write_world(out, self.scene.world, self.folder, self.warn)
+            self.uv_ranges = self._uv_ranges()
             self._write_objects(moving)
 
     # -- time
@@ -254,9 +256,28 @@ class SceneExporter:
         uvs = np.zeros((len(positions), 2)) if self._material_of(obj, slot)[3] else None
         return self._part(obj, slot, positions, normals, uvs, triangles)
 
+    def _materials(self, obj):
+        return [s.material for s in obj.material_slots] if self._is_own(obj) else list(obj.data.materials)
+
     def _material_of(self, obj, slot):
-        materials = [s.material for s in obj.material_slots] if self._is_own(obj) else list(obj.data.materials)
-        return self.materials.material(materials[min(slot, len(materials) - 1)] if materials else None)
+        """The material of a slot, as it is on the object; on strands, which have no UV map, as anywhere."""
+        materials = self._materials(obj)
+
+        def surface_of(name):
+            # Curves and the like have meshes only while they are exported; their UV maps are unit squares.
+            is_mesh = obj.type == "MESH"
+            return Surface(self.uv_ranges.of(name), surface_coordinates.object_of_uv(obj, obj.data) if is_mesh else {})
+
+        return self.materials.material(materials[min(slot, len(materials) - 1)] if materials else None, obj.name_full,
+                                       surface_of)
+
+    def _uv_ranges(self):
+        ranges = surface_coordinates.UvRanges()
+        for _, instance in self._instances():
+            obj = instance.object
+            if obj.type == "MESH":
+                ranges.add(obj.data, {m.name_full for m in self._materials(obj) if m})
+        return ranges
 
     def _part(self, obj, slot, positions, normals, uvs, triangles, motion=None):
         file = f"mesh{len(os.listdir(self.folder))}.ply"

@@ -1,8 +1,9 @@
-"""Inputs of a shader node's sockets: constants, and images with their place and treatment."""
+"""Inputs of a shader node's sockets: constants, and images with their place and treatment, Blender's own or baked."""
 
 import numpy as np
 
-from .blackbody import blackbody, temperature_of
+from .baking import Surface
+from .shader_nodes.unsupported import Unsupported
 
 
 class Value:
@@ -46,8 +47,11 @@ WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black"}
 
 
 class SocketReader:
-    """Reads sockets of the material `name`; what is left out is told to `warn`, and `uv_maps` collects the names of the UV
-    maps that images want ("": the mesh's)."""
+    """Reads sockets of the material `name` on `surface`; what is left out is told to `warn`, `uv_maps` collects the names
+    of the UV maps that images want ("": the mesh's), and `hangs_on_object` is whether the object counts that it is on.
+    `baker`: a Baker."""
+
+    surface = Surface()
 
     def _linked(self, socket):
         """The node and socket that feed it, reroutes passed."""
@@ -63,12 +67,28 @@ class SocketReader:
         node, output = self._linked(socket)
         if node is None:
             return self._constant(socket.default_value, grey)
-        value = self._node_value(node, output, grey)
-        if value is None:
-            self.warn(f"material '{self.name}': node '{node.name}' at '{socket.name}' is not supported; "
-                      "the socket's own value is used")
+        direct = self._direct_value(node, output, grey)
+        if direct is not None:
+            return direct
+        try:
+            return self._baked_value(lambda nodes: nodes.number(socket) if grey else nodes.vector(socket))
+        except Unsupported as problem:
+            if node.type == "TEX_IMAGE" and node.image:
+                return self._image_as_it_lies(node, output, grey, problem)
+            self.warn(f"material '{self.name}': node '{problem.node.name}' at '{socket.name}' is not supported "
+                      f"({problem.reason}); the socket's own value is used")
             return self._constant(socket.default_value, grey)
-        return value
+
+    def _baked_value(self, get, only_unit_square=False):
+        """Value of what `get` asks of an evaluator of nodes: a constant, or an image over UV. Raises Unsupported."""
+        baked = self.baker.bake(get, self.surface, only_unit_square)
+        self.hangs_on_object |= baked.place.hangs_on_object
+        for name in baked.place.uv_maps:
+            self._note_uv_map(name)
+        if baked.image is None:
+            value = np.asarray(baked.constant)
+            return Value(tuple(float(v) for v in value) if value.ndim else float(value))
+        return Value(image=baked.image, mapping=baked.layout.mapping(), wrap=baked.layout.wrap)
 
     def _plain(self, socket):
         """A number where there can be no image; what is linked and no constant is told."""
@@ -84,49 +104,59 @@ class SocketReader:
             return Value(0.2126 * v[0] + 0.7152 * v[1] + 0.0722 * v[2] if grey else v)
         return Value(float(v) if grey else (float(v),) * 3)
 
-    def _node_value(self, node, output, grey):
-        if node.type == "RGB" or node.type == "VALUE":
-            return self._constant(output.default_value, grey)
-        if node.type == "BLACKBODY" and temperature_of(node) is not None:
-            return self._constant(blackbody(temperature_of(node)), grey)
+    def _direct_value(self, node, output, grey):
+        """An image as it is in its file, and what is easily done to it; None for all else."""
         if node.type == "TEX_IMAGE" and node.image:
-            channel = "A" if output.name == "Alpha" else "grey" if grey else None
-            if node.projection != "FLAT":
-                self.warn(f"material '{self.name}': the projection of '{node.name}' is not supported; its image lies flat")
-            if node.extension not in WRAPS:
-                self.warn(f"material '{self.name}': the extension of '{node.name}' is not supported; its image repeats")
-            return Value(image=node.image, mapping=self._mapping(node), channel=channel,
-                         filter="point" if node.interpolation == "Closest" else "bilinear",
-                         wrap=WRAPS.get(node.extension, "repeat"))
+            mapping = self._mapping(node)
+            if node.projection != "FLAT" or node.extension not in WRAPS or mapping is None:
+                return None
+            return self._image(node, output, grey, mapping)
         if node.type in ("SEPARATE_COLOR", "SEPRGB") and grey and getattr(node, "mode", "RGB") == "RGB":
-            source = self._node_value(*self._linked(node.inputs[0]), False) if node.inputs[0].is_linked else None
-            if source and source.image and output.name[:1] in "RGB":
+            source = self._direct_value(*self._linked(node.inputs[0]), False) if node.inputs[0].is_linked else None
+            if source and source.channel is None and output.name[:1] in "RGB":
                 source.channel = output.name[:1]
                 return source
-        if node.type == "MATH" and grey and node.operation == "SUBTRACT" and not node.inputs[0].is_linked:
-            return self._value(node.inputs[1], True).inverse(node.inputs[0].default_value)
-        if node.type == "INVERT" and not node.inputs[0].is_linked and node.inputs[0].default_value == 1:
-            return self._value(node.inputs[1], grey).inverse()
+        if node.type == "MATH" and node.operation == "SUBTRACT" and not node.use_clamp and not node.inputs[0].is_linked \
+                and node.inputs[1].is_linked and grey:
+            source = self._direct_value(*self._linked(node.inputs[1]), True)
+            return source and source.inverse(node.inputs[0].default_value)
+        if node.type == "INVERT" and not node.inputs[0].is_linked and node.inputs[0].default_value == 1 \
+                and node.inputs[1].is_linked:
+            source = self._direct_value(*self._linked(node.inputs[1]), grey)
+            return source and source.inverse()
         return None
+
+    def _image(self, node, output, grey, mapping):
+        return Value(image=node.image, mapping=mapping, channel="A" if output.name == "Alpha" else "grey" if grey else None,
+                     filter="point" if node.interpolation == "Closest" else "bilinear",
+                     wrap=WRAPS.get(node.extension, "repeat"))
+
+    def _image_as_it_lies(self, node, output, grey, problem):
+        self.warn(f"material '{self.name}': node '{problem.node.name}' is not supported ({problem.reason}); the image "
+                  f"of '{node.name}' lies on the UV map as it is")
+        self._note_uv_map("")
+        return self._image(node, output, grey, PLAIN_MAPPING)
+
+    def _note_uv_map(self, name):
+        if name not in self.uv_maps:
+            self.uv_maps.append(name)
 
     def _is_uv(self, node, output):
         """Whether the node gives texture coordinates of a mesh; notes of which map."""
         if node is None or node.type == "TEX_COORD" and output.name == "UV":
-            name = ""
+            self._note_uv_map("")
         elif node.type == "UVMAP":
-            name = node.uv_map
+            self._note_uv_map(node.uv_map)
         else:
             return False
-        if name not in self.uv_maps:
-            self.uv_maps.append(name)
         return True
 
     def _mapping(self, node):
-        """pbrt's scale and offset of (u, v), from a Mapping node."""
+        """pbrt's scale and offset of (u, v), from a Mapping node; None for what these cannot tell."""
         source, output = self._linked(node.inputs["Vector"])
         if self._is_uv(source, output):
             return PLAIN_MAPPING
-        if source.type == "MAPPING" and source.vector_type in ("POINT", "TEXTURE"):
+        if source.type == "MAPPING" and source.vector_type in ("POINT", "TEXTURE") and source.inputs["Vector"].is_linked:
             inner, inner_output = self._linked(source.inputs["Vector"])
             linked = any(source.inputs[name].is_linked for name in ("Rotation", "Location", "Scale"))
             rotation = source.inputs["Rotation"].default_value
@@ -136,7 +166,4 @@ class SocketReader:
                     return (scale[0], scale[1], location[0], location[1])
                 if scale[0] != 0 and scale[1] != 0:
                     return (1 / scale[0], 1 / scale[1], -location[0] / scale[0], -location[1] / scale[1])
-        self._is_uv(None, None)
-        self.warn(f"material '{self.name}': only UV coordinates, scaled and moved, place images; "
-                  f"those of '{node.name}' are used as they are")
-        return PLAIN_MAPPING
+        return None

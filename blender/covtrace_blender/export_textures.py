@@ -6,6 +6,8 @@ import zlib
 
 import numpy as np
 
+from .baking import BakedImage
+
 
 def to_linear(values):
     """sRGB to linear, elementwise."""
@@ -73,6 +75,9 @@ class TextureFiles:
         self.cache = {}
 
     def source(self, image):
+        """Pixels of an image of Blender's, or of a baked one."""
+        if isinstance(image, BakedImage):
+            return image.values
         if image.name_full not in self.cache:
             self.cache[image.name_full] = pixels(image)
         return self.cache[image.name_full]

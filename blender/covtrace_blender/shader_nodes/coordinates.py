@@ -1,0 +1,44 @@
+"""Texture coordinates and their mapping."""
+
+import math
+
+import numpy as np
+
+from .unsupported import Unsupported
+
+
+def _texture_coordinates(node, output, inputs):
+    if output.identifier == "UV":
+        return inputs.place.uv_of(node, "")
+    if output.identifier in ("Generated", "Object") and getattr(node, "object", None) is None:
+        return inputs.place.object_coordinates(node, output.identifier.upper())
+    raise Unsupported(node, f"its {output.identifier.lower()} coordinates have no counterpart")
+
+
+def rotation(euler):
+    """(3, 3) of Euler angles x, y, z in radian, x first."""
+    (sx, sy, sz), (cx, cy, cz) = (tuple(f(float(a)) for a in euler) for f in (math.sin, math.cos))
+    about_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
+    about_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
+    about_z = np.array([[cz, -sz, 0], [sz, cz, 0], [0, 0, 1]])
+    return (about_z @ about_y @ about_x).astype(np.float32)
+
+
+def _mapping(node, output, inputs):
+    vector, scale, angles = (inputs.vector(name) for name in ("Vector", "Scale", "Rotation"))
+    if angles.ndim > 1:
+        raise Unsupported(node, "its rotation is not the same everywhere")
+    turn = rotation(angles)
+    if node.vector_type == "POINT":
+        return (vector * scale) @ turn.T + inputs.vector("Location")
+    if node.vector_type == "TEXTURE":
+        turned = (vector - inputs.vector("Location")) @ turn
+        return np.where(scale != 0, turned / np.where(scale != 0, scale, 1), 0)
+    if node.vector_type == "VECTOR":
+        return (vector * scale) @ turn.T
+    normal = np.where(scale != 0, vector / np.where(scale != 0, scale, 1), 0) @ turn.T
+    return normal / np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-30)
+
+
+NODES = {"TEX_COORD": _texture_coordinates, "MAPPING": _mapping,
+         "UVMAP": lambda node, output, inputs: inputs.place.uv_of(node, node.uv_map)}

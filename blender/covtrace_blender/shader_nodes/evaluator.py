@@ -1,0 +1,136 @@
+"""The walk over a tree of nodes."""
+
+import numpy as np
+
+from . import adjustments, blending, colours, coordinates, gradients, images, maths, noise_nodes, patterns, ramps
+from .colours import luminance
+from .unsupported import Unsupported
+
+# Values by the type of the node: function(node, output, Inputs) to a number or a vector, as the output's type is.
+NODES = {**adjustments.NODES, **blending.NODES, **colours.NODES, **coordinates.NODES, **gradients.NODES, **images.NODES,
+         **maths.NODES, **noise_nodes.NODES, **patterns.NODES, **ramps.NODES}
+
+
+class Inputs:
+    """The inputs of one node, by their identifiers or names."""
+
+    def __init__(self, evaluator, node):
+        self._evaluator, self.node, self.place = evaluator, node, evaluator.place
+
+    def socket(self, name):
+        if isinstance(name, int):
+            return self.node.inputs[name]
+        for found in (lambda s: s.identifier == name, lambda s: s.name == name and getattr(s, "enabled", True)):
+            for socket in self.node.inputs:
+                if found(socket):
+                    return socket
+        return None
+
+    def has(self, name):
+        return self.socket(name) is not None
+
+    def number(self, name):
+        return self._evaluator.number(self._found(name))
+
+    def vector(self, name):
+        return self._evaluator.vector(self._found(name))
+
+    def coordinates(self, unlinked="GENERATED"):
+        """The input Vector of textures, which has a meaning where nothing is linked to it."""
+        socket = self._found("Vector")
+        if socket.is_linked:
+            return self._evaluator.vector(socket)
+        if unlinked == "UV":
+            return self.place.uv_of(self.node, "")
+        return self.place.object_coordinates(self.node, unlinked)
+
+    def _found(self, name):
+        socket = self.socket(name)
+        if socket is None:
+            raise Unsupported(self.node, f"it has no input {name}")
+        return socket
+
+
+class Evaluator:
+    """Evaluates sockets at the places of `place`."""
+
+    def __init__(self, place):
+        self.place = place
+        self._groups = []  # the groups that the walk is inside of
+        self._known = {}
+
+    def number(self, socket):
+        """(n,) or (): what a socket of one number gets."""
+        return self._get(socket, False)
+
+    def vector(self, socket):
+        """(n, 3) or (3,): what a socket of colours or vectors gets."""
+        return self._get(socket, True)
+
+    def _get(self, socket, wants_vector):
+        if not socket.is_linked:
+            value = np.asarray(socket.default_value, np.float32)
+            value, kind = (value, "VALUE") if value.ndim == 0 else (value[:3], socket.type)
+        else:
+            link = socket.links[0]
+            value, kind = self.output(link.from_node, link.from_socket)
+        is_vector = kind in ("RGBA", "VECTOR")
+        if is_vector == wants_vector:
+            return value
+        if wants_vector:
+            return np.repeat(np.asarray(value, np.float32)[..., None], 3, axis=-1)
+        return luminance(value) if kind == "RGBA" else value.mean(axis=-1)
+
+    def output(self, node, output):
+        """(value, type of its socket)."""
+        key = (tuple(id(group) for group in self._groups), node.name, output.identifier)
+        if key not in self._known:
+            self._known[key] = self._evaluate(node, output)
+        return self._known[key]
+
+    def _evaluate(self, node, output):
+        if getattr(node, "mute", False):
+            return self._muted(node, output)
+        if node.type == "REROUTE":
+            link = node.inputs[0].links[0] if node.inputs[0].is_linked else None
+            if link is None:
+                raise Unsupported(node, "nothing is linked to it")
+            return self.output(link.from_node, link.from_socket)
+        if node.type == "GROUP":
+            return self._group(node, output)
+        if node.type == "GROUP_INPUT":
+            return self._group_input(output)
+        if node.type not in NODES:
+            raise Unsupported(node, "nodes of its kind have no counterpart")
+        with np.errstate(all="ignore"):
+            value = np.asarray(NODES[node.type](node, output, Inputs(self, node)), np.float32)
+        return np.nan_to_num(value), output.type
+
+    def _typed(self, socket):
+        """(value, type) of an input as it is."""
+        is_vector = socket.type in ("RGBA", "VECTOR")
+        return (self.vector if is_vector else self.number)(socket), socket.type
+
+    def _muted(self, node, output):
+        for link in node.internal_links:
+            if link.to_socket == output:
+                return self._typed(link.from_socket)
+        raise Unsupported(node, "it is muted and passes nothing on")
+
+    def _group(self, node, output):
+        ends = [n for n in node.node_tree.nodes if n.type == "GROUP_OUTPUT" and n.is_active_output]
+        inside = [s for end in ends for s in end.inputs if s.identifier == output.identifier]
+        if not inside:
+            raise Unsupported(node, "the group has no output")
+        self._groups.append(node)
+        try:
+            return self._typed(inside[0])
+        finally:
+            self._groups.pop()
+
+    def _group_input(self, output):
+        group = self._groups.pop()
+        try:
+            return self._typed(next(s for s in group.inputs if s.identifier == output.identifier))
+        finally:
+            self._groups.append(group)

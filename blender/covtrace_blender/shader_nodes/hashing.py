@@ -1,0 +1,59 @@
+"""Random numbers of cells: Bob Jenkins' lookup3 (2006, public domain), as Blender's textures use it."""
+
+import numpy as np
+
+
+def _rotated(x, bits):
+    return (x << np.uint32(bits)) | (x >> np.uint32(32 - bits))
+
+
+def _final(a, b, c):
+    for bits in ((14, 11, 25), (16, 4, 14)):
+        c = (c ^ b) - _rotated(b, bits[0])
+        a = (a ^ c) - _rotated(c, bits[1])
+        b = (b ^ a) - _rotated(a, bits[2])
+    return (c ^ b) - _rotated(b, 24)
+
+
+def _mixed(a, b, c):
+    for bits in ((4, 6, 8), (16, 19, 4)):
+        a = (a - c) ^ _rotated(c, bits[0])
+        c = c + b
+        b = (b - a) ^ _rotated(a, bits[1])
+        a = a + c
+        c = (c - b) ^ _rotated(b, bits[2])
+        b = b + a
+    return a, b, c
+
+
+def hashed(*keys):
+    """uint32 of one to four uint32 arrays of one shape."""
+    with np.errstate(over="ignore"):
+        start = np.uint32((0xDEADBEEF + (len(keys) << 2) + 13) & 0xFFFFFFFF)
+        a, b, c = (start + key for key in (*keys, *(np.uint32(0),) * 2)[:3])
+        if len(keys) > 3:
+            a, b, c = _mixed(a, b, c)
+            a = a + keys[3]
+        return _final(a, b, c)
+
+
+def bits(value):
+    """The bits of float32 as uint32."""
+    return np.ascontiguousarray(value, np.float32).view(np.uint32)
+
+
+def hashed_number(*values):
+    """In [0, 1], of the bits of one to four float32 arrays."""
+    values = np.broadcast_arrays(*(np.asarray(v, np.float32) for v in values))
+    shape = values[0].shape
+    return (hashed(*(bits(v).reshape(shape) for v in values)).astype(np.float64) / 0xFFFFFFFF).astype(np.float32)
+
+
+def hashed_vector(*values):
+    """(..., 3) in [0, 1], of one to four numbers."""
+    if len(values) == 4:
+        x, y, z, w = values
+        keys = ((x, y, z, w), (z, x, w, y), (w, z, y, x))
+    else:
+        keys = (values, (*values, 1.0), (*values, 2.0))
+    return np.stack([hashed_number(*key) for key in keys], axis=-1)

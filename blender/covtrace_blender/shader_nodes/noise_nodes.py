@@ -1,0 +1,83 @@
+"""The nodes Noise, White Noise and Voronoi."""
+
+import numpy as np
+
+from . import voronoi
+from .hashing import hashed_number, hashed_vector
+from .noise import fractal, signed_noise
+from .unsupported import Unsupported
+
+
+def _points(node, inputs, dimensions):
+    """(n, d) places: x, y, z, the fourth axis being W; the only one being W, too."""
+    parts = []
+    if dimensions > 1:
+        parts = list(np.moveaxis(inputs.coordinates()[..., :min(dimensions, 3)], -1, 0))
+    if dimensions in (1, 4):
+        parts.append(inputs.number("W"))
+    return np.stack(np.broadcast_arrays(*parts), axis=-1)
+
+
+def _dimensions(node):
+    return int(node.noise_dimensions[0] if hasattr(node, "noise_dimensions") else node.voronoi_dimensions[0])
+
+
+def _offset(seed, dimensions):
+    """Where another noise begins: (d,) in [100, 200]."""
+    return np.array([100 + 100 * hashed_number(np.float32(seed), np.float32(i)) for i in range(dimensions)], np.float32)
+
+
+def _noise(node, output, inputs):
+    if getattr(node, "noise_type", "FBM") != "FBM":
+        raise Unsupported(node, f"its type {node.noise_type} has no counterpart")
+    dimensions = _dimensions(node)
+    p = _points(node, inputs, dimensions) * inputs.number("Scale")[..., None]
+    distortion = inputs.number("Distortion")
+    if distortion.any():
+        p = p + np.stack([signed_noise(p + _offset(i, dimensions)) * distortion for i in range(dimensions)], axis=-1)
+    lacunarity = inputs.number("Lacunarity") if inputs.has("Lacunarity") else np.float32(2)
+
+    def value(q):
+        return 0.5 + 0.5 * fractal(q, inputs.number("Detail"), inputs.number("Roughness"), lacunarity)
+
+    if not getattr(node, "normalize", True):
+        raise Unsupported(node, "noise that is not normalized has no counterpart")
+    if output.type == "VALUE":
+        return value(p)
+    return np.stack([value(p), value(p + _offset(dimensions, dimensions)), value(p + _offset(dimensions + 1, dimensions))],
+                    axis=-1)
+
+
+def _white_noise(node, output, inputs):
+    p = np.moveaxis(_points(node, inputs, _dimensions(node)), -1, 0)
+    return hashed_number(*p) if output.type == "VALUE" else hashed_vector(*p)
+
+
+def _voronoi(node, output, inputs):
+    dimensions = _dimensions(node)
+    if inputs.has("Detail") and inputs.number("Detail").any():
+        raise Unsupported(node, "its detail has no counterpart")
+    if dimensions not in (2, 3):
+        raise Unsupported(node, f"it has no counterpart in {node.voronoi_dimensions}")
+    if getattr(node, "normalize", False):
+        raise Unsupported(node, "normalized cells have no counterpart")
+    scale = inputs.number("Scale")[..., None]
+    p = np.atleast_2d(_points(node, inputs, dimensions) * scale)
+    jitter = np.clip(inputs.number("Randomness"), 0, 1)
+    if node.feature == "DISTANCE_TO_EDGE":
+        return voronoi.distance_to_edge(p, jitter)
+    metric = voronoi.METRICS[node.distance]
+    exponent = inputs.number("Exponent") if node.distance == "MINKOWSKI" else None
+    if node.feature not in ("F1", "F2"):
+        raise Unsupported(node, f"its feature {node.feature} has no counterpart")
+    distance, colour, position = voronoi.nearest(p, jitter, lambda d: metric(d, exponent), node.feature == "F2")
+    if output.identifier == "Distance":
+        return distance
+    if output.identifier == "Color":
+        return colour
+    full = np.zeros((len(position), 3), np.float32)
+    full[:, :dimensions] = np.where(scale != 0, position / np.where(scale != 0, scale, 1), 0)
+    return full
+
+
+NODES = {"TEX_NOISE": _noise, "TEX_WHITE_NOISE": _white_noise, "TEX_VORONOI": _voronoi}

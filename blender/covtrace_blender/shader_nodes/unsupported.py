@@ -1,0 +1,9 @@
+"""The error of a node that has no value here."""
+
+
+class Unsupported(Exception):
+    """A node that cannot be evaluated, with the reason."""
+
+    def __init__(self, node, reason):
+        super().__init__(f"node '{node.name}': {reason}")
+        self.node, self.reason = node, reason

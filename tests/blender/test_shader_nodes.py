@@ -1,0 +1,275 @@
+"""Each shader node that is baked, against Cycles: matt tiles in a white world, which show their colour and nothing else."""
+
+import unittest.mock
+
+import bpy
+import numpy as np
+from addon_support import BlenderTest, render
+from covtrace_blender import baking, export_scene
+
+SIZE = (128, 96)
+TILES = 4  # a row and a column of them; each is 32 x 24 pixels, of which 28 x 20 are looked at, in 4 x 4 regions
+BLUE, ORANGE = (0.1, 0.2, 0.8, 1), (0.9, 0.5, 0.1, 1)
+
+
+class Tree:
+    """A material whose matt colour is what a node gives."""
+
+    def __init__(self, name="nodes"):
+        self.material = bpy.data.materials.new(name)
+        self.material.use_nodes = True
+        self.tree = self.material.node_tree
+        self.shader = self.tree.nodes.new("ShaderNodeBsdfDiffuse")
+        self.link(self.shader, "BSDF", self.tree.nodes["Material Output"].inputs["Surface"])
+
+    def link(self, node, output, socket):
+        self.tree.links.new(node.outputs[output], socket)
+
+    def node(self, kind, settings=None, inputs=None):
+        """A node; inputs: by name or index, values or (node, output)."""
+        node = self.tree.nodes.new("ShaderNode" + kind)
+        for key, value in (settings or {}).items():
+            setattr(node, key, value)
+        for key, value in (inputs or {}).items():
+            socket = node.inputs[key]
+            if isinstance(value, tuple) and isinstance(value[0], bpy.types.Node):
+                self.link(*value, socket)
+            elif isinstance(value, bpy.types.Node):
+                self.link(value, 0, socket)
+            else:
+                socket.default_value = value
+        return node
+
+    def uv(self):
+        return self.node("TexCoord"), "UV"
+
+    def colours(self):
+        """A colour that changes in all three channels over the plane."""
+        parts = self.node("SeparateXYZ", inputs={0: self.uv()})
+        product = self.node("Math", {"operation": "MULTIPLY"}, {0: (parts, 0), 1: (parts, 1)})
+        return self.node("CombineColor", inputs={0: (parts, 0), 1: (parts, 1), 2: product})
+
+    def number(self, axis=0):
+        return self.node("SeparateXYZ", inputs={0: self.uv()}), axis
+
+    def show(self, node, output=0):
+        self.link(node, output, self.shader.inputs["Color"])
+
+
+class ShaderNodesTest(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        self.scene.render.resolution_x, self.scene.render.resolution_y = SIZE
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        self.camera.data.type, self.camera.data.ortho_scale = "ORTHO", TILES
+        self.scene.covtrace.method = "uniform"
+        # Small images: the choice of their size has a test of its own.
+        patch = unittest.mock.patch.object(baking, "LARGEST", 512)
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def tile(self, number, material):
+        """A plane 1 x 3/4 at its place in the picture, the rows from the top."""
+        bpy.ops.mesh.primitive_plane_add(size=1)
+        plane = bpy.context.object
+        for vertex in plane.data.vertices:
+            vertex.co.y *= 0.75
+        plane.location = (number % TILES + 0.5 - TILES / 2, 0.75 * (TILES / 2 - 0.5 - number // TILES), 0)
+        plane.data.materials.append(material)
+        return plane
+
+    def pictures(self, samples=16):
+        """Ours and Cycles', (rows, columns, 3) from the top."""
+        found = []
+        for engine, name in (("COVTRACE", "Noisy Image"), ("CYCLES", "Combined")):
+            image = render(engine, samples)
+            found.append(np.stack([np.reshape(image[f"{name}.{c}"], SIZE[::-1]) for c in "RGB"], axis=-1))
+        return found
+
+    def assert_nodes(self, builds, change=lambda plane: None, region_tolerance=0.015, mean_tolerance=0.03, warnings=()):
+        """builds: {name: function that shows a node of a Tree}. Asserts that no tile's mean colour is off by more than the
+        share `mean_tolerance`, and no region's by more than `region_tolerance`."""
+        for number, (name, build) in enumerate(builds.items()):
+            tree = Tree(name)
+            build(tree)
+            change(self.tile(number, tree.material))
+        write, told = export_scene.SceneExporter.write, []
+
+        def listening(exporter):
+            path = write(exporter)
+            told.extend(exporter.warnings)
+            return path
+
+        with unittest.mock.patch.object(export_scene.SceneExporter, "write", listening):
+            ours, theirs = self.pictures()
+        self.assertEqual(told, list(warnings))
+        for number, name in enumerate(builds):
+            with self.subTest(name):
+                y, x = (24 * (number // TILES) + 2, 32 * (number % TILES) + 2)
+                a, b = (p[y:y + 20, x:x + 28].reshape(4, 5, 4, 7, 3).mean(axis=(1, 3)) for p in (ours, theirs))
+                text = f"means {a.mean(axis=(0, 1))} against {b.mean(axis=(0, 1))}, worst region {np.abs(a - b).max():.4f}"
+                self.assertGreater(b.std(), 0.01, "the tile shows nothing")
+                self.assertLess(np.abs(a.mean(axis=(0, 1)) / b.mean(axis=(0, 1)) - 1).max(), mean_tolerance, text)
+                self.assertLess(np.abs(a - b).max(), region_tolerance, text)
+
+    @staticmethod
+    def of_textures(textures):
+        """{name: (kind, settings, inputs, output)} on UV coordinates."""
+        def build(kind, settings, inputs, output):
+            return lambda tree: tree.show(tree.node(kind, settings, {**inputs, "Vector": tree.uv()}), output)
+        return {name: build(*texture) for name, texture in textures.items()}
+
+    def test_patterns(self):
+        wave = {"Scale": 1.0, "Distortion": 2.0}
+        self.assert_nodes(self.of_textures({
+            "checker": ("TexChecker", {}, {"Scale": 5.0, "Color1": BLUE, "Color2": ORANGE}, "Color"),
+            "checker factor": ("TexChecker", {}, {"Scale": 3.0}, "Fac"),
+            "brick": ("TexBrick", {"offset": 0.3, "squash": 0.7}, {
+                "Scale": 3.0, "Color1": BLUE, "Color2": ORANGE, "Mortar Smooth": 0.4, "Mortar Size": 0.05}, "Color"),
+            "brick factor": ("TexBrick", {}, {"Scale": 2.0, "Mortar Size": 0.06}, "Fac"),
+            **{kind: ("TexGradient", {"gradient_type": kind}, {}, "Color") for kind in (
+                "LINEAR", "QUADRATIC", "EASING", "DIAGONAL", "RADIAL", "QUADRATIC_SPHERE", "SPHERICAL")},
+            "waves": ("TexWave", {"wave_type": "BANDS", "bands_direction": "DIAGONAL"}, wave, "Color"),
+            "rings": ("TexWave", {"wave_type": "RINGS", "wave_profile": "TRI"}, {"Scale": 1.0, "Phase Offset": 1.0}, "Color"),
+            "saw": ("TexWave", {"wave_profile": "SAW"}, {"Scale": 0.7}, "Fac"),
+        }))
+
+    def test_noise(self):
+        rich = {"Scale": 4.0, "Detail": 2.5, "Roughness": 0.6, "Distortion": 0.5}
+        self.assert_nodes(self.of_textures({
+            "noise": ("TexNoise", {}, rich, "Color"),
+            "noise number": ("TexNoise", {}, {"Scale": 6.0, "Detail": 0.0}, "Fac"),
+            "noise 2D": ("TexNoise", {"noise_dimensions": "2D"}, rich, "Color"),
+            "noise 4D": ("TexNoise", {"noise_dimensions": "4D"}, {**rich, "W": 0.7}, "Color"),
+            "voronoi": ("TexVoronoi", {}, {"Scale": 4.0, "Randomness": 0.9}, "Color"),
+            "voronoi 2D": ("TexVoronoi", {"voronoi_dimensions": "2D"}, {"Scale": 4.0}, "Color"),
+            "voronoi F1": ("TexVoronoi", {"distance": "MINKOWSKI"}, {"Scale": 3.0, "Exponent": 1.5}, "Distance"),
+            "voronoi F2": ("TexVoronoi", {"feature": "F2", "distance": "MANHATTAN"}, {"Scale": 1.5}, "Distance"),
+            "voronoi edge": ("TexVoronoi", {"feature": "DISTANCE_TO_EDGE"}, {"Scale": 2.0}, "Distance"),
+            "voronoi position": ("TexVoronoi", {"distance": "CHEBYCHEV"}, {"Scale": 3.0}, "Position"),
+        }))
+
+    def test_noise_of_one_dimension(self):
+        def build(kind):
+            def show(tree):
+                steps = tree.node("Math", {"operation": "MULTIPLY"}, {0: tree.number(), 1: 5.0})
+                tree.show(tree.node(kind, {"noise_dimensions": "1D"}, {"W": steps}), 1)
+            return show
+        self.assert_nodes({"noise": build("TexNoise")})
+
+    def test_adjustments(self):
+        adjustments = {
+            "hue": ("HueSaturation", {"Hue": 0.7, "Saturation": 0.8, "Value": 0.9, "Fac": 0.8}, "Color"),
+            "contrast": ("BrightContrast", {"Bright": -0.1, "Contrast": 0.2}, "Color"),
+            "gamma": ("Gamma", {"Gamma": 2.2}, "Color"),
+            "invert": ("Invert", {"Fac": 0.7}, "Color"),
+            "grey": ("RGBToBW", {}, "Color"),
+        }
+
+        def build(kind, inputs, socket):
+            return lambda tree: tree.show(tree.node(kind, {}, {**inputs, socket: tree.colours()}))
+
+        def ramp(interpolation):
+            def show(tree):
+                node = tree.node("ValToRGB", {}, {0: tree.number()})
+                node.color_ramp.interpolation = interpolation
+                node.color_ramp.elements[0].color, node.color_ramp.elements[1].color = BLUE, ORANGE
+                node.color_ramp.elements.new(0.4).color = (0.2, 0.9, 0.3, 1)
+                tree.show(node)
+            return show
+
+        def curves(tree):
+            node = tree.node("RGBCurve", {}, {"Fac": 0.8, "Color": tree.colours()})
+            node.mapping.curves[3].points.new(0.5, 0.7)
+            node.mapping.curves[0].points.new(0.3, 0.2)
+            node.mapping.curves[1].points[1].location = (0.8, 0.9)
+            node.mapping.update()
+            tree.show(node)
+
+        def separate(mode):
+            def show(tree):
+                parts = tree.node("SeparateColor", {"mode": mode}, {0: tree.colours()})
+                tree.show(tree.node("CombineColor", {}, {0: (parts, 2), 1: (parts, 0), 2: (parts, 1)}))
+            return show
+
+        def combine(mode):
+            return lambda tree: tree.show(tree.node("CombineColor", {"mode": mode}, {0: tree.number(), 1: tree.number(1), 2: 0.6}))
+
+        self.assert_nodes({**{name: build(*values) for name, values in adjustments.items()},
+                           **{f"ramp {kind}": ramp(kind) for kind in ("LINEAR", "CONSTANT", "EASE")}, "curves": curves,
+                           **{f"separate {mode}": separate(mode) for mode in ("HSV", "HSL")},
+                           **{f"combine {mode}": combine(mode) for mode in ("HSV", "HSL")}})
+
+    def test_blends(self):
+        def build(blend, share):
+            def show(tree):
+                inputs = {0: share, 6: tree.colours(), 7: (0.7, 0.4, 0.2, 1)}
+                tree.show(tree.node("Mix", {"data_type": "RGBA", "blend_type": blend, "clamp_result": True}, inputs), 2)
+            return show
+        blends = ("MIX", "DARKEN", "MULTIPLY", "LIGHTEN", "SCREEN", "DODGE", "ADD", "OVERLAY", "SOFT_LIGHT", "LINEAR_LIGHT",
+                  "DIFFERENCE", "SUBTRACT", "DIVIDE", "HUE", "SATURATION", "COLOR")
+        self.assert_nodes({blend: build(blend, 0.7) for blend in blends})
+
+    def test_further_blends(self):
+        def old(tree):
+            tree.show(tree.node("MixRGB", {"blend_type": "BURN"}, {0: 0.3, 1: tree.colours(), 2: (0.7, 0.4, 0.2, 1)}))
+
+        def numbers(tree):
+            tree.show(tree.node("Mix", {"data_type": "FLOAT"}, {0: tree.number(), 2: 0.2, 3: tree.number(1)}))
+
+        def vectors(tree):
+            tree.show(tree.node("Mix", {"data_type": "VECTOR"}, {0: 0.4, 4: tree.uv(), 5: (0.3, 0.9, 0.4)}), 1)
+
+        self.assert_nodes({"burn": old, "numbers": numbers, "vectors": vectors})
+
+    def test_arithmetic(self):
+        two = {0: 1, 1: 0.35, 2: 0.2}
+
+        def build(operation):
+            def show(tree):
+                inputs = {**two, 0: tree.number()}
+                node = tree.node("Math", {"operation": operation, "use_clamp": True}, inputs)
+                tree.show(tree.node("Math", {"operation": "MULTIPLY_ADD"}, {0: node, 1: 0.7, 2: tree.number(1)}))
+            return show
+
+        for operations in (("ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "MULTIPLY_ADD", "POWER", "LOGARITHM", "SQRT", "ABSOLUTE",
+                            "EXPONENT", "MINIMUM", "MAXIMUM", "LESS_THAN", "GREATER_THAN", "COMPARE", "SMOOTH_MIN"),
+                           ("SMOOTH_MAX", "ROUND", "FRACT", "MODULO", "WRAP", "SNAP", "PINGPONG", "SINE", "COSINE", "TANGENT",
+                            "ARCSINE", "ARCTAN2", "TANH", "DEGREES", "RADIANS", "INVERSE_SQRT")):
+            with self.subTest(operations[0]):
+                # Sums beyond 1 shine in Cycles.
+                self.assert_nodes({operation: build(operation) for operation in operations}, self.squeeze)
+            bpy.data.batch_remove([o for o in bpy.data.objects if o.type == "MESH"])
+
+    @staticmethod
+    def squeeze(plane):
+        for loop in plane.data.uv_layers[0].data:
+            loop.uv = (loop.uv[0], 0.3 * loop.uv[1])
+
+    def test_ranges_and_vectors(self):
+        def mapped(kind, clamp=True):
+            def show(tree):
+                tree.show(tree.node("MapRange", {"interpolation_type": kind, "clamp": clamp}, {
+                    "Value": tree.number(), "From Min": 0.2, "From Max": 0.9, "To Min": 0.1, "To Max": 0.8}))
+            return show
+
+        def clamped(tree):
+            tree.show(tree.node("Clamp", {"clamp_type": "RANGE"}, {0: tree.number(), 1: 0.7, 2: 0.3}))
+
+        def vector(operation):
+            def show(tree):
+                tree.show(tree.node("VectorMath", {"operation": operation}, {0: tree.uv(), 1: (0.4, 0.7, 0.3)}),
+                          1 if operation in ("DOT_PRODUCT", "DISTANCE", "LENGTH") else 0)
+            return show
+
+        def placed(kind):
+            def show(tree):
+                mapping = tree.node("Mapping", {"vector_type": kind}, {
+                    "Vector": tree.uv(), "Location": (0.1, 0.2, 0), "Rotation": (0.1, 0.2, 0.6), "Scale": (1.3, 0.8, 1.1)})
+                tree.show(tree.node("VectorMath", {"operation": "ABSOLUTE"}, {0: mapping}))
+            return show
+
+        self.assert_nodes({**{kind: mapped(kind) for kind in ("LINEAR", "STEPPED", "SMOOTHSTEP", "SMOOTHERSTEP")},
+                           "unclamped": mapped("LINEAR", False), "clamp": clamped,
+                           **{name: vector(name) for name in ("MULTIPLY", "DISTANCE", "NORMALIZE", "FRACTION", "PROJECT")},
+                           **{f"mapping {kind}": placed(kind) for kind in ("TEXTURE", "NORMAL")}})
