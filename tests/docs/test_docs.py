@@ -1,7 +1,8 @@
 """The documents: every link leads somewhere, every command is one that the program understands, constants are those of the
-code, prose is wrapped, the decisions' index lists each record."""
+code, prose is wrapped, the decisions' index lists each record, the reproduction's tables are those of its numbers."""
 
 import functools
+import json
 import os
 import pathlib
 import re
@@ -14,6 +15,7 @@ from urllib.parse import unquote
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import decisions
 import markdown
+import reproduction
 import wrap_prose
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -261,6 +263,20 @@ class Documents(unittest.TestCase):
         self.report(faults)
         self.assertEqual(text_of(decisions.FOLDER / "README.md"), decisions.index(),
                          "the index is not that of the records: tests/docs/decisions.py --write")
+
+    def test_reproduction_is_made_from_its_numbers(self):
+        numbers = json.loads(text_of(reproduction.NUMBERS))
+        document = text_of(reproduction.DOCUMENT)
+        self.assertEqual(document, reproduction.written(document, numbers),
+                         "its tables are not those of its numbers: tests/docs/reproduction.py")
+        self.assertEqual([part for part in reproduction.PARTS if f"<!-- tables: {part} -->" not in document], [])
+        self.assertLessEqual(set(numbers), set(reproduction.ORDER))
+        self.assertGreater(document.count("| holds |"), 10)
+        # Every claim of every experiment stands there, with its bound and what was found.
+        for experiment in numbers.values():
+            for claim in experiment["claims"].values():
+                for text in (claim["statement"], claim["required"], claim["found"]):
+                    self.assertIn(reproduction.cell(text), document)
 
     def test_authorities_exist(self):
         """Works are named by author, title, year; no document is cited that readers do not have."""
