@@ -44,6 +44,7 @@ void add_choice_options(CLI::App* c, SceneOverrides& o, ReadOptions& r) {
     add_choice_of(c, "--gltf-scene", r.gltf_scene, "one of a glTF file's scenes", "NAME|N");
     add_choice_of(c, "--animation", r.animation, "one of a glTF file's animations",
                   "NAME|N|none|all");
+    add_choice_of(c, "--variant", r.variant, "one of a glTF file's variants", "NAME|N");
 }
 
 void add_override_options(CLI::App* c, SceneOverrides& o, ReadOptions& r) {

@@ -8,7 +8,7 @@
 
 namespace covtrace::cli {
 
-/// Adds --camera, --gltf-scene and --animation: `reading` gets what is one of the file's,
+/// Adds --camera, --gltf-scene, --animation and --variant: `reading` gets what is one of the file's,
 /// `overrides` the camera in place of them. Both must outlive the parser.
 void add_choice_options(CLI::App* command, SceneOverrides& overrides, ReadOptions& reading);
 

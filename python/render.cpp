@@ -256,16 +256,14 @@ SceneDescription completed(SceneDescription scene) {
     return scene;
 }
 
-std::shared_ptr<SceneDescription> read_file(const fs::path& file,
-                                            const std::vector<fs::path>& search_paths,
-                                            const std::optional<std::array<float, 2>>& shutter,
-                                            const std::string& camera,
-                                            const std::string& gltf_scene,
-                                            const std::string& animation) {
+std::shared_ptr<SceneDescription> read_file(
+    const fs::path& file, const std::vector<fs::path>& search_paths,
+    const std::optional<std::array<float, 2>>& shutter, const std::string& camera,
+    const std::string& gltf_scene, const std::string& animation, const std::string& variant) {
     if (shutter) checked_shutter(*shutter);
     const Unlocked unlocked;
     auto scene = std::make_shared<SceneDescription>(
-        read_scene_file(file, {search_paths, shutter, camera, gltf_scene, animation}));
+        read_scene_file(file, {search_paths, shutter, camera, gltf_scene, animation, variant}));
     if (shutter) {
         scene->camera.shutter_open = (*shutter)[0];
         scene->camera.shutter_close = (*shutter)[1];

@@ -56,6 +56,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            fstop: float | None = None,
            camera: Mapping[str, Any] | str | int | None = None,
            gltf_scene: str | int | None = None, animation: str | int | None = None,
+           variant: str | int | None = None,
            environment: str | os.PathLike[str] | float | tuple[float, float, float] | None = None,
            environment_rotation: float | None = None, environment_scale: float | None = None,
            seed: int = 0, threads: int = 0,
@@ -84,8 +85,8 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     camera: {"eye": (x, y, z), "target": (x, y, z), "fov": degrees of the shorter side}, a pinhole in
         place of the scene's; "up" where it is not what is up in the scene. Or one of a glTF file's
         cameras, by its name or its number from 0.
-    gltf_scene, animation: one of a glTF file's, by its name or its number from 0; animations also
-        "none" and "all", the default. They and the camera are chosen when the file is read: give
+    gltf_scene, animation, variant: one of a glTF file's scenes, animations and variants of materials,
+        by its name or its number from 0; animations also "none" and "all", the default. They and the camera are chosen when the file is read: give
         them with its path, or to `Scene`.
     environment, environment_rotation, environment_scale: an image's path, a number or (r, g, b), in
         place of the scene's infinite lights; degrees about what is up; a factor. The last two change
@@ -103,7 +104,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     """
     is_choice = isinstance(camera, (str, int))
     choices: dict[str, Any] = {"camera": camera if is_choice else None, "gltf_scene": gltf_scene,
-                               "animation": animation}
+                               "animation": animation, "variant": variant}
     options = {"preset": preset, "method": method, "spp": spp, "time": seconds_of(time), "error": error, "cov_spp": cov_spp,
                "max_spp": max_spp, "max_depth": max_depth, "density": density, "k": k,
                "occlusion": occlusion, "voxels": voxels, "brdf_covariance": brdf_covariance,

@@ -16,7 +16,7 @@ from .scene_parts import AreaLight, Camera, Instance, Light, Material, Parts, Sh
 def _read(file: str, search_paths: Iterable[str | os.PathLike[str]],
           shutter: tuple[float, float] | None,
           choices: Mapping[str, str | int | None]) -> _covtrace.SceneDescription:
-    chosen = [choice_of(name, choices[name]) for name in ("camera", "gltf_scene", "animation")]
+    chosen = [choice_of(name, choices[name]) for name in ("camera", "gltf_scene", "animation", "variant")]
     return _covtrace.SceneDescription.read(file, paths_of("search_paths", search_paths), shutter, *chosen)
 
 
@@ -36,16 +36,19 @@ class Scene:
     def __init__(self, file: str | os.PathLike[str],
                  search_paths: Iterable[str | os.PathLike[str]] = (),
                  shutter: tuple[float, float] | None = None, *, camera: str | int | None = None,
-                 gltf_scene: str | int | None = None, animation: str | int | None = None) -> None:
+                 gltf_scene: str | int | None = None, animation: str | int | None = None,
+                 variant: str | int | None = None) -> None:
         """Reads a file. shutter: when it opens and closes, in place of the file's; seconds of glTF's
-        animations, whose nodes rest at 0 without it. camera, gltf_scene, animation: one of a glTF
-        file's by its name or its number from 0; animations also "none" and "all", the default."""
+        animations, whose nodes rest at 0 without it. camera, gltf_scene, animation, variant: one
+        of a glTF file's by its name or its number from 0; animations also "none" and "all", the
+        default."""
         file = path_of("file", file)
         self._named = str
         self._is_placed = _covtrace.is_gltf(file)
         self._shutter = shutter_of(shutter)
         self._take(_read(file, search_paths, self._shutter,
-                         {"camera": camera, "gltf_scene": gltf_scene, "animation": animation}))
+                         {"camera": camera, "gltf_scene": gltf_scene, "animation": animation,
+                          "variant": variant}))
 
     @classmethod
     def _of_builder(cls, file: str, search_paths: Iterable[str | os.PathLike[str]],

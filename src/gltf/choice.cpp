@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <numeric>
-#include <optional>
 
 #include "scene/names.h"
 
@@ -74,6 +73,45 @@ std::vector<size_t> choose_animations(const Document& document, const ReadOption
     return {one};
 }
 
+constexpr const char* kVariants = "KHR_materials_variants";
+
+/// An array of an extension's object. Refuses anything else under the key.
+const tinygltf::Value& array_in(const Document& document, const tinygltf::Value& object,
+                                const char* key, const std::string& place) {
+    const tinygltf::Value& found = object.Get(key);
+    if (!found.IsArray()) document.refuse(place + "." + key, "expected an array");
+    return found;
+}
+
+std::vector<Choosable> variants_of(const Document& document) {
+    const tinygltf::Value* e = extension(document.model.extensions, kVariants);
+    if (!e) return {};
+    const std::string place = std::string("extensions.") + kVariants;
+    const tinygltf::Value& list = array_in(document, *e, "variants", place);
+    std::vector<Choosable> all;
+    for (size_t i = 0; i < list.ArrayLen(); ++i) {
+        const tinygltf::Value& one = list.Get(i);
+        const bool is_named = one.IsObject() && one.Get("name").IsString();
+        all.push_back({is_named ? one.Get("name").Get<std::string>() : ""});
+    }
+    return all;
+}
+
+std::optional<size_t> choose_variant(const Document& document, const ReadOptions& options,
+                                     SceneDescription& scene, WarningLog& log) {
+    const std::vector<Choosable> all = variants_of(document);
+    if (options.variant.empty()) {
+        if (!all.empty())
+            log.add(document.place(std::string("extensions.") + kVariants),
+                    "the primitives' own materials are rendered; the file has the variants " +
+                        listed(all));
+        return {};
+    }
+    const size_t one = chosen({"variant"}, options.variant, all, "variant");
+    scene.variant_choice = text_of(one, all[one]);
+    return one;
+}
+
 }  // namespace
 
 std::string text_of(size_t index, const Choosable& one) {
@@ -119,7 +157,28 @@ size_t chosen(OptionName option, const std::string& choice, const std::vector<Ch
 Choice choose(const Document& document, const ReadOptions& options, SceneDescription& scene,
               WarningLog& log) {
     return {choose_scene(document, options, scene, log),
-            choose_animations(document, options, scene, log)};
+            choose_animations(document, options, scene, log),
+            choose_variant(document, options, scene, log)};
+}
+
+int material_of(const Document& document, const tinygltf::Primitive& primitive,
+                const std::optional<size_t>& variant, const std::string& place) {
+    const tinygltf::Value* e = extension(primitive.extensions, kVariants);
+    if (!variant || !e) return primitive.material;
+    const std::string here = place + ".extensions." + kVariants;
+    const tinygltf::Value& mappings = array_in(document, *e, "mappings", here);
+    for (size_t i = 0; i < mappings.ArrayLen(); ++i) {
+        const tinygltf::Value& mapping = mappings.Get(i);
+        const std::string there = here + "." + element("mappings", i);
+        if (!mapping.IsObject()) document.refuse(there, "expected an object");
+        const tinygltf::Value& variants = array_in(document, mapping, "variants", there);
+        for (size_t k = 0; k < variants.ArrayLen(); ++k)
+            if (variants.Get(k).IsNumber() &&
+                variants.Get(k).GetNumberAsDouble() == static_cast<double>(*variant))
+                return static_cast<int>(
+                    number(document, mapping, "material", primitive.material, -1, 1 << 30, there));
+    }
+    return primitive.material;
 }
 
 }  // namespace covtrace::gltf

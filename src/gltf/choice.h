@@ -1,7 +1,8 @@
-/// Private to this folder: which of the file's cameras, scenes and animations are read.
+/// Private to this folder: which of the file's cameras, scenes, animations and variants are read.
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,16 +32,23 @@ std::string listed_without(const std::vector<Choosable>& all, size_t one);
 size_t chosen(OptionName option, const std::string& choice, const std::vector<Choosable>& all,
               const std::string& what);
 
-/// A file's scene and animations that are read, by their indices.
+/// A file's scene, animations and variant of materials that are read, by their indices.
 struct Choice {
     int scene = -1;  ///< -1: all roots, as the file has no scenes
     std::vector<size_t> animations;
+    std::optional<size_t> variant;  ///< none: the primitives' own materials
 };
 
-/// Chooses the scene and the animations: by default the document's own scene, or the first, and all
-/// animations. Tells in `log` what else the file has, and in `scene` what is not the default.
-/// Throws Error(usage) as `chosen`, Error(scene) where the document names a scene that it has not.
+/// Chooses scene, animations and variant: by default the document's own scene, or the first, all
+/// animations, and no variant. Tells in `log` what else the file has, and in `scene` what is not
+/// the default. Throws Error(usage) as `chosen`, Error(scene) where the document names a scene that
+/// it has not.
 Choice choose(const Document& document, const ReadOptions& options, SceneDescription& scene,
               WarningLog& log);
+
+/// Index of a primitive's material in a variant; its own one where no mapping names the variant.
+/// Refuses mappings that are none.
+int material_of(const Document& document, const tinygltf::Primitive& primitive,
+                const std::optional<size_t>& variant, const std::string& place);
 
 }  // namespace covtrace::gltf

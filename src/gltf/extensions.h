@@ -15,8 +15,9 @@ constexpr bool is_supported(std::string_view extension) {
           "KHR_lights_punctual", "KHR_materials_anisotropy", "KHR_materials_clearcoat",
           "KHR_materials_emissive_strength", "KHR_materials_ior",
           "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular",
-          "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_volume",
-          "KHR_mesh_quantization", "KHR_meshopt_compression", "KHR_texture_transform"})
+          "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_variants",
+          "KHR_materials_volume", "KHR_mesh_quantization", "KHR_meshopt_compression",
+          "KHR_texture_transform"})
         if (extension == name) return true;
     return false;
 }

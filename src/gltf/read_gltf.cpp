@@ -24,9 +24,11 @@ namespace {
 class SceneAssembler {
   public:
     SceneAssembler(const Document& document, const PlacedNodes& placed,
-                   std::array<float, 2> shutter, SceneDescription& scene, WarningLog& log)
+                   const std::optional<size_t>& variant, std::array<float, 2> shutter,
+                   SceneDescription& scene, WarningLog& log)
         : document_(document),
           placed_(placed),
+          variant_(variant),
           scene_(scene),
           log_(log),
           geometry_(document, log),
@@ -133,7 +135,8 @@ class SceneAssembler {
             document_.model.meshes[static_cast<size_t>(mesh)].primitives[index];
         warn_of_left_out(document_, primitive.extensions, place, log_);
         const Surface& surface =
-            materials_.surface(primitive.material, geometry_.colours(mesh, index), place);
+            materials_.surface(material_of(document_, primitive, variant_, place),
+                               geometry_.colours(mesh, index), place);
         if (!surface.is_visible) return std::nullopt;
         auto triangles = geometry_.mesh(mesh, index, surface.layout);
         if (!triangles) return std::nullopt;
@@ -160,6 +163,7 @@ class SceneAssembler {
 
     const Document& document_;
     const PlacedNodes& placed_;
+    const std::optional<size_t> variant_;
     SceneDescription& scene_;
     WarningLog& log_;
     GeometryReader geometry_;
@@ -188,8 +192,8 @@ SceneDescription read(const Document& document, const ReadOptions& options, Warn
                          element("scenes", index), log);
     }
     const PlacedNodes placed = place_nodes(document, choice, options.shutter, log);
-    SceneAssembler assembler(document, placed, options.shutter.value_or(std::array<float, 2>{0, 0}),
-                             scene, log);
+    SceneAssembler assembler(document, placed, choice.variant,
+                             options.shutter.value_or(std::array<float, 2>{0, 0}), scene, log);
     assembler.add();
     Bounds3 bounds = assembler.bounds();
     if (bounds.empty()) {

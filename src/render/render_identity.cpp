@@ -59,6 +59,7 @@ RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& op
                      : !d.camera_choice.empty() ? d.camera_choice
                                                 : "the scene's";
     id["--gltf-scene"] = d.gltf_scene_choice.empty() ? "the file's own" : d.gltf_scene_choice;
+    id["--variant"] = d.variant_choice.empty() ? "the file's own" : d.variant_choice;
     id["--animation"] = d.animation_choice.empty() ? "all" : d.animation_choice;
     id["--environment"] = d.environment_override.empty() ? "the scene's" : d.environment_override;
     using Surfaces = FilmDescription::Surfaces;

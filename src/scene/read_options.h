@@ -15,10 +15,11 @@ struct ReadOptions {
     /// Seconds at which the shutter opens and closes, for formats whose animations have a time
     /// line; pbrt's transforms say for themselves when they hold.
     std::optional<std::array<float, 2>> shutter = {};
-    /// One of a glTF file's cameras, scenes and animations: its name or, where none is called so,
-    /// its number from 0; empty: the reader's own choice. Other readers refuse them.
+    /// One of a glTF file's cameras, scenes, animations and variants: its name or, where none is
+    /// called so, its number from 0; empty: the reader's own choice. Other readers refuse them.
     std::string camera = {}, gltf_scene = {};
     std::string animation = {};  ///< "none" and "all", too
+    std::string variant = {};    ///< of the materials, KHR_materials_variants
 };
 
 }  // namespace covtrace

@@ -324,9 +324,9 @@ struct SceneDescription {
     /// Camera and environment in place of the file's, as text for a render's identity; empty: its
     /// own.
     std::string camera_override, environment_override;
-    /// Choices among the file's cameras, scenes and animations, as text for a render's identity;
-    /// empty: the reader's own.
-    std::string camera_choice, gltf_scene_choice, animation_choice;
+    /// Choices among the file's cameras, scenes, animations and variants of materials, as text for
+    /// a render's identity; empty: the reader's own.
+    std::string camera_choice, gltf_scene_choice, animation_choice, variant_choice;
     /// All files that were read for the scene or that it names: scenes, meshes, spectra, lenses,
     /// buffers, images. Each once, by name.
     std::vector<std::filesystem::path> files;

@@ -132,6 +132,24 @@ class GltfChoice(CliTest):
         self.assert_fails(self.render("WorldBegin\n", "--gltf-scene", "0"), USAGE, "--gltf-scene", "pbrt files have one scene")
         self.assert_fails(self.render("WorldBegin\n", "--animation", "all"), USAGE, "--animation", "pbrt files have no animations")
 
+    def test_variants(self):
+        painted = json.loads(json.dumps(FILE))
+        painted["extensions"] = {"KHR_materials_variants": {"variants": [{"name": "Green"}, {"name": "Blue"}]}}
+        mappings = [{"material": 1, "variants": [0]}, {"material": 2, "variants": [1]}]
+        painted["meshes"][0]["primitives"][0]["extensions"] = {"KHR_materials_variants": {"mappings": mappings}}
+        seen, warnings = self.colour(file=painted)
+        self.assertEqual(seen, "R")
+        self.assertTrue([w for w in warnings if w.endswith('the file has the variants 0 "Green", 1 "Blue"')], warnings)
+        for variant, expected in (("Green", "G"), ("0", "G"), ("Blue", "B"), ("1", "B")):
+            self.assertEqual(self.colour("--variant", variant, file=painted)[0], expected, variant)
+        self.assert_fails(self.refused("--variant", "Bleu", file=painted), USAGE, '--variant: there is no variant "Bleu"', 'did you mean "Blue"')
+        self.assert_fails(self.refused("--variant", "Blue"), USAGE, "the file has none")
+        self.assert_fails(self.render("WorldBegin\n", "--variant", "0"), USAGE, "--variant", "pbrt files have no variants")
+        render = ["render", "a.gltf", "-o", "a.exr", *RENDER, "--quiet", "--checkpoint", "a.film"]
+        self.write("a.gltf", json.dumps(painted))
+        self.assertEqual(self.run_program(*render, "--variant", "Blue").code, DONE)
+        self.assert_fails(self.run_program(*render, "--resume"), USAGE, "--variant")
+
     def test_films_know_them(self):
         self.write("a.gltf", json.dumps(ANIMATED))
         render = ["render", "a.gltf", "-o", "a.exr", *RENDER, "--quiet", "--checkpoint", "a.film"]

@@ -93,7 +93,7 @@ class Overrides(unittest.TestCase):
             with self.assertRaisesRegex(covtrace.UsageError, 'gltf_scene: there is no scene "2"'):
                 covtrace.Scene(path, gltf_scene=2)
             for wrong in (True, -1, "", 1.5, b"Away"):
-                for name in ("camera", "gltf_scene", "animation"):
+                for name in ("camera", "gltf_scene", "animation", "variant"):
                     with self.assertRaisesRegex(covtrace.UsageError, name):
                         covtrace.Scene(path, **{name: wrong})
             pbrt = pathlib.Path(folder) / "sky.pbrt"

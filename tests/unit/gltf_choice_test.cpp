@@ -101,5 +101,56 @@ TEST(GltfChoice, OneAnimationOfSeveralPlays) {
     EXPECT_THROW(place("all"), Error);
 }
 
+TEST(GltfChoice, VariantsMapMaterials) {
+    GltfFile file;
+    for (const float grey : {0.1f, 0.2f, 0.3f})
+        file.root["materials"].push_back(
+            {{"pbrMetallicRoughness", {{"baseColorFactor", {grey, grey, grey, 1}}}}});
+    file.root["extensions"]["KHR_materials_variants"]["variants"] = {
+        {{"name", "Day"}}, {{"name", "Night"}}, {{"name", "Dusk"}}};
+    const json mappings = {{{"material", 1}, {"variants", {0}}},
+                           {{"material", 2}, {"variants", {2, 1}}}};
+    const json extensions = {{"KHR_materials_variants", {{"mappings", mappings}}}};
+    file.add_node({{"mesh", file.add_square({{"material", 0}, {"extensions", extensions}})}});
+    file.add_node({{"mesh", file.add_square({{"material", 0}})}});
+    const auto greys = [&](const std::string& variant) {
+        ReadOptions options;
+        options.variant = variant;
+        const auto scene = read(file, options);
+        std::vector<float> found;
+        for (const ShapeDescription& s : scene.shapes)
+            found.push_back(
+                constant_value(scene, model_of<ConductorMaterial>(scene, s.material).reflectance)
+                    .r);
+        return found;
+    };
+    using Greys = std::vector<float>;
+    EXPECT_EQ(greys(""), (Greys{0.1f, 0.1f}));
+    EXPECT_EQ(greys("Day"), (Greys{0.2f, 0.1f}));
+    EXPECT_EQ(greys("Night"), (Greys{0.3f, 0.1f}));
+    EXPECT_EQ(greys("2"), (Greys{0.3f, 0.1f}));
+    EXPECT_TRUE(contains(all_warnings(read(file)),
+                         "the file has the variants 0 \"Day\", 1 \"Night\", 2 \"Dusk\""));
+    ReadOptions options;
+    options.variant = "Noon";
+    EXPECT_TRUE(contains(refusal(file, options), "variant: there is no variant \"Noon\""));
+    options.variant = "Day";
+    EXPECT_EQ(read(file, options).variant_choice, "0 \"Day\"");
+    EXPECT_FALSE(contains(all_warnings(read(file, options)), "variants"));
+    EXPECT_EQ(refusal(square_file(), options),
+              "variant: there is no variant \"Day\"; the file has none");
+    // Mappings that are none.
+    const auto message = [&](const json& broken) {
+        GltfFile other = file;
+        other.root["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]
+                  ["mappings"] = broken;
+        return failure_of([&] { read(other, options); }).message;
+    };
+    EXPECT_TRUE(contains(message(7), "mappings: expected an array"));
+    EXPECT_TRUE(contains(message({1}), "mappings[0]: expected an object"));
+    EXPECT_TRUE(contains(message({{{"material", 1}}}), "mappings[0].variants: expected an array"));
+    EXPECT_TRUE(contains(message({{{"material", 9}, {"variants", {0}}}}), "materials[9]"));
+}
+
 }  // namespace
 }  // namespace covtrace::test
