@@ -23,7 +23,7 @@ std::vector<float> bandwidth(const Image& image, const std::string& a, const std
 /// it.
 Figure whole_way(const Timed& timed) {
     const Image& image = timed.result.image;
-    Sheet sheet({image.width(), image.height()}, 360.0f / float(image.width()), 3, 2, {true, true});
+    Sheet sheet({image.width(), image.height()}, 360.0f / float(image.width()), 3, 2, {true});
     const auto add = [&](int column, int row, const std::string& title,
                          const std::vector<float>& values, const std::string& unit) {
         sheet.map(column, row, title, values, map_for(values, unit));
@@ -40,7 +40,7 @@ Figure whole_way(const Timed& timed) {
         raw.add_channel(c).values = image.find(std::string("raw.") + c)->values;
     sheet.picture(0, 1, "4 samples", display(raw));
     sheet.picture(1, 1, "5 filters", display(image, 0.5f));
-    sheet.ellipses(1, 1, matrices(image, "filter."), 24, 1, kOrange);
+    sheet.ellipses(1, 1, matrices(image, "filter."), 24, 2, kOrange);
     sheet.picture(2, 1, "6 image", display(image));
     return {"pipeline",
             fmt::format(
@@ -48,7 +48,7 @@ Figure whole_way(const Timed& timed) {
                 "covariance of the light field over pixel, lens and shutter (1); lens and shutter "
                 "take the frequencies away that they average (2); the density follows (3), the "
                 "samples are taken (4), and each pixel gathers those that its filter reaches (5, "
-                "at one deviation) into the image (6).",
+                "at two deviations) into the image (6).",
                 timed.result.statistics.samples_per_pixel),
             sheet.drawing,
             {timed.command}};
