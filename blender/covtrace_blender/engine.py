@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import traceback
 
 import bpy
@@ -31,6 +32,8 @@ PASSES = (
 # The same by covtrace's own names.
 LAYERS = "Z,N,albedo,raw,variance,error,samples"
 PREDICTED_LAYERS = "density,filter"  # not of uniform, where naming them would be a warning
+
+SECONDS_BETWEEN_LINES = 1
 
 
 def _set_pixels(render_pass, pixels):
@@ -86,7 +89,7 @@ class CovtraceEngine(bpy.types.RenderEngine):
 
     def _render(self, depsgraph, scene, folder):
         program = settings.find_program()
-        self.update_stats("", "exporting the scene")
+        self._tell("exporting the scene")
         exporter = export_scene.SceneExporter(self, depsgraph, folder)
         file = exporter.write()
         for text in exporter.warnings:
@@ -121,7 +124,7 @@ class CovtraceEngine(bpy.types.RenderEngine):
                                    stderr=subprocess.PIPE, text=True, errors="replace")
         reader = threading.Thread(target=self._follow, args=(process.stderr,), daemon=True)
         reader.start()
-        self._progress = None
+        self._progress, self._next_line = None, 0
         stopped = False
         while True:
             try:
@@ -154,9 +157,17 @@ class CovtraceEngine(bpy.types.RenderEngine):
         if not p:
             return
         self.update_progress(p["fraction"])
+        # Without a window each text is a line of the log.
+        now = time.monotonic()
+        if bpy.app.background and now < self._next_line:
+            return
+        self._next_line = now + SECONDS_BETWEEN_LINES
         text = f"{p['phase']}, {p['spp']:.1f} samples"
         if p.get("error"):
             text += f", error {p['error']:.3g}"
+        self._tell(text)
+
+    def _tell(self, text):
         self.update_stats("", text)
 
     def _read(self, image, region, is_transparent):

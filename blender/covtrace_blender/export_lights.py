@@ -8,7 +8,7 @@ import numpy as np
 from mathutils import Euler, Matrix
 
 from .shader_nodes.blackbody import blackbody, blackbody_temperature
-from .export_materials import numbers
+from .export_shaders import numbers
 from .export_textures import pixels, write_pfm
 
 

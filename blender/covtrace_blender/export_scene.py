@@ -8,7 +8,8 @@ from mathutils import Matrix
 
 from . import export_lights, export_meshes, export_motion, export_strands, ply, surface_coordinates
 from .baking import Surface
-from .export_materials import MaterialExporter, numbers
+from .export_materials import MaterialExporter
+from .export_shaders import numbers
 
 # Blender's cameras look along -z, pbrt's along +z; both have x to the right and y up.
 TURN = Matrix.Diagonal((1, 1, -1, 1))

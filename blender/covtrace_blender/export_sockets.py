@@ -23,6 +23,13 @@ class Value:
             return Value(tuple(whole - c for c in self.constant))
         return Value(whole - self.constant)
 
+    def times(self, factor):
+        """This number `factor` times."""
+        if self.image:
+            return Value(image=self.image, mapping=self.mapping, channel=self.channel, scale=factor * self.scale,
+                         offset=factor * self.offset, filter=self.filter, wrap=self.wrap)
+        return Value(factor * self.constant)
+
     def is_plainly_placed(self):
         return self.mapping == PLAIN_MAPPING and self.filter == "bilinear" and self.wrap == "repeat"
 

@@ -33,6 +33,8 @@ def render(engine_name, samples):
         scene.cycles.use_denoising = False
         scene.cycles.use_adaptive_sampling = False
     settings = scene.render.image_settings
+    if hasattr(settings, "media_type"):  # from Blender 5.0 on
+        settings.media_type = "MULTI_LAYER_IMAGE"
     settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
     settings.exr_codec = "ZIP"
     with tempfile.TemporaryDirectory() as folder:

@@ -4,6 +4,7 @@ import os
 import subprocess
 import tempfile
 import time
+import unittest.mock
 
 import bpy
 from addon_support import SOURCE, BlenderTest, HEIGHT, WIDTH, material, mean, render
@@ -41,6 +42,19 @@ class EngineTest(BlenderTest):
         finally:
             engine.CovtraceEngine._is_stopped = is_stopped
         self.assertLess(time.time() - start, 15)
+
+    def test_progress_is_a_line_a_second(self):
+        self.plane(material(**self.MATT))
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        lines, end = [], time.time() + 4
+        with unittest.mock.patch.multiple(engine.CovtraceEngine, _tell=lambda self, text: lines.append(text),
+                                          _is_stopped=lambda self: time.time() > end):
+            start = time.time()
+            render("COVTRACE", 1e6)
+            seconds = time.time() - start
+        lines = [line for line in lines if "samples" in line]
+        self.assertGreater(len(lines), 1)
+        self.assertLessEqual(len(lines), seconds + 1)
 
     def region(self, crop):
         self.scene.render.use_border, self.scene.render.use_crop_to_border = True, crop

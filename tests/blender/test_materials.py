@@ -52,6 +52,43 @@ class MaterialsTest(BlenderTest):
                     self.assert_as_cycles(0.015)
             bpy.data.objects.remove(plane)
 
+    def assert_brightness(self, m, tolerances):
+        """Asserts that a plane in a white surrounding is as bright as in Cycles from above, and from 1.2 radian."""
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        self.camera.data.lens = 200
+        plane = self.plane(m)
+        for tilt, tolerance in zip((0, 1.2), tolerances):
+            self.camera.location = (0, -5 * math.sin(tilt), 5 * math.cos(tilt))
+            self.camera.rotation_euler = (tilt, 0, 0)
+            with self.subTest(m.name, tilt=tilt):
+                self.assert_as_cycles(tolerance)
+        bpy.data.objects.remove(plane)
+
+    def test_coats_are_as_in_cycles(self):
+        # Seen from the side Blender 3.4's coats add to what is below them, as decision 0051 says of its other parts.
+        dark, gold = (0.02, 0.02, 0.02, 1), (0.9, 0.6, 0.2, 1)
+        self.assert_brightness(material("coated", Base_Color=dark, Specular=0.5, Roughness=0.3, Clearcoat=1.0,
+                                        Clearcoat_Roughness=0.1), (0.03, 0.12))
+        self.assert_brightness(material("coated metal", Base_Color=gold, Metallic=1.0, Roughness=0.3, Clearcoat=1.0,
+                                        Clearcoat_Roughness=0.1), (0.03, 0.12))
+
+    def test_borders_mixed_by_the_angle_are_as_in_cycles(self):
+        for kind, values in (("ShaderNodeFresnel", {"IOR": 1.6}), ("ShaderNodeLayerWeight", {"Blend": 0.4})):
+            m = bpy.data.materials.new(kind)
+            m.use_nodes = True
+            tree = m.node_tree
+            mix, share, matt, glossy = (tree.nodes.new(name) for name in (
+                "ShaderNodeMixShader", kind, "ShaderNodeBsdfDiffuse", "ShaderNodeBsdfGlossy"))
+            for name, value in values.items():
+                share.inputs[name].default_value = value
+            matt.inputs["Color"].default_value, glossy.inputs["Color"].default_value = (0.2, 0.1, 0.3, 1), (1, 1, 1, 1)
+            glossy.inputs["Roughness"].default_value = 0.05
+            tree.links.new(share.outputs[0], mix.inputs[0])
+            tree.links.new(matt.outputs[0], mix.inputs[1])
+            tree.links.new(glossy.outputs[0], mix.inputs[2])
+            tree.links.new(mix.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+            self.assert_brightness(m, (0.03, 0.03))
+
     def test_unknown_nodes_are_told(self):
         m = material()
         path = m.node_tree.nodes.new("ShaderNodeLightPath")

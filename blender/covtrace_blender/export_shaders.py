@@ -1,0 +1,127 @@
+"""Textures and plain materials as text of pbrt-v4, from Values."""
+
+import numpy as np
+
+from .export_sockets import SocketReader, Value
+from .shader_nodes.unsupported import Unsupported
+
+
+def numbers(values):
+    return " ".join(f"{v:.9g}" for v in values)
+
+
+def squared(roughness):
+    """The width alpha of GGX."""
+    return np.maximum(roughness, 0) ** 2
+
+
+class Emission:
+    def __init__(self, radiance, texture=None):
+        self.radiance, self.texture = radiance, texture
+
+
+class ShaderWriter(SocketReader):
+    """Writes textures and materials into `out`, counted by `count`, and their images to `files`."""
+
+    def _texture(self, kind, value, treat=lambda v: v, key=""):
+        """Declares a texture of an image and returns its name."""
+        file = self.files.write(value.image, (value.key(), kind, key),
+                                lambda pixels: treat(value.apply(pixels)))
+        return self._declare(kind, value, file)
+
+    def _declare(self, kind, value, file):
+        """Declares the texture of an image that lies in a file."""
+        name = f"texture {self.count}"
+        self.count += 1
+        su, sv, du, dv = value.mapping
+        self.out.write(f'Texture "{name}" "{kind}" "imagemap" "string filename" "{file}" '
+                       f'"string encoding" "linear" "float uscale" {su:.9g} "float vscale" {sv:.9g} '
+                       f'"float udelta" {du:.9g} "float vdelta" {dv:.9g} "string filter" "{value.filter}" '
+                       f'"string wrap" "{value.wrap}"\n')
+        return name
+
+    def _colour(self, parameter, value, treat=lambda v: v, key=""):
+        if value.image:
+            return f'"texture {parameter}" "{self._texture("spectrum", value, treat, key)}"'
+        rgb = treat(np.clip(np.array(value.constant, dtype=float), 0, 1))
+        return f'"rgb {parameter}" [{numbers(rgb)}]'
+
+    def _number(self, parameter, value, treat=lambda v: v, key=""):
+        if value.image:
+            return f'"texture {parameter}" "{self._texture("float", value, treat, key)}"'
+        return f'"float {parameter}" {float(treat(np.array(value.constant))):.9g}'
+
+    def _make(self, kind, parameters):
+        name = f"material {self.count}"
+        self.count += 1
+        self.out.write(f'MakeNamedMaterial "{name}" "string type" "{kind}" {" ".join(parameters)}\n')
+        return name
+
+    def _mix(self, first, second, amount):
+        """Share `amount` of the second one."""
+        if not amount.image:
+            share = min(max(float(amount.constant), 0.0), 1.0)
+            if share == 0:
+                return first
+            if share == 1:
+                return second
+        return self._make("mix", [f'"string materials" ["{first}" "{second}"]', self._number("amount", amount)])
+
+    def _roughness(self, value):
+        """Blender's roughness squared is the width alpha of GGX."""
+        return [self._number("roughness", value, squared, "squared"), '"bool remaproughness" false']
+
+    def _normal_map(self, node):
+        source, _ = self._linked(node.inputs["Normal"])
+        if source is None:
+            return []
+        if source.type == "BUMP":
+            return self._bump(source)
+        if source.type == "NORMAL_MAP" and source.space == "TANGENT":
+            value = self._value(source.inputs["Color"])
+            strength = self._plain(source.inputs["Strength"])
+            if source.uv_map and source.uv_map not in self.uv_maps:
+                self.uv_maps.append(source.uv_map)
+            if value.image:
+                def scaled(colour):
+                    # Cycles blends from the flat normal.
+                    flat = np.array([0.5, 0.5, 1.0], dtype=np.float32)
+                    return flat + (colour - flat) * strength
+                file = self.files.write(value.image, ("normal", strength), lambda p: scaled(value.apply(p)))
+                if not value.is_plainly_placed():
+                    self.warn(f"material '{self.name}': a normal map is used as it lies, unscaled and interpolated")
+                return [f'"string normalmap" "{file}"']
+        self.warn(f"material '{self.name}': only bumps and tangent space normal maps change normals")
+        return []
+
+    def _bump(self, node):
+        """A texture of heights in the scene's unit."""
+        if node.inputs["Normal"].is_linked:
+            self.warn(f"material '{self.name}': the Normal of '{node.name}' is not supported and left out")
+        try:
+            height = self._baked_value(lambda nodes: nodes.number(node.inputs["Height"]))
+        except Unsupported as problem:
+            self.warn(f"material '{self.name}': node '{problem.node.name}' at 'Height' is not supported ({problem.reason}); "
+                      "the surface is flat there")
+            return []
+        if not height.image:
+            return []
+        scale = max(self._plain(node.inputs["Strength"]), 0) * self._plain(node.inputs["Distance"]) * (-1 if node.invert else 1)
+        file = self.files.write_heights(height.image, scale)
+        return [f'"texture displacement" "{self._declare("float", height, file)}"']
+
+    def _metal(self, colour, roughness, normal):
+        return self._make("conductor", [self._colour("reflectance", colour), *self._roughness(roughness), *normal])
+
+    def _clear(self, colour, roughness, eta, normal):
+        return self._make("dielectric", [f'"float eta" {max(eta, 1.0001):.9g}',
+                                         self._colour("transmittance", colour), *self._roughness(roughness), *normal])
+
+    def _emit(self, colour, strength):
+        if colour.image:
+            if not colour.is_plainly_placed():
+                self.warn(f"material '{self.name}': an image that shines is used as it lies, unscaled and interpolated")
+            name = self.files.write_emission(colour.image, colour.key(), colour.apply)
+            self.emission = Emission((strength,) * 3, name)
+        elif max(colour.constant) * strength > 0:
+            self.emission = Emission(tuple(c * strength for c in colour.constant))

@@ -1,0 +1,19 @@
+"""Means over all directions of what the angle of sight decides, each direction counting by its cosine."""
+
+import numpy as np
+
+
+def mean_reflectance(eta):
+    """Mean reflectance of a smooth border of this index of refraction, at least 1, by Fresnel's equations."""
+    cosine = (np.arange(1000) + 0.5) / 1000
+    inside = np.sqrt(1 - (1 - cosine**2) / eta**2)
+    across = ((cosine - eta * inside) / (cosine + eta * inside)) ** 2
+    along = ((eta * cosine - inside) / (eta * cosine + inside)) ** 2
+    return float(np.mean((across + along) * cosine))
+
+
+def mean_facing(blend):
+    """Mean of Layer Weight's Facing: 1 - cos^b."""
+    blend = min(max(blend, 0.0), 1 - 1e-5)
+    exponent = 2 * blend if blend < 0.5 else 0.5 / (1 - blend)
+    return 1 - 2 / (exponent + 2)
