@@ -51,10 +51,11 @@ class Surface:
 
 
 class Baked:
-    """The result: a constant, or an image and its layout; and what it hangs on."""
+    """The result: a constant, or an image and its layout; and what it hangs on. is_cut: it repeats where the nodes do
+    not."""
 
-    def __init__(self, constant=None, image=None, layout=None, place=None):
-        self.constant, self.image, self.layout, self.place = constant, image, layout, place
+    def __init__(self, constant=None, image=None, layout=None, place=None, is_cut=False):
+        self.constant, self.image, self.layout, self.place, self.is_cut = constant, image, layout, place, is_cut
 
 
 class Baker:
@@ -88,12 +89,13 @@ class Baker:
         probes = low + random.random((PROBES, 2)) * np.maximum(high - low, 1e-3)
         period = next((n for n in (1, 2) if _repeats(values_at, probes, n)), None)
         layout = _layout(low, high, period)
+        is_cut = only_unit_square and period != 1 and (low.min() < -1e-4 or high.max() > 1 + 1e-4)
         if only_unit_square:
             layout = Layout((0, 0), (1, 1), "repeat")
         size = _size(values_at, layout, place.images, random)
         pixels = self._pixels(values_at, layout, size, len(shape) > 1)
         self.count += 1
-        return Baked(image=BakedImage(f"baked {self.count}", pixels), layout=layout, place=place)
+        return Baked(image=BakedImage(f"baked {self.count}", pixels), layout=layout, place=place, is_cut=is_cut)
 
     @staticmethod
     def _pixels(values_at, layout, size, is_colour):

@@ -82,7 +82,7 @@ class MaterialExporter(PrincipledExporter):
                                                   self._colour("transmittance", self._value(node.inputs["Color"]))])
 
     def _emission(self, node):
-        self._emit(self._value(node.inputs["Color"]), self._plain(node.inputs["Strength"]))
+        self._emit(self._value(node.inputs["Color"], only_unit_square=True), self._plain(node.inputs["Strength"]))
         return self._make("diffuse", ['"rgb reflectance" [0 0 0]'])
 
     def _mix_shader(self, node):

@@ -112,7 +112,7 @@ class PrincipledExporter(ShaderWriter):
         transmission = self._value(either(get, "Transmission Weight", "Transmission"), True)
         normal = self._normal_map(node)
         self._tell_left_out(get)
-        self._emit(self._value(either(get, "Emission Color", "Emission")), self._plain(get["Emission Strength"]))
+        self._emit(self._value(either(get, "Emission Color", "Emission"), only_unit_square=True), self._plain(get["Emission Strength"]))
         alpha = self._value(get["Alpha"], True)
         if alpha.image or alpha.constant < 1:
             self.alpha = self._number("alpha", alpha)

@@ -78,7 +78,7 @@ class ShaderWriter(SocketReader):
         if source.type == "BUMP":
             return self._bump(source)
         if source.type == "NORMAL_MAP" and source.space == "TANGENT":
-            value = self._value(source.inputs["Color"])
+            value = self._value(source.inputs["Color"], only_unit_square=True)
             strength = self._plain(source.inputs["Strength"])
             if source.uv_map and source.uv_map not in self.uv_maps:
                 self.uv_maps.append(source.uv_map)

@@ -69,8 +69,11 @@ class SocketReader:
             socket = link.from_node.inputs[0]
         return None, None
 
-    def _value(self, socket, grey=False):
-        """Value of a socket; what is not understood becomes the socket's own constant, with a warning."""
+    def _value(self, socket, grey=False, only_unit_square=False):
+        """Value of a socket; what is not understood becomes the socket's own constant, with a warning.
+
+        only_unit_square: for images that can have no other place.
+        """
         node, output = self._linked(socket)
         if node is None:
             return self._constant(socket.default_value, grey)
@@ -78,7 +81,8 @@ class SocketReader:
         if direct is not None:
             return direct
         try:
-            return self._baked_value(lambda nodes: nodes.number(socket) if grey else nodes.vector(socket))
+            return self._baked_value(lambda nodes: nodes.number(socket) if grey else nodes.vector(socket),
+                                     only_unit_square)
         except Unsupported as problem:
             if node.type == "TEX_IMAGE" and node.image:
                 return self._image_as_it_lies(node, output, grey, problem)
@@ -90,6 +94,8 @@ class SocketReader:
         """Value of what `get` asks of an evaluator of nodes: a constant, or an image over UV. Raises Unsupported."""
         baked = self.baker.bake(get, self.surface, only_unit_square)
         self.hangs_on_object |= baked.place.hangs_on_object
+        if baked.is_cut:
+            self.warn(f"material '{self.name}': a texture that can only lie on the unit square repeats beyond it")
         for name in baked.place.uv_maps:
             self._note_uv_map(name)
         if baked.image is None:

@@ -35,6 +35,7 @@ def render(engine_name, samples):
     settings = scene.render.image_settings
     if hasattr(settings, "media_type"):  # from Blender 5.0 on
         settings.media_type = "MULTI_LAYER_IMAGE"
+        settings.use_exr_interleave = True  # one part, as before
     settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
     settings.exr_codec = "ZIP"
     with tempfile.TemporaryDirectory() as folder:

@@ -320,3 +320,13 @@ class ShaderNodesTest(BlenderTest):
                 loop.uv = (3 * loop.uv[0] - 1, 2 * loop.uv[1] + 0.5)
 
         self.assert_nodes({"repeated": repeated, "endless": endless}, widened)
+
+    def test_nodes_shine(self):
+        self.background.inputs["Color"].default_value = (0, 0, 0, 1)
+
+        def shining(tree):
+            shader = tree.node("Emission", {}, {"Strength": 1.5, "Color": (
+                tree.node("TexNoise", {}, {"Scale": 3.0, "Detail": 0.0, "Vector": tree.uv()}), 1)})
+            tree.link(shader, 0, tree.tree.nodes["Material Output"].inputs["Surface"])
+
+        self.assert_nodes({"noise": shining})
