@@ -70,6 +70,7 @@ class GltfChoice(CliTest):
         return "".join(c for c in "RGB" if pixels[c][5] > 1), [text for _, text in warnings_of(result)]
 
     def refused(self, *arguments, file=FILE):
+        (self.folder / "a.exr").unlink(missing_ok=True)
         self.write("a.gltf", json.dumps(file))
         result = self.run_program("render", "a.gltf", "-o", "a.exr", *RENDER, *arguments)
         self.assert_no_file("a.exr")

@@ -44,7 +44,6 @@ class Warnings(CliTest):
     def test_substitutes_of_the_view(self):
         for directive, fragment in [
             ('Camera "realistic" "string lensfile" "lens.dat"', "realistic"),
-            ('Film "gbuffer"\n"integer xresolution" 16 "integer yresolution" 8', "gbuffer"),
             ('Film "spectral"\n"integer xresolution" 16 "integer yresolution" 8', "spectral"),
             ('Integrator "bdpt"', "bdpt"),
             ('Integrator "sppm"', "sppm"),

@@ -111,7 +111,7 @@ for name in ("AddonPreferences", "PropertyGroup", "Panel", "RenderEngine"):
     setattr(sys.modules["bpy"].types, name, type(name, (), {}))
 import importlib, pkgutil
 package = importlib.import_module("covtrace_blender")
-print(*sorted(m.name for m in pkgutil.iter_modules(package.__path__) if importlib.import_module("covtrace_blender." + m.name)))
+print(*sorted(m.name for m in pkgutil.walk_packages(package.__path__, "covtrace_blender.") if importlib.import_module(m.name)))
 """
 
 
@@ -124,7 +124,7 @@ class Extension(Made):
             names = set(files.namelist())
             manifest = tomllib.loads(files.read("covtrace_blender/blender_manifest.toml").decode())
             files.extractall(self.folder)
-        sources = {f"covtrace_blender/{f.name}" for f in (SOURCE / "blender/covtrace_blender").glob("*.py")}
+        sources = {str(f.relative_to(SOURCE / "blender")) for f in (SOURCE / "blender/covtrace_blender").rglob("*.py")}
         self.assertEqual(names, sources | {"covtrace_blender/blender_manifest.toml", "covtrace_blender/LICENSE"})
         # Blender 4.2 asks for these keys of a manifest, and limits their lengths.
         self.assertEqual((manifest["schema_version"], manifest["version"], manifest["type"], manifest["license"]),
@@ -135,7 +135,8 @@ class Extension(Made):
         self.assertRegex(manifest["blender_version_min"], r"\A4\.[2-9]\.\d\Z")
         self.assertTrue(manifest["id"].isidentifier() and manifest["name"] and manifest["maintainer"])
         loaded = self.run_command(PYTHON, "-B", "-c", BPY, PYTHONPATH=str(self.folder))
-        self.assertEqual(set(loaded.split()), {pathlib.Path(name).stem for name in sources} - {"__init__"})
+        modules = {name.removesuffix(".py").removesuffix("/__init__").replace("/", ".") for name in sources}
+        self.assertEqual(set(loaded.split()), modules - {"covtrace_blender"})
 
 
 if __name__ == "__main__":

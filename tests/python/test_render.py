@@ -59,7 +59,7 @@ class Rendering(unittest.TestCase):
             path = scenes.builder().write(folder)
             out = os.path.join(folder, "program.exr")
             subprocess.run([os.environ["COVTRACE"], "render", path, "-o", out, "--spp", "4",
-                            "--seed", "7", "--progress", "none"], check=True, capture_output=True)
+                            "--seed", "7", "--layers", "all,share", "--progress", "none"], check=True, capture_output=True)
             image = covtrace.render(path, spp=4, seed=7, threads=1)
             self.assertTrue(covtrace.compare(image, out).identical)
             subprocess.run([os.environ["COVTRACE"], "render", path, "-o", out, "--spp", "4", "--method",
@@ -242,7 +242,7 @@ class Gltf(unittest.TestCase):
     def test_same_image_as_the_program(self):
         out = os.path.join(self.folder.name, "program.exr")
         subprocess.run([os.environ["COVTRACE"], "render", self.file, "-o", out, "--spp", "4", "--shutter",
-                        "0,0.5", "--resolution", "64x32", "--progress", "none", "--quiet"], check=True)
+                        "0,0.5", "--resolution", "64x32", "--layers", "all,share", "--progress", "none", "--quiet"], check=True)
         image = covtrace.render(self.file, spp=4, shutter=(0, 0.5), resolution=(64, 32))
         self.assertTrue(covtrace.compare(image, out).identical)
 
