@@ -18,9 +18,6 @@ NOTHING_REPLACED = {
     "an animation, shown at one moment": ("the scene is rendered at rest",),
     "several cameras, the first is taken": (" cameras is used",),
     "several animations or variants, told with how to choose": ("play together", "the primitives' own materials are rendered"),
-    "extensions that hold nothing to be seen": (
-        "EXT_mesh_polygon is left out", "FB_ngon_encoding is left out", "KHR_node_selectability is left out",
-        "OMI_physics_body is left out", "EXT_feature_metadata is left out"),
     "light in physical units": ("candela and lux are divided",),
     "nodes listed as roots that are none": ("are no roots", "is no root", "beside its parent", "beside their parents"),
     "values of the file that mean nothing": (

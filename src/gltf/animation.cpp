@@ -16,6 +16,23 @@ std::vector<double> slerp_values(double t, const float* a, const float* b) {
 
 }  // namespace
 
+Matrix4 matrix_of(const Pose& p) {
+    double x = p.rotation[0], y = p.rotation[1], z = p.rotation[2], w = p.rotation[3];
+    const double size = std::sqrt(x * x + y * y + z * z + w * w);
+    if (size > 0) x /= size, y /= size, z /= size, w /= size;
+    const std::array<std::array<double, 3>, 3> r{
+        {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+         {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+         {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
+    Matrix4 m;
+    for (size_t row = 0; row < 3; ++row) {
+        for (size_t column = 0; column < 3; ++column)
+            m.m[row][column] = r[row][column] * p.scale[column];
+        m.m[row][3] = p.translation[row];
+    }
+    return m;
+}
+
 Animations::Animations(const Document& document, const std::vector<size_t>& played,
                        WarningLog& log) {
     for (const size_t a : played)

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/transform.h"
 #include "gltf/accessor.h"
 #include "gltf/document.h"
 
@@ -17,6 +18,10 @@ struct Pose {
     std::array<double, 4> rotation{0, 0, 0, 1};
     std::array<double, 3> scale{1, 1, 1};
 };
+
+/// The matrix of a pose: scale, then rotation, then translation. The quaternion need not be
+/// normalised.
+Matrix4 matrix_of(const Pose& pose);
 
 /// Animations of the file at once, on one time line in seconds. Where two move the same property of
 /// a node, the first one counts, with a warning.

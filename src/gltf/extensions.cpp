@@ -15,7 +15,6 @@ struct LeftOut {
 constexpr std::array kLeftOut{
     LeftOut{"EXT_lights_ies", "its lamps shine alike in all directions"},
     LeftOut{"EXT_lights_image_based", "its light from all around is missing"},
-    LeftOut{"EXT_mesh_gpu_instancing", "of the copies of a mesh one is rendered"},
     LeftOut{"KHR_animation_pointer", "what it animates beside nodes rests"},
     LeftOut{"KHR_gaussian_splatting", "its splats are missing"},
     LeftOut{"KHR_materials_diffuse_transmission", "no light shines through thin surfaces"},
@@ -23,15 +22,15 @@ constexpr std::array kLeftOut{
     LeftOut{"KHR_materials_iridescence", "the colours of thin films are missing"},
     LeftOut{"KHR_materials_sheen", "the soft shine of cloth at grazing angles is missing"},
     LeftOut{"KHR_materials_volume_scatter", "volumes absorb light but do not scatter it"},
-    LeftOut{"KHR_node_visibility", "hidden nodes are rendered"},
     LeftOut{"KHR_texture_basisu", "the image for other readers is shown, where there is one"},
     LeftOut{"MSFT_lod", "the finest level is rendered"},
     LeftOut{"MSFT_texture_dds", "the image for other readers is shown, where there is one"},
 };
 
 /// Extensions that describe a file and change no picture.
-constexpr std::array<std::string_view, 3> kDescriptions{
-    "EXT_mesh_features", "EXT_structural_metadata", "KHR_xmp_json_ld"};
+constexpr std::array<std::string_view, 8> kDescriptions{
+    "EXT_feature_metadata", "EXT_mesh_features",      "EXT_mesh_polygon", "EXT_structural_metadata",
+    "FB_ngon_encoding",     "KHR_node_selectability", "KHR_xmp_json_ld",  "OMI_physics_body"};
 
 }  // namespace
 

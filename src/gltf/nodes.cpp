@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "gltf/instancing.h"
+
 namespace covtrace::gltf {
 namespace {
 
@@ -16,21 +18,12 @@ void copy_checked(const Document& document, const std::vector<double>& from,
     }
 }
 
-Matrix4 matrix_of(const Pose& p) {
-    double x = p.rotation[0], y = p.rotation[1], z = p.rotation[2], w = p.rotation[3];
-    const double size = std::sqrt(x * x + y * y + z * z + w * w);
-    if (size > 0) x /= size, y /= size, z /= size, w /= size;
-    const std::array<std::array<double, 3>, 3> r{
-        {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
-         {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
-         {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
-    Matrix4 m;
-    for (size_t row = 0; row < 3; ++row) {
-        for (size_t column = 0; column < 3; ++column)
-            m.m[row][column] = r[row][column] * p.scale[column];
-        m.m[row][3] = p.translation[row];
-    }
-    return m;
+/// Whether KHR_node_visibility lets a node be seen, and what is below it.
+bool is_visible(const tinygltf::Node& node) {
+    const auto extension = node.extensions.find("KHR_node_visibility");
+    if (extension == node.extensions.end()) return true;
+    const tinygltf::Value& visible = extension->second.Get("visible");
+    return !visible.IsBool() || visible.Get<bool>();
 }
 
 class Placer {
@@ -188,23 +181,31 @@ class Placer {
         const Matrix4 end = rests ? start : pending.end * local(pending.node, t1);
         const auto index = static_cast<size_t>(pending.node);
         placed_.worlds[index] = {start, end};
-        bool is_hidden = pending.is_hidden;
+        bool is_hidden = pending.is_hidden || !is_visible(document_.model.nodes[index]);
         if (!is_hidden) {
-            const auto start_transform = Transform::from_matrix(start);
-            const auto end_transform = Transform::from_matrix(end);
-            is_hidden = !start_transform || !end_transform;
+            is_hidden = !Transform::from_matrix(start) || !Transform::from_matrix(end);
             if (is_hidden)
                 log_.add(document_.place(element("nodes", index)),
                          "a scale of zero hides the node and what is below it");
             else
-                placed_.nodes.push_back(
-                    {pending.node,
-                     start == end ? AnimatedTransform(*start_transform)
-                                  : AnimatedTransform(*start_transform, t0, *end_transform, t1)});
+                place_copies(pending.node, {start, end}, {t0, t1});
         }
         const auto& children = document_.model.nodes[index].children;
         for (auto it = children.rbegin(); it != children.rend(); ++it)
             stack.push_back({*it, start, end, is_hidden});
+    }
+
+    /// Places a node once for each copy of its mesh; those without a size are left out.
+    void place_copies(int node, const WorldMatrices& world, const std::array<float, 2>& times) {
+        for (const Matrix4& copy : instance_matrices(document_, static_cast<size_t>(node))) {
+            const auto start = Transform::from_matrix(world[0] * copy),
+                       end = Transform::from_matrix(world[1] * copy);
+            if (start && end)
+                placed_.nodes.push_back(
+                    {node, world[0] == world[1]
+                               ? AnimatedTransform(*start)
+                               : AnimatedTransform(*start, times[0], *end, times[1])});
+        }
     }
 
     const Document& document_;

@@ -36,7 +36,8 @@ std::vector<double> morph_weights(const Document& document, const Animations& an
 /// The nodes of the chosen scene (all roots, where there are no scenes), as the chosen animations
 /// move them. A node that the scene lists beside one above it is placed once, by its parents; one
 /// whose parents are not in the scene by its own transform; both with a warning. Refuses nodes with
-/// two parents and cycles. Nodes that a scale of zero hides are left out of the placed ones.
+/// two parents and cycles. Nodes that a scale of zero or KHR_node_visibility hides are left out of
+/// the placed ones; those whose mesh EXT_mesh_gpu_instancing copies are there once for each copy.
 ///
 /// `shutter`: both ends in seconds; none: at rest, as at time 0 of the animations.
 PlacedNodes place_nodes(const Document& document, const Choice& choice,

@@ -25,8 +25,8 @@ bool is_gltf(const std::filesystem::path& file);
 ///
 /// Errors: Error(scene) as `file:line:column: …` for text that is no JSON, and as `file: place in
 /// the document: what is wrong; what was expected` for the rest; Error(limit) where the scene is
-/// too large; Error(usage) for a camera, scene, animation or variant that the file has not. Files are looked
-/// for in the scene's folder and the search paths, and nowhere else.
+/// too large; Error(usage) for a camera, scene, animation or variant that the file has not. Files
+/// are looked for in the scene's folder and the search paths, and nowhere else.
 SceneDescription read_gltf(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// Reads a scene from memory, text or binary; messages call it `name`, and its files are looked for

@@ -228,7 +228,8 @@ TEST(GltfGeometry, LeavesOutAnimationsOfOtherThanNodes) {
         {{"channels",
           {{{"sampler", 0}, {"target", {{"path", "pointer"}, {"extensions", pointer}}}}}},
          {"samplers", {{{"input", times}, {"output", values}}}}}};
-    EXPECT_TRUE(contains(all_warnings(read(file)), "animations[0].channels[0]: extension KHR_animation_pointer is left out"));
+    EXPECT_TRUE(contains(all_warnings(read(file)),
+                         "animations[0].channels[0]: extension KHR_animation_pointer is left out"));
     // One that names neither a node nor an extension is to be ignored.
     file.root["animations"][0]["channels"][0]["target"] = {{"path", "translation"}};
     EXPECT_FALSE(contains(all_warnings(read(file)), "animations[0]"));
@@ -246,6 +247,58 @@ TEST(GltfGeometry, ReadsScenesWithoutTriangles) {
         EXPECT_TRUE(is_finite(scene.camera.camera_to_world.start().point({0, 0, 0})));
     }
     EXPECT_TRUE(contains(all_warnings(read(points)), "points are not rendered: 6 in 1 primitive"));
+}
+
+TEST(GltfGeometry, HidesWhatIsNotVisible) {
+    GltfFile file;
+    const int mesh = file.add_square();
+    const json hidden = {{"KHR_node_visibility", {{"visible", false}}}},
+               shown = {{"KHR_node_visibility", {{"visible", true}}}};
+    file.add_node({{"mesh", mesh}, {"children", {2}}, {"extensions", hidden}});
+    file.add_node({{"mesh", mesh}, {"translation", {7, 0, 0}}, {"extensions", shown}});
+    file.add_node({{"mesh", mesh}, {"extensions", shown}});  // below the hidden one
+    file.root["scenes"] = {{{"nodes", {0, 1}}}};
+    const auto scene = read(file);
+    ASSERT_EQ(scene.shapes.size() + scene.instances.size(), 1u);
+    expect_near(scene.shapes[0].object_to_world.start().point({0, 0, 0}), {7, 0, 0}, 0);
+    EXPECT_FALSE(contains(all_warnings(scene), "KHR_node_visibility"));
+}
+
+TEST(GltfGeometry, CopiesMeshesAsInstancingSays) {
+    GltfFile file = square_file();
+    const float h = std::sqrt(0.5f);
+    const json attributes = {
+        {"TRANSLATION", file.add_floats({1, 0, 0, 0, 2, 0, 0, 0, 3}, "VEC3", 3)},
+        {"ROTATION", file.add_floats({0, 0, 0, 1, 0, 0, h, h, 0, 0, 0, 1}, "VEC4", 4)},
+        {"SCALE", file.add_floats({1, 1, 1, 2, 2, 2, 0, 0, 0}, "VEC3", 3)}};
+    file.root["nodes"][0]["translation"] = {10, 0, 0};
+    file.root["nodes"][0]["extensions"] = {
+        {"EXT_mesh_gpu_instancing", {{"attributes", attributes}}}};
+    const auto scene = read(file);
+    // The third one has no size.
+    ASSERT_EQ(scene.instances.size(), 2u);
+    ASSERT_EQ(scene.objects.size(), 1u);
+    const auto point = [&](size_t i, Vec3 p) {
+        return scene.instances[i].instance_to_world.start().point(p);
+    };
+    expect_near(point(0, {0.5f, 0, 0}), {11.5f, 0, 0}, 1e-6f);
+    // Twice as large, turned from x to y, then two upwards.
+    expect_near(point(1, {0.5f, 0, 0}), {10, 3, 0}, 1e-5f);
+    file.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] =
+        file.add_floats({1, 1, 1}, "VEC3", 3);
+    EXPECT_TRUE(contains(failure_of([&] { read(file); }).message,
+                         "attributes.SCALE: has 1 elements; expected 3"));
+}
+
+TEST(GltfGeometry, LimitsTheCopiesOfASmallFile) {
+    GltfFile file;
+    const int mesh = file.add_square();
+    const std::vector<float> places(3 * 20000);
+    const json copies = {{"EXT_mesh_gpu_instancing",
+                          {{"attributes", {{"TRANSLATION", file.add_floats(places, "VEC3", 3)}}}}}};
+    for (int i = 0; i < 1000; ++i) file.add_node({{"mesh", mesh}, {"extensions", copies}});
+    const Failure failure = failure_of([&] { read(file); });
+    EXPECT_TRUE(contains(failure.message, "the copies of meshes are too many"));
 }
 
 TEST(GltfGeometry, HidesWhatHasNoSize) {
