@@ -108,10 +108,12 @@ struct MaterialSlots {
         texture("reflectance", m.reflectance, TextureUse::share);
     }
     void operator()(ConductorMaterial& m) {
-        texture("eta", m.eta, TextureUse::colour);
-        texture("k", m.k, TextureUse::colour);
+        // A metal has its indices or its reflectance: beside a reflectance they would not count.
+        if (m.reflectance < 0) {
+            texture("eta", m.eta, TextureUse::colour);
+            texture("k", m.k, TextureUse::colour);
+        }
         texture("reflectance", m.reflectance, TextureUse::share);
-        // A metal has its indices or its reflectance, never both.
         slots.back().set = [set = slots.back().set, &m](const py::object& value) {
             set(value);
             m.eta = m.k = -1;
@@ -183,7 +185,7 @@ std::vector<Slot> slots_of(SceneDescription&, AreaLightDescription& light) {
 std::vector<Slot> slots_of(SceneDescription&, CameraDescription& camera) {
     return {number_slot("fov", camera.fov, 0.001, 179.999),
             number_slot("lensradius", camera.lens_radius),
-            number_slot("focaldistance", camera.focal_distance)};
+            number_slot("focaldistance", camera.focal_distance, 1e-6)};
 }
 
 /// Calls use(part) for the part of the scene that a kind and an index name.
@@ -293,6 +295,8 @@ void bind_scene_edit(SceneClass& scene) {
         .def("copy",
              [](const SceneDescription& s) { return std::make_shared<SceneDescription>(s); })
         .def("parts", &parts)
+        .def("material_of_shape",
+             [](const SceneDescription& s, size_t i) { return s.shapes.at(i).material; })
         .def("values", &values)
         .def("set_value", &set_value)
         .def("transforms", &transforms)

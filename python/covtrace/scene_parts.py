@@ -133,7 +133,7 @@ class Shape(Placed):
 
     @property
     def material(self) -> int:
-        return self._description.parts()["shapes"][self._index]
+        return self._description.material_of_shape(self._index)
 
     @material.setter
     def material(self, index: int) -> None:

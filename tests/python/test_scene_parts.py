@@ -74,6 +74,19 @@ class Parts(unittest.TestCase):
         self.assertEqual([metal[n] for n in ("uroughness", "vroughness")], [0.0625] * 2)
         self.assert_like(floor='"rgb reflectance" [.5 .25 .125]', rough=0.0625)
 
+    def test_metals_by_index(self):
+        """eta and k count where a metal has no reflectance, and are listed there alone."""
+        self.assertNotIn("eta", list(self.scene.materials["metal"]))
+        text = TEXT.format(**VALUES).replace('"rgb reflectance" [.9 .8 .7]', '"rgb eta" [1 1 1] "rgb k" [3 2 1]')
+        by_index = covtrace.Scene.from_string(text)
+        # The reader takes indices for three channels from what pbrt's file says of its spectrum.
+        expected = covtrace.Scene.from_string(text.replace("[3 2 1]", "[4 3 2]"))
+        self.assertNotEqual(by_index.materials["metal"]["k"], expected.materials["metal"]["k"])
+        by_index.materials["metal"]["k"] = expected.materials["metal"]["k"]
+        self.assertTrue(covtrace.compare(self.render(by_index), self.render(expected)).identical)
+        by_index.materials["metal"]["reflectance"] = 0.9, 0.8, 0.7
+        self.assertTrue(covtrace.compare(self.render(by_index), self.render(scene())).identical)
+
     def test_lights(self):
         sky, lamp = self.scene.lights
         self.assertEqual([light.kind for light in self.scene.lights], ["infinite", "point"])
