@@ -161,7 +161,7 @@ class ShaderNodesTest(BlenderTest):
         def build(kind):
             def show(tree):
                 steps = tree.node("Math", {"operation": "MULTIPLY"}, {0: tree.number(), 1: 5.0})
-                tree.show(tree.node(kind, {"noise_dimensions": "1D"}, {"W": steps}), 1)
+                tree.show(tree.node(kind, {"noise_dimensions": "1D"}, {"W": steps, "Scale": 1.0}), 1)
             return show
         self.assert_nodes({"noise": build("TexNoise")})
 

@@ -24,7 +24,9 @@ def _dimensions(node):
 
 def _offset(seed, dimensions):
     """Where another noise begins: (d,) in [100, 200]."""
-    return np.array([100 + 100 * hashed_number(np.float32(seed), np.float32(i)) for i in range(dimensions)], np.float32)
+    seed = np.float32(seed)
+    places = [(seed,)] if dimensions == 1 else [(seed, np.float32(i)) for i in range(dimensions)]
+    return np.array([100 + 100 * hashed_number(*place) for place in places], np.float32)
 
 
 def _noise(node, output, inputs):
