@@ -38,7 +38,7 @@ void smooth_root(Image& image, double deviation) {
     for (size_t i = 0; i < mean.size(); ++i) mean[i] = image.rgb(i);
     const std::vector<float> no_variance(mean.size(), 0.0f);
     const std::vector<uint32_t> count(mean.size(), 1);
-    const GatheredImage smoothed =
+    const FilteredImage smoothed =
         gather(mean, no_variance, count, {image.width(), image.height(), same});
     for (Channel& c : image.channels)
         for (int k = 0; k < 3; ++k)

@@ -114,7 +114,7 @@ constexpr int kAttempts = 6;
 
 }  // namespace
 
-GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
+FilteredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
                      std::span<const uint32_t> count, const FilterField& field) {
     // Sums of red, green, blue, the variance of the luminance, and whether a pixel has samples.
     constexpr size_t kVariance = 3, kWeight = 4, kSums = 5;
@@ -128,7 +128,8 @@ GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
             base.sums[kWeight][at] = 1;
         }
     const Pyramid<kSums> pyramid = pyramid_over(std::move(base));
-    GatheredImage result{std::vector<Rgb>(mean.size()), std::vector<float>(mean.size())};
+    FilteredImage result{std::vector<Rgb>(mean.size()), std::vector<float>(mean.size()),
+                         std::vector<float>(mean.size())};
     parallel_for_rows(field.width, field.height, [&](int y) {
         for (int x = 0; x < field.width; ++x) {
             const size_t i = size_t(y) * size_t(field.width) + size_t(x);
@@ -139,6 +140,7 @@ GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
                 if (!(all > 0)) continue;
                 result.color[i] = Rgb(sum[0], sum[1], sum[2]) / all;
                 result.variance[i] = sum[kVariance] / (all * all);
+                result.own_weight[i] = count[i] > 0 ? std::min(1.0f, 1 / all) : 0.0f;
                 if (all > kLeastWeight) break;
             }
         }

@@ -7,6 +7,7 @@
 
 #include "core/vec.h"
 #include "reconstruction/filter_field.h"
+#include "reconstruction/filtered_image.h"
 #include "reconstruction/half_buffer.h"
 
 namespace covtrace {
@@ -18,14 +19,9 @@ namespace covtrace {
 /// narrow axis' deviation wide.
 ///
 /// `mean`, `variance` (of the mean's luminance) and `count` have field.width * field.height
-/// entries. Pixels gather, they never splat: no result depends on threads.
-struct GatheredImage {
-    std::vector<Rgb> color;
-    std::vector<float>
-        /// Variance of the luminance, by propagation: sum h^2 var / (sum h)^2, without bias.
-        variance;
-};
-GatheredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
+/// entries. Pixels gather, they never splat: no result depends on threads. Variances are
+/// sum h^2 var / (sum h)^2.
+FilteredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
                      std::span<const uint32_t> count, const FilterField& field);
 
 /// Gathers the colours of both halves, which share the filters and so their weights.

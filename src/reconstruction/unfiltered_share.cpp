@@ -20,13 +20,6 @@ constexpr float kNeighbourhood = 2;
 /// know.
 constexpr float kOutlier = 4;
 
-/// The weight of a pixel in its own Gaussian mean: of a wide filter 1 / (2 pi sqrt |S|), of a
-/// narrow one 1.
-float own_weight(const covariance::Sym2<float>& s) {
-    const float area = 2 * kPi * std::sqrt(std::max(0.0f, s.xx * s.yy - s.xy * s.xy));
-    return 1 / std::sqrt(1 + area * area);
-}
-
 /// Squares by pixel, relative to the squared luminance.
 struct Squares {
     Plane difference;             ///< squared differences of both images
@@ -40,19 +33,19 @@ struct Squares {
     }
 };
 
-Squares squares_of(const FilteredLuminance& image) {
-    const Plane none(image.raw.width, image.raw.height);
+Squares squares_of(const RawLuminance& raw, const FilteredLuminance& filtered) {
+    const Plane none(raw.value.width, raw.value.height);
     Squares s{none, none, none, none};
     for (size_t i = 0; i < none.size(); ++i) {
-        const float relative = 1 / (sqr(image.gathered[i]) + kDarkSquared);
-        const float d = relative * sqr(image.gathered[i] - image.raw[i]),
-                    r = relative * image.raw_variance[i], g = relative * image.gathered_variance[i];
+        const float relative = 1 / (sqr(filtered.value[i]) + kDarkSquared);
+        const float d = relative * sqr(filtered.value[i] - raw.value[i]),
+                    r = relative * raw.variance[i], g = relative * filtered.variance[i];
         // Light beyond what squares can hold says nothing, and must not spread.
-        if (!std::isfinite(d) || !std::isfinite(r) || !std::isfinite(g)) continue;
+        if (!raw.known[i] || !std::isfinite(d) || !std::isfinite(r) || !std::isfinite(g)) continue;
         s.difference[i] = d;
         s.raw[i] = r;
         s.gathered[i] = g;
-        s.common[i] = own_weight(image.filter[i]) * r;
+        s.common[i] = filtered.own_weight[i] * r;
     }
     return s;
 }
@@ -79,9 +72,9 @@ Squares means_around(Squares s) {
 
 }  // namespace
 
-Plane unfiltered_share(const FilteredLuminance& image) {
-    const Squares own = squares_of(image), mean = means_around(own);
-    Plane share(image.raw.width, image.raw.height);
+Plane unfiltered_share(const RawLuminance& raw, const FilteredLuminance& filtered) {
+    const Squares own = squares_of(raw, filtered), mean = means_around(own);
+    Plane share(raw.value.width, raw.value.height);
     for (size_t i = 0; i < share.size(); ++i) {
         // With a bias b of the filter, variances r and g and the covariance c of both images, the
         // mixture (1 - a) gathered + a raw has the least error at

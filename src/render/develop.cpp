@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "image/finite_pixels.h"
-#include "reconstruction/gather.h"
-#include "reconstruction/unfiltered_share.h"
+#include "render/covariance_image.h"
 #include "render/hybrid_film.h"
 #include "render/layers.h"
 
@@ -32,50 +31,7 @@ std::vector<float> density_layer(const RenderState& state) {
     return std::vector<float>(state.pixels(), float(state.mean_count()));
 }
 
-/// Gathers both parts of the light through their filters. `in_view_filters` is null where nothing
-/// is known of emitters, which then stay as they are.
-GatheredImage gathered(const Film& film, const FilterField& filters,
-                       const FilterField* in_view_filters) {
-    std::vector<Rgb> scattered(film.pixels.size());
-    std::vector<float> variance(film.pixels.size());
-    std::vector<uint32_t> count(film.pixels.size());
-    for (size_t i = 0; i < scattered.size(); ++i) {
-        const FilmPixel& pixel = film.pixels[i];
-        scattered[i] = pixel.mean - film.in_view[i];
-        const Rgb v = pixel.variance_of_mean();
-        variance[i] = sqr(luminance({std::sqrt(v.r), std::sqrt(v.g), std::sqrt(v.b)}));
-        count[i] = pixel.count;
-    }
-    GatheredImage image = gather(scattered, variance, count, filters);
-    const std::vector<Rgb> in_view =
-        in_view_filters ? gather(film.in_view, variance, count, *in_view_filters).color
-                        : film.in_view;
-    for (size_t i = 0; i < in_view.size(); ++i) image.color[i] += in_view[i];
-    return image;
-}
-
-/// Mixes unfiltered pixels into a gathered image where its filters cost more than they gain.
-void mix_unfiltered(const Film& film, const FilterField& filters, GatheredImage& image) {
-    const int w = filters.width, h = filters.height;
-    FilteredLuminance l{Plane(w, h), Plane(w, h), Plane(w, h), Plane(w, h), filters.covariance};
-    for (size_t i = 0; i < image.color.size(); ++i) {
-        const FilmPixel& pixel = film.pixels[i];
-        const Rgb v = pixel.variance_of_mean();
-        l.raw[i] = luminance(pixel.mean);
-        l.raw_variance[i] = sqr(luminance({std::sqrt(v.r), std::sqrt(v.g), std::sqrt(v.b)}));
-        l.gathered[i] = luminance(image.color[i]);
-        l.gathered_variance[i] = image.variance[i];
-    }
-    const Plane share = unfiltered_share(l);
-    for (size_t i = 0; i < image.color.size(); ++i) {
-        if (film.pixels[i].count == 0) continue;
-        image.color[i] = (1 - share[i]) * image.color[i] + share[i] * film.pixels[i].mean;
-        image.variance[i] =
-            sqr(1 - share[i]) * image.variance[i] + sqr(share[i]) * l.raw_variance[i];
-    }
-}
-
-Image gathered_image(const RenderState& state) {
+Image filtered_image(const RenderState& state) {
     const Film& film = state.films[0];
     const CovarianceBuffers& parts = state.parts();
     const double taken = film.mean_count();
@@ -86,28 +42,29 @@ Image gathered_image(const RenderState& state) {
         return filters_of_smoothed(
             state.filter, unpack(part, state.region.width(), state.region.height()), its_settings);
     };
-    FilterField field = filters_of(parts.scattered, settings);
-    FilterField in_view_field = filters_of(parts.in_view, settings_in_view);
-    if (state.filter == FilterRule::verified) {
-        covariance::limit_parts(field, in_view_field, light_known(parts.scattered),
+    CovarianceFilters filters{filters_of(parts.scattered, settings),
+                              filters_of(parts.in_view, settings_in_view)};
+    filters.has_in_view = std::any_of(parts.in_view.begin(), parts.in_view.end(),
+                                      [](const PackedCovariance& c) { return c.weight > 0; });
+    const bool verified = state.filter == FilterRule::verified;
+    if (verified) {
+        covariance::limit_parts(filters.scattered, filters.in_view, light_known(parts.scattered),
                                 light_known(parts.in_view), settings, settings_in_view);
     }
-    const bool emitters_found = std::any_of(parts.in_view.begin(), parts.in_view.end(),
-                                            [](const PackedCovariance& c) { return c.weight > 0; });
-    GatheredImage image = gathered(film, field, emitters_found ? &in_view_field : nullptr);
-    if (state.filter == FilterRule::verified) mix_unfiltered(film, field, image);
+    const FilteredImage image =
+        verified ? judged_image(film, filters) : gathered_image(film, filters);
     const CovarianceBuffer all = merge(parts);
     const Prediction raw = preintegrated(all);
     return make_layers(film, state.display, state.has_holes,
-                       CovarianceLayers{all, raw, density_layer(state), field, image,
-                                        emitters_found ? &parts.scattered : nullptr,
-                                        emitters_found ? &in_view_field : nullptr});
+                       CovarianceLayers{all, raw, density_layer(state), filters.scattered, image,
+                                        filters.has_in_view ? &parts.scattered : nullptr,
+                                        filters.has_in_view ? &filters.in_view : nullptr});
 }
 
 Image mixed_image(const RenderState& state, const CovarianceBuffer& all,
                   const Reconstructed& reconstructed) {
     const auto& [mixed, prediction] = reconstructed;
-    GatheredImage delivered{std::vector<Rgb>(state.pixels()), mixed.variance.values};
+    FilteredImage delivered{std::vector<Rgb>(state.pixels()), mixed.variance.values, {}};
     for (size_t i = 0; i < state.pixels(); ++i)
         delivered.color[i] = {mixed.color[0][i], mixed.color[1][i], mixed.color[2][i]};
     const Prediction raw = preintegrated(all);
@@ -141,7 +98,7 @@ Image develop(const RenderState& state, const Denoiser* denoiser) {
             return completed(
                 make_layers(state.films[0], state.display, state.has_holes, std::nullopt), state);
         case Method::covariance:
-            return completed(gathered_image(state), state);
+            return completed(filtered_image(state), state);
         case Method::hybrid:
             break;
     }

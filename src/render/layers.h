@@ -7,7 +7,8 @@
 #include "image/image.h"
 #include "prediction/covariance_buffer.h"
 #include "reconstruction/candidates.h"
-#include "reconstruction/gather.h"
+#include "reconstruction/filter_field.h"
+#include "reconstruction/filtered_image.h"
 #include "render/film.h"
 
 namespace covtrace {
@@ -17,8 +18,8 @@ struct CovarianceLayers {
     const CovarianceBuffer& buffer;  ///< of all light
     const Prediction& prediction;    ///< of all light, before smoothing and clamps
     std::vector<float> density;      ///< samples per pixel that the plan asked for
-    const FilterField& filter;       ///< as applied to scattered light
-    const GatheredImage& gathered;   ///< the delivered image
+    const FilterField& filter;       ///< as predicted for scattered light
+    const FilteredImage& gathered;   ///< the delivered image
     /// Covariances of scattered light alone, and the filters as applied to the emitters; null where
     /// no emitters are in view.
     const std::vector<PackedCovariance>* scattered = nullptr;

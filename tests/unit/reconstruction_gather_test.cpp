@@ -19,7 +19,7 @@ FilterField uniform_field(int w, int h, Sym2<float> s) {
     return {w, h, std::vector<Sym2<float>>(size_t(w) * size_t(h), s)};
 }
 
-GatheredImage run(const std::vector<Rgb>& mean, const FilterField& field,
+FilteredImage run(const std::vector<Rgb>& mean, const FilterField& field,
                   std::vector<uint32_t> count = {}) {
     if (count.empty()) count.assign(mean.size(), 1);
     const std::vector<float> variance(mean.size(), 1.0f);

@@ -11,33 +11,32 @@ namespace covtrace {
 namespace {
 
 constexpr int kWidth = 64, kHeight = 48;
-using Filter = covariance::Sym2<float>;
 
 /// A flat image of luminance 1 with noise of deviation `noise`, and its means by 1/`mean_of` of the
 /// variance, off by `bias`.
 struct Flat {
-    FilteredLuminance image;
-    std::vector<Filter> filters;
+    RawLuminance raw;
+    FilteredLuminance filtered;
+    std::vector<float> own;
 
     Flat(float noise, float mean_of, float bias, uint32_t seed) {
-        const auto plane = [] { return Plane(kWidth, kHeight); };
-        image = {plane(), plane(), plane(), plane(), {}};
+        const Plane none(kWidth, kHeight);
+        raw = {none, none, std::vector<bool>(none.size(), true)};
         // A Gaussian mean has 1 / (4 pi s^2) of the variance, and its own pixel 1 / (2 pi s^2).
-        const float s2 = mean_of / (4 * 3.14159265f);
-        filters.assign(image.raw.size(), Filter{s2, 0, s2});
-        image.filter = filters;
+        own.assign(none.size(), 2 / mean_of);
+        filtered = {none, none, own};
         std::mt19937 random(seed);
         std::normal_distribution<float> normal;
-        for (size_t i = 0; i < image.raw.size(); ++i) {
-            image.raw[i] = 1 + noise * normal(random);
-            image.raw_variance[i] = noise * noise;
-            image.gathered[i] = 1 + bias;
-            image.gathered_variance[i] = noise * noise / mean_of;
+        for (size_t i = 0; i < none.size(); ++i) {
+            raw.value[i] = 1 + noise * normal(random);
+            raw.variance[i] = noise * noise;
+            filtered.value[i] = 1 + bias;
+            filtered.variance[i] = noise * noise / mean_of;
         }
     }
     double mean_share() const {
         double sum = 0;
-        const Plane share = unfiltered_share(image);
+        const Plane share = unfiltered_share(raw, filtered);
         for (const float s : share.values) sum += s;
         return sum / double(share.size());
     }
@@ -70,11 +69,21 @@ TEST(UnfilteredShare, IsNothingWhereBothImagesAreTheSame) {
 
 TEST(UnfilteredShare, DoesNotSpreadLightBeyondSquares) {
     Flat flat(0.1f, 50, 0, 7);
-    flat.image.raw[100] = 1e30f;
-    flat.image.raw_variance[100] = INFINITY;
-    const Plane share = unfiltered_share(flat.image);
+    flat.raw.value[100] = 1e30f;
+    flat.raw.variance[100] = INFINITY;
+    const Plane share = unfiltered_share(flat.raw, flat.filtered);
     for (const float s : share.values) EXPECT_TRUE(s >= 0 && s <= 1) << s;
     EXPECT_LT(flat.mean_share(), 0.1);
+}
+
+/// A pixel of one sample looks as if it had no noise, and must not be kept for that.
+TEST(UnfilteredShare, IsNothingWherePixelsDoNotKnowTheirNoise) {
+    Flat flat(0.5f, 50, 0, 8);
+    flat.raw.variance = Plane(kWidth, kHeight);
+    flat.filtered.variance = Plane(kWidth, kHeight);
+    EXPECT_GT(flat.mean_share(), 0.9);
+    flat.raw.known.assign(flat.raw.known.size(), false);
+    EXPECT_EQ(flat.mean_share(), 0);
 }
 
 }  // namespace

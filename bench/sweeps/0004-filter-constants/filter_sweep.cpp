@@ -41,7 +41,7 @@ std::vector<float> effective_counts(const PredictedImage& r, FilterField field) 
     for (auto& s : field.covariance) s = 0.5f * s;  // of the squared weights
     const std::vector<float> no_variance(inverse.size(), 0.0f);
     const std::vector<uint32_t> one(inverse.size(), 1);
-    const GatheredImage means = gather(inverse, no_variance, one, field);
+    const FilteredImage means = gather(inverse, no_variance, one, field);
     std::vector<float> counts(inverse.size());
     for (size_t i = 0; i < counts.size(); ++i) counts[i] = 1 / means.color[i].r;
     return counts;

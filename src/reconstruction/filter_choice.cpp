@@ -1,0 +1,142 @@
+#include "reconstruction/filter_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "reconstruction/luminance.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Deviation in pixels of the Gaussian over which estimates of the error are averaged, and of that
+/// which smooths the seams.
+constexpr float kNeighbourhood = 2, kSeam = 1;
+
+/// Squared standard deviations beyond which a pixel is an outlier, as in unfiltered_share.cpp.
+constexpr float kOutlier = 4;
+
+/// Squared deviations of noise beyond which a filter contradicts a pixel, and the part of the
+/// pixels around, by a Gaussian of a pixel, that may be contradicted: docs/decisions/0108.
+constexpr float kContradiction = 9, kMayContradict = 0.05f;
+
+/// The raw image relative to the luminance of the first candidate, as errors are.
+struct RelativeNoise {
+    Plane relative;  ///< 1 / (L^2 + eps); 0 where nothing is known
+    Plane variance, variance_around;
+    Plane part;  ///< what outliers count for: those of rare bright paths are noise, not bias
+};
+
+RelativeNoise relative_noise(const RawLuminance& raw, const FilteredImage& first) {
+    const Plane none(raw.value.width, raw.value.height);
+    RelativeNoise n{none, none, none, none};
+    for (size_t i = 0; i < n.relative.size(); ++i) {
+        const float relative = 1 / (sqr(luminance(first.color[i])) + kDarkSquared);
+        const float variance = relative * raw.variance[i];
+        // Light beyond what squares can hold says nothing, and must not spread.
+        if (!raw.known[i] || !std::isfinite(variance) || !std::isfinite(sqr(raw.value[i])))
+            continue;
+        n.relative[i] = relative;
+        n.variance[i] = variance;
+    }
+    n.variance_around = gaussian_blur(n.variance, kNeighbourhood);
+    for (size_t i = 0; i < n.part.size(); ++i) {
+        const float most = kOutlier * n.variance_around[i];
+        n.part[i] = n.variance[i] > most ? most / n.variance[i] : 1;
+    }
+    return n;
+}
+
+/// Estimated squared errors of a candidate, and where pixels contradict it by far.
+struct Judgement {
+    Plane error, contradicted;
+};
+
+Judgement judge(const RawLuminance& raw, const RelativeNoise& noise,
+                const FilteredImage& candidate) {
+    const Plane none(raw.value.width, raw.value.height);
+    Judgement j{none, none};
+    Plane expected = none;  // what noise makes of the squared differences beyond the error
+    for (size_t i = 0; i < none.size(); ++i) {
+        const float relative = noise.relative[i], others = 1 - 2 * candidate.own_weight[i];
+        if (relative == 0 || !std::isfinite(candidate.variance[i])) continue;
+        const float difference = relative * sqr(luminance(candidate.color[i]) - raw.value[i]);
+        if (!std::isfinite(difference)) continue;
+        // A pixel that has missed what is rare and bright looks less noisy than it is.
+        const float by_noise =
+            std::max(others * std::max(noise.variance[i], noise.variance_around[i]) +
+                         relative * candidate.variance[i],
+                     1e-9f);
+        j.contradicted[i] = difference > kContradiction * by_noise ? 1.0f : 0.0f;
+        j.error[i] = noise.part[i] * difference;
+        expected[i] = noise.part[i] * others * noise.variance[i];
+    }
+    // The limit is taken twice, as the first one is of means that the outliers are in.
+    for (int k = 0; k < 2; ++k) {
+        const Plane around = gaussian_blur(j.error, kNeighbourhood);
+        for (size_t i = 0; i < around.size(); ++i)
+            j.error[i] = std::min(j.error[i], kOutlier * around[i]);
+    }
+    j.error = gaussian_blur(j.error, kNeighbourhood);
+    expected = gaussian_blur(expected, kNeighbourhood);
+    for (size_t i = 0; i < expected.size(); ++i) j.error[i] -= expected[i];
+    j.contradicted = gaussian_blur(j.contradicted, kSeam);
+    return j;
+}
+
+}  // namespace
+
+std::vector<Plane> choose_filters(const RawLuminance& raw,
+                                  std::span<const FilteredImage> candidates) {
+    const Plane none(raw.value.width, raw.value.height);
+    const RelativeNoise noise = relative_noise(raw, candidates.front());
+    std::vector<uint8_t> best(none.size(), 0);
+    Plane least;
+    for (size_t k = 0; k < candidates.size(); ++k) {
+        const Judgement j = judge(raw, noise, candidates[k]);
+        if (k == 0) {
+            least = j.error;
+            continue;
+        }
+        for (size_t i = 0; i < none.size(); ++i) {
+            const bool left_out =
+                j.contradicted[i] > kMayContradict || !std::isfinite(candidates[k].variance[i]);
+            if (left_out || !(j.error[i] < least[i])) continue;
+            least[i] = j.error[i];
+            best[i] = uint8_t(k);
+        }
+    }
+    std::vector<Plane> shares(candidates.size(), none);
+    for (size_t i = 0; i < none.size(); ++i) shares[best[i]][i] = 1;
+    for (Plane& share : shares) share = gaussian_blur(share, kSeam);
+    return shares;
+}
+
+FilteredImage mixed(std::span<const FilteredImage> candidates, std::span<const Plane> shares) {
+    const size_t n = candidates.front().color.size();
+    FilteredImage m{std::vector<Rgb>(n), std::vector<float>(n), std::vector<float>(n)};
+    for (size_t i = 0; i < n; ++i) {
+        float deviation = 0, all = 0;
+        for (size_t k = 0; k < candidates.size(); ++k) {
+            const FilteredImage& c = candidates[k];
+            const float share = shares[k][i];
+            // A neighbour's choice reaches here by the smoothed seam, and may have nothing here.
+            if (share == 0 || !std::isfinite(c.variance[i])) continue;
+            m.color[i] += share * c.color[i];
+            m.own_weight[i] += share * c.own_weight[i];
+            deviation += share * std::sqrt(c.variance[i]);
+            all += share;
+        }
+        if (!(all > 0)) {
+            m.color[i] = candidates.front().color[i];
+            continue;
+        }
+        m.color[i] *= 1 / all;
+        m.own_weight[i] /= all;
+        m.variance[i] = sqr(deviation / all);
+    }
+    return m;
+}
+
+}  // namespace covtrace

@@ -1,0 +1,24 @@
+/// The choice among filters of different width by what the samples say of their errors.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/plane.h"
+#include "reconstruction/filtered_image.h"
+#include "reconstruction/unfiltered_share.h"
+
+namespace covtrace {
+
+/// Shares of the candidates in each pixel, 1 together. The choice is for the candidate whose
+/// estimated squared error is least: (F - y)^2 - (1 - 2 a) r, y the raw pixel, r its variance and a
+/// the weight of the pixel in its filtered value F [Stein 1981], as means over a neighbourhood. The
+/// first candidate is the cautious one: it is taken where nothing is known, and where others
+/// contradict pixels around by far more than noise can. Seams are smoothed by a pixel.
+std::vector<Plane> choose_filters(const RawLuminance& raw,
+                                  std::span<const FilteredImage> candidates);
+
+/// The mixture of candidates by their shares; its noise as if theirs were one.
+FilteredImage mixed(std::span<const FilteredImage> candidates, std::span<const Plane> shares);
+
+}  // namespace covtrace

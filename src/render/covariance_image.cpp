@@ -1,0 +1,143 @@
+#include "render/covariance_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "reconstruction/filter_choice.h"
+#include "reconstruction/gather.h"
+#include "reconstruction/guided_gather.h"
+#include "reconstruction/unfiltered_share.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Distance that stands for what is never hit, scene units.
+constexpr float kFar = 1e6f;
+
+/// One part of the light of a film: means, and variances of their luminance.
+struct Part {
+    std::vector<Rgb> mean;
+    std::vector<float> variance;
+};
+
+struct Parts {
+    Part scattered, in_view;
+    std::vector<uint32_t> count;
+    RawLuminance whole;
+};
+
+float luminance_variance(const FilmPixel& pixel) {
+    // The channels of one sample vary together, so that the luminance is of the deviations.
+    const Rgb v = pixel.variance_of_mean();
+    return sqr(luminance({std::sqrt(v.r), std::sqrt(v.g), std::sqrt(v.b)}));
+}
+
+Parts parts_of(const Film& film) {
+    const size_t n = film.pixels.size();
+    const Part none{std::vector<Rgb>(n), std::vector<float>(n)};
+    const Plane dark(film.bounds.width(), film.bounds.height());
+    Parts parts{none, none, std::vector<uint32_t>(n), {dark, dark, std::vector<bool>(n)}};
+    for (size_t i = 0; i < n; ++i) {
+        const FilmPixel& pixel = film.pixels[i];
+        parts.in_view.mean[i] = film.in_view[i];
+        parts.scattered.mean[i] = pixel.mean - film.in_view[i];
+        parts.count[i] = pixel.count;
+        const float variance = luminance_variance(pixel);
+        // The film knows the variance of the sum: each part has it by the square of its light.
+        const float s = sqr(luminance(parts.scattered.mean[i])),
+                    e = sqr(luminance(parts.in_view.mean[i]));
+        const float scattered = s + e > 0 && std::isfinite(s + e) ? s / (s + e) : 1.0f;
+        parts.scattered.variance[i] = scattered * variance;
+        parts.in_view.variance[i] = (1 - scattered) * variance;
+        parts.whole.value[i] = luminance(pixel.mean);
+        parts.whole.variance[i] = variance;
+        parts.whole.known[i] = pixel.count > 1;
+    }
+    return parts;
+}
+
+FilteredImage through(const Part& part, const std::vector<uint32_t>& count,
+                      const FilterField& field) {
+    return gather(part.mean, part.variance, count, field);
+}
+
+FilteredImage in_view_image(const Parts& parts, const CovarianceFilters& filters) {
+    if (filters.has_in_view) return through(parts.in_view, parts.count, filters.in_view);
+    return {parts.in_view.mean, parts.in_view.variance,
+            std::vector<float>(parts.count.size(), 1.0f)};
+}
+
+/// Adds the other part of the light. A pixel's own weight is the mean of those of both parts, by
+/// their variances.
+void add(const Parts& parts, const FilteredImage& in_view, FilteredImage& image) {
+    for (size_t i = 0; i < image.color.size(); ++i) {
+        image.color[i] += in_view.color[i];
+        image.variance[i] += in_view.variance[i];
+        const float s = parts.scattered.variance[i], e = parts.in_view.variance[i];
+        if (s + e > 0)
+            image.own_weight[i] = (s * image.own_weight[i] + e * in_view.own_weight[i]) / (s + e);
+    }
+}
+
+/// The features of what is seen first through the filters of the light, which have lens and shutter
+/// in them as these features do.
+Guides guides_of(const Film& film, const Parts& parts, const FilterField& field) {
+    const size_t n = film.pixels.size();
+    std::vector<Rgb> albedo(n), normal(n), distance(n);
+    for (size_t i = 0; i < n; ++i) {
+        const FilmPixel& pixel = film.pixels[i];
+        albedo[i] = pixel.albedo;
+        normal[i] = {pixel.normal.x, pixel.normal.y, pixel.normal.z};
+        const bool hit = pixel.depth > 0 && std::isfinite(pixel.depth);
+        distance[i] = Rgb(std::log(hit ? pixel.depth : kFar));
+    }
+    const auto filtered = [&](const std::vector<Rgb>& feature) {
+        return gather(feature, parts.scattered.variance, parts.count, field).color;
+    };
+    Guides guides{filtered(albedo), filtered(normal), std::vector<float>(n)};
+    distance = filtered(distance);
+    for (size_t i = 0; i < n; ++i) guides.log_distance[i] = distance[i].r;
+    return guides;
+}
+
+/// Mixes unfiltered pixels into an image where its filters cost more than they gain.
+void mix_unfiltered(const Film& film, const RawLuminance& raw, FilteredImage& image) {
+    FilteredLuminance l{Plane(raw.value.width, raw.value.height),
+                        Plane(raw.value.width, raw.value.height), image.own_weight};
+    for (size_t i = 0; i < image.color.size(); ++i) {
+        l.value[i] = luminance(image.color[i]);
+        l.variance[i] = image.variance[i];
+    }
+    const Plane share = unfiltered_share(raw, l);
+    for (size_t i = 0; i < image.color.size(); ++i) {
+        if (film.pixels[i].count == 0) continue;
+        image.color[i] = (1 - share[i]) * image.color[i] + share[i] * film.pixels[i].mean;
+        image.variance[i] = sqr(1 - share[i]) * image.variance[i] + sqr(share[i]) * raw.variance[i];
+    }
+}
+
+}  // namespace
+
+FilteredImage gathered_image(const Film& film, const CovarianceFilters& filters) {
+    const Parts parts = parts_of(film);
+    FilteredImage image = through(parts.scattered, parts.count, filters.scattered);
+    add(parts, in_view_image(parts, filters), image);
+    return image;
+}
+
+FilteredImage judged_image(const Film& film, const CovarianceFilters& filters) {
+    const Parts parts = parts_of(film);
+    std::vector<FilteredImage> candidates =
+        guided_gather(parts.scattered.mean, parts.scattered.variance, parts.count,
+                      filters.scattered, guides_of(film, parts, filters.scattered));
+    candidates.insert(candidates.begin(), through(parts.scattered, parts.count, filters.scattered));
+    const FilteredImage in_view = in_view_image(parts, filters);
+    for (FilteredImage& candidate : candidates) add(parts, in_view, candidate);
+    FilteredImage image = mixed(candidates, choose_filters(parts.whole, candidates));
+    mix_unfiltered(film, parts.whole, image);
+    return image;
+}
+
+}  // namespace covtrace
