@@ -25,11 +25,13 @@ from generator import (  # noqa: E402
     motion,
     shininess,
     snooker,
+    snooker_frame,
     textured_plane,
 )
 
 _WRITERS = (
     snooker,
+    snooker_frame,
     helicopter,
     defocus_checker,
     motion,

@@ -9,7 +9,7 @@ from .cloth import write_chalk, write_weave
 from .mesh import rounded_prism
 from .pbrt_text import SceneText
 from .room import write_room
-from .snooker_balls import NUMBERED, PLAIN, RADIUS, RESTING, ROLLING, pack, place, require_clearance
+from .snooker_balls import EVERY_MATERIAL, RADIUS, ROLLING, pack, place, require_clearance
 from .stage import add_mesh, add_options
 from .wood import write_wood
 
@@ -29,27 +29,33 @@ CAMERA = Camera(
 _LENS_RADIUS = 0.012
 
 
-def _focal_distance():
+def _focal_distance(ball):
     """Depth of the front of the ball in focus, where its number is."""
-    return CAMERA.depth(RESTING[0].center) - 0.8 * RADIUS
+    return CAMERA.depth(ball.center) - 0.8 * RADIUS
 
 
 def write(folder):
     """Writes the scene and its assets."""
-    require_clearance()
+    write_table(folder, NAME, HEADER, EVERY_MATERIAL)
+
+
+def write_table(folder, name, header, balls):
+    """Writes a scene of this table with the given BallSet, whose first resting ball is in focus."""
+    require_clearance(balls)
     (folder / "textures").mkdir()
     (folder / "meshes").mkdir()
-    _write_textures(folder / "textures")
-    scene = SceneText(HEADER)
-    lens = {"float lensradius": _LENS_RADIUS, "float focaldistance": _focal_distance()}
-    add_options(scene, NAME, CAMERA, 8, {**lens, "float shutteropen": 0, "float shutterclose": 1})
+    _write_textures(folder / "textures", balls)
+    scene = SceneText(header)
+    distance = _focal_distance(balls.resting[0])
+    lens = {"float lensradius": _LENS_RADIUS, "float focaldistance": distance}
+    add_options(scene, name, CAMERA, 8, {**lens, "float shutteropen": 0, "float shutterclose": 1})
     scene.plain("WorldBegin")
     room = {"string filename": "textures/room.pfm", "float scale": 1.3}
     scene.entity("LightSource", "infinite", room)
     _add_textures(scene)
     _add_table(scene, folder)
     _add_cue(scene, folder)
-    _add_balls(scene)
+    _add_balls(scene, balls)
     scene.write(folder / "scene.pbrt")
 
 
@@ -79,14 +85,14 @@ def _chalk_marks():
     return marks
 
 
-def _write_textures(folder):
+def _write_textures(folder, balls):
     write_weave(folder / "weave.png")
     write_chalk(folder / "chalk.png", 2048, 1048, _chalk_marks())
     write_wood(
         folder / "mahogany.png", 1024, 256, (0.030, 0.008, 0.004), (0.25, 0.075, 0.030), 9, 3
     )
     write_wood(folder / "ash.png", 1024, 128, (0.30, 0.17, 0.07), (0.66, 0.47, 0.26), 5, 7)
-    for name, (number, color, striped, _) in NUMBERED.items():
+    for name, (number, color, striped, _) in balls.numbered.items():
         write_numbered(folder / f"{name}.png", number, color, striped)
     write_spotted(folder / "cue-ball.png", ROLLING.color, ROLLING.spot_color)
     write_room(folder / "room.pfm", 512, 2)
@@ -185,26 +191,26 @@ def _add_sphere(scene):
     scene.entity("Shape", "sphere", {"float radius": RADIUS})
 
 
-def _add_balls(scene):
+def _add_balls(scene, balls):
     scene.comment("Balls.")
-    for name, (_, _, _, roughness) in NUMBERED.items():
+    for name, (_, _, _, roughness) in balls.numbered.items():
         _image_texture(scene, name, f"{name}.png")
         _glossy_material(scene, name, name, roughness)
-    for name, (kind, parameters) in PLAIN.items():
+    for name, (kind, parameters) in balls.plain.items():
         _named_material(scene, name, kind, parameters)
-    for ball in RESTING:
+    for ball in balls.resting:
         x, y = CAMERA.project(ball.center)
         scene.comment(f"{ball.name}: at pixel ({x:.0f}, {y:.0f})")
         with scene.attributes():
             scene.plain("Translate", *ball.center)
-            if ball.name in NUMBERED:
+            if ball.name in balls.numbered:
                 for rotation in ball.rotations(CAMERA.eye):
                     scene.plain(*rotation)
             scene.entity("NamedMaterial", ball.name)
             _add_sphere(scene)
     scene.comment("The pack.")
     scene.entity("NamedMaterial", "red")
-    for center in pack():
+    for center in pack(balls.pack_rows):
         with scene.attributes():
             scene.plain("Translate", *center)
             _add_sphere(scene)

@@ -100,11 +100,11 @@ RESTING = [
 ]
 
 
-def pack():
-    """Centres of the fifteen reds, racked far behind the focus."""
+def pack(rows=5):
+    """Centres of the reds in so many rows, fifteen in five, racked far behind the focus."""
     spacing = 2 * RADIUS + 0.0004
     centers = []
-    for row in range(5):
+    for row in range(rows):
         for i in range(row + 1):
             ahead = 0.66 + row * spacing * sqrt(3) / 2
             centers.append(place(ahead, 0.03 + (i - row / 2) * spacing))
@@ -136,12 +136,28 @@ class RollingBall:
 ROLLING = RollingBall()
 
 
-def require_clearance():
+@dataclass(frozen=True)
+class BallSet:
+    """What lies on the table: resting balls, and reds of the material "red" in rows of a pack.
+
+    numbered, plain: see NUMBERED and PLAIN.
+    """
+
+    numbered: dict
+    plain: dict
+    resting: list
+    pack_rows: int
+
+
+EVERY_MATERIAL = BallSet(NUMBERED, PLAIN, RESTING, 5)
+
+
+def require_clearance(balls):
     """Raises ValueError where two balls overlap, at the ends of the shutter or between."""
     path = [
         tuple(a + (b - a) * i / 16 for a, b in zip(ROLLING.start, ROLLING.end)) for i in range(17)
     ]
-    resting = [ball.center for ball in RESTING] + pack()
+    resting = [ball.center for ball in balls.resting] + pack(balls.pack_rows)
     pairs = list(combinations(resting, 2)) + [(a, b) for a in path for b in resting]
     for a, b in pairs:
         if dist(a, b) < 2 * RADIUS:

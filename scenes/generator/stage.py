@@ -56,17 +56,21 @@ def facing_square(center, target, half):
     ]
 
 
-def add_mesh(scene, folder, name, material, mesh):
+def add_mesh(scene, folder, name, material, mesh, alpha=1.0):
     """Writes meshes/NAME.ply into the scene's folder and adds it.
 
-    `material`: a named one, or a type and its parameters.
+    `material`: a named one, or a type and its parameters. `alpha`: the part of the light that
+    meets it; the rest passes.
     """
     write_ply(folder / "meshes" / f"{name}.ply", mesh)
     if isinstance(material, str):
         scene.entity("NamedMaterial", material)
     else:
         scene.entity("Material", *material)
-    scene.entity("Shape", "plymesh", {"string filename": f"meshes/{name}.ply"})
+    parameters = {"string filename": f"meshes/{name}.ply"}
+    if alpha < 1:
+        parameters["float alpha"] = alpha
+    scene.entity("Shape", "plymesh", parameters)
 
 
 def add_image_texture(scene, name, parameters=None, kind="spectrum"):
