@@ -82,7 +82,7 @@ Section lens(Workshop& workshop) {
         "that a filter shows what the lens does and nothing else.";
     const auto size = workshop.settings.board;
     s.resolution = size;
-    Sheet sheet(size, 2, 2, 3);
+    Sheet sheet(size, 540.0f / float(size[0]), 2, 3);
     Figure figure{"lens", "", Drawing(1, 1), {}};
     std::vector<Forced> of_one_path, of_own_choice;
     std::vector<std::string> one_path_commands;

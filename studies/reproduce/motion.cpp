@@ -53,7 +53,7 @@ Section motion(Workshop& workshop) {
         "stretch along y.";
     const auto size = workshop.settings.board;
     s.resolution = size;
-    Sheet sheet(size, 1.6f, 4, 3);
+    Sheet sheet(size, 360.0f / float(size[0]), 4, 3);
     Figure figure{"motion", "", Drawing(1, 1), {}};
     Table table{
         "Forced filters against the closed form: still² + V²/(12 c²) along the way, V pixels "

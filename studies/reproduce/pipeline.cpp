@@ -66,8 +66,8 @@ Section pipeline(Workshop& workshop) {
         "samples, below one sample a pixel where little varies, and the filters; equation 5.7 is "
         "the "
         "filter, A exp(-pi p' S p).";
-    LoadedScene& scene = shared_scene(workshop, "snooker");
-    const Reference& reference = shared_reference(workshop, "snooker");
+    LoadedScene& scene = shared_scene(workshop, kSnookerScene);
+    const Reference& reference = shared_reference(workshop, kSnookerScene);
     RenderOptions options;
     options.method = Method::covariance;
     options.seed = workshop.settings.seeds.front();

@@ -76,8 +76,8 @@ Section progressive(Workshop& workshop) {
         "for "
         "more, in its figure on a defocused glossy ball, and proposes a progressive method: sample "
         "again, on demand, the pixels that lack most.";
-    LoadedScene& scene = shared_scene(workshop, "snooker");
-    const Reference& reference = shared_reference(workshop, "snooker");
+    LoadedScene& scene = shared_scene(workshop, kSnookerScene);
+    const Reference& reference = shared_reference(workshop, kSnookerScene);
     RenderOptions options;
     options.method = Method::covariance;
     options.spp = workshop.settings.spp;

@@ -37,6 +37,9 @@ class Reference {
     double noise_ = 0;
 };
 
+/// The generated scene of the snooker table.
+inline constexpr const char* kSnookerScene = "snooker-frame";
+
 /// A generated scene at the settings' size for scenes, and its reference: made once per workshop.
 LoadedScene& shared_scene(Workshop& workshop, const std::string& name);
 Reference& shared_reference(Workshop& workshop, const std::string& name);

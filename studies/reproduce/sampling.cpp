@@ -252,8 +252,8 @@ Section sampling(Workshop& workshop) {
         "The thesis draws why the covariance gives the density of samples: sampling repeats the "
         "spectrum at every tooth of the comb's own, and the replicas must not reach into the "
         "filter that reconstructs the signal.";
-    LoadedScene& scene = shared_scene(workshop, "snooker");
-    const Reference& reference = shared_reference(workshop, "snooker");
+    LoadedScene& scene = shared_scene(workshop, kSnookerScene);
+    const Reference& reference = shared_reference(workshop, kSnookerScene);
     s.resolution = scene.resolution;
     RenderOptions options;
     options.method = Method::covariance;

@@ -10,8 +10,8 @@ namespace covtrace::reproduce {
 
 namespace {
 
-/// Insets: the glass ball and the eight, near the focus; the mirror ball and a ball out of focus; a
-/// ball on its way; the lamps.
+/// Insets: a red and the blue in focus; the yellow, and the green before the focus; the white on
+/// its way; the lamps.
 const std::vector<std::array<double, 4>> kInsets{{0.28, 0.58, 0.58, 0.88},
                                                  {0.60, 0.55, 0.84, 0.97},
                                                  {0.16, 0.40, 0.34, 0.72},
@@ -32,8 +32,9 @@ std::string filter_note(const SceneStudy& study) {
         "author's own library filters with the latter (CovarianceTracing, second tutorial, "
         "SpatialFilter: exp(-1/2 p' 4 pi² S p)). With all else as in the thesis (at most {} "
         "samples, {:.1f} on average) the errors are {:.4f} as printed, {:.4f} with c = 1 and "
-        "{:.4f} with the verified filter, whose c grows with the samples and which narrower "
-        "neighbours limit; the path tracer has {:.4f} in the first one's time. A filter with c = 1 "
+        "{:.4f} with the verified filter, whose c grows with the samples, which narrower "
+        "neighbours limit and which the samples may widen along a surface; the path tracer has "
+        "{:.4f} in the first one's time. A filter with c = 1 "
         "still keeps only 61 % of a sine wave at the edge of the spectrum. What the thesis' "
         "implementation did may have differed from its text.",
         first.cap, first.timed.result.statistics.samples_per_pixel, error(FilterRule::thesis),
@@ -60,7 +61,7 @@ Section snooker(Workshop& workshop) {
     s.resolution = study.scene->resolution;
     add_equal_error_claims(s, study, {{"covariance", 3.0}, {"hybrid", 5.8}},
                            "5.8 times (2 h 25 min over 25 min)", workshop);
-    add_share_claims(s, study);
+    add_share_claims(s, study, workshop);
     s.notes.push_back(
         "The thesis' scene is not published: ours is a scene of its own with the same content. It "
         "names both 100 (text) and 3000 (caption) as the most samples of a pixel; both are in the "

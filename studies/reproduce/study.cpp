@@ -6,10 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "image/compare.h"
-#include "reconstruction/gather.h"
-#include "reproduce/panels.h"
-
 namespace covtrace::reproduce {
 
 namespace {
@@ -33,42 +29,6 @@ Breakdown breakdown_of(const Timed& timed, const SceneStudy& study) {
     b.reconstruction = phase(Phase::reconstruction);
     b.total = timed.cpu;
     return b;
-}
-
-/// The image after the filters that another render applied, with one sample in every pixel.
-Image filtered(const Image& image, const Image& filters) {
-    const size_t n = image.pixel_count();
-    std::vector<Rgb> scattered(n), in_view(n);
-    for (size_t i = 0; i < n; ++i) {
-        in_view[i] = image.rgb(i, "inview.");
-        scattered[i] = image.rgb(i) - in_view[i];
-    }
-    const std::vector<float> variance(n, 0);
-    const std::vector<uint32_t> count(n, 1);
-    const auto pass = [&](const std::vector<Rgb>& mean, const char* layer) {
-        return gather(mean, variance, count,
-                      {image.width(), image.height(), matrices(filters, layer)})
-            .color;
-    };
-    scattered = pass(scattered, "filter.");
-    if (filters.find("inviewfilter.xx")) in_view = pass(in_view, "inviewfilter.");
-    Image result;
-    result.data = image.data;
-    result.display = image.display;
-    for (int c = 0; c < 3; ++c) {
-        Channel& channel = result.add_channel(std::string(1, "RGB"[c]));
-        for (size_t i = 0; i < n; ++i) channel.values[i] = scattered[i][c] + in_view[i][c];
-    }
-    return result;
-}
-
-/// Error that filters make of an image without noise: one half of the reference is filtered, the
-/// other half is the image that it should be.
-double bias_floor(const Reference& reference, const Image& filters) {
-    const double against =
-        0.5 * (compare(filtered(reference.half(0), filters), reference.half(1)).relmse_trimmed +
-               compare(filtered(reference.half(1), filters), reference.half(0)).relmse_trimmed);
-    return against - reference.noise();
 }
 
 /// The filters that are compared: Belcour 2012, section 5.1, prints one and describes another; the
@@ -128,8 +88,8 @@ SceneStudy& study(Workshop& workshop, const std::string& name, const ThesisChoic
     return workshop.shared<SceneStudy>("study " + name, [&] {
         SceneStudy s;
         s.name = name;
-        s.scene = &shared_scene(workshop, name);
-        s.reference = &shared_reference(workshop, name);
+        s.scene = &shared_scene(workshop, choices.scene);
+        s.reference = &shared_reference(workshop, choices.scene);
         for (const Method method : {Method::covariance, Method::hybrid}) {
             MethodStudy m;
             m.name = method == Method::covariance ? "covariance" : "hybrid";
@@ -139,8 +99,6 @@ SceneStudy& study(Workshop& workshop, const std::string& name, const ThesisChoic
             options.method = method;
             options.spp = workshop.settings.spp;
             m.ours = sample(workshop, *s.scene, *s.reference, options);
-            if (method == Method::covariance)
-                m.bias_floor = bias_floor(*s.reference, m.ours.first.result.image);
             s.methods.push_back(std::move(m));
         }
         double least_error = s.methods[0].ours.mean_error();
@@ -245,7 +203,6 @@ nlohmann::json to_json(const SceneStudy& s) {
              {"breakdown", parts(m.breakdown)},
              {"equal_time", sampled(m.equal_time.uniform)},
              {"equal_time_mismatch", m.equal_time.mismatch}};
-        if (m.bias_floor) o["bias_floor"] = *m.bias_floor;
         if (m.equal_error.found) {
             o["equal_error"] = sampled(m.equal_error.uniform);
             o["equal_error_mismatch"] = m.equal_error.mismatch;

@@ -2,7 +2,6 @@
 /// path tracer at equal time and at equal error. Shared by the experiments of a run.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +24,7 @@ struct MethodStudy {
     std::string name, label;
     Sampled ours;
     Breakdown breakdown;
-    std::optional<double> bias_floor;  ///< error of the same filters on an image without noise
-    Match equal_time, equal_error;     ///< the path tracer at equal time, and at equal error
+    Match equal_time, equal_error;  ///< the path tracer at equal time, and at equal error
 };
 
 /// The study of the choices of Belcour 2012, beside the path tracer as the curve has it.
@@ -50,6 +48,7 @@ struct SceneStudy {
 
 /// The numbers that Belcour 2012, section 5.1, used: covariance paths, and limits of samples.
 struct ThesisChoices {
+    std::string scene;  ///< the generated scene that stands for that of Belcour 2012
     int cov_spp;
     std::vector<int> caps;
 };

@@ -7,8 +7,8 @@
 
 namespace covtrace::reproduce {
 
-inline const ThesisChoices kSnookerChoices{15, {100, 3000}};
-inline const ThesisChoices kHelicopterChoices{10, {200}};
+inline const ThesisChoices kSnookerChoices{kSnookerScene, 15, {100, 3000}};
+inline const ThesisChoices kHelicopterChoices{"helicopter", 10, {200}};
 
 /// Adds claims on the path tracer's time over ours at equal error, which is to be at least so much
 /// for each method. Demands are made of the full size: at others nothing is judged.
@@ -19,6 +19,7 @@ void add_equal_error_claims(Section& section, const SceneStudy& study,
 void add_equal_time_claims(Section& section, const SceneStudy& study,
                            const std::map<std::string, double>& least, const Workshop& workshop);
 /// Adds claims on the shares of the analysis and of the reconstruction in the time of `covariance`.
-void add_share_claims(Section& section, const SceneStudy& study);
+/// They are judged at the full size alone, too.
+void add_share_claims(Section& section, const SceneStudy& study, const Workshop& workshop);
 
 }  // namespace covtrace::reproduce

@@ -71,7 +71,7 @@ Section voxels(Workshop& workshop) {
     s.resolution = size;
     LoadedScene scene = workshop.load("foliage", workshop.scenes.generated("foliage"), size);
     const Reference reference(workshop, scene);
-    Sheet sheet(size, 1.5f, 3, 5, {false, true, true, true, true});
+    Sheet sheet(size, 360.0f / float(size[0]), 3, 5, {false, true, true, true, true});
     Figure figure{"voxels", "", Drawing(1, 1), {}};
     Table table{fmt::format("Means over the seeds. The reference's own error is {:.5f}.",
                             reference.own_error()),

@@ -78,7 +78,7 @@ class Reproduce(CliTest):
 
     def test_all_on_scenes_of_ones_own(self):
         options = HEADER.replace('"float fov" 40', '"float fov" 40 "float lensradius" 0.2 "float focaldistance" 5')
-        for name in ("snooker", "helicopter", "foliage"):
+        for name in ("snooker-frame", "helicopter", "foliage"):
             self.write(f"scenes/{name}/scene.pbrt", options + WORLD)
         result = self.run_program("reproduce", "--tiny", "--scenes", "scenes", "-o", "out", timeout=280)
         self.assertEqual(result.code, DONE, result)
