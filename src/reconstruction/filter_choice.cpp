@@ -21,18 +21,18 @@ constexpr float kOutlier = 4;
 /// pixels around, by a Gaussian of a pixel, that may be contradicted: docs/decisions/0108.
 constexpr float kContradiction = 9, kMayContradict = 0.05f;
 
-/// The raw image relative to the luminance of the first candidate, as errors are.
+/// The noise of the raw image, relative to its brightness as errors are.
 struct RelativeNoise {
     Plane relative;  ///< 1 / (L^2 + eps); 0 where nothing is known
     Plane variance, variance_around;
     Plane part;  ///< what outliers count for: those of rare bright paths are noise, not bias
 };
 
-RelativeNoise relative_noise(const RawLuminance& raw, const FilteredImage& first) {
+RelativeNoise relative_noise(const RawLuminance& raw, const Plane& brightness) {
     const Plane none(raw.value.width, raw.value.height);
     RelativeNoise n{none, none, none, none};
     for (size_t i = 0; i < n.relative.size(); ++i) {
-        const float relative = 1 / (sqr(luminance(first.color[i])) + kDarkSquared);
+        const float relative = 1 / (sqr(brightness[i]) + kDarkSquared);
         const float variance = relative * raw.variance[i];
         // Light beyond what squares can hold says nothing, and must not spread.
         if (!raw.known[i] || !std::isfinite(variance) || !std::isfinite(sqr(raw.value[i])))
@@ -88,9 +88,10 @@ Judgement judge(const RawLuminance& raw, const RelativeNoise& noise,
 }  // namespace
 
 std::vector<Plane> choose_filters(const RawLuminance& raw,
-                                  std::span<const FilteredImage> candidates) {
+                                  std::span<const FilteredImage> candidates,
+                                  const Plane& brightness) {
     const Plane none(raw.value.width, raw.value.height);
-    const RelativeNoise noise = relative_noise(raw, candidates.front());
+    const RelativeNoise noise = relative_noise(raw, brightness);
     std::vector<uint8_t> best(none.size(), 0);
     Plane least;
     for (size_t k = 0; k < candidates.size(); ++k) {

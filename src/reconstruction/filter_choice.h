@@ -12,11 +12,14 @@ namespace covtrace {
 
 /// Shares of the candidates in each pixel, 1 together. The choice is for the candidate whose
 /// estimated squared error is least: (F - y)^2 - (1 - 2 a) r, y the raw pixel, r its variance and a
-/// the weight of the pixel in its filtered value F [Stein 1981], as means over a neighbourhood. The
+/// the weight of the pixel in its filtered value F [Stein 1981], as means over a neighbourhood,
+/// each relative to the square of `brightness`, a luminance by pixel with little noise of its own:
+/// relative to a noisy image dark pixels would decide, which rare bright paths have missed. The
 /// first candidate is the cautious one: it is taken where nothing is known, and where others
 /// contradict pixels around by far more than noise can. Seams are smoothed by a pixel.
 std::vector<Plane> choose_filters(const RawLuminance& raw,
-                                  std::span<const FilteredImage> candidates);
+                                  std::span<const FilteredImage> candidates,
+                                  const Plane& brightness);
 
 /// The mixture of candidates by their shares; its noise as if theirs were one.
 FilteredImage mixed(std::span<const FilteredImage> candidates, std::span<const Plane> shares);

@@ -102,6 +102,20 @@ Guides guides_of(const Film& film, const Parts& parts, const FilterField& field)
     return guides;
 }
 
+/// The candidate whose luminance errors are relative to: led, at twice the predicted width.
+/// Narrower ones are noisy, wider ones are far off more often (docs/decisions/0108).
+constexpr size_t kSteady = 2;
+
+/// The luminance of a candidate, and of the other one where it found nothing.
+Plane brightness_of(const RawLuminance& raw, const FilteredImage& candidate,
+                    const FilteredImage& other) {
+    Plane brightness(raw.value.width, raw.value.height);
+    for (size_t i = 0; i < brightness.size(); ++i)
+        brightness[i] =
+            luminance((std::isfinite(candidate.variance[i]) ? candidate : other).color[i]);
+    return brightness;
+}
+
 /// Mixes unfiltered pixels into an image where its filters cost more than they gain.
 void mix_unfiltered(const Film& film, const RawLuminance& raw, FilteredImage& image) {
     FilteredLuminance l{Plane(raw.value.width, raw.value.height),
@@ -135,7 +149,8 @@ FilteredImage judged_image(const Film& film, const CovarianceFilters& filters) {
     candidates.insert(candidates.begin(), through(parts.scattered, parts.count, filters.scattered));
     const FilteredImage in_view = in_view_image(parts, filters);
     for (FilteredImage& candidate : candidates) add(parts, in_view, candidate);
-    FilteredImage image = mixed(candidates, choose_filters(parts.whole, candidates));
+    const Plane brightness = brightness_of(parts.whole, candidates[kSteady], candidates.front());
+    FilteredImage image = mixed(candidates, choose_filters(parts.whole, candidates, brightness));
     mix_unfiltered(film, parts.whole, image);
     return image;
 }
