@@ -70,6 +70,107 @@ Comparison compare(const LensBoard& board, std::array<int, 2> size, const Forced
     return c;
 }
 
+/// The renders of all views.
+struct Renders {
+    std::vector<Forced> of_one_path, of_own_choice;
+    std::vector<std::string> one_path_commands;
+    Figure figure;
+};
+
+Renders render_all(Workshop& workshop) {
+    const auto size = workshop.settings.board;
+    Renders r{{}, {}, {}, {"lens", "", Drawing(1, 1), {}}};
+    Sheet sheet(size, 540.0f / float(size[0]), 2, 3);
+    for (size_t i = 0; i < kViews.size(); ++i) {
+        const Timed one = render_board(workshop, kViews[i], TextureBandwidth::highest, 1);
+        r.of_one_path.push_back(filters_of_spectrum(one.result.image, kSharpness));
+        r.one_path_commands.push_back(one.command);
+        const Timed highest = render_board(workshop, kViews[i], TextureBandwidth::highest);
+        r.of_own_choice.push_back(filters_of_spectrum(highest.result.image, kSharpness));
+        if (i == 0) continue;
+        const int column = int(i) - 1;
+        const Timed own = render_board(workshop, kViews[i], TextureBandwidth::own);
+        const Picture dimmed = display(own.result.image, 0.5f);
+        sheet.picture(column, 0, kViews[i].label, display(own.result.image));
+        sheet.picture(column, 1, "its filters, 2 deviations", dimmed);
+        sheet.ellipses(column, 1, matrices(own.result.image, "filter."), 24, 2, kOrange);
+        sheet.picture(column, 2, "texture at the image's highest frequency", dimmed);
+        sheet.ellipses(column, 2, matrices(highest.result.image, "filter."), 24, 2, kCyan);
+        r.figure.commands.push_back(own.command);
+        r.figure.commands.push_back(highest.command);
+    }
+    r.figure.drawing = sheet.drawing;
+    r.figure.caption = fmt::format(
+        "A checkerboard that recedes from the camera, focused on the middle row. Top: the "
+        "delivered image, {:g} samples a pixel. Middle: the filters with the texture as it is, "
+        "narrow beside the squares' edges. Bottom: with the texture forced to the image's highest "
+        "frequency, as in the thesis. The ellipses are where the predicted 2x2 reaches two "
+        "standard deviations, true to scale.",
+        workshop.settings.board_spp);
+    return r;
+}
+
+/// What the claims are about: filters of single paths, both lenses together.
+struct Compared {
+    std::vector<double> ratios, widths_at_top;
+};
+
+Compared add_table(Section& s, const Renders& r, std::array<int, 2> size) {
+    Table table{
+        "Deviation of the forced filters over the closed form, of pixels whose circle of confusion "
+        "is a pixel or more across (at 135 rows; as much of the image at other sizes)",
+        {"lens", "covariance paths", "pixels", "median ratio", "5 %", "95 %",
+         "median radius of the circle of confusion", "roundness (short over long axis)"},
+        {},
+        r.one_path_commands};
+    table.commands.insert(table.commands.end(), r.figure.commands.begin(), r.figure.commands.end());
+    Compared compared;
+    for (size_t i = 1; i < kViews.size(); ++i) {
+        const Comparison one = compare(kViews[i].board, size, r.of_one_path[0], r.of_one_path[i]);
+        const Comparison own =
+            compare(kViews[i].board, size, r.of_own_choice[0], r.of_own_choice[i]);
+        const auto add_row = [&](const char* paths, const Comparison& c) {
+            table.rows.push_back({kViews[i].label, paths, std::to_string(c.blur.size()),
+                                  fmt::format("{:.3f}", median(c.ratio)),
+                                  fmt::format("{:.3f}", quantile(c.ratio, 0.05)),
+                                  fmt::format("{:.3f}", quantile(c.ratio, 0.95)),
+                                  fmt::format("{:.2f} px", median(c.blur)),
+                                  fmt::format("{:.2f}", median(c.roundness))});
+        };
+        add_row("1", one);
+        add_row("default", own);
+        compared.widths_at_top.push_back(median(one.widths_at_top));
+        s.data[kViews[i].name] = {{"closed_form_ratio_median", median(one.ratio)},
+                                  {"closed_form_ratio_5", quantile(one.ratio, 0.05)},
+                                  {"closed_form_ratio_95", quantile(one.ratio, 0.95)},
+                                  {"own_choice_ratio_median", median(own.ratio)},
+                                  {"own_choice_ratio_5", quantile(own.ratio, 0.05)},
+                                  {"own_choice_ratio_95", quantile(own.ratio, 0.95)},
+                                  {"width_at_top", compared.widths_at_top.back()},
+                                  {"blur_median", median(one.blur)}};
+        compared.ratios.insert(compared.ratios.end(), one.ratio.begin(), one.ratio.end());
+    }
+    s.tables.push_back(std::move(table));
+    return compared;
+}
+
+void add_claims(Section& s, const Renders& r, const Compared& c) {
+    const double middle = median(c.ratios), low = quantile(c.ratios, 0.05),
+                 high = quantile(c.ratios, 0.95);
+    s.claims.push_back(
+        {"lens_closed_form",
+         "filters are as wide as pinhole² + r²/(4c²) says, r the circle of confusion", "",
+         "median and 90 % of all pixels within 10 %",
+         fmt::format("{:.3f}, 90 % in [{:.3f}, {:.3f}]", middle, low, high), middle,
+         std::abs(middle - 1) < 0.1 && low > 0.9 && high < 1.1, r.one_path_commands.back()});
+    s.claims.push_back({"lens_grows",
+                        "a lens five times as large makes filters wider in the same place",
+                        "shown, without figures", "wider",
+                        fmt::format("{:.2f} times", c.widths_at_top[1] / c.widths_at_top[0]),
+                        c.widths_at_top[1] / c.widths_at_top[0],
+                        c.widths_at_top[1] > c.widths_at_top[0], r.one_path_commands.back()});
+}
+
 }  // namespace
 
 Section lens(Workshop& workshop) {
@@ -82,77 +183,10 @@ Section lens(Workshop& workshop) {
         "that a filter shows what the lens does and nothing else.";
     const auto size = workshop.settings.board;
     s.resolution = size;
-    Sheet sheet(size, 540.0f / float(size[0]), 2, 3);
-    Figure figure{"lens", "", Drawing(1, 1), {}};
-    std::vector<Forced> of_one_path, of_own_choice;
-    std::vector<std::string> one_path_commands;
-    for (size_t i = 0; i < kViews.size(); ++i) {
-        const Timed one = render_board(workshop, kViews[i], TextureBandwidth::highest, 1);
-        of_one_path.push_back(filters_of_spectrum(one.result.image, kSharpness));
-        one_path_commands.push_back(one.command);
-        const Timed highest = render_board(workshop, kViews[i], TextureBandwidth::highest);
-        of_own_choice.push_back(filters_of_spectrum(highest.result.image, kSharpness));
-        if (i == 0) continue;
-        const int column = int(i) - 1;
-        const Timed own = render_board(workshop, kViews[i], TextureBandwidth::own);
-        const Picture dimmed = display(own.result.image, 0.5f);
-        sheet.picture(column, 0, kViews[i].label, display(own.result.image));
-        sheet.picture(column, 1, "its filters, 2 deviations", dimmed);
-        sheet.ellipses(column, 1, matrices(own.result.image, "filter."), 24, 2, kOrange);
-        sheet.picture(column, 2, "texture at the image's highest frequency", dimmed);
-        sheet.ellipses(column, 2, matrices(highest.result.image, "filter."), 24, 2, kCyan);
-        figure.commands.push_back(own.command);
-        figure.commands.push_back(highest.command);
-    }
-    figure.drawing = sheet.drawing;
-    figure.caption = fmt::format(
-        "A checkerboard that recedes from the camera, focused on the middle row. Top: the "
-        "delivered "
-        "image, {:g} samples a pixel. Middle: the filters with the texture as it is, narrow beside "
-        "the squares' edges. Bottom: with the texture forced to the image's highest frequency, as "
-        "in "
-        "the thesis. The ellipses are where the applied 2x2 reaches two standard deviations, true "
-        "to "
-        "scale.",
-        workshop.settings.board_spp);
-    s.figures.push_back(std::move(figure));
-
-    Table table{
-        "Deviation of the forced filters over the closed form, of pixels whose circle of confusion "
-        "is a pixel or more across (at 135 rows; as much of the image at other sizes)",
-        {"lens", "covariance paths", "pixels", "median ratio", "5 %", "95 %",
-         "median radius of the circle of confusion", "roundness (short over long axis)"},
-        {},
-        s.figures[0].commands};
-    table.commands.insert(table.commands.begin(), one_path_commands.begin(),
-                          one_path_commands.end());
-    std::vector<double> width_at_top;
-    std::vector<double> all_ratios;
-    for (size_t i = 1; i < kViews.size(); ++i) {
-        const Comparison one = compare(kViews[i].board, size, of_one_path[0], of_one_path[i]);
-        const Comparison own = compare(kViews[i].board, size, of_own_choice[0], of_own_choice[i]);
-        const auto add_row = [&](const char* paths, const Comparison& c) {
-            table.rows.push_back({kViews[i].label, paths, std::to_string(c.blur.size()),
-                                  fmt::format("{:.3f}", median(c.ratio)),
-                                  fmt::format("{:.3f}", quantile(c.ratio, 0.05)),
-                                  fmt::format("{:.3f}", quantile(c.ratio, 0.95)),
-                                  fmt::format("{:.2f} px", median(c.blur)),
-                                  fmt::format("{:.2f}", median(c.roundness))});
-        };
-        add_row("1", one);
-        add_row("default", own);
-        width_at_top.push_back(median(one.widths_at_top));
-        s.data[kViews[i].name] = {{"closed_form_ratio_median", median(one.ratio)},
-                                  {"closed_form_ratio_5", quantile(one.ratio, 0.05)},
-                                  {"closed_form_ratio_95", quantile(one.ratio, 0.95)},
-                                  {"own_choice_ratio_median", median(own.ratio)},
-                                  {"own_choice_ratio_5", quantile(own.ratio, 0.05)},
-                                  {"own_choice_ratio_95", quantile(own.ratio, 0.95)},
-                                  {"width_at_top", width_at_top.back()},
-                                  {"blur_median", median(one.blur)}};
-        all_ratios.insert(all_ratios.end(), one.ratio.begin(), one.ratio.end());
-    }
-    s.tables.push_back(std::move(table));
+    Renders renders = render_all(workshop);
+    const Compared compared = add_table(s, renders, size);
+    add_claims(s, renders, compared);
+    s.figures.push_back(std::move(renders.figure));
     s.notes.push_back(
         "The closed form is that of one point of the board. The paths of a pixel meet points at "
         "different depths, whose circles of confusion differ by some δr. Each path's covariance is "
@@ -163,20 +197,6 @@ Section lens(Workshop& workshop) {
         "foreshortened. "
         "These filters are too narrow, which costs noise and adds no bias. The claim is about "
         "single paths; the table has both.");
-    const double middle = median(all_ratios), low = quantile(all_ratios, 0.05),
-                 high = quantile(all_ratios, 0.95);
-    s.claims.push_back(
-        {"lens_closed_form",
-         "filters are as wide as pinhole² + r²/(4c²) says, r the circle of confusion", "",
-         "median and 90 % of all pixels within 10 %",
-         fmt::format("{:.3f}, 90 % in [{:.3f}, {:.3f}]", middle, low, high), middle,
-         std::abs(middle - 1) < 0.1 && low > 0.9 && high < 1.1, one_path_commands.back()});
-    s.claims.push_back({"lens_grows",
-                        "a lens five times as large makes filters wider in the same place",
-                        "shown, without figures", "wider",
-                        fmt::format("{:.2f} times", width_at_top[1] / width_at_top[0]),
-                        width_at_top[1] / width_at_top[0], width_at_top[1] > width_at_top[0],
-                        one_path_commands.back()});
     return s;
 }
 

@@ -26,7 +26,7 @@ details{margin:.3rem 0;font-size:.9rem}details code{display:block;margin:.2rem 0
 .yes{color:#0a6b2d;font-weight:600}.no{color:#a61b12;font-weight:600}.note{background:#fff8e0;padding:.5rem .8rem;border-left:4px solid #e0b400}
 .thesis{background:#eef4fb;padding:.5rem .8rem;border-left:4px solid #4a7fb5}
 nav a{margin-right:1rem}
-@media(max-width:900px){body{padding:.7rem}h1{font-size:1.3rem}figure svg{max-width:none;width:900px}}
+@media(max-width:900px){body{padding:.7rem}h1{font-size:1.3rem}figure svg{max-width:none;width:900px}.claims td{min-width:9rem}}
 @media print{details{display:none}})";
 
 std::string commands_html(const std::vector<std::string>& commands) {
@@ -41,7 +41,8 @@ std::string commands_html(const std::vector<std::string>& commands) {
 std::string claims_html(const std::vector<Claim>& claims) {
     if (claims.empty()) return {};
     std::string s =
-        "<div class=\"scroll\"><table>\n<thead><tr><th>claim</th><th>thesis</th><th>found "
+        "<div class=\"scroll\"><table "
+        "class=\"claims\">\n<thead><tr><th>claim</th><th>thesis</th><th>found "
         "here</th><th>asked for</th><th></th></tr></thead>\n<tbody>\n";
     for (const Claim& c : claims) {
         const std::string verdict = !c.holds   ? "<td>not judged</td>"

@@ -54,46 +54,50 @@ Figure whole_way(const Timed& timed) {
             {timed.command}};
 }
 
-}  // namespace
+/// The renders of the experiment: with few samples by both densities, and by the three filters.
+struct Renders {
+    Timed sparse, sparse_thesis;
+    Timed verified, matched, letter;
+};
 
-Section pipeline(Workshop& workshop) {
-    Section s;
-    s.name = "pipeline";
-    s.title = "pipeline: from the covariance to the image (figure 5.1)";
-    s.thesis =
-        "Figure 5.1 of the thesis: covariance tracing fills a buffer, from which follow a density "
-        "of "
-        "samples, below one sample a pixel where little varies, and the filters; equation 5.7 is "
-        "the "
-        "filter, A exp(-pi p' S p).";
-    LoadedScene& scene = shared_scene(workshop, kSnookerScene);
-    const Reference& reference = shared_reference(workshop, kSnookerScene);
+Renders render_all(Workshop& workshop, LoadedScene& scene) {
     RenderOptions options;
     options.method = Method::covariance;
     options.seed = workshop.settings.seeds.front();
     // The count is so low that much of the image gets less than one sample a pixel.
     options.spp = 2;
     options.cov_spp = 1;
-    const Timed sparse = workshop.render(scene, options);
+    Renders r;
+    r.sparse = workshop.render(scene, options);
     options.density = DensityRule::thesis;
-    const Timed sparse_thesis = workshop.render(scene, options);
+    r.sparse_thesis = workshop.render(scene, options);
     options.density = DensityRule::tempered;
     options.spp = workshop.settings.spp;
     options.cov_spp.reset();
-    const Timed verified = workshop.render(scene, options);
+    r.verified = workshop.render(scene, options);
     options.filter = FilterRule::matched;
-    const Timed matched = workshop.render(scene, options);
+    r.matched = workshop.render(scene, options);
     options.filter = FilterRule::thesis;
-    const Timed letter = workshop.render(scene, options);
+    r.letter = workshop.render(scene, options);
+    return r;
+}
 
-    const auto size = scene.resolution;
-    s.resolution = size;
-    const Image &image = verified.result.image, &few = sparse.result.image;
-    s.figures.push_back(whole_way(verified));
-    Sheet buffer(size, 540.0f / float(size[0]), 2, 3, {true, true, true});
+/// The densities that were asked for.
+const std::vector<float>& density_of(const Timed& timed) {
+    return timed.result.image.find("density.Y")->values;
+}
+
+double share_below_one(const std::vector<float>& counts) {
+    const auto below = std::count_if(counts.begin(), counts.end(), [](float n) { return n < 1; });
+    return double(below) / double(counts.size());
+}
+
+Figure buffer_figure(const Renders& r, std::array<int, 2> size) {
+    const Image& image = r.verified.result.image;
+    Sheet sheet(size, 540.0f / float(size[0]), 2, 3, {true, true, true});
     const auto add = [&](int column, int row, const std::string& title,
                          const std::vector<float>& values, const std::string& unit) {
-        buffer.map(column, row, title, values, map_for(values, unit));
+        sheet.map(column, row, title, values, map_for(values, unit));
     };
     add(0, 0, "covariance buffer: image", bandwidth(image, "cov.00", "cov.11"),
         "bandwidth over the image, cycles per pixel");
@@ -101,60 +105,68 @@ Section pipeline(Workshop& workshop) {
         "bandwidth over the lens, cycles per radius");
     add(0, 1, "covariance buffer: shutter", bandwidth(image, "cov.44", "cov.44"),
         "bandwidth over the shutter, cycles (times √2)");
-    const auto &asked = few.find("density.Y")->values,
-               &asked_thesis = sparse_thesis.result.image.find("density.Y")->values;
     add(1, 1, "spectrum over the image after lens and shutter",
         bandwidth(image, "spectrum.xx", "spectrum.yy"), "bandwidth, cycles per pixel");
-    add(0, 2, "our density at 2 samples a pixel", asked, "samples per pixel that are asked for");
-    add(1, 2, "the thesis' density", asked_thesis, "samples per pixel that are asked for");
-    const auto share_below_one = [](const std::vector<float>& counts) {
-        const auto below =
-            std::count_if(counts.begin(), counts.end(), [](float n) { return n < 1; });
-        return double(below) / double(counts.size());
-    };
-    const double below = share_below_one(asked), below_thesis = share_below_one(asked_thesis);
-    s.figures.push_back(
-        {"pipeline-buffer",
-         "The covariance buffer, as bandwidths over image, lens and shutter (square "
-         "roots of its diagonal), and the density of samples that follows from it.",
-         buffer.drawing,
-         {verified.command, sparse.command, sparse_thesis.command}});
+    add(0, 2, "our density at 2 samples a pixel", density_of(r.sparse),
+        "samples per pixel that are asked for");
+    add(1, 2, "the thesis' density", density_of(r.sparse_thesis),
+        "samples per pixel that are asked for");
+    return {"pipeline-buffer",
+            "The covariance buffer, as bandwidths over image, lens and shutter (square roots of "
+            "its diagonal), and the density of samples that follows from it.",
+            sheet.drawing,
+            {r.verified.command, r.sparse.command, r.sparse_thesis.command}};
+}
 
-    Sheet filters(size, 540.0f / float(size[0]), 3, 2);
-    const auto show = [&](int column, const std::string& title, const Image& i, Ink ink) {
-        filters.picture(column, 0, "filters, " + title, display(i, 0.5f));
-        filters.ellipses(column, 0, matrices(i, "filter."), 36, 1, ink);
-        filters.picture(column, 1, "image, " + title, display(i));
+Figure filters_figure(const Renders& r, std::array<int, 2> size, double spp) {
+    Sheet sheet(size, 540.0f / float(size[0]), 3, 2);
+    const auto show = [&](int column, const std::string& title, const Timed& timed, Ink ink) {
+        const Image& image = timed.result.image;
+        sheet.picture(column, 0, "filters, " + title, display(image, 0.5f));
+        sheet.ellipses(column, 0, matrices(image, "filter."), 36, 1, ink);
+        sheet.picture(column, 1, "image, " + title, display(image));
     };
-    show(0, "verified constant", image, kOrange);
-    show(1, "matched, c = 1", matched.result.image, kCyan);
-    show(2, "equation 5.7 to the letter", letter.result.image, kCyan);
-    s.figures.push_back(
-        {"pipeline-filters",
-         fmt::format(
-             "Filters at one standard deviation and the images that they make of {:g} samples "
-             "a pixel: with the constant that keeps a signal of the predicted spectrum "
-             "(c grows with the count, filters limited by their neighbours), with the signal's "
-             "own covariance (c = 1), and with equation 5.7 to the letter.",
-             workshop.settings.spp),
-         filters.drawing,
-         {verified.command, matched.command, letter.command}});
+    show(0, "verified constant", r.verified, kOrange);
+    show(1, "matched, c = 1", r.matched, kCyan);
+    show(2, "equation 5.7 to the letter", r.letter, kCyan);
+    return {"pipeline-filters",
+            fmt::format(
+                "Predicted filters at one standard deviation and the images of {:g} samples a "
+                "pixel: with the constant that keeps a signal of the predicted spectrum (c grows "
+                "with the count; filters are limited by their neighbours, and wider along a "
+                "surface where the samples say so), with the signal's own covariance (c = 1), and "
+                "with equation 5.7 to the letter.",
+                spp),
+            sheet.drawing,
+            {r.verified.command, r.matched.command, r.letter.command}};
+}
 
-    const double error = reference.error(image),
-                 matched_error = reference.error(matched.result.image),
-                 letter_error = reference.error(letter.result.image);
+void add_claims(Section& s, const Renders& r, const Reference& reference) {
+    const double below = share_below_one(density_of(r.sparse)),
+                 below_thesis = share_below_one(density_of(r.sparse_thesis));
+    const double error = reference.error(r.verified.result.image),
+                 matched_error = reference.error(r.matched.result.image),
+                 letter_error = reference.error(r.letter.result.image);
     s.claims.push_back({"pipeline_below_one", "the density falls below one sample a pixel",
                         "shown in figure 5.1", "somewhere",
                         fmt::format("at 2 samples a pixel in {:.0f} % of the pixels, with the "
                                     "tempered density in {:.0f} %",
                                     100 * below_thesis, 100 * below),
-                        below_thesis, below_thesis > 0, sparse_thesis.command});
+                        below_thesis, below_thesis > 0, r.sparse_thesis.command});
     s.claims.push_back({"pipeline_equation_5_7",
                         "equation 5.7 to the letter, with a true covariance, smooths too much", "",
                         "a larger error than with the verified constant",
                         fmt::format("{:.5f} against {:.5f}, {:.1f} times; {:.5f} with c = 1",
                                     letter_error, error, letter_error / error, matched_error),
-                        letter_error / error, letter_error > error, letter.command});
+                        letter_error / error, letter_error > error, r.letter.command});
+    s.data = {{"below_one_sample", below_thesis},
+              {"below_one_sample_tempered", below},
+              {"error", error},
+              {"error_matched", matched_error},
+              {"error_equation_5_7", letter_error}};
+}
+
+void add_notes(Section& s) {
     s.notes.push_back(
         "A pixel is asked for less than one sample, but where the mean is above one it gets one "
         "all the "
@@ -171,11 +183,29 @@ Section pipeline(Workshop& workshop) {
         "for "
         "the Gaussian with the signal's own covariance, exp(-2 pi² p'Sp), and the author's library "
         "filters with it (CovarianceTracing, second tutorial): --filter matched.");
-    s.data = {{"below_one_sample", below_thesis},
-              {"below_one_sample_tempered", below},
-              {"error", error},
-              {"error_matched", matched_error},
-              {"error_equation_5_7", letter_error}};
+}
+
+}  // namespace
+
+Section pipeline(Workshop& workshop) {
+    Section s;
+    s.name = "pipeline";
+    s.title = "pipeline: from the covariance to the image (figure 5.1)";
+    s.thesis =
+        "Figure 5.1 of the thesis: covariance tracing fills a buffer, from which follow a density "
+        "of "
+        "samples, below one sample a pixel where little varies, and the filters; equation 5.7 is "
+        "the "
+        "filter, A exp(-pi p' S p).";
+    LoadedScene& scene = shared_scene(workshop, kSnookerScene);
+    const Reference& reference = shared_reference(workshop, kSnookerScene);
+    const Renders renders = render_all(workshop, scene);
+    s.resolution = scene.resolution;
+    s.figures.push_back(whole_way(renders.verified));
+    s.figures.push_back(buffer_figure(renders, scene.resolution));
+    s.figures.push_back(filters_figure(renders, scene.resolution, workshop.settings.spp));
+    add_claims(s, renders, reference);
+    add_notes(s);
     return s;
 }
 

@@ -38,46 +38,33 @@ double highlight_area(const std::vector<covariance::Sym2<float>>& filters, const
     return pixels > 0 ? std::numbers::pi * std::exp(sum / pixels) : 0;
 }
 
-}  // namespace
+/// Mean areas of the filters on the highlights: by rule (local, global), by row, by exponent.
+using Areas = std::array<std::array<std::vector<double>, 2>, 2>;
 
-Section shininess(Workshop& workshop) {
-    Section s;
-    s.name = "shininess";
-    s.title = "shininess: small filters where the lobe is sharp (figure 5.8)";
-    s.thesis =
-        "The thesis shows spheres with a diffuse and a glossy lobe of rising exponent: the filters "
-        "on "
-        "the highlight get smaller. It takes a BRDF's covariance at its peak for all directions "
-        "(global), and names the small filters beside the highlight as a limitation.";
-    const auto size = workshop.settings.spheres;
-    s.resolution = size;
-    const SphereRows rows;
-    LoadedScene scene = workshop.load(
-        "shininess-rows", workshop.scenes.written("shininess-rows", rows.text(size)), size);
-    Sheet sheet(size, 540.0f / float(size[0]), 2, 3, {false, false, true});
-    Figure figure{"shininess", "", Drawing(1, 1), {}};
-    Table table{"Mean area of the filters on a sphere's highlight, pixels²",
-                {"exponent", "GGX roughness", "metal, local", "metal, global", "coated, local",
-                 "coated, global"},
-                {},
-                {}};
-    std::array<std::array<std::vector<double>, 2>, 2> area;  // by rule, by row
-    std::array<Timed, 2> timed;
+Timed render_spheres(Workshop& workshop, LoadedScene& scene, size_t rule) {
+    RenderOptions options;
+    options.method = Method::covariance;
+    options.spp = workshop.settings.board_spp;
+    options.seed = workshop.settings.seeds.front();
+    options.brdf_covariance = rule == 0 ? BrdfCovariance::local : BrdfCovariance::global;
+    return workshop.render(scene, options);
+}
+
+Areas areas_of(const SphereRows& rows, const std::array<Timed, 2>& timed, std::array<int, 2> size) {
+    Areas area;
     for (size_t rule = 0; rule < 2; ++rule) {
-        RenderOptions options;
-        options.method = Method::covariance;
-        options.spp = workshop.settings.board_spp;
-        options.seed = workshop.settings.seeds.front();
-        options.brdf_covariance = rule == 0 ? BrdfCovariance::local : BrdfCovariance::global;
-        timed[rule] = workshop.render(scene, options);
         const Image& image = timed[rule].result.image;
         const auto filters = filters_of_spectrum(image, kSharpness, kWidest);
         for (int row = 0; row < 2; ++row)
             for (int i = 0; i < int(SphereRows::kExponents.size()); ++i)
                 area[rule][size_t(row)].push_back(
                     highlight_area(filters, image, rows.circle(row, i, size)));
-        table.commands.push_back(timed[rule].command);
     }
+    return area;
+}
+
+Figure figure_of(const std::array<Timed, 2>& timed, std::array<int, 2> size, double spp) {
+    Sheet sheet(size, 540.0f / float(size[0]), 2, 3, {false, false, true});
     const std::vector<float> sizes = sizes_of(matrices(timed[0].result.image, "filter."));
     const ColourMap map = map_for(sizes, "geometric mean deviation of the filter, pixels");
     for (int rule = 0; rule < 2; ++rule) {
@@ -89,18 +76,24 @@ Section shininess(Workshop& workshop) {
         sheet.ellipses(rule, 1, filters, 30, 2, rule == 0 ? kOrange : kCyan);
         sheet.map(rule, 2, "their sizes", sizes_of(filters), map);
     }
-    figure.drawing = sheet.drawing;
-    figure.commands = table.commands;
-    figure.caption = fmt::format(
-        "Spheres of Phong exponents 16, 64, 256, 1024 and 4096 (as GGX roughness 1/√e), metal "
-        "above, "
-        "a coat over a diffuse base below, under one square light, {:g} samples a pixel. Top: the "
-        "delivered image. Middle: filters at two standard deviations, the smaller of those that "
-        "would overlap. "
-        "Bottom: their sizes.",
-        workshop.settings.board_spp);
-    s.figures.push_back(std::move(figure));
+    return {
+        "shininess",
+        fmt::format(
+            "Spheres of Phong exponents 16, 64, 256, 1024 and 4096 (as GGX roughness 1/√e), metal "
+            "above, a coat over a diffuse base below, under one square light, {:g} samples a "
+            "pixel. Top: the delivered image. Middle: filters at two standard deviations, the "
+            "smaller of those that would overlap. Bottom: their sizes.",
+            spp),
+        sheet.drawing,
+        {timed[0].command, timed[1].command}};
+}
 
+Table table_of(const Areas& area, const std::array<Timed, 2>& timed) {
+    Table table{"Mean area of the filters on a sphere's highlight, pixels²",
+                {"exponent", "GGX roughness", "metal, local", "metal, global", "coated, local",
+                 "coated, global"},
+                {},
+                {timed[0].command, timed[1].command}};
     for (size_t i = 0; i < SphereRows::kExponents.size(); ++i) {
         const double e = SphereRows::kExponents[i];
         table.rows.push_back(
@@ -108,7 +101,10 @@ Section shininess(Workshop& workshop) {
              fmt::format("{:.2f}", area[0][0][i]), fmt::format("{:.2f}", area[1][0][i]),
              fmt::format("{:.2f}", area[0][1][i]), fmt::format("{:.2f}", area[1][1][i])});
     }
-    s.tables.push_back(std::move(table));
+    return table;
+}
+
+void add_claims(Section& s, const Areas& area) {
     for (size_t rule = 0; rule < 2; ++rule)
         for (size_t row = 0; row < 2; ++row) {
             const std::vector<double>& a = area[rule][row];
@@ -130,6 +126,30 @@ Section shininess(Workshop& workshop) {
                  "shown, without figures", "falls at every step", found + " px²",
                  a.back() / a.front(), falls, s.tables[0].commands[rule]});
         }
+}
+
+}  // namespace
+
+Section shininess(Workshop& workshop) {
+    Section s;
+    s.name = "shininess";
+    s.title = "shininess: small filters where the lobe is sharp (figure 5.8)";
+    s.thesis =
+        "The thesis shows spheres with a diffuse and a glossy lobe of rising exponent: the filters "
+        "on "
+        "the highlight get smaller. It takes a BRDF's covariance at its peak for all directions "
+        "(global), and names the small filters beside the highlight as a limitation.";
+    const auto size = workshop.settings.spheres;
+    s.resolution = size;
+    const SphereRows rows;
+    LoadedScene scene = workshop.load(
+        "shininess-rows", workshop.scenes.written("shininess-rows", rows.text(size)), size);
+    const std::array<Timed, 2> timed{render_spheres(workshop, scene, 0),
+                                     render_spheres(workshop, scene, 1)};
+    const Areas area = areas_of(rows, timed, size);
+    s.figures.push_back(figure_of(timed, size, workshop.settings.board_spp));
+    s.tables.push_back(table_of(area, timed));
+    add_claims(s, area);
     s.notes.push_back(
         "A coat reflects a few per cent: its broadest highlights hardly stand out from the diffuse "
         "base, "

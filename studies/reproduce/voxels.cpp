@@ -56,6 +56,103 @@ std::vector<Kind> kinds(const Workshop& workshop) {
     return list;
 }
 
+/// What every kind made.
+struct Measured {
+    std::vector<Kind> kinds;
+    std::vector<Sampled> sampled;
+    std::vector<std::vector<float>> sizes;  ///< of the filters, by pixel
+};
+
+Measured measure(Workshop& workshop, LoadedScene& scene, const Reference& reference) {
+    Measured m{kinds(workshop), {}, {}};
+    for (const Kind& kind : m.kinds) {
+        workshop.tell("voxels: " + kind.label);
+        m.sampled.push_back(sample(workshop, scene, reference, kind.options));
+        m.sizes.push_back(sizes_of(matrices(m.sampled.back().first.result.image, "filter.")));
+    }
+    return m;
+}
+
+double occluder_bytes(const RenderStatistics& statistics) {
+    const auto memory = statistics.memory.find("occluders");
+    return memory == statistics.memory.end() ? 0 : double(memory->second);
+}
+
+void add_table(Section& s, const Measured& m, const Reference& reference) {
+    Table table{fmt::format("Means over the seeds. The reference's own error is {:.5f}.",
+                            reference.own_error()),
+                {"occlusion", "mean deviation of the filters", "error", "CPU seconds",
+                 "of these, grid or outlines and the covariance pass (clock)", "memory"},
+                {},
+                {}};
+    for (size_t i = 0; i < m.kinds.size(); ++i) {
+        const Sampled& r = m.sampled[i];
+        const RenderStatistics& statistics = r.first.result.statistics;
+        const double bytes = occluder_bytes(statistics), size = mean_size(m.sizes[i]);
+        table.rows.push_back({m.kinds[i].label, fmt::format("{:.2f} px", size),
+                              fmt::format("{:.5f}", r.mean_error()),
+                              fmt::format("{:.2f}", r.mean_cpu()),
+                              fmt::format("{:.2f}", occluder_seconds(statistics)),
+                              fmt::format("{:.1f} MB", bytes / 1e6)});
+        table.commands.push_back(r.first.command);
+        s.data["occlusion"].push_back({{"label", m.kinds[i].label},
+                                       {"filter_size", size},
+                                       {"error", r.error},
+                                       {"cpu", r.cpu},
+                                       {"occluder_seconds", occluder_seconds(statistics)},
+                                       {"bytes", bytes}});
+    }
+    s.tables.push_back(std::move(table));
+}
+
+Figure figure_of(const Measured& m, const Image& reference, double spp) {
+    const std::array<int, 2> size{reference.width(), reference.height()};
+    Sheet sheet(size, 360.0f / float(size[0]), 3, 5, {false, true, true, true, true});
+    const ColourMap map = map_for(m.sizes.back(), "geometric mean deviation of the filter, pixels");
+    sheet.picture(0, 0, "reference", display(reference));
+    const auto show_filters = [&](int column, size_t kind) {
+        const Image& image = m.sampled[kind].first.result.image;
+        sheet.picture(column, 0, "filters, " + m.kinds[kind].label, display(image, 0.5f));
+        sheet.ellipses(column, 0, matrices(image, "filter."), 26, 2, kOrange);
+    };
+    show_filters(1, 0);
+    show_filters(2, m.kinds.size() - 1);
+    std::vector<std::string> commands;
+    for (size_t i = 0; i < m.kinds.size(); ++i) {
+        sheet.map(int(i % 3), 1 + int(i / 3), m.kinds[i].label, m.sizes[i], map);
+        commands.push_back(m.sampled[i].first.command);
+    }
+    return {"voxels",
+            fmt::format(
+                "The soft shadow of 700 leaves and a fence, {:g} samples a pixel. Top: the image, "
+                "filters at two standard deviations where every voxel of the coarsest grid "
+                "occludes and with the query of the geometry. Below: their sizes.",
+                spp),
+            sheet.drawing, commands};
+}
+
+void add_claims(Section& s, const Measured& m) {
+    const size_t widths = kWidths.size();
+    const Sampled &finest = m.sampled[2 * widths - 1], &query = m.sampled.back();
+    const Spread r = ratios(query.error, finest.error);
+    s.claims.push_back({"voxels_query",
+                        "the direct query's error is not larger than that of the 400-wide grid", "",
+                        "mean ratio at most 1",
+                        fmt::format("{} times; {:.2f} against {:.2f} CPU seconds in all", r.text(),
+                                    query.mean_cpu(), finest.mean_cpu()),
+                        r.mean, r.mean <= 1, s.tables[0].commands.back()});
+    const double coarse = mean_size(m.sizes.front()), fine = mean_size(m.sizes[widths - 1]);
+    s.claims.push_back(
+        {"voxels_coarse_is_small",
+         "where every occupied voxel occludes, a coarse grid makes filters smaller "
+         "than a fine one",
+         "shown", "25 wide against 400 wide: smaller",
+         fmt::format("{:.2f} px against {:.2f} px; with our use of the grid {:.2f} "
+                     "against {:.2f}",
+                     coarse, fine, mean_size(m.sizes[widths]), mean_size(m.sizes[2 * widths - 1])),
+         coarse / fine, coarse < fine, s.tables[0].commands.front()});
+}
+
 }  // namespace
 
 Section voxels(Workshop& workshop) {
@@ -71,79 +168,10 @@ Section voxels(Workshop& workshop) {
     s.resolution = size;
     LoadedScene scene = workshop.load("foliage", workshop.scenes.generated("foliage"), size);
     const Reference reference(workshop, scene);
-    Sheet sheet(size, 360.0f / float(size[0]), 3, 5, {false, true, true, true, true});
-    Figure figure{"voxels", "", Drawing(1, 1), {}};
-    Table table{fmt::format("Means over the seeds. The reference's own error is {:.5f}.",
-                            reference.own_error()),
-                {"occlusion", "mean deviation of the filters", "error", "CPU seconds",
-                 "of these, grid or outlines and the covariance pass (clock)", "memory"},
-                {},
-                {}};
-    std::vector<double> grid_error, query_error;
-    std::vector<std::vector<float>> sizes;
-    std::vector<Sampled> sampled;
-    const std::vector<Kind> all = kinds(workshop);
-    for (const Kind& kind : all) {
-        workshop.tell("voxels: " + kind.label);
-        sampled.push_back(sample(workshop, scene, reference, kind.options));
-        const Sampled& r = sampled.back();
-        const RenderStatistics& statistics = r.first.result.statistics;
-        sizes.push_back(sizes_of(matrices(r.first.result.image, "filter.")));
-        const auto memory = statistics.memory.find("occluders");
-        const double bytes = memory == statistics.memory.end() ? 0 : double(memory->second);
-        table.rows.push_back({kind.label, fmt::format("{:.2f} px", mean_size(sizes.back())),
-                              fmt::format("{:.5f}", r.mean_error()),
-                              fmt::format("{:.2f}", r.mean_cpu()),
-                              fmt::format("{:.2f}", occluder_seconds(statistics)),
-                              fmt::format("{:.1f} MB", bytes / 1e6)});
-        table.commands.push_back(r.first.command);
-        s.data["occlusion"].push_back({{"label", kind.label},
-                                       {"filter_size", mean_size(sizes.back())},
-                                       {"error", r.error},
-                                       {"cpu", r.cpu},
-                                       {"occluder_seconds", occluder_seconds(statistics)},
-                                       {"bytes", bytes}});
-    }
-    const ColourMap map = map_for(sizes.back(), "geometric mean deviation of the filter, pixels");
-    sheet.picture(0, 0, "reference", display(reference.mean()));
-    const auto show_filters = [&](int column, size_t kind) {
-        const Image& image = sampled[kind].first.result.image;
-        sheet.picture(column, 0, "filters, " + all[kind].label, display(image, 0.5f));
-        sheet.ellipses(column, 0, matrices(image, "filter."), 26, 2, kOrange);
-    };
-    show_filters(1, 0);
-    show_filters(2, all.size() - 1);
-    for (size_t i = 0; i < all.size(); ++i)
-        sheet.map(int(i % 3), 1 + int(i / 3), all[i].label, sizes[i], map);
-    figure.drawing = sheet.drawing;
-    figure.commands = table.commands;
-    figure.caption = fmt::format(
-        "The soft shadow of 700 leaves and a fence, {:g} samples a pixel. Top: the image, filters "
-        "at two standard deviations where every voxel of the coarsest grid occludes and with the "
-        "query of the geometry. Below: their sizes.",
-        workshop.settings.spp);
-    s.figures.push_back(std::move(figure));
-    s.tables.push_back(std::move(table));
-
-    const size_t widths = kWidths.size();
-    const Sampled &finest = sampled[2 * widths - 1], &query = sampled.back();
-    const Spread r = ratios(query.error, finest.error);
-    s.claims.push_back({"voxels_query",
-                        "the direct query's error is not larger than that of the 400-wide grid", "",
-                        "mean ratio at most 1",
-                        fmt::format("{} times; {:.2f} against {:.2f} CPU seconds in all", r.text(),
-                                    query.mean_cpu(), finest.mean_cpu()),
-                        r.mean, r.mean <= 1, s.tables[0].commands.back()});
-    const double coarse = mean_size(sizes.front()), fine = mean_size(sizes[widths - 1]);
-    s.claims.push_back(
-        {"voxels_coarse_is_small",
-         "where every occupied voxel occludes, a coarse grid makes filters smaller "
-         "than a fine one",
-         "shown", "25 wide against 400 wide: smaller",
-         fmt::format("{:.2f} px against {:.2f} px; with our use of the grid {:.2f} "
-                     "against {:.2f}",
-                     coarse, fine, mean_size(sizes[widths]), mean_size(sizes[2 * widths - 1])),
-         coarse / fine, coarse < fine, s.tables[0].commands.front()});
+    const Measured measured = measure(workshop, scene, reference);
+    s.figures.push_back(figure_of(measured, reference.mean(), workshop.settings.spp));
+    add_table(s, measured, reference);
+    add_claims(s, measured);
     s.notes.push_back(
         "Two ways to ask the same grid. \"Every voxel\" (--occlusion voxels) is how the thesis "
         "describes it: light that crosses an occupied voxel crosses an edge, wherever in the voxel "
