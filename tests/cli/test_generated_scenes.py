@@ -120,6 +120,17 @@ class GeneratedScenesTest(CliTest):
                 green = image.pixels["G"]
                 self.assertGreater(sum(green) / len(green), floor)
 
+    def test_no_salt_on_the_helicopters_floor(self):
+        """The noise of the cabin's floor, as a part of its light: 0.14 where shadow rays pass the pane, 0.34 where the lamp
+        behind it is met by chance alone."""
+        scene = self.scenes / "helicopter/scene.pbrt"
+        size = ["--resolution", "160x90", "--crop", "44,54,62,61", "--method", "uniform", "--spp", "64", "--seed", "1"]
+        result = self.run_program("render", scene, "-o", "out.exr", "--progress", "none", *size)
+        self.assertEqual(result.code, DONE, result)
+        pixels = exr.read(self.folder / "out.exr").pixels
+        noise = sum(map(math.sqrt, pixels["variance.G"])) / sum(pixels["G"])
+        self.assertLess(noise, 0.2)
+
 
 if __name__ == "__main__":
     unittest.main()
