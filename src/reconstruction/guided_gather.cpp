@@ -92,7 +92,11 @@ ScaledSums sums_around(const Rows& rows, const FilterField& field, int x, int y)
     std::array<float, kScales> narrowing;  // of the powers, by the squared scale
     for (size_t k = 0; k < kScales; ++k)
         narrowing[k] = s.xx / scaled_filter(s, kGuidedScales[k]).xx;
-    const float widest = 1 / *std::min_element(narrowing.begin(), narrowing.end());
+    // Scales beyond the widest deviation are the same filter.
+    const size_t scales = size_t(std::find(narrowing.begin(), narrowing.end(), narrowing.back()) -
+                                 narrowing.begin()) +
+                          1;
+    const float widest = 1 / narrowing.back();
     const float cut = kCut * widest, reach_y = std::sqrt(cut * s.yy);
     std::array<float, kGuides> own;
     for (size_t g = 0; g < kGuides; ++g) own[g] = rows.guides[g][rows.index(x, y)];
@@ -115,7 +119,7 @@ ScaledSums sums_around(const Rows& rows, const FilterField& field, int x, int y)
             const Float8 square = multiply_add(dx, qxx * dx + 2 * qxy * dy, all8(qyy * dy * dy));
             std::array<Float8, kSums> value;
             for (size_t k = 0; k < kSums; ++k) value[k] = load8(&rows.sums[k][at]);
-            for (size_t k = 0; k < kScales; ++k) {
+            for (size_t k = 0; k < scales; ++k) {
                 const Float8 distance = narrowing[k] * square;
                 const Mask8 within = inside & (distance <= kCut);
                 const Float8 h = within
@@ -128,7 +132,7 @@ ScaledSums sums_around(const Rows& rows, const FilterField& field, int x, int y)
     }
     ScaledSums result;
     for (size_t k = 0; k < kScales; ++k)
-        for (size_t j = 0; j < kSums; ++j) result[k][j] = sum8(sum[k][j]);
+        for (size_t j = 0; j < kSums; ++j) result[k][j] = sum8(sum[std::min(k, scales - 1)][j]);
     return result;
 }
 
@@ -136,8 +140,7 @@ ScaledSums sums_around(const Rows& rows, const FilterField& field, int x, int y)
 
 covariance::Sym2<float> scaled_filter(const covariance::Sym2<float>& filter, float scale) {
     const float deviation = std::sqrt(std::max(0.0f, 0.5f * (filter.xx + filter.yy)));
-    const float most = std::max(1.0f, kWidestScaled / std::max(deviation, 1e-6f));
-    return sqr(std::min(scale, most)) * filter;
+    return sqr(std::min(scale, kWidestScaled / std::max(deviation, 1e-6f))) * filter;
 }
 
 std::vector<FilteredImage> guided_gather(std::span<const Rgb> mean, std::span<const float> variance,

@@ -23,11 +23,11 @@ struct Guides {
 /// The scales of the filters' deviations by which guided candidates are gathered.
 constexpr std::array kGuidedScales{1.0f, 2.0f, 4.0f};
 
-/// Widest deviation in pixels, the root of half the trace, to which filters are scaled up; those
-/// that are wider already stay as they are.
+/// Widest deviation in pixels, the root of half the trace, of a scaled filter: every pixel within
+/// three of them is looked at.
 constexpr float kWidestScaled = 5;
 
-/// A filter's covariance at a scale of kGuidedScales.
+/// A filter's covariance at a scale of kGuidedScales, no wider than kWidestScaled.
 covariance::Sym2<float> scaled_filter(const covariance::Sym2<float>& filter, float scale);
 
 /// One candidate for each of kGuidedScales,
