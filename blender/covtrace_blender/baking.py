@@ -13,6 +13,12 @@ PROBES = 256
 TOLERANCE = 1 / 255
 SAMPLES_AT_ONCE = 4096  # whose arrays stay in the caches
 
+# Step between neighbours, as a share of the image's range, from which a texel is a mean over its square: the centre alone
+# would round the width of mortar and the like to whole texels.
+EDGE = 1 / 32
+# Places in such a texel, (u, v) in [0, 1]: Hammersley's points, no two of which are in line along an axis.
+PLACES = np.array([((k + 0.5) / 16, (int(f"{k:04b}"[::-1], 2) + 0.5) / 16) for k in range(16)])
+
 
 class BakedImage:
     """Pixels that no image of Blender has."""
@@ -101,16 +107,38 @@ class Baker:
     def _pixels(values_at, layout, size, is_colour):
         """(h, w, 4) float32 from the top, alpha 1."""
         width, height = size
+        channels = 3 if is_colour else 1
+        texel = layout.extent / size
+
+        def mean_at(columns, rows, places):
+            """Mean over `places` of the texels' squares."""
+            corner = layout.low + np.column_stack((columns, height - 1 - rows)) * texel
+            found = np.zeros((len(columns), channels), np.float32)
+            at_once = max(1, SAMPLES_AT_ONCE // len(places))
+            for first in range(0, len(columns), at_once):
+                uv = corner[first:first + at_once, None] + places * texel
+                found[first:first + at_once] = values_at(uv.reshape(-1, 2)).reshape(len(uv), len(places), channels).mean(1)
+            return found
+
+        rows, columns = (axis.ravel() for axis in np.mgrid[:height, :width])
+        values = mean_at(columns, rows, np.array([[0.5, 0.5]])).reshape(height, width, channels)
+        rows, columns = np.nonzero(_edges(values))
+        values[rows, columns] = mean_at(columns, rows, PLACES)
         pixels = np.ones((height, width, 4), np.float32)
-        u = layout.low[0] + layout.extent[0] * (np.arange(width) + 0.5) / width
-        v = layout.low[1] + layout.extent[1] * (np.arange(height)[::-1] + 0.5) / height
-        rows_at_once = max(1, SAMPLES_AT_ONCE // width)
-        for row in range(0, height, rows_at_once):
-            rows = v[row:row + rows_at_once]
-            uv = np.column_stack((np.tile(u, len(rows)), np.repeat(rows, width)))
-            values = values_at(uv).reshape(len(rows), width, -1)
-            pixels[row:row + len(rows), :, :3] = values if is_colour else values[..., :1]
+        pixels[..., :3] = values
         return pixels
+
+
+def _edges(values):
+    """(h, w): where (h, w, n) values step more than EDGE to a neighbour."""
+    least_step = EDGE * max(float(np.ptp(values)), 1e-30)
+    is_edge = np.zeros(values.shape[:2], bool)
+    for axis in (0, 1):
+        steps = np.abs(np.diff(values, axis=axis)).max(-1) > least_step
+        before, after = (slice(None, -1), slice(1, None))
+        for side in (before, after):
+            is_edge[(side, slice(None)) if axis == 0 else (slice(None), side)] |= steps
+    return is_edge
 
 
 def _repeats(values_at, uv, period):
