@@ -29,11 +29,28 @@ PASSES = (
 )
 
 
+# Those that a view layer asks for: (its switch, the pass, covtrace's layer).
+PASSES_ON_DEMAND = (
+    ("use_pass_normal", ("Normal", 3, "XYZ", "VECTOR"), "N"),
+    ("use_pass_position", ("Position", 3, "XYZ", "VECTOR"), "P"),
+)
+
 # The same by covtrace's own names.
 LAYERS = "Z,N,albedo,raw,variance,error,samples"
 PREDICTED_LAYERS = "density,filter"  # not of uniform, where naming them would be a warning
 
 SECONDS_BETWEEN_LINES = 1
+
+
+def passes_of(view_layer):
+    return [render_pass for switch, render_pass, _ in PASSES_ON_DEMAND if getattr(view_layer, switch)]
+
+
+def passes_without_counterpart(view_layer):
+    """Names of the switches of those that a view layer asks for."""
+    known = {"use_pass_combined", "use_pass_z", "use_pass_cryptomatte_accurate"} | {switch for switch, *_ in PASSES_ON_DEMAND}
+    return [p.name for p in view_layer.bl_rna.properties
+            if p.identifier.startswith("use_pass_") and p.identifier not in known and getattr(view_layer, p.identifier)]
 
 
 def _set_pixels(render_pass, pixels):
@@ -60,14 +77,11 @@ class CovtraceEngine(bpy.types.RenderEngine):
 
     def update_render_passes(self, scene=None, renderlayer=None):
         self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
-        for name, channels, letters, kind in PASSES:
+        for name, channels, letters, kind in (*PASSES, *passes_of(renderlayer)):
             self.register_pass(scene, renderlayer, name, channels, letters, kind)
 
     def render(self, depsgraph):
         scene = depsgraph.scene
-        if depsgraph.view_layer_eval.name != scene.view_layers[0].name:
-            self.report({"WARNING"}, "covtrace renders the first view layer only")
-            return
         try:
             with tempfile.TemporaryDirectory(prefix="covtrace-") as folder:
                 self._render(depsgraph, scene, folder)
@@ -90,17 +104,23 @@ class CovtraceEngine(bpy.types.RenderEngine):
     def _render(self, depsgraph, scene, folder):
         program = settings.find_program()
         self._tell("exporting the scene")
-        exporter = export_scene.SceneExporter(self, depsgraph, folder)
+        layer = depsgraph.view_layer
+        exporter = export_scene.SceneExporter(self, depsgraph, folder, self._tell)
         file = exporter.write()
+        missing = passes_without_counterpart(layer)
+        if missing:
+            exporter.warn(f"passes that have no counterpart: {', '.join(missing)}")
         for text in exporter.warnings:
             self.report({"WARNING"}, text)
         image = os.path.join(folder, "image.exr")
         chosen = scene.covtrace
         layer_names = LAYERS if chosen.method == "uniform" else f"{LAYERS},{PREDICTED_LAYERS}"
+        if layer.use_pass_position:
+            layer_names += ",P"
         command = [program, "render", file, "-o", image, "--method", chosen.method, "--progress", "json",
                    "--layer-names", "blender", "--layers", layer_names, "--seed", str(chosen.seed)]
-        # Whichever comes first; a scene's own samples are those of the panel.
-        command += ["--spp", repr(chosen.samples)]
+        # Whichever comes first; a view layer's own samples go before those of the panel.
+        command += ["--spp", repr(float(layer.samples) or chosen.samples)]
         if chosen.seconds > 0:
             command += ["--time", f"{chosen.seconds:.3f}"]
         if chosen.error > 0 and chosen.method != "covariance":
@@ -111,7 +131,7 @@ class CovtraceEngine(bpy.types.RenderEngine):
             command += ["--threads", str(chosen.threads)]
         code = self._run(command)
         if os.path.exists(image):
-            self._read(image, exporter.region, scene.render.film_transparent)
+            self._read(image, exporter.camera.region, scene.render.film_transparent, layer)
         elif code == 6:
             return  # cancelled before there was anything to see
         if code not in (0, 6):
@@ -170,13 +190,18 @@ class CovtraceEngine(bpy.types.RenderEngine):
     def _tell(self, text):
         self.update_stats("", text)
 
-    def _read(self, image, region, is_transparent):
+    def _read(self, image, region, is_transparent, layer):
         channels = layers.read(image)
+        for _, (name, *_), own in PASSES_ON_DEMAND:
+            own = "Denoising Normal" if own == "N" else own
+            for letter in "XYZ":
+                if f"ViewLayer.{own}.{letter}" in channels:
+                    channels[f"ViewLayer.{name}.{letter}"] = channels[f"ViewLayer.{own}.{letter}"]
         x0, y0, x1, y1 = region
         # Only pictures with holes have alpha, and only where the film is transparent it is wanted.
         if not is_transparent or "ViewLayer.Combined.A" not in channels:
             channels["ViewLayer.Combined.A"] = np.ones((y1 - y0, x1 - x0), dtype=np.float32)
-        result = self.begin_result(0, 0, x1 - x0, y1 - y0)
+        result = self.begin_result(0, 0, x1 - x0, y1 - y0, layer=layer.name)
         for render_pass in result.layers[0].passes:
             planes = [channels.get(f"ViewLayer.{render_pass.name}.{letter}") for letter in render_pass.channel_id]
             if any(plane is None for plane in planes):

@@ -1,15 +1,11 @@
-"""Lamps and the world. Blender's watts are radiometric: a point lamp of W watts has W / (4 pi) watts per steradian."""
+"""Lamps. Blender's watts are radiometric: a point lamp of W watts has W / (4 pi) watts per steradian."""
 
 import math
-import os
 
 import bpy
-import numpy as np
-from mathutils import Euler, Matrix
 
 from .shader_nodes.blackbody import blackbody, blackbody_temperature
 from .export_shaders import numbers
-from .export_textures import pixels, write_pfm
 
 
 def write_lamp(out, lamp, transform, warn):
@@ -91,76 +87,3 @@ def _write_area(out, lamp, colour):
 def area_scale(lamp, matrix):
     """Factor on a lamp's radiance where its object is scaled: the power stays, the area grows."""
     return 1 / max(abs(matrix.col[0].xyz.length * matrix.col[1].xyz.length), 1e-12) if lamp.type == "AREA" else 1
-
-
-def _world_turn(node, warn):
-    """The matrix that takes directions to the image's coordinates: the rotation of a Mapping node."""
-    if not node.inputs["Vector"].is_linked:
-        return Matrix()
-    source = node.inputs["Vector"].links[0].from_node
-    if source.type == "TEX_COORD":
-        if node.inputs["Vector"].links[0].from_socket.name == "Generated":
-            return Matrix()
-    elif source.type == "MAPPING":
-        vector = source.inputs["Vector"]
-        is_plain = vector.is_linked and vector.links[0].from_node.type == "TEX_COORD" and \
-            vector.links[0].from_socket.name == "Generated"
-        names = [name for name in ("Location", "Rotation", "Scale") if name in source.inputs]
-        values = {name: tuple(source.inputs[name].default_value) for name in names}
-        if is_plain and not any(source.inputs[name].is_linked for name in names) and \
-                max(map(abs, values.get("Location", (0, 0, 0)))) < 1e-6 and \
-                max(abs(s - 1) for s in values["Scale"]) < 1e-6:
-            turn = Euler(values["Rotation"]).to_matrix().to_4x4()
-            return turn.inverted() if source.vector_type == "TEXTURE" else turn
-    warn(f"the world's image is not turned: only the rotation of a Mapping node of generated coordinates is, "
-         f"not what '{source.name}' does")
-    return Matrix()
-
-
-def write_world(out, world, folder, warn):
-    """Writes the light of the world; a black one, too, as covtrace lights scenes that have no light at all."""
-    if not _write_world_light(out, world, folder, warn):
-        out.write('LightSource "infinite" "rgb L" [0 0 0]\n')
-
-
-def _write_world_light(out, world, folder, warn):
-    """Whether the world has light that was written."""
-    if world is None:
-        return False
-    if not world.use_nodes or not world.node_tree:
-        colour, strength, node = tuple(world.color), 1.0, None
-    else:
-        output = next((n for n in world.node_tree.nodes if n.type == "OUTPUT_WORLD" and n.is_active_output), None)
-        if output is None or not output.inputs["Surface"].is_linked:
-            return False
-        background = output.inputs["Surface"].links[0].from_node
-        if background.type != "BACKGROUND":
-            warn(f"world shader '{background.name}' is not supported; the world is black")
-            return False
-        strength = background.inputs["Strength"].default_value
-        if background.inputs["Strength"].is_linked:
-            warn("what is linked to the world's Strength is not supported; the socket's own value is used")
-        colour = tuple(background.inputs["Color"].default_value)[:3]
-        socket = background.inputs["Color"]
-        node = socket.links[0].from_node if socket.is_linked else None
-    if node is not None and node.type == "TEX_ENVIRONMENT" and node.image and node.projection == "EQUIRECTANGULAR":
-        turn = _world_turn(node, warn)
-        values = pixels(node.image)[..., :3] * strength
-        height, width, _ = values.shape
-        if width != 2 * height:
-            warn("the world's image is not twice as wide as high; it is left out")
-            return False
-        # Blender's azimuth runs the other way, from the middle of the image.
-        columns = (width // 2 - 1 - np.arange(width)) % width
-        write_pfm(os.path.join(folder, "world.pfm"), values[:, columns])
-        out.write(f'AttributeBegin\nConcatTransform [{numbers(turn.inverted()[row][column] for column in range(4) for row in range(4))}]\n'
-                  'LightSource "infinite" "string filename" "world.pfm"\nAttributeEnd\n')
-        return True
-    if node is not None and (temperature := blackbody_temperature(socket)) is not None:
-        colour = blackbody(temperature)
-    elif node is not None:
-        warn(f"world node '{node.name}' is not supported; the background's own colour is used")
-    if max(colour) * strength <= 0:
-        return False
-    out.write(f'LightSource "infinite" "rgb L" [{numbers(c * strength for c in colour)}]\n')
-    return True

@@ -4,84 +4,69 @@ import math
 import os
 
 import numpy as np
-from mathutils import Matrix
 
-from . import export_lights, export_meshes, export_motion, export_strands, ply, surface_coordinates
+from . import export_lights, export_meshes, export_motion, export_strands, export_world, ply, surface_coordinates
 from .baking import Surface
+from .export_camera import SceneCamera
 from .export_materials import MaterialExporter
 from .export_shaders import numbers
+from .placement import is_same, placement
+from .visibility import Visibility
 
-# Blender's cameras look along -z, pbrt's along +z; both have x to the right and y up.
-TURN = Matrix.Diagonal((1, 1, -1, 1))
-
-
-def matrix_text(matrix):
-    """pbrt lists columns first."""
-    return numbers(matrix[row][column] for column in range(4) for row in range(4))
-
+CONTENT = "content.pbrt"
 
 SURFACES = ("MESH", "CURVE", "SURFACE", "FONT", "META")
 
 
-def is_same(a, b):
-    return all(abs(x - y) < 1e-7 for r, s in zip(a, b) for x, y in zip(r, s))
-
-
-def placement(directive, start, end):
-    """A transform over the shutter; end None: at rest."""
-    if end is None or is_same(start, end):
-        return f"{directive} [{matrix_text(start)}]\n"
-    return (f"ActiveTransform StartTime\n{directive} [{matrix_text(start)}]\n"
-            f"ActiveTransform EndTime\n{directive} [{matrix_text(end)}]\nActiveTransform All\n")
-
-
 class SceneExporter:
-    def __init__(self, engine, depsgraph, folder):
-        self.engine, self.depsgraph, self.folder = engine, depsgraph, folder
-        self.scene = depsgraph.scene
+    """engine: moves the frame; tell(text): is told what takes time."""
+
+    def __init__(self, engine, depsgraph, folder, tell=lambda text: None):
+        self.engine, self.depsgraph, self.folder, self.tell = engine, depsgraph, folder, tell
+        self.scene, self.layer = depsgraph.scene, depsgraph.view_layer_eval
         self.frame = self.scene.frame_current_final
         self.warnings = []
-        render = self.scene.render
-        scale = render.resolution_percentage / 100
-        self.size = (max(1, int(render.resolution_x * scale)), max(1, int(render.resolution_y * scale)))
-        self.region = self._region(render)
+        self.camera = SceneCamera(self.scene, depsgraph)
+        self.shutter, self.is_preview = None, False
 
     def warn(self, text):
         if text not in self.warnings:
             self.warnings.append(text)
 
-    def _region(self, render):
-        """x0, y0, x1, y1 of the pixels that are rendered, rows from the bottom, end exclusive; rounded as Blender does,
-        which makes pictures of this size whether they are cropped or put into the frame afterwards."""
-        width, height = self.size
-        if not render.use_border:
-            return 0, 0, width, height
-        x0, x1 = int(render.border_min_x * width), int(render.border_max_x * width)
-        y0, y1 = int(render.border_min_y * height), int(render.border_max_y * height)
-        if x0 >= x1 or y0 >= y1:
-            raise RuntimeError("the render region holds no pixel")
-        return x0, y0, x1, y1
-
     def write(self):
-        """The scene file's path."""
+        """The path of a file that holds the scene as its camera sees it."""
         moving, self.shutter = self._look_at_close()
         path = os.path.join(self.folder, "scene.pbrt")
         try:
-            self._write(path, moving)
+            with open(path, "w", encoding="utf-8") as out:
+                out.write(self.camera.text(self.shutter, moving.get("camera")))
+                self._write_content(out, moving)
         finally:
             if self.shutter:
                 self._go_to(self.frame)
         return path
 
-    def _write(self, path, moving):
-        with open(path, "w", encoding="utf-8") as out:
-            self.out = out
-            self._write_camera(moving)
-            out.write("WorldBegin\n")
-            self.materials = MaterialExporter(out, self.folder, self.warn)
-            export_lights.write_world(out, self.scene.world, self.folder, self.warn)
-            self.uv_ranges = self._uv_ranges()
-            self._write_objects(moving)
+    def write_content(self):
+        """The name of a file beside which another one that begins with a camera can stand: the scene, at rest."""
+        self.is_preview = True
+        with open(os.path.join(self.folder, CONTENT), "w", encoding="utf-8") as out:
+            self._write_content(out, {})
+        return CONTENT
+
+    def _write_content(self, out, moving):
+        self.out = out
+        out.write("WorldBegin\n")
+        self.materials = MaterialExporter(out, self.folder, self.warn)
+        self._write_world()
+        self.uv_ranges = self._uv_ranges()
+        self._write_objects(moving)
+
+    def _write_world(self):
+        time = self.frame if self.shutter is None else self.frame + self.shutter[0]
+        # A layer without sky has no light of it, either, as in Cycles.
+        world = (getattr(self.layer, "world_override", None) or self.scene.world) if self.layer.use_sky else None
+        export_world.write_world(self.out, world, self.folder, self.warn, self.tell, time,
+                                 self.is_preview)
 
     # -- time
 
@@ -93,7 +78,7 @@ class SceneExporter:
         frame, half = self.frame, 0.5 * render.motion_blur_shutter
         self._go_to(frame + half)
         matrices = {key: instance.matrix_world.copy() for key, instance in self._instances()}
-        matrices["camera"] = self._camera().matrix_world.copy()
+        matrices["camera"] = self.camera.matrix()
         self.closing = {instance.object.name_full: export_meshes.positions(instance.object.data)
                         for _, instance in self._instances() if instance.object.type == "MESH" and self._is_own(instance.object)}
         self._go_to(frame - half)
@@ -114,56 +99,15 @@ class SceneExporter:
                 parent = instance.parent.name_full if instance.parent else ""
                 yield (instance.object.name_full, parent, tuple(instance.persistent_id)), instance
 
-    # -- camera
-
-    def _camera(self):
-        if self.scene.camera is None:
-            raise RuntimeError("covtrace: the scene has no camera")
-        return self.scene.camera.evaluated_get(self.depsgraph)
-
-    def _write_camera(self, moving):
-        camera = self._camera()
-        data, out = camera.data, self.out
-        if data.type == "PANO":
-            raise RuntimeError("covtrace: panoramic cameras are not supported")
-        def world_to_camera(matrix):
-            return TURN @ matrix.normalized().inverted()
-        if self.shutter:
-            out.write(f"TransformTimes {self.shutter[0]:.9g} {self.shutter[1]:.9g}\n")
-        end = moving.get("camera")
-        out.write(placement("Transform", world_to_camera(camera.matrix_world), world_to_camera(end) if end else None))
-        corners = data.view_frame(scene=self.scene)
-        is_perspective = data.type == "PERSP"
-        depth = -corners[0].z if is_perspective else 1.0
-        xs, ys = [c.x / depth for c in corners], [c.y / depth for c in corners]
-        parameters = [f'"float screenwindow" [{numbers((min(xs), max(xs), min(ys), max(ys)))}]']
-        if is_perspective:
-            parameters.append('"float fov" 90')
-        if self.shutter:
-            parameters.append(f'"float shutteropen" {self.shutter[0]:.9g} "float shutterclose" {self.shutter[1]:.9g}')
-        if data.dof.use_dof:
-            distance = data.dof.focus_distance
-            if data.dof.focus_object:
-                at = data.dof.focus_object.evaluated_get(self.depsgraph).matrix_world.translation
-                distance = -(camera.matrix_world.normalized().inverted() @ at).z
-            focal_length = data.lens * 1e-3 if is_perspective else 1.0
-            radius = focal_length / (2 * max(data.dof.aperture_fstop, 1e-3))
-            parameters.append(f'"float lensradius" {radius:.9g} "float focaldistance" {max(distance, 1e-4):.9g}')
-        out.write(f'Camera "{"perspective" if is_perspective else "orthographic"}" {" ".join(parameters)}\n')
-        x0, y0, x1, y1 = self.region
-        # The exposure's length is no brightness in Blender.
-        iso = 100 / (self.shutter[1] - self.shutter[0]) if self.shutter else 100
-        out.write(f'Film "rgb" "integer xresolution" {self.size[0]} "integer yresolution" {self.size[1]} '
-                  f'"float iso" {iso:.9g} "integer pixelbounds" [{x0} {x1} {self.size[1] - y1} {self.size[1] - y0}]\n')
-        out.write(f'Sampler "zsobol" "integer pixelsamples" {max(1, round(self.scene.covtrace.samples))}\n')
-        out.write(f'Integrator "path" "integer maxdepth" {self.scene.covtrace.max_depth}\n')
-
     # -- objects
 
     def _write_objects(self, moving):
         shared, exported = {}, {}
+        self.visibility = Visibility(self.depsgraph.view_layer)
         for key, instance in self._instances():
             obj = instance.object
+            if not self.visibility.is_seen(obj):
+                continue
             matrix = instance.matrix_world.copy()
             end = moving.get(key)
             if obj.type == "LIGHT" and instance.show_self:
@@ -174,8 +118,9 @@ class SceneExporter:
                 # An emitter may be hidden behind its strands, and strands behind their emitter.
                 shown = (obj.name_full, obj.data.as_pointer(), instance.show_self, instance.show_particles)
                 if shown not in exported:
-                    exported[shown] = (self._export_parts(obj) if instance.show_self else []) + (
-                        self._export_strands(obj) if instance.show_particles else [])
+                    exported[shown] = self._seen_parts(obj, (
+                        self._export_parts(obj) if instance.show_self and self.layer.use_solid else []) + (
+                        self._export_strands(obj) if instance.show_particles and self.layer.use_strand else []))
                 parts = exported[shown]
                 if not parts:
                     continue
@@ -195,6 +140,16 @@ class SceneExporter:
                     self.out.write("AttributeEnd\n")
             elif obj.type in ("VOLUME", "POINTCLOUD", "GPENCIL"):
                 self.warn(f"object '{obj.name}' is a {obj.type.lower()}, which is not rendered")
+        self.visibility.tell(self.warn)
+
+    def _seen_parts(self, obj, parts):
+        """The parts of an object; those that shine are lamps that no ray meets where the camera shall not see them."""
+        if not self.visibility.is_hidden_from_camera(obj):
+            return parts
+        if not all(emission for *_, emission, _ in parts):
+            self.visibility.note_seen_by_camera(obj)
+        return [(file, name, '"float alpha" 0' if emission else alpha, emission, motion)
+                for file, name, alpha, emission, motion in parts]
 
     def _write_lamp(self, lamp, matrix):
         scale = export_lights.area_scale(lamp, matrix)
@@ -258,6 +213,8 @@ class SceneExporter:
         return self._part(obj, slot, positions, normals, uvs, triangles)
 
     def _materials(self, obj):
+        if self.layer.material_override is not None:
+            return [self.layer.material_override] * max(1, len(obj.material_slots))
         return [s.material for s in obj.material_slots] if self._is_own(obj) else list(obj.data.materials)
 
     def _material_of(self, obj, slot):

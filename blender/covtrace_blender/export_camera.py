@@ -1,0 +1,104 @@
+"""What a file of pbrt says before WorldBegin: the camera of a scene or of a viewport, film, sampler and integrator."""
+
+from mathutils import Matrix
+
+from .export_shaders import numbers
+from .placement import placement
+
+# Blender's cameras look along -z, pbrt's along +z; both have x to the right and y up.
+TURN = Matrix.Diagonal((1, 1, -1, 1))
+
+
+def _world_to_camera(matrix):
+    return TURN @ matrix.normalized().inverted()
+
+
+def _settings(scene):
+    chosen = scene.covtrace
+    return (f'Sampler "zsobol" "integer pixelsamples" {max(1, round(chosen.samples))}\n'
+            f'Integrator "path" "integer maxdepth" {chosen.max_depth}\n')
+
+
+class SceneCamera:
+    """The camera that a scene renders with. `size`: of the whole frame; `region`: x0, y0, x1, y1 of the pixels that are
+    rendered, rows from the bottom, end exclusive."""
+
+    def __init__(self, scene, depsgraph):
+        self.scene, self.depsgraph = scene, depsgraph
+        render = scene.render
+        scale = render.resolution_percentage / 100
+        self.size = (max(1, int(render.resolution_x * scale)), max(1, int(render.resolution_y * scale)))
+        self.region = self._region(render)
+
+    def _region(self, render):
+        """Rounded as Blender does, which makes pictures of this size whether they are cropped or put into the frame
+        afterwards."""
+        width, height = self.size
+        if not render.use_border:
+            return 0, 0, width, height
+        x0, x1 = int(render.border_min_x * width), int(render.border_max_x * width)
+        y0, y1 = int(render.border_min_y * height), int(render.border_max_y * height)
+        if x0 >= x1 or y0 >= y1:
+            raise RuntimeError("the render region holds no pixel")
+        return x0, y0, x1, y1
+
+    def _object(self):
+        if self.scene.camera is None:
+            raise RuntimeError("covtrace: the scene has no camera")
+        return self.scene.camera.evaluated_get(self.depsgraph)
+
+    def matrix(self):
+        """Its place at the time at which the depsgraph stands."""
+        return self._object().matrix_world.copy()
+
+    def text(self, shutter=None, end=None):
+        """shutter: (open, close) in frames; end: its matrix at the closing, where it moves."""
+        data = self._object().data
+        if data.type == "PANO":
+            raise RuntimeError("covtrace: panoramic cameras are not supported")
+        times = f"TransformTimes {shutter[0]:.9g} {shutter[1]:.9g}\n" if shutter else ""
+        place = placement("Transform", _world_to_camera(self.matrix()), _world_to_camera(end) if end else None)
+        corners = data.view_frame(scene=self.scene)
+        is_perspective = data.type == "PERSP"
+        depth = -corners[0].z if is_perspective else 1.0
+        xs, ys = [c.x / depth for c in corners], [c.y / depth for c in corners]
+        parameters = [f'"float screenwindow" [{numbers((min(xs), max(xs), min(ys), max(ys)))}]']
+        if is_perspective:
+            parameters.append('"float fov" 90')
+        if shutter:
+            parameters.append(f'"float shutteropen" {shutter[0]:.9g} "float shutterclose" {shutter[1]:.9g}')
+        if data.dof.use_dof:
+            parameters.append(self._lens(data, is_perspective))
+        x0, y0, x1, y1 = self.region
+        # The exposure's length is no brightness in Blender.
+        iso = 100 / (shutter[1] - shutter[0]) if shutter else 100
+        return (times + place + f'Camera "{"perspective" if is_perspective else "orthographic"}" {" ".join(parameters)}\n'
+                f'Film "rgb" "integer xresolution" {self.size[0]} "integer yresolution" {self.size[1]} '
+                f'"float iso" {iso:.9g} "integer pixelbounds" [{x0} {x1} {self.size[1] - y1} {self.size[1] - y0}]\n'
+                + _settings(self.scene))
+
+    def _lens(self, data, is_perspective):
+        distance = data.dof.focus_distance
+        if data.dof.focus_object:
+            at = data.dof.focus_object.evaluated_get(self.depsgraph).matrix_world.translation
+            distance = -(self.matrix().normalized().inverted() @ at).z
+        focal_length = data.lens * 1e-3 if is_perspective else 1.0
+        radius = focal_length / (2 * max(data.dof.aperture_fstop, 1e-3))
+        return f'"float lensradius" {radius:.9g} "float focaldistance" {max(distance, 1e-4):.9g}'
+
+
+def viewport_text(scene, size, view_matrix, window_matrix):
+    """The same for a viewport, all in focus: its matrices are those of the region's 3D view, from the world to the view and on to
+    [-1, 1] in x and y."""
+    is_perspective = window_matrix[3][3] == 0
+    view = view_matrix.copy()
+    column = 2 if is_perspective else 3
+    window = [(edge + sign * window_matrix[axis][column]) / window_matrix[axis][axis]
+              for axis in (0, 1) for edge, sign in ((-1, 1 if is_perspective else -1), (1, 1 if is_perspective else -1))]
+    if not is_perspective:
+        # Such views show what is behind them, too, as far as their clipping planes reach.
+        view = Matrix.Translation((0, 0, -2 / abs(window_matrix[2][2]))) @ view
+    fov = '"float fov" 90' if is_perspective else ""
+    return (placement("Transform", TURN @ view, None) +
+            f'Camera "{"perspective" if is_perspective else "orthographic"}" "float screenwindow" [{numbers(window)}] {fov}\n'
+            f'Film "rgb" "integer xresolution" {size[0]} "integer yresolution" {size[1]}\n' + _settings(scene))

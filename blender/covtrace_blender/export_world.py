@@ -1,0 +1,133 @@
+"""The world's light: a colour, an image around the scene, or what Cycles makes of its nodes."""
+
+import os
+
+import numpy as np
+from mathutils import Euler, Matrix
+
+from . import world_baking
+from .export_shaders import numbers
+from .export_textures import pixels, write_pfm
+from .shader_nodes.blackbody import blackbody, blackbody_temperature
+
+LEAST_ROWS = 256  # of images that are brought to twice their height
+
+
+def write_world(out, world, folder, warn, tell, time, is_preview=False):
+    """Writes the light of the world; a black one, too, as covtrace lights scenes that have no light at all.
+
+    warn(text): what is left out; tell(text): what is done; time: in frames; is_preview: bakes are coarse.
+    """
+    light = _light(world, warn, tell, time, is_preview)
+    if light is None:
+        out.write('LightSource "infinite" "rgb L" [0 0 0]\n')
+    elif isinstance(light, tuple):
+        out.write(f'LightSource "infinite" "rgb L" [{numbers(light)}]\n')
+    else:
+        values, turn = light.values, light.turn.inverted()
+        width = values.shape[1]
+        # Blender's azimuth runs the other way, from the middle of the image.
+        columns = (width // 2 - 1 - np.arange(width)) % width
+        write_pfm(os.path.join(folder, "world.pfm"), values[:, columns])
+        out.write(f'AttributeBegin\nConcatTransform [{numbers(turn[row][column] for column in range(4) for row in range(4))}]\n'
+                  'LightSource "infinite" "string filename" "world.pfm"\nAttributeEnd\n')
+
+
+class Image:
+    """(h, 2 h, 3) radiances from the top, as Blender's equirectangular images lie; `turn` takes directions to it."""
+
+    def __init__(self, values, turn):
+        self.values, self.turn = values, turn
+
+
+def _light(world, warn, tell, time, is_preview):
+    """None, a colour, or an Image."""
+    if world is None:
+        return None
+    if not world.use_nodes or not world.node_tree:
+        return _visible(tuple(world.color))
+    output = next((n for n in world.node_tree.nodes if n.type == "OUTPUT_WORLD" and n.is_active_output), None)
+    if output is not None and output.inputs["Volume"].is_linked:
+        warn("the world's volume is not supported and left out")
+    if output is None or not output.inputs["Surface"].is_linked:
+        return None
+    background = output.inputs["Surface"].links[0].from_node
+    plain = _plain_light(background)
+    if plain is not None:
+        return _visible(plain) if isinstance(plain, tuple) else plain
+    return _baked(world, background, warn, tell, time, is_preview)
+
+
+def _visible(colour):
+    return colour if max(colour) > 0 else None
+
+
+def _plain_light(background):
+    """The colour or Image of a Background node of either; None for all else."""
+    if background.type != "BACKGROUND" or background.mute or background.inputs["Strength"].is_linked:
+        return None
+    strength, socket = background.inputs["Strength"].default_value, background.inputs["Color"]
+    if not socket.is_linked:
+        return tuple(c * strength for c in tuple(socket.default_value)[:3])
+    temperature = blackbody_temperature(socket)
+    if temperature is not None:
+        return tuple(c * strength for c in blackbody(temperature))
+    node = socket.links[0].from_node
+    if node.type == "TEX_ENVIRONMENT" and not node.mute and node.image and node.projection == "EQUIRECTANGULAR":
+        turn = _turn(node)
+        if turn is not None:
+            return Image(_twice_as_wide(pixels(node.image)[..., :3] * strength), turn)
+    return None
+
+
+def _turn(node):
+    """The matrix that takes directions to the image's coordinates: the rotation of a Mapping node; None for what does
+    more."""
+    if not node.inputs["Vector"].is_linked:
+        return Matrix()
+    source = node.inputs["Vector"].links[0].from_node
+    if source.type == "TEX_COORD" and node.inputs["Vector"].links[0].from_socket.name == "Generated":
+        return Matrix()
+    if source.type != "MAPPING" or source.mute:
+        return None
+    vector = source.inputs["Vector"]
+    is_plain = vector.is_linked and vector.links[0].from_node.type == "TEX_COORD" and \
+        vector.links[0].from_socket.name == "Generated"
+    names = [name for name in ("Location", "Rotation", "Scale") if name in source.inputs]
+    values = {name: tuple(source.inputs[name].default_value) for name in names}
+    if is_plain and not any(source.inputs[name].is_linked for name in names) and \
+            max(map(abs, values.get("Location", (0, 0, 0)))) < 1e-6 and \
+            max(abs(s - 1) for s in values["Scale"]) < 1e-6:
+        turn = Euler(values["Rotation"]).to_matrix().to_4x4()
+        return turn.inverted() if source.vector_type == "TEXTURE" else turn
+    return None
+
+
+def _twice_as_wide(values):
+    """(h, w, 3) stretched to twice as wide as high, which the reader of environment maps wants."""
+    height, width, _ = values.shape
+    if width == 2 * height:
+        return values
+    rows = max(height, -(-width // 2), LEAST_ROWS)
+    v = np.clip((np.arange(rows) + 0.5) / rows * height - 0.5, 0, height - 1)
+    u = (np.arange(2 * rows) + 0.5) / (2 * rows) * width - 0.5
+    top = np.floor(v).astype(int)
+    low, share = np.minimum(top + 1, height - 1), (v - top)[:, None, None]
+    stretched = values[top] * (1 - share) + values[low] * share
+    left = np.floor(u).astype(int)
+    share = (u - left)[:, None]
+    return (stretched[:, left % width] * (1 - share) + stretched[:, (left + 1) % width] * share).astype(np.float32)
+
+
+def _baked(world, background, warn, tell, time, is_preview):
+    try:
+        values = world_baking.bake(world, time, is_preview, tell, warn)
+    except world_baking.Failed as problem:
+        warn(f"the world's '{background.name}' is not supported, and Cycles has not baked it ({problem}); "
+             "its own colour is used" if background.type == "BACKGROUND" else
+             f"the world's '{background.name}' is not supported, and Cycles has not baked it ({problem}); the world is black")
+        if background.type != "BACKGROUND":
+            return None
+        strength = background.inputs["Strength"].default_value
+        return _visible(tuple(c * strength for c in tuple(background.inputs["Color"].default_value)[:3]))
+    return Image(values, Matrix())
