@@ -12,7 +12,7 @@ bl_info = {
 
 import bpy
 
-from . import engine, settings
+from . import engine, preview_session, settings
 
 CLASSES = (*settings.CLASSES, engine.CovtraceEngine)
 
@@ -24,6 +24,7 @@ def register():
 
 
 def unregister():
+    preview_session.stop_all()
     settings.unregister()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

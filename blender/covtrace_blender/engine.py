@@ -13,7 +13,7 @@ import traceback
 import bpy
 import numpy as np
 
-from . import export_scene, layers, settings
+from . import export_scene, layers, settings, viewport
 
 # Passes beside the image: (name as covtrace's Blender layer names have it, channels, their names, type).
 PASSES = (
@@ -90,6 +90,25 @@ class CovtraceEngine(bpy.types.RenderEngine):
         except Exception as problem:  # a defect of the add-on: Blender would go on with a blank picture
             traceback.print_exc()
             self._fail(f"{type(problem).__name__}: {problem}")
+
+    # -- viewport
+
+    _viewport = None
+
+    def view_update(self, context, depsgraph):
+        if self._viewport is None:
+            self._viewport = viewport.Viewport(self)
+        self._viewport.change()
+
+    def view_draw(self, context, depsgraph):
+        try:
+            if self._viewport is None:
+                self._viewport = viewport.Viewport(self)
+            self._viewport.draw(context, depsgraph)
+        except (RuntimeError, OSError) as problem:
+            self.update_stats("", str(problem))
+
+    # -- images
 
     def _fail(self, text):
         self.report({"ERROR"}, text)

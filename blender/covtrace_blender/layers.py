@@ -64,3 +64,8 @@ def read(path):
         raw = _unzip(data[offset + 8 : offset + 8 + size], rows * len(names) * width * 4)
         pixels[y - y0 : y - y0 + rows] = raw.view("<f4").reshape(rows, len(names), width)
     return {name: pixels[::-1, i] for i, name in enumerate(names)}
+
+
+def pixels(channels, names):
+    """(height, width, n) of n of them, rows from the bottom."""
+    return np.ascontiguousarray(np.stack([channels[name] for name in names], axis=-1))

@@ -30,6 +30,8 @@ class CovtraceSettings(bpy.types.PropertyGroup):
                ("uniform", "Uniform", "The plain path tracer")])
     samples: bpy.props.FloatProperty(
         name="Samples", default=64, min=0.01, soft_max=4096, description="Average samples per pixel")
+    viewport_samples: bpy.props.FloatProperty(
+        name="Viewport Samples", default=32, min=0.01, soft_max=1024, description="Average samples per pixel in viewports")
     seconds: bpy.props.FloatProperty(
         name="Time Limit", default=0, min=0, subtype="TIME_ABSOLUTE", unit="TIME_ABSOLUTE",
         description="Seconds for the whole render; 0: none")
@@ -61,7 +63,7 @@ class RENDER_PT_covtrace(bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        for name in ("method", "samples", "seconds", "error", "denoise", "max_depth", "seed", "threads"):
+        for name in ("method", "samples", "viewport_samples", "seconds", "error", "denoise", "max_depth", "seed", "threads"):
             layout.prop(context.scene.covtrace, name)
         layout.prop(context.scene.render, "use_motion_blur")
         layout.prop(context.scene.render, "motion_blur_shutter")

@@ -1,0 +1,116 @@
+"""The preview in viewports: its session by itself, and Blender with a window on a display of Xvfb."""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import time
+import unittest
+
+import bpy
+import addon_support  # makes the add-on known
+from covtrace_blender import preview_session
+
+BALL = """WorldBegin
+AreaLightSource "diffuse" "rgb L" [1 1 1]
+Shape "sphere" "float radius" 1
+"""
+
+
+def view_text(fov):
+    return (f'LookAt 0 0 5  0 0 0  0 1 0\nCamera "perspective" "float fov" {fov}\n'
+            'Film "rgb" "integer xresolution" 64 "integer yresolution" 48\n')
+
+
+class SessionTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        pathlib.Path(self.folder, "content.pbrt").write_text(BALL)
+        self.session = preview_session.PreviewSession(os.environ["COVTRACE"])
+        self.addCleanup(self.session.stop)
+
+    def view(self, fov, samples):
+        return preview_session.View(view_text(fov), self.folder, "content.pbrt", (64, 48), ["--spp", str(samples)])
+
+    def wait(self, condition, seconds=60):
+        end = time.time() + seconds
+        while not condition():
+            self.assertLess(time.time(), end, "it never came")
+            time.sleep(0.01)
+
+    def test_images_come_coarse_and_then_fine(self):
+        shapes = []
+        self.session._set, set_image = lambda image: (shapes.append(image.shape), set_image(image)), self.session._set
+        self.session.show(self.view(30, 16))
+        self.wait(lambda: not self.session.is_busy)
+        self.assertEqual(shapes[0], (12, 16, 3))
+        self.assertEqual(shapes[-1], (48, 64, 3))
+        self.assertGreater(len(shapes), 2)  # images on the way, too
+        self.assertAlmostEqual(self.session.image[24, 32, 0], 1, delta=0.01)
+        self.assertEqual(self.session.image[2, 2, 0], 0)
+
+    def test_newer_views_end_older_ones(self):
+        self.session.show(self.view(30, 1e6))
+        self.wait(lambda: self.session.image is not None and len(self.session.image) == 48)
+        process = self.session._process
+        wide = (self.session.image > 0.5).mean()
+        self.session.show(self.view(90, 4))
+        self.wait(lambda: not self.session.is_busy)
+        self.assertIsNotNone(process.returncode)
+        self.assertLess((self.session.image > 0.5).mean(), 0.3 * wide)
+
+    def test_stopping_ends_the_program(self):
+        self.session.show(self.view(30, 1e6))
+        self.wait(lambda: self.session.image is not None and len(self.session.image) == 48)
+        process = self.session._process
+        self.session.stop()
+        self.assertIsNotNone(process.poll())
+
+    def test_failures_are_told_and_overcome(self):
+        pathlib.Path(self.folder, "content.pbrt").write_text("WorldBegin\nNonsense\n")
+        self.session.show(self.view(30, 4))
+        self.wait(lambda: not self.session.is_busy)
+        self.assertIn("Nonsense", self.session.failure)
+        pathlib.Path(self.folder, "content.pbrt").write_text(BALL)
+        self.session.show(self.view(30, 4))
+        self.wait(lambda: not self.session.is_busy)
+        self.assertEqual(self.session.failure, "")
+        self.assertIsNotNone(self.session.image)
+
+
+@unittest.skipUnless(shutil.which("Xvfb") and bpy.app.binary_path, "no Xvfb")
+class WindowTest(unittest.TestCase):
+    def test_viewports_show_what_they_look_at(self):
+        ready, number = os.pipe()
+        screen = subprocess.Popen(["Xvfb", "-displayfd", str(number), "-screen", "0", "800x600x24"], pass_fds=[number],
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(number)
+        self.addCleanup(lambda: (screen.terminate(), screen.wait()))
+        with os.fdopen(ready) as line:
+            display = line.readline().strip()
+        script = pathlib.Path(__file__).with_name("viewport_in_window.py")
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([bpy.app.binary_path, "--factory-startup", "-noaudio", "--window-geometry", "0", "0", "640", "480",
+                                   "--python", str(script), "--", folder],
+                                  env={**os.environ, "DISPLAY": f":{display}", "LIBGL_ALWAYS_SOFTWARE": "1"}, capture_output=True, text=True)
+        lines = [line for line in done.stdout.splitlines() if line.startswith("FOUND ")]
+        self.assertTrue(lines, done)
+        found = json.loads(lines[0][6:])
+        self.assertEqual(set(found["views"]), {"perspective", "nearer", "moved", "ortho", "camera"})
+        for name, view in found["views"].items():
+            with self.subTest(name):
+                self.assertEqual(view["failure"], "")
+                self.assertEqual(view["size"][:2], view["region"][::-1])
+                for shown in ("image", "screen"):
+                    self.assertIsNotNone(view[shown], shown)
+                    for a, b in zip(view[shown], view["expected"]):
+                        self.assertAlmostEqual(a, b, delta=0.02, msg=f"{shown} {view}")
+        places = [tuple(view["expected"]) for view in found["views"].values()]
+        self.assertEqual(len(set(places)), 5)
+        self.assertTrue(found["runs"])
+        self.assertFalse(found["left"])
+        self.assertEqual(found["sessions"], 0)
