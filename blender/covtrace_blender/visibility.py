@@ -35,14 +35,15 @@ class Visibility:
         self._note("seen by the camera although they should not be", obj)
 
     def _is_lamp_lit(self, obj):
-        if getattr(getattr(obj.data, "cycles", None), "is_portal", False):
+        of_cycles = getattr(obj.data, "cycles", None)  # None where Cycles is not enabled
+        if getattr(of_cycles, "is_portal", False):
             return False  # a help for Cycles' sampling
         rays = [ray for ray in ("diffuse", "glossy", "transmission") if not getattr(obj, "visible_" + ray)]
         if len(rays) == 3:
             return False
         if rays:
             self._note("lighting diffuse, glossy and transmitting surfaces alike", obj)
-        if not getattr(obj.data.cycles, "cast_shadow", True) or not getattr(obj.data, "use_shadow", True):
+        if not getattr(of_cycles, "cast_shadow", True) or not getattr(obj.data, "use_shadow", True):
             self._note("casting shadows although they should not", obj)
         return True
 
