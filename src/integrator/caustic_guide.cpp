@@ -16,18 +16,16 @@ namespace covtrace {
 namespace {
 
 constexpr int64_t kRoundPaths = 4096, kMostRounds = 16;
-constexpr size_t kEnoughPhotons = 32768;
-constexpr size_t kLeafPhotons = 256;
-constexpr size_t kFewestPhotons = 12;  // photons of a cluster that is to be trusted
-constexpr int kFits = 3;  // rounds, each without the photons that the one before found to be off
+// A coarse guide of few photons tells where a fine one pays.
+constexpr size_t kCoarsePhotons = 8192, kCoarseLeaf = 256;
+constexpr size_t kFinePhotons = 32768, kFineLeaf = 64;
 constexpr int kMostTreeDepth = 24;
-/// Factor by which lobes are wider than the photons' spread, so that light at their border is not
-/// found with a density that is far too small.
-constexpr float kWidening = 1.5f;
-constexpr float kNarrowest = 1e-3f, kWidest = 0.4f;  // standard deviation, radians
 constexpr uint64_t kProbeKey = 0x70726f6265730000ull;
 constexpr int kProbes = 16;  // paths that measure how much light a lobe or a leaf brings
 constexpr int kProbeDepth = 5;
+constexpr int kProbeScales = 4;        // lobes about a photon's direction
+constexpr float kProbeScaleStep = 16;  // times as concentrated as the one before
+constexpr float kMostKappa = 1e7f;     // single precision tells no narrower lobe from its axis
 constexpr float kMostShare = 0.5f, kLeastShare = 0.02f;
 
 /// The von Mises-Fisher density about an axis at the cosine `c`; exact for large kappa, too.
@@ -44,50 +42,6 @@ Vec3 sample_fisher(Vec3 axis, float kappa, Vec2 u) {
     const float sin_theta = safe_sqrt(h * (2 - h)), phi = 2 * kPi * u.y;
     return normalize(Frame::from_z(axis).to_world(
         {sin_theta * std::cos(phi), sin_theta * std::sin(phi), 1 - h}));
-}
-
-/// Finds the point nearest to all lines through `position` along `direction`, by weight; returns
-/// false where they are parallel.
-bool nearest_to_rays(std::span<const CausticPhoton> photons, Vec3& point) {
-    double a[3][3] = {}, b[3] = {}, weight = 0;
-    for (const CausticPhoton& p : photons) {
-        const double d[3] = {p.direction.x, p.direction.y, p.direction.z};
-        const double x[3] = {p.position.x, p.position.y, p.position.z};
-        weight += p.weight;
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) {
-                const double m = p.weight * ((i == j ? 1 : 0) - d[i] * d[j]);
-                a[i][j] += m;
-                b[i] += m * x[j];
-            }
-    }
-    const auto minor = [&a](int i, int j) {
-        const int r0 = (i + 1) % 3, r1 = (i + 2) % 3, c0 = (j + 1) % 3, c1 = (j + 2) % 3;
-        return a[r0][c0] * a[r1][c1] - a[r0][c1] * a[r1][c0];
-    };
-    const double det = a[0][0] * minor(0, 0) + a[0][1] * minor(0, 1) + a[0][2] * minor(0, 2);
-    if (!(det > 1e-9 * weight * weight * weight)) return false;
-    double x[3];
-    for (int i = 0; i < 3; ++i)
-        x[i] = (minor(0, i) * b[0] + minor(1, i) * b[1] + minor(2, i) * b[2]) / det;
-    point = {float(x[0]), float(x[1]), float(x[2])};
-    return true;
-}
-
-/// Squared distance between a photon's direction and the direction to `point`, as unit vectors; 4
-/// where the point lies behind.
-float miss(const CausticPhoton& p, Vec3 point) {
-    const Vec3 to = point - p.position;
-    return dot(to, p.direction) > 0 ? length_squared(normalize(to) - p.direction) : 4.0f;
-}
-
-/// The median of miss: photons in the long tails of a rough mirror do not change it.
-float median_miss(std::span<const CausticPhoton> photons, Vec3 point) {
-    std::vector<float> all;
-    for (const CausticPhoton& p : photons) all.push_back(miss(p, point));
-    const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
-    std::nth_element(all.begin(), middle, all.end());
-    return *middle;
 }
 
 /// Limits the weights of photons: those of very large weight say no more about where light comes
@@ -123,19 +77,35 @@ float GuideMixture::pdf(Vec3 w) const {
 }
 
 CausticGuide::CausticGuide(const LitScene& scene) {
-    // Trace photons until there are enough
     const FilmDescription& film = scene.description.film;
     const int64_t round = std::min(kRoundPaths, int64_t(film.width) * int64_t(film.height));
     std::vector<CausticPhoton> photons;
-    for (int64_t i = 0; i < kMostRounds && photons.size() < kEnoughPhotons; ++i) {
-        const auto more = trace_caustic_photons(scene, i * round, round);
-        photons.insert(photons.end(), more.begin(), more.end());
-        if (photons.size() < kFewestPhotons) return;
-    }
+    int64_t rounds = 0;
+    const auto trace = [&](size_t enough) {
+        for (; rounds < kMostRounds && photons.size() < enough; ++rounds) {
+            const auto more = trace_caustic_photons(scene, rounds * round, round);
+            photons.insert(photons.end(), more.begin(), more.end());
+            if (photons.size() < CausticImage::kFewestPhotons) return;
+        }
+    };
+    trace(kCoarsePhotons);
+    learn(scene, photons, kCoarseLeaf);
+    if (images_.empty()) return;
+    trace(kFinePhotons);
+    const CausticGuide coarse = std::move(*this);
+    std::erase_if(photons,
+                  [&coarse](const CausticPhoton& p) { return !coarse.guides(p.position); });
+    *this = {};
+    learn(scene, photons, kFineLeaf);
+}
+
+void CausticGuide::learn(const LitScene& scene, std::vector<CausticPhoton> photons,
+                         size_t leaf_photons) {
+    if (photons.size() < CausticImage::kFewestPhotons) return;
     limit_weights(photons);
     // Divide them into leaves, with the images that each may see
     std::vector<Region> regions;
-    build(photons, {}, 0, regions);
+    build(photons, {}, leaf_photons, 0, regions);
     // Measure how much light each image brings, and drop images that bring nothing
     parallel_for(int64_t(regions.size()), [&](int64_t i) {
         const auto k = static_cast<size_t>(i);
@@ -148,8 +118,8 @@ CausticGuide::CausticGuide(const LitScene& scene) {
     }
 }
 
-uint32_t CausticGuide::build(std::span<CausticPhoton> photons, std::vector<Image> images, int depth,
-                             std::vector<Region>& regions) {
+uint32_t CausticGuide::build(std::span<CausticPhoton> photons, std::vector<Image> images,
+                             size_t leaf_photons, int depth, std::vector<Region>& regions) {
     refine(photons, images);
     const auto index = uint32_t(nodes_.size());
     nodes_.emplace_back();
@@ -157,7 +127,7 @@ uint32_t CausticGuide::build(std::span<CausticPhoton> photons, std::vector<Image
     for (const CausticPhoton& p : photons) bounds.extend(p.position);
     const Vec3 size = bounds.diagonal();
     const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-    if (photons.size() <= kLeafPhotons || depth == kMostTreeDepth || !(size[axis] > 0)) {
+    if (photons.size() <= leaf_photons || depth == kMostTreeDepth || !(size[axis] > 0)) {
         nodes_[index].left = uint32_t(leaves_.size());
         // The leaf is larger than its photons: light does not end where the last one fell.
         const Vec3 margin = size * 0.25f + Vec3{1, 1, 1} * (0.05f * size[axis]);
@@ -172,8 +142,9 @@ uint32_t CausticGuide::build(std::span<CausticPhoton> photons, std::vector<Image
                      });
     nodes_[index].axis = axis;
     nodes_[index].split = photons[half].position[axis];
-    const uint32_t left = build(photons.first(half), images, depth + 1, regions);
-    const uint32_t right = build(photons.subspan(half), std::move(images), depth + 1, regions);
+    const uint32_t left = build(photons.first(half), images, leaf_photons, depth + 1, regions);
+    const uint32_t right =
+        build(photons.subspan(half), std::move(images), leaf_photons, depth + 1, regions);
     nodes_[index].left = left;
     nodes_[index].right = right;
     return index;
@@ -186,54 +157,12 @@ void CausticGuide::refine(std::span<const CausticPhoton> photons, std::vector<Im
     for (size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
         while (end < sorted.size() && sorted[end].source == sorted[begin].source) ++end;
         const auto cluster = std::span<const CausticPhoton>(sorted).subspan(begin, end - begin);
-        if (cluster.size() < kFewestPhotons) continue;
+        if (cluster.size() < CausticImage::kFewestPhotons) continue;
         const uint64_t source = cluster[0].source;
-        const auto known = std::find_if(images.begin(), images.end(),
-                                        [source](const Image& i) { return i.source == source; });
-        if (known != images.end())
-            *known = fit(cluster);
-        else
-            images.push_back(fit(cluster));
+        std::erase_if(images, [source](const Image& i) { return i.source == source; });
+        for (const CausticImage& seen : CausticImage::seen_by(cluster))
+            images.push_back({seen, 0, source});
     }
-}
-
-CausticGuide::Image CausticGuide::fit(std::span<const CausticPhoton> cluster) {
-    std::vector<CausticPhoton> core(cluster.begin(), cluster.end());
-    Vec3 point;
-    float spread = 4;  // median of miss
-    for (int i = 0; i < kFits; ++i) {
-        Vec3 position, direction;
-        float weight = 0, distance = 0;
-        for (const CausticPhoton& p : core) {
-            position += p.position * p.weight;
-            direction += p.direction * p.weight;
-            distance += std::min(p.distance, 1e6f) * p.weight;
-            weight += p.weight;
-        }
-        // Unfolded, the light lies as far along the mean direction as the paths are long; where
-        // rays meet in a nearer point (a curved mirror's focus), that point tells better where it
-        // is.
-        point = position / weight + normalize(direction) * (distance / weight);
-        spread = median_miss(core, point);
-        Vec3 focus;
-        if (nearest_to_rays(core, focus)) {
-            const float s = median_miss(core, focus);
-            if (s < spread) {
-                spread = s;
-                point = focus;
-            }
-        }
-        std::erase_if(core, [&](const CausticPhoton& p) { return miss(p, point) > 9 * spread; });
-    }
-    // The median of the squared distance from the centre of a normal distribution in the plane is 2
-    // ln 2 variances of one axis.
-    const float deviation =
-        std::max(kWidening * std::sqrt(spread / (2 * std::log(2.0f))), kNarrowest);
-    Image image;
-    image.point = point;
-    image.source = cluster[0].source;
-    image.kappa = deviation < kWidest ? 1 / (deviation * deviation) : 0;
-    return image;
 }
 
 /// Paths that measure the light which a leaf's images, and all else, bring to its photons' places.
@@ -249,23 +178,33 @@ class CausticGuide::Probes {
         : scene_(scene), region_(region), key_(key), rng_(hash_combine(kProbeKey, key)) {}
 
     Found look_at(Image image) {
+        std::vector<const CausticPhoton*> own;
+        for (const CausticPhoton& p : region_.photons)
+            if (p.source == image.source && is_nearest(image, p)) own.push_back(&p);
         double mean = 0, second_moment = 0;
         for (int i = 0; i < kProbes; ++i) {
-            const CausticPhoton& at = place(i);
-            const Vec3 axis = normalize(image.point - at.position);
-            const Vec3 w = sample_fisher(axis, image.kappa, rng_.next_2d());
+            // Where photons came by this image, light is looked for around their own directions, at
+            // several scales: a lamp may be far smaller than the lobe, and be missed by all probes.
+            const bool known = !own.empty();
+            const CausticPhoton& at = known ? *own[size_t(i) * own.size() / kProbes] : place(i);
+            const Vec3 axis = known ? at.direction : image.seen.direction(at.position);
+            const int scales = known ? kProbeScales : 1;
+            const auto kappa = [&image](int scale) {
+                return std::min(image.seen.kappa() * std::pow(kProbeScaleStep, float(scale)),
+                                kMostKappa);
+            };
+            const Vec3 w = sample_fisher(axis, kappa(i % scales), rng_.next_2d());
             const float cosine = dot(at.normal, w);
             if (!(cosine > 0)) continue;
             const double l = radiance(at, w);
-            const double q = fisher_pdf(image.kappa, dot(axis, w));
+            double q = 0;
+            const float h = 0.5f * length_squared(w - axis);
+            for (int k = 0; k < scales; ++k) q += fisher_pdf(kappa(k), 1 - h) / scales;
             mean += l * cosine / q / kProbes;
             second_moment += l * l * cosine * kPi / q / kProbes;
         }
         image.irradiance = float(mean);
-        const bool seen =
-            std::any_of(region_.photons.begin(), region_.photons.end(),
-                        [&image](const CausticPhoton& p) { return p.source == image.source; });
-        return {image, mean > 0 ? second_moment : double(kInfinity), seen};
+        return {image, mean > 0 ? second_moment : double(kInfinity), !own.empty()};
     }
 
     /// Irradiance by all else: by lamps, and by all other paths. Each of the two finds a part of
@@ -289,6 +228,13 @@ class CausticGuide::Probes {
     }
 
   private:
+    /// Whether no other image of the photon's source is nearer to its direction.
+    bool is_nearest(const Image& image, const CausticPhoton& photon) const {
+        const float miss = image.seen.miss(photon);
+        return std::none_of(region_.images.begin(), region_.images.end(), [&](const Image& other) {
+            return other.source == photon.source && other.seen.miss(photon) < miss;
+        });
+    }
     const CausticPhoton& place(int i) const {
         return region_.photons[size_t(i) * region_.photons.size() / kProbes];
     }
@@ -323,7 +269,7 @@ float CausticGuide::measure(const LitScene& scene, Region& region, uint64_t key)
     Probes probes(scene, region, key);
     std::vector<Probes::Found> all;
     for (const Image& image : region.images) {
-        if (!(image.kappa > 0)) continue;
+        if (!(image.seen.kappa() > 0)) continue;
         const Probes::Found found = probes.look_at(image);
         if (found.image.irradiance > 0 || found.is_photon_seen) all.push_back(found);
     }
@@ -348,30 +294,39 @@ float CausticGuide::measure(const LitScene& scene, Region& region, uint64_t key)
     return std::min(kMostShare, float(found / (found + rest)));
 }
 
-GuideMixture CausticGuide::at(Vec3 position, Vec3 n) const {
-    GuideMixture mixture;
-    if (nodes_.empty()) return mixture;
+const CausticGuide::Leaf* CausticGuide::find(Vec3 position) const {
+    if (nodes_.empty()) return nullptr;
     const Node* node = &nodes_[0];
     while (node->axis >= 0)
         node = &nodes_[position[node->axis] < node->split ? node->left : node->right];
     const Leaf& leaf = leaves_[node->left];
-    if (leaf.count == 0 || !leaf.bounds.contains(position)) return mixture;
+    return leaf.count > 0 && leaf.bounds.contains(position) ? &leaf : nullptr;
+}
+
+bool CausticGuide::guides(Vec3 position) const {
+    return find(position) != nullptr;
+}
+
+GuideMixture CausticGuide::at(Vec3 position, Vec3 n) const {
+    GuideMixture mixture;
+    const Leaf* leaf = find(position);
+    if (leaf == nullptr) return mixture;
     const bool both_sides = n == Vec3{};
     float sum = 0, all = 0;
-    for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+    for (uint32_t i = leaf->first; i < leaf->first + leaf->count; ++i) {
         const Image& image = images_[i];
-        const Vec3 direction = normalize(image.point - position);
+        const Vec3 direction = image.seen.direction(position);
         const float cosine = both_sides ? 1.0f : dot(n, direction);
         all += image.irradiance;
         if (!(cosine > 0)) continue;
         const float weight = image.irradiance * cosine;
         mixture.lobes_[size_t(mixture.count_++)] = {direction.x, direction.y, direction.z,
-                                                    image.kappa, weight};
+                                                    image.seen.kappa(), weight};
         sum += weight;
     }
     if (!(sum > 0)) return {};
     for (int i = 0; i < mixture.count_; ++i) mixture.lobes_[size_t(i)].weight /= sum;
-    mixture.share_ = leaf.share * sum / all;
+    mixture.share_ = leaf->share * sum / all;
     return mixture;
 }
 

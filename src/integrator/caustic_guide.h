@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "integrator/caustic_image.h"
+#include "integrator/caustic_photons.h"
 
 namespace covtrace {
 
@@ -45,18 +47,6 @@ class GuideMixture {
     float share_ = 0;
 };
 
-/// Light that arrived at a point over glossy surfaces.
-struct CausticPhoton {
-    /// A point moved off its surface to the lit side, and the unit normal there on that side.
-    Vec3 position, normal;
-    float time = 0;
-    Vec3 direction;  ///< unit, towards the place where the light came from
-    /// Distance of the light along the unfolded path; infinite for distant light.
-    float distance = 0;
-    float weight = 0;     ///< luminance
-    uint64_t source = 0;  ///< hash of the light and of the last surface on the way
-};
-
 /// The guide of a scene: a tree over the places that photons reached, whose leaves know the images
 /// of lights that are seen from there.
 class CausticGuide {
@@ -71,13 +61,9 @@ class CausticGuide {
     GuideMixture at(Vec3 position, Vec3 n) const;
 
   private:
-    /// Image of a light, the point that its rays seem to come from. All light of one leaf that came
-    /// from one light over one surface seems to come from about one point: in a flat mirror from
-    /// the mirrored light, over a curved surface from near the point that is nearest to all its
-    /// rays.
+    /// A light's image, and how much light it brings.
     struct Image {
-        Vec3 point;
-        float kappa = 0;  ///< concentration of the directions to the point; 0: too wide to guide
+        CausticImage seen;
         float irradiance = 0;  ///< luminance of the irradiance on the surfaces of the leaf
         uint64_t source = 0;   ///< CausticPhoton::source
     };
@@ -98,24 +84,22 @@ class CausticGuide {
         std::vector<Image> images;
     };
     class Probes;
-    uint32_t build(std::span<CausticPhoton> photons, std::vector<Image> images, int depth,
-                   std::vector<Region>& regions);
+    /// Adds to the guide what photons tell, in leaves of at most `leaf_photons`.
+    void learn(const LitScene& scene, std::vector<CausticPhoton> photons, size_t leaf_photons);
+    uint32_t build(std::span<CausticPhoton> photons, std::vector<Image> images, size_t leaf_photons,
+                   int depth, std::vector<Region>& regions);
     /// Fits an image to each source that the photons suffice for; other images stay as they are.
     static void refine(std::span<const CausticPhoton> photons, std::vector<Image>& images);
-    static Image fit(std::span<const CausticPhoton> cluster);
     /// Measures how much light there is to be found in each image, drops images that bring nothing,
     /// and returns the share of the samples for the others. `key` seeds the leaf's random numbers.
     static float measure(const LitScene& scene, Region& region, uint64_t key);
+    /// The leaf that guides at a place; null where none does.
+    const Leaf* find(Vec3 position) const;
+    bool guides(Vec3 position) const;
 
     std::vector<Node> nodes_;
     std::vector<Leaf> leaves_;
     std::vector<Image> images_;
 };
-
-/// Sends light over the glossy surfaces that `count` camera paths meet, the first of them number
-/// `first`, and returns the photons that arrive on surfaces that spread light. The result is
-/// deterministic.
-std::vector<CausticPhoton> trace_caustic_photons(const LitScene& scene, int64_t first,
-                                                 int64_t count);
 
 }  // namespace covtrace

@@ -7,7 +7,7 @@
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "core/warp.h"
-#include "integrator/caustic_guide.h"
+#include "integrator/caustic_photons.h"
 #include "integrator/lit_scene.h"
 
 namespace covtrace {
@@ -19,7 +19,10 @@ constexpr int kPathsPerChunk = 64;                     // pilot paths that one t
 constexpr int kCameraVertices = 4;   // vertices of a pilot path that may be glossy surfaces
 constexpr int kChainVertices = 8;    // most glossy surfaces in a row that light is sent over
 constexpr int kMostInterfaces = 64;  // most interfaces between media that a ray passes through
-constexpr int kLightSamples = 2;     // samples of lights at every glossy surface found
+constexpr int kLightSamples = 4;     // samples of lights at and around every glossy surface found
+/// Largest radius of the search around such a surface, as a share of its distance, and the smallest
+/// as a share of that; the logarithms in between are alike.
+constexpr float kWidestSearch = 0.3f, kNarrowestSearch = 0.03f;
 
 /// A pilot path from the camera, and the light sent over the glossy surfaces that it finds.
 class Pilot {
@@ -38,8 +41,7 @@ class Pilot {
             Bsdf bsdf;
             if (!next_surface(ray, hit, bsdf)) return;
             const Frame frame = shading_frame(hit);
-            if (has_sharp_lobe(bsdf))
-                for (int k = 0; k < kLightSamples; ++k) send_light(hit, bsdf, frame);
+            if (has_sharp_lobe(bsdf)) send_light_around(hit.position, hit.t, hit.time);
             const float u_lobe = rng_.next_float();
             const auto s = sample(bsdf, frame.to_local(-ray.direction), u_lobe, rng_.next_2d());
             if (!s || is_black(s->weight)) return;
@@ -48,6 +50,16 @@ class Pilot {
     }
 
   private:
+    /// Sends light to a place that is seen from `distance` away, and to others around it: light
+    /// comes over sides of a surface that the camera does not see, too.
+    void send_light_around(Vec3 place, float distance, float time) {
+        send_light(place, time);
+        for (int k = 1; k < kLightSamples; ++k) {
+            const float radius =
+                kWidestSearch * distance * std::pow(kNarrowestSearch, rng_.next_float());
+            send_light(place + square_to_sphere(rng_.next_2d()) * radius, time);
+        }
+    }
     static void follow(Ray& ray, const SurfaceHit& hit, Vec3 direction) {
         ray.origin = Geometry::offset_origin(hit, direction);
         ray.direction = direction;
@@ -71,38 +83,39 @@ class Pilot {
         return std::nullopt;
     }
 
-    /// Sends light of one sampled lamp to `start`, by a lobe there that is not diffuse and on to
-    /// where it lands: a photon is left on the first surface with a diffuse lobe.
-    void send_light(const SurfaceHit& start, const Bsdf& start_bsdf, const Frame& start_frame) {
+    /// Sends light of one sampled lamp towards `target`, over the surface that it meets first, if
+    /// that has a sharp lobe, and on to where it lands: a photon is left on the first surface with
+    /// a diffuse lobe.
+    void send_light(Vec3 target, float time) {
         // Sample a lamp
         const float u_select = rng_.next_float();
-        const auto light =
-            scene_.lights.sample(start.position, Vec3{}, start.time, u_select, rng_.next_2d());
+        const auto light = scene_.lights.sample(target, Vec3{}, time, u_select, rng_.next_2d());
         if (!light || is_black(light->radiance) || !(light->pdf > 0)) return;
-        Ray shadow;
-        shadow.time = start.time;
-        follow(shadow, start, light->wi);
-        if (std::isfinite(light->distance)) shadow.t_max = light->distance * (1 - 1e-3f);
-        if (scene_.geometry.occluded(shadow)) return;
+        // Follow its light to the first surface
+        const bool is_far = !std::isfinite(light->distance);
+        const float back = is_far ? scene_.unbounded_distance : light->distance * (1 - 1e-3f);
+        Ray ray{target + light->wi * back, -light->wi, time, kInfinity};
+        SurfaceHit hit;
+        Bsdf bsdf;
+        const std::optional<float> to_first = next_surface(ray, hit, bsdf);
+        if (!to_first || !has_sharp_lobe(bsdf)) return;
 
-        // Follow the lamp's light from one lobe that is not diffuse to the next
-        float travelled = light->distance;
+        // Follow it from one lobe that is not diffuse to the next
+        float travelled = light->distance - (is_far ? 0 : back) + *to_first;
         // The density of a sky's samples may be next to 0, as BSDFs find its light, too; without a
         // uniform density added to it such photons would have weights without bound.
-        const bool is_sky = !light->is_delta && !std::isfinite(light->distance);
+        const bool is_sky = !light->is_delta && is_far;
         Rgb weight = light->radiance / (light->pdf + (is_sky ? kUniformSpherePdf : 0.0f));
-        SurfaceHit hit = start;
-        Bsdf bsdf = start_bsdf;
-        Frame frame = start_frame;
-        Ray ray;
-        ray.time = start.time;
+        Frame frame = shading_frame(hit);
         Vec3 towards_light = light->wi;
+        auto source = uint64_t(light->light);
         for (int i = 0; i < kChainVertices; ++i) {
             const float u_lobe = rng_.next_float();
             const auto s = sample(bsdf, frame.to_local(towards_light), u_lobe, rng_.next_2d());
             if (!s || is_black(s->weight) || is_diffuse(s->lobe)) return;
             weight *= s->weight;
-            const uint64_t source = hash_combine(uint64_t(light->light), hit.shape, hit.instance);
+            const bool is_reflected = (frame.to_local(towards_light).z > 0) == (s->wi.z > 0);
+            source = hash_combine(source, hit.shape, hit.instance, is_reflected);
             follow(ray, hit, normalize(frame.to_world(s->wi)));
             const std::optional<float> distance = next_surface(ray, hit, bsdf);
             if (!distance) return;

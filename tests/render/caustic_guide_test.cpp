@@ -152,6 +152,81 @@ Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ]
     EXPECT_GT(through, 20);
 }
 
+// A small lamp over a ball of glass above a floor, seen from the side.
+const std::string kGlassScene = R"(
+Integrator "path" "integer maxdepth" 6
+Film "rgb" "integer xresolution" 48 "integer yresolution" 32
+PixelFilter "box"
+LookAt 0 1 6  0 0 0  0 1 0
+Camera "perspective" "float fov" 40
+WorldBegin
+LightSource "infinite" "rgb L" [ 0.02 0.02 0.02 ]
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [ 500 500 500 ]
+Translate 0 4 0
+Shape "sphere" "float radius" 0.08
+AttributeEnd
+AttributeBegin
+Material "dielectric"
+Translate 0 0.2 0
+Shape "sphere" "float radius" 0.5
+AttributeEnd
+Material "diffuse" "rgb reflectance" [ 0.6 0.6 0.6 ]
+Shape "bilinearmesh" "point3 P" [ -4 -1 -4  4 -1 -4  -4 -1 4  4 -1 4 ]
+)";
+
+/// The point of the floor, in x, that a ray from the lamp's centre reaches through the ball, which
+/// it meets at the height `b` over the axis, by Snell's law; the second is the direction from there
+/// to where the ray left the ball.
+std::pair<Vec3, Vec3> through_the_ball(double b) {
+    const double lamp = 3.8, radius = 0.5, eta = 1.5;  // distance of the centres
+    // The angles at the centre between axis and the point met, and of the ray with the axis
+    const double met = std::asin(b / radius), slope = std::atan2(b, lamp - radius * std::cos(met));
+    const double in = met + slope, inside = std::asin(std::sin(in) / eta);
+    // Within the ball the radius turns by pi - 2 inside; outwards the ray bends as much as inwards.
+    const double left = met + kPi - 2 * inside, bent = slope - 2 * (in - inside);
+    const double x = radius * std::sin(left), y = 0.2 + radius * std::cos(left);
+    const double w = std::tan(bent);  // x per unit of height that the ray loses
+    const Vec3 floor{float(x + w * (y + 1)), -1, 0};
+    return {floor, normalize(Vec3{float(x), float(y), 0} - floor)};
+}
+
+// Light through the ball meets on a line, not in a point; the guide knows for each place from where
+// on the ball light comes, also where it passed sides that the camera does not see.
+TEST(CausticGuide, PointsAtTheLampThroughGlass) {
+    const RenderScene scene(read_pbrt_string(kGlassScene, "test", "."));
+    for (const double b : {-0.3, -0.2, -0.1, 0.1, 0.2, 0.3}) {
+        const auto [place, towards] = through_the_ball(b);
+        ASSERT_LT(std::abs(place.x), 0.6f);
+        const GuideMixture guide = scene.guide.at(place, {0, 1, 0});
+        EXPECT_GT(guide.share(), 0.2f) << b;
+        EXPECT_GT(guide.pdf(towards), 3) << b;  // of sampling the cosine: at most 1 / pi
+    }
+}
+
+// The bound is 4.5 standard errors of the floor that no guide helped, the larger: false alarm 7e-6.
+TEST(CausticGuide, LightThroughGlassIsFoundAndCountedRight) {
+    const auto moments = [](const RenderScene& scene, int paths) {
+        double sum = 0, squares = 0;
+        for (int i = 0; i < paths; ++i) {
+            Sampler sampler(3, i, 0, 0);
+            const Ray ray{{0.05f, -0.5f, 0}, {0, -1, 0}, 0, kInfinity};
+            const double l = trace_path(scene, ray, sampler, 5, nullptr).radiance.g;
+            sum += l;
+            squares += l * l;
+        }
+        const double mean = sum / paths;
+        return std::pair{mean, squares / paths - mean * mean};
+    };
+    RenderScene scene(read_pbrt_string(kGlassScene, "test", "."));
+    const auto [guided, variance] = moments(scene, 60000);
+    scene.guide = CausticGuide();
+    constexpr int kPlain = 600000;
+    const auto [plain, plain_variance] = moments(scene, kPlain);
+    EXPECT_NEAR(guided, plain, 4.5 * std::sqrt(plain_variance / kPlain + variance / 60000));
+    EXPECT_GT(plain_variance, 5 * variance);
+}
+
 TEST(CausticGuide, IsEmptyWithoutMirrors) {
     const RenderScene scene(read_pbrt_string(R"(
 Film "rgb" "integer xresolution" 16 "integer yresolution" 16
