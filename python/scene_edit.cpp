@@ -183,9 +183,11 @@ std::vector<Slot> slots_of(SceneDescription&, AreaLightDescription& light) {
 }
 
 std::vector<Slot> slots_of(SceneDescription&, CameraDescription& camera) {
-    return {number_slot("fov", camera.fov, 0.001, 179.999),
-            number_slot("lensradius", camera.lens_radius),
-            number_slot("focaldistance", camera.focal_distance, 1e-6)};
+    std::vector<Slot> slots{number_slot("lensradius", camera.lens_radius),
+                            number_slot("focaldistance", camera.focal_distance, 1e-6)};
+    // The field of view of a traced lens follows from its surfaces
+    if (!camera.lens) slots.insert(slots.begin(), number_slot("fov", camera.fov, 0.001, 179.999));
+    return slots;
 }
 
 /// Calls use(part) for the part of the scene that a kind and an index name.

@@ -37,23 +37,31 @@ Camera::Camera(const CameraDescription& description, int width, int height)
       focal_distance_(description.focal_distance),
       shutter_open_(description.shutter_open),
       shutter_close_(description.shutter_close) {
-    const float aspect = description.frame_aspect_ratio > 0
-                             ? description.frame_aspect_ratio
-                             : static_cast<float>(width) / static_cast<float>(height);
-    std::array<float, 4> window = aspect > 1 ? std::array<float, 4>{-aspect, aspect, -1, 1}
-                                             : std::array<float, 4>{-1, 1, -1 / aspect, 1 / aspect};
-    if (description.screen_window) window = *description.screen_window;
-    if (description.screen_window && !description.window_fills_film)
-        window = widened(window, aspect);
-    const float scale = description.kind == CameraDescription::Kind::perspective
-                            ? std::tan(description.fov * kPi / 360)
-                            : 1.0f;
-    origin_ = {window[0] * scale, window[3] * scale};
-    per_pixel_ = {(window[1] - window[0]) * scale / static_cast<float>(width),
-                  (window[2] - window[3]) * scale / static_cast<float>(height)};
+    set_window(width, height);
     if (description.kind != CameraDescription::Kind::spherical &&
         !description.camera_to_world.is_animated())
         sensor_ = sensor_at({});
+}
+
+void Camera::set_window(int width, int height) {
+    const CameraDescription& d = description_;
+    const auto w = static_cast<float>(width), h = static_cast<float>(height);
+    float aspect = d.frame_aspect_ratio > 0 ? d.frame_aspect_ratio : w / h;
+    float scale = d.kind == CameraDescription::Kind::perspective ? std::tan(d.fov * kPi / 360) : 1;
+    if (d.lens) {
+        const float radius = d.lens->film_diagonal / 2;
+        const LensSystem system(*d.lens, lens_radius_, focal_distance_, d.where);
+        lens_ = std::make_shared<const TracedLens>(TracedLens{system, ExitPupils(system, radius)});
+        focal_distance_ -= system.front_z();  // the thin lens stands where rays leave this one
+        aspect = w / h;
+        scale = radius * std::min(w, h) / std::sqrt(w * w + h * h) / system.image_distance();
+    }
+    std::array<float, 4> window = aspect > 1 ? std::array<float, 4>{-aspect, aspect, -1, 1}
+                                             : std::array<float, 4>{-1, 1, -1 / aspect, 1 / aspect};
+    if (d.screen_window) window = *d.screen_window;
+    if (d.screen_window && !d.window_fills_film) window = widened(window, aspect);
+    origin_ = {window[0] * scale, window[3] * scale};
+    per_pixel_ = {(window[1] - window[0]) * scale / w, (window[2] - window[3]) * scale / h};
 }
 
 const Transform& Camera::to_world(float time, Transform& storage) const {
@@ -62,8 +70,23 @@ const Transform& Camera::to_world(float time, Transform& storage) const {
     return storage;
 }
 
-Ray Camera::generate_ray(Vec2 film, Vec2 lens, float shutter) const {
-    const Vec2 s{origin_.x + film.x * per_pixel_.x, origin_.y + film.y * per_pixel_.y};
+Vec2 Camera::slope(Vec2 film) const {
+    return {origin_.x + film.x * per_pixel_.x, origin_.y + film.y * per_pixel_.y};
+}
+
+Ray Camera::in_world(Vec3 origin, Vec3 direction, float shutter) const {
+    Ray ray;
+    ray.time = shutter_open_ + shutter * (shutter_close_ - shutter_open_);
+    const bool moves = description_.camera_to_world.is_animated();
+    const Placement at = moves ? placement(description_.camera_to_world.at(ray.time)) : still_;
+    ray.origin = at.point(origin);
+    ray.direction = normalize(at.vector(direction));
+    return ray;
+}
+
+CameraRay Camera::generate_ray(Vec2 film, Vec2 lens, float shutter) const {
+    if (lens_) return lens_ray(film, lens, shutter);
+    const Vec2 s = slope(film);
     Vec3 origin, direction{0, 0, 1};
     if (description_.kind == CameraDescription::Kind::spherical)
         direction = spherical_direction(film);
@@ -77,13 +100,40 @@ Ray Camera::generate_ray(Vec2 film, Vec2 lens, float shutter) const {
         origin += Vec3{l.x, l.y, 0};
         direction = focus - origin;
     }
-    Ray ray;
-    ray.time = shutter_open_ + shutter * (shutter_close_ - shutter_open_);
-    const bool moves = description_.camera_to_world.is_animated();
-    const Placement at = moves ? placement(description_.camera_to_world.at(ray.time)) : still_;
-    ray.origin = at.point(origin);
-    ray.direction = normalize(at.vector(direction));
-    return ray;
+    return {in_world(origin, direction, shutter)};
+}
+
+Vec2 Camera::film_place(Vec2 film) const {
+    return slope(film) * -lens_->system.image_distance();  // the image is upside down
+}
+
+Ray Camera::unblocked_ray(Vec2 film, Vec2 rear, float shutter) const {
+    if (const auto ray = lens_->system.trace_unblocked(film_place(film), rear))
+        return in_world(ray->origin, ray->direction, shutter);
+    const Vec2 s = slope(film);
+    return in_world({0, 0, lens_->system.front_z()}, {s.x, s.y, 1}, shutter);
+}
+
+CameraRay Camera::lens_ray(Vec2 film, Vec2 lens, float shutter) const {
+    const LensSystem& system = lens_->system;
+    const Vec2 place = film_place(film);
+    const ExitPupils::Sample pupil = lens_->pupils.sample(place, lens);
+    if (!(pupil.area > 0)) return {unblocked_ray(film, {}, shutter), 0, false};
+    const std::optional<LensRay> ray = system.trace(place, pupil.rear);
+    if (!ray) return {unblocked_ray(film, pupil.rear, shutter), 0};
+    // Irradiance of a radiance of 1 through the plane of the rear vertex: cos^4 / z^2 by its area
+    const float z = system.rear_z(), across = length(pupil.rear - place);
+    const float cos2 = z * z / (z * z + across * across);
+    const float irradiance = ray->share * cos2 * cos2 * pupil.area / (z * z);
+    return {in_world(ray->origin, ray->direction, shutter),
+            irradiance / description_.film_irradiance};
+}
+
+std::array<Ray, 2> Camera::rays_beside(Vec2 film, Vec2 lens, float shutter) const {
+    const Vec2 right = film + Vec2{1, 0}, below = film + Vec2{0, 1};
+    if (!lens_) return {generate_ray(right, lens, shutter), generate_ray(below, lens, shutter)};
+    const Vec2 rear = lens_->pupils.sample(film_place(film), lens).rear;
+    return {unblocked_ray(right, rear, shutter), unblocked_ray(below, rear, shutter)};
 }
 
 Camera::Placement Camera::placement(const Transform& t) {

@@ -34,8 +34,10 @@ class Pilot {
         const FilmDescription& film = scene_.description.film;
         const Vec2 u = rng_.next_2d();
         const Vec2 lens = rng_.next_2d();
-        Ray ray = scene_.camera.generate_ray({u.x * float(film.width), u.y * float(film.height)},
-                                             lens, rng_.next_float());
+        const CameraRay seen = scene_.camera.generate_ray(
+            {u.x * float(film.width), u.y * float(film.height)}, lens, rng_.next_float());
+        if (!seen.sees) return;
+        Ray ray = seen;
         for (int i = 0; i < kCameraVertices; ++i) {
             SurfaceHit hit;
             Bsdf bsdf;

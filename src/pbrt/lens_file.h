@@ -1,23 +1,20 @@
-/// Lens descriptions of pbrt's "realistic" camera, as far as a thin lens needs them.
+/// Lens descriptions of pbrt's "realistic" camera.
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/error.h"
+#include "scene/lens_description.h"
 
 namespace covtrace {
 
-struct LensSummary {
-    float focal_length = 0;       ///< millimetres, paraxial, of all elements together
-    float aperture_diameter = 0;  ///< millimetres, of the stop, as far as the file opens it
-    /// Diameter of the stop over that of the entrance pupil, the stop's image in front of the lens.
-    float stop_per_pupil = 1;
-};
-
-/// Reads rows of four numbers, front to rear: radius of curvature (0: the aperture stop), thickness
-/// to the next element, index of refraction behind it, diameter; `#` starts a comment.
-///
-/// Throws Error(scene) at `where` for a file with other rows or that doesn't focus.
-LensSummary read_lens(std::string_view text, const std::string& name, const SourceLocation& where);
+/// Reads rows of four numbers, front to rear, in millimetres: radius of curvature (0: the aperture
+/// stop), thickness to the next element, index of refraction behind it (0: that of air), diameter;
+/// `#` starts a comment. Returns the surfaces in metres. Throws Error(scene) at `where` for a file
+/// with other rows or that doesn't focus.
+std::vector<LensSurface> read_lens(std::string_view text, const std::string& name,
+                                   const SourceLocation& where);
 
 }  // namespace covtrace

@@ -9,7 +9,7 @@
 
 #include "colour/sensor_matrix.h"
 #include "colour/white_balance.h"
-#include "pbrt/lens_file.h"
+#include "pbrt/realistic_camera.h"
 #include "pbrt/version_three.h"
 #include "scene/imaging_scale.h"
 #include "scene/names.h"
@@ -52,48 +52,6 @@ constexpr float kFlattest = 1e-6f;
 
 std::string owner(std::string_view kind, const Entity& e) {
     return std::string(kind) + " " + in_quotes(e.type);
-}
-
-/// Makes a thin lens in place of one of several elements, with the same focal length, aperture and
-/// distance in focus, and so with the same field of view but for the lens' distortion.
-void thin_lens_camera(Entity& e, Entity& film_entity, BuildContext& context) {
-    ParameterList& p = e.parameters;
-    CameraDescription& camera = context.scene.camera;
-    const FilmDescription& film = context.scene.film;
-    const std::string file = p.text("lensfile");
-    if (file.empty())
-        throw Error(ErrorKind::scene, e.where,
-                    "a realistic camera has no lens; expected \"string lensfile\"");
-    const SourceLocation where = p.where("lensfile", e.where);
-    // A double Gauss lens of full frame stands in where scenes come without their lens.
-    LensSummary lens{50, 0, 1};
-    const auto found = context.files.find_optional(file, where);
-    if (found) lens = read_lens(context.files.read(*found, where), file, where);
-    camera.focal_distance = positive(e, "focusdistance", 10);
-    // The aperture is given in millimetres as the lens is, and can't open wider than the lens.
-    float diameter = positive(e, "aperturediameter", 1);
-    if (lens.aperture_diameter > 0) diameter = std::min(diameter, lens.aperture_diameter);
-    constexpr float kMetre = 1e-3f;
-    camera.lens_radius = 0.5f * diameter / lens.stop_per_pupil * kMetre;
-    const float focal_length = lens.focal_length * kMetre;
-    const float behind = camera.focal_distance > 2 * focal_length
-                             ? 1 / (1 / focal_length - 1 / camera.focal_distance)
-                             : focal_length;
-    const float diagonal = positive(film_entity, "diagonal", 35) * kMetre;
-    const auto w = static_cast<float>(film.width), h = static_cast<float>(film.height);
-    const float shorter = diagonal * std::min(w, h) / std::sqrt(w * w + h * h);
-    camera.fov = 2 * std::atan(0.5f * shorter / behind) * (180 / kPi);
-    // pbrt's other cameras take radiance for what the film gets; this one takes irradiance.
-    camera.film_irradiance = kPi * sqr(camera.lens_radius / behind);
-    context.log.add(
-        e.where, found ? "camera \"realistic\" is not supported; a thin lens of the same focal "
-                         "length, aperture and field of view takes its place"
-                       : "camera \"realistic\" is not supported and its lens " + in_quotes(file) +
-                             " was not found; a thin lens of 50 mm takes its place");
-    if (const std::string aperture = p.text("aperture"); !aperture.empty())
-        context.log.add(p.where("aperture", e.where),
-                        "the aperture " + in_quotes(aperture) +
-                            " is not supported; a round one takes its place");
 }
 
 void spherical_camera(Entity& e, CameraDescription& camera) {
@@ -146,7 +104,7 @@ void build_camera(ViewEntities& view, BuildContext& context) {
             camera.screen_window = {window[0], window[1], window[2], window[3]};
         }
     } else if (e.type == "realistic") {
-        thin_lens_camera(e, view.film, context);
+        build_realistic_camera(e, view.film, context);
     } else if (e.type == "spherical") {
         spherical_camera(e, camera);
     } else {

@@ -51,9 +51,11 @@ void apply(const SceneOverrides& overrides, SceneDescription& scene) {
     if (overrides.camera) override_camera(*overrides.camera, scene);
     if (overrides.focal_distance) scene.camera.focal_distance = *overrides.focal_distance;
     if (overrides.f_number) {
-        // The lens is that of a full-frame sensor, 24 mm high: focal length from the field of view,
-        // in metres.
-        const float focal_length = 0.012f / std::tan(scene.camera.fov * kPi / 360);
+        // A lens that is not the scene's own is that of a full-frame sensor, 24 mm high: focal
+        // length from the field of view, in metres.
+        const float focal_length =
+            scene.camera.lens ? float(paraxial_lens(scene.camera.lens->surfaces).focal_length)
+                              : 0.012f / std::tan(scene.camera.fov * kPi / 360);
         scene.camera.lens_radius = focal_length / (2 * *overrides.f_number);
     }
     if (overrides.environment) replace_environment(*overrides.environment, scene);

@@ -96,7 +96,7 @@ void add_sample(const PassContext& context, Film& film, size_t pixel, int x, int
 struct CameraPath {
     Vec2 film, lens;
     float time = 0;
-    Ray ray;
+    CameraRay ray;
     Sampler sampler;
     float weight = 1;  ///< of the place in the pixel, by its filter
 };
@@ -118,8 +118,8 @@ FilmSample film_sample(const PassContext& context, const CameraPath& start,
                        const PathResult& path) {
     FilmSample s;
     s.rays = uint32_t(path.rays.total());
-    const auto exposed = [&context](Rgb c) {
-        const Rgb light = c * context.imaging_scale;
+    const auto exposed = [&](Rgb c) {
+        const Rgb light = c * (start.ray.weight * context.imaging_scale);
         const auto channel = [&](size_t i) {
             const auto& row = context.sensor[i];
             return row[0] * light.r + row[1] * light.g + row[2] * light.b;
@@ -138,13 +138,10 @@ FilmSample film_sample(const PassContext& context, const CameraPath& start,
     s.depth = path.depth;
     s.hit = path.hit;
     s.features = path.features;
-    if (context.surfaces != FilmDescription::Surfaces::none) {
-        const auto beside = [&](Vec2 step) {
-            return context.scene.camera.generate_ray(start.film + step, start.lens, start.time);
-        };
-        s.surface = first_surface(context.scene, context.surfaces, start.ray,
-                                  {beside({1, 0}), beside({0, 1})}, path);
-    }
+    if (context.surfaces != FilmDescription::Surfaces::none)
+        s.surface = first_surface(
+            context.scene, context.surfaces, start.ray,
+            context.scene.camera.rays_beside(start.film, start.lens, start.time), path);
     return s;
 }
 
@@ -166,7 +163,13 @@ void PassStatistics::add(const PassStatistics& other) {
 FilmSample take_sample(const PassContext& context, int x, int y, uint32_t index, PathRecord* record,
                        PathResult& path) {
     const CameraPath start = begin_path(context, x, y, index);
-    path = trace_path(context.scene, start.ray, start.sampler, context.max_depth, record);
+    path = {};
+    if (start.ray.sees) {
+        path = trace_path(context.scene, start.ray, start.sampler, context.max_depth, record);
+    } else if (record) {
+        record->clear();
+        record->camera_ray = start.ray;
+    }
     return film_sample(context, start, path);
 }
 
@@ -185,9 +188,9 @@ class BatchSampler {
                 const size_t pixel = film_.index(x, y);
                 for (uint32_t i = film_.pixels[pixel].count; i < counts[pixel]; ++i) {
                     const CameraPath start = begin_path(context_, x, y, i);
-                    batch_.add(start.ray, start.sampler);
-                    places_.push_back({pixel, x, y, start});
-                    if (batch_.full() && !trace()) return false;
+                    places_.push_back({pixel, x, y, start, batch_.size()});
+                    if (start.ray.sees) batch_.add(start.ray, start.sampler);
+                    if (places_.size() == PathBatch::kMost && !trace()) return false;
                 }
             }
         return trace();
@@ -198,6 +201,7 @@ class BatchSampler {
         size_t pixel;
         int x, y;
         CameraPath start;
+        size_t path;  // number in the batch, of places that see anything
     };
 
     bool trace() {
@@ -206,9 +210,8 @@ class BatchSampler {
             return stop_();
         };
         if (!batch_.trace(stops)) return false;
-        for (size_t i = 0; i < places_.size(); ++i) {
-            const Place& p = places_[i];
-            const PathResult& path = batch_.result(i);
+        for (const Place& p : places_) {
+            const PathResult& path = p.start.ray.sees ? batch_.result(p.path) : nothing_;
             add_sample(context_, film_, p.pixel, p.x, p.y, path,
                        film_sample(context_, p.start, path), statistics_);
         }
@@ -224,6 +227,7 @@ class BatchSampler {
     PassStatistics& statistics_;
     PathBatch batch_{context_.scene, context_.max_depth};
     std::vector<Place> places_;
+    const PathResult nothing_;
 };
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "core/transform.h"
 #include "core/vec.h"
+#include "scene/lens_description.h"
 #include "scene/texture_description.h"
 
 namespace covtrace {
@@ -261,6 +262,10 @@ struct CameraDescription {
     /// for real lenses.
     float film_irradiance = 1;
     float lens_radius = 0, focal_distance = 1e6f;
+    /// A lens of several surfaces that rays are traced through. The numbers above are those of the
+    /// thin lens that stands for it where its covariance is predicted: `lens_radius` is that of the
+    /// entrance pupil, which its stop is opened for; `focal_distance` is measured from the film.
+    std::shared_ptr<const LensDescription> lens = {};
     float shutter_open = 0, shutter_close = 1;
     MediumId medium = -1;  ///< around the lens
     SourceLocation where;

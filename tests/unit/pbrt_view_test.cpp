@@ -135,35 +135,77 @@ TEST(SceneView, SphericalCameras) {
                          "expected one of equalarea, equirectangular"));
 }
 
-TEST(SceneView, LensesOfSeveralElementsBecomeThin) {
-    const TemporaryFolder folder;
-    // The lens is two thin lenses of 100 mm in contact.
-    folder.write("two.dat", R"(# radius thickness index diameter
+constexpr const char* kTwoLenses = R"(# radius thickness index diameter
 100 0.001 1.5 30
 -100 0.001 1 30
 0 0.001 0 12   # the stop
 100 0.001 1.5 30
 -100 40 1 30
-)");
+)";
+
+TEST(SceneView, LensesAreReadWithTheThinOneThatStandsForThem) {
+    const TemporaryFolder folder;
+    // The lens is two thin lenses of 100 mm in contact.
+    folder.write("two.dat", kTwoLenses);
     const auto scene = read_pbrt(folder.write("scene.pbrt", R"(
-Camera "realistic" "string lensfile" "two.dat" "float aperturediameter" 20 "float focusdistance" 5.05
+Camera "realistic" "string lensfile" "two.dat" "float aperturediameter" 10 "float focusdistance" 5.1005
 Film "rgb" "integer xresolution" 30 "integer yresolution" 40 "float diagonal" 50
 WorldBegin
 )"));
+    EXPECT_TRUE(scene.warnings.size() <= 1) << warnings_of(scene);  // it has no lights
+    const CameraDescription& camera = scene.camera;
+    ASSERT_TRUE(camera.lens);
+    ASSERT_EQ(camera.lens->surfaces.size(), 5u);
+    EXPECT_NEAR(camera.lens->surfaces[1].curvature_radius, -0.1f, 1e-7f);
+    EXPECT_NEAR(camera.lens->surfaces[0].thickness, 1e-6f, 1e-10f);
+    EXPECT_EQ(camera.lens->surfaces[2].index, 1) << "0 is air";
+    EXPECT_NEAR(camera.lens->surfaces[4].aperture_radius, 15e-3f, 1e-7f);
+    EXPECT_NEAR(camera.lens->film_diagonal, 50e-3f, 1e-7f);
     // The stop stands behind one of both lenses, so its image before it is hardly larger.
-    EXPECT_NEAR(scene.camera.lens_radius, 6e-3f, 1e-6f) << "the stop's own radius";
-    EXPECT_NEAR(scene.camera.film_irradiance, kPi * sqr(6e-3f / 50.5e-3f), 1e-4f);
-    EXPECT_NEAR(scene.camera.focal_distance, 5.05f, 1e-6f);
-    // The lens has 50 mm and is focused at 5.05 m: 50.5 mm behind the lens; the shorter side is 30
-    // mm.
-    EXPECT_NEAR(scene.camera.fov, 2 * std::atan(15 / 50.5f) * 180 / kPi, 0.01f);
-    EXPECT_EQ(scene.warnings.size(), 1u);
-    const auto star = read_options(
-        "Camera \"realistic\" \"string lensfile\" \"x.dat\" \"string aperture\" \"star\"");
-    EXPECT_TRUE(contains(warnings_of(star), "the aperture \"star\" is not supported"));
-    folder.write("two.dat", "1 2 3");
-    EXPECT_TRUE(contains(failure_of([&] { read_pbrt(folder.path() / "scene.pbrt"); }).message,
-                         "expected four for each element"));
+    EXPECT_NEAR(camera.lens_radius, 5e-3f, 1e-6f);
+    EXPECT_NEAR(camera.film_irradiance, kPi * sqr(5e-3f / 50.5e-3f), 1e-4f);
+    EXPECT_NEAR(camera.focal_distance, 5.1005f, 1e-6f);
+    // The lens has 50 mm and is focused at 5.1005 m from the film, 5.05 m from the lens: 50.5 mm
+    // behind the lens; the shorter side is 30 mm.
+    EXPECT_NEAR(camera.fov, 2 * std::atan(15 / 50.5f) * 180 / kPi, 0.01f);
+}
+
+TEST(SceneView, LensesTellWhatTheyCannotDo) {
+    const TemporaryFolder folder;
+    folder.write("two.dat", kTwoLenses);
+    const auto read = [&](const std::string& parameters) {
+        return read_pbrt(
+            folder.write("scene.pbrt", "Camera \"realistic\" \"string lensfile\" \"two.dat\" " +
+                                           parameters + "\nWorldBegin\nLightSource \"infinite\""));
+    };
+    const auto error = [&](const std::string& parameters) {
+        return failure_of([&] { read(parameters); }).message;
+    };
+    const auto wide = read("\"float aperturediameter\" 40");
+    EXPECT_TRUE(contains(warnings_of(wide), "opens to 12 mm only"));
+    EXPECT_NEAR(wide.camera.lens_radius, 6e-3f, 1e-6f);
+    using Kind = ApertureShape::Kind;
+    for (const auto& [name, kind] :
+         {std::pair("circular", Kind::round), std::pair("gaussian", Kind::gaussian),
+          std::pair("square", Kind::square), std::pair("pentagon", Kind::pentagon),
+          std::pair("star", Kind::star)})
+        EXPECT_EQ(
+            read("\"string aperture\" \"" + std::string(name) + "\"").camera.lens->aperture.kind,
+            kind);
+    EXPECT_TRUE(contains(error("\"string aperture\" \"blades.png\""), "blades.png"));
+    folder.write("blades.png", "");
+    EXPECT_EQ(read("\"string aperture\" \"blades.png\"").camera.lens->aperture.image.filename(),
+              "blades.png");
+    EXPECT_TRUE(contains(error("\"float focusdistance\" 0.19"), "expected more than 0.2"));
+    const auto with_lens = [&](const char* text) {
+        folder.write("two.dat", text);
+        return error("");
+    };
+    EXPECT_TRUE(contains(with_lens("1 2 3"), "expected four for each element"));
+    EXPECT_TRUE(contains(with_lens("100 1 x 4"), "something else than numbers"));
+    EXPECT_TRUE(contains(with_lens("-100 1 1.5 4\n100 1 1 4"), "does not focus light"));
+    EXPECT_TRUE(contains(with_lens("100 1 1.5 0\n-100 1 1 4"), "element 1 has no diameter"));
+    EXPECT_TRUE(contains(with_lens("100 1 -1.5 3\n-100 1 1 4"), "negative index"));
 }
 
 TEST(SceneView, WhiteBalanceMakesDaylightWhite) {
