@@ -145,11 +145,12 @@ struct MaterialSlots {
         texture("transmittance", m.transmittance, TextureUse::share);
     }
     void operator()(InterfaceMaterial&) {}
+    void operator()(MeasuredMaterial&) {}
 };
 
-constexpr std::array<const char*, 8> kMaterialKinds{
+constexpr std::array<const char*, 9> kMaterialKinds{
     "diffuse",         "conductor",      "dielectric", "coateddiffuse", "diffusetransmission",
-    "coatedconductor", "thindielectric", "interface"};
+    "coatedconductor", "thindielectric", "interface",  "measured"};
 
 std::vector<Slot> slots_of(SceneDescription& scene, MaterialDescription& m) {
     std::vector<Slot> slots;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bsdf/fresnel.h"
+#include "bsdf/measured_brdf.h"
 #include "bsdf/models.h"
 
 namespace covtrace {
@@ -40,6 +41,9 @@ bool is_specular(const DiffuseTransmissionBsdf&) {
     return false;
 }
 bool is_specular(const CoatedDiffuseBsdf&) {
+    return false;
+}
+bool is_specular(const MeasuredBsdf&) {
     return false;
 }
 bool is_specular(const InterfaceBsdf&) {
@@ -105,12 +109,14 @@ bool is_specular(const Bsdf& bsdf) {
 }
 
 bool has_diffuse_lobe(const Bsdf& bsdf) {
+    if (const auto* measured = std::get_if<MeasuredBsdf>(&bsdf)) return measured->brdf->is_wide();
     return std::holds_alternative<DiffuseBsdf>(bsdf) ||
            std::holds_alternative<CoatedDiffuseBsdf>(bsdf) ||
            std::holds_alternative<DiffuseTransmissionBsdf>(bsdf);
 }
 
 bool has_sharp_lobe(const Bsdf& bsdf) {
+    if (const auto* measured = std::get_if<MeasuredBsdf>(&bsdf)) return !measured->brdf->is_wide();
     return std::holds_alternative<ConductorBsdf>(bsdf) ||
            std::holds_alternative<CoatedConductorBsdf>(bsdf) ||
            std::holds_alternative<DielectricBsdf>(bsdf) ||
@@ -121,6 +127,8 @@ float sharp_lobe_roughness(const Bsdf& bsdf) {
     const auto larger = [](const auto& b) { return std::max(b.alpha_x, b.alpha_y); };
     if (const auto* coated = std::get_if<CoatedConductorBsdf>(&bsdf))
         return std::max(larger(coated->coat), larger(coated->metal));
+    if (const auto* measured = std::get_if<MeasuredBsdf>(&bsdf); measured && has_sharp_lobe(bsdf))
+        return measured->brdf->alpha();
     return std::visit(
         [&](const auto& b) {
             if constexpr (requires { b.alpha_x; }) return larger(b);

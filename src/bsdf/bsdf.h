@@ -115,9 +115,15 @@ struct ThinDielectricBsdf {
 /// The border between media, which lets everything pass.
 struct InterfaceBsdf {};
 
-using Bsdf =
-    std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, CoatedDiffuseBsdf,
-                 DiffuseTransmissionBsdf, CoatedConductorBsdf, ThinDielectricBsdf, InterfaceBsdf>;
+class MeasuredBrdf;  // measured_brdf.h
+/// A surface as it was measured; two-sided.
+struct MeasuredBsdf {
+    const MeasuredBrdf* brdf = nullptr;
+};
+
+using Bsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, CoatedDiffuseBsdf,
+                          DiffuseTransmissionBsdf, CoatedConductorBsdf, ThinDielectricBsdf,
+                          InterfaceBsdf, MeasuredBsdf>;
 
 /// The value f(wo, wi) |cos(wi)|, without specular lobes.
 Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi);

@@ -53,6 +53,12 @@ std::optional<BsdfSample> sample(const ThinDielectricBsdf& b, Vec3 wo, float u_l
 
 std::optional<BsdfSample> sample(const InterfaceBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
 
+Rgb eval(const MeasuredBsdf& b, Vec3 wo, Vec3 wi);
+float pdf(const MeasuredBsdf& b, Vec3 wo, Vec3 wi);
+std::optional<BsdfSample> sample(const MeasuredBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+LobeShares lobe_shares(const MeasuredBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
+Rgb albedo(const MeasuredBsdf& b, Vec3 wo);
+
 inline bool same_side(Vec3 wo, Vec3 wi) {
     return wo.z * wi.z > 0;
 }

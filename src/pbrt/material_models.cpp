@@ -4,6 +4,7 @@
 
 #include "colour/named_spectra.h"
 #include "colour/sigmoid_spectrum.h"
+#include "pbrt/brdf_file.h"
 #include "pbrt/named_media.h"
 #include "pbrt/spectrum_parameter.h"
 #include "pbrt/texture_builder.h"
@@ -237,9 +238,25 @@ DiffuseMaterial Builder::hair() {
     return m;
 }
 
-CoatedDiffuseMaterial measured(Builder& b) {
-    b.warn("material \"measured\" is not supported; a grey \"coateddiffuse\" takes its place");
-    b.p.ignore_all();
+/// The BRDF of a file, read once for all materials that name it.
+std::shared_ptr<const BrdfTensor> brdf_of(const std::filesystem::path& file,
+                                          const SourceLocation& where, BuildContext& context) {
+    for (const MaterialDescription& other : context.scene.materials)
+        if (const auto* m = std::get_if<MeasuredMaterial>(&other.value); m && m->brdf->file == file)
+            return m->brdf;
+    return read_brdf(context.files.read(file, where), file, where);
+}
+
+Model measured(Builder& b) {
+    const std::string name = b.p.text("filename");
+    const SourceLocation where = b.p.where("filename", b.e.where);
+    if (name.empty())
+        throw Error(ErrorKind::scene, b.e.where,
+                    "material \"measured\" has no file; expected \"string filename\"");
+    if (const auto file = b.context.files.find_optional(name, where))
+        return MeasuredMaterial{brdf_of(*file, where, b.context)};
+    b.warn("the measured BRDF " + in_quotes(name) +
+           " was not found; a grey \"coateddiffuse\" takes its place");
     Entity plain{"coateddiffuse", {}, b.e.where, b.e.directive};
     return Builder{plain, plain.parameters, b.textures, b.context}.coated_diffuse();
 }

@@ -85,6 +85,11 @@ struct ThinDielectricMaterial {
 };
 /// No surface at all: a border that only separates media.
 struct InterfaceMaterial {};
+struct BrdfTensor;  // brdf_tensor.h
+/// A surface whose reflection was measured.
+struct MeasuredMaterial {
+    std::shared_ptr<const BrdfTensor> brdf;
+};
 /// At each point one of two materials, the second one with probability `amount`.
 struct MaterialMix {
     std::array<MaterialId, 2> materials{-1, -1};
@@ -94,7 +99,7 @@ struct MaterialDescription {
     std::string name;
     std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, CoatedDiffuseMaterial,
                  DiffuseTransmissionMaterial, CoatedConductorMaterial, ThinDielectricMaterial,
-                 InterfaceMaterial>
+                 InterfaceMaterial, MeasuredMaterial>
         value;
     SourceLocation where;
     std::optional<MaterialMix> mix = {};  ///< in place of `value`

@@ -56,17 +56,17 @@ float refractive_index(float eta) {
     return eta > 0 ? eta : 1;
 }
 
-using Coats = MaterialCoats;
+using Tables = MaterialTables;
 
 constexpr float kDefaultReflectance = 0.5f;
 constexpr float kDefaultTransmission = 0.25f;  // also the reflectance of what transmits
 constexpr float kDefaultThickness = 0.01f;
 
-Bsdf make(const DiffuseMaterial&, const Values& v, const Coats&) {
+Bsdf make(const DiffuseMaterial&, const Values& v, const Tables&) {
     return DiffuseBsdf{v.reflectance()};
 }
 
-Bsdf make(const ConductorMaterial& m, const Values& v, const Coats&) {
+Bsdf make(const ConductorMaterial& m, const Values& v, const Tables&) {
     const Vec2 alpha = v.alphas(m);
     if (m.reflectance < 0)
         return ConductorBsdf{v.spectrum(m.eta, 1), v.spectrum(m.k, 1), alpha.x, alpha.y};
@@ -77,34 +77,34 @@ Bsdf make(const ConductorMaterial& m, const Values& v, const Coats&) {
     return ConductorBsdf{Rgb(1), 2 * sqrt(r) / sqrt(Rgb(1) - r), alpha.x, alpha.y};
 }
 
-Bsdf make(const DielectricMaterial& m, const Values& v, const Coats&) {
+Bsdf make(const DielectricMaterial& m, const Values& v, const Tables&) {
     const Vec2 alpha = v.alphas(m);
     return DielectricBsdf{refractive_index(m.eta), alpha.x, alpha.y,
                           m.transmittance < 0 ? Rgb(1) : v.transmittance()};
 }
 
-Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const Coats& coats) {
+Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const Tables& tables) {
     const Vec2 alpha = v.alphas(m);
     if (m.reflects_through_coat) {
         Rgb reflectance = v.reflectance();
         CoatTint tint;
-        if (coats.white) {
-            tint = v.tint(m, coats.white);
+        if (tables.white_coat) {
+            tint = v.tint(m, tables.white_coat);
             if (m.coat_dims_base) reflectance *= 1 - max_component(tint.normal_reflectance);
         }
-        return make_coated_total(*coats.own, reflectance, alpha.x, alpha.y, tint);
+        return make_coated_total(*tables.coat, reflectance, alpha.x, alpha.y, tint);
     }
     // The number of bounces is half of pbrt's depth, whose walk meets the base at every second of
     // its steps.
-    return make_coated_diffuse(*coats.own, v.powers_of_reflectance(), alpha.x, alpha.y,
+    return make_coated_diffuse(*tables.coat, v.powers_of_reflectance(), alpha.x, alpha.y,
                                (m.max_depth + 1) / 2);
 }
 
-Bsdf make(const DiffuseTransmissionMaterial&, const Values& v, const Coats&) {
+Bsdf make(const DiffuseTransmissionMaterial&, const Values& v, const Tables&) {
     return DiffuseTransmissionBsdf{v.reflectance(), v.transmittance()};
 }
 
-Bsdf make(const CoatedConductorMaterial& m, const Values& v, const Coats&) {
+Bsdf make(const CoatedConductorMaterial& m, const Values& v, const Tables&) {
     const Vec2 coat = v.alphas(m);
     CoatedConductorBsdf b;
     b.coat = {refractive_index(m.eta), coat.x, coat.y};
@@ -119,13 +119,17 @@ Bsdf make(const CoatedConductorMaterial& m, const Values& v, const Coats&) {
     return b;
 }
 
-Bsdf make(const ThinDielectricMaterial& m, const Values& v, const Coats&) {
+Bsdf make(const ThinDielectricMaterial& m, const Values& v, const Tables&) {
     return ThinDielectricBsdf{refractive_index(m.eta),
                               m.transmittance < 0 ? Rgb(1) : v.transmittance()};
 }
 
-Bsdf make(const InterfaceMaterial&, const Values&, const Coats&) {
+Bsdf make(const InterfaceMaterial&, const Values&, const Tables&) {
     return InterfaceBsdf{};
+}
+
+Bsdf make(const MeasuredMaterial&, const Values&, const Tables& tables) {
+    return MeasuredBsdf{tables.measured};
 }
 
 using TextureIds = std::initializer_list<TextureId>;
@@ -161,6 +165,9 @@ bool is_constant(const TextureStore& t, const ThinDielectricMaterial& m) {
 bool is_constant(const TextureStore&, const InterfaceMaterial&) {
     return true;
 }
+bool is_constant(const TextureStore&, const MeasuredMaterial&) {
+    return true;
+}
 
 /// The colours of a model as the file gives them; `fixed` where it gives none.
 MaterialColours colours(const DiffuseMaterial& m) {
@@ -186,6 +193,9 @@ MaterialColours colours(const ThinDielectricMaterial& m) {
     return {{}, {m.transmittance, 1, Rgb(1)}};
 }
 MaterialColours colours(const InterfaceMaterial&) {
+    return {};
+}
+MaterialColours colours(const MeasuredMaterial&) {
     return {};
 }
 
@@ -257,9 +267,9 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
                 m->reflects_through_coat
                     ? 0
                     : std::max(0.0f, at_middle.number(m->thickness, kDefaultThickness));
-            material.coats.own = &coats_.get(refractive_index(m->eta), thickness);
+            material.tables.coat = &coats_.get(refractive_index(m->eta), thickness);
             if (m->normal_reflectance >= 0 || m->coat_weight >= 0)
-                material.coats.white = &coats_.get(kWhiteIndex, 0);
+                material.tables.white_coat = &coats_.get(kWhiteIndex, 0);
             warn_of_gap(m->albedo, "coateddiffuse", description.where, textures, warnings_);
             if (m->thickness >= 0 && !textures.is_constant(m->thickness))
                 warnings_.push_back({description.where,
@@ -267,11 +277,14 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
                                      "(u, v) = (0.5, 0.5) is used everywhere"});
         } else if (const auto* c = std::get_if<CoatedConductorMaterial>(&description.value)) {
             warn_of_gap(c->albedo, "coatedconductor", description.where, textures, warnings_);
+        } else if (const auto* b = std::get_if<MeasuredMaterial>(&description.value)) {
+            material.tables.measured =
+                &measured_.try_emplace(b->brdf.get(), *b->brdf).first->second;
         }
         std::visit(
             [&](const auto& m) {
                 material.is_constant = is_constant(textures, m);
-                if (material.is_constant) material.constant = make(m, at_middle, material.coats);
+                if (material.is_constant) material.constant = make(m, at_middle, material.tables);
             },
             description.value);
     }
@@ -288,7 +301,7 @@ Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStor
         const TexturePoint at{hit.uv, hit.position, footprint_on(hit, w, width), hit.ng,
                               hit.vertices()};
         const Values values{textures, at, material.colours, adaptation_, powers_};
-        found = std::visit([&](const auto& m) { return make(m, values, material.coats); },
+        found = std::visit([&](const auto& m) { return make(m, values, material.tables); },
                            material.description.value);
     }
     if (auto* coated = std::get_if<CoatedConductorBsdf>(&found))

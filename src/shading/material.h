@@ -2,10 +2,12 @@
 /// parameter.
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "bsdf/bsdf.h"
 #include "bsdf/coat_table.h"
+#include "bsdf/measured_brdf.h"
 #include "colour/illuminant_adaptation.h"
 #include "colour/reflectance_powers.h"
 #include "core/frame.h"
@@ -34,10 +36,11 @@ struct MaterialColours {
     ReflectancePowers fixed_powers{};  ///< of a reflectance below a coat that does not vary
 };
 
-/// The tables of a diffuse material's coat; none where it has no coat.
-struct MaterialCoats {
-    const CoatTable* own = nullptr;
-    const CoatTable* white = nullptr;  ///< CoatTint::white
+/// The tables of a material; none where it needs none.
+struct MaterialTables {
+    const CoatTable* coat = nullptr;        ///< of a diffuse material's coat
+    const CoatTable* white_coat = nullptr;  ///< CoatTint::white
+    const MeasuredBrdf* measured = nullptr;
 };
 
 /// The textures that modulate the light that a material's lobes reflect and transmit; -1 where
@@ -80,7 +83,7 @@ class MaterialStore {
     struct Material {
         MaterialDescription description;
         MaterialColours colours;
-        MaterialCoats coats;
+        MaterialTables tables;
         bool is_constant = false;
         Bsdf constant;  ///< where no texture varies
     };
@@ -88,6 +91,7 @@ class MaterialStore {
     AdaptationTable adaptation_;     ///< for textures that vary
     ReflectancePowersTable powers_;  ///< for textures that vary below a coat
     CoatTables coats_;
+    std::map<const BrdfTensor*, MeasuredBrdf> measured_;  ///< by their tensors, which are shared
     Warnings warnings_;
 };
 

@@ -170,7 +170,7 @@ TEST(SceneTextures, DotsAndBilerpTakeTheirParameters) {
 
 TEST(SceneTextures, WarningsAreInFileOrder) {
     const auto scene = read_world(
-        "MakeNamedMaterial \"m\" \"string type\" \"measured\"\n"
+        "MakeNamedMaterial \"m\" \"string type\" \"measured\" \"string filename\" \"x\"\n"
         "Shape \"sphere\" \"float x\" 1\n"
         "Texture \"t\" \"float\" \"ptex\"\n"
         "Shape \"disk\" \"float x\" 1\n");
