@@ -4,6 +4,8 @@
 #include <utility>
 #include <variant>
 
+#include "integrator/displacement.h"
+
 namespace covtrace {
 
 namespace {
@@ -46,8 +48,8 @@ float radius_of_media(const SceneDescription& d, const Bounds3& shapes) {
 
 LitScene::LitScene(SceneDescription scene_description, const std::string& isa, size_t texture_bytes)
     : description(std::move(scene_description)),
-      geometry(description, isa),
       textures(description, texture_bytes),
+      geometry(displace(description, textures), isa),
       lights(description, geometry, &textures),
       materials(description, textures, IlluminantAdaptation(lights.total_power())),
       camera(description.camera, description.film.width, description.film.height),

@@ -26,8 +26,8 @@ struct LitScene {
     std::map<std::string, size_t> memory() const;
 
     SceneDescription description;
-    Geometry geometry;
     TextureStore textures;
+    Geometry geometry;
     Lights lights;
     /// Materials, with reflectances as they are in the light of all `lights` together.
     MaterialStore materials;

@@ -341,6 +341,18 @@ class BodyReader {
 
 }  // namespace
 
+std::shared_ptr<const TriangleMesh> triangles_of(const PlyMesh& mesh) {
+    if (!mesh.quads) return mesh.triangles;
+    const BilinearMesh& quads = *mesh.quads;
+    TriangleMesh t{quads.positions, quads.normals, quads.uvs, {}};
+    if (mesh.triangles) t.triangles = mesh.triangles->triangles;
+    for (const auto& q : quads.patches) {
+        t.triangles.push_back({q[0], q[1], q[3]});
+        t.triangles.push_back({q[0], q[3], q[2]});
+    }
+    return std::make_shared<const TriangleMesh>(std::move(t));
+}
+
 PlyMesh read_ply(std::string_view bytes, const std::string& file, WarningLog& log) {
     const auto name = std::make_shared<const std::string>(file);
     const PlyHeader header = read_ply_header(bytes, name);

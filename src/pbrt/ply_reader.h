@@ -20,6 +20,10 @@ struct PlyMesh {
     std::shared_ptr<const BilinearMesh> quads;  ///< corners reordered: 0, 1, 3, 2 of the file
 };
 
+/// Both parts as one mesh, each quad cut into two triangles that share their vertices with all
+/// others.
+std::shared_ptr<const TriangleMesh> triangles_of(const PlyMesh& mesh);
+
 /// Reads a mesh. Faces with more than four corners are cut into fans, those with fewer than three
 /// are left out, each with a warning. Errors: Error(scene) that names `file` and, for ascii, the
 /// line: broken headers, missing properties, truncation, counts that can't be in the file, indices

@@ -179,6 +179,15 @@ void SceneBuilder::shape(Entity entity) {
     if (const Parameter* alpha =
             entity.parameters.find("alpha", {ParameterType::floats, ParameterType::texture}))
         pending.alpha = *alpha;
+    if (entity.type == "plymesh") {
+        pending.edge_length = entity.parameters.number("edgelength", 1);
+        if (const Parameter* height =
+                entity.parameters.find("displacement", {ParameterType::texture}))
+            pending.displacement = *height;
+        if (!(pending.edge_length > 0))
+            throw Error(ErrorKind::scene, entity.parameters.where("edgelength", entity.where),
+                        "parameter \"edgelength\" must be greater than 0");
+    }
     ShapeDescription& s = pending.shape;
     s.object_to_world = state_.object_to_world(entity.where);
     s.where = entity.where;
@@ -210,7 +219,8 @@ void SceneBuilder::place_meshes() {
             placed.push_back(std::move(p));
             continue;
         }
-        const std::vector<ShapeGeometry> meshes = shapes_.mesh(*p.mesh_file);
+        const std::vector<ShapeGeometry> meshes =
+            shapes_.mesh(*p.mesh_file, p.displacement.has_value());
         if (meshes.empty()) {
             context_.log.set_order(p.directive);
             context_.log.add(p.shape.where, "the mesh file has no faces; the shape is ignored");
@@ -275,6 +285,17 @@ bool SceneBuilder::resolve_alpha(PendingShape& pending) {
     return value > 0 || s.area_light >= 0;
 }
 
+void SceneBuilder::resolve_displacement(PendingShape& pending) {
+    if (!pending.displacement) return;
+    ShapeDescription& s = pending.shape;
+    const auto& mesh = std::get<std::shared_ptr<const TriangleMesh>>(s.geometry);
+    if (mesh->uvs.empty())
+        throw Error(ErrorKind::scene, pending.displacement->where,
+                    "the mesh can't be displaced; expected one whose vertices have u and v");
+    const float longest = pending.edge_length * displacement_edge_scale_;
+    s.displacement = Displacement{textures_.grey_of(*pending.displacement), longest};
+}
+
 void SceneBuilder::resolve(PendingShape& pending) {
     context_.log.set_order(pending.directive);
     ShapeDescription& s = pending.shape;
@@ -288,6 +309,7 @@ void SceneBuilder::resolve(PendingShape& pending) {
         s.area_light = -1;
     }
     if (!resolve_alpha(pending)) return;
+    resolve_displacement(pending);
     auto& shapes = pending.object < 0 ? scene_.shapes
                                       : scene_.objects[static_cast<size_t>(pending.object)].shapes;
     shapes.push_back(std::move(s));

@@ -57,6 +57,9 @@ class SceneBuilder {
     void area_light(Entity entity);
     void shape(Entity entity);
 
+    /// A factor on the lengths that displaced meshes' edges are split to.
+    void scale_displacement_edges(float scale) { displacement_edge_scale_ = scale; }
+
     /// Imported files see the state, but leave it as it was.
     void import_begin(const SourceLocation& where);
     void import_end();
@@ -79,6 +82,8 @@ class SceneBuilder {
         int object = -1;  ///< -1: in the world
         MaterialReference material;
         std::optional<Parameter> alpha;
+        std::optional<Parameter> displacement;  ///< texture of a plymesh
+        float edge_length = 1;
         std::string inside, outside;
         std::optional<size_t> mesh_file;  ///< file whose geometry it still waits for
         int directive = 0;
@@ -90,6 +95,7 @@ class SceneBuilder {
     void place_meshes();
     /// Reads a shape's alpha; false where nothing of the shape has any effect.
     bool resolve_alpha(PendingShape& pending);
+    void resolve_displacement(PendingShape& pending);
     /// Leaves out all media, for integrators that see none.
     void drop_media();
     /// Notes where the file has no camera, or nothing that emits light.
@@ -112,6 +118,7 @@ class SceneBuilder {
     int object_ = -1;  ///< open object definition
     bool in_world_ = false;
     int directive_ = 0;
+    float displacement_edge_scale_ = 1;
 };
 
 }  // namespace covtrace

@@ -170,6 +170,14 @@ class Parser {
                 plain += static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
         if (std::find(known.begin(), known.end(), plain) == known.end())
             throw Error(ErrorKind::scene, where_, unknown_name("option", n, known));
+        if (plain == "displacementedgescale") {
+            const double scale = parse_number(value);
+            if (!(scale > 0))
+                throw Error(ErrorKind::scene, value.where(),
+                            "option " + in_quotes(n) + " must be greater than 0");
+            builder_.scale_displacement_edges(static_cast<float>(scale));
+            return;
+        }
         const bool changes_nothing =
             value.text == "false" || plain == "rendercoordsys" || plain == "wavefront";
         if (!changes_nothing) log_.add(where_, "option " + in_quotes(n) + " is ignored");

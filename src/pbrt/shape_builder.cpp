@@ -127,15 +127,12 @@ size_t ShapeBuilder::mesh_file(Entity& e) {
     const SourceLocation where = e.parameters.where("filename", e.where);
     if (name.empty())
         throw Error(ErrorKind::scene, where, "a plymesh has no file; expected \"string filename\"");
-    if (e.parameters.has("displacement"))
-        context_.log.add(e.parameters.where("displacement", e.where),
-                         "displacement of meshes is not rendered");
-    e.parameters.ignore({"displacement", "edgelength"});
     return mesh_files_.add(context_.files.find(name, where), where, e.directive);
 }
 
-std::vector<ShapeGeometry> ShapeBuilder::mesh(size_t file) const {
+std::vector<ShapeGeometry> ShapeBuilder::mesh(size_t file, bool as_triangles) const {
     const PlyMesh& mesh = mesh_files_[file];
+    if (as_triangles && mesh.quads) return {triangles_of(mesh)};
     std::vector<ShapeGeometry> shapes;
     if (mesh.triangles) shapes.emplace_back(mesh.triangles);
     if (mesh.quads) shapes.emplace_back(mesh.quads);

@@ -29,8 +29,8 @@ class ShapeBuilder {
     /// Reads all mesh files that shapes have named. Errors: as MeshFiles::read_all.
     void read_mesh_files() { mesh_files_.read_all(context_.files, context_.log); }
     /// Meshes of a file, after read_mesh_files: none for an empty file, two for one with triangles
-    /// and quads.
-    std::vector<ShapeGeometry> mesh(size_t file) const;
+    /// and quads, unless these are to be cut into triangles.
+    std::vector<ShapeGeometry> mesh(size_t file, bool as_triangles) const;
 
   private:
     std::vector<ShapeGeometry> triangle_mesh(Entity& e);

@@ -170,6 +170,12 @@ struct AreaLightDescription {
     SourceLocation where;
 };
 
+/// Moves the vertices of a mesh along their normals, after its triangles have been split.
+struct Displacement {
+    TextureId height = -1;  ///< by how much, in object space
+    float edge_length = 1;  ///< triangles are split until their edges are shorter, world units
+};
+
 struct ShapeDescription {
     /// Meshes are shared, so that a description can be copied cheaply.
     std::variant<std::shared_ptr<const TriangleMesh>, std::shared_ptr<const BilinearMesh>, Sphere,
@@ -187,6 +193,7 @@ struct ShapeDescription {
     TextureId alpha = -1;
     MediumId inside = -1, outside = -1;
     SourceLocation where;
+    std::optional<Displacement> displacement = {};  ///< of triangles with normals and uvs only
 };
 
 struct ObjectDescription {

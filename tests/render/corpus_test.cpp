@@ -79,6 +79,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Known{"camera-realistic", Where::everywhere, Rgb(3.785e-03f), 4e-3},
                     Known{"material-measured", Where::everywhere, Rgb(0.5f), 0.02},
                     Known{"material-measured-metal", Where::everywhere, Rgb(0.9947f), 2e-3},
+                    Known{"shape-displacement", Where::everywhere, Rgb(0.25f), 1e-4},
                     Known{"film-iso", Where::everywhere, Rgb(2.5f)},
                     Known{"film-exposure", Where::everywhere, Rgb(0.25f)},
                     Known{"film-maxcomponentvalue", Where::everywhere, Rgb(2, 1, 0.5f)},

@@ -170,6 +170,50 @@ TEST(SceneShapes, MeshFilesAreReadOnceAndShared) {
     EXPECT_EQ(&mesh_of(scene, 0), &mesh_of(scene, 1));
 }
 
+TEST(SceneShapes, DisplacedMeshesAreTrianglesWithTheirHeights) {
+    const TemporaryFolder folder;
+    const auto ply = [&](const char* uv, const char* rows) {
+        folder.write("m.ply",
+                     std::string("ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\n"
+                                 "property float y\nproperty float z\n") +
+                         uv +
+                         "element face 2\nproperty list uchar int vertex_indices\n"
+                         "end_header\n" +
+                         rows + "4 0 1 2 3\n3 1 4 2\n");
+    };
+    const auto read = [&](const std::string& options, const std::string& parameters) {
+        return read_pbrt(folder.write("scene.pbrt", options + R"(WorldBegin
+LightSource "infinite"
+Texture "height" "float" "checkerboard"
+Shape "plymesh" "string filename" "m.ply" )" + parameters));
+    };
+    const char* rows = "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n2 0 0 0 0\n";
+    ply("property float u\nproperty float v\n", rows);
+    const std::string displaced = "\"texture displacement\" \"height\" \"float edgelength\" 0.5";
+    const auto scene = read("", displaced);
+    EXPECT_EQ(warnings_of(scene), "");
+    ASSERT_EQ(scene.shapes.size(), 1u) << "quads and triangles are one mesh";
+    EXPECT_EQ(mesh_of(scene).triangles,
+              (std::vector<std::array<uint32_t, 3>>{{1, 4, 2}, {0, 1, 2}, {0, 2, 3}}));
+    ASSERT_TRUE(scene.shapes[0].displacement);
+    EXPECT_EQ(scene.shapes[0].displacement->edge_length, 0.5f);
+    EXPECT_TRUE(std::holds_alternative<CheckerboardTexture>(
+        scene.textures.at(size_t(scene.shapes[0].displacement->height)).value));
+    EXPECT_EQ(
+        read("Option \"displacementedgescale\" 3\n", displaced).shapes[0].displacement->edge_length,
+        1.5f);
+    EXPECT_FALSE(read("", "\"float edgelength\" 2").shapes[0].displacement);
+    const auto error = [&](const std::string& options, const std::string& parameters) {
+        return failure_of([&] { read(options, parameters); }).message;
+    };
+    EXPECT_TRUE(contains(error("", "\"texture displacement\" \"height\" \"float edgelength\" 0"),
+                         "edgelength"));
+    EXPECT_TRUE(contains(error("Option \"displacementedgescale\" 0\n", displaced),
+                         "displacementedgescale"));
+    ply("property float a\nproperty float b\n", rows);
+    EXPECT_TRUE(contains(error("", displaced), "expected one whose vertices have u and v"));
+}
+
 TEST(SceneShapes, ErrorsNameThePlace) {
     struct Case {
         const char* text;
