@@ -88,10 +88,8 @@ ColorPlanes variance_of(const SampledImage& s, const Plane& count) {
     return variance;
 }
 
-float normal_number(size_t pixel) {
-    const uint64_t bits = hash_combine(0x68616c766573, pixel);
-    const float u = 1 - to_unit_float(uint32_t(bits >> 32)), v = to_unit_float(uint32_t(bits));
-    return std::sqrt(-2 * std::log(u)) * std::cos(2 * kPi * v);
+float random_sign(size_t pixel) {
+    return hash_combine(0x68616c766573, pixel) >> 63 ? 1.0f : -1.0f;
 }
 
 int lost_pixels(const Halves& halves) {
@@ -126,7 +124,7 @@ ImageHalves halves_of_one(const SampledImage& s) {
         HalfBuffer& h = result.halves[half];
         const float sign = half == 0 ? 1.0f : -1.0f;
         for (size_t i = 0; i < h.count.size(); ++i) {
-            const float z = sign * normal_number(i);
+            const float z = sign * random_sign(i);
             h.count[i] *= 0.5f;
             for (size_t k = 0; k < 3; ++k) {
                 h.color[k][i] += std::sqrt(variance[k][i]) * z;

@@ -28,11 +28,13 @@ struct ImageHalves {
 ImageHalves halves_of_two(const SampledImage& a, const SampledImage& b);
 
 /// Makes halves of one image whose variance V is known: image + sqrt(V) z and image - sqrt(V) z, z
-/// a normal number per pixel. Their mean is the image, their noise has twice its variance each, as
-/// that of real halves, and they are uncorrelated; where the noise is normal they are independent
-/// (Oliveira, Lei, Tibshirani, "Unbiased Risk Estimation in the Normal Means Problem via Coupled
-/// Bootstrap Techniques", 2021). Channels get the same z, since their noise is of the same paths.
-/// The result depends on nothing but the image. `s` has a variance.
+/// a random sign per pixel. Their mean is the image, their noise has twice its variance each, as
+/// that of real halves, and they are uncorrelated (Oliveira, Lei, Tibshirani, "Unbiased Risk
+/// Estimation in the Normal Means Problem via Coupled Bootstrap Techniques", 2021, whose z is
+/// normal). With signs the squared difference of the halves is known exactly, and of a pixel that
+/// one bright path made, whose V is its square, one half is twice as bright and the other dark, as
+/// of real halves. Channels get the same z, since their noise is of the same paths. The result
+/// depends on nothing but the image. `s` has a variance.
 ImageHalves halves_of_one(const SampledImage& s);
 
 }  // namespace covtrace

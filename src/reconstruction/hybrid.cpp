@@ -9,7 +9,6 @@
 #include "core/vec.h"
 #include "reconstruction/denoiser_blend.h"
 #include "reconstruction/guides.h"
-#include "reconstruction/light_return.h"
 #include "reconstruction/luminance.h"
 #include "reconstruction/outliers.h"
 #include "reconstruction/selector.h"
@@ -149,7 +148,7 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
             variance[k] = halves[k].color_variance;
         }
     // Limit rare bright paths; light_return knows the halves as they were
-    const LightReturn light_return(halves);
+    const LightReturn light_return(halves, settings.noise);
     limit_outliers(halves);
     // Smooth the variances: unsmoothed ones follow their own pixel's mean, and would let bright
     // pixels accept dark ones and not the other way round

@@ -9,6 +9,7 @@
 #include "reconstruction/denoiser.h"
 #include "reconstruction/error_estimate.h"
 #include "reconstruction/half_buffer.h"
+#include "reconstruction/light_return.h"
 #include "reconstruction/likeness.h"
 
 namespace covtrace {
@@ -19,6 +20,7 @@ struct HybridSettings {
     float sigma = 4;  ///< deviation of the neighbourhood that judges a first mixture, pixels
     LikenessSettings likeness;           ///< likeness of the pixels that judge the final mixture
     bool mix = true;                     ///< false: the best single candidate, for comparisons
+    HalvesNoise noise = HalvesNoise::of_one_sequence;
     const Denoiser* denoiser = nullptr;  ///< the denoiser that gives one more candidate; null: none
 };
 

@@ -140,7 +140,13 @@ void keep_in_place(const Plane& around, const ColorPlanes& e, ColorPlanes& color
 
 }  // namespace
 
-LightReturn::LightReturn(const Halves& halves) {
+LightReturn::LightReturn(const Halves& halves, HalvesNoise noise) {
+    if (noise == HalvesNoise::independent) {
+        half_difference_ = luminance(halves[0].color);
+        const Plane other = luminance(halves[1].color);
+        for (size_t i = 0; i < other.size(); ++i)
+            half_difference_[i] = 0.5f * (half_difference_[i] - other[i]);
+    }
     for (size_t f = 0; f < kFeatures; ++f)
         features_.push_back(block_means(feature_guide(halves, f), kFinest));
     Plane variance(halves[0].count.width, halves[0].count.height);
@@ -164,6 +170,17 @@ Likeness LightReturn::likeness_of(int level, const Plane& light) const {
     return likeness;
 }
 
+Plane LightReturn::variance_of(int level) const {
+    if (half_difference_.size() > 0) {
+        Plane square = block_means(half_difference_, side(level));
+        for (float& v : square.values) v = sqr(v);
+        return square;
+    }
+    Plane variance = block_means(variance_, blocks(level));
+    for (float& v : variance.values) v /= sqr(float(blocks(level)));
+    return variance;
+}
+
 void LightReturn::give_to_all(const ColorPlanes& e, const ColorPlanes& in_place,
                               ColorPlanes& color) const {
     const Plane light = luminance(color);
@@ -173,7 +190,7 @@ void LightReturn::give_to_all(const ColorPlanes& e, const ColorPlanes& in_place,
         for (size_t c = 0; c < 3; ++c) lack[c] += double(e[c][i] - in_place[c][i]);
         all += double(light[i]);
     }
-    for (float v : variance_.values) variance += sqr(sqr(double(kFinest))) * double(v);
+    for (float v : variance_of(0).values) variance += sqr(sqr(double(kFinest))) * double(v);
     const Rgb times = times_lacking({float(lack[0]), float(lack[1]), float(lack[2])}, float(all),
                                     float(variance), kNoiseOfAll);
     for (size_t c = 0; c < 3; ++c)
@@ -181,6 +198,16 @@ void LightReturn::give_to_all(const ColorPlanes& e, const ColorPlanes& in_place,
             float& v = color[c][i];
             v = std::max(std::min(v, 0.0f), v + light[i] * times[int(c)]);
         }
+}
+
+void LightReturn::keep_what_both_saw(const ColorPlanes& e, ColorPlanes& in_place) const {
+    if (half_difference_.size() == 0) return;
+    const Plane lacking = luminance(e);
+    for (size_t i = 0; i < lacking.size(); ++i) {
+        const float square = sqr(lacking[i]);
+        const float share = square > 0 ? std::max(0.0f, 1 - sqr(half_difference_[i]) / square) : 0;
+        for (Plane& channel : in_place) channel[i] *= share;
+    }
 }
 
 void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
@@ -196,6 +223,8 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
     keep_in_place(light_around(luminance(color)), difference(), in_place);
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < color[c].size(); ++i) in_place[c][i] -= color[c][i];
+    ColorPlanes kept = in_place;
+    keep_what_both_saw(difference(), kept);
     // Give the rest back, level by level, to blocks that are alike
     for (int level = 0; level < kLevels; ++level) {
         const Plane light = luminance(color);
@@ -204,10 +233,8 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
             for (size_t i = 0; i < light.size(); ++i) e[c][i] -= in_place[c][i];
             e[c] = block_means(e[c], side(level));
         }
-        Plane variance = block_means(variance_, blocks(level));
-        for (float& v : variance.values) v /= sqr(float(blocks(level)));
-        const ColorPlanes times =
-            lacking(likeness_of(level, light), e, block_means(light, side(level)), variance);
+        const ColorPlanes times = lacking(likeness_of(level, light), e,
+                                          block_means(light, side(level)), variance_of(level));
         parallel_for_rows(w, h, [&](int y) {
             for (int x = 0; x < w; ++x)
                 for (size_t c = 0; c < 3; ++c) {
@@ -222,7 +249,7 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < color[c].size(); ++i) {
             float& v = color[c][i];
-            v = std::max(std::min(v, 0.0f), v + in_place[c][i]);
+            v = std::max(std::min(v, 0.0f), v + kept[c][i]);
         }
 }
 

@@ -130,6 +130,51 @@ TEST(Denoise, KeepsWindowsAlphaAndCamera) {
     EXPECT_EQ(std::get<float>(result.metadata.at("spp")), 8);
 }
 
+/// Blends every pixel with those to its left and above, as a filter does that splats samples.
+void splat(Image& image) {
+    for (size_t k = 0; k < 3; ++k) {
+        const std::vector<float> sharp = image.channels[k].values;
+        for (size_t y = 1; y < kHeight; ++y)
+            for (size_t x = 1; x < kWidth; ++x) {
+                const size_t i = y * kWidth + x;
+                image.channels[k].values[i] =
+                    0.25f * (sharp[i] + sharp[i - 1] + sharp[i - kWidth] + sharp[i - kWidth - 1]);
+            }
+    }
+}
+
+/// Leaves images as they are, and notes their width.
+class WidthDenoiser : public Denoiser {
+  public:
+    std::string name() const override { return "width"; }
+    size_t memory(size_t) const override { return 0; }
+    std::vector<ColorPlanes> denoise(const NoisyFeatures&,
+                                     std::vector<NoisyImage> images) const override {
+        width = images[0].color[0].width;
+        std::vector<ColorPlanes> results;
+        for (NoisyImage& image : images) results.push_back(std::move(image.color));
+        return results;
+    }
+    mutable int width = 0;
+};
+
+TEST(Denoise, ADenoiserSeesPixelsWithNoiseOfTheirOwn) {
+    std::vector<NamedImage> images = two();
+    const WidthDenoiser denoiser;
+    denoise(images, {.denoiser = &denoiser});
+    EXPECT_EQ(denoiser.width, kWidth);
+    for (NamedImage& named : images) splat(named.image);
+    denoise(images, {.denoiser = &denoiser});
+    EXPECT_EQ(denoiser.width, kWidth / 2);
+}
+
+TEST(Denoise, OneRendersBrightPathLeavesNoBlot) {
+    std::vector<NamedImage> images = two();
+    const double without = relative_error(denoise(images).image);
+    for (size_t k = 0; k < 3; ++k) images[0].image.channels[k].values[20 * kWidth + 30] = 3000;
+    EXPECT_LT(relative_error(denoise(images).image), 1.2 * without);
+}
+
 std::string message_of(const std::vector<NamedImage>& images, const DenoiseOptions& options = {}) {
     try {
         denoise(images, options);

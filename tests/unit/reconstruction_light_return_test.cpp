@@ -119,5 +119,47 @@ TEST(LightReturn, OnePathsLightMakesNoBlotch) {
     EXPECT_GT(*least, 1.02f);
 }
 
+/// Halves without noise but for a spot of `side` x `side` pixels in the middle, which A and B saw
+/// as bright as told.
+Halves halves_with_spot(int side, float a, float b) {
+    Halves halves = halves_with(0);
+    for (size_t k = 0; k < 2; ++k)
+        for (Plane& p : halves[k].color) {
+            p = Plane(kSize, kSize, 1);
+            for (int y = 0; y < side; ++y)
+                for (int x = 0; x < side; ++x) p(kSize / 2 + x, kSize / 2 + y) = k == 0 ? a : b;
+        }
+    set_variance_from_difference(halves);
+    return halves;
+}
+
+/// Most that is given to any pixel of an image that lacks the spot.
+float most_given(const Halves& halves, HalvesNoise noise) {
+    ColorPlanes color = constant(1);
+    LightReturn(halves, noise).give_back(mean_of_both({halves[0].color, halves[1].color}), color);
+    return *std::max_element(color[1].values.begin(), color[1].values.end()) - 1;
+}
+
+TEST(LightReturn, LightOfOnePathIsUncertainWhereItIs) {
+    // The spread over 13 x 13 pixels makes one bright path look certain among few pixels that are
+    // alike; what both halves differ by in the same block does not.
+    for (const float light : {2000.0f, 2e5f}) {
+        Halves halves = halves_with_spot(1, light, 1);
+        for (HalfBuffer& half : halves)
+            for (int y = -1; y < 3; ++y)
+                for (int x = -1; x < 3; ++x)
+                    half.feature[3](kSize / 2 + x, kSize / 2 + y) = 1;  // a small thing by itself
+        EXPECT_LT(most_given(halves, HalvesNoise::independent), 0.02f) << light;
+        EXPECT_GT(most_given(halves, HalvesNoise::of_one_sequence), 1.0f) << light;
+    }
+}
+
+TEST(LightReturn, LightThatBothHalvesSawStays) {
+    EXPECT_NEAR(most_given(halves_with_spot(2, 1e5f, 1e5f), HalvesNoise::independent), 1e5f, 1e3f);
+    // 1.2 and 0.8 of it: (e_A e_B) / e^2 = 0.96
+    EXPECT_NEAR(most_given(halves_with_spot(2, 1.2e5f, 0.8e5f), HalvesNoise::independent), 0.96e5f,
+                1e3f);
+}
+
 }  // namespace
 }  // namespace covtrace
