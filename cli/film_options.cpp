@@ -7,7 +7,7 @@
 
 namespace covtrace::cli {
 
-void add_film_options(CLI::App* c, FilmArguments& a) {
+void add_film_options(CLI::App* c, FilmChoice& a) {
     c->add_option("--film", a.film, "keep the final film, for merge and --resume")
         ->check(not_empty())
         ->option_text("FILE");
@@ -25,7 +25,7 @@ void add_film_options(CLI::App* c, FilmArguments& a) {
         ->option_text("K/N");
 }
 
-void check(FilmArguments& a) {
+void check(FilmChoice& a) {
     if (!a.shard && is_same_file(a.film, a.checkpoint)) a.film = a.checkpoint;
     if (a.shard && a.film.empty())
         throw Error(ErrorKind::usage, "--shard: expected --film FILE for the shard's pixels");

@@ -8,7 +8,7 @@
 #include "cli/commands.h"
 #include "cli/denoiser_options.h"
 #include "cli/display_options.h"
-#include "cli/layer_selection.h"
+#include "cli/layer_options.h"
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/picture_name.h"
@@ -32,15 +32,6 @@ struct MergeArguments {
     DenoiserArguments denoiser;
     bool quiet = false;
 };
-
-/// The reason why the image of a film is not complete.
-std::string missing_part(const RenderState& state) {
-    const auto missing = state.shards - int(state.present.size());
-    if (state.shards == 1) return "its render has not come to its end";
-    if (missing == 0) return "its shards have not come to the end of their round";
-    return fmt::format("{} of its {} shards {} missing, and black", missing, state.shards,
-                       missing == 1 ? "is" : "are");
-}
 
 int merge_films(const MergeArguments& a) {
     const ThreadLimit threads(0);

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "cli/layer_selection.h"
+#include "image/layer_selection.h"
 
 namespace covtrace::cli {
 

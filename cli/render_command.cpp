@@ -14,7 +14,6 @@
 #include "cli/commands.h"
 #include "cli/display_options.h"
 #include "cli/failure.h"
-#include "cli/film_files.h"
 #include "cli/interrupts.h"
 #include "cli/memory_limit.h"
 #include "cli/message.h"
@@ -31,6 +30,8 @@
 #include "image/output_file.h"
 #include "image/write_image.h"
 #include "preview/tev_client.h"
+#include "render/film_files.h"
+#include "render/layers.h"
 #include "render/render_memory.h"
 #include "render/session.h"
 
@@ -65,11 +66,8 @@ void parse_texts(RenderArguments& a) {
     if (a.preset && !a.denoiser.choice && !values_of(*a.preset).denoises)
         a.denoiser.choice = DenoiserChoice::none;
     if (a.quiet && a.progress == ProgressStyle::automatic) a.progress = ProgressStyle::none;
-    a.options.emitters_apart = names(a.layers, "inview") || names(a.tev_layers, "inview");
-    for (const char* layer : {"featurealbedo", "featureN"})
-        a.options.features =
-            a.options.features || names(a.layers, layer) || names(a.tev_layers, layer);
-    a.options.surfaces = names_surfaces(a.layers) || names_surfaces(a.tev_layers);
+    request_layers(a.layers, a.options);
+    request_layers(a.tev_layers, a.options);
     check(a.film);
     if (a.film.shard && !(a.output.empty() && a.png.empty() && a.tev.empty()))
         throw Error(
@@ -200,7 +198,10 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     check_outputs(a, output, description);
     const FoundDenoiser denoiser = denoiser_of(a, is_first);
     a.options.denoiser = denoiser.denoiser;
-    FilmFiles films(a.film, [&progress] { progress.clear(); });
+    FilmFiles films(a.film, [&progress](const std::string& text) {
+        progress.clear();
+        say("warning: {}\n", text);
+    });
     FilmKeeping keeping = films.keeping(is_first);
     keeping.ranks = ranks;
     require_memory(a.max_memory, render_memory(description.film, a.options));

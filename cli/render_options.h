@@ -10,7 +10,7 @@
 
 #include "cli/denoiser_options.h"
 #include "cli/film_options.h"
-#include "cli/layer_selection.h"
+#include "cli/layer_options.h"
 #include "cli/progress_line.h"
 #include "cli/values.h"
 #include "geometry/instruction_set.h"
@@ -31,7 +31,7 @@ struct RenderArguments {
     std::optional<Preset> preset;
     std::optional<InstructionSet> isa;
     std::string seconds, tev;
-    FilmArguments film;
+    FilmChoice film;
     DenoiserArguments denoiser;
     std::optional<DebugPixel> debug_pixel;
     LayerSelection layers{true, {}}, tev_layers;

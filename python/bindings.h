@@ -13,6 +13,8 @@ namespace covtrace::python {
 void bind_errors(pybind11::module_& module);
 /// Images: named layers as numpy views, reading, writing, comparing.
 void bind_image(pybind11::module_& module);
+/// Films of shards, joined.
+void bind_films(pybind11::module_& module);
 /// The reconstruction of images of other renderers.
 void bind_denoise(pybind11::module_& module);
 /// Scenes and rendering.

@@ -8,6 +8,7 @@ PYBIND11_MODULE(_covtrace, module) {
     module.attr("__version__") = kVersion;
     python::bind_errors(module);
     python::bind_image(module);
+    python::bind_films(module);
     python::bind_denoise(module);
     python::bind_render(module);
     python::bind_covariance(module);

@@ -12,6 +12,7 @@
 
 #include "bindings.h"
 #include "core/parallel.h"
+#include "films.h"
 #include "geometry/instruction_set.h"
 #include "gltf/read_gltf.h"
 #include "image/finite_pixels.h"
@@ -19,6 +20,7 @@
 #include "pbrt/read_scene.h"
 #include "planes.h"
 #include "python_lock.h"
+#include "render/layers.h"
 #include "render/scene_file.h"
 #include "render/session.h"
 #include "scene/defaults.h"
@@ -81,8 +83,14 @@ std::exception_ptr wait(Exchange& exchange, Monitor& monitor, const py::object& 
     }
 }
 
+/// The films that a render keeps, and the layers of its image.
+struct Deliverables {
+    FilmChoice films;
+    std::optional<LayerSelection> layers;  ///< empty: every layer that is made
+};
+
 struct Rendered {
-    SharedPlanes planes;
+    SharedPlanes planes;  ///< without layers for a shard, which has no image
     RenderStatistics statistics;
     bool complete = false;
     std::string isa;
@@ -107,21 +115,28 @@ std::vector<std::string> texts_of(const Warnings& warnings) {
 /// Builds the scene and renders it, without Python.
 Rendered render_description(SceneDescription description, RenderOptions options,
                             const std::optional<Preset>& bundle, const DenoiserSearch& search,
-                            const SceneOverrides& overrides, int threads, const std::string& isa,
-                            size_t texture_bytes, Monitor& monitor) {
+                            const SceneOverrides& overrides, const Deliverables& deliverables,
+                            int threads, const std::string& isa, size_t texture_bytes,
+                            Monitor& monitor) {
     const ThreadLimit limit(threads);
+    const bool is_shard = deliverables.films.shard.has_value();
     FoundDenoiser denoiser;
-    if (options.method == Method::hybrid) denoiser = find_denoiser(search);
+    if (options.method == Method::hybrid && !is_shard) denoiser = find_denoiser(search);
     options.denoiser = denoiser.denoiser;
     const auto told = std::ptrdiff_t(description.warnings.size());
     apply(overrides, description);
     if (bundle) apply(*bundle, description, options);
     // Stand-ins for a camera or lights are known only now.
     Warnings warnings(description.warnings.begin() + told, description.warnings.end());
+    FilmFiles films(deliverables.films, [&warnings](const std::string& text) {
+        warnings.push_back({{}, text});
+    });
+    FilmKeeping keeping = films.keeping(true);
     const double begin = monitor.elapsed();
     RenderScene scene(std::move(description), isa, texture_bytes);
     const double building = monitor.elapsed() - begin;
-    RenderResult result = render(scene, options, monitor);
+    RenderResult result = render(scene, options, monitor, std::move(keeping));
+    films.finish();
     const Warnings& of_materials = scene.materials.warnings();
     warnings.insert(warnings.end(), of_materials.begin(), of_materials.end());
     if (denoiser.is_unusable) warnings.push_back({{}, "no denoiser is used: " + denoiser.why_none});
@@ -133,9 +148,10 @@ Rendered render_description(SceneDescription description, RenderOptions options,
     }
     const std::optional<ReplacedPixels> replaced = replaced_pixels(result.image.metadata);
     if (replaced) warnings.push_back({{}, describe(*replaced)});
+    if (!is_shard) select_layers(result.image, deliverables.layers, warnings);
     return {std::make_shared<Planes>(std::move(result.image)),
             std::move(result.statistics),
-            result.complete,
+            result.complete || (is_shard && !monitor.cancelled()),
             scene.geometry.isa(),
             std::move(warnings),
             std::move(denoiser),
@@ -194,7 +210,9 @@ py::dict statistics_dict(const Rendered& r, double elapsed) {
 }
 
 py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
-    const RenderOptions options = render_options(o);
+    RenderOptions options = render_options(o);
+    const Deliverables deliverables{film_choice(o), layer_selection(o)};
+    if (deliverables.layers) request_layers(*deliverables.layers, options);
     const std::optional<Preset> bundle = preset(o);
     const DenoiserSearch search = denoiser_search(o);
     const SceneOverrides overrides = scene_overrides(o);
@@ -230,7 +248,7 @@ py::tuple render_scene(const SceneDescription& scene, const py::dict& o) {
         try {
             rendered =
                 render_description(std::move(description), options, bundle, search, overrides,
-                                   threads, isa_name(isa), texture_bytes, monitor);
+                                   deliverables, threads, isa_name(isa), texture_bytes, monitor);
         } catch (...) {
             failure = std::current_exception();
         }

@@ -29,6 +29,7 @@ from .builder import SceneBuilder
 from .denoising import denoise
 from .errors import (Error, FileError, InternalError, Interrupted, LimitError, SceneError,
                      SceneWarning, UsageError)
+from .films import merge
 from .image import Comparison, Image, compare
 from .progress import Progress
 from .rendering import render
@@ -37,4 +38,4 @@ from .scene import Scene
 
 __all__ = ["Comparison", "Error", "FileError", "Image", "InternalError", "Interrupted",
            "LimitError", "Progress", "RunningRender", "Scene", "SceneBuilder", "SceneError", "SceneWarning",
-           "UsageError", "__version__", "compare", "covariance", "denoise", "render", "start"]
+           "UsageError", "__version__", "compare", "covariance", "denoise", "merge", "render", "start"]

@@ -25,8 +25,8 @@ def path_of(name: str, value: str | os.PathLike[str], expected: str = "a file's 
     return path
 
 
-def paths_of(name: str, values: Iterable[str | os.PathLike[str]]) -> list[str]:
-    expected = "a list of folders"
+def paths_of(name: str, values: Iterable[str | os.PathLike[str]],
+             expected: str = "a list of folders") -> list[str]:
     if isinstance(values, (str, bytes)):  # whose letters would be the folders
         refuse(name, values, expected)
     try:
@@ -62,15 +62,52 @@ def shutter_of(value: tuple[float, float] | None) -> tuple[float, float] | None:
 _SECONDS = {"": 1, "s": 1, "m": 60, "h": 3600}
 
 
-def seconds_of(value: float | str | None) -> float | None:
+def seconds_of(value: float | str | None, name: str = "time") -> float | None:
     """Seconds, as a number or as a text such as "2.5", "45s", "3m" or "1h30m"."""
     if not isinstance(value, str):
         return value
     parts = re.findall(r"(\d+(?:\.\d+)?)([smh]?)", value)
     # Without a unit only a single number is clear: "1h30" could mean minutes or seconds.
     if "".join(number + unit for number, unit in parts) != value or (len(parts) != 1 and any(not u for _, u in parts)):
-        refuse("time", value, "seconds, or a text such as '45s', '3m' or '1h30m'")
+        refuse(name, value, "seconds, or a text such as '45s', '3m' or '1h30m'")
     return sum(float(number) * _SECONDS[unit] for number, unit in parts)
+
+
+def films_of(film: Any, checkpoint: Any, every: float | str | None, resume: bool,
+             shard: tuple[int, int] | None) -> dict[str, Any]:
+    """The films of a render, with the rules of the program's options."""
+    paths = {name: None if value is None else path_of(name, value)
+             for name, value in (("film", film), ("checkpoint", checkpoint))}
+    same = None not in paths.values() and os.path.realpath(paths["film"]) == os.path.realpath(paths["checkpoint"])
+    if shard is None:
+        if same:
+            paths["film"] = paths["checkpoint"]
+        if checkpoint is None and resume:
+            raise UsageError("resume: expected a checkpoint, the film to go on from")
+        if checkpoint is None and every is not None:
+            raise UsageError("every: expected a checkpoint, the film to keep")
+    else:
+        if isinstance(shard, (str, bytes)):  # "12" would be one
+            refuse("shard", shard, "(k, n) with 1 <= k <= n")
+        if film is None:
+            raise UsageError("shard: expected a film for the shard's pixels")
+        if same:
+            raise UsageError("shard: film and checkpoint must differ: the checkpoint is the merged film "
+                             "that all shards begin with")
+    return {**paths, "every": seconds_of(every, "every"), "resume": resume, "shard": shard}
+
+
+def layers_of(value: Any) -> str | None:
+    """Names of layers as one text with commas."""
+    expected = "'all', 'none', or names of layers: a text with commas or a list"
+    if value is None:
+        return None
+    if isinstance(value, str):
+        return text_of("layers", value)
+    try:
+        return ",".join(text_of("layers", name) for name in value) or "none"
+    except TypeError:
+        refuse("layers", value, expected)
 
 
 def resolution_of(value: Any) -> Any:

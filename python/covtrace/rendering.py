@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, Protocol
 
 from . import _covtrace
-from .arguments import (camera_of, cancel_of, environment_of, function_of, path_of, resolution_of,
+from .arguments import (camera_of, cancel_of, environment_of, films_of, function_of, layers_of, path_of, resolution_of,
                         seconds_of, shutter_of)
 from .builder import SceneBuilder
 from .errors import SceneWarning, UsageError
@@ -63,6 +63,10 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            isa: Literal["sse2", "avx", "avx2", "avx512"] | None = None,
            texture_memory: int | str | None = None,
            search_paths: Iterable[str | os.PathLike[str]] = (),
+           layers: str | Iterable[str] | None = None,
+           film: str | os.PathLike[str] | None = None,
+           checkpoint: str | os.PathLike[str] | None = None, every: float | str | None = None,
+           resume: bool = False, shard: tuple[int, int] | None = None,
            progress: Callable[[Progress], Any] | None = None,
            preview: Callable[[Image], Any] | None = None,
            cancel: Cancel | None = None) -> Image:
@@ -92,6 +96,15 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
         place of the scene's infinite lights; degrees about what is up; a factor. The last two change
         the scene's own where no environment is given.
     threads: 0 for all cores; holds for the process while the render runs.
+    layers: which layers the image has beside R, G, B and A: "all" and "none" as in the program, names
+        as a text with commas or a list, such as ["raw", "featurealbedo"]; by default all that are
+        made anyway. A warning for a layer that the method does not make.
+    film, checkpoint, every, resume: files that keep the render's state, as in the program: `film` at
+        the end, `checkpoint` also every so many seconds (default 60); with `resume` the render goes
+        on from the checkpoint where there is one, to the same image as if it had never ended.
+    shard: (k, n), the k-th of n shares of the image, kept in `film`; `merge` makes the image of all.
+        The `Image` that comes back has no layers. With `checkpoint` and `resume` all shards go on
+        from that merged film.
     progress: called with a `Progress` about ten times a second, in the calling thread.
     preview: called between rounds with the `Image` of the samples so far, in the calling thread;
         of images that come faster than it returns the latest.
@@ -117,6 +130,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
                "camera": camera_of(None if is_choice else camera), "environment": environment_of(environment),
                "environment_rotation": environment_rotation, "environment_scale": environment_scale,
                "seed": seed,
+               "layers": layers_of(layers), **films_of(film, checkpoint, every, resume, shard),
                "threads": threads, "isa": isa, "texture_memory": _bytes(texture_memory),
                "progress": function_of("progress", progress),
                "preview": _with_images(function_of("preview", preview)), "cancel": cancel_of(cancel)}

@@ -131,4 +131,10 @@ Image make_layers(const Film& film, PixelBounds display, bool has_holes,
     return image;
 }
 
+void request_layers(const LayerSelection& selection, RenderOptions& options) {
+    if (names(selection, "inview")) options.emitters_apart = true;
+    if (names(selection, "featurealbedo") || names(selection, "featureN")) options.features = true;
+    if (names_surfaces(selection)) options.surfaces = true;
+}
+
 }  // namespace covtrace

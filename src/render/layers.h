@@ -5,11 +5,13 @@
 #include <vector>
 
 #include "image/image.h"
+#include "image/layer_selection.h"
 #include "prediction/covariance_buffer.h"
 #include "reconstruction/candidates.h"
 #include "reconstruction/filter_field.h"
 #include "reconstruction/filtered_image.h"
 #include "render/film.h"
+#include "render/options.h"
 
 namespace covtrace {
 
@@ -34,5 +36,8 @@ struct CovarianceLayers {
 /// (docs/reference/layers.md).
 Image make_layers(const Film& film, PixelBounds display, bool has_holes,
                   const std::optional<CovarianceLayers>& covariance);
+
+/// Makes a render collect what the selection's names need, beside what it collects already.
+void request_layers(const LayerSelection& selection, RenderOptions& options);
 
 }  // namespace covtrace

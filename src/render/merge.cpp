@@ -111,4 +111,12 @@ RenderState FilmMerge::result() && {
     return sum;
 }
 
+std::string missing_part(const RenderState& state) {
+    const auto missing = state.shards - int(state.present.size());
+    if (state.shards == 1) return "its render has not come to its end";
+    if (missing == 0) return "its shards have not come to the end of their round";
+    return std::to_string(missing) + " of its " + std::to_string(state.shards) + " shards " +
+           (missing == 1 ? "is" : "are") + " missing, and black";
+}
+
 }  // namespace covtrace

@@ -23,4 +23,7 @@ class FilmMerge {
     std::optional<RenderState> sum_;
 };
 
+/// The reason why the image of a film that is not complete is not.
+std::string missing_part(const RenderState& state);
+
 }  // namespace covtrace

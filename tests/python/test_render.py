@@ -346,12 +346,11 @@ class Package(unittest.TestCase):
         self.assertTrue(pathlib.Path(covtrace.__file__).with_name("py.typed").exists())
 
     def test_keywords_are_the_options_of_the_program(self):
-        """All that change the image; files, messages and terminals are the program's alone."""
+        """All that change the image and its state; other files, messages and terminals are the program's alone."""
         import inspect
         of_program_alone = {
-            "checkpoint", "debug_pixel", "every", "exposure", "film", "help", "layer_names", "layers",
-            "max_memory", "output", "png", "quiet", "reproducible", "resume", "shard", "stats",
-            "tev", "tev_layers", "view"}
+            "debug_pixel", "exposure", "help", "layer_names", "max_memory", "output", "png", "quiet",
+            "reproducible", "stats", "tev", "tev_layers", "view"}
         text = subprocess.run([os.environ["COVTRACE"], "render", "--help"], capture_output=True,
                               text=True, check=True).stdout
         options = {name.replace("-", "_") for name in re.findall(r"(?<=[ ,])--([a-z][a-z-]*)", text)}

@@ -1,14 +1,12 @@
-#include "cli/layer_selection.h"
-
-#include <fmt/format.h>
+#include "image/layer_selection.h"
 
 #include <algorithm>
 #include <array>
 #include <string_view>
 
-#include "cli/message.h"
+#include "core/error.h"
 
-namespace covtrace::cli {
+namespace covtrace {
 
 namespace {
 
@@ -33,6 +31,18 @@ std::string layer_of(const Channel& c) {
     return c.name.substr(0, c.name.rfind('.'));
 }
 
+/// All names that a selection may have, with commas.
+std::string known() {
+    std::string text;
+    const auto add = [&text](const auto& names) {
+        for (std::string_view name : names) text += (text.empty() ? "" : ",") + std::string(name);
+    };
+    add(kStandard);
+    add(kSurfaces);
+    add(kParts);
+    return text;
+}
+
 bool is_selected(const Channel& c, const LayerSelection& selection) {
     const bool root = c.name.find('.') == std::string::npos && c.name != "Z";
     const std::string layer = layer_of(c);
@@ -52,22 +62,11 @@ LayerSelection parse_layers(const std::string& option, const std::string& text) 
         else if (contains(kStandard, name) || contains(kSurfaces, name) || contains(kParts, name))
             selection.names.push_back(name);
         else
-            throw Error(ErrorKind::usage,
-                        fmt::format("{}: there is no layer '{}'; expected none, all, or some of "
-                                    "{},{},{}",
-                                    option, name, fmt::join(kStandard, ","),
-                                    fmt::join(kSurfaces, ","), fmt::join(kParts, ",")));
+            throw Error(ErrorKind::usage, option + ": there is no layer '" + name +
+                                              "'; expected none, all, or some of " + known());
         from = to + 1;
     }
     return selection;
-}
-
-void add_layers(CLI::App* c, const std::string& name, LayerSelection& selection,
-                const std::string& help) {
-    const auto parse = [name, &selection](const std::string& text) {
-        selection = parse_layers(name, text);
-    };
-    c->add_option_function<std::string>(name, parse, help)->option_text("LIST");
 }
 
 bool names(const LayerSelection& selection, const std::string& layer) {
@@ -79,12 +78,13 @@ bool names_surfaces(const LayerSelection& selection) {
                        [](const std::string& name) { return contains(kSurfaces, name); });
 }
 
-void warn_of_absent_layers(const Image& image, const LayerSelection& selection) {
+std::vector<std::string> absent_layers(const Image& image, const LayerSelection& selection) {
+    std::vector<std::string> absent;
     for (const std::string& name : selection.names)
         if (std::none_of(image.channels.begin(), image.channels.end(),
                          [&](const Channel& c) { return layer_of(c) == name; }))
-            say("warning: --layers: this image has no layer '{}'; not every method makes each\n",
-                name);
+            absent.push_back(name);
+    return absent;
 }
 
 void keep_layers(Image& image, const LayerSelection& selection) {
@@ -98,4 +98,4 @@ Image copy_layers(const Image& image, const LayerSelection& selection) {
     return copy;
 }
 
-}  // namespace covtrace::cli
+}  // namespace covtrace

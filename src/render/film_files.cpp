@@ -1,24 +1,23 @@
-#include "cli/film_files.h"
+#include "render/film_files.h"
 
 #include <utility>
 
-#include "cli/message.h"
 #include "render/film_file.h"
 
-namespace covtrace::cli {
+namespace covtrace {
 
 namespace {
 
 /// Seconds between checkpoints, and the largest share of a render's time that writing them takes;
-/// both unless --every is given.
+/// both unless the choice has `every`.
 constexpr double kEvery = 60, kMostShare = 0.01;
 /// Size beyond which writing a film may take more than a second: an interrupt is answered first.
 constexpr size_t kSlowBytes = size_t(100) << 20;
 
 }  // namespace
 
-FilmFiles::FilmFiles(const FilmArguments& arguments, std::function<void()> clear_line)
-    : arguments_(arguments), clear_line_(std::move(clear_line)) {}
+FilmFiles::FilmFiles(const FilmChoice& choice, std::function<void(const std::string&)> tell)
+    : choice_(choice), tell_(std::move(tell)) {}
 
 std::shared_ptr<const RenderState> FilmFiles::found(const std::filesystem::path& file,
                                                     bool writes) const {
@@ -27,16 +26,14 @@ std::shared_ptr<const RenderState> FilmFiles::found(const std::filesystem::path&
     std::error_code ignored;
     if (!film.damage.empty() && writes && std::filesystem::exists(file, ignored))
         film.damage += "; it is now '" + set_aside(file).string() + "'";
-    if (!film.damage.empty()) {
-        clear_line_();
-        say("warning: {}; going on from '{}'\n", film.damage, earlier_film(file).string());
-    }
+    if (!film.damage.empty())
+        tell_(film.damage + "; going on from '" + earlier_film(file).string() + "'");
     return std::make_shared<const RenderState>(std::move(*film.state));
 }
 
 FilmKeeping FilmFiles::keeping(bool writes) {
     FilmKeeping k;
-    const auto& a = arguments_;
+    const auto& a = choice_;
     if (a.shard) k.shard = *a.shard;
     // The checkpoint that shards begin with is written by the process that joins them.
     const bool writes_checkpoint = writes && !a.shard;
@@ -56,14 +53,12 @@ FilmKeeping FilmFiles::keeping(bool writes) {
 }
 
 void FilmFiles::keep(const RenderState& state, KeepReason reason) {
-    const auto& a = arguments_;
+    const auto& a = choice_;
     failure_.reset();
     size_t bytes = 0;
     for (const auto& [name, count] : state.memory()) bytes += count;
-    if (reason == KeepReason::interrupted && bytes > kSlowBytes) {
-        clear_line_();
-        say("interrupted: keeping a film of {} MB, which takes a while\n", bytes >> 20);
-    }
+    if (reason == KeepReason::interrupted && bytes > kSlowBytes)
+        tell_("keeping a film of " + std::to_string(bytes >> 20) + " MB, which takes a while");
     // A shard has one file, --film, which it writes at every occasion. Other renders write it when
     // they end or are interrupted; where it has the checkpoint's name, that is written below.
     if (a.shard || (reason != KeepReason::checkpoint && a.film != a.checkpoint))
@@ -79,8 +74,7 @@ void FilmFiles::write(const RenderState& state, const std::filesystem::path& fil
     } catch (const Error& e) {
         failure_ = e;
         if (!failing_.insert(file).second) return;
-        clear_line_();
-        say("warning: {}\n", e.what());
+        tell_(e.what());
     }
 }
 
@@ -88,4 +82,4 @@ void FilmFiles::finish() const {
     if (failure_) throw *failure_;
 }
 
-}  // namespace covtrace::cli
+}  // namespace covtrace
