@@ -138,7 +138,7 @@ ROLLING = RollingBall()
 
 @dataclass(frozen=True)
 class BallSet:
-    """What lies on the table: resting balls, and reds of the material "red" in rows of a pack.
+    """The balls on the table: resting ones, and reds of the material "red" in rows of a pack.
 
     numbered, plain: see NUMBERED and PLAIN.
     """

@@ -36,7 +36,7 @@ Rgb albedo_of(const Guides& guides, size_t i) {
     return {std::max(a.r, kLeastAlbedo), std::max(a.g, kLeastAlbedo), std::max(a.b, kLeastAlbedo)};
 }
 
-/// What is gathered and by what, in rows that end with zeros, so that whole vectors may be read
+/// Guides and gathered light in rows that end with zeros, so that whole vectors may be read
 /// from any pixel.
 struct Rows {
     Rows(int w, int h) : stride(size_t(w) + kLanes) {

@@ -110,7 +110,7 @@ Renders render_all(Workshop& workshop) {
     return r;
 }
 
-/// What the claims are about: filters of single paths, both lenses together.
+/// Numbers that claims are about: filters of single paths, both lenses together.
 struct Compared {
     std::vector<double> ratios, widths_at_top;
 };

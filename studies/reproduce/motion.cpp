@@ -78,7 +78,7 @@ Stretched compare(const Filters& still, const Filters& filters, const Way& way) 
     return s;
 }
 
-/// What the claims are about: all boards together.
+/// Numbers that claims are about: all boards together.
 struct Compared {
     std::vector<double> ratios, angles, stretches;
 };

@@ -6,7 +6,7 @@ namespace covtrace::reproduce {
 
 namespace {
 
-/// What is asked of the full size, whatever the size of the run.
+/// A demand that is made of the full size, in words.
 std::string at_full_size(const std::string& demand, const Workshop& workshop) {
     return workshop.size == Size::full ? demand : demand + " at the full size";
 }

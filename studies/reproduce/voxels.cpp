@@ -56,7 +56,7 @@ std::vector<Kind> kinds(const Workshop& workshop) {
     return list;
 }
 
-/// What every kind made.
+/// Renders and filters of every kind.
 struct Measured {
     std::vector<Kind> kinds;
     std::vector<Sampled> sampled;
