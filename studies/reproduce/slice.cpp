@@ -189,7 +189,7 @@ Drawing drawn(const Study& s) {
     const int width = field.width, height = field.height;
     const SpaceTimeCovariance& p = s.predicted;
     const double xx = p.xx + window_variance(s.window[0]);
-    Sheet sheet({width, height}, 400.0f / float(width), 2, 3, {false, false, true});
+    Sheet sheet({width, height}, 560.0f / float(width), 2, 3, {false, false, true});
     const double up_to =
         3.2 * MovingPattern::bandwidth(int(std::lround(s.way / MovingPattern::kWay)));
     const Frequency range{up_to, up_to * s.way}, units{1, double(kSlots)};
