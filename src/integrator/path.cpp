@@ -87,6 +87,9 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, M
     guide_ = has_diffuse_lobe(bsdf) && depth_ < max_depth_
                  ? caustic_guide_.at(hit.position, light_normal_)
                  : GuideMixture{};
+    sky_cell_ = sky_guide_ && light_normal_ != Vec3{} && !is_specular(bsdf)
+                    ? sky_guide_->at(hit.position, light_normal_)
+                    : nullptr;
     // Sample direct illumination, then the direction in which the path goes on
     if (!is_specular(bsdf)) add_direct(surface, u_choice.x, u_light, vertex);
     return scatter(surface, u_choice.y, u_scatter, vertex) && survives(u_roulette.x);

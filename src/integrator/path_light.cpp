@@ -19,7 +19,7 @@ void PathTracer::escape() {
     if (specular_) {
         sky.radiance = scene_.lights.environment(ray_.origin, ray_.direction);
     } else {
-        sky = scene_.lights.sky(previous_position_, previous_normal_, ray_.direction);
+        sky = scene_.lights.sky(previous_position_, previous_normal_, ray_.direction, sky_cell_);
         weight = power_heuristic(pdf_, sky.pdf);
     }
     const Rgb contribution = beta_ * sky.radiance * weight;
@@ -52,7 +52,7 @@ void PathTracer::add_direct(const Surface& surface, float u_select, Vec2 u, Path
     // Sample a light
     const auto light =
         scene_.lights.finish_draw(hit.position, light_normal_, hit.time, u_select,
-                                  draws_ahead_ ? light_draw_ : Lights::Draw{u, {}, 0});
+                                  draws_ahead_ ? light_draw_ : Lights::Draw{u, {}, 0}, sky_cell_);
     if (!light || is_black(light->radiance) || !(light->pdf > 0)) return;
     // Evaluate the BSDF for its direction
     const Vec3 wi_local = surface.frame.to_local(light->wi);

@@ -40,6 +40,7 @@ bool PathTracer::scatter_in_medium(float distance) {
     const auto [u_choice, u_light, u_phase, u_roulette] = sampler_.next_four_2d();
     // Sample direct illumination
     light_normal_ = {};
+    sky_cell_ = nullptr;
     Ray shadow;
     shadow.origin = place.position;
     shadow.time = place.time;

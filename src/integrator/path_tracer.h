@@ -30,10 +30,11 @@ inline float power_heuristic(float a, float b) {
 /// all light behind specular lobes, and the glow of media, by the path alone.
 class PathTracer {
   public:
-    PathTracer(const LitScene& scene, const CausticGuide& guide, Ray ray, const Sampler& sampler,
-               int max_depth, PathRecord* record)
+    PathTracer(const LitScene& scene, const CausticGuide& guide, const SkyGuide* sky_guide, Ray ray,
+               const Sampler& sampler, int max_depth, PathRecord* record)
         : scene_(scene),
           caustic_guide_(guide),
+          sky_guide_(sky_guide),
           ray_(ray),
           sampler_(sampler),
           max_depth_(max_depth),
@@ -131,6 +132,7 @@ class PathTracer {
 
     const LitScene& scene_;
     const CausticGuide& caustic_guide_;
+    const SkyGuide* const sky_guide_;
     Ray ray_;
     Sampler sampler_;
     const int max_depth_;
@@ -159,6 +161,8 @@ class PathTracer {
     // Light draw of the vertex to come, begun before that vertex is known.
     Lights::Draw light_draw_;
     const bool draws_ahead_;
+    // The parts of the sky that are seen from the last vertex; null: not known.
+    const SkyCell* sky_cell_ = nullptr;
     Vec3 light_normal_;  // normal that lights are sampled for at the current vertex; 0: both sides
     // Place and light normal of the last vertex, for the weights.
     Vec3 previous_position_, previous_normal_;

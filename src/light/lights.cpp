@@ -11,10 +11,6 @@
 namespace covtrace {
 namespace {
 
-/// Least probability of choosing finite lights, and of infinite ones unless all are even skies: the
-/// estimates know no shadows, so neither group is taken for negligible by them.
-constexpr float kSmallestShare = 0.1f;
-
 Emitter make_emitter(const PlacedShape& shape) {
     const auto& geometry = shape.description.geometry;
     if (std::holds_alternative<Sphere>(geometry) || std::holds_alternative<Disk>(geometry))
@@ -135,58 +131,6 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
     tree = LightTree(finite);
 }
 
-float Lights::Impl::infinite_weight(const InfiniteShare& share, size_t i, Vec3 p, Vec3 n) const {
-    if (i >= distants.size()) {
-        const Environment& e = environments[i - distants.size()];
-        return e.irradiance(p) * (e.is_even() ? share.even : 1.0f);
-    }
-    const float facing = choice_weight(distants[i].irradiance);
-    return n == Vec3{} ? facing : facing * side_weight(dot(distants[i].direction, n));
-}
-
-InfiniteShare Lights::Impl::infinite_share(Vec3 p, Vec3 n) const {
-    InfiniteShare share;
-    if (infinite_count() == 0) return share;
-    float even = 0;
-    for (size_t i = 0; i < infinite_count(); ++i) {
-        const bool is_even = i >= distants.size() && environments[i - distants.size()].is_even();
-        (is_even ? even : share.weight) += infinite_weight(share, i, p, n);
-    }
-    const float finite = tree.irradiance(p, n);
-    const bool has_uneven = share.weight > 0;
-    if (even > 0) {
-        // An even sky (uniform infinite light) is found by BSDFs, too: it counts with half of what
-        // it outshines everything else by (docs/decisions/0074).
-        const float rest = finite + share.weight;
-        share.even = 0.5f * std::max(0.0f, 1 - rest / even);
-        share.weight += share.even * even;
-    }
-    if (!(share.weight > 0)) return share;
-    share.probability = finite > 0
-                            ? std::clamp(share.weight / (share.weight + finite),
-                                         has_uneven ? kSmallestShare : 0.0f, 1 - kSmallestShare)
-                            : 1.0f;
-    return share;
-}
-
-Rgb Lights::Impl::environment(Vec3 p, Vec3 w) const {
-    Rgb sum;
-    for (const Environment& e : environments) sum += e.radiance(p, w);
-    return sum;
-}
-
-Lights::Sky Lights::Impl::sky(const InfiniteShare& share, Vec3 p, Vec3 n, Vec3 w) const {
-    Sky sky;
-    for (size_t i = 0; i < environments.size(); ++i) {
-        const EnvironmentMap::Sight sight = environments[i].look(p, n, w);
-        const float weight = infinite_weight(share, distants.size() + i, p, n);
-        sky.radiance += sight.radiance;
-        if (weight > 0) sky.pdf += weight * sight.pdf;
-    }
-    sky.pdf *= share.probability > 0 ? share.probability / share.weight : 0;
-    return sky;
-}
-
 std::optional<LightSample> Lights::Impl::sample_area(int light, float probability, Vec3 p,
                                                      float time, Vec2 u) const {
     const AreaLight& area = area_lights[owner[static_cast<size_t>(light)]];
@@ -239,44 +183,6 @@ std::optional<LightSample> Lights::Impl::sample_point(int light, float probabili
     return s;
 }
 
-std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& share, Vec3 p, Vec3 n,
-                                                         float u_select, Draw draw) const {
-    // The last light with any weight takes the probability that rounding leaves over.
-    float rest = u_select * share.weight, chosen_weight = 0;
-    size_t chosen = 0;
-    for (size_t i = 0; i < infinite_count(); ++i) {
-        const float weight = infinite_weight(share, i, p, n);
-        if (!(weight > 0)) continue;
-        chosen = i;
-        chosen_weight = weight;
-        if (rest < weight) break;
-        rest -= weight;
-    }
-    LightSample s;
-    s.light = first_distant() + static_cast<int>(chosen);
-    if (chosen < distants.size()) {
-        s.wi = distants[chosen].direction;
-        s.radiance = distants[chosen].irradiance;
-        s.pdf = share.probability * chosen_weight / share.weight;
-        s.is_delta = true;
-        return s;
-    }
-    const Environment& environment_light = environments[chosen - distants.size()];
-    advance(environment_light, draw, 2);
-    s.wi = environment_light.direction(p, n, draw.sky);
-    const Sky there = sky(share, p, n, s.wi);
-    s.radiance = there.radiance;
-    s.pdf = there.pdf;
-    if (!(s.pdf > 0) || is_black(s.radiance)) return std::nullopt;
-    return s;
-}
-
-void Lights::Impl::advance(const Environment& light, Draw& draw, int steps) const {
-    if (draw.steps < 1 && steps >= 1) draw.sky = light.begin_draw(draw.u);
-    if (draw.steps < 2 && steps >= 2) light.choose_texel(draw.sky);
-    draw.steps = std::max(draw.steps, steps);
-}
-
 Rgb Lights::Impl::radiance_at(const AreaLight& area, const TexturePoint& at) const {
     return area.image < 0 ? area.radiance : area.radiance * textures->eval(area.image, at);
 }
@@ -310,10 +216,10 @@ void Lights::continue_draw(Draw& draw) const {
 }
 
 std::optional<LightSample> Lights::finish_draw(Vec3 p, Vec3 n, float time, float u_select,
-                                               Draw draw) const {
+                                               Draw draw, const SkyCell* cell) const {
     const InfiniteShare share = impl_->infinite_share(p, n);
     if (u_select < share.probability)
-        return impl_->sample_infinite(share, p, n, u_select / share.probability, draw);
+        return impl_->sample_infinite(share, p, n, u_select / share.probability, draw, cell);
     const float finite = 1 - share.probability;
     if (!(finite > 0)) return std::nullopt;
     const float u_tree = std::min((u_select - share.probability) / finite, kLargestBelowOne);
@@ -358,8 +264,8 @@ bool Lights::has_environment() const {
 Rgb Lights::environment(Vec3 p, Vec3 w) const {
     return impl_->environment(p, w);
 }
-Lights::Sky Lights::sky(Vec3 p, Vec3 n, Vec3 w) const {
-    return impl_->sky(impl_->infinite_share(p, n), p, n, w);
+Lights::Sky Lights::sky(Vec3 p, Vec3 n, Vec3 w, const SkyCell* cell) const {
+    return impl_->sky(impl_->infinite_share(p, n), p, n, w, cell);
 }
 std::vector<DistantView> Lights::distant_views() const {
     std::vector<DistantView> views;

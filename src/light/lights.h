@@ -7,6 +7,7 @@
 
 #include "geometry/geometry.h"
 #include "light/environment_map.h"
+#include "light/sky_cell.h"
 #include "scene/scene_description.h"
 #include "texture/texture.h"
 
@@ -79,9 +80,10 @@ class Lights {
     /// Does the second step of a draw, which asks for a texel's memory: best before other work that
     /// takes as long as memory does to answer.
     void continue_draw(Draw& draw) const;
-    /// Finishes `sample` with a draw that was taken as far as time allowed.
-    std::optional<LightSample> finish_draw(Vec3 p, Vec3 n, float time, float u_select,
-                                           Draw draw) const;
+    /// Finishes `sample` with a draw that was taken as far as time allowed. A share of the samples
+    /// of the sky, uniform infinite lights and environment maps, follows `cell`, if there is one.
+    std::optional<LightSample> finish_draw(Vec3 p, Vec3 n, float time, float u_select, Draw draw,
+                                           const SkyCell* cell = nullptr) const;
 
     /// Radiance that the surface at `hit` emits towards `wo` (unit, away from the surface).
     Rgb emitted(const SurfaceHit& hit, Vec3 wo) const;
@@ -95,12 +97,12 @@ class Lights {
     /// the direction `w` (unit, away from the scene). Distant lights have none.
     Rgb environment(Vec3 p, Vec3 w) const;
     /// Radiance from one direction as `environment` has it, and the density per solid angle with
-    /// which `sample(p, n)` finds that direction.
+    /// which `sample(p, n)` finds that direction; with a cell, that of `finish_draw`.
     struct Sky {
         Rgb radiance;
         float pdf = 0;
     };
-    Sky sky(Vec3 p, Vec3 n, Vec3 w) const;
+    Sky sky(Vec3 p, Vec3 n, Vec3 w, const SkyCell* cell = nullptr) const;
     float environment_pdf(Vec3 p, Vec3 n, Vec3 w) const { return sky(p, n, w).pdf; }
 
     /// All emissive shapes that rays can meet, each as a whole.

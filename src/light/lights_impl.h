@@ -50,14 +50,15 @@ struct Lights::Impl {
     std::optional<LightSample> sample_point(int light, float probability, Vec3 p) const;
     /// Chooses an infinite light by its weight, then a direction.
     std::optional<LightSample> sample_infinite(const InfiniteShare& share, Vec3 p, Vec3 n,
-                                               float u_select, Draw draw) const;
+                                               float u_select, Draw draw,
+                                               const SkyCell* cell) const;
     /// Takes a draw of `light` up to the given number of steps (Lights::Draw::steps).
     void advance(const Environment& light, Draw& draw, int steps) const;
 
     InfiniteShare infinite_share(Vec3 p, Vec3 n) const;
     /// Weight of infinite light i (distant ones come first) for choosing among them.
     float infinite_weight(const InfiniteShare& share, size_t i, Vec3 p, Vec3 n) const;
-    Sky sky(const InfiniteShare& share, Vec3 p, Vec3 n, Vec3 w) const;
+    Sky sky(const InfiniteShare& share, Vec3 p, Vec3 n, Vec3 w, const SkyCell* cell) const;
     Rgb environment(Vec3 p, Vec3 w) const;
 
     /// The area light of the shape that was hit; null where the shape does not emit.
