@@ -17,7 +17,7 @@ NOTHING_REPLACED = {
     "nothing in the file to be seen": ("the scene has no triangles",),
     "an animation, shown at one moment": ("the scene is rendered at rest",),
     "several cameras, the first is taken": (" cameras is used",),
-    "several animations or variants, told with how to choose": ("play together", "the primitives' own materials are rendered"),
+    "several animations or variants, told with how to choose": ("animations is played", "the primitives' own materials are rendered"),
     "light in physical units": ("candela and lux are divided",),
     "nodes listed as roots that are none": ("are no roots", "is no root", "beside its parent", "beside their parents"),
     "values of the file that mean nothing": (

@@ -90,7 +90,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
         place of the scene's; "up" where it is not what is up in the scene. Or one of a glTF file's
         cameras, by its name or its number from 0.
     gltf_scene, animation, variant: one of a glTF file's scenes, animations and variants of materials,
-        by its name or its number from 0; animations also "none" and "all", the default. They and the camera are chosen when the file is read: give
+        by its name or its number from 0; animations also "none" and "all", else the first. They and the camera are chosen when the file is read: give
         them with its path, or to `Scene`.
     environment, environment_rotation, environment_scale: an image's path, a number or (r, g, b), in
         place of the scene's infinite lights; degrees about what is up; a factor. The last two change

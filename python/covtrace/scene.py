@@ -40,8 +40,8 @@ class Scene:
                  variant: str | int | None = None) -> None:
         """Reads a file. shutter: when it opens and closes, in place of the file's; seconds of glTF's
         animations, whose nodes rest at 0 without it. camera, gltf_scene, animation, variant: one
-        of a glTF file's by its name or its number from 0; animations also "none" and "all", the
-        default."""
+        of a glTF file's by its name or its number from 0; animations also "none" and "all", else the
+        first."""
         file = path_of("file", file)
         self._named = str
         self._is_placed = _covtrace.is_gltf(file)

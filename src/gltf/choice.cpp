@@ -54,22 +54,29 @@ std::vector<size_t> choose_animations(const Document& document, const ReadOption
                                       SceneDescription& scene, WarningLog& log) {
     std::vector<Choosable> all;
     for (const tinygltf::Animation& a : document.model.animations) all.push_back({a.name});
-    std::vector<size_t> every(all.size());
-    std::iota(every.begin(), every.end(), size_t{0});
     const std::string& choice = options.animation;
-    if (choice == "all") return every;
+    if (choice == "all") {
+        std::vector<size_t> every(all.size());
+        std::iota(every.begin(), every.end(), size_t{0});
+        if (all.size() > 1) scene.animation_choice = choice;
+        return every;
+    }
+    // Viewers play the first one: files hold takes that exclude each other, a walk beside a jump.
+    constexpr size_t kOwn = 0;
     if (choice.empty()) {
+        if (all.empty()) return {};
         if (all.size() > 1)
             log.add(document.place("animations"),
-                    "all " + std::to_string(all.size()) + " play together: " + listed(all));
-        return every;
+                    "the first of " + std::to_string(all.size()) + " animations is played, " +
+                        text_of(kOwn, all[kOwn]) + "; the others are " + listed_without(all, kOwn));
+        return {kOwn};
     }
     if (choice == "none") {
         if (!all.empty()) scene.animation_choice = choice;
         return {};
     }
     const size_t one = chosen({"animation"}, choice, all, "animation");
-    if (all.size() > 1) scene.animation_choice = text_of(one, all[one]);
+    if (one != kOwn) scene.animation_choice = text_of(one, all[one]);
     return {one};
 }
 

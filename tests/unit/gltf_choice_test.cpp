@@ -85,13 +85,27 @@ TEST(GltfChoice, OneAnimationOfSeveralPlays) {
              {"samplers", {{{"input", time}, {"output", place}}}},
              {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
     }
-    const auto place = [&](const std::string& animation) {
+    const int size = file.add_floats({4, 4, 4}, "VEC3", 3);
+    file.root["animations"].push_back(
+        {{"samplers", {{{"input", time}, {"output", size}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}}}});
+    const auto scene_of = [&](const std::string& animation) {
         ReadOptions options;
         options.animation = animation;
-        return read(file, options).shapes[0].object_to_world.start().point({}).x;
+        return read(file, options);
+    };
+    const auto place = [&](const std::string& animation) {
+        return scene_of(animation).shapes[0].object_to_world.start().point({1, 0, 0}).x - 1;
     };
     EXPECT_EQ(place(""), 1);
-    EXPECT_EQ(place("all"), 1);
+    EXPECT_TRUE(contains(all_warnings(scene_of("")),
+                         "animations: the first of 3 animations is played, 0 \"none\"; the others "
+                         "are 1 \"second\", 2"));
+    EXPECT_FALSE(contains(all_warnings(scene_of("all")), "is played"));
+    EXPECT_EQ(place("all"), 4);
+    EXPECT_EQ(scene_of("").animation_choice, "");
+    EXPECT_EQ(scene_of("0").animation_choice, "");
+    EXPECT_EQ(scene_of("all").animation_choice, "all");
     EXPECT_EQ(place("0"), 1);
     EXPECT_EQ(place("second"), 2);
     EXPECT_EQ(place("none"), 0);  // whatever animations are called
