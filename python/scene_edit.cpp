@@ -146,11 +146,12 @@ struct MaterialSlots {
     }
     void operator()(InterfaceMaterial&) {}
     void operator()(MeasuredMaterial&) {}
+    void operator()(UnlitMaterial& m) { texture("colour", m.colour, TextureUse::colour); }
 };
 
-constexpr std::array<const char*, 9> kMaterialKinds{
+constexpr std::array<const char*, 10> kMaterialKinds{
     "diffuse",         "conductor",      "dielectric", "coateddiffuse", "diffusetransmission",
-    "coatedconductor", "thindielectric", "interface",  "measured"};
+    "coatedconductor", "thindielectric", "interface",  "measured",      "unlit"};
 
 std::vector<Slot> slots_of(SceneDescription& scene, MaterialDescription& m) {
     std::vector<Slot> slots;

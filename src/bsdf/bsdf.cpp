@@ -18,6 +18,15 @@ float pdf(const InterfaceBsdf&, Vec3, Vec3) {
 LobeShares lobe_shares(const InterfaceBsdf&, Vec3, Vec3, Rgb) {
     return {};
 }
+Rgb eval(const UnlitBsdf&, Vec3, Vec3) {
+    return {};
+}
+float pdf(const UnlitBsdf&, Vec3, Vec3) {
+    return 0;
+}
+LobeShares lobe_shares(const UnlitBsdf&, Vec3, Vec3, Rgb) {
+    return {};
+}
 Rgb eval(const ThinDielectricBsdf&, Vec3, Vec3) {
     return {};
 }
@@ -49,6 +58,9 @@ bool is_specular(const MeasuredBsdf&) {
 bool is_specular(const InterfaceBsdf&) {
     return true;
 }
+bool is_specular(const UnlitBsdf&) {
+    return true;
+}
 bool is_specular(const ThinDielectricBsdf&) {
     return true;
 }
@@ -68,13 +80,24 @@ Rgb albedo(const DielectricBsdf& b, Vec3) {
 Rgb albedo(const InterfaceBsdf&, Vec3) {
     return Rgb(1);
 }
+Rgb albedo(const UnlitBsdf& b, Vec3) {
+    return {clamp01(b.colour.r), clamp01(b.colour.g), clamp01(b.colour.b)};
+}
 Rgb albedo(const ThinDielectricBsdf& b, Vec3) {
     return b.transmittance;
 }
 
 }  // namespace
 
+Bsdf base_of(const LayeredBsdf& layered) {
+    return std::visit([](const auto& b) { return Bsdf(b); }, layered.base);
+}
+
 std::optional<BsdfSample> sample(const InterfaceBsdf&, Vec3 wo, float, Vec2) {
+    return BsdfSample{-wo, Rgb(1), 1, LobeKind::specular_transmission};
+}
+
+std::optional<BsdfSample> sample(const UnlitBsdf&, Vec3 wo, float, Vec2) {
     return BsdfSample{-wo, Rgb(1), 1, LobeKind::specular_transmission};
 }
 
@@ -110,6 +133,8 @@ bool is_specular(const Bsdf& bsdf) {
 
 bool has_diffuse_lobe(const Bsdf& bsdf) {
     if (const auto* measured = std::get_if<MeasuredBsdf>(&bsdf)) return measured->brdf->is_wide();
+    if (const auto* layered = std::get_if<LayeredBsdf>(&bsdf))
+        return !is_black(layered->sheen.colour) || has_diffuse_lobe(base_of(*layered));
     return std::holds_alternative<DiffuseBsdf>(bsdf) ||
            std::holds_alternative<CoatedDiffuseBsdf>(bsdf) ||
            std::holds_alternative<DiffuseTransmissionBsdf>(bsdf);
@@ -117,6 +142,8 @@ bool has_diffuse_lobe(const Bsdf& bsdf) {
 
 bool has_sharp_lobe(const Bsdf& bsdf) {
     if (const auto* measured = std::get_if<MeasuredBsdf>(&bsdf)) return !measured->brdf->is_wide();
+    if (const auto* layered = std::get_if<LayeredBsdf>(&bsdf))
+        return layered->coat.weight > 0 || has_sharp_lobe(base_of(*layered));
     return std::holds_alternative<ConductorBsdf>(bsdf) ||
            std::holds_alternative<CoatedConductorBsdf>(bsdf) ||
            std::holds_alternative<DielectricBsdf>(bsdf) ||
@@ -129,11 +156,18 @@ float sharp_lobe_roughness(const Bsdf& bsdf) {
         return std::max(larger(coated->coat), larger(coated->metal));
     if (const auto* measured = std::get_if<MeasuredBsdf>(&bsdf); measured && has_sharp_lobe(bsdf))
         return measured->brdf->alpha();
+    if (const auto* layered = std::get_if<LayeredBsdf>(&bsdf)) {
+        const float base = sharp_lobe_roughness(base_of(*layered));
+        if (!(layered->coat.weight > 0)) return base;
+        return std::isfinite(base) ? std::max(layered->coat.alpha, base) : layered->coat.alpha;
+    }
     return std::visit(
         [&](const auto& b) {
             if constexpr (requires { b.alpha_x; }) return larger(b);
-            constexpr bool passes = std::is_same_v<std::decay_t<decltype(b)>, ThinDielectricBsdf> ||
-                                    std::is_same_v<std::decay_t<decltype(b)>, InterfaceBsdf>;
+            using Model = std::decay_t<decltype(b)>;
+            constexpr bool passes = std::is_same_v<Model, ThinDielectricBsdf> ||
+                                    std::is_same_v<Model, InterfaceBsdf> ||
+                                    std::is_same_v<Model, UnlitBsdf>;
             return passes ? 0.0f : std::numeric_limits<float>::infinity();
         },
         bsdf);

@@ -17,6 +17,7 @@ namespace covtrace {
 enum class LobeKind : uint8_t {
     diffuse_reflection,
     diffuse_transmission,
+    sheen_reflection,  ///< as wide as a diffuse one, brightest at grazing angles
     glossy_reflection,
     glossy_transmission,
     specular_reflection,
@@ -26,7 +27,8 @@ constexpr bool is_specular(LobeKind k) {
     return k == LobeKind::specular_reflection || k == LobeKind::specular_transmission;
 }
 constexpr bool is_diffuse(LobeKind k) {
-    return k == LobeKind::diffuse_reflection || k == LobeKind::diffuse_transmission;
+    return k == LobeKind::diffuse_reflection || k == LobeKind::diffuse_transmission ||
+           k == LobeKind::sheen_reflection;
 }
 constexpr bool is_transmission(LobeKind k) {
     return k == LobeKind::diffuse_transmission || k == LobeKind::glossy_transmission ||
@@ -47,14 +49,19 @@ struct BsdfSample {
 struct LobeShare {
     LobeKind kind{};
     Rgb value;  ///< this lobe's part of eval(wo, wi); for a sampled specular lobe its weight
-    float alpha_x = 0, alpha_y = 0;  ///< GGX, along the local x and y; 0 for diffuse and specular
-    float eta = 1;                   ///< index on wi's side over the index on wo's side
+    /// GGX, along the local x and y, or a sheen's, both the same; 0 for diffuse and specular.
+    float alpha_x = 0, alpha_y = 0;
+    float eta = 1;  ///< index on wi's side over the index on wo's side
     /// Border that reflects a glossy lobe, or that covers a diffuse one: its index over that of
     /// wo's side, `border_k` the imaginary part of a conductor's. 0: no Fresnel factor.
     float border_eta = 0, border_k = 0;
+    /// Normal that a round lobe (alpha_x = alpha_y) faces, unit, local; that of a clear coat may
+    /// not be the frame's.
+    Vec3 normal{0, 0, 1};
 };
 struct LobeShares {
-    std::array<LobeShare, 2> lobes;
+    static constexpr size_t kMost = 4;
+    std::array<LobeShare, kMost> lobes;
     int count = 0;
 };
 
@@ -114,6 +121,31 @@ struct ThinDielectricBsdf {
 };
 /// The border between media, which lets everything pass.
 struct InterfaceBsdf {};
+/// A surface without lighting, which scatters nothing: as an interface, but for rays that see it.
+struct UnlitBsdf {
+    Rgb colour;  ///< radiance
+    bool two_sided = false;
+};
+class SheenTable;
+/// Fibres over a surface: see sheen.h.
+struct SheenLobe {
+    Rgb colour;       ///< 0: there is no sheen
+    float alpha = 1;  ///< in [SheenTable::kLeastAlpha, 1]
+    const SheenTable* table = nullptr;
+};
+/// A clear coat over a surface; see layered.cpp.
+struct ClearcoatLobe {
+    float weight = 0;      ///< in [0, 1]; 0: there is no coat
+    float alpha = 0;       ///< GGX; 0: smooth
+    Vec3 normal{0, 0, 1};  ///< unit, local, on the outside
+};
+/// A surface under a sheen, under a clear coat.
+struct LayeredBsdf {
+    std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, CoatedDiffuseBsdf, ThinDielectricBsdf>
+        base;
+    SheenLobe sheen;
+    ClearcoatLobe coat;
+};
 
 class MeasuredBrdf;  // measured_brdf.h
 /// A surface as it was measured; two-sided.
@@ -123,7 +155,7 @@ struct MeasuredBsdf {
 
 using Bsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, CoatedDiffuseBsdf,
                           DiffuseTransmissionBsdf, CoatedConductorBsdf, ThinDielectricBsdf,
-                          InterfaceBsdf, MeasuredBsdf>;
+                          InterfaceBsdf, MeasuredBsdf, UnlitBsdf, LayeredBsdf>;
 
 /// The value f(wo, wi) |cos(wi)|, without specular lobes.
 Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi);

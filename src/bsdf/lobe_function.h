@@ -9,6 +9,8 @@
 #include "bsdf/bsdf.h"
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
+#include "bsdf/sheen.h"
+#include "core/frame.h"
 
 namespace covtrace {
 
@@ -40,22 +42,37 @@ S border_reflectance(const LobeShare& lobe, const S& cos_i) {
         cos_i);
 }
 
+/// The vector `v` about another normal than z: its components along the axes of `frame`.
+template <typename V>
+V turned_to(const Frame& frame, const V& v) {
+    const auto along = [&v](Vec3 axis) { return axis.x * v.x + axis.y * v.y + axis.z * v.z; };
+    return V{along(frame.x), along(frame.y), along(frame.z)};
+}
+
 /// A lobe's BRDF (or BTDF) times |cos(wi)| without constant factors: for a glossy lobe its value
 /// where the border's indices are grey. A diffuse lobe below a coat is multiplied by what a smooth
 /// border lets through along wo and along wi, though a rough one is softer.
 ///
 /// `wo`, `wi`: unit, local, away from the surface, of either's own type (a direction that is
 /// constant need not carry derivatives). A glossy lobe is zero for pairs that it does not connect;
-/// for a diffuse lobe callers see to it that wi is on the lobe's side.
+/// for a diffuse lobe callers see to it that wi is on the lobe's side. Of a sheen the factor that
+/// keeps its albedo below 1 is left out.
 template <typename O, typename I>
 auto lobe_function(const LobeShare& lobe, O wo, I wi) {
     using std::abs;
     using std::sqrt;
     using S = std::decay_t<decltype(wo.x + wi.x)>;
+    if (std::abs(lobe.normal.z) != 1) {
+        const Frame frame = Frame::from_z(lobe.normal);
+        wo = turned_to(frame, wo);
+        wi = turned_to(frame, wi);
+    }
     if (wo.z < 0.0f) {
         wo.z = -wo.z;
         wi.z = -wi.z;
     }
+    if (lobe.kind == LobeKind::sheen_reflection)
+        return wi.z > 0.0f ? S(sheen_value(lobe.alpha_x, wo, wi)) : S(0.0f);
     if (lobe.kind == LobeKind::diffuse_reflection || lobe.kind == LobeKind::diffuse_transmission) {
         const auto cos_i = abs(wi.z);
         if (!(lobe.border_eta > 0)) return S(cos_i);

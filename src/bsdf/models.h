@@ -1,8 +1,8 @@
 /// The models behind bsdf.h, one overload set each; bsdf.cpp chooses among them.
 ///
 /// Functions behave as described in bsdf.h. All models but the dielectric look the same from both
-/// sides. The thin dielectric and the interface are specular and have only `sample` here; their
-/// other overloads, constants all of them, are in bsdf.cpp.
+/// sides. The thin dielectric, the interface and the unlit surface are specular and have only
+/// `sample` here; their other overloads, constants all of them, are in bsdf.cpp.
 #pragma once
 
 #include "bsdf/bsdf.h"
@@ -52,6 +52,20 @@ Rgb albedo(const CoatedConductorBsdf& b, Vec3 wo);
 std::optional<BsdfSample> sample(const ThinDielectricBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
 
 std::optional<BsdfSample> sample(const InterfaceBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+std::optional<BsdfSample> sample(const UnlitBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+
+/// Value of a layered surface, which is not reciprocal: the clear coat dims what is below by its
+/// Fresnel reflectance for wo alone, as KHR_materials_clearcoat has it.
+Rgb eval(const LayeredBsdf& b, Vec3 wo, Vec3 wi);
+float pdf(const LayeredBsdf& b, Vec3 wo, Vec3 wi);
+BsdfValue eval_and_pdf(const LayeredBsdf& b, Vec3 wo, Vec3 wi);
+std::optional<BsdfSample> sample(const LayeredBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+LobeShares lobe_shares(const LayeredBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
+bool is_specular(const LayeredBsdf& b);
+Rgb albedo(const LayeredBsdf& b, Vec3 wo);
+
+/// The surface below the layers.
+Bsdf base_of(const LayeredBsdf& layered);
 
 Rgb eval(const MeasuredBsdf& b, Vec3 wo, Vec3 wi);
 float pdf(const MeasuredBsdf& b, Vec3 wo, Vec3 wi);

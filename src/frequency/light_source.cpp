@@ -94,6 +94,13 @@ LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sha
     return cov::distant_source(frame, {source.a11, source.a12, source.a22});
 }
 
+LightField unlit_field(const cov::Surface<double>& surface, const cov::Motion<double>& motion,
+                       const cov::Sym2<double>& texture, Vec3 travel) {
+    const LightField even{{}, cov::frame_along<double>(travel)};
+    const LightField left = cov::surface_exit(cov::add_texture(even, texture), surface);
+    return motion.at_rest() ? left : cov::motion_exit(left, motion);
+}
+
 cov::Emitter<double> emitter_of(const SourceSpectrum& source, double distance) {
     switch (source.kind) {
         case SourceSpectrum::Kind::area:

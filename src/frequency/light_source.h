@@ -19,6 +19,12 @@ using LightField = covariance::LightField<double>;
 LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sharply,
                         double smallest, const covariance::Sym2<double>& texture = {});
 
+/// Makes the light field that leaves a surface without lighting: the same in all directions, with
+/// the variation `texture` of its colour along the axes of surface.t1, t2.
+LightField unlit_field(const covariance::Surface<double>& surface,
+                       const covariance::Motion<double>& motion,
+                       const covariance::Sym2<double>& texture, Vec3 travel);
+
 /// The light as covariance::diffuse_window takes it: an emitter for a diffuse receiver `distance`
 /// away (scene units).
 covariance::Emitter<double> emitter_of(const SourceSpectrum& source, double distance);

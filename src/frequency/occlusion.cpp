@@ -33,6 +33,7 @@ double sharpest_window(const LobeShares& lobes) {
         switch (lobe.kind) {
             case LobeKind::diffuse_reflection:
             case LobeKind::diffuse_transmission:
+            case LobeKind::sheen_reflection:
                 break;
             case LobeKind::specular_reflection:
             case LobeKind::specular_transmission:

@@ -174,6 +174,7 @@ void PathWalk::emit_at(int i, std::optional<OwnOutline>& own) {
     const double way = ways_[size_t(i)];
     light_.emitter = emitter_at(v, way);
     if (!counts(emitted)) return;
+    if (scene_.materials.lets_light_pass(v.material)) return shine_unlit(i, emitted, own);
     const SourceSpectrum s = spectra_.lights.source_spectrum(v.hit, v.seen_sharply);
     if (emitted > light_.weight) light_.emitter = emitter_of(s, way);
     const auto texture = emission_texture(scene_, spectra_.textures, v, s.tangent, half_pixel(i));
@@ -182,6 +183,18 @@ void PathWalk::emit_at(int i, std::optional<OwnOutline>& own) {
     const DifferentialGeometry d = scene_.geometry.differential(v.hit);
     own = own_outline({d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}},
                       {d.velocity, d.angular_velocity}, v.wo);
+}
+
+void PathWalk::shine_unlit(int i, float emitted, std::optional<OwnOutline>& own) {
+    const PathVertex& v = vertex(i);
+    const DifferentialGeometry d = scene_.geometry.differential(v.hit);
+    const cov::Surface<double> surface{
+        d.tangent.z, d.tangent.x, d.tangent.y, {d.k11, d.k12, d.k22}};
+    const cov::Motion<double> motion{d.velocity, d.angular_velocity};
+    light_.emitter = {d.tangent.z, ways_[size_t(i)]};
+    const auto texture = emission_texture(scene_, spectra_.textures, v, d.tangent, half_pixel(i));
+    light_.add(unlit_field(surface, motion, texture, v.wo), emitted);
+    if (context_.occluders.query) own = own_outline(surface, motion, v.wo);
 }
 
 void PathWalk::carry_on(int i, const std::optional<OwnOutline>& own) {

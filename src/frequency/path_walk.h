@@ -59,6 +59,8 @@ class PathWalk {
     void scatter_all(int i, const Scatter& scatter);
     /// Adds the emission of vertex i itself. Sets `own` where scattering did not.
     void emit_at(int i, std::optional<OwnOutline>& own);
+    /// Adds the light of an unlit surface at a vertex, which is the path's last.
+    void shine_unlit(int i, float emitted, std::optional<OwnOutline>& own);
     void carry_on(int i, const std::optional<OwnOutline>& own);
     PathCovariance at_sensor();
 

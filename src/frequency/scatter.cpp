@@ -94,7 +94,10 @@ cov::Sym2<double> masking_window(const cov::Jet<double>& log_masking,
 
 /// Reflects light by a lobe of one roughness, whose axes do not matter.
 LightField reflect_round(const LightField& entered, const ScatterPoint& p, const LobeShare& lobe) {
-    const RoundReflection round = round_reflection(lobe, entered.frame, p.leaving.z, p.facing().n);
+    const bool is_turned = std::abs(lobe.normal.z) != 1;
+    const RoundReflection round = round_reflection(
+        lobe, entered.frame, p.leaving.z,
+        is_turned ? cov::Vec3<double>(p.shading.to_world(lobe.normal)) : p.facing().n);
     LightField left{entered.sigma, round.outgoing};
     const cov::Sym2<double> light = left.sigma.angular() + round.window;
     left.sigma.set_angular(light);
@@ -156,6 +159,31 @@ void ScatterSum::add_diffuse(const LightField& entered, bool even,
     cov::add_scaled(sum_, weight, cov::slice_angular<double>(entered.sigma, angular + window));
 }
 
+void ScatterSum::add_sheen(const LightField& entered, bool even, const LobeShare& lobe,
+                           double weight, BrdfCovariance rule) {
+    weight_ += weight;
+    const cov::Vec3<double>& n = point_.facing().n;
+    const cov::Frame<double> shading{point_.shading.x, point_.shading.y, point_.shading.z};
+    const LocalAxes in = local_axes(shading, entered.frame),
+                    out = local_axes(shading, point_.leaving);
+    const bool is_local = rule == BrdfCovariance::local;
+    if (is_local) {
+        const auto leaving = cov::jet_direction<double>(out.x, out.y, out.z);
+        add_slopes(weight * cov::local_lobe<double>(lobe_function(lobe, leaving, -in.z),
+                                                    cov::cosine_window(point_.leaving, n)),
+                   point_.leaving);
+    }
+    if (even) return;
+    const cov::Sym2<double> limit = cov::cosine_window(entered.frame, n);
+    const auto arriving = cov::jet_direction<double>(-in.x, -in.y, -in.z);
+    const cov::Sym2<double> window =
+        is_local ? cov::local_lobe<double>(
+                       lobe_function(lobe, cov::jet_constant<double>(out.z), arriving), limit)
+                 : limit;
+    cov::add_scaled(sum_, weight,
+                    cov::slice_angular<double>(entered.sigma, entered.sigma.angular() + window));
+}
+
 void ScatterSum::add_let_out() {
     add_slopes(coated_ * coat_window(*coat_, point_, point_.leaving), point_.leaving);
     coated_ = 0;
@@ -175,6 +203,8 @@ void ScatterSum::add_through(const LightField& entered, bool even,
         case LobeKind::diffuse_reflection:
         case LobeKind::diffuse_transmission:
             return add_diffuse(entered, even, emitter, lobe, weight, rule);
+        case LobeKind::sheen_reflection:
+            return add_sheen(entered, even, lobe, weight, rule);
         case LobeKind::glossy_reflection:
         case LobeKind::glossy_transmission:
             break;

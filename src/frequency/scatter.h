@@ -37,6 +37,10 @@ class ScatterSum {
     void add_diffuse(const LightField& entered, bool even,
                      const covariance::Emitter<double>& emitter, const LobeShare& lobe,
                      double weight, BrdfCovariance rule);
+    /// Adds light that a sheen reflects: as a diffuse surface does, by a window of its own on the
+    /// arriving and on the leaving light.
+    void add_sheen(const LightField& entered, bool even, const LobeShare& lobe, double weight,
+                   BrdfCovariance rule);
     void add(const LightField& left, double weight);
     /// Adds the window of the light that the coat over diffuse lobes lets out.
     void add_let_out();

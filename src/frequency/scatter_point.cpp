@@ -86,13 +86,27 @@ ScatterPoint::ScatterPoint(const LitScene& scene, const TextureSpectra& spectra,
     if (transmits) transmittance = spectrum(textures.transmittance) + edges;
 }
 
+namespace {
+
+/// The image that varies what a vertex emits; -1: none does.
+TextureId image_of_emission(const LitScene& scene, const PathVertex& vertex,
+                            const ShapeDescription& shape) {
+    if (vertex.material >= 0)
+        if (const auto* unlit =
+                std::get_if<UnlitMaterial>(&scene.materials.description(vertex.material).value))
+            return unlit->colour;
+    return shape.area_light < 0
+               ? -1
+               : scene.description.area_lights[static_cast<size_t>(shape.area_light)].image;
+}
+
+}  // namespace
+
 cov::Sym2<double> emission_texture(const LitScene& scene, const TextureSpectra& spectra,
                                    const PathVertex& vertex, const Frame& tangent,
                                    float footprint) {
     const ShapeDescription& shape = scene.geometry.shapes()[vertex.hit.shape].description;
-    if (shape.area_light < 0) return {};
-    const TextureId image =
-        scene.description.area_lights[static_cast<size_t>(shape.area_light)].image;
+    const TextureId image = image_of_emission(scene, vertex, shape);
     if (image < 0 && shape.alpha < 0) return {};
     const DifferentialGeometry d = scene.geometry.differential(vertex.hit);
     const auto& m = d.uv_from_tangent;

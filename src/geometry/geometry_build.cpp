@@ -16,6 +16,11 @@ bool has_interface_material(const SceneDescription& scene, const ShapeDescriptio
                                       scene.materials[static_cast<size_t>(shape.material)].value);
 }
 
+bool is_unlit(const SceneDescription& scene, MaterialId material) {
+    return material >= 0 && std::holds_alternative<UnlitMaterial>(
+                                scene.materials[static_cast<size_t>(material)].value);
+}
+
 /// For each material, whether it may turn out to be no surface at all, by being mixed with an
 /// interface. A mix comes after its parts, so each material is looked at once however deep they
 /// nest.
@@ -86,7 +91,10 @@ struct Geometry::Impl::Builder {
         // `visibility`.
         const MaterialId material = g.placed[shape].description.material;
         const bool may_pass = material >= 0 && may_be_interface[static_cast<size_t>(material)];
-        const unsigned mask = may_pass ? kInterfaceMask : has_alpha ? kAlphaMask : kSolidMask;
+        // Light passes what is unlit, so that rays to lights need not know of it.
+        const unsigned mask = may_pass || is_unlit(scene, material) ? kInterfaceMask
+                              : has_alpha                           ? kAlphaMask
+                                                                    : kSolidMask;
         g.any_interface = g.any_interface || may_pass;
         g.any_alpha = g.any_alpha || has_alpha;
         GeometryHandle geometry = new_shape_geometry(g.device, g.local[shape], mask);

@@ -11,9 +11,9 @@
 
 namespace covtrace {
 
-/// Whether textures may read anything but (u, v) from the vertices of a mesh.
+/// Whether textures or maps may read anything but (u, v) from the vertices of a mesh.
 inline bool has_vertex_values(const TriangleMesh& mesh) {
-    return !mesh.colours.empty() || !mesh.more_uvs.empty();
+    return !mesh.colours.empty() || !mesh.more_uvs.empty() || !mesh.map_signs.empty();
 }
 
 /// The surface's (u, v) at the three corners. As in pbrt, a triangle without coordinates has (0,

@@ -208,4 +208,11 @@ std::vector<uint32_t> read_indices(const Document& document, int index, size_t v
     return indices;
 }
 
+void require_count(const Document& document, size_t found, size_t expected,
+                   const std::string& place) {
+    if (found != expected)
+        document.refuse(place, "has " + std::to_string(found) + " elements; expected " +
+                                   std::to_string(expected) + ", one per position");
+}
+
 }  // namespace covtrace::gltf

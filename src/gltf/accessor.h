@@ -32,4 +32,8 @@ std::vector<uint32_t> read_indices(const Document& document, int index, size_t v
 /// Number of elements of accessors[index]; refuses an index that is not there.
 size_t accessor_count(const Document& document, int index, const std::string& place);
 
+/// Refuses an attribute that has not one element for each vertex.
+void require_count(const Document& document, size_t found, size_t expected,
+                   const std::string& place);
+
 }  // namespace covtrace::gltf

@@ -154,6 +154,9 @@ TriangleMesh deform(const Document& document, const TriangleMesh& rest,
                     const Deformation& deformation, std::span<const double> weights,
                     std::span<const Matrix4> joints, const std::string& place) {
     TriangleMesh mesh = rest;
+    // Tangents are not deformed: those of the texture coordinates take their place.
+    mesh.tangents.clear();
+    mesh.map_signs.clear();
     for (size_t t = 0; t < std::min(deformation.targets.size(), weights.size()); ++t) {
         if (weights[t] == 0) continue;
         blend(mesh.positions, deformation.targets[t].positions, weights[t]);

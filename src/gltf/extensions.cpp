@@ -20,7 +20,6 @@ constexpr std::array kLeftOut{
     LeftOut{"KHR_materials_diffuse_transmission", "no light shines through thin surfaces"},
     LeftOut{"KHR_materials_dispersion", "glass refracts all colours alike"},
     LeftOut{"KHR_materials_iridescence", "the colours of thin films are missing"},
-    LeftOut{"KHR_materials_sheen", "the soft shine of cloth at grazing angles is missing"},
     LeftOut{"KHR_materials_volume_scatter", "volumes absorb light but do not scatter it"},
     LeftOut{"KHR_texture_basisu", "the image for other readers is shown, where there is one"},
     LeftOut{"MSFT_lod", "the finest level is rendered"},

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "gltf/accessor.h"
+#include "gltf/tangents.h"
 #include "scene/vertex_colours.h"
 
 namespace covtrace::gltf {
@@ -55,6 +56,7 @@ std::vector<uint32_t> keep_used_vertices(TriangleMesh& mesh) {
     pick(mesh.positions);
     pick(mesh.normals);
     pick(mesh.uvs);
+    pick(mesh.tangents);
     pick(mesh.colours);
     for (auto& uvs : mesh.more_uvs) pick(uvs);
     for (auto& triangle : mesh.triangles)
@@ -71,14 +73,6 @@ std::vector<Vec3> vectors(const Numbers& n) {
 
 std::string place_of(int mesh, size_t primitive) {
     return element("meshes", static_cast<size_t>(mesh)) + "." + element("primitives", primitive);
-}
-
-/// Refuses an attribute that has not one element for each vertex.
-void require_count(const Document& document, size_t found, size_t expected,
-                   const std::string& place) {
-    if (found != expected)
-        document.refuse(place, "has " + std::to_string(found) + " elements; expected " +
-                                   std::to_string(expected) + ", one per position");
 }
 
 }  // namespace
@@ -244,6 +238,9 @@ GeometryReader::Entry GeometryReader::read(const tinygltf::Primitive& primitive,
     }
     mesh->triangles = triangles(indices, mode);
     if (mesh->triangles.empty()) return {};
+    // By the specification tangents count beside normals only.
+    if (layout.needs_tangents && attribute("TANGENT") >= 0 && !mesh->normals.empty())
+        read_tangents(document_, attribute("TANGENT"), *mesh, attributes + "TANGENT");
     Entry result;
     result.count = count;
     result.kept = keep_used_vertices(*mesh);

@@ -23,6 +23,7 @@ struct VertexLayout {
     bool needs_uvs = false;      ///< whether a texture reads `uv_set`: else it may be missing
     std::vector<int> more_sets;  ///< the sets of TriangleMesh::more_uvs
     bool has_colours = false;
+    bool needs_tangents = false;  ///< whether maps or widths are laid along the tangents
     auto operator<=>(const VertexLayout&) const = default;
 };
 
@@ -35,10 +36,10 @@ class GeometryReader {
     /// The changes that COLOR_0 of meshes[mesh].primitives[primitive] makes.
     ColourUse colours(int mesh, size_t primitive);
 
-    /// The triangles of meshes[mesh].primitives[primitive] with the texture coordinates and colours
-    /// of the layout, v upwards as everywhere else here (glTF's runs down). Null for points and
-    /// lines, which are counted, and for primitives without triangles. Throws Error(limit) where
-    /// all meshes are too large for the file.
+    /// The triangles of meshes[mesh].primitives[primitive] with the texture coordinates, colours
+    /// and tangents of the layout, v upwards as everywhere else here (glTF's runs down). Null for
+    /// points and lines, which are counted, and for primitives without triangles. Throws
+    /// Error(limit) where all meshes are too large for the file.
     std::shared_ptr<const TriangleMesh> mesh(int mesh, size_t primitive,
                                              const VertexLayout& layout);
 

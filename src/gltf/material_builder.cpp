@@ -63,8 +63,10 @@ Surface MaterialBuilder::build() {
     read_anisotropy();
     read_index();
     read_specular();
+    read_sheen();
+    read_clearcoat();
     const float metallic = in_range(document_, pbr_.metallicFactor, 0, 1, pbr("metallicFactor"));
-    surface_.material = with_clearcoat(metals_and_others(mr, metallic));
+    surface_.material = metals_and_others(mr, metallic);
     return surface_;
 }
 
@@ -96,6 +98,8 @@ MaterialId MaterialBuilder::add(decltype(MaterialDescription::value) model) {
     m.normal_map_follows_v = true;
     m.tangent_rotation = tangent_rotation_;
     m.tangent_direction = tangent_direction_;
+    m.sheen = sheen_;
+    m.clearcoat = clearcoat_;
     scene_.materials.push_back(std::move(m));
     return static_cast<MaterialId>(scene_.materials.size() - 1);
 }
@@ -106,29 +110,31 @@ MaterialId MaterialBuilder::mix(MaterialId a, MaterialId b, TextureId amount) {
     return id;
 }
 
+MaterialBuilder::ExtensionTextures MaterialBuilder::extension_textures() const {
+    const auto texture = [this](const char* name, const char* key) {
+        const tinygltf::Value* e = extension(material_.extensions, name);
+        return e ? texture_info(document_, *e, key, in(name)) : tinygltf::TextureInfo{};
+    };
+    return {texture("KHR_materials_clearcoat", kClearcoatNormal),
+            texture("KHR_materials_anisotropy", "anisotropyTexture"),
+            texture("KHR_materials_transmission", "transmissionTexture")};
+}
+
 void MaterialBuilder::choose_uv_set() {
-    const tinygltf::Value* transmission =
-        extension(material_.extensions, "KHR_materials_transmission");
-    const tinygltf::TextureInfo none;
-    const tinygltf::TextureInfo transmitted =
-        transmission ? texture_info(document_, *transmission, "transmissionTexture",
-                                    in("KHR_materials_transmission"))
-                     : none;
+    const ExtensionTextures more = extension_textures();
     VertexLayout& layout = surface_.layout;
     layout.has_colours = colours_.tints || colours_.has_holes;
+    layout.needs_tangents = material_.normalTexture.index >= 0 ||
+                            more.clearcoat_normal.index >= 0 ||
+                            extension(material_.extensions, "KHR_materials_anisotropy");
     // The colours' slopes are told by the surface's (u, v). The file's own may be the same at all
     // corners, as those of models that are painted from a palette; a triangle's are not.
-    const tinygltf::Value* anisotropy = extension(material_.extensions, "KHR_materials_anisotropy");
-    const bool keeps_own = layout.has_colours && material_.normalTexture.index < 0 && !anisotropy;
-    if (keeps_own) return;
+    if (layout.has_colours && !layout.needs_tangents) return;
     layout.uv_set = 0;
-    const tinygltf::TextureInfo direction =
-        anisotropy ? texture_info(document_, *anisotropy, "anisotropyTexture",
-                                  in("KHR_materials_anisotropy"))
-                   : none;
     for (const tinygltf::TextureInfo& info :
-         {plain_info(material_.normalTexture), direction, base_colour_.texture,
-          pbr_.metallicRoughnessTexture, material_.emissiveTexture, transmitted}) {
+         {plain_info(material_.normalTexture), more.clearcoat_normal, more.anisotropy,
+          base_colour_.texture, pbr_.metallicRoughnessTexture, material_.emissiveTexture,
+          more.transmission}) {
         if (info.index < 0) continue;
         layout.uv_set = TextureReader::uv_set(document_, info, place_);
         break;
@@ -214,15 +220,10 @@ void MaterialBuilder::emit(Rgb radiance, TextureId image) {
 }
 
 void MaterialBuilder::build_unlit() {
-    warn(
-        "KHR_materials_unlit: an emitter of the base colour takes its place, which also "
-        "lights what is near");
-    surface_.material = add(DiffuseMaterial{textures_.constant(Rgb(0), true)});
-    if (is_black(base_colour_.factor)) return;
-    const TextureUse info = use(base_colour_.texture);
-    emit(base_colour_.factor, info.index < 0 && !colours_.tints
-                                  ? -1
-                                  : tinted(textures_.colour(info, Rgb(1), base_colour_.place)));
+    surface_.material =
+        add(UnlitMaterial{tinted(textures_.colour(use(base_colour_.texture), base_colour_.factor,
+                                                  base_colour_.place)),
+                          material_.doubleSided});
 }
 
 void MaterialBuilder::read_emission() {

@@ -54,6 +54,12 @@ class MaterialBuilder {
     /// Lets the surface shine with the texture's colour, which may be none, times `radiance`.
     void emit(Rgb radiance, TextureId image);
     void build_unlit();
+    /// The texture references of the material's extensions that may be the ones to give the
+    /// surface its tangents: of the clear coat's normals, the anisotropy and the transmission.
+    struct ExtensionTextures {
+        tinygltf::TextureInfo clearcoat_normal, anisotropy, transmission;
+    };
+    ExtensionTextures extension_textures() const;
     void read_emission();
     void read_normal_map();
 
@@ -90,20 +96,9 @@ class MaterialBuilder {
     CoatedDiffuseMaterial dielectric(Widths widths) const;
     ConductorMaterial metal() const;
 
-    /// A material in two versions: as it is, and under a clear coat.
-    struct Coatable {
-        MaterialId plain = -1, coated = -1;
-    };
-    struct Clearcoat {
-        float factor = 0;
-        TextureId amount = -1, alpha = -1;
-    };
-
+    void read_sheen();
     void read_clearcoat();
-    Coatable coatable(MaterialId plain, decltype(MaterialDescription::value) coated);
-    Coatable mixed(Coatable a, Coatable b, TextureId amount);
-    Coatable metal_surface();
-    Coatable opaque_dielectric();
+    MaterialId opaque_dielectric() { return add(dielectric(widths_)); }
 
     /// Makes the glass of KHR_materials_transmission: a body with a volume refracts, a surface
     /// without is a pane.
@@ -111,10 +106,10 @@ class MaterialBuilder {
     /// Sets the absorption inside by Beer's law: transmittance `attenuationColor` after
     /// `attenuationDistance`.
     void read_absorption(const tinygltf::Value& volume);
-    Coatable dielectric_surface();
-    Coatable metals_and_others(const TextureUse& texture, float metallic);
-    MaterialId with_clearcoat(Coatable surface);
+    MaterialId dielectric_surface();
+    MaterialId metals_and_others(const TextureUse& texture, float metallic);
 
+    static constexpr const char* kClearcoatNormal = "clearcoatNormalTexture";
     static constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
     /// Largest roughness of panes that are rendered clear: their blur is below 1/400 radian.
     static constexpr double kClearRoughness = 0.05;
@@ -134,7 +129,8 @@ class MaterialBuilder {
     TextureId normal_map_ = -1, tangent_direction_ = -1;
     float normal_scale_ = 1, tangent_rotation_ = 0;
     Border border_;
-    std::optional<Clearcoat> clearcoat_;
+    std::optional<SheenLayer> sheen_;
+    std::optional<ClearcoatLayer> clearcoat_;
 };
 
 }  // namespace covtrace::gltf

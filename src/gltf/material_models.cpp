@@ -1,5 +1,5 @@
 /// Choice of the models that take the place of glTF's own, which is a mixture of metal and
-/// dielectric under a clear coat.
+/// dielectric.
 #include <algorithm>
 #include <cmath>
 
@@ -33,51 +33,6 @@ ConductorMaterial MaterialBuilder::metal() const {
     m.v_roughness = widths_.v;
     m.remap_roughness = false;
     return m;
-}
-
-void MaterialBuilder::read_clearcoat() {
-    const auto* e = extension(material_.extensions, "KHR_materials_clearcoat");
-    if (!e) return;
-    const std::string place = in("KHR_materials_clearcoat");
-    Clearcoat coat;
-    coat.factor = static_cast<float>(number(document_, *e, "clearcoatFactor", 0, 0, 1, place));
-    if (coat.factor == 0) return;
-    coat.amount = textures_.channel(use(texture_info(document_, *e, "clearcoatTexture", place)),
-                                    Channel::red, coat.factor, place + ".clearcoatTexture");
-    const auto rough =
-        static_cast<float>(number(document_, *e, "clearcoatRoughnessFactor", 0, 0, 1, place));
-    coat.alpha = squared(use(texture_info(document_, *e, "clearcoatRoughnessTexture", place)),
-                         Channel::green, rough, place + ".clearcoatRoughnessTexture");
-    clearcoat_ = coat;
-    warn(
-        "KHR_materials_clearcoat: a coated metal or a diffuse base under the clear coat "
-        "takes its place, in the share of the coat");
-}
-
-MaterialBuilder::Coatable MaterialBuilder::coatable(MaterialId plain,
-                                                    decltype(MaterialDescription::value) coated) {
-    return {plain, clearcoat_ ? add(std::move(coated)) : -1};
-}
-
-MaterialBuilder::Coatable MaterialBuilder::mixed(Coatable a, Coatable b, TextureId amount) {
-    return {mix(a.plain, b.plain, amount), clearcoat_ ? mix(a.coated, b.coated, amount) : -1};
-}
-
-MaterialBuilder::Coatable MaterialBuilder::metal_surface() {
-    CoatedConductorMaterial coated;
-    coated.conductor = metal();
-    coated.u_roughness = coated.v_roughness = clearcoat_ ? clearcoat_->alpha : -1;
-    coated.thickness = clearcoat_ ? textures_.constant(0) : -1;
-    coated.remap_roughness = false;
-    return coatable(add(metal()), coated);
-}
-
-MaterialBuilder::Coatable MaterialBuilder::opaque_dielectric() {
-    // The clear coat's border takes the place of the surface's own and of its tint.
-    CoatedDiffuseMaterial coated =
-        dielectric(clearcoat_ ? Widths{clearcoat_->alpha, clearcoat_->alpha} : widths_);
-    coated.normal_reflectance = coated.coat_weight = -1;
-    return coatable(add(dielectric(widths_)), coated);
 }
 
 MaterialId MaterialBuilder::glass() {
@@ -121,35 +76,26 @@ void MaterialBuilder::read_absorption(const tinygltf::Value& volume) {
     surface_.inside = static_cast<MediumId>(scene_.media.size() - 1);
 }
 
-MaterialBuilder::Coatable MaterialBuilder::dielectric_surface() {
+MaterialId MaterialBuilder::dielectric_surface() {
     const auto* e = extension(material_.extensions, "KHR_materials_transmission");
     const std::string place = in("KHR_materials_transmission");
     const double factor = e ? number(document_, *e, "transmissionFactor", 0, 0, 1, place) : 0.0;
     if (factor == 0) return opaque_dielectric();
     const auto info = use(texture_info(document_, *e, "transmissionTexture", place));
     const MaterialId clear = glass();
-    // The glass has a border of its own, which shines like a coat.
-    const Coatable transmitting{clear, clear};
-    if (factor == 1 && info.index < 0) return transmitting;
-    return mixed(opaque_dielectric(), transmitting,
-                 textures_.channel(info, Channel::red, static_cast<float>(factor),
-                                   place + ".transmissionTexture"));
+    if (factor == 1 && info.index < 0) return clear;
+    return mix(opaque_dielectric(), clear,
+               textures_.channel(info, Channel::red, static_cast<float>(factor),
+                                 place + ".transmissionTexture"));
 }
 
-MaterialBuilder::Coatable MaterialBuilder::metals_and_others(const TextureUse& texture,
-                                                             float metallic) {
-    read_clearcoat();
+MaterialId MaterialBuilder::metals_and_others(const TextureUse& texture, float metallic) {
     if (metallic == 0) return dielectric_surface();
-    if (metallic == 1 && texture.index < 0) return metal_surface();
-    const Coatable other = dielectric_surface(), metal = metal_surface();
-    return mixed(
-        other, metal,
+    if (metallic == 1 && texture.index < 0) return add(metal());
+    const MaterialId other = dielectric_surface(), metals = add(metal());
+    return mix(
+        other, metals,
         textures_.channel(texture, Channel::blue, metallic, pbr("metallicRoughnessTexture")));
-}
-
-MaterialId MaterialBuilder::with_clearcoat(Coatable surface) {
-    if (!clearcoat_) return surface.plain;
-    return mix(surface.plain, surface.coated, clearcoat_->amount);
 }
 
 }  // namespace covtrace::gltf

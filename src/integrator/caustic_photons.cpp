@@ -68,8 +68,8 @@ class Pilot {
         ray.t_max = kInfinity;
     }
 
-    /// Finds the nearest surface that is no interface; returns its distance from where `ray`
-    /// began. The ray itself begins at the last interface afterwards.
+    /// Finds the nearest surface that light does not pass unchanged; returns its distance from
+    /// where `ray` began. The ray itself begins at the last interface afterwards.
     std::optional<float> next_surface(Ray& ray, SurfaceHit& hit, Bsdf& bsdf) const {
         float distance = 0;
         for (int i = 0; i < kMostInterfaces; ++i) {
@@ -79,7 +79,7 @@ class Pilot {
             const MaterialId material =
                 scene_.materials.at(shape.description.material, hit, scene_.textures);
             bsdf = scene_.materials.bsdf(material, hit, scene_.textures);
-            if (!std::holds_alternative<InterfaceBsdf>(bsdf)) return distance;
+            if (!scene_.materials.lets_light_pass(material)) return distance;
             ray.origin = Geometry::offset_origin(hit, ray.direction);
         }
         return std::nullopt;

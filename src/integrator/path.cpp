@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "bsdf/models.h"
 #include "integrator/path_tracer.h"
 #include "shading/normal_map.h"
 
@@ -10,6 +11,7 @@ namespace covtrace {
 namespace {
 
 bool transmits(const Bsdf& bsdf) {
+    if (const auto* layered = std::get_if<LayeredBsdf>(&bsdf)) return transmits(base_of(*layered));
     return std::holds_alternative<DielectricBsdf>(bsdf) ||
            std::holds_alternative<DiffuseTransmissionBsdf>(bsdf) ||
            std::holds_alternative<ThinDielectricBsdf>(bsdf);
@@ -50,34 +52,56 @@ bool PathTracer::meet(bool found) {
     // the eye, so that the filter of the texture adds next to nothing to that of the pixel
     const Vec3 from_eye = hit.position - camera_origin_;
     const float away = length(from_eye);
-    const Bsdf bsdf = away > 0
-                          ? scene_.materials.bsdf(material, hit, scene_.textures, from_eye / away,
-                                                  scene_.camera.half_pixel(away) / 4)
-                          : scene_.materials.bsdf(material, hit, scene_.textures);
-    if (!std::holds_alternative<InterfaceBsdf>(bsdf))
+    Bsdf bsdf = away > 0 ? scene_.materials.bsdf(material, hit, scene_.textures, from_eye / away,
+                                                 scene_.camera.half_pixel(away) / 4)
+                         : scene_.materials.bsdf(material, hit, scene_.textures);
+    if (const auto* unlit = std::get_if<UnlitBsdf>(&bsdf)) {
+        if (is_seen(*unlit)) return see_unlit(*unlit, material);
+    } else if (!std::holds_alternative<InterfaceBsdf>(bsdf)) {
         return meet_surface(hit, shape, material, bsdf);
+    }
     // Pass through an interface
     medium_ = medium_beyond(shape, hit, ray_.direction, medium_);
     ray_.origin = Geometry::offset_origin(hit, ray_.direction);
     return ++passed_interfaces_ <= kMostInterfaces;
 }
 
+bool PathTracer::is_seen(const UnlitBsdf& unlit) const {
+    return sharp_so_far_ && (unlit.two_sided || dot(ray_.direction, hit_.ng) < 0);
+}
+
+bool PathTracer::see_unlit(const UnlitBsdf& unlit, MaterialId material) {
+    const Vec3 wo = -ray_.direction;
+    PathVertex* vertex = begin_vertex(hit_, -1, wo);
+    const Vec3 normal = face_forward(hit_.ns, wo);
+    describe_vertex(hit_.position, albedo(unlit, normal), normal);
+    if (depth_ == 0) describe_first(hit_, wo);
+    const Rgb contribution = beta_ * unlit.colour;
+    result_.radiance += contribution;
+    if (in_view()) result_.in_view += contribution;
+    if (vertex) {
+        vertex->material = material;
+        vertex->shading = shading_frame(hit_);
+        vertex->emitted = luminance(contribution);
+    }
+    return false;
+}
+
 bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material,
-                              const Bsdf& bsdf) {
+                              Bsdf& bsdf) {
     const Vec3 wo = -ray_.direction;
     // Add light that the surface emits
     PathVertex* vertex = begin_vertex(hit, -1, wo);
     if (vertex) vertex->material = material;
     add_emission(hit, wo, vertex);
     const Frame frame = frame_at(hit, shape, material);
+    if (scene_.materials.turns_clearcoat(material))
+        turn_clearcoat(bsdf, hit, shape, material, frame);
     const Surface surface{hit, shape, bsdf, frame, frame.to_local(wo)};
     // Describe the surface to filters and denoisers
     if (seen_clearly_)
         describe_vertex(hit.position, albedo(bsdf, surface.wo), face_forward(frame.z, wo));
-    if (depth_ == 0) {
-        result_.geometric_normal = face_forward(hit.ng, wo);
-        result_.uv = hit.uv;
-    }
+    if (depth_ == 0) describe_first(hit, wo);
     if (vertex) vertex->shading = frame;
     if (depth_++ == max_depth_) return false;
     sampler_.set_dimension(static_cast<uint32_t>(depth_) * kPairsPerBounce);
@@ -98,13 +122,27 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, M
 Frame PathTracer::frame_at(const SurfaceHit& hit, const PlacedShape& shape,
                            MaterialId material) const {
     if (!scene_.materials.turns_frame(material)) return shading_frame(hit);
+    return mapped_frame(hit, shape, scene_.materials.description(material), MappedLayer::surface);
+}
+
+void PathTracer::turn_clearcoat(Bsdf& bsdf, const SurfaceHit& hit, const PlacedShape& shape,
+                                MaterialId material, const Frame& frame) const {
+    auto* layered = std::get_if<LayeredBsdf>(&bsdf);
+    if (!layered) return;
+    const MaterialDescription& description = scene_.materials.description(material);
+    const Vec3 normal = description.clearcoat->normal_map >= 0
+                            ? mapped_frame(hit, shape, description, MappedLayer::clearcoat).z
+                            : hit.ns;
+    layered->coat.normal = frame.to_local(normal);
+}
+
+Frame PathTracer::mapped_frame(const SurfaceHit& hit, const PlacedShape& shape,
+                               const MaterialDescription& material, MappedLayer layer) const {
     // The step of the map's differences is as long as pbrt's for 64 samples per pixel and more: an
     // eighth of half a pixel.
     const float footprint = scene_.camera.half_pixel(distance(camera_origin_, hit.position)) / 8;
     const DifferentialGeometry base = scene_.geometry.differential(hit);
-    return NormalMap(scene_.materials.description(material), scene_.textures, shape, hit, base,
-                     footprint)
-        .frame();
+    return NormalMap(material, scene_.textures, shape, hit, base, footprint, layer).frame();
 }
 
 PathVertex* PathTracer::begin_vertex(const SurfaceHit& hit, MediumId medium, Vec3 wo) {
@@ -122,6 +160,11 @@ PathVertex* PathTracer::begin_vertex(const SurfaceHit& hit, MediumId medium, Vec
     glow_ = 0;
     v->in_view = in_view();
     return v;
+}
+
+void PathTracer::describe_first(const SurfaceHit& hit, Vec3 wo) {
+    result_.geometric_normal = face_forward(hit.ng, wo);
+    result_.uv = hit.uv;
 }
 
 void PathTracer::describe_vertex(Vec3 position, Rgb albedo, Vec3 normal) {

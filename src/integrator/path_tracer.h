@@ -5,6 +5,7 @@
 
 #include "integrator/path.h"
 #include "integrator/visibility.h"
+#include "shading/normal_map.h"
 
 namespace covtrace {
 
@@ -92,10 +93,21 @@ class PathTracer {
 
     // ---- path.cpp
     bool meet_surface(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material,
-                      const Bsdf& bsdf);
+                      Bsdf& bsdf);
+    /// Whether the path sees the colour of an unlit surface at the current hit; else it passes.
+    bool is_seen(const UnlitBsdf& unlit) const;
+    /// Adds the colour of an unlit surface, where the path ends; returns false.
+    bool see_unlit(const UnlitBsdf& unlit, MaterialId material);
     /// The frame of the BSDF, with the material's bump or normal map.
     Frame frame_at(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material) const;
+    /// Gives the clear coat its own normal, in the frame of the BSDF.
+    void turn_clearcoat(Bsdf& bsdf, const SurfaceHit& hit, const PlacedShape& shape,
+                        MaterialId material, const Frame& frame) const;
+    Frame mapped_frame(const SurfaceHit& hit, const PlacedShape& shape,
+                       const MaterialDescription& material, MappedLayer layer) const;
     PathVertex* begin_vertex(const SurfaceHit& hit, MediumId medium, Vec3 wo);
+    /// Tells the result what belongs to the first surface alone.
+    void describe_first(const SurfaceHit& hit, Vec3 wo);
     /// Describes the current vertex in the result, if it is the first one or is seen through
     /// mirrors and the like.
     void describe_vertex(Vec3 position, Rgb albedo, Vec3 normal);

@@ -18,8 +18,8 @@ Rgb transmittance(const LitScene& scene, MediumId medium, float distance) {
 
 Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, uint64_t& rays) {
     if (!scene.has_interfaces) return transmittance(scene, medium, distance);
-    // Walk through the rest of the way: it holds only interfaces, and mixes that are interfaces in
-    // places
+    // Walk through the rest of the way: it holds only what lets light pass, and mixes that are
+    // interfaces in places
     Rgb passes(1);
     SurfaceHit hit;
     for (int i = 0; i < kMostInterfaces; ++i) {
@@ -28,7 +28,7 @@ Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, 
         const PlacedShape& shape = scene.geometry.shapes()[hit.shape];
         const MaterialId material =
             scene.materials.at(shape.description.material, hit, scene.textures);
-        if (!scene.materials.is_interface(material)) {
+        if (!scene.materials.lets_light_pass(material)) {
             if (material != shape.description.material) return Rgb(0);
             break;
         }

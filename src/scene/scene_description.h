@@ -90,6 +90,26 @@ struct BrdfTensor;  // brdf_tensor.h
 struct MeasuredMaterial {
     std::shared_ptr<const BrdfTensor> brdf;
 };
+/// A surface without lighting: where the camera sees it, straight or by perfect mirrors and clear
+/// glass, it has its colour whatever the light; all other light passes it as if it were not there.
+struct UnlitMaterial {
+    TextureId colour = -1;   ///< radiance; none: 1
+    bool two_sided = false;  ///< whether it is there for rays that meet its back, too
+};
+/// A layer of GGX over a surface, both sides of which have it: glTF's KHR_materials_clearcoat.
+struct ClearcoatLayer {
+    TextureId weight = -1;  ///< share of the surface that has the layer; none: 1
+    TextureId alpha = -1;   ///< width of GGX; none: 0
+    /// Image of the layer's own tangent space normals, as MaterialDescription::normal_map; without
+    /// it the layer has the surface's unmapped normal.
+    TextureId normal_map = -1;
+    float normal_scale = 1;  ///< of the map's x and y
+};
+/// A layer of upright fibres over a surface, both sides of which have it: KHR_materials_sheen.
+struct SheenLayer {
+    TextureId colour = -1;  ///< none: 1
+    TextureId alpha = -1;   ///< width of the fibres' distribution, in [0, 1]; none: 0
+};
 /// At each point one of two materials, the second one with probability `amount`.
 struct MaterialMix {
     std::array<MaterialId, 2> materials{-1, -1};
@@ -99,7 +119,7 @@ struct MaterialDescription {
     std::string name;
     std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, CoatedDiffuseMaterial,
                  DiffuseTransmissionMaterial, CoatedConductorMaterial, ThinDielectricMaterial,
-                 InterfaceMaterial, MeasuredMaterial>
+                 InterfaceMaterial, MeasuredMaterial, UnlitMaterial>
         value;
     SourceLocation where;
     std::optional<MaterialMix> mix = {};  ///< in place of `value`
@@ -115,6 +135,9 @@ struct MaterialDescription {
     float tangent_rotation = 0;
     /// Image of that axis before the rotation: (x, y) = 2 (r, g) - 1, as those of a normal map.
     TextureId tangent_direction = -1;
+    /// Layers over `value`, the sheen below the clear coat; not over what lets all light pass.
+    std::optional<SheenLayer> sheen = {};
+    std::optional<ClearcoatLayer> clearcoat = {};
 };
 
 // ---- media: the same everywhere inside
@@ -141,6 +164,8 @@ struct TriangleMesh {
     std::vector<std::array<uint32_t, 3>> triangles;
     /// Shading tangents in place of those of the uvs: empty or one per position; 0 for none.
     std::vector<Vec3> tangents = {};
+    /// Signs, 1 or -1, that turn the y of normal maps about: empty, or one per triangle.
+    std::vector<int8_t> map_signs = {};
     std::vector<std::vector<Vec2>> more_uvs = {};  ///< sets of coordinates, one per position each
     std::vector<VertexColour> colours = {};        ///< empty or one per position
     /// Contrasts of the colours across the side opposite each corner, in [0, kLargestColourStep];

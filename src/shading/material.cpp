@@ -132,6 +132,43 @@ Bsdf make(const MeasuredMaterial&, const Values&, const Tables& tables) {
     return MeasuredBsdf{tables.measured};
 }
 
+Bsdf make(const UnlitMaterial& m, const Values& v, const Tables&) {
+    return UnlitBsdf{v.spectrum(m.colour, 1), m.two_sided};
+}
+
+SheenLobe make_sheen(const SheenLayer& layer, const Values& v, const SheenTable* table) {
+    const Rgb colour = v.spectrum(layer.colour, 1);
+    // NaN becomes 0, so that a broken texel can't spread.
+    const auto share = [](float c) { return c > 0 ? std::min(c, 1.0f) : 0; };
+    return {{share(colour.r), share(colour.g), share(colour.b)},
+            std::clamp(v.number(layer.alpha, 0), SheenTable::kLeastAlpha, 1.0f),
+            table};
+}
+
+ClearcoatLobe make_coat(const ClearcoatLayer& layer, const Values& v) {
+    const float alpha = v.number(layer.alpha, 0);
+    return {clamp01(v.number(layer.weight, 1)), ggx_alphas(alpha, alpha, false).x};
+}
+
+/// Puts a surface under the material's layers, where it has any and may be under some.
+void put_under_layers(Bsdf& bsdf, const MaterialDescription& m, const Values& v,
+                      const Tables& tables) {
+    if (!m.sheen && !m.clearcoat) return;
+    LayeredBsdf layered;
+    const bool is_kept = std::visit(
+        [&](const auto& b) {
+            constexpr bool is_base =
+                std::is_assignable_v<decltype(layered.base)&, std::decay_t<decltype(b)>>;
+            if constexpr (is_base) layered.base = b;
+            return is_base;
+        },
+        bsdf);
+    if (!is_kept) return;
+    if (m.sheen) layered.sheen = make_sheen(*m.sheen, v, tables.sheen);
+    if (m.clearcoat) layered.coat = make_coat(*m.clearcoat, v);
+    bsdf = layered;
+}
+
 using TextureIds = std::initializer_list<TextureId>;
 
 bool all_constant(const TextureStore& textures, TextureIds ids) {
@@ -168,6 +205,13 @@ bool is_constant(const TextureStore&, const InterfaceMaterial&) {
 bool is_constant(const TextureStore&, const MeasuredMaterial&) {
     return true;
 }
+bool is_constant(const TextureStore& t, const UnlitMaterial& m) {
+    return all_constant(t, {m.colour});
+}
+bool are_layers_constant(const TextureStore& t, const MaterialDescription& m) {
+    return (!m.sheen || all_constant(t, {m.sheen->colour, m.sheen->alpha})) &&
+           (!m.clearcoat || all_constant(t, {m.clearcoat->weight, m.clearcoat->alpha}));
+}
 
 /// The colours of a model as the file gives them; `fixed` where it gives none.
 MaterialColours colours(const DiffuseMaterial& m) {
@@ -196,6 +240,9 @@ MaterialColours colours(const InterfaceMaterial&) {
     return {};
 }
 MaterialColours colours(const MeasuredMaterial&) {
+    return {};
+}
+MaterialColours colours(const UnlitMaterial&) {
     return {};
 }
 
@@ -281,10 +328,17 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
             material.tables.measured =
                 &measured_.try_emplace(b->brdf.get(), *b->brdf).first->second;
         }
+        if (description.sheen) {
+            if (!sheen_) sheen_ = std::make_unique<const SheenTable>();
+            material.tables.sheen = sheen_.get();
+        }
         std::visit(
             [&](const auto& m) {
-                material.is_constant = is_constant(textures, m);
-                if (material.is_constant) material.constant = make(m, at_middle, material.tables);
+                material.is_constant =
+                    is_constant(textures, m) && are_layers_constant(textures, description);
+                if (!material.is_constant) return;
+                material.constant = make(m, at_middle, material.tables);
+                put_under_layers(material.constant, description, at_middle, material.tables);
             },
             description.value);
     }
@@ -303,6 +357,7 @@ Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStor
         const Values values{textures, at, material.colours, adaptation_, powers_};
         found = std::visit([&](const auto& m) { return make(m, values, material.tables); },
                            material.description.value);
+        put_under_layers(found, material.description, values, material.tables);
     }
     if (auto* coated = std::get_if<CoatedConductorBsdf>(&found))
         coated->place = static_cast<uint32_t>(hash_of_position(hit, 0) >> 32);
@@ -334,9 +389,16 @@ MaterialTextures MaterialStore::textures(MaterialId id) const {
     return {c.reflectance.texture, c.transmittance.texture};
 }
 
-bool MaterialStore::is_interface(MaterialId id) const {
-    return id >= 0 && std::holds_alternative<InterfaceMaterial>(
-                          materials_[static_cast<size_t>(id)].description.value);
+bool MaterialStore::lets_light_pass(MaterialId id) const {
+    if (id < 0) return false;
+    const auto& model = materials_[static_cast<size_t>(id)].description.value;
+    return std::holds_alternative<InterfaceMaterial>(model) ||
+           std::holds_alternative<UnlitMaterial>(model);
+}
+
+bool MaterialStore::turns_clearcoat(MaterialId id) const {
+    return id >= 0 && description(id).clearcoat &&
+           (description(id).clearcoat->normal_map >= 0 || turns_frame(id));
 }
 
 }  // namespace covtrace

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "bsdf/bsdf.h"
 #include "bsdf/coat_table.h"
 #include "bsdf/measured_brdf.h"
+#include "bsdf/sheen.h"
 #include "colour/illuminant_adaptation.h"
 #include "colour/reflectance_powers.h"
 #include "core/frame.h"
@@ -41,6 +43,7 @@ struct MaterialTables {
     const CoatTable* coat = nullptr;        ///< of a diffuse material's coat
     const CoatTable* white_coat = nullptr;  ///< CoatTint::white
     const MeasuredBrdf* measured = nullptr;
+    const SheenTable* sheen = nullptr;
 };
 
 /// The textures that modulate the light that a material's lobes reflect and transmit; -1 where
@@ -69,7 +72,10 @@ class MaterialStore {
     Bsdf bsdf(MaterialId id, const SurfaceHit& hit, const TextureStore& textures, Vec3 w = {},
               float width = 0) const;
     MaterialTextures textures(MaterialId id) const;
-    bool is_interface(MaterialId id) const;
+    /// Whether all light passes the surface unchanged: interfaces and what is unlit.
+    bool lets_light_pass(MaterialId id) const;
+    /// Whether the clear coat's normal may be another than that of the frame.
+    bool turns_clearcoat(MaterialId id) const;
     /// Whether a bump or normal map turns the normals, or the material the tangents; see
     /// normal_map.h.
     bool turns_frame(MaterialId id) const;
@@ -92,6 +98,7 @@ class MaterialStore {
     ReflectancePowersTable powers_;  ///< for textures that vary below a coat
     CoatTables coats_;
     std::map<const BrdfTensor*, MeasuredBrdf> measured_;  ///< by their tensors, which are shared
+    std::unique_ptr<const SheenTable> sheen_;
     Warnings warnings_;
 };
 

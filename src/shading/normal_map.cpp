@@ -42,14 +42,24 @@ float step(float footprint, Vec3 tangent, float parameter) {
 
 NormalMap::NormalMap(const MaterialDescription& material, const TextureStore& textures,
                      const PlacedShape& shape, const SurfaceHit& hit,
-                     const DifferentialGeometry& base, float footprint)
+                     const DifferentialGeometry& base, float footprint, MappedLayer layer)
     : material_(material),
+      normal_map_(material.normal_map),
+      displacement_(material.displacement),
+      normal_scale_(material.normal_scale),
       textures_(textures),
       hit_(hit),
       base_(base),
       dpdu_(hit.dpdu),
       dpdv_(hit.dpdv) {
+    if (layer == MappedLayer::clearcoat) {
+        normal_map_ = material.clearcoat->normal_map;
+        displacement_ = -1;
+        normal_scale_ = material.clearcoat->normal_scale;
+    }
     if (material.normal_map_follows_v && dot(cross(hit.dpdu, hit.dpdv), hit.ns) < 0) y_sign_ = -1;
+    if (hit.mesh && !hit.mesh->map_signs.empty())
+        y_sign_ *= static_cast<float>(hit.mesh->map_signs[hit.primitive]);
     if (has_vertex_normals<BilinearMesh>(shape.description)) {
         // Patches have pbrt's shading tangents: the parameters' own, turned as the normal is.
         Vec3 flat = cross(hit.dpdu, hit.dpdv);
@@ -75,20 +85,20 @@ NormalMap::NormalMap(const MaterialDescription& material, const TextureStore& te
 
 float NormalMap::height(Vec2 shift) const {
     return textures_.eval_float(
-        material_.displacement,
+        displacement_,
         {hit_.uv + shift, hit_.position + dpdu_ * shift.x + dpdv_ * shift.y, {}, hit_.ng});
 }
 
 Frame NormalMap::frame_at(Vec2 shift) const {
     Vec3 normal = hit_.ns, tangent = dpdu_;
-    if (material_.normal_map >= 0) {
+    if (normal_map_ >= 0) {
         const Rgb texel =
-            textures_.eval(material_.normal_map, {hit_.uv + shift, hit_.position, {}, hit_.ng});
+            textures_.eval(normal_map_, {hit_.uv + shift, hit_.position, {}, hit_.ng});
         Vec3 local{2 * texel.r - 1, 2 * texel.g - 1, 2 * texel.b - 1};
-        local.x *= material_.normal_scale;
-        local.y *= material_.normal_scale * y_sign_;
+        local.x *= normal_scale_;
+        local.y *= normal_scale_ * y_sign_;
         normal = normalize(Frame::from_z_x(hit_.ns, dpdu_).to_world(local));
-    } else if (material_.displacement >= 0) {
+    } else if (displacement_ >= 0) {
         const float here = height(shift);
         const float du = (height(shift + Vec2{step_.x, 0}) - here) / step_.x;
         const float dv = (height(shift + Vec2{0, step_.y}) - here) / step_.y;

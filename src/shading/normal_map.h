@@ -16,6 +16,9 @@
 
 namespace covtrace {
 
+/// The layer of a material that a map belongs to: a clear coat has a normal map of its own.
+enum class MappedLayer { surface, clearcoat };
+
 /// A material's map at a point of a surface. All references must outlive the object.
 class NormalMap {
   public:
@@ -23,7 +26,7 @@ class NormalMap {
     /// over which differences are taken, scene units, > 0.
     NormalMap(const MaterialDescription& material, const TextureStore& textures,
               const PlacedShape& shape, const SurfaceHit& hit, const DifferentialGeometry& base,
-              float footprint);
+              float footprint, MappedLayer layer = MappedLayer::surface);
 
     /// The mapped frame. z: the new shading normal, in the hemisphere of hit.ng; x along the new
     /// dp/du, turned as the material says.
@@ -37,6 +40,8 @@ class NormalMap {
     float height(Vec2 shift) const;
 
     const MaterialDescription& material_;
+    TextureId normal_map_, displacement_;
+    float normal_scale_;
     const TextureStore& textures_;
     const SurfaceHit& hit_;
     const DifferentialGeometry& base_;

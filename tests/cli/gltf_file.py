@@ -45,12 +45,25 @@ def looking_from(towards, distance):
     return [*x, 0, *y, 0, *towards, 0, *[distance * t for t in towards], 1]
 
 
-def lit_square(material, eye, light, images=(), uv=((0, 100), (100, 100), (100, 0), (0, 0))):
+def lit_square(material, eye, light, images=(), uv=((0, 100), (100, 100), (100, 0), (0, 0)), tangent=None):
     """The text of a file whose square in z = 0 has its tangent along +x, its bitangent along +y. All of it is lit by a directional
-    light of 1 from `light` and seen from `eye`, both unit vectors. images: of the textures, as PNG."""
+    light of 1 from `light` and seen from `eye`, both unit vectors. images: of the textures, as PNG. tangent: TANGENT of all corners."""
     corners = [-50, -50, 0, 50, -50, 0, 50, 50, 0, -50, 50, 0]
     data = struct.pack("<12f", *corners) + struct.pack("<8f", *[x for st in uv for x in st]) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
-    return json.dumps({
+    file = plain_square(data, material, eye, light, images)
+    if tangent:
+        more = struct.pack("<12f", *[0, 0, 1] * 4) + struct.pack("<16f", *tangent * 4)
+        file["meshes"][0]["primitives"][0]["attributes"] |= {"NORMAL": 3, "TANGENT": 4}
+        file["accessors"] += [{"bufferView": 3, "componentType": 5126, "count": 4, "type": "VEC3"},
+                              {"bufferView": 4, "componentType": 5126, "count": 4, "type": "VEC4"}]
+        file["bufferViews"] += [{"buffer": 1, "byteLength": 48}, {"buffer": 1, "byteOffset": 48, "byteLength": 64}]
+        file["buffers"].append({"byteLength": len(more), "uri": uri(more)})
+    return json.dumps(file)
+
+
+def plain_square(data, material, eye, light, images):
+    """The document of lit_square without tangents. data: corners, coordinates and indices."""
+    return {
         "asset": {"version": "2.0"},
         "extensionsUsed": ["KHR_lights_punctual"],
         "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 1}]}},
@@ -73,4 +86,4 @@ def lit_square(material, eye, light, images=(), uv=((0, 100), (100, 100), (100, 
             {"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 32}, {"buffer": 0, "byteOffset": 80, "byteLength": 12},
         ],
         "buffers": [{"byteLength": len(data), "uri": uri(data)}],
-    })
+    }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "bsdf/coat_table.h"
+#include "bsdf/sheen.h"
 #include "chi_square.h"
 #include "core/rng.h"
 
@@ -35,6 +36,9 @@ Vec3 direction(double theta, double phi) {
 
 std::vector<Case> all_cases() {
     static const CoatTable coat(1.5f, 0.01f), white(kWhiteIndex, 0);
+    static const SheenTable fibres;
+    const SheenLobe sheen{{0.9f, 0.5f, 0.1f}, 0.2f, &fibres};
+    const Vec3 aside = normalize(Vec3{0.2f, -0.3f, 1});
     const Rgb eta(0.2f, 0.92f, 1.1f), k(3.9f, 2.45f, 2.14f), tan(0.7f, 0.5f, 0.2f);
     struct Model {
         std::string name;
@@ -52,6 +56,10 @@ std::vector<Case> all_cases() {
          1},
         {"coated_tinted", make_coated_total(coat, tan, 0.1f, 0.3f, {{0.6f, 0.2f, 0}, 0.9f, &white}),
          0.3f, 1},
+        {"velvet", LayeredBsdf{make_coated_total(coat, tan, 0.3f, 0.3f), sheen, {}}, 0.3f, 1},
+        {"clear_smooth", LayeredBsdf{DiffuseBsdf{tan}, {}, {0.8f, 0, aside}}, 0, 1},
+        {"clear_on_metal", LayeredBsdf{ConductorBsdf{eta, k, 0.3f, 0.3f}, {}, {1, 0.1f}}, 0.3f, 1},
+        {"clear_on_velvet", LayeredBsdf{DiffuseBsdf{tan}, sheen, {1, 0.2f, aside}}, 0.2f, 1},
     };
     for (float alpha : {0.02f, 0.1f, 0.3f, 1.0f}) {
         const std::string suffix = std::to_string(static_cast<int>(alpha * 100));

@@ -6,6 +6,7 @@
 
 #include "bsdf/coat_table.h"
 #include "bsdf/lobe_function.h"
+#include "bsdf/sheen.h"
 #include "core/rng.h"
 #include "core/warp.h"
 #include "covariance/covariance.hpp"
@@ -28,7 +29,9 @@ struct Model {
 /// Models without total reflection by the coat's table and with grey conductors, for which the
 /// function is exact.
 std::vector<Model> models() {
-    return {{"diffuse", DiffuseBsdf{Rgb(0.5f)}},
+    static const SheenTable fibres;
+    return {{"velvet", LayeredBsdf{DiffuseBsdf{}, {Rgb(1), 0.2f, &fibres}, {}}},
+            {"diffuse", DiffuseBsdf{Rgb(0.5f)}},
             {"diffuse transmission", DiffuseTransmissionBsdf{Rgb(0.5f), Rgb(0.3f)}},
             {"conductor", ConductorBsdf{Rgb(0.2f), Rgb(3.0f), 0.2f, 0.2f}},
             {"brushed conductor", ConductorBsdf{Rgb(1.2f), Rgb(7.0f), 0.05f, 0.4f}},
@@ -50,7 +53,7 @@ TEST(LobeFunction, IsProportionalToWhatThePathTracerEvaluates) {
     for (const Model& model : models()) {
         SCOPED_TRACE(model.name);
         Rng rng(21);
-        double first[6] = {};
+        double first[7] = {};
         int compared = 0;
         for (int i = 0; i < 4000; ++i) {
             const Vec3 wo = square_to_sphere(rng.next_2d());

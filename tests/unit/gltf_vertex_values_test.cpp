@@ -100,11 +100,12 @@ TEST(GltfVertexColours, TintWhatIsUnlit) {
                            {"extensions", {{"KHR_materials_unlit", json::object()}}}});
     square.set_rgba();
     const auto scene = read(square.file);
-    const auto& light = scene.area_lights.at(size_t(scene.shapes[0].area_light));
-    expect_near(light.radiance, {0.5f, 1, 1}, 0);
-    EXPECT_FALSE(
-        constant_as<VertexColourTexture>(scene, constant_as<ScaleTexture>(scene, light.image).scale)
-            .is_alpha);
+    const auto& unlit = model_of<UnlitMaterial>(scene, scene.shapes[0].material);
+    const auto& product = constant_as<ScaleTexture>(scene, unlit.colour);
+    expect_near(constant_value(scene, product.tex), {0.5f, 1, 1}, 0);
+    EXPECT_FALSE(constant_as<VertexColourTexture>(scene, product.scale).is_alpha);
+    EXPECT_EQ(scene.shapes[0].area_light, -1);
+    EXPECT_FALSE(contains(all_warnings(scene), "KHR_materials_unlit"));
 }
 
 TEST(GltfVertexColours, StayWithTheVerticesOfPiecesAndPicks) {

@@ -55,7 +55,7 @@ class MaterialTest : public testing::Test {
 TEST_F(MaterialTest, NoMaterialIsGreyDiffuse) {
     build();
     EXPECT_EQ(bsdf_at<DiffuseBsdf>(-1).reflectance, Rgb(0.5f));
-    EXPECT_FALSE(materials_->is_interface(-1));
+    EXPECT_FALSE(materials_->lets_light_pass(-1));
     EXPECT_EQ(materials_->textures(-1).reflectance, -1);
 }
 
@@ -189,8 +189,8 @@ TEST_F(MaterialTest, DiffuseTransmissionIsScaledThenClamped) {
 TEST_F(MaterialTest, InterfacesAreKnown) {
     const MaterialId id = add(InterfaceMaterial{}), other = add(DiffuseMaterial{});
     build();
-    EXPECT_TRUE(materials_->is_interface(id));
-    EXPECT_FALSE(materials_->is_interface(other));
+    EXPECT_TRUE(materials_->lets_light_pass(id));
+    EXPECT_FALSE(materials_->lets_light_pass(other));
     bsdf_at<InterfaceBsdf>(id);
 }
 

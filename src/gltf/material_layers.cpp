@@ -1,0 +1,57 @@
+/// Layers over a material: KHR_materials_sheen and KHR_materials_clearcoat.
+#include "gltf/material_builder.h"
+
+namespace covtrace::gltf {
+namespace {
+
+using Channel = ImageTexture::Channel;
+
+}  // namespace
+
+void MaterialBuilder::read_sheen() {
+    const auto* e = extension(material_.extensions, "KHR_materials_sheen");
+    if (!e) return;
+    const std::string place = in("KHR_materials_sheen");
+    const auto factor = numbers<3>(document_, *e, "sheenColorFactor", {0, 0, 0}, 0, place);
+    const Rgb colour{static_cast<float>(factor[0]), static_cast<float>(factor[1]),
+                     static_cast<float>(factor[2])};
+    if (is_black(colour)) return;
+    const auto roughness =
+        static_cast<float>(number(document_, *e, "sheenRoughnessFactor", 0, 0, 1, place));
+    sheen_ =
+        SheenLayer{textures_.colour(use(texture_info(document_, *e, "sheenColorTexture", place)),
+                                    colour, place + ".sheenColorTexture"),
+                   squared(use(texture_info(document_, *e, "sheenRoughnessTexture", place)),
+                           Channel::alpha, roughness, place + ".sheenRoughnessTexture")};
+}
+
+void MaterialBuilder::read_clearcoat() {
+    const auto* e = extension(material_.extensions, "KHR_materials_clearcoat");
+    if (!e) return;
+    const std::string place = in("KHR_materials_clearcoat");
+    const auto factor =
+        static_cast<float>(number(document_, *e, "clearcoatFactor", 0, 0, 1, place));
+    if (factor == 0) return;
+    const auto roughness =
+        static_cast<float>(number(document_, *e, "clearcoatRoughnessFactor", 0, 0, 1, place));
+    ClearcoatLayer coat;
+    coat.weight = textures_.channel(use(texture_info(document_, *e, "clearcoatTexture", place)),
+                                    Channel::red, factor, place + ".clearcoatTexture");
+    coat.alpha = squared(use(texture_info(document_, *e, "clearcoatRoughnessTexture", place)),
+                         Channel::green, roughness, place + ".clearcoatRoughnessTexture");
+    const auto normal = texture_info(document_, *e, kClearcoatNormal, place);
+    if (normal.index >= 0) {
+        const std::string here = place + "." + kClearcoatNormal;
+        constexpr double kAny = 1e6;
+        coat.normal_map = textures_.linear(use(normal), here);
+        coat.normal_scale = static_cast<float>(
+            number(document_, e->Get(kClearcoatNormal), "scale", 1, -kAny, kAny, here));
+    }
+    clearcoat_ = coat;
+    if (surface_.emission)
+        warn(
+            "KHR_materials_clearcoat: the surface's emission shines through the clear coat "
+            "undimmed");
+}
+
+}  // namespace covtrace::gltf
