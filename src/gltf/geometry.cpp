@@ -4,7 +4,9 @@
 #include <numeric>
 
 #include "gltf/accessor.h"
+#include "gltf/marks.h"
 #include "gltf/tangents.h"
+#include "gltf/vertex_pick.h"
 #include "scene/vertex_colours.h"
 
 namespace covtrace::gltf {
@@ -47,18 +49,7 @@ std::vector<uint32_t> keep_used_vertices(TriangleMesh& mesh) {
             used.push_back(i);
         }
     if (used.size() > mesh.positions.size() / 2) return {};
-    const auto pick = [&](auto& values) {
-        if (values.empty()) return;
-        std::decay_t<decltype(values)> kept(used.size());
-        for (size_t k = 0; k < used.size(); ++k) kept[k] = values[used[k]];
-        values = std::move(kept);
-    };
-    pick(mesh.positions);
-    pick(mesh.normals);
-    pick(mesh.uvs);
-    pick(mesh.tangents);
-    pick(mesh.colours);
-    for (auto& uvs : mesh.more_uvs) pick(uvs);
+    pick_vertices(mesh, used);
     for (auto& triangle : mesh.triangles)
         for (uint32_t& i : triangle) i = place[i];
     return used;
@@ -87,7 +78,8 @@ GeometryReader::Entry& GeometryReader::entry(int mesh, size_t primitive,
     const auto [it, is_new] = meshes_.try_emplace({mesh, primitive, layout});
     if (is_new)
         it->second = read(document_.model.meshes[static_cast<size_t>(mesh)].primitives[primitive],
-                          layout, place_of(mesh, primitive));
+                          layout, mark_radii_.empty() ? 0 : mark_radii_[static_cast<size_t>(mesh)],
+                          place_of(mesh, primitive));
     return it->second;
 }
 
@@ -131,8 +123,7 @@ ColourUse GeometryReader::colours(int mesh, size_t primitive) {
     const tinygltf::Primitive& source =
         document_.model.meshes[static_cast<size_t>(mesh)].primitives[primitive];
     const auto colour = source.attributes.find("COLOR_0");
-    const bool is_rendered = source.mode < 0 || source.mode >= TINYGLTF_MODE_TRIANGLES;
-    if (colour == source.attributes.end() || !is_rendered) return {};
+    if (colour == source.attributes.end()) return {};
     const auto [it, is_new] = colours_.try_emplace(colour->second);
     if (is_new)
         it->second = use_of(read_colours(document_, colour->second,
@@ -170,39 +161,10 @@ void GeometryReader::read_vertex_values(const tinygltf::Primitive& primitive,
     require_count(document_, mesh.colours.size(), count, name);
 }
 
-void GeometryReader::count_left_out(const tinygltf::Primitive& primitive,
-                                    const std::string& place) {
-    const auto position = primitive.attributes.find("POSITION");
-    size_t count = 0;
-    if (primitive.indices >= 0)
-        count = accessor_count(document_, primitive.indices, place + ".indices");
-    else if (position != primitive.attributes.end())
-        count = accessor_count(document_, position->second, place + ".attributes.POSITION");
-    const bool is_points = primitive.mode == TINYGLTF_MODE_POINTS;
-    if (primitive.mode == TINYGLTF_MODE_LINE) count /= 2;
-    if (primitive.mode == TINYGLTF_MODE_LINE_STRIP && count > 0) --count;
-    LeftOut& kind = is_points ? points_ : lines_;
-    if (kind.primitives == 0) kind.first = place;
-    ++kind.primitives;
-    kind.elements += count;
-}
-
-void GeometryReader::tell_left_out() {
-    for (const auto& [kind, name] : {std::pair(&points_, "points"), {&lines_, "lines"}})
-        if (kind->primitives > 0)
-            warn(kind->first, std::string(name) +
-                                  " are not rendered: " + std::to_string(kind->elements) + " in " +
-                                  std::to_string(kind->primitives) +
-                                  (kind->primitives == 1 ? " primitive" : " primitives"));
-}
-
 GeometryReader::Entry GeometryReader::read(const tinygltf::Primitive& primitive,
-                                           const VertexLayout& layout, const std::string& place) {
+                                           const VertexLayout& layout, float mark_radius,
+                                           const std::string& place) {
     const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
-    if (mode < TINYGLTF_MODE_TRIANGLES) {
-        count_left_out(primitive, place);
-        return {};
-    }
     if (mode > TINYGLTF_MODE_TRIANGLE_FAN)
         document_.refuse(place + ".mode",
                          std::to_string(mode) + " is no kind of primitive; expected 0 to 6");
@@ -236,14 +198,18 @@ GeometryReader::Entry GeometryReader::read(const tinygltf::Primitive& primitive,
         indices.resize(count);
         std::iota(indices.begin(), indices.end(), 0);
     }
-    mesh->triangles = triangles(indices, mode);
-    if (mesh->triangles.empty()) return {};
-    // By the specification tangents count beside normals only.
-    if (layout.needs_tangents && attribute("TANGENT") >= 0 && !mesh->normals.empty())
-        read_tangents(document_, attribute("TANGENT"), *mesh, attributes + "TANGENT");
     Entry result;
     result.count = count;
-    result.kept = keep_used_vertices(*mesh);
+    if (has_marks(primitive))
+        result.kept = make_solid(*mesh, indices, mode, mark_radius);
+    else
+        mesh->triangles = triangles(indices, mode);
+    if (mesh->triangles.empty()) return {};
+    // By the specification tangents count beside normals only.
+    if (layout.needs_tangents && attribute("TANGENT") >= 0 && !mesh->normals.empty() &&
+        !has_marks(primitive))
+        read_tangents(document_, attribute("TANGENT"), *mesh, attributes + "TANGENT");
+    if (!has_marks(primitive)) result.kept = keep_used_vertices(*mesh);
     spend(*mesh, mesh->positions.size(), place);
     if (!mesh->colours.empty()) find_colour_steps(*mesh);
     result.mesh = std::move(mesh);

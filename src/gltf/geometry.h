@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "gltf/colours.h"
@@ -30,16 +31,20 @@ struct VertexLayout {
 /// Converts each primitive once per layout of its vertices; all nodes that use a mesh share it.
 class GeometryReader {
   public:
-    GeometryReader(const Document& document, WarningLog& log)
-        : document_(document), log_(log), bytes_(budget_of_meshes(document.bytes)) {}
+    /// `mark_radii`: of points and lines, see the function of that name.
+    GeometryReader(const Document& document, WarningLog& log, std::vector<float> mark_radii)
+        : document_(document),
+          log_(log),
+          mark_radii_(std::move(mark_radii)),
+          bytes_(budget_of_meshes(document.bytes)) {}
 
     /// The changes that COLOR_0 of meshes[mesh].primitives[primitive] makes.
     ColourUse colours(int mesh, size_t primitive);
 
     /// The triangles of meshes[mesh].primitives[primitive] with the texture coordinates, colours
-    /// and tangents of the layout, v upwards as everywhere else here (glTF's runs down). Null for
-    /// points and lines, which are counted, and for primitives without triangles. Throws
-    /// Error(limit) where all meshes are too large for the file.
+    /// and tangents of the layout, v upwards as everywhere else here (glTF's runs down); points and
+    /// lines as solids. Null for primitives without any. Throws Error(limit) where all meshes are
+    /// too large for the file.
     std::shared_ptr<const TriangleMesh> mesh(int mesh, size_t primitive,
                                              const VertexLayout& layout);
 
@@ -50,9 +55,6 @@ class GeometryReader {
                           const std::string& place);
     bool has_joints(int mesh, size_t primitive, const VertexLayout& layout);
 
-    /// Warns of the points and lines that were asked for, with their numbers.
-    void tell_left_out();
-
   private:
     struct Entry {
         std::shared_ptr<const TriangleMesh> mesh;
@@ -61,17 +63,10 @@ class GeometryReader {
         std::optional<Deformation> deformation;  ///< set once it was asked for
     };
 
-    /// Primitives of one kind that are not rendered.
-    struct LeftOut {
-        size_t primitives = 0, elements = 0;
-        std::string first;  ///< place of the first one
-    };
-
     Entry& entry(int mesh, size_t primitive, const VertexLayout& layout);
     const Deformation& deformation(int mesh, size_t primitive, const VertexLayout& layout);
-    Entry read(const tinygltf::Primitive& primitive, const VertexLayout& layout,
+    Entry read(const tinygltf::Primitive& primitive, const VertexLayout& layout, float mark_radius,
                const std::string& place);
-    void count_left_out(const tinygltf::Primitive& primitive, const std::string& place);
     void read_vertex_values(const tinygltf::Primitive& primitive, const VertexLayout& layout,
                             TriangleMesh& mesh, const std::string& place);
     /// Takes a mesh's bytes from the budget. Errors: Error(limit) where the budget of meshes is
@@ -83,10 +78,10 @@ class GeometryReader {
 
     const Document& document_;
     WarningLog& log_;
+    const std::vector<float> mark_radii_;
     std::map<std::tuple<int, size_t, VertexLayout>, Entry> meshes_;
     std::map<int, ColourUse> colours_;  ///< by accessor
-    LeftOut points_, lines_;
-    Budget bytes_;  ///< budget of what meshes may still take
+    Budget bytes_;                      ///< budget of what meshes may still take
 };
 
 }  // namespace covtrace::gltf

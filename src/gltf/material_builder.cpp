@@ -42,7 +42,7 @@ Surface MaterialBuilder::build() {
     read_base();
     choose_uv_set();
     read_alpha();
-    if (extension(material_.extensions, "KHR_materials_unlit")) {
+    if (is_unlit_ || extension(material_.extensions, "KHR_materials_unlit")) {
         build_unlit();
         return surface_;
     }

@@ -16,7 +16,7 @@ class MaterialBuilder {
   public:
     MaterialBuilder(const Document& document, SceneDescription& scene, WarningLog& log,
                     TextureReader& textures, const tinygltf::Material& material, ColourUse colours,
-                    std::string place)
+                    bool is_unlit, std::string place)
         : document_(document),
           scene_(scene),
           log_(log),
@@ -24,6 +24,7 @@ class MaterialBuilder {
           material_(material),
           pbr_(material.pbrMetallicRoughness),
           colours_(colours),
+          is_unlit_(is_unlit),
           place_(std::move(place)) {}
 
     /// Appends the material's models and textures to the scene; docs/guide/gltf.md has all
@@ -121,6 +122,7 @@ class MaterialBuilder {
     const tinygltf::Material& material_;
     const tinygltf::PbrMetallicRoughness& pbr_;
     const ColourUse colours_;
+    const bool is_unlit_;
     const std::string place_;
     Surface surface_;
     BaseColour base_colour_;

@@ -6,9 +6,10 @@
 
 namespace covtrace::gltf {
 
-const Surface& MaterialReader::surface(int index, ColourUse colours, const std::string& place) {
+const Surface& MaterialReader::surface(int index, ColourUse colours, bool is_unlit,
+                                       const std::string& place) {
     if (index >= 0) at(document_, document_.model.materials, index, "materials", place);
-    const std::pair key(std::max(index, -1), colours);
+    const std::tuple key(std::max(index, -1), colours, is_unlit);
     const auto it = surfaces_.find(key);
     if (it != surfaces_.end()) return it->second;
     const bool is_default = index < 0;
@@ -17,7 +18,8 @@ const Surface& MaterialReader::surface(int index, ColourUse colours, const std::
         is_default ? otherwise : document_.model.materials[static_cast<size_t>(index)];
     const std::string here = is_default ? place : element("materials", static_cast<size_t>(index));
     Surface surface =
-        MaterialBuilder(document_, scene_, log_, textures_, material, colours, here).build();
+        MaterialBuilder(document_, scene_, log_, textures_, material, colours, is_unlit, here)
+            .build();
     return surfaces_.emplace(key, std::move(surface)).first->second;
 }
 

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <tuple>
 
 #include "gltf/document.h"
 #include "gltf/geometry.h"
@@ -31,15 +32,16 @@ class MaterialReader {
         : document_(document), scene_(scene), log_(log), textures_(document, scene, log) {}
 
     /// The surface that materials[index] makes with such colours of vertices, each read once; -1:
-    /// glTF's default material.
-    const Surface& surface(int index, ColourUse colours, const std::string& place);
+    /// glTF's default material. `is_unlit`: whether it is seen without lighting whatever the
+    /// material says.
+    const Surface& surface(int index, ColourUse colours, bool is_unlit, const std::string& place);
 
   private:
     const Document& document_;
     SceneDescription& scene_;
     WarningLog& log_;
     TextureReader textures_;
-    std::map<std::pair<int, ColourUse>, Surface> surfaces_;
+    std::map<std::tuple<int, ColourUse, bool>, Surface> surfaces_;
 };
 
 }  // namespace covtrace::gltf

@@ -11,6 +11,7 @@
 #include "gltf/extensions.h"
 #include "gltf/geometry.h"
 #include "gltf/lights.h"
+#include "gltf/marks.h"
 #include "gltf/materials.h"
 #include "gltf/nodes.h"
 #include "scene/with_limits.h"
@@ -31,7 +32,7 @@ class SceneAssembler {
           variant_(variant),
           scene_(scene),
           log_(log),
-          geometry_(document, log),
+          geometry_(document, log, mark_radii(document, placed)),
           deformed_(document, log, geometry_, placed, shutter),
           materials_(document, scene, log) {}
 
@@ -45,7 +46,6 @@ class SceneAssembler {
             if (node(n).mesh >= 0) add_mesh(n, uses[node(n).mesh] > 1);
             add_light(document_, n, scene_, log_);
         }
-        geometry_.tell_left_out();
     }
 
     const Bounds3& bounds() const { return bounds_; }
@@ -134,9 +134,11 @@ class SceneAssembler {
         const tinygltf::Primitive& primitive =
             document_.model.meshes[static_cast<size_t>(mesh)].primitives[index];
         warn_of_left_out(document_, primitive.extensions, place, log_);
+        // By the specification points and lines without normals are not lit.
+        const bool is_unlit = has_marks(primitive) && !primitive.attributes.contains("NORMAL");
         const Surface& surface =
             materials_.surface(material_of(document_, primitive, variant_, place),
-                               geometry_.colours(mesh, index), place);
+                               geometry_.colours(mesh, index), is_unlit, place);
         if (!surface.is_visible) return std::nullopt;
         auto triangles = geometry_.mesh(mesh, index, surface.layout);
         if (!triangles) return std::nullopt;

@@ -58,24 +58,5 @@ TEST(GltfLeftOut, ExtensionsOutsideOfMaterialsAreTold) {
     EXPECT_TRUE(warnings_with(scene, "KHR_xmp_json_ld").empty());
 }
 
-TEST(GltfLeftOut, PointsAndLinesAreCounted) {
-    GltfFile file = square_file();
-    const int p = file.add_floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, "VEC3", 3);
-    const int corners = file.add<uint8_t>({0, 1, 2, 3, 0, 1}, 5121, "SCALAR", 1);
-    json primitives = json::array();
-    for (const int mode : {0, 0, 1, 2, 3})
-        primitives.push_back({{"attributes", {{"POSITION", p}}}, {"mode", mode}});
-    primitives.push_back({{"attributes", {{"POSITION", p}}}, {"mode", 1}, {"indices", corners}});
-    file.root["meshes"].push_back({{"primitives", primitives}});
-    file.add_node({{"mesh", 1}});
-    const auto scene = read(file);
-    EXPECT_EQ(warnings_with(scene, "points are not rendered"),
-              (std::vector<std::string>{"points are not rendered: 8 in 2 primitives"}));
-    // The numbers are 2 pairs, a loop of 4, a strip of 3, and 3 pairs.
-    EXPECT_EQ(warnings_with(scene, "lines are not rendered"),
-              (std::vector<std::string>{"lines are not rendered: 12 in 4 primitives"}));
-    EXPECT_TRUE(contains(all_warnings(scene), "meshes[1].primitives[2]: lines"));
-}
-
 }  // namespace
 }  // namespace covtrace::test
