@@ -96,9 +96,8 @@ class CovtraceEngine(bpy.types.RenderEngine):
     _viewport = None
 
     def view_update(self, context, depsgraph):
-        if self._viewport is None:
-            self._viewport = viewport.Viewport(self)
-        self._viewport.change()
+        if self._viewport is not None:
+            self._viewport.change()
 
     def view_draw(self, context, depsgraph):
         try:

@@ -26,7 +26,7 @@ class Viewport:
         # look at it.
         weakref.finalize(engine, self._session.stop)
         self._is_changed, self._content, self._key = True, None, None
-        self._drawn, self._texture, self._warnings = 0, None, []
+        self._drawn, self._texture, self._warnings, self._failure = 0, None, [], ""
         look = weakref.WeakMethod(self._look)
 
         def timer():
@@ -61,7 +61,7 @@ class Viewport:
             draw_texture_2d(self._texture, (0, 0), region.width, region.height)
             self._engine().unbind_display_space_shader()
             gpu.state.blend_set("NONE")
-        state = session.failure or ("rendering" if session.is_busy else "done")
+        state = self._failure or session.failure or ("rendering" if session.is_busy else "done")
         # The log of a render has all of them.
         self._engine().update_stats("", "; ".join([state, *self._warnings[:1]]))
 
@@ -78,18 +78,29 @@ class Viewport:
             options += ["--denoiser", "none"]
         if chosen.threads > 0:
             options += ["--threads", str(chosen.threads)]
-        key = (size, [tuple(row) for row in seen.view_matrix], [tuple(row) for row in seen.window_matrix], options)
+        text = viewport_text(scene, size, seen.view_matrix, seen.window_matrix)
+        key = (text, options)
         if key == self._key and not self._is_changed:
             return
-        if self._is_changed:
-            folder = tempfile.TemporaryDirectory(prefix="covtrace-view-")
-            exporter = SceneExporter(None, depsgraph, folder.name)
-            self._content, self._warnings = (folder, exporter.write_content()), exporter.warnings
-            self._is_changed = False
         self._key = key
+        if self._is_changed:
+            self._is_changed = False
+            self._export(depsgraph)
+        if self._content is None:
+            return
         folder, content = self._content
-        text = viewport_text(scene, size, seen.view_matrix, seen.window_matrix)
         self._session.show(View(text, folder.name, content, size, options, keep=folder))
+
+    def _export(self, depsgraph):
+        """Writes the scene; where it cannot be written nothing new is shown until it changes."""
+        folder = tempfile.TemporaryDirectory(prefix="covtrace-view-")
+        exporter = SceneExporter(None, depsgraph, folder.name)
+        self._content, self._failure = None, ""
+        try:
+            self._content = folder, exporter.write_content()
+        except (RuntimeError, OSError) as problem:
+            self._failure = str(problem)
+        self._warnings = exporter.warnings
 
 
 def _texture(image):
