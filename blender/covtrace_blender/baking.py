@@ -20,6 +20,9 @@ EDGE = 1 / 32
 PLACES = np.array([((k + 0.5) / 16, (int(f"{k:04b}"[::-1], 2) + 0.5) / 16) for k in range(16)])
 
 
+_numbers = itertools.count(1)  # of names, which are unique among all exports
+
+
 class BakedImage:
     """Pixels that no image of Blender has."""
 
@@ -69,7 +72,6 @@ class Baker:
 
     def __init__(self, pixels_of):
         self.pixels_of = pixels_of
-        self.count = 0
 
     def bake(self, get, surface, only_unit_square=False):
         """Bakes `get(evaluator)`, a number or a vector; only_unit_square: for what has no other layout.
@@ -100,8 +102,7 @@ class Baker:
             layout = Layout((0, 0), (1, 1), "repeat")
         size = _size(values_at, layout, place.images, random)
         pixels = self._pixels(values_at, layout, size, len(shape) > 1)
-        self.count += 1
-        return Baked(image=BakedImage(f"baked {self.count}", pixels), layout=layout, place=place, is_cut=is_cut)
+        return Baked(image=BakedImage(f"baked {next(_numbers)}", pixels), layout=layout, place=place, is_cut=is_cut)
 
     @staticmethod
     def _pixels(values_at, layout, size, is_colour):

@@ -1,5 +1,6 @@
 """Shader node trees as pbrt-v4 materials; docs/guide/blender.md has the table."""
 
+from .baked_images import BakedImages
 from .baking import Baker, Surface
 from .export_principled import PrincipledExporter
 from .export_sockets import Value
@@ -13,7 +14,7 @@ class MaterialExporter(PrincipledExporter):
     def __init__(self, out, folder, warn):
         self.out, self.warn = out, warn
         self.files = TextureFiles(folder)
-        self.baker = Baker(self.files.source)
+        self.baker, self.baked = Baker(self.files.source), BakedImages()
         self.known, self.of_objects = {}, set()
         self.count = 0
 

@@ -60,6 +60,7 @@ class SceneExporter:
         self._write_world()
         self.uv_ranges = self._uv_ranges()
         self._write_objects(moving)
+        self.materials.baked.keep()
 
     def _write_world(self):
         time = self.frame if self.shutter is None else self.frame + self.shutter[0]

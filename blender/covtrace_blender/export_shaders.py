@@ -99,7 +99,7 @@ class ShaderWriter(SocketReader):
         if node.inputs["Normal"].is_linked:
             self.warn(f"material '{self.name}': the Normal of '{node.name}' is not supported and left out")
         try:
-            height = self._baked_value(lambda nodes: nodes.number(node.inputs["Height"]))
+            height = self._baked_value(node.inputs["Height"], is_number=True)
         except Unsupported as problem:
             self.warn(f"material '{self.name}': node '{problem.node.name}' at 'Height' is not supported ({problem.reason}); "
                       "the surface is flat there")

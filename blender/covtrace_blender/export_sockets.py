@@ -56,7 +56,7 @@ WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "black"}
 class SocketReader:
     """Reads sockets of the material `name` on `surface`; what is left out is told to `warn`, `uv_maps` collects the names
     of the UV maps that images want ("": the mesh's), and `hangs_on_object` is whether the object counts that it is on.
-    `baker`: a Baker."""
+    `baker`: a Baker, `baked`: BakedImages."""
 
     surface = Surface()
 
@@ -81,8 +81,7 @@ class SocketReader:
         if direct is not None:
             return direct
         try:
-            return self._baked_value(lambda nodes: nodes.number(socket) if grey else nodes.vector(socket),
-                                     only_unit_square)
+            return self._baked_value(socket, grey, only_unit_square)
         except Unsupported as problem:
             if node.type == "TEX_IMAGE" and node.image:
                 return self._image_as_it_lies(node, output, grey, problem)
@@ -90,9 +89,13 @@ class SocketReader:
                       f"({problem.reason}); the socket's own value is used")
             return self._constant(socket.default_value, grey)
 
-    def _baked_value(self, get, only_unit_square=False):
-        """Value of what `get` asks of an evaluator of nodes: a constant, or an image over UV. Raises Unsupported."""
-        baked = self.baker.bake(get, self.surface, only_unit_square)
+    def _baked_value(self, socket, is_number, only_unit_square=False):
+        """Value of a number or a vector: a constant, or an image over UV. Raises Unsupported."""
+        def get(nodes):
+            return nodes.number(socket) if is_number else nodes.vector(socket)
+
+        baked = self.baked.of(socket, self.surface, (is_number, only_unit_square),
+                              lambda: self.baker.bake(get, self.surface, only_unit_square))
         self.hangs_on_object |= baked.place.hangs_on_object
         if baked.is_cut:
             self.warn(f"material '{self.name}': a texture that can only lie on the unit square repeats beyond it")

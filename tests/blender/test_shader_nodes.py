@@ -346,6 +346,34 @@ class ShaderNodesTest(BlenderTest):
 
         self.assert_nodes({"repeated": repeated, "endless": endless}, widened)
 
+    def test_what_has_not_changed_is_baked_once(self):
+        tree = Tree()
+        noise = tree.node("TexNoise", {}, {"Scale": 3.0, "Vector": tree.uv()})
+        tree.show(noise, 1)
+        plane = self.tile(0, tree.material)
+        baked = baking.Baker._pixels
+        with unittest.mock.patch.object(baking.Baker, "_pixels", side_effect=baked) as counted:
+            def bakes():
+                before = counted.call_count
+                self.export()
+                return counted.call_count - before
+
+            self.assertEqual(bakes(), 1)
+            plane.location.x += 1
+            self.assertEqual(bakes(), 0)
+            noise.inputs["Scale"].default_value = 4
+            self.assertEqual(bakes(), 1)
+            for loop in plane.data.uv_layers[0].data:
+                loop.uv = (3 * loop.uv[0], loop.uv[1])
+            self.assertEqual(bakes(), 1)
+            noise.inputs["Scale"].keyframe_insert("default_value", frame=1)
+            noise.inputs["Scale"].default_value = 5
+            noise.inputs["Scale"].keyframe_insert("default_value", frame=2)
+            self.scene.frame_set(1)
+            self.assertEqual(bakes(), 0)
+            self.scene.frame_set(2)
+            self.assertEqual(bakes(), 1)
+
     def test_nodes_shine(self):
         self.background.inputs["Color"].default_value = (0, 0, 0, 1)
 
