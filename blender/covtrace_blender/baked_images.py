@@ -1,4 +1,4 @@
-"""What was baked for the last export, so that the next frame, or a moved object in a viewport, does not bake it again."""
+"""Images that were baked for the last export, kept so that the next frame, or a moved object in a viewport, does not bake it again."""
 
 from . import baking
 from .node_signature import all_nodes, signature
@@ -15,7 +15,7 @@ class BakedImages:
         self._used = {}
 
     def of(self, socket, surface, how, bake):
-        """What `bake()` gives for a socket on a Surface, or gave; how: further values that it hangs on."""
+        """The result of `bake()` for a socket on a Surface, or an earlier one; how: further values that it hangs on."""
         tree = socket.id_data
         if any(_may_change(node.image) for node in all_nodes(tree) if getattr(node, "image", None)):
             return bake()

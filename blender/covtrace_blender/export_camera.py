@@ -1,4 +1,4 @@
-"""What a file of pbrt says before WorldBegin: the camera of a scene or of a viewport, film, sampler and integrator."""
+"""The part of a pbrt file before WorldBegin: the camera of a scene or of a viewport, film, sampler and integrator."""
 
 from mathutils import Matrix
 
