@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -99,6 +100,27 @@ TEST(ImageHalves, OfOneImageHaveTheNoiseOfRealHalves) {
     EXPECT_NEAR(bb, 2, 0.25);
     EXPECT_NEAR(ab, 0, 0.2);
     EXPECT_EQ(made.halves[0].count[0], 4);
+}
+
+TEST(ImageHalves, OneBrightPathIsOfOneHalf) {
+    // Alone in its pixel, of 64 samples: its variance is its square. With normal
+    // numbers in place of signs no two of the 40 pixels would be alike.
+    Image image = image_with({"R", "G", "B", "variance.R", "variance.G", "variance.B"}, 80, 80);
+    for (size_t k = 0; k < 40; ++k)
+        for (size_t c = 0; c < 3; ++c) {
+            image.channels[c].values[161 * k + 50] = 100;
+            image.channels[3 + c].values[161 * k + 50] = 1e4f;
+        }
+    const ImageHalves made = halves_of_one(sampled(image, 64));
+    int of_first = 0;
+    for (size_t k = 0; k < 40; ++k) {
+        const float a = made.halves[0].color[1][161 * k + 50],
+                    b = made.halves[1].color[1][161 * k + 50];
+        EXPECT_NEAR(std::max(a, b), 200, 2) << k;
+        EXPECT_NEAR(std::min(a, b), 0, 2) << k;
+        of_first += a > b;
+    }
+    EXPECT_NEAR(of_first, 20, 16);  // beyond once in 10^7 seeds
 }
 
 }  // namespace
