@@ -40,7 +40,7 @@ class PathTracer {
           sampler_(sampler),
           max_depth_(max_depth),
           record_(record),
-          draws_ahead_(scene.lights.draws_ahead()) {
+          draws_ahead_(scene.lights.draws_ahead() && (!sky_guide || sky_guide->is_empty())) {
         camera_origin_ = ray.origin;
         medium_ = scene.description.camera.medium;
         if (record_) {
@@ -172,7 +172,7 @@ class PathTracer {
     GuideMixture guide_;  // guide at the current vertex
     // Light draw of the vertex to come, begun before that vertex is known.
     Lights::Draw light_draw_;
-    const bool draws_ahead_;
+    const bool draws_ahead_;  // not where most samples follow the guide to the sky
     // The parts of the sky that are seen from the last vertex; null: not known.
     const SkyCell* sky_cell_ = nullptr;
     Vec3 light_normal_;  // normal that lights are sampled for at the current vertex; 0: both sides
