@@ -79,4 +79,5 @@ def pixels(scene, samples):
     return values
 
 
-main(*sys.argv[sys.argv.index("--") + 1:])
+if __name__ == "__main__":
+    main(*sys.argv[sys.argv.index("--") + 1:])

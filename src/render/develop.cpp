@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "image/finite_pixels.h"
-#include "render/covariance_image.h"
 #include "render/hybrid_film.h"
 #include "render/layers.h"
+#include "render/methods/covariance_image.h"
 
 namespace covtrace {
 

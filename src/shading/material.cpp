@@ -236,13 +236,9 @@ MaterialColours colours(const CoatedConductorMaterial& m) {
 MaterialColours colours(const ThinDielectricMaterial& m) {
     return {{}, {m.transmittance, 1, Rgb(1)}};
 }
-MaterialColours colours(const InterfaceMaterial&) {
-    return {};
-}
-MaterialColours colours(const MeasuredMaterial&) {
-    return {};
-}
-MaterialColours colours(const UnlitMaterial&) {
+/// All other models give none.
+template <typename Model>
+MaterialColours colours(const Model&) {
     return {};
 }
 

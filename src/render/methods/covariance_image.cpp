@@ -1,4 +1,4 @@
-#include "render/covariance_image.h"
+#include "render/methods/covariance_image.h"
 
 #include <algorithm>
 #include <cmath>
