@@ -14,6 +14,9 @@ if "--help" in sys.argv:  # before what only Blender has
     sys.exit()
 import bpy
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from render_jobs import jobs  # noqa: E402
+
 WIDTH, HEIGHT = 128, 96
 
 
@@ -162,17 +165,6 @@ def make(name):
         image.media_type = "MULTI_LAYER_IMAGE"
     image.file_format, image.color_depth = "OPEN_EXR_MULTILAYER", "32"
     return scene
-
-
-def jobs(arguments):
-    job = []
-    for argument in arguments:
-        if argument == "+":
-            yield job
-            job = []
-        else:
-            job.append(argument)
-    yield job
 
 
 def main():

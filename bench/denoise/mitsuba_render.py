@@ -20,6 +20,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import mitsuba_scenes  # noqa: E402
+from render_jobs import jobs  # noqa: E402
 
 mi.set_variant("llvm_ad_rgb" if os.environ.get("DRJIT_LIBLLVM_PATH") else "scalar_rgb")
 MOST = 256  # samples per pixel of one render, whose paths are in memory at once
@@ -63,17 +64,6 @@ def render_single(scene, samples, seed, file):
     colours = [names.index(c) for c in "RGB"]
     spread = np.maximum(0, squares / samples - mean.astype(np.float64)**2)[..., colours] / (samples - 1)
     write(np.concatenate([mean, spread], 2), names + [f"variance.{c}" for c in "RGB"], file)
-
-
-def jobs(arguments):
-    job = []
-    for argument in arguments:
-        if argument == "+":
-            yield job
-            job = []
-        else:
-            job.append(argument)
-    yield job
 
 
 def main():

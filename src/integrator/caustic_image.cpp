@@ -18,8 +18,8 @@ constexpr double kRidge = 1e-3;
 /// found with a density that is far too small.
 constexpr float kWidening = 1.5f;
 constexpr float kNarrowest = 1e-3f, kWidest = 0.4f;  // standard deviation, radians
-constexpr int kPowerSteps = 8, kMeansSteps = 4;
-constexpr int kMostDivisions = 2;  // halvings of photons that came the same way
+constexpr int kPowerSteps = 8, kMeansSteps = 4;      // enough to tell clusters that are well apart
+constexpr int kMostDivisions = 2;                    // halvings of photons that came the same way
 /// Two images in the place of one must leave this share of its solid angle. Halves of one normal
 /// distribution leave 0.6 of it.
 constexpr float kLeftByDivision = 0.3f;
@@ -58,7 +58,7 @@ std::array<std::vector<CausticPhoton>, 2> halves(std::span<const CausticPhoton> 
     for (Vec3 v : left) mean += v / float(left.size());
     Normal3 covariance;
     for (Vec3 v : left) covariance.add(1, {v.x - mean.x, v.y - mean.y, v.z - mean.z});
-    Vec3 axis{1, 0.9f, 0.8f};
+    Vec3 axis{1, 0.9f, 0.8f};  // no likely axis is perpendicular to it
     for (int i = 0; i < kPowerSteps; ++i) {
         Vec3 next;
         for (int r = 0; r < 3; ++r)
