@@ -241,8 +241,9 @@ TextureId TextureBuilder::build(Declared& d) {
     } else if (type == "dots") {
         DotsTexture t;
         t.mapping = texture_mapping(p, d.entity.where, d.texture_to_world);
-        t.inside = part(d, "inside", 1);
-        t.outside = part(d, "outside", 0);
+        // pbrt-v4 shows "inside" around the dots, "outside" in them: files were made to look so
+        t.outside = part(d, "inside", 1);
+        t.inside = part(d, "outside", 0);
         d.id = add(d, t);
     } else if (type == "bilerp") {
         BilerpTexture t;

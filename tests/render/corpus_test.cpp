@@ -76,10 +76,13 @@ INSTANTIATE_TEST_SUITE_P(
                     Known{"camera-screenwindow", Where::everywhere, Rgb(0.0625f)},
                     Known{"camera-spherical", Where::everywhere, Rgb(0.0669873f)},
                     Known{"camera-equirectangular", Where::everywhere, Rgb(1 / 6.0f)},
+                    Known{"camera-moving", Where::everywhere, Rgb(0.75f)},
                     Known{"camera-realistic", Where::everywhere, Rgb(3.785e-03f), 4e-3},
                     Known{"material-measured", Where::everywhere, Rgb(0.5f), 0.02},
                     Known{"material-measured-metal", Where::everywhere, Rgb(0.9947f), 2e-3},
                     Known{"shape-displacement", Where::everywhere, Rgb(0.25f), 1e-4},
+                    Known{"shape-tangents", Where::everywhere, kLit},
+                    Known{"film-gbuffer", Where::everywhere, Rgb(0.5f)},
                     Known{"film-iso", Where::everywhere, Rgb(2.5f)},
                     Known{"film-exposure", Where::everywhere, Rgb(0.25f)},
                     Known{"film-maxcomponentvalue", Where::everywhere, Rgb(2, 1, 0.5f)},
@@ -98,6 +101,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Known{"light-infinite-image", Where::everywhere, Rgb(1), 0.02},
                     Known{"light-infinite-image-illuminance", Where::everywhere, Rgb(1), 0.01},
                     Known{"light-portal", Where::everywhere, Rgb(0.239456f)},
+                    Known{"light-moving", Where::everywhere, kLit},
+                    Known{"light-area-moving", Where::everywhere, Rgb(0.0463947f)},
+                    Known{"light-area-object", Where::everywhere, Rgb(0.875f)},
                     Known{"light-scale", Where::everywhere, 0.375f * kLit},
                     Known{"light-area-power", Where::everywhere, Rgb(1)},
                     Known{"light-area-twosided", Where::everywhere, Rgb(0.5f)},
@@ -122,6 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
                           Rgb(0.97f, 0.96f, 0.92f), 0.02},
                     Known{"texture-imagemap", Where::everywhere, Rgb(0.35793f)},
                     Known{"texture-checkerboard", Where::everywhere, Rgb(0.5f)},
+                    Known{"texture-dots", Where::everywhere, Rgb(0.7095f), 1e-2},
                     Known{"texture-scale", Where::everywhere, Rgb(0.4f)},
                     Known{"texture-mix", Where::everywhere, Rgb(0.5f)},
                     Known{"texture-minified", Where::everywhere, {0.55f, 0.3f, 0.55f}, 5e-3},
@@ -161,6 +168,23 @@ TEST(CorpusFile, SlideStandsUpright) {
     near(at(last, last), Rgb(lit));
 }
 
+TEST(CorpusFile, GbufferTellsWhatIsSeen) {
+    const Image image = render_file("film-gbuffer", 16);
+    const size_t i = size_t(image.height() / 2 * image.width() + image.width() / 2);
+    const auto is = [&](const char* channel, float expected, float within) {
+        const Channel* c = image.find(channel);
+        ASSERT_NE(c, nullptr) << channel;
+        EXPECT_NEAR(c->values[i], expected, within) << channel;
+    };
+    is("albedo.G", 0.5f, 1e-4f);
+    is("P.Z", 4, 1e-4f);
+    is("Ng.Z", -1, 1e-6f);
+    is("N.Z", -1, 1e-6f);
+    // The pixel right of and below the middle: u grows with x, v with y; half a pixel is 1/128.
+    is("uv.X", 0.5f + 1 / 128.0f, 1e-2f);
+    is("uv.Y", 0.5f - 1 / 128.0f, 1e-2f);
+}
+
 TEST(CorpusFile, ColouredLightHasLuminanceOne) {
     for (const char* name : {"light-blackbody", "light-illuminant"}) {
         const Block b = block(render_file(name, 64), Where::everywhere);
@@ -189,7 +213,8 @@ TEST(CorpusFile, SubstitutesLookSensible) {
 
 // Every file of the folder opens; only these ask for what is replaced or left out.
 TEST(CorpusFile, OnlySubstitutesWarn) {
-    const std::set<std::string> replaced{"material-hair", "material-subsurface", "shape-cylinder"};
+    const std::set<std::string> replaced{"material-hair", "material-subsurface", "shape-cylinder",
+                                         "light-moving", "light-area-object"};
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(
              std::filesystem::path(COVTRACE_SCENES_FOLDER) / "tests")) {
