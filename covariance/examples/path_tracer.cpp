@@ -1,15 +1,16 @@
 // A small path tracer that filters its image by covariances, from the headers alone:
 //   c++ -std=c++20 -O2 -I include examples/path_tracer.cpp -o path_tracer && ./path_tracer
-// It traces as path tracers do, remembers the vertices of some paths, and walks those back from the
-// light to the camera (`covariance_of`, the part to read first). The covariances say how many
-// samples each pixel gets and how each pixel is filtered. Pictures: plain.png (the same number of
-// samples, evenly), filtered.png, reference.png, density.png, filters.png.
+// It traces as path tracers do, and tells the library what it meets (`Tracer::trace`, the part to
+// read first). The covariances of some paths say how many samples each pixel gets and how each
+// pixel is filtered (`main`). Pictures: plain.png (the same number of samples, evenly),
+// filtered.png, reference.png, density.png, filters.png.
 #include <covariance/renderer.hpp>
 #include <cstdlib>
 
 #include "teaching_scene.h"
 
 namespace cov = covariance;
+using Path = cov::Path<double>;
 
 namespace {
 
@@ -43,24 +44,6 @@ struct Camera {
     }
 };
 
-/// A vertex of a path, with all that the walk back needs of it.
-struct Vertex {
-    Hit hit;
-    Vec to_camera;      ///< unit, to the next vertex towards the camera
-    double direct = 0;  ///< mean radiance that the lamp adds at the pixel by way of this vertex
-    Vec lamp_point;
-};
-struct Path {
-    Vec origin;  ///< on the lens
-    double time = 0;
-    std::vector<Vertex> vertices;
-    double found = 0;     ///< mean radiance at the pixel of the lamp or the sky at the end
-    bool is_sky = false;  ///< the end is the sky, in the direction `escape`
-    Vec escape;
-    Vec color;             ///< radiance that the whole path brings
-    bool in_view = false;  ///< no diffuse surface stands between the end and the camera
-};
-
 class Tracer {
   public:
     Tracer() : scene_(make_scene()) {
@@ -73,96 +56,50 @@ class Tracer {
         for (const Sphere& s : scene_.spheres) grid_.add_sphere(s.center, s.radius, s.velocity);
         grid_.build(-camera_.lens.shutter / 2, camera_.lens.shutter / 2);
     }
-    const Camera& camera() const { return camera_; }
+    const cov::ThinLens<double>& lens() const { return camera_.lens; }
+    const cov::OccluderGrid<double>& grid() const { return grid_; }
 
     /// Traces an ordinary path: lamp sampled at diffuse surfaces, sky found by chance. Caustics of
-    /// the lamp are left out, as in small path tracers.
-    Path trace(int x, int y, Random& random) const {
-        Path path;
-        path.time = (random.next() - 0.5) * camera_.lens.shutter;
+    /// the lamp are left out, as in small path tracers. Every call of `path` is all that
+    /// covariances need.
+    void trace(int x, int y, Random& random, Path& path) const {
+        const double time = (random.next() - 0.5) * camera_.lens.shutter;
         const double r = std::sqrt(random.next()), phi = 2 * M_PI * random.next();
         const double px = x + random.next(), py = y + random.next();
         Vec d, o, throughput{1, 1, 1};
         camera_.ray(px, py, r * std::cos(phi), r * std::sin(phi), o, d);
-        path.origin = o;
-        bool in_view = true;
+        path.begin(o, time);
+        bool sees_lamp = true;
         for (int depth = 0; depth < 5; ++depth) {
-            Hit hit = scene_.intersect(o, d, path.time);
+            Hit hit = scene_.intersect(o, d, time);
             if (!hit.material) {
-                finish(path, times(throughput, scene_.sky), in_view);
-                path.is_sky = true;
-                path.escape = d;
-                break;
+                path.add_sky(d, times(throughput, scene_.sky));
+                return;
             }
-            if (hit.material->kind == Kind::lamp) {
-                if (in_view && dot(hit.normal, d) < 0) {
-                    path.vertices.push_back({hit, -d, 0, {}});
-                    finish(path, times(throughput, scene_.radiance), in_view);
-                }
-                break;
+            const Material& material = *hit.material;
+            if (material.kind == Kind::lamp) {
+                if (sees_lamp && dot(hit.normal, d) < 0)
+                    path.add_lamp(lamp(), hit.position, times(throughput, scene_.radiance));
+                return;
             }
             if (dot(hit.normal, d) > 0) hit.normal = -hit.normal, hit.curvature = -hit.curvature;
-            path.vertices.push_back({hit, -d, 0, {}});
+            path.add_vertex(vertex(hit, -d, length(hit.position - o)));
             throughput = times(throughput, color_at(hit));
             const Vec n = hit.normal;
-            if (hit.material->kind == Kind::diffuse) {
-                add_direct(path, throughput, random);
-                in_view = false;
+            if (material.kind == Kind::diffuse) {
+                sample_lamp(hit, throughput, random, path);
+                sees_lamp = false;
                 d = normalize(n + on_sphere(random));
             } else {
                 d = d - 2 * dot(d, n) * n;
-                if (hit.material->kind == Kind::fuzzy) {
+                if (material.kind == Kind::fuzzy) {
                     const double r3 = random.next();
-                    d = normalize(d + hit.material->fuzz * std::cbrt(r3) * on_sphere(random));
+                    d = normalize(d + material.fuzz * std::cbrt(r3) * on_sphere(random));
                 }
-                if (dot(d, n) <= 0) break;
+                if (dot(d, n) <= 0) return;
             }
             o = hit.position;
         }
-        return path;
-    }
-
-    /// Walks back along a path: the covariance of its light at the sensor, and the radiance it
-    /// weighs.
-    std::pair<cov::SymmetricMatrix5<double>, double> covariance_of(const Path& path) const {
-        std::size_t i = path.vertices.size();
-        const auto at = [&](std::size_t k) {
-            return k == 0 ? path.origin : path.vertices[k - 1].hit.position;
-        };
-        cov::LightField<double> light;
-        double weight = path.found;
-        if (path.found > 0 && path.is_sky) {
-            // Light from infinity has no variation in space, until it passes beside something.
-            light = cov::distant_source(cov::frame_along<double>(-path.escape), {});
-            light =
-                i == 0 ? cov::arrive_from_infinity(grid_, light, at(0), camera_.lens, path.time)
-                       : cov::arrive_from_infinity(grid_, light, at(i), window(path, i), path.time);
-        } else if (path.found > 0) {
-            --i;
-            light = carry(path, lamp_light(path.vertices[i].to_camera), at(i + 1), i);
-        }
-        for (; i > 0; --i) {
-            const Vertex& v = path.vertices[i - 1];
-            const cov::Surface<double> surface = surface_of(v.hit);
-            const cov::Motion<double> motion{v.hit.velocity, {}};
-            const auto leave = [&](const cov::LightField<double>& field) {
-                const auto textured =
-                    cov::add_texture(field, texture(v, surface, length(at(i) - at(i - 1))));
-                return cov::motion_exit(cov::surface_exit(textured, surface), motion);
-            };
-            if (weight > 0) light = leave(scatter(light, v, surface, motion, {}));
-            if (v.direct > 0) {
-                const Vec way = v.hit.position - v.lamp_point;
-                auto lit = lamp_light(normalize(way));
-                lit = cov::travel_past(grid_, lit, v.lamp_point, v.hit.position,
-                                       cov::diffuse_receiver<double>, path.time);
-                lit = leave(scatter(lit, v, surface, motion, {lamp_surface().n, length(way)}));
-                light = weight > 0 ? cov::merge(light, weight, lit, v.direct) : lit;
-                weight += v.direct;
-            }
-            if (weight > 0) light = carry(path, light, at(i), i - 1);
-        }
-        return {cov::sensor(light, camera_.lens), weight};
     }
 
   private:
@@ -172,87 +109,45 @@ class Tracer {
         return {r * std::cos(phi), r * std::sin(phi), z};
     }
 
-    static void finish(Path& path, const Vec& radiance, bool in_view) {
-        path.found = mean(radiance);
-        path.color += radiance;
-        path.in_view = in_view;
+    /// The lamp. Its outline is in the grid.
+    cov::Lamp<double> lamp() const {
+        return cov::quad_lamp(scene_.quads[0].side_1, scene_.quads[0].side_2);
     }
 
-    void add_direct(Path& path, const Vec& throughput, Random& random) const {
-        const Quad& lamp = scene_.quads[0];
-        const Hit& hit = path.vertices.back().hit;
+    void sample_lamp(const Hit& hit, const Vec& throughput, Random& random, Path& path) const {
+        const Quad& quad = scene_.quads[0];
         const double a = random.next(), b = random.next();
-        const Vec p = lamp.corner + a * lamp.side_1 + b * lamp.side_2;
-        const Vec to = p - hit.position, w = normalize(to);
-        const double cosines = dot(w, hit.normal) * -dot(w, lamp_surface().n);
+        const Vec point = quad.corner + a * quad.side_1 + b * quad.side_2;
+        const Vec to = point - hit.position, w = normalize(to);
+        const double cosines = dot(w, hit.normal) * -dot(w, lamp().normal);
         if (dot(w, hit.normal) <= 0 || cosines <= 0) return;
-        if (!scene_.is_free(hit.position, p, path.time)) return;
-        const double area = length(lamp.side_1) * length(lamp.side_2);
-        const Vec added =
-            cosines * area / (M_PI * dot(to, to)) * times(throughput, scene_.radiance);
-        path.vertices.back().direct = mean(added);
-        path.vertices.back().lamp_point = p;
-        path.color += added;
+        if (!scene_.is_free(hit.position, point, path.time())) return;
+        const double area = length(quad.side_1) * length(quad.side_2);
+        const double share = cosines * area / (M_PI * dot(to, to));
+        path.add_lamp(lamp(), point, share * times(throughput, scene_.radiance));
     }
 
-    cov::Surface<double> lamp_surface() const {
-        const Quad& q = scene_.quads[0];
-        return {normalize(cross(q.side_1, q.side_2)), normalize(q.side_1), normalize(q.side_2), {}};
-    }
-    /// The lamp's light along `direction`. Its outline is in the grid, so it is not added here.
-    cov::LightField<double> lamp_light(const Vec& direction) const {
-        const Quad& q = scene_.quads[0];
-        const auto moments = cov::rectangle_moments(length(q.side_1), length(q.side_2));
-        return cov::surface_exit(cov::area_source(moments, cov::frame_along<double>(direction)),
-                                 lamp_surface());
-    }
-
-    static cov::Surface<double> surface_of(const Hit& h) {
-        return {h.normal, h.tangent_1, h.tangent_2,
-                cov::Sym2<double>::diagonal(h.curvature, h.curvature)};
+    cov::PathVertex<double> vertex(const Hit& hit, const Vec& to_camera, double distance) const {
+        const cov::Surface<double> surface{
+            hit.normal, hit.tangent_1, hit.tangent_2,
+            cov::Sym2<double>::diagonal(hit.curvature, hit.curvature)};
+        const Material& m = *hit.material;
+        using Lobe = cov::Lobe<double>;
+        const Lobe lobe = m.kind == Kind::mirror  ? Lobe::mirror()
+                          : m.kind == Kind::fuzzy ? Lobe::fuzzy(m.fuzz)
+                                                  : Lobe::diffuse();
+        return {hit.position,      surface, to_camera, lobe, texture(hit, surface, distance),
+                {hit.velocity, {}}};
     }
 
-    /// The sharpness with which vertex i (counted from 1) sees occluders beside its light.
-    static double window(const Path& path, std::size_t i) {
-        const Material& m = *path.vertices[i - 1].hit.material;
-        if (m.kind == Kind::mirror) return cov::mirror_receiver<double>;
-        return m.kind == Kind::fuzzy ? cov::fuzz_cov(m.fuzz).xx : cov::diffuse_receiver<double>;
-    }
-
-    /// Carries light from a vertex to the one before it, or to the camera where `to` is 0, past
-    /// occluders.
-    cov::LightField<double> carry(const Path& path, const cov::LightField<double>& light,
-                                  const Vec& from, std::size_t to) const {
-        if (to == 0)
-            return cov::travel_past(grid_, light, from, path.origin, camera_.lens, path.time);
-        return cov::travel_past(grid_, light, from, path.vertices[to - 1].hit.position,
-                                window(path, to), path.time);
-    }
-
-    static cov::LightField<double> scatter(cov::LightField<double> light, const Vertex& v,
-                                           const cov::Surface<double>& surface,
-                                           const cov::Motion<double>& motion,
-                                           const cov::Emitter<double>& emitter) {
-        light = cov::surface_enter(cov::motion_enter(light, motion), surface);
-        switch (v.hit.material->kind) {
-            case Kind::mirror:
-                return cov::reflect_specular(light, surface, v.to_camera);
-            case Kind::fuzzy:
-                return cov::reflect_fuzzy(light, surface, v.to_camera, v.hit.material->fuzz);
-            default:
-                return cov::reflect_diffuse(light, surface, v.to_camera, emitter);
-        }
-    }
-
-    /// Covariance of the texture's colour at a vertex that the camera sees from `distance` away.
-    cov::Sym2<double> texture(const Vertex& v, const cov::Surface<double>& surface,
+    /// Covariance of the texture's colour at a point that is seen from `distance` away.
+    cov::Sym2<double> texture(const Hit& hit, const cov::Surface<double>& surface,
                               double distance) const {
-        const Material& m = *v.hit.material;
         const double half_pixel = distance / (2 * camera_.lens.pixels_x);
-        const Vec edges = edges_of_checks(v.hit.in_object, m.cell);
-        if (m.pattern == Pattern::checks)
+        const Vec edges = edges_of_checks(hit.in_object, hit.material->cell);
+        if (hit.material->pattern == Pattern::checks)
             return cov::checkerboard_texture(edges.x, edges.y, half_pixel);
-        if (m.pattern == Pattern::solid_checks)
+        if (hit.material->pattern == Pattern::solid_checks)
             return cov::solid_texture(cov::solid_checkerboard(edges, half_pixel), surface);
         return {};
     }
@@ -262,33 +157,22 @@ class Tracer {
     cov::OccluderGrid<double> grid_;
 };
 
-/// Sums of the colours of samples, for scattered light and for light in view.
-struct Film {
-    std::vector<Vec> scattered = std::vector<Vec>(pixels), in_view = scattered;
-    std::vector<std::uint32_t> count = std::vector<std::uint32_t>(pixels);
+/// Sample k of pixel i. Numbers of different passes are independent.
+void trace(const Tracer& tracer, std::size_t i, std::uint64_t k, std::uint64_t pass, Path& path) {
+    Random random(i, k, pass);
+    tracer.trace(int(i) % width, int(i) / width, random, path);
+}
 
-    void add(std::size_t pixel, const Path& path) {
-        (path.in_view ? in_view : scattered)[pixel] += path.color;
-        ++count[pixel];
-    }
-    std::vector<Vec> mean_of(const std::vector<Vec>& sums) const {
-        std::vector<Vec> image = sums;
-        for (std::size_t i = 0; i < pixels; ++i) image[i] /= std::max(1.0, double(count[i]));
-        return image;
-    }
-    std::vector<Vec> image() const {
-        std::vector<Vec> all = scattered;
-        for (std::size_t i = 0; i < pixels; ++i) all[i] += in_view[i];
-        return mean_of(all);
-    }
-};
-
-void trace_evenly(const Tracer& tracer, Film& film, int per_pixel, std::uint64_t pass) {
+std::vector<Vec> plain_image(const Tracer& tracer, int per_pixel, std::uint64_t pass) {
+    std::vector<Vec> image(pixels);
+    Path path;
     for (std::size_t i = 0; i < pixels; ++i)
         for (int k = 0; k < per_pixel; ++k) {
-            Random random(i, std::uint64_t(k), pass);
-            film.add(i, tracer.trace(int(i) % width, int(i) / width, random));
+            trace(tracer, i, std::uint64_t(k), pass, path);
+            const Vec color = path.color(cov::Part::scattered) + path.color(cov::Part::in_view);
+            image[i] += color / per_pixel;
         }
+    return image;
 }
 
 /// Relative error of an image: mean of (error / reference)^2. The noise of the reference falls out,
@@ -310,47 +194,35 @@ int main(int argc, char** argv) {
     const std::string folder = argc > 1 ? std::string(argv[1]) + "/" : "";
     const Tracer tracer;
 
+    cov::Film<double> film(width, height, samples);
+    Path path;
+
     // 1. A few even samples, each followed back to its covariance.
-    Film film;
-    cov::CovarianceImage<float> scattered(width, height), in_view(width, height);
     for (std::size_t i = 0; i < pixels; ++i)
         for (int k = 0; k < first_samples; ++k) {
-            Random random(i, std::uint64_t(k), 1);
-            const int x = int(i) % width, y = int(i) / width;
-            const Path path = tracer.trace(x, y, random);
-            film.add(i, path);
-            const auto [sigma, weight] = tracer.covariance_of(path);
-            (path.in_view ? in_view : scattered).add(x, y, sigma, weight);
+            trace(tracer, i, std::uint64_t(k), 1, path);
+            film.add(int(i) % width, int(i) / width, path, tracer.grid(), tracer.lens());
         }
 
     // 2. The rest of the samples where the covariances ask for them.
-    const auto settings = cov::filter_settings(samples);
-    const auto prediction = cov::preintegrate(cov::smooth(cov::merge(scattered, in_view)));
-    const auto density =
-        cov::relative_density(prediction, cov::DensityRule::tempered, settings.c, settings.limits);
-    const auto counts =
-        cov::allocate(density, samples * std::int64_t(pixels), film.count, 8 * samples);
+    const auto counts = film.plan();
     for (std::size_t i = 0; i < pixels; ++i)
-        for (std::uint32_t k = film.count[i]; k < counts[i]; ++k) {
-            Random random(i, k, 1);
-            film.add(i, tracer.trace(int(i) % width, int(i) / width, random));
+        for (std::uint64_t k = first_samples; k < counts[i]; ++k) {
+            trace(tracer, i, k, 1, path);
+            film.add(int(i) % width, int(i) / width, path);
         }
 
-    // 3. Filters, limited by their neighbours, and the gather.
-    const auto filters = cov::filters_of_parts(scattered, in_view, samples);
-    const auto gathered =
-        cov::gather(film.mean_of(film.scattered), film.mean_of(film.in_view), film.count, filters);
-    const std::vector<Vec> filtered(gathered.begin(), gathered.end());
+    // 3. The image through its filters.
+    const std::vector<Vec> filtered = film.filtered();
 
     // For comparison, plain path tracing of as many samples, and a reference in two halves.
-    Film plain, half_1, half_2;
-    trace_evenly(tracer, plain, samples, 2);
-    trace_evenly(tracer, half_1, reference_samples, 3);
-    trace_evenly(tracer, half_2, reference_samples, 4);
-    const auto a = half_1.image(), b = half_2.image();
-    const double plain_error = relative_error(plain.image(), a, b);
+    const auto plain = plain_image(tracer, samples, 2);
+    const auto a = plain_image(tracer, reference_samples, 3),
+               b = plain_image(tracer, reference_samples, 4);
+    const double plain_error = relative_error(plain, a, b);
     const double filtered_error = relative_error(filtered, a, b);
 
+    const cov::PartFilters<float> filters = film.filters();
     std::vector<Vec> reference(pixels), densities(pixels), sizes(pixels);
     for (std::size_t i = 0; i < pixels; ++i) {
         reference[i] = 0.5 * (a[i] + b[i]);
@@ -359,7 +231,7 @@ int main(int argc, char** argv) {
         densities[i] = {d, d, d};
         sizes[i] = {s, s, s};
     }
-    bool written = write_png(folder + "plain.png", width, height, plain.image());
+    bool written = write_png(folder + "plain.png", width, height, plain);
     written = write_png(folder + "filtered.png", width, height, filtered) && written;
     written = write_png(folder + "reference.png", width, height, reference) && written;
     written = write_png(folder + "density.png", width, height, densities) && written;
