@@ -172,7 +172,7 @@ Drawing drawn(const Image& light, const Patch& patch, std::vector<Alias>& aliase
         const auto take = [&](const Grid& g) { return sampled(g, comb); };
         const int column = int(k) + 1;
         sheet.picture(column, 0,
-                      fmt::format("{:g} a deviation: {} by {} px", kRates[k], comb.spacing[0],
+                      fmt::format("{:g} per deviation: {} x {} pixels", kRates[k], comb.spacing[0],
                                   comb.spacing[1]),
                       samples_in(signal, comb));
         SpectrumPanel panel = show_spectrum(column, "with replicas", take(luminance));

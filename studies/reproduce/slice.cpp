@@ -174,8 +174,8 @@ void draw_integral(Sheet& sheet, const Study& s, double up_to) {
     for (std::vector<Vec2>* points : {&a, &b})
         for (Vec2& p : *points) p.y /= most;
     constexpr Ink kGrey{130, 130, 130};
-    draw_curves(sheet, 1, 2, "amplitudes of the image's frequencies, nine rows", "cycles per pixel",
-                {-float(up_to), 0}, {float(up_to), 1.05f},
+    draw_curves(sheet, 1, 2, "spectra of nine rows of the image, the largest amplitude 1",
+                "cycles per pixel", {-float(up_to), 0}, {float(up_to), 1.05f},
                 {{"predicted before", kGrey, gaussian(s.predicted.xx, up_to)},
                  {"predicted behind", kOrange, gaussian(s.predicted.behind, up_to)},
                  {"in the middle of the shutter", kCyan, a},
@@ -201,10 +201,13 @@ Drawing drawn(const Study& s) {
     };
     sheet.picture(0, 0, "light field: pixels right, time down", grey(field));
     sheet.mark(0, 0, {0, kSlots, width, 2 * kSlots}, kOrange);
-    show_spectrum(0, "its spectrum, and the predicted covariance", windowed(detail, s.window))
+    show_spectrum(0,
+                  fmt::format("its spectrum: f_x to {:.3f} per pixel, f_t to {:.1f} per shutter",
+                              range[0], range[1]),
+                  windowed(detail, s.window))
         .ellipse({0, 0}, {xx, p.xt, p.tt + window_variance(s.window[1] / kSlots)}, kOrange);
     sheet.picture(0, 1, "while the shutter is open", grey(while_open(field)));
-    show_spectrum(1, "its spectrum, and the predicted with the shutter's",
+    show_spectrum(1, "its spectrum, the same frequencies",
                   windowed(while_open(detail), {s.window[0], kEverywhere}))
         .ellipse({0, 0}, {xx, p.xt, p.tt + covariance::box_shutter_window<double>}, kOrange);
     draw_integral(sheet, s, up_to);
