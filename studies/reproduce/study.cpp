@@ -41,6 +41,16 @@ std::string label_of(FilterRule filter) {
                                            : "verified filter";
 }
 
+/// A method of ours under its name, and whether samples go where earlier ones left noise.
+struct MethodChoice {
+    const char* name;
+    Method method;
+    bool progressive;
+};
+constexpr std::array kMethods{MethodChoice{"covariance", Method::covariance, false},
+                              MethodChoice{"covariance on demand", Method::covariance, true},
+                              MethodChoice{"hybrid", Method::hybrid, false}};
+
 RenderOptions thesis_options(const Workshop& workshop, const ThesisChoices& choices, int cap,
                              FilterRule filter) {
     RenderOptions o;
@@ -90,13 +100,13 @@ SceneStudy& study(Workshop& workshop, const std::string& name, const ThesisChoic
         s.name = name;
         s.scene = &shared_scene(workshop, choices.scene);
         s.reference = &shared_reference(workshop, choices.scene);
-        for (const Method method : {Method::covariance, Method::hybrid}) {
+        for (const auto& [label, method, progressive] : kMethods) {
             MethodStudy m;
-            m.name = method == Method::covariance ? "covariance" : "hybrid";
-            m.label = m.name;
+            m.name = m.label = label;
             workshop.tell(fmt::format("{}: {}", name, m.name));
             RenderOptions options;
             options.method = method;
+            options.progressive = progressive;
             options.spp = workshop.settings.spp;
             m.ours = sample(workshop, *s.scene, *s.reference, options);
             s.methods.push_back(std::move(m));

@@ -42,7 +42,7 @@ struct SceneStudy {
     LoadedScene* scene = nullptr;          ///< the scene, owned by the workshop
     const Reference* reference = nullptr;  ///< the reference, owned by the workshop
     std::unique_ptr<UniformCurve> curve;
-    std::vector<MethodStudy> methods;  ///< covariance, hybrid
+    std::vector<MethodStudy> methods;  ///< covariance, the same on demand, hybrid
     std::vector<ThesisStudy> thesis;   ///< by limit of samples, with each of the three filters
 };
 

@@ -18,6 +18,11 @@ FOLDER = pathlib.Path(__file__).resolve().parents[2] / "docs/results"
 DOCUMENT, NUMBERS = FOLDER / "reproduction.md", FOLDER / "reproduction.json"
 # Experiments in the order of the page.
 ORDER = ["pipeline", "slice", "sampling", "lens", "motion", "shininess", "snooker", "helicopter", "table", "voxels", "progressive"]
+METHODS = {
+    "covariance": "`covariance`, the thesis' method",
+    "covariance on demand": "`covariance --progressive`, as the thesis proposes",
+    "hybrid": "`hybrid`, what goes past it",
+}
 MARK = re.compile(r"<!-- tables: ([\w-]+) -->\n.*?<!-- end of tables -->", re.DOTALL)
 
 
@@ -90,7 +95,7 @@ def ratio(experiments):
         comparison = e["tables"][0]
         at = [comparison["columns"].index(column) for column in wanted]
         for row in comparison["rows"]:
-            method = {"covariance": "`covariance`, the thesis' method", "hybrid": "`hybrid`, what goes past it"}.get(row[0], row[0])
+            method = METHODS.get(row[0], row[0])
             rows.append([name, method, *(row[i] for i in at), size_of(e)])
     return table(["scene", "method", *wanted, "size"], rows) if rows else "Not among these runs.\n"
 
