@@ -98,6 +98,9 @@ class Reproduce(CliTest):
                 self.assertTrue(figure["commands"], figure)
                 self.assertTrue((Path(self.folder) / "out" / figure["file"]).is_file())
         study = results["experiments"]["snooker"]["data"]
+        self.assertEqual(set(study["methods"]), {"covariance", "covariance on demand", "hybrid"})
+        commands = [c for t in results["experiments"]["snooker"]["tables"] for c in t["commands"] if "--progressive" in c]
+        self.assertEqual(len(commands), 1, commands)
         for method in study["methods"].values():
             self.assertGreater(method["breakdown"]["total"], 0)
         # The references are kept for the next run.
