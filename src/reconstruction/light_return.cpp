@@ -8,23 +8,23 @@
 #include "core/vec.h"
 #include "reconstruction/guides.h"
 #include "reconstruction/luminance.h"
+#include "reconstruction/window_sums.h"
 
 namespace covtrace {
 
 namespace {
 
-/// Sizes of levels: the finest has one value for 2 x 2 pixels, each other one for blocks 4 times as
-/// wide and high as those of the level before.
-constexpr int kFinest = 2, kFactor = 4, kLevels = 3;
-/// Number of blocks of the finest level in one block of `level`, along x or y.
-constexpr int blocks(int level) {
+/// Pixels of a block, in x and in y: light is summed over blocks.
+constexpr int kFinest = 2;
+/// Widths of the windows: each next one is so many times as wide.
+constexpr int kFactor = 4, kLevels = 3;
+/// Deviation of the narrowest window, blocks.
+constexpr float kDeviation = 6;
+/// Blocks of the windows of `level` that stand for one another, from one to the next in x or y.
+constexpr int stride(int level) {
     int n = 1;
     for (int k = 0; k < level; ++k) n *= kFactor;
     return n;
-}
-/// Width of a block, pixels.
-constexpr int side(int level) {
-    return kFinest * blocks(level);
 }
 /// Factors k of the noise: that of the levels, and that of the whole image, whose samples are far
 /// more even than their spread tells: the light that it lacks is mostly real. With 0 the error is 1
@@ -32,6 +32,11 @@ constexpr int side(int level) {
 constexpr float kNoise = 1, kNoiseOfAll = 0.1f;
 /// Factor by which a place may become brighter at most; it may become darker by the same factor.
 constexpr float kMostTimes = 10;
+
+/// Limits the light that a place gets, as a multiple of its luminance.
+float within_most(float times) {
+    return std::clamp(times, 1 / kMostTimes - 1, kMostTimes - 1);
+}
 
 /// The means of blocks of `size` x `size` pixels; blocks at the border are smaller.
 Plane block_means(const Plane& p, int size) {
@@ -75,38 +80,36 @@ Rgb times_lacking(Rgb lacking, float light, float variance, float noise) {
     const float certain = 1 - noise * variance / sqr(luminance(lacking));
     if (!(light > 0) || !(certain > 0)) return Rgb(0);  // also where a sum is not a number
     Rgb times;
-    for (int c = 0; c < 3; ++c)
-        times[c] = std::clamp(certain * lacking[c] / light, 1 / kMostTimes - 1, kMostTimes - 1);
+    for (int c = 0; c < 3; ++c) times[c] = within_most(certain * lacking[c] / light);
     return times;
 }
 
-/// The light that each block lacks, as multiples of its luminance (times_lacking).
-ColorPlanes lacking(const Likeness& likeness, const ColorPlanes& e, const Plane& light,
-                    const Plane& variance) {
-    const int w = light.width, h = light.height;
-    const std::vector<MarginPlane> means{MarginPlane(e[0]), MarginPlane(e[1]), MarginPlane(e[2]),
-                                         MarginPlane(light)},
-        variances{MarginPlane(variance)};
-    ColorPlanes times;
-    times.fill(Plane(w, h));
-    parallel_for_rows(w, h, [&](int y) {
-        for (int x = 0; x < w; ++x) {
-            Likeness::Window weights;
-            likeness.weigh(x, y, weights);
-            float sum[4], square;
-            weighted_sums(means, weights, x, y, sum);
-            for (float& weight : weights) weight *= weight;
-            weighted_sums(variances, weights, x, y, &square);
-            const Rgb lack = times_lacking({sum[0], sum[1], sum[2]}, sum[3], square, kNoise);
-            for (int c = 0; c < 3; ++c) times[size_t(c)](x, y) = lack[c];
-        }
-    });
-    return times;
+/// Planes of blocks that are summed over windows, in this order: the lacking light, luminance, and
+/// what tells the noise of wider windows, one plane or two (noise_of_lack).
+enum SummedPlane : size_t { kRed, kGreen, kBlue, kLight, kNoiseFirst, kNoiseSecond };
+
+/// The variance of a window's lacking light, from level 1 on, at block i of its sums.
+///
+/// Halves of one sequence: an image has the noise of its samples, so that what it lacks over many
+/// blocks is its own loss and no noise, unless few of them have lost it: then it is as uncertain as
+/// it is large, lack^2 sum e^2 / (sum |e|)^2, sums over all blocks of the window with equal
+/// weights. Those of level - 1 overlap, and each block counts in 2 pi kDeviation^2 / kFactor^2 of
+/// them.
+///
+/// Independent halves: what they differ by in the narrower windows, squared, of which those that
+/// overlap are no more certain than one.
+float noise_of_lack(const WindowSums& sums, HalvesNoise noise, int level, size_t i, Rgb lack) {
+    constexpr float kOverlap = 2 * kPi * sqr(kDeviation / kFactor);
+    if (noise == HalvesNoise::independent) return 2 * kOverlap * sums.squares[0][i];
+    const float absolute = sums.linear[kNoiseFirst][i];
+    float times = sums.linear[kNoiseSecond][i] / sqr(absolute);  // of one block's e times is 1 then
+    for (int k = 0; k < level; ++k) times *= kOverlap;
+    return absolute > 0 ? sqr(luminance(lack)) * times : 0;
 }
 
 /// The sums of all light within some hundred pixels around every pixel.
 Plane light_around(const Plane& light) {
-    constexpr int size = side(kLevels - 1);
+    constexpr int size = kFinest * stride(kLevels - 1);
     const Likeness everything({.any = 1});
     const Plane means = block_means(light, size);
     const std::vector<MarginPlane> planes{MarginPlane(means)};
@@ -140,12 +143,13 @@ void keep_in_place(const Plane& around, const ColorPlanes& e, ColorPlanes& color
 
 }  // namespace
 
-LightReturn::LightReturn(const Halves& halves, HalvesNoise noise) {
+LightReturn::LightReturn(const Halves& halves, HalvesNoise noise) : noise_(noise) {
     if (noise == HalvesNoise::independent) {
         half_difference_ = luminance(halves[0].color);
         const Plane other = luminance(halves[1].color);
         for (size_t i = 0; i < other.size(); ++i)
             half_difference_[i] = 0.5f * (half_difference_[i] - other[i]);
+        block_half_difference_ = block_means(half_difference_, kFinest);
     }
     for (size_t f = 0; f < kFeatures; ++f)
         features_.push_back(block_means(feature_guide(halves, f), kFinest));
@@ -161,24 +165,52 @@ LightReturn::LightReturn(const Halves& halves, HalvesNoise noise) {
     for (float& v : variance_.values) v /= sqr(float(kFinest));
 }
 
-Likeness LightReturn::likeness_of(int level, const Plane& light) const {
-    // No share counts whatever is unlike: a window that counted in a wall's sums for a twentieth
-    // would outshine the wall.
-    Likeness likeness({.any = 0});
-    for (const Plane& feature : features_) likeness.add(block_means(feature, blocks(level)));
-    likeness.add(block_means(light_guide(light), side(level)));
-    return likeness;
+Plane LightReturn::block_variance() const {
+    if (noise_ == HalvesNoise::of_one_sequence) return variance_;
+    Plane square = block_half_difference_;
+    for (float& v : square.values) v *= v;
+    return square;
 }
 
-Plane LightReturn::variance_of(int level) const {
-    if (half_difference_.size() > 0) {
-        Plane square = block_means(half_difference_, side(level));
-        for (float& v : square.values) v = sqr(v);
-        return square;
+ColorPlanes LightReturn::lacking(const ColorPlanes& e, const Plane& light) const {
+    std::vector<Plane> guides = features_;
+    guides.push_back(block_means(light_guide(light), kFinest));
+    const Plane block_light = block_means(light, kFinest);
+    std::vector<Plane> summed{e[0], e[1], e[2], block_light};
+    if (noise_ == HalvesNoise::independent) {
+        summed.push_back(block_half_difference_);
+    } else {
+        summed.insert(summed.end(), 2, luminance(e));
+        for (float& v : summed[kNoiseFirst].values) v = std::abs(v);
+        for (float& v : summed[kNoiseSecond].values) v *= v;
     }
-    Plane variance = block_means(variance_, blocks(level));
-    for (float& v : variance.values) v /= sqr(float(blocks(level)));
-    return variance;
+    ColorPlanes times;
+    times.fill(Plane(e[0].width, e[0].height));
+    std::vector<Plane> squares{block_variance()};
+    for (int level = 0; level < kLevels; ++level) {
+        // No share counts whatever is unlike: a window that counted in a wall's sums for a
+        // twentieth would outshine the wall.
+        WindowSums sums =
+            window_sums(guides, summed, squares, stride(level), {.sigma = kDeviation, .any = 0});
+        for (size_t i = 0; i < times[0].size(); ++i) {
+            const Rgb lack(sums.linear[kRed][i], sums.linear[kGreen][i], sums.linear[kBlue][i]);
+            const float variance =
+                level == 0 ? sums.squares[0][i] : noise_of_lack(sums, noise_, level, i, lack);
+            const float all = sums.linear[kLight][i];
+            const Rgb given = times_lacking(lack, all, variance, kNoise);
+            for (size_t c = 0; c < 3; ++c) {
+                times[c][i] += given[int(c)];
+                sums.linear[c][i] -= given[int(c)] * all;  // the wider windows lack it no more
+            }
+        }
+        summed = std::move(sums.linear);
+        squares.clear();
+        if (noise_ == HalvesNoise::independent) {
+            squares.push_back(summed[kNoiseFirst]);
+            for (float& v : squares[0].values) v *= v;
+        }
+    }
+    return times;
 }
 
 void LightReturn::give_to_all(const ColorPlanes& e, const ColorPlanes& in_place,
@@ -190,7 +222,7 @@ void LightReturn::give_to_all(const ColorPlanes& e, const ColorPlanes& in_place,
         for (size_t c = 0; c < 3; ++c) lack[c] += double(e[c][i] - in_place[c][i]);
         all += double(light[i]);
     }
-    for (float v : variance_of(0).values) variance += sqr(sqr(double(kFinest))) * double(v);
+    for (float v : block_variance().values) variance += sqr(sqr(double(kFinest))) * double(v);
     const Rgb times = times_lacking({float(lack[0]), float(lack[1]), float(lack[2])}, float(all),
                                     float(variance), kNoiseOfAll);
     for (size_t c = 0; c < 3; ++c)
@@ -225,25 +257,23 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
         for (size_t i = 0; i < color[c].size(); ++i) in_place[c][i] -= color[c][i];
     ColorPlanes kept = in_place;
     keep_what_both_saw(difference(), kept);
-    // Give the rest back, level by level, to blocks that are alike
-    for (int level = 0; level < kLevels; ++level) {
-        const Plane light = luminance(color);
-        ColorPlanes e = difference();
-        for (size_t c = 0; c < 3; ++c) {
-            for (size_t i = 0; i < light.size(); ++i) e[c][i] -= in_place[c][i];
-            e[c] = block_means(e[c], side(level));
-        }
-        const ColorPlanes times = lacking(likeness_of(level, light), e,
-                                          block_means(light, side(level)), variance_of(level));
-        parallel_for_rows(w, h, [&](int y) {
-            for (int x = 0; x < w; ++x)
-                for (size_t c = 0; c < 3; ++c) {
-                    float& v = color[c](x, y);
-                    const float given = light(x, y) * interpolated(times[c], x, y, side(level));
-                    v = std::max(std::min(v, 0.0f), v + given);
-                }
-        });
+    // Give the rest back to blocks that are alike
+    const Plane light = luminance(color);
+    ColorPlanes e = difference();
+    for (size_t c = 0; c < 3; ++c) {
+        for (size_t i = 0; i < light.size(); ++i) e[c][i] -= in_place[c][i];
+        e[c] = block_means(e[c], kFinest);
     }
+    const ColorPlanes times = lacking(e, light);
+    parallel_for_rows(w, h, [&](int y) {
+        for (int x = 0; x < w; ++x)
+            for (size_t c = 0; c < 3; ++c) {
+                float& v = color[c](x, y);
+                const float given =
+                    light(x, y) * within_most(interpolated(times[c], x, y, kFinest));
+                v = std::max(std::min(v, 0.0f), v + given);
+            }
+    });
     // Give what is still lacking to the whole image
     give_to_all(difference(), in_place, color);
     for (size_t c = 0; c < 3; ++c)

@@ -20,17 +20,24 @@ enum class HalvesNoise : uint8_t {
 ///     e(p) = raw(p) - color(p),
 /// whose mean over many pixels p is known better than that of any one. Around every pixel, over the
 /// pixels that are alike in features and light, color becomes
-///     color + (1 - k s^2 / L(sum w e)^2)_+ (sum w e / sum w Y) Y,   s^2 = sum w^2 V,
-/// L luminance, Y = L(color) and V the variance of L(raw): as many times as bright as the samples
-/// around say, from a tenth to ten times, where they say more than their noise could (James and
-/// Stein's factor). This is done first with w of a deviation of 12 pixels, then 48, then 192 (k =
-/// 1), then once over the whole image, where nearly everything counts (k = 0.1), so that the image
-/// has the light of the samples. Light goes to pixels that are alike, so none leaves a dark wall
-/// for a bright window beside it. Light of one place that alone would make all around it a
-/// fifteenth brighter, as a small lamp that one half saw, stays in its pixels
-/// (docs/decisions/0085), of halves with noise of their own as far as both saw it: of
-/// e_A = A - color and e_B = B - color the share (e_A e_B / e^2)_+, luminances all, whose numerator
-/// is without the noise of e^2 (docs/decisions/0106).
+///     color + (1 - k s^2 / L(sum w e)^2)_+ (sum w e / sum w Y) Y,
+/// L luminance, Y = L(color) and s^2 the variance of L(sum w e): as many times as bright as the
+/// samples around say, from a tenth to ten times, where they say more than their noise could (James
+/// and Stein's factor). This is done with w of deviations of 12, 48 and 192 pixels, wider windows
+/// giving what narrower ones left (k = 1), then once over the whole image, where nearly everything
+/// counts (k = 0.1), so that the image has the light of the samples.
+///
+/// In the narrowest windows and in the whole image s^2 = sum w^2 V, V the variance of L(raw). Over
+/// wider ones an image keeps the noise of its samples, so that e is hardly noisy: with V an image
+/// of rare light would get a tenth of what it lacks. There s^2 tells how few places e is from, e^2
+/// where it is from one (docs/decisions/0111). For halves with noise of their own what they differ
+/// by tells s^2 everywhere (docs/decisions/0106).
+///
+/// Light goes to pixels that are alike, so none leaves a dark wall for a bright window beside it.
+/// Light of one place that alone would make all around it a fifteenth brighter, as a small lamp
+/// that one half saw, stays in its pixels (docs/decisions/0085), of halves with noise of their own
+/// as far as both saw it: of e_A = A - color and e_B = B - color the share (e_A e_B / e^2)_+,
+/// luminances all, whose numerator is without the noise of e^2.
 class LightReturn {
   public:
     /// Keeps features and variances of the halves, with their holes filled, before outliers are
@@ -42,8 +49,11 @@ class LightReturn {
     void give_back(const ColorPlanes& raw, ColorPlanes& color) const;
 
   private:
-    /// The likeness of the blocks of a level (0 the finest); `light` is the image's luminance.
-    Likeness likeness_of(int level, const Plane& light) const;
+    /// The light that each block lacks, as multiples of its luminance. `e` is the lacking light of
+    /// the blocks, `light` the image's luminance.
+    ColorPlanes lacking(const ColorPlanes& e, const Plane& light) const;
+    /// The variance of the mean lacking light of the blocks.
+    Plane block_variance() const;
     /// Gives light to the whole image, as the last step. `e` is the lacking light, which includes
     /// `in_place`, the light that stays in its pixels.
     void give_to_all(const ColorPlanes& e, const ColorPlanes& in_place, ColorPlanes& color) const;
@@ -51,14 +61,12 @@ class LightReturn {
     /// halves did not see it.
     void keep_what_both_saw(const ColorPlanes& e, ColorPlanes& in_place) const;
 
-    /// Features of the finest level, in units that tell pixels apart.
-    std::vector<Plane> features_;
-    /// The variance of raw's luminance in the blocks of a level.
-    Plane variance_of(int level) const;
-
-    Plane variance_;  ///< variance of raw's luminance, on the finest level
-    /// Half the difference of the halves' luminances where their noise is independent; else empty.
-    Plane half_difference_;
+    HalvesNoise noise_;
+    std::vector<Plane> features_;  ///< features of the blocks, in units that tell pixels apart
+    Plane variance_;               ///< variance of raw's luminance in the blocks
+    /// Half the difference of the halves' luminances, where their noise is independent, else empty:
+    /// of the pixels and of the blocks.
+    Plane half_difference_, block_half_difference_;
 };
 
 }  // namespace covtrace

@@ -47,6 +47,29 @@ TEST(LightReturn, LightStaysOnItsWall) {
     EXPECT_NEAR(mean_of_columns(color, kSize / 2 + 2, kSize), 10, 0.1);
 }
 
+TEST(LightReturn, RareLightOfAWallComesBack) {
+    // One pixel in 25 of a dark wall has seen the light, so that the wall's mean is known to a
+    // tenth; but the image has the same samples, smoothed, and lacks a tenth of that. A bright half
+    // beside it lacks nothing.
+    ColorPlanes raw, color;
+    raw.fill(Plane(kSize, kSize, 5));
+    color = raw;
+    Halves halves = halves_with(0);
+    constexpr float kLight = 0.1f, kOnes = 25, kPart = 0.9f;
+    for (size_t c = 0; c < 3; ++c)
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize / 2; ++x) {
+                raw[c](x, y) = (7 * x + 11 * y) % 25 == 0 ? kOnes * kLight : 0;
+                color[c](x, y) = kPart * kLight;
+                for (HalfBuffer& half : halves)
+                    half.color_variance[c](x, y) = 2 * sqr(kLight) * kOnes;
+            }
+    const double wall = mean_of_columns(raw, 0, kSize / 2);
+    LightReturn(halves).give_back(raw, color);
+    EXPECT_NEAR(mean_of_columns(color, 0, kSize / 2 - 2) / wall, 1, 0.03);
+    EXPECT_NEAR(mean_of_columns(color, kSize / 2 + 2, kSize), 5, 0.02);
+}
+
 TEST(LightReturn, TheWholeImageHasTheLightOfItsSamples) {
     const Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.5f, 3);
     const ColorPlanes raw = mean_of_both({halves[0].color, halves[1].color});
