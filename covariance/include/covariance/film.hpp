@@ -3,9 +3,10 @@
 // what covariance_image.hpp, budget.hpp, filter_field.hpp and gather.hpp do one by one:
 //
 //   Film<double> film(width, height, samples);
-//   for every pixel, twice:       film.add(x, y, path, grid, camera);      (a path and its
-//   covariance) const auto counts = film.plan(); for every pixel, the rest:    film.add(x, y,
-//   path);                    (a path alone) const auto image = film.filtered();
+//   film.add(x, y, path, grid, camera);  // every pixel, twice: a path and its covariance
+//   const auto counts = film.plan();
+//   film.add(x, y, path);                // every pixel, the rest of its count: a path alone
+//   const auto image = film.filtered();
 //
 // Allocates: one of the headers for whole images, see renderer.hpp.
 #pragma once

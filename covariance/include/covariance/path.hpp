@@ -3,10 +3,10 @@
 // `covariance_of` applies the operators (README.md, "Following one path") in their order.
 //
 //   path.begin(point_on_lens, time);
-//   path.add_lamp(lamp, point, radiance);         a lamp seen from here: hit, or sampled
+//   path.add_lamp(lamp, point, radiance);  // a lamp seen from here: hit, or sampled
 //   path.add_vertex({position, surface, to_camera, Lobe<double>::diffuse()});
-//   path.add_lamp(lamp, point, radiance);         a lamp that lights the last vertex: hit, or
-//   sampled path.add_sky(direction, radiance);            the sky that the last ray escaped to
+//   path.add_lamp(lamp, point, radiance);  // a lamp that lights the last vertex: hit, or sampled
+//   path.add_sky(direction, radiance);     // the sky that the last ray escaped to
 //
 // For what this has no name for (normal maps, sheets, media, the exact lobe of a BRDF of your own)
 // apply the operators yourself. Allocates: one of the headers for whole images, see renderer.hpp.
