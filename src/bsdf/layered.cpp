@@ -36,6 +36,11 @@ bool is_inside(const LayeredBsdf& b, Vec3 w) {
     return w.z < 0 && std::holds_alternative<DielectricBsdf>(b.base);
 }
 
+/// Albedo of the sheen in its strongest channel.
+float strongest_sheen(const SheenLobe& sheen, float cosine) {
+    return max_component(sheen.colour) * std::min(1.0f, sheen.table->albedo(sheen.alpha, cosine));
+}
+
 float largest_albedo(const LayeredBsdf& b, Vec3 wo) {
     if (std::holds_alternative<DielectricBsdf>(b.base) ||
         std::holds_alternative<ThinDielectricBsdf>(b.base))
@@ -63,7 +68,7 @@ struct Outgoing {
             wo_coat = coat.to_local(wo);
             if (wo_coat.z > 0) reflected = b.coat.weight * coat_reflectance(wo_coat.z);
         }
-        if (has_sheen(b)) sheen = max_component(b.sheen.colour) * sheen_albedo(b, wo.z);
+        if (has_sheen(b)) sheen = strongest_sheen(b.sheen, wo.z);
         const float below = 1 - reflected;
         const float rest = below * (1 - sheen) * largest_albedo(b, direction);
         const float all = reflected + below * sheen + rest;
@@ -83,7 +88,7 @@ struct Outgoing {
 /// Factor on what the base does with a pair.
 float base_scale(const LayeredBsdf& b, const Outgoing& out, Vec3 wi) {
     if (!(out.sheen > 0)) return 1 - out.reflected;
-    const float in = max_component(b.sheen.colour) * Outgoing::sheen_albedo(b, std::abs(wi.z));
+    const float in = strongest_sheen(b.sheen, std::abs(wi.z));
     return (1 - out.reflected) * (1 - std::max(out.sheen, in));
 }
 
@@ -134,6 +139,11 @@ std::optional<Vec3> sample_coat(const LayeredBsdf& b, const Outgoing& out, Vec2 
 }
 
 }  // namespace
+
+float layer_transmission(const SheenLobe& sheen, const ClearcoatLobe& coat, float cosine) {
+    const float below = 1 - coat.weight * coat_reflectance(cosine);
+    return max_component(sheen.colour) > 0 ? below * (1 - strongest_sheen(sheen, cosine)) : below;
+}
 
 BsdfValue eval_and_pdf(const LayeredBsdf& b, Vec3 wo, Vec3 wi) {
     if (wo.z == 0 || wi.z == 0) return {};

@@ -64,6 +64,11 @@ LobeShares lobe_shares(const LayeredBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
 bool is_specular(const LayeredBsdf& b);
 Rgb albedo(const LayeredBsdf& b, Vec3 wo);
 
+/// Share of the light of a surface that gets out through a sheen and a clear coat above it, in a
+/// direction with the given cosine > 0 to their normal: what neither of them reflects of light that
+/// comes from there.
+float layer_transmission(const SheenLobe& sheen, const ClearcoatLobe& coat, float cosine);
+
 /// The surface below the layers.
 Bsdf base_of(const LayeredBsdf& layered);
 

@@ -6,12 +6,15 @@
 
 namespace covtrace {
 
-/// Ray masks by the kind of surface. Interface surfaces are seen by `intersect` and not by
-/// `occluded`; surfaces with alpha are solid where they are opaque.
-inline constexpr unsigned kSolidMask = 1, kInterfaceMask = 2, kAlphaMask = 4, kEveryMask = 7;
+/// Ray masks: a bit for each kind of ray, for `intersect`, and two for `occluded`, which sees no
+/// interfaces, and surfaces with alpha where they are opaque.
+constexpr unsigned ray_mask(RayKind kind) {
+    return set_of(kind);
+}
+inline constexpr unsigned kSolidMask = 0x80, kAlphaMask = 0x100, kEveryMask = 0x1ff;
 
 /// A committed geometry that refers to `shape`, which must stay where it is; null where the shape
-/// has no primitives. `mask`: one of the masks above.
+/// has no primitives. `mask`: the rays that see it, of the masks above.
 GeometryHandle new_shape_geometry(const EmbreeDevice& device, const LocalShape& shape,
                                   unsigned mask);
 

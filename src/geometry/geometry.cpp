@@ -119,7 +119,7 @@ void Geometry::set_alpha(AlphaLookup lookup) {
 }
 
 bool Geometry::intersect(const Ray& ray, SurfaceHit& hit) const {
-    return impl_->nearest_opaque(ray, kEveryMask, hit);
+    return impl_->nearest_opaque(ray, ray_mask(ray.kind), hit);
 }
 
 bool Geometry::intersect_seen(const Ray& ray, SurfaceHit& hit) const {
@@ -234,6 +234,12 @@ const std::string& Geometry::isa() const {
 }
 bool Geometry::has_interfaces() const {
     return impl_->any_interface;
+}
+bool Geometry::kinds_differ() const {
+    return impl_->kinds_differ;
+}
+bool Geometry::shadows_differ() const {
+    return impl_->shadows_differ;
 }
 
 Bounds3 Geometry::bounds() const {

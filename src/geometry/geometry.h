@@ -20,6 +20,7 @@ struct PlacedShape {
     ShapeDescription description;
     bool flip_normal = false;  ///< reverse orientation xor mirrored transform
     bool is_instanced = false;
+    bool lets_light_pass = false;  ///< whether it is an emitter that rays pass
 };
 
 /// Corners of a triangle or of half a patch in world space at some time.
@@ -58,7 +59,8 @@ class Geometry {
     /// thread-safe.
     void set_alpha(AlphaLookup lookup);
 
-    /// Finds the nearest hit in (0, ray.t_max); false where there is none. Thread-safe.
+    /// Finds the nearest hit in (0, ray.t_max) of shapes that rays of its kind see; false where
+    /// there is none. Thread-safe.
     ///
     /// Where alpha is between 0 and 1, a hash of the ray decides whether it passes, so the same ray
     /// always does the same.
@@ -67,7 +69,8 @@ class Geometry {
     /// the ray's origin: these are seen edge on, which is not at all. A camera may stand on the
     /// plane of a floor or of a wall.
     bool intersect_seen(const Ray& ray, SurfaceHit& hit) const;
-    /// Whether anything but interface surfaces lies in (0, ray.t_max). Thread-safe.
+    /// Whether any surface that shadow rays see, but for interfaces, lies in (0, ray.t_max),
+    /// whatever the ray's kind. Thread-safe.
     bool occluded(const Ray& ray) const;
     /// Do for many rays what `intersect`, `intersect_seen` and `occluded` do for one, in less time.
     /// Each ray gets the same bits as from those, whichever others are with it.
@@ -91,6 +94,10 @@ class Geometry {
     const std::string& isa() const;
     /// Whether any shape is, or by its mix may be, no surface but a border between media.
     bool has_interfaces() const;
+    /// Whether rays that were scattered differently (kScatteredRays) meet different shapes.
+    bool kinds_differ() const;
+    /// Whether anything is in the way of shadow rays alone, or of scattered rays alone.
+    bool shadows_differ() const;
     /// Box around all shapes over the whole shutter. Empty scene: a unit box about the origin.
     Bounds3 bounds() const;
     /// Bytes held by the shapes; neither Embree's nor meshes of the description are counted.

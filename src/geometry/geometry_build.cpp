@@ -46,9 +46,14 @@ bool is_hidden(const SceneDescription& scene, const ShapeDescription& shape) {
     return constant && constant->value.r <= 0;
 }
 
+bool lets_light_pass(const SceneDescription& scene, const ShapeDescription& shape) {
+    return shape.area_light >= 0 &&
+           scene.area_lights[static_cast<size_t>(shape.area_light)].lets_light_pass;
+}
+
 /// Whether a shape has no effect on any path: hidden, or an interface between nothing and nothing.
 bool is_left_out(const SceneDescription& scene, const ShapeDescription& shape) {
-    if (is_hidden(scene, shape)) return true;
+    if (is_hidden(scene, shape) || shape.visible_to == set_of(RayKind::any)) return true;
     return has_interface_material(scene, shape) && shape.inside < 0 && shape.outside < 0 &&
            shape.area_light < 0;
 }
@@ -75,8 +80,21 @@ struct Geometry::Impl::Builder {
     void place(const ShapeDescription& shape, bool is_instanced) {
         const bool flip =
             shape.reverse_orientation != shape.object_to_world.start().swaps_handedness();
-        g.placed.push_back({shape, flip, is_instanced});
-        g.is_interface.push_back(has_interface_material(scene, shape));
+        const bool passes = lets_light_pass(scene, shape);
+        g.placed.push_back({shape, flip, is_instanced, passes});
+        constexpr RayKinds kSeen = set_of(RayKind::camera) | set_of(RayKind::shadow);
+        g.is_in_the_way.push_back(!passes && !has_interface_material(scene, shape) &&
+                                  (shape.visible_to & kSeen) != 0);
+    }
+
+    /// Notes where rays of different kinds meet different things.
+    void compare_kinds(const PlacedShape& shape) const {
+        const RayKinds set = shape.description.visible_to;
+        const bool shadows = contains(set, RayKind::shadow) && !shape.lets_light_pass;
+        const RayKinds scattered = set & kScatteredRays;
+        g.kinds_differ = g.kinds_differ || (scattered != 0 && scattered != kScatteredRays);
+        g.shadows_differ = g.shadows_differ ||
+                           (!shape.lets_light_pass && scattered != (shadows ? kScatteredRays : 0));
     }
 
     bool moves(const AnimatedTransform& t) const {
@@ -91,10 +109,13 @@ struct Geometry::Impl::Builder {
         // `visibility`.
         const MaterialId material = g.placed[shape].description.material;
         const bool may_pass = material >= 0 && may_be_interface[static_cast<size_t>(material)];
+        compare_kinds(g.placed[shape]);
+        unsigned mask = g.placed[shape].description.visible_to;
+        if (g.placed[shape].lets_light_pass)
+            mask &= ~(ray_mask(RayKind::any) | ray_mask(RayKind::shadow));
         // Light passes what is unlit, so that rays to lights need not know of it.
-        const unsigned mask = may_pass || is_unlit(scene, material) ? kInterfaceMask
-                              : has_alpha                           ? kAlphaMask
-                                                                    : kSolidMask;
+        else if (!may_pass && !is_unlit(scene, material) && (mask & ray_mask(RayKind::shadow)) != 0)
+            mask |= has_alpha ? kAlphaMask : kSolidMask;
         g.any_interface = g.any_interface || may_pass;
         g.any_alpha = g.any_alpha || has_alpha;
         GeometryHandle geometry = new_shape_geometry(g.device, g.local[shape], mask);

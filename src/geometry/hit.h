@@ -15,6 +15,7 @@ struct Ray {
     Vec3 direction;  ///< unit length
     float time = 0;
     float t_max = kInfinity;
+    RayKind kind = RayKind::any;  ///< decides which shapes it meets
 };
 
 /// The point where a ray meets a surface, all in world space at the ray's time.

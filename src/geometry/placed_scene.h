@@ -51,10 +51,11 @@ struct Geometry::Impl {
     EmbreeDevice device;
     ShutterClock clock;
     std::vector<PlacedShape> placed;
-    std::vector<LocalShape> local;  ///< for the shape of the same index in `placed`
-    std::vector<bool> is_interface;
+    std::vector<LocalShape> local;    ///< for the shape of the same index in `placed`
+    std::vector<bool> is_in_the_way;  ///< whether a shape is a surface for camera or shadow rays
     bool any_alpha = false;
     bool any_interface = false;
+    bool kinds_differ = false, shadows_differ = false;
     /// Whether Embree traces rays in packets to the bits of single rays (docs/decisions/0102).
     bool packets_are_exact = false;
     AlphaLookup alpha;

@@ -39,7 +39,7 @@ void Geometry::Impl::find_nearest(std::span<HitQuery> packet) const {
     for (size_t k = 0; k < packet.size(); ++k) {
         if (!can_follow(*packet[k].ray)) continue;
         active.lane[k] = -1;
-        set_lane(query.ray, k, *packet[k].ray, clock, kEveryMask);
+        set_lane(query.ray, k, *packet[k].ray, clock, ray_mask(packet[k].ray->kind));
         query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
         query.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }

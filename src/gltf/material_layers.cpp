@@ -48,10 +48,6 @@ void MaterialBuilder::read_clearcoat() {
             number(document_, e->Get(kClearcoatNormal), "scale", 1, -kAny, kAny, here));
     }
     clearcoat_ = coat;
-    if (surface_.emission)
-        warn(
-            "KHR_materials_clearcoat: the surface's emission shines through the clear coat "
-            "undimmed");
 }
 
 }  // namespace covtrace::gltf

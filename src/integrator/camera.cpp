@@ -81,6 +81,7 @@ Ray Camera::in_world(Vec3 origin, Vec3 direction, float shutter) const {
     const Placement at = moves ? placement(description_.camera_to_world.at(ray.time)) : still_;
     ray.origin = at.point(origin);
     ray.direction = normalize(at.vector(direction));
+    ray.kind = RayKind::camera;
     return ray;
 }
 

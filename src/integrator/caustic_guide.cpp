@@ -240,7 +240,7 @@ class CausticGuide::Probes {
     }
     float radiance(const CausticPhoton& at, Vec3 w) {
         Sampler sampler(kProbeKey, int(key_), int(count_++), 0);
-        const Ray ray{at.position, w, at.time, kInfinity};
+        const Ray ray{at.position, w, at.time, kInfinity, RayKind::diffuse};
         const float y =
             luminance(trace_path(scene_, {}, ray, sampler, kProbeDepth, nullptr).radiance);
         return std::isfinite(y) ? y : 0.0f;
@@ -250,7 +250,8 @@ class CausticGuide::Probes {
         const auto light =
             scene_.lights.sample(at.position, at.normal, at.time, u_select, rng_.next_2d());
         if (!light || !(light->pdf > 0)) return 0;
-        const Ray shadow{at.position, light->wi, at.time, light->distance * (1 - 1e-3f)};
+        const Ray shadow{at.position, light->wi, at.time, light->distance * (1 - 1e-3f),
+                         RayKind::shadow};
         // The part of the light that the cosine finds as well is counted with the other paths.
         const float cosine = std::max(0.0f, dot(at.normal, light->wi));
         const float density = light->pdf + (light->is_delta ? 0.0f : cosine * kInvPi);

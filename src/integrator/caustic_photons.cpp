@@ -66,6 +66,7 @@ class Pilot {
         ray.origin = Geometry::offset_origin(hit, direction);
         ray.direction = direction;
         ray.t_max = kInfinity;
+        ray.kind = RayKind::any;
     }
 
     /// Finds the nearest surface that light does not pass unchanged; returns its distance from
@@ -79,7 +80,8 @@ class Pilot {
             const MaterialId material =
                 scene_.materials.at(shape.description.material, hit, scene_.textures);
             bsdf = scene_.materials.bsdf(material, hit, scene_.textures);
-            if (!scene_.materials.lets_light_pass(material)) return distance;
+            if (!shape.lets_light_pass && !scene_.materials.lets_light_pass(material))
+                return distance;
             ray.origin = Geometry::offset_origin(hit, ray.direction);
         }
         return std::nullopt;
@@ -96,7 +98,7 @@ class Pilot {
         // Follow its light to the first surface
         const bool is_far = !std::isfinite(light->distance);
         const float back = is_far ? scene_.unbounded_distance : light->distance * (1 - 1e-3f);
-        Ray ray{target + light->wi * back, -light->wi, time, kInfinity};
+        Ray ray{target + light->wi * back, -light->wi, time, kInfinity, RayKind::any};
         SurfaceHit hit;
         Bsdf bsdf;
         const std::optional<float> to_first = next_surface(ray, hit, bsdf);

@@ -57,12 +57,18 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
     geometry.set_alpha([this](TextureId id, Vec2 uv, Vec3 position, const VertexPlace& vertices) {
         return textures.eval_float(id, {uv, position, {}, {}, vertices});
     });
+    lights.set_layers([this](MaterialId id) { return materials.has_layers(id); },
+                      [this](MaterialId id, const TexturePoint& at, float cosine) {
+                          return materials.emission_share(id, at, cosine, textures);
+                      });
     for (const Warnings* w : {&textures.warnings(), &lights.warnings()})
         description.warnings.insert(description.warnings.end(), w->begin(), w->end());
     for (const MediumDescription& m : description.media)
         media.push_back({m.sigma_a, m.sigma_s, m.emission, m.g});
     has_lens_or_motion = camera.has_lens() || anything_moves(description);
     has_interfaces = geometry.has_interfaces();
+    shadows_differ = geometry.shadows_differ();
+    kinds_differ = shadows_differ || geometry.kinds_differ() || lights.kinds_differ();
     unbounded_distance = 2 * radius_of_media(description, geometry.bounds());
 }
 

@@ -37,6 +37,9 @@ struct LitScene {
     /// Whether the place on the lens or the time of a ray makes any difference.
     bool has_lens_or_motion = true;
     bool has_interfaces = false;  ///< whether there are surfaces that only separate media
+    /// Whether rays that were scattered differently meet different shapes or find different lights.
+    bool kinds_differ = false;
+    bool shadows_differ = false;  ///< Geometry::shadows_differ
     /// Length of a ray's way through a medium without an end, in scene units: twice the radius of
     /// the scene's bounds, as far away as pbrt-v4 puts its infinite lights; for a camera in the
     /// medium, the radius of a sphere that holds camera and lights as well.

@@ -45,6 +45,10 @@ bool PathTracer::meet(bool found) {
         return false;
     }
     const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
+    if (shape.lets_light_pass) {
+        pass_emitter(hit, shape);
+        return pass(hit, shape);
+    }
     const MaterialId material =
         scene_.materials.at(shape.description.material, hit, scene_.textures);
     // Evaluate the BSDF, with textures filtered as in pbrt at 64 samples per pixel and more,
@@ -60,10 +64,27 @@ bool PathTracer::meet(bool found) {
     } else if (!std::holds_alternative<InterfaceBsdf>(bsdf)) {
         return meet_surface(hit, shape, material, bsdf);
     }
-    // Pass through an interface
+    return pass(hit, shape);
+}
+
+bool PathTracer::pass(const SurfaceHit& hit, const PlacedShape& shape) {
     medium_ = medium_beyond(shape, hit, ray_.direction, medium_);
     ray_.origin = Geometry::offset_origin(hit, ray_.direction);
     return ++passed_interfaces_ <= kMostInterfaces;
+}
+
+void PathTracer::pass_emitter(const SurfaceHit& hit, const PlacedShape& shape) {
+    const Vec3 wo = -ray_.direction;
+    if (is_black(scene_.lights.emitted(hit, wo))) return;
+    PathVertex* vertex = begin_vertex(hit, -1, wo);
+    add_emission(hit, wo, vertex);
+    if (!vertex) return;
+    vertex->material = shape.description.material;
+    vertex->shading = shading_frame(hit);
+    vertex->scatters = true;
+    vertex->next_event.wi = ray_.direction;
+    vertex->next_event.lobes.count = 1;
+    vertex->next_event.lobes.lobes[0] = {LobeKind::specular_transmission, Rgb(1)};
 }
 
 bool PathTracer::is_seen(const UnlitBsdf& unlit) const {
@@ -115,8 +136,8 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, M
                     ? sky_guide_->at(hit.position, light_normal_)
                     : nullptr;
     // Sample direct illumination, then the direction in which the path goes on
-    if (!is_specular(bsdf)) add_direct(surface, u_choice.x, u_light, vertex);
-    return scatter(surface, u_choice.y, u_scatter, vertex) && survives(u_roulette.x);
+    if (!is_specular(bsdf)) add_direct(surface, u_choice.x, u_light, u_roulette.y, vertex);
+    return scatter(surface, u_choice.y, u_scatter, u_roulette.y, vertex) && survives(u_roulette.x);
 }
 
 Frame PathTracer::frame_at(const SurfaceHit& hit, const PlacedShape& shape,

@@ -17,10 +17,12 @@ void PathTracer::escape() {
     // Weight it against light sampling, which could not find it by a specular lobe
     float weight = 1;
     if (specular_) {
-        sky.radiance = scene_.lights.environment(ray_.origin, ray_.direction);
+        sky.radiance = scene_.lights.environment(ray_.origin, ray_.direction, ray_.kind);
     } else {
-        sky = scene_.lights.sky(previous_position_, previous_normal_, ray_.direction, sky_cell_);
+        sky = scene_.lights.sky(previous_position_, previous_normal_, ray_.direction, sky_cell_,
+                                ray_.kind);
         weight = power_heuristic(pdf_, sky.pdf);
+        if (sky.pdf > 0 && is_shadowed(kInfinity)) weight = 0;
     }
     const Rgb contribution = beta_ * sky.radiance * weight;
     result_.radiance += contribution;
@@ -40,6 +42,7 @@ void PathTracer::add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex
         const float p =
             scene_.lights.pdf(previous_position_, previous_normal_, ray_.direction, hit);
         weight = power_heuristic(pdf_, p);
+        if (p > 0 && is_shadowed(distance(ray_begin_, hit.position))) weight = 0;
     }
     const Rgb contribution = beta_ * light * weight;
     result_.radiance += contribution;
@@ -47,7 +50,17 @@ void PathTracer::add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex
     if (vertex) vertex->emitted = luminance(contribution);
 }
 
-void PathTracer::add_direct(const Surface& surface, float u_select, Vec2 u, PathVertex* vertex) {
+bool PathTracer::is_shadowed(float distance) {
+    if (!scene_.shadows_differ) return false;
+    Ray shadow = ray_;
+    shadow.origin = ray_begin_;
+    shadow.t_max = distance * (1 - 1e-4f);
+    ++result_.rays.shadow;
+    return scene_.geometry.occluded(shadow);
+}
+
+void PathTracer::add_direct(const Surface& surface, float u_select, Vec2 u, float u_kind,
+                            PathVertex* vertex) {
     const SurfaceHit& hit = surface.hit;
     // Sample a light
     const auto light =
@@ -58,17 +71,22 @@ void PathTracer::add_direct(const Surface& surface, float u_select, Vec2 u, Path
     const Vec3 wi_local = surface.frame.to_local(light->wi);
     const BsdfValue value = eval_direction(surface, wi_local, light->wi);
     if (is_black(value.f)) return;
+    const ChosenKind chosen = choose_kind(surface, wi_local, value.f, u_kind);
     // Trace a shadow ray and add the light
     Ray shadow;
     shadow.origin = Geometry::offset_origin(hit, light->wi);
     shadow.time = hit.time;
+    shadow.kind = chosen.kind;
     const MediumId medium = medium_beyond(surface.shape, hit, light->wi, medium_);
-    if (keep_light(*light, value, shadow, medium, vertex) && vertex)
+    if (keep_light(*light, {value.f * chosen.factor, value.pdf}, shadow, medium, vertex) && vertex)
         vertex->direct_event.lobes = lobe_shares(surface.bsdf, surface.wo, wi_local, value.f);
 }
 
-bool PathTracer::keep_light(const LightSample& light, const BsdfValue& value, Ray shadow,
-                            MediumId medium, PathVertex* vertex) {
+bool PathTracer::keep_light(LightSample light, const BsdfValue& value, Ray shadow, MediumId medium,
+                            PathVertex* vertex) {
+    if (!contains(light.visible_to, shadow.kind)) return false;
+    if (scene_.lights.kinds_differ() && !light.is_delta && !std::isfinite(light.distance))
+        light.radiance = scene_.lights.environment(shadow.origin, light.wi, shadow.kind);
     if (is_black(light.radiance) || !(light.pdf > 0)) return false;
     shadow.direction = light.wi;
     if (std::isfinite(light.distance)) {
@@ -82,7 +100,7 @@ bool PathTracer::keep_light(const LightSample& light, const BsdfValue& value, Ra
     const float weight = light.is_delta ? 1.0f : power_heuristic(light.pdf, value.pdf);
     sampled_light_ = {
         shadow, light.distance, medium, beta_ * value.f * light.radiance, weight / light.pdf,
-        vertex};
+        vertex, 1 / light.pdf};
     if (vertex) {
         vertex->light = light;
         vertex->direct_event = {light.wi, {}};
@@ -98,7 +116,10 @@ void PathTracer::add_sampled_light(bool occluded) {
     const Rgb visible =
         visibility(scene_, light.ray, light.distance, light.medium, result_.rays.shadow);
     if (is_black(visible)) return;
-    const Rgb contribution = light.light * visible * light.weight;
+    const bool is_found_alone =
+        scene_.shadows_differ && is_met(scene_, light.ray, result_.rays.shadow);
+    const Rgb contribution =
+        light.light * visible * (is_found_alone ? light.weight_alone : light.weight);
     result_.radiance += contribution;
     if (light.vertex) light.vertex->direct = luminance(contribution);
 }

@@ -44,6 +44,7 @@ bool PathTracer::scatter_in_medium(float distance) {
     Ray shadow;
     shadow.origin = place.position;
     shadow.time = place.time;
+    shadow.kind = RayKind::volume;
     if (const auto light =
             scene_.lights.sample(place.position, {}, place.time, u_choice.x, u_light)) {
         const float p = henyey_greenstein(medium.g, -dot(wo, light->wi));
@@ -59,8 +60,9 @@ bool PathTracer::scatter_in_medium(float distance) {
     }
     previous_position_ = place.position;
     previous_normal_ = {};
-    ray_.origin = place.position;
+    ray_.origin = ray_begin_ = place.position;
     ray_.direction = wi;
+    ray_.kind = RayKind::volume;
     return survives(u_roulette.x);
 }
 

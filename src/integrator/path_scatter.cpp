@@ -1,4 +1,5 @@
 /// The next direction of a path, by the BSDF or by the guide to caustics, and its density.
+#include <array>
 #include <cmath>
 
 #include "integrator/path_tracer.h"
@@ -11,6 +12,11 @@ namespace {
 /// the line there, too, and a sweep over thirteen scenes found nothing better
 /// (docs/decisions/0086).
 constexpr float kSeenThrough = 0.075f;
+
+RayKind kind_of(LobeKind lobe) {
+    if (is_transmission(lobe)) return RayKind::transmission;
+    return is_diffuse(lobe) ? RayKind::diffuse : RayKind::glossy;
+}
 
 }  // namespace
 
@@ -57,10 +63,51 @@ std::optional<BsdfSample> PathTracer::sample_direction(const Surface& surface, f
     return s;
 }
 
-bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, PathVertex* vertex) {
+PathTracer::ChosenKind PathTracer::choose_kind(const Surface& surface, Vec3 wi_local, Rgb value,
+                                               float u) const {
+    if (!scene_.kinds_differ) return {};
+    const LobeShares shares = lobe_shares(surface.bsdf, surface.wo, wi_local, value);
+    // Sum the lobes of each kind
+    constexpr std::array kKinds{RayKind::diffuse, RayKind::glossy, RayKind::transmission};
+    std::array<Rgb, kKinds.size()> parts{};
+    Rgb all;
+    for (size_t i = 0; i < size_t(shares.count); ++i) {
+        const LobeShare& lobe = shares.lobes[i];
+        for (size_t k = 0; k < kKinds.size(); ++k)
+            if (kind_of(lobe.kind) == kKinds[k]) parts[k] += lobe.value;
+        all += lobe.value;
+    }
+    const float total = luminance(all);
+    if (!(total > 0)) return {RayKind::diffuse, Rgb(1)};
+    // Choose one by its luminance, the last one with any where rounding leaves something over
+    ChosenKind chosen;
+    for (size_t k = 0; k < kKinds.size(); ++k) {
+        const float probability = luminance(parts[k]) / total;
+        if (!(probability > 0)) continue;
+        chosen.kind = kKinds[k];
+        for (int c = 0; c < 3; ++c)
+            chosen.factor[c] = all[c] > 0 ? parts[k][c] / (all[c] * probability) : 0.0f;
+        if (u < probability) break;
+        u -= probability;
+    }
+    return chosen;
+}
+
+bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, float u_kind,
+                         PathVertex* vertex) {
     // Sample the BSDF or the guide
-    const auto s = sample_direction(surface, u_lobe, u);
+    auto s = sample_direction(surface, u_lobe, u);
     if (!s || is_black(s->weight)) return false;
+    // Choose the kind of ray. A pair of directions that several lobes have is split among them, as
+    // it is where the light of a lamp is sampled
+    ray_.kind = kind_of(s->lobe);
+    const Rgb value = s->weight * s->pdf;
+    if (scene_.kinds_differ && !is_specular(s->lobe)) {
+        const ChosenKind chosen = choose_kind(surface, s->wi, value, u_kind);
+        ray_.kind = chosen.kind;
+        s->weight *= chosen.factor;
+        if (is_black(s->weight)) return false;
+    }
     const Vec3 wi = normalize(surface.frame.to_world(s->wi));
     // Update the path's throughput and what is known of its lobes
     beta_ *= s->weight;
@@ -79,8 +126,7 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, PathVerte
             vertex->next_event.lobes.count = 1;
             vertex->next_event.lobes.lobes[0] = {s->lobe, s->weight, 0, 0, s->eta};
         } else {
-            vertex->next_event.lobes =
-                lobe_shares(surface.bsdf, surface.wo, s->wi, s->weight * s->pdf);
+            vertex->next_event.lobes = lobe_shares(surface.bsdf, surface.wo, s->wi, value);
         }
     }
     // Move the ray to the surface, into the medium beyond
@@ -88,7 +134,7 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, PathVerte
     previous_position_ = hit.position;
     previous_normal_ = light_normal_;
     medium_ = medium_beyond(surface.shape, hit, wi, medium_);
-    ray_.origin = Geometry::offset_origin(hit, wi);
+    ray_.origin = ray_begin_ = Geometry::offset_origin(hit, wi);
     ray_.direction = wi;
     ray_.t_max = kInfinity;
     return true;

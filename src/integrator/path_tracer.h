@@ -89,11 +89,24 @@ class PathTracer {
         Rgb light;             ///< the light times what the path scatters of it
         float weight = 1;      ///< weight of the sample
         PathVertex* vertex = nullptr;
+        /// Weight where no path of the ray's kind gets from here to the light, so that it is found
+        /// by sampling alone.
+        float weight_alone = 1;
+    };
+
+    /// A kind of ray, and a factor on what is scattered that leaves the part of that kind alone.
+    struct ChosenKind {
+        RayKind kind = RayKind::any;
+        Rgb factor{1};
     };
 
     // ---- path.cpp
     bool meet_surface(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material,
                       Bsdf& bsdf);
+    /// Goes on behind a surface that lets the path pass; returns false after too many of them.
+    bool pass(const SurfaceHit& hit, const PlacedShape& shape);
+    /// Adds what an emitter that lets light pass sends along the ray.
+    void pass_emitter(const SurfaceHit& hit, const PlacedShape& shape);
     /// Whether the path sees the colour of an unlit surface at the current hit; else it passes.
     bool is_seen(const UnlitBsdf& unlit) const;
     /// Adds the colour of an unlit surface, where the path ends; returns false.
@@ -119,12 +132,18 @@ class PathTracer {
     // ---- path_light.cpp: light that is found
     void escape();
     void add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex);
-    void add_direct(const Surface& surface, float u_select, Vec2 u, PathVertex* vertex);
+    /// Samples a light; `u_kind` chooses the kind of ray that it counts for.
+    void add_direct(const Surface& surface, float u_select, Vec2 u, float u_kind,
+                    PathVertex* vertex);
     /// Keeps the light sampled at a vertex, which scatters the part `value.f` of it into the path
     /// and would have found its direction with density `value.pdf`, until it is known whether
-    /// anything is in its way. `shadow` starts there, in `medium`. Returns false for no light.
-    bool keep_light(const LightSample& light, const BsdfValue& value, Ray shadow, MediumId medium,
+    /// anything is in its way. `shadow` starts there, in `medium`, and has the kind of the rays
+    /// that the part is scattered into. Returns false for no light.
+    bool keep_light(LightSample light, const BsdfValue& value, Ray shadow, MediumId medium,
                     PathVertex* vertex);
+    /// Whether shadow rays alone meet something between the last vertex and light that the path
+    /// has found `distance` away: that light counts where it can be sampled (docs/decisions/0112).
+    bool is_shadowed(float distance);
 
     // ---- path_scatter.cpp: where the path goes on
     /// Density of sample_direction to return a direction by other than specular lobes, given the
@@ -135,7 +154,11 @@ class PathTracer {
     /// Samples a direction by the BSDF or, for a share of the samples, by the guide. The weight
     /// counts both, whichever chose.
     std::optional<BsdfSample> sample_direction(const Surface& surface, float u_lobe, Vec2 u);
-    bool scatter(const Surface& surface, float u_lobe, Vec2 u, PathVertex* vertex);
+    /// Scatters the path; `u_kind` chooses the kind of the new ray.
+    bool scatter(const Surface& surface, float u_lobe, Vec2 u, float u_kind, PathVertex* vertex);
+    /// Chooses the kind of ray for a pair of directions of which the surface scatters `value`, by
+    /// the lobes' luminances.
+    ChosenKind choose_kind(const Surface& surface, Vec3 wi_local, Rgb value, float u) const;
 
     // ---- path_medium.cpp
     /// Adds the emission of the medium on the way and decides whether the ray gets through.
@@ -176,8 +199,8 @@ class PathTracer {
     // The parts of the sky that are seen from the last vertex; null: not known.
     const SkyCell* sky_cell_ = nullptr;
     Vec3 light_normal_;  // normal that lights are sampled for at the current vertex; 0: both sides
-    // Place and light normal of the last vertex, for the weights.
-    Vec3 previous_position_, previous_normal_;
+    // Place and light normal of the last vertex, for the weights; where its ray began.
+    Vec3 previous_position_, previous_normal_, ray_begin_;
 };
 
 }  // namespace covtrace

@@ -42,7 +42,8 @@ class Place {
         if (!w) return;
         const float cosine = dot(normal_, *w);
         if (!(cosine > 0)) return;
-        const Lights::Sky sky = scene_.lights.sky(hit_.position, normal_, *w);
+        const Lights::Sky sky =
+            scene_.lights.sky(hit_.position, normal_, *w, nullptr, RayKind::diffuse);
         const float light = luminance(sky.radiance) * cosine;
         if (!(light > 0) || !std::isfinite(light)) return;
         Ray ray;

@@ -22,6 +22,7 @@ Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, 
     // interfaces in places
     Rgb passes(1);
     SurfaceHit hit;
+    ray.kind = RayKind::shadow;
     for (int i = 0; i < kMostInterfaces; ++i) {
         ++rays;
         if (!(ray.t_max > 0) || !scene.geometry.intersect(ray, hit)) break;
@@ -39,6 +40,21 @@ Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, 
         distance -= hit.t;
     }
     return passes * transmittance(scene, medium, std::max(distance, 0.0f));
+}
+
+bool is_met(const LitScene& scene, Ray ray, uint64_t& rays) {
+    SurfaceHit hit;
+    for (int i = 0; i < kMostInterfaces; ++i) {
+        ++rays;
+        if (!(ray.t_max > 0) || !scene.geometry.intersect(ray, hit)) return false;
+        const PlacedShape& shape = scene.geometry.shapes()[hit.shape];
+        if (!shape.lets_light_pass && !scene.materials.lets_light_pass(scene.materials.at(
+                                          shape.description.material, hit, scene.textures)))
+            return true;
+        ray.origin = Geometry::offset_origin(hit, ray.direction);
+        ray.t_max -= hit.t;
+    }
+    return true;
 }
 
 }  // namespace covtrace

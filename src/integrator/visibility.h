@@ -20,6 +20,10 @@ Rgb transmittance(const LitScene& scene, MediumId medium, float distance);
 /// next medium, other surfaces take all of it. The rays that are traced are added to `rays`.
 Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, uint64_t& rays);
 
+/// Whether a ray of its kind meets a surface in (0, ray.t_max); interfaces and emitters that let
+/// light pass are none. The rays that are traced are added to `rays`.
+bool is_met(const LitScene& scene, Ray ray, uint64_t& rays);
+
 /// Most interfaces on a path or on the way to a light: beyond them the ray is caught between
 /// coincident ones.
 inline constexpr int kMostInterfaces = 1000;

@@ -17,6 +17,7 @@ constexpr float kSmallestShare = 0.1f;
 
 float Lights::Impl::infinite_weight(const InfiniteShare& share, size_t i, Vec3 p, Vec3 n) const {
     if (i >= distants.size()) {
+        if ((environment_visible_to[i - distants.size()] & kScatteredRays) == 0) return 0;
         const Environment& e = environments[i - distants.size()];
         return e.irradiance(p) * (e.is_even() ? share.even : 1.0f);
     }
@@ -49,20 +50,21 @@ InfiniteShare Lights::Impl::infinite_share(Vec3 p, Vec3 n) const {
     return share;
 }
 
-Rgb Lights::Impl::environment(Vec3 p, Vec3 w) const {
+Rgb Lights::Impl::environment(Vec3 p, Vec3 w, RayKind kind) const {
     Rgb sum;
-    for (const Environment& e : environments) sum += e.radiance(p, w);
+    for (size_t i = 0; i < environments.size(); ++i)
+        if (contains(environment_visible_to[i], kind)) sum += environments[i].radiance(p, w);
     return sum;
 }
 
 Lights::Sky Lights::Impl::sky(const InfiniteShare& share, Vec3 p, Vec3 n, Vec3 w,
-                              const SkyCell* cell) const {
+                              const SkyCell* cell, RayKind kind) const {
     Sky sky;
     float weights = 0;
     for (size_t i = 0; i < environments.size(); ++i) {
         const EnvironmentMap::Sight sight = environments[i].look(p, n, w);
         const float weight = infinite_weight(share, distants.size() + i, p, n);
-        sky.radiance += sight.radiance;
+        if (contains(environment_visible_to[i], kind)) sky.radiance += sight.radiance;
         if (weight > 0) sky.pdf += weight * sight.pdf;
         weights += weight;
     }
@@ -101,7 +103,8 @@ std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& sh
         advance(environment_light, draw, 2);
         s.wi = environment_light.direction(p, n, draw.sky);
     }
-    const Sky there = sky(share, p, n, s.wi, cell);
+    // Where the kinds differ, whoever asks for the light of one of them looks again.
+    const Sky there = sky(share, p, n, s.wi, cell, kinds_differ ? RayKind::any : RayKind::diffuse);
     s.radiance = there.radiance;
     s.pdf = there.pdf;
     if (!(s.pdf > 0) || is_black(s.radiance)) return std::nullopt;

@@ -75,6 +75,7 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
                        .image = textures ? light.image : -1,
                        .alpha = -1,
                        .is_visible = !is_hidden(scene, shape.alpha),
+                       .visible_to = shape.visible_to,
                        .first_light = static_cast<int>(owner.size()),
                        .emitter = std::move(*emitters[i])};
         // A light that is hidden altogether shines as if it had no alpha.
@@ -96,6 +97,7 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
             area.mean_factor *= alpha;
             choice_factor *= std::max(alpha, kLeast);
         }
+        if (!note_kinds(area.visible_to)) choice_factor = {};
         std::visit(
             [&](const auto& emitter) {
                 for (int k = 0; k < emitter.light_count(); ++k) {
@@ -124,11 +126,22 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
         else if (const auto* distant = std::get_if<DistantLight>(&light.value))
             distants.push_back(make_distant_emitter(*distant, light.light_to_world));
         else
-            environments.emplace_back(std::get<InfiniteLight>(light.value), light.light_to_world,
-                                      light.where, warnings);
+            add_environment(std::get<InfiniteLight>(light.value), light);
     }
     for (const PointEmitter& point : points) finite.push_back(bounds(point));
     tree = LightTree(finite);
+}
+
+bool Lights::Impl::note_kinds(RayKinds visible_to) {
+    const RayKinds scattered = visible_to & kScatteredRays;
+    kinds_differ = kinds_differ || (scattered != 0 && scattered != kScatteredRays);
+    return scattered != 0;
+}
+
+void Lights::Impl::add_environment(const InfiniteLight& light, const LightDescription& placed) {
+    environments.emplace_back(light, placed.light_to_world, placed.where, warnings);
+    environment_visible_to.push_back(light.visible_to);
+    note_kinds(light.visible_to);
 }
 
 std::optional<LightSample> Lights::Impl::sample_area(int light, float probability, Vec3 p,
@@ -149,7 +162,7 @@ std::optional<LightSample> Lights::Impl::sample_area(int light, float probabilit
                     e.uv(local, *point, time), point->position, {}, {}, e.vertices(local, *point)};
             },
             area.emitter);
-        s.radiance = radiance_at(area, at);
+        s.radiance = radiance_at(area, at, std::abs(dot(point->normal, point->wi)));
         if (area.alpha >= 0) s.radiance *= clamp01(textures->eval_float(area.alpha, at));
         if (is_black(s.radiance)) return std::nullopt;
     }
@@ -157,6 +170,7 @@ std::optional<LightSample> Lights::Impl::sample_area(int light, float probabilit
     s.light = light;
     s.position = point->position;
     s.normal = point->normal;
+    s.visible_to = area.visible_to;
     if (!area.is_visible) {
         // An invisible light, which no ray finds, acts as a delta light of the same irradiance.
         s.is_delta = true;
@@ -183,8 +197,10 @@ std::optional<LightSample> Lights::Impl::sample_point(int light, float probabili
     return s;
 }
 
-Rgb Lights::Impl::radiance_at(const AreaLight& area, const TexturePoint& at) const {
-    return area.image < 0 ? area.radiance : area.radiance * textures->eval(area.image, at);
+Rgb Lights::Impl::radiance_at(const AreaLight& area, const TexturePoint& at, float cosine) const {
+    const float share = area.layers < 0 ? 1 : emission_share(area.layers, at, cosine);
+    const Rgb radiance = share * area.radiance;
+    return area.image < 0 ? radiance : radiance * textures->eval(area.image, at);
 }
 
 const AreaLight* Lights::Impl::area_light_of(const SurfaceHit& hit) const {
@@ -196,6 +212,14 @@ Lights::Lights(const SceneDescription& scene, const Geometry& geometry,
                const TextureStore* textures)
     : impl_(std::make_unique<Impl>(scene, geometry, textures)) {}
 Lights::~Lights() = default;
+
+void Lights::set_layers(const std::function<bool(MaterialId)>& has_layers, EmissionShare share) {
+    impl_->emission_share = std::move(share);
+    for (AreaLight& area : impl_->area_lights) {
+        const MaterialId material = impl_->geometry->shapes()[area.shape].description.material;
+        area.layers = material >= 0 && has_layers(material) ? material : -1;
+    }
+}
 
 const Warnings& Lights::warnings() const {
     return impl_->warnings;
@@ -234,7 +258,8 @@ std::optional<LightSample> Lights::finish_draw(Vec3 p, Vec3 n, float time, float
 Rgb Lights::emitted(const SurfaceHit& hit, Vec3 wo) const {
     const AreaLight* area = impl_->area_light_of(hit);
     if (!area || !area->is_visible || (!area->two_sided && !(dot(hit.ng, wo) > 0))) return {};
-    return impl_->radiance_at(*area, {hit.uv, hit.position, {}, {}, hit.vertices()});
+    return impl_->radiance_at(*area, {hit.uv, hit.position, {}, {}, hit.vertices()},
+                              std::abs(dot(hit.ng, wo)));
 }
 
 float Lights::pdf(Vec3 p, Vec3 n, Vec3 wi, const SurfaceHit& hit) const {
@@ -261,17 +286,21 @@ float Lights::selection_probability(Vec3 p, Vec3 n, int light) const {
 bool Lights::has_environment() const {
     return !impl_->environments.empty();
 }
-Rgb Lights::environment(Vec3 p, Vec3 w) const {
-    return impl_->environment(p, w);
+Rgb Lights::environment(Vec3 p, Vec3 w, RayKind kind) const {
+    return impl_->environment(p, w, kind);
 }
-Lights::Sky Lights::sky(Vec3 p, Vec3 n, Vec3 w, const SkyCell* cell) const {
-    return impl_->sky(impl_->infinite_share(p, n), p, n, w, cell);
+bool Lights::kinds_differ() const {
+    return impl_->kinds_differ;
+}
+Lights::Sky Lights::sky(Vec3 p, Vec3 n, Vec3 w, const SkyCell* cell, RayKind kind) const {
+    return impl_->sky(impl_->infinite_share(p, n), p, n, w, cell, kind);
 }
 std::vector<DistantView> Lights::distant_views() const {
     std::vector<DistantView> views;
     for (const AreaLight& area : impl_->area_lights) {
         if (!area.is_visible) continue;
         DistantView view;
+        view.visible_to = area.visible_to;
         view.radiance = luminance(area.radiance * area.mean_factor);
         std::visit(
             [&](const auto& emitter) {
@@ -291,12 +320,15 @@ std::vector<DistantView> Lights::distant_views() const {
 Rgb Lights::total_power() const {
     Rgb sum;
     for (const AreaLight& area : impl_->area_lights)
-        sum += static_cast<float>(total_area(area.emitter)) *
-               exitance(area.radiance * area.mean_factor, area.two_sided);
+        if ((area.visible_to & kScatteredRays) != 0)
+            sum += static_cast<float>(total_area(area.emitter)) *
+                   exitance(area.radiance * area.mean_factor, area.two_sided);
     for (const PointEmitter& point : impl_->points) sum += power(point);
     const float radius = impl_->geometry->bounds().radius();
     for (const DistantEmitter& d : impl_->distants) sum += kPi * sqr(radius) * d.irradiance;
-    for (const Environment& e : impl_->environments) sum += e.power(radius);
+    for (size_t i = 0; i < impl_->environments.size(); ++i)
+        if ((impl_->environment_visible_to[i] & kScatteredRays) != 0)
+            sum += impl_->environments[i].power(radius);
     return sum;
 }
 int Lights::count() const {

@@ -1,6 +1,7 @@
 /// All lights of a scene: emission, and sampling with light selection.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -26,6 +27,9 @@ struct LightSample {
     int light = -1;  ///< id for LightSpectra::source_spectrum
     Vec3 position;   ///< of the sampled point where the distance is finite
     Vec3 normal;     ///< of area lights: unit, on the emitting outside
+    /// Scattered rays that find the light. Others do not carry it, whether they hit the light or
+    /// it is sampled for them.
+    RayKinds visible_to = kEveryRay;
 };
 
 /// An emissive shape as a whole, at a distance.
@@ -34,7 +38,12 @@ struct DistantView {
     /// Largest luminance of its radiant intensity in any direction, with the mean of its image.
     float intensity = 0;
     float radiance = 0;  ///< luminance, mean over the shape
+    RayKinds visible_to = kEveryRay;
 };
+
+/// Share of the light of an emissive shape that gets through the layers above it, at a place and
+/// for a cosine between the direction that it leaves in and the normal, above 0.
+using EmissionShare = std::function<float(MaterialId, const TexturePoint&, float cosine)>;
 
 class Lights {
   public:
@@ -47,6 +56,10 @@ class Lights {
     ~Lights();
     Lights(const Lights&) = delete;
     Lights& operator=(const Lights&) = delete;
+
+    /// Sets what the layers above emitters let through; without it they let everything through.
+    /// `share` must be thread-safe; `has_layers` tells the materials that have any.
+    void set_layers(const std::function<bool(MaterialId)>& has_layers, EmissionShare share);
 
     /// Chooses a light for the point p, then a point on it. Empty where the chosen light can't
     /// light p. `u_select` chooses the light. `n` is the unit normal on the side that light is
@@ -93,23 +106,28 @@ class Lights {
 
     /// Whether there is a uniform infinite light or an environment map.
     bool has_environment() const;
-    /// Radiance of all uniform infinite lights and environment maps that comes to the point p from
-    /// the direction `w` (unit, away from the scene). Distant lights have none.
-    Rgb environment(Vec3 p, Vec3 w) const;
+    /// Radiance of all uniform infinite lights and environment maps that a ray of a kind finds from
+    /// the point p in the direction `w` (unit, away from the scene). Distant lights have none.
+    Rgb environment(Vec3 p, Vec3 w, RayKind kind = RayKind::any) const;
+    /// Whether scattered rays of different kinds find different lights. Then a sample of the sky
+    /// has the light of all of them: that of one kind is `environment`.
+    bool kinds_differ() const;
     /// Radiance from one direction as `environment` has it, and the density per solid angle with
     /// which `sample(p, n)` finds that direction; with a cell, that of `finish_draw`.
     struct Sky {
         Rgb radiance;
         float pdf = 0;
     };
-    Sky sky(Vec3 p, Vec3 n, Vec3 w, const SkyCell* cell = nullptr) const;
+    Sky sky(Vec3 p, Vec3 n, Vec3 w, const SkyCell* cell = nullptr,
+            RayKind kind = RayKind::any) const;
     float environment_pdf(Vec3 p, Vec3 n, Vec3 w) const { return sky(p, n, w).pdf; }
 
     /// All emissive shapes that rays can meet, each as a whole.
     std::vector<DistantView> distant_views() const;
 
     /// Power (radiant flux) that all lights emit; infinite and distant lights count with what
-    /// enters the sphere around the scene, or what comes through their portal.
+    /// enters the sphere around the scene, or what comes through their portal. Lights that only the
+    /// camera sees don't count.
     Rgb total_power() const;
     /// Number of lights: every emissive triangle, patch half, sphere and disk counts as one of its
     /// own.

@@ -21,11 +21,13 @@ struct AreaLight {
     bool two_sided = false;
     TextureId image = -1, alpha = -1;  ///< textures that the radiance varies by; -1: none
     bool is_visible = true;  ///< false where a constant alpha of 0 hides the shape from all rays
+    RayKinds visible_to = kEveryRay;
+    MaterialId layers = -1;  ///< material whose layers the light has to get through; -1: none
     Rgb mean_factor{1};      ///< mean of image and alpha together
     int first_light = 0;     ///< id of its first light
     Emitter emitter;
 
-    bool varies() const { return image >= 0 || alpha >= 0; }
+    bool varies() const { return image >= 0 || alpha >= 0 || layers >= 0; }
 };
 
 /// The balance between all infinite lights and all finite ones at a point, for choosing among them.
@@ -40,8 +42,13 @@ struct InfiniteShare {
 struct Lights::Impl {
     Impl(const SceneDescription& scene, const Geometry& geometry, const TextureStore* textures);
 
-    /// Radiance of an area light at a place, by its image; alpha does not count.
-    Rgb radiance_at(const AreaLight& area, const TexturePoint& at) const;
+    /// Radiance of an area light at a place, by its image and the layers above it, in a direction
+    /// with the given cosine to the normal; alpha does not count.
+    Rgb radiance_at(const AreaLight& area, const TexturePoint& at, float cosine) const;
+
+    /// Notes which rays find a light; returns whether any scattered ones do.
+    bool note_kinds(RayKinds visible_to);
+    void add_environment(const InfiniteLight& light, const LightDescription& placed);
 
     /// A sample of a light that was chosen with the given probability; empty where it can't light
     /// p.
@@ -58,8 +65,9 @@ struct Lights::Impl {
     InfiniteShare infinite_share(Vec3 p, Vec3 n) const;
     /// Weight of infinite light i (distant ones come first) for choosing among them.
     float infinite_weight(const InfiniteShare& share, size_t i, Vec3 p, Vec3 n) const;
-    Sky sky(const InfiniteShare& share, Vec3 p, Vec3 n, Vec3 w, const SkyCell* cell) const;
-    Rgb environment(Vec3 p, Vec3 w) const;
+    Sky sky(const InfiniteShare& share, Vec3 p, Vec3 n, Vec3 w, const SkyCell* cell,
+            RayKind kind) const;
+    Rgb environment(Vec3 p, Vec3 w, RayKind kind) const;
 
     /// The area light of the shape that was hit; null where the shape does not emit.
     const AreaLight* area_light_of(const SurfaceHit& hit) const;
@@ -76,6 +84,9 @@ struct Lights::Impl {
     std::vector<PointEmitter> points;
     std::vector<DistantEmitter> distants;
     std::vector<Environment> environments;
+    std::vector<RayKinds> environment_visible_to;  ///< for the environment of the same index
+    bool kinds_differ = false;
+    EmissionShare emission_share;
     Warnings warnings;
     LightTree tree;  ///< over the ids of area and point lights
 };

@@ -224,7 +224,7 @@ std::vector<OccluderBody> OccluderBodies::add(const std::vector<uint32_t>& shape
     std::vector<OccluderBody> parts;
     for (uint32_t shape : shapes) {
         if (is_cancelled()) break;
-        if (geometry.is_interface[shape]) continue;
+        if (!geometry.is_in_the_way[shape]) continue;
         const LocalShape& local = geometry.local[shape];
         if (is_flat(local)) {
             const Tessellation surface = has_holes(shape) && per_edge_ >= kLeastPerEdge

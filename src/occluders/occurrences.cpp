@@ -5,7 +5,7 @@ namespace covtrace {
 std::vector<Occurrence> occurrences(const Geometry::Impl& g, float time) {
     std::vector<Occurrence> all;
     const auto add = [&](uint32_t shape, const EmbreeInstance* instance) {
-        if (g.is_interface[shape]) return;
+        if (!g.is_in_the_way[shape]) return;
         Occurrence o;
         o.shape = &g.local[shape];
         o.is_instanced = g.placed[shape].is_instanced;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "pbrt/ray_visibility.h"
 #include "pbrt/spectrum_parameter.h"
 #include "pbrt/version_three.h"
 #include "scene/names.h"
@@ -120,6 +121,7 @@ InfiniteLight infinite_light(Entity& e, BuildContext& context) {
         light.image = context.files.find(file, p.where("filename", e.where));
     }
     if (p.has("portal")) light.portal = portal(e);
+    light.visible_to = visible_to(e);
     return light;
 }
 
@@ -186,6 +188,7 @@ AreaLightDescription build_area_light(Entity& e, BuildContext& context) {
     const bool has_colour = p.has("L");
     light.radiance = light_of(e, "L", context);
     light.two_sided = p.flag("twosided", false);
+    light.lets_light_pass = p.flag("letslightpass", false);
     light.power = target(e, "power", light.radiance, context);
     if (const std::string file = p.text("filename"); !file.empty()) {
         const SourceLocation where = p.where("filename", e.where);

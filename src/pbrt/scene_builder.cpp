@@ -4,6 +4,7 @@
 
 #include "pbrt/light_builder.h"
 #include "pbrt/medium_builder.h"
+#include "pbrt/ray_visibility.h"
 #include "scene/names.h"
 
 namespace covtrace {
@@ -192,6 +193,7 @@ void SceneBuilder::shape(Entity entity) {
     s.object_to_world = state_.object_to_world(entity.where);
     s.where = entity.where;
     s.directive = directive_;
+    s.visible_to = visible_to(entity);
     s.area_light = state_.area_light;
     if (s.area_light >= 0) {
         used_area_lights_.insert(s.area_light);
@@ -308,6 +310,16 @@ void SceneBuilder::resolve(PendingShape& pending) {
                          "area lights on shapes with the material \"interface\" are ignored");
         s.area_light = -1;
     }
+    if (s.visible_to != kEveryRay && std::holds_alternative<InterfaceMaterial>(material)) {
+        context_.log.add(
+            s.where,
+            "\"hiddenfrom\" is ignored on shapes with the material \"interface\": media "
+            "end there for every ray");
+        s.visible_to = kEveryRay;
+    }
+    // A shape that lets light pass is no border between media, either.
+    if (s.area_light >= 0 && scene_.area_lights[static_cast<size_t>(s.area_light)].lets_light_pass)
+        s.inside = s.outside = -1;
     if (!resolve_alpha(pending)) return;
     resolve_displacement(pending);
     auto& shapes = pending.object < 0 ? scene_.shapes

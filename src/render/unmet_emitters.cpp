@@ -22,13 +22,14 @@ struct Segment {
     float length = 0;     ///< infinite where the path leaves the scene
     float travelled = 0;  ///< distance from the camera to the origin
     float carried = 1;    ///< luminance that the mirrors before it let through
+    RayKind kind = RayKind::camera;
 };
 
 /// Visits the ways from the camera to the first vertex that scatters by another than a specular
 /// lobe.
 template <typename Visit>
 void for_each_segment_in_view(const PathRecord& path, const Visit& visit) {
-    Segment s{path.camera_ray.origin, path.camera_ray.direction, kInfinity, 0, 1};
+    Segment s{path.camera_ray.origin, path.camera_ray.direction, kInfinity, 0, 1, RayKind::camera};
     for (int k = 0; k < path.count; ++k) {
         const PathVertex& v = path.vertices[size_t(k)];
         s.length = distance(s.origin, v.hit.position);
@@ -36,8 +37,12 @@ void for_each_segment_in_view(const PathRecord& path, const Visit& visit) {
         const LobeShares& lobes = v.next_event.lobes;
         if (!v.scatters || v.medium >= 0 || lobes.count != 1 || !is_specular(lobes.lobes[0].kind))
             return;
-        s = {v.hit.position, v.next_event.wi, kInfinity, s.travelled + s.length,
-             s.carried * luminance(lobes.lobes[0].value)};
+        s = {v.hit.position,
+             v.next_event.wi,
+             kInfinity,
+             s.travelled + s.length,
+             s.carried * luminance(lobes.lobes[0].value),
+             is_transmission(lobes.lobes[0].kind) ? RayKind::transmission : RayKind::glossy};
     }
     if (path.count < PathRecord::kCapacity) visit(s);
 }
@@ -98,6 +103,7 @@ UnmetEmitters::UnmetEmitters(const PassContext& context, PixelBounds region) {
             Moments sum;
             for_each_segment_in_view(record, [&](const Segment& s) {
                 for (const DistantView& e : emitters) {
+                    if (!contains(e.visible_to, s.kind)) continue;
                     const Moments m = widened(s, e, own.scene.camera);
                     sum.mean += m.mean;
                     sum.square += m.square;

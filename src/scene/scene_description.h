@@ -17,6 +17,7 @@
 #include "core/transform.h"
 #include "core/vec.h"
 #include "scene/lens_description.h"
+#include "scene/ray_kind.h"
 #include "scene/texture_description.h"
 
 namespace covtrace {
@@ -193,6 +194,9 @@ struct AreaLightDescription {
     bool two_sided = false;
     TextureId image = -1;  ///< multiplies the radiance, over the shape's (u, v)
     SourceLocation where;
+    /// Whether the shape is no surface but for its light: rays that meet it take up its light and
+    /// go on, and it casts no shadow.
+    bool lets_light_pass = false;
 };
 
 /// Moves the vertices of a mesh along their normals, after its triangles have been split.
@@ -219,6 +223,8 @@ struct ShapeDescription {
     MediumId inside = -1, outside = -1;
     SourceLocation where;
     std::optional<Displacement> displacement = {};  ///< of triangles with normals and uvs only
+    /// Rays that the shape is there for; always `any`, and every one for interfaces.
+    RayKinds visible_to = kEveryRay;
 };
 
 struct ObjectDescription {
@@ -271,6 +277,7 @@ struct InfiniteLight {
     /// Corners, in world space, of a rectangle that all of the light comes through, in the
     /// direction (p3 - p0) x (p1 - p0) seen from what it lights; opposite ones are 0 and 2.
     std::optional<std::array<Vec3, 4>> portal = {};
+    RayKinds visible_to = kEveryRay;  ///< rays that find the light; always `any`
 };
 struct LightDescription {
     std::variant<PointLight, SpotLight, GoniometricLight, ProjectionLight, DistantLight,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/hash.h"
+#include "shading/material_layers.h"
 
 namespace covtrace {
 namespace {
@@ -134,39 +135,6 @@ Bsdf make(const MeasuredMaterial&, const Values&, const Tables& tables) {
 
 Bsdf make(const UnlitMaterial& m, const Values& v, const Tables&) {
     return UnlitBsdf{v.spectrum(m.colour, 1), m.two_sided};
-}
-
-SheenLobe make_sheen(const SheenLayer& layer, const Values& v, const SheenTable* table) {
-    const Rgb colour = v.spectrum(layer.colour, 1);
-    // NaN becomes 0, so that a broken texel can't spread.
-    const auto share = [](float c) { return c > 0 ? std::min(c, 1.0f) : 0; };
-    return {{share(colour.r), share(colour.g), share(colour.b)},
-            std::clamp(v.number(layer.alpha, 0), SheenTable::kLeastAlpha, 1.0f),
-            table};
-}
-
-ClearcoatLobe make_coat(const ClearcoatLayer& layer, const Values& v) {
-    const float alpha = v.number(layer.alpha, 0);
-    return {clamp01(v.number(layer.weight, 1)), ggx_alphas(alpha, alpha, false).x};
-}
-
-/// Puts a surface under the material's layers, where it has any and may be under some.
-void put_under_layers(Bsdf& bsdf, const MaterialDescription& m, const Values& v,
-                      const Tables& tables) {
-    if (!m.sheen && !m.clearcoat) return;
-    LayeredBsdf layered;
-    const bool is_kept = std::visit(
-        [&](const auto& b) {
-            constexpr bool is_base =
-                std::is_assignable_v<decltype(layered.base)&, std::decay_t<decltype(b)>>;
-            if constexpr (is_base) layered.base = b;
-            return is_base;
-        },
-        bsdf);
-    if (!is_kept) return;
-    if (m.sheen) layered.sheen = make_sheen(*m.sheen, v, tables.sheen);
-    if (m.clearcoat) layered.coat = make_coat(*m.clearcoat, v);
-    bsdf = layered;
 }
 
 using TextureIds = std::initializer_list<TextureId>;
@@ -324,6 +292,10 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
             material.tables.measured =
                 &measured_.try_emplace(b->brdf.get(), *b->brdf).first->second;
         }
+        material.has_layers = covtrace::has_layers(description);
+        if (description.mix)
+            for (MaterialId part : description.mix->materials)
+                material.has_layers = material.has_layers || has_layers(part);
         if (description.sheen) {
             if (!sheen_) sheen_ = std::make_unique<const SheenTable>();
             material.tables.sheen = sheen_.get();
@@ -334,7 +306,8 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
                     is_constant(textures, m) && are_layers_constant(textures, description);
                 if (!material.is_constant) return;
                 material.constant = make(m, at_middle, material.tables);
-                put_under_layers(material.constant, description, at_middle, material.tables);
+                put_under_layers(material.constant, description, textures, at_middle.at,
+                                 material.tables.sheen);
             },
             description.value);
     }
@@ -353,7 +326,7 @@ Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStor
         const Values values{textures, at, material.colours, adaptation_, powers_};
         found = std::visit([&](const auto& m) { return make(m, values, material.tables); },
                            material.description.value);
-        put_under_layers(found, material.description, values, material.tables);
+        put_under_layers(found, material.description, textures, at, material.tables.sheen);
     }
     if (auto* coated = std::get_if<CoatedConductorBsdf>(&found))
         coated->place = static_cast<uint32_t>(hash_of_position(hit, 0) >> 32);
@@ -390,6 +363,18 @@ bool MaterialStore::lets_light_pass(MaterialId id) const {
     const auto& model = materials_[static_cast<size_t>(id)].description.value;
     return std::holds_alternative<InterfaceMaterial>(model) ||
            std::holds_alternative<UnlitMaterial>(model);
+}
+
+float MaterialStore::emission_share(MaterialId id, const TexturePoint& at, float cosine,
+                                    const TextureStore& textures) const {
+    if (!has_layers(id)) return 1;
+    if (const auto& mix = description(id).mix) {
+        const float amount = clamp01(textures.eval_float(mix->amount, at));
+        return (1 - amount) * emission_share(mix->materials[0], at, cosine, textures) +
+               amount * emission_share(mix->materials[1], at, cosine, textures);
+    }
+    return covtrace::emission_share(description(id), textures, at,
+                                    materials_[static_cast<size_t>(id)].tables.sheen, cosine);
 }
 
 bool MaterialStore::turns_clearcoat(MaterialId id) const {

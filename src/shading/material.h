@@ -74,6 +74,14 @@ class MaterialStore {
     MaterialTextures textures(MaterialId id) const;
     /// Whether all light passes the surface unchanged: interfaces and what is unlit.
     bool lets_light_pass(MaterialId id) const;
+    /// Whether the surface, or that of a part of a mix, is under a sheen or a clear coat.
+    bool has_layers(MaterialId id) const {
+        return id >= 0 && materials_[static_cast<size_t>(id)].has_layers;
+    }
+    /// Share of the light of an emitting surface that gets through its layers, in a direction with
+    /// the given cosine > 0 to the normal; of a mix, the mean over its parts.
+    float emission_share(MaterialId id, const TexturePoint& at, float cosine,
+                         const TextureStore& textures) const;
     /// Whether the clear coat's normal may be another than that of the frame.
     bool turns_clearcoat(MaterialId id) const;
     /// Whether a bump or normal map turns the normals, or the material the tangents; see
@@ -91,7 +99,8 @@ class MaterialStore {
         MaterialColours colours;
         MaterialTables tables;
         bool is_constant = false;
-        Bsdf constant;  ///< where no texture varies
+        bool has_layers = false;  ///< of its own, or of a part of a mix
+        Bsdf constant;            ///< where no texture varies
     };
     std::vector<Material> materials_;
     AdaptationTable adaptation_;     ///< for textures that vary

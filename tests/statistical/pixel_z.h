@@ -130,6 +130,24 @@ inline std::vector<Pixels> render_seeds(const RenderScene& scene, uint64_t first
     return images;
 }
 
+/// The mean of an image over its pixels and many seeds.
+struct ImageMean {
+    double value = 0, variance = 0;  ///< variance of the value
+};
+inline ImageMean image_mean(const RenderScene& scene, size_t renders = 64, uint32_t spp = 64) {
+    std::vector<double> means;
+    for (const Pixels& image : render_seeds(scene, 11, renders, spp)) {
+        double sum = 0;
+        for (double p : image) sum += p / kPixels;
+        means.push_back(sum);
+    }
+    ImageMean m;
+    const auto n = double(renders);
+    for (double v : means) m.value += v / n;
+    for (double v : means) m.variance += (v - m.value) * (v - m.value) / (n * (n - 1));
+    return m;
+}
+
 /// The distribution of one render of a number of samples: mean, variance and skewness of every
 /// pixel.
 struct Reference {
