@@ -40,6 +40,16 @@ Animations::Animations(const Document& document, const std::vector<size_t>& play
             read_channel(document, a, c, log);
 }
 
+std::array<float, 2> Animations::span() const {
+    std::array<float, 2> span{kInfinity, -kInfinity};
+    for (const auto& [node, channels] : channels_)
+        for (const auto& [path, channel] : channels) {
+            span[0] = std::min(span[0], channel.times.values.front());
+            span[1] = std::max(span[1], channel.times.values.back());
+        }
+    return span;
+}
+
 void Animations::read_channel(const Document& document, size_t a, size_t c, WarningLog& log) {
     const tinygltf::Animation& animation = document.model.animations[a];
     const tinygltf::AnimationChannel& channel = animation.channels[c];

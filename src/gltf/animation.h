@@ -31,6 +31,8 @@ class Animations {
     Animations(const Document& document, const std::vector<size_t>& played, WarningLog& log);
 
     bool empty() const { return channels_.empty(); }
+    /// Time of the first and of the last key; there must be a channel.
+    std::array<float, 2> span() const;
     /// Whether a channel places the node, morphs it, or both.
     bool moves(int node) const { return channels_.contains(node); }
     /// Weights of the node's morph targets at a time; empty where no channel moves them.

@@ -5,6 +5,7 @@
 
 #include "gltf/choice.h"
 #include "gltf/units.h"
+#include "scene/framing.h"
 
 namespace covtrace::gltf {
 namespace {
@@ -86,27 +87,6 @@ void read_camera(const Document& document, const PlacedNode& placed, SceneDescri
     }
 }
 
-/// Places a camera that sees all of the bounding sphere, from the front, 30 degrees to the right
-/// and 20 up.
-void frame(const Document& document, const Bounds3& bounds, SceneDescription& scene) {
-    constexpr float kFov = 40;
-    const Vec3 center = bounds.center();
-    const float radius = std::max(bounds.radius(), 1e-6f);
-    const float distance = 1.05f * radius / std::sin(0.5f * kFov / kDegrees);
-    const float azimuth = 30 / kDegrees, height = 20 / kDegrees;
-    const Vec3 towards{std::sin(azimuth) * std::cos(height), std::sin(height),
-                       std::cos(azimuth) * std::cos(height)};
-    const auto world_to_camera = Transform::look_at(center + towards * distance, center, {0, 1, 0});
-    if (!world_to_camera) document.refuse("", "the scene is too large to place a camera");
-    // look_at takes the world for a left-handed one, in which it would show a mirror image of
-    // glTF's.
-    scene.camera.camera_to_world =
-        AnimatedTransform(world_to_camera->inverse() * Transform::scale(-1, 1, 1));
-    scene.camera.fov = kFov;
-    scene.camera.where = document.place("");
-    set_film(scene.film, 16.0 / 9);
-}
-
 /// The nodes that place cameras, in their order.
 std::vector<const PlacedNode*> nodes_with_cameras(const Document& document,
                                                   const std::vector<PlacedNode>& nodes) {
@@ -138,7 +118,9 @@ void set_view(const Document& document, const std::vector<PlacedNode>& nodes, co
     const std::vector<Choosable> names = names_of(document, placed);
     const size_t one = choice.empty() ? 0 : chosen({"camera"}, choice, names, "camera");
     if (placed.empty()) {
-        frame(document, bounds, scene);
+        set_film(scene.film, 16.0 / 9);
+        scene.camera.where = document.place("");
+        if (!frame_all(scene)) document.refuse("", "the scene is too large to place a camera");
         scene.no_camera = {
             document.place(""),
             "the scene has no camera; one that sees all of it from the front takes its place"};

@@ -1,6 +1,8 @@
 #include "gltf/nodes.h"
 
+#include <array>
 #include <cmath>
+#include <sstream>
 
 #include "gltf/instancing.h"
 
@@ -38,9 +40,7 @@ class Placer {
           placed_{{}, {}, Animations(document, choice.animations, log)} {
         placed_.worlds.resize(parents_.size());
         if (!placed_.animations.empty() && !shutter)
-            log.add(document.place("animations"),
-                    "the scene is rendered at rest, at 0 seconds; a shutter from T0 to T1 "
-                    "seconds shows a part of its animations");
+            log.add(document.place("animations"), at_rest(placed_.animations.span()));
         find_parents();
     }
 
@@ -206,6 +206,14 @@ class Placer {
                                ? AnimatedTransform(*start)
                                : AnimatedTransform(*start, times[0], *end, times[1])});
         }
+    }
+
+    static std::string at_rest(const std::array<float, 2>& span) {
+        std::ostringstream text;
+        text << "the scene is rendered at rest, at 0 seconds; it is animated from " << span[0]
+             << " to " << span[1]
+             << " seconds, of which a shutter from T0 to T1 seconds shows a part";
+        return text.str();
     }
 
     const Document& document_;

@@ -9,6 +9,7 @@
 #include "render/camera_override.h"
 #include "render/environment_override.h"
 #include "scene/defaults.h"
+#include "scene/framing.h"
 
 namespace covtrace {
 
@@ -49,6 +50,9 @@ void apply(const SceneOverrides& overrides, SceneDescription& scene) {
         scene.camera.shutter_close = (*overrides.shutter)[1];
     }
     if (overrides.camera) override_camera(*overrides.camera, scene);
+    // In a narrower picture it may stand farther away: what was not too large at first still isn't.
+    if (overrides.resolution && is_framed(scene) && !frame_all(scene))
+        throw Error(ErrorKind::scene, "the scene is too large to place a camera");
     if (overrides.focal_distance) scene.camera.focal_distance = *overrides.focal_distance;
     if (overrides.f_number) {
         // A lens that is not the scene's own is that of a full-frame sensor, 24 mm high: focal

@@ -1,6 +1,8 @@
 #include "scene/defaults.h"
 
+#include "scene/framing.h"
 #include "scene/imaging_scale.h"
+#include "scene/view_text.h"
 
 namespace covtrace {
 
@@ -28,6 +30,7 @@ void add_default_lights(SceneDescription& scene, const SourceLocation& where) {
 
 void complete(SceneDescription& scene) {
     if (scene.no_lights) add_default_lights(scene, scene.no_lights->where);
+    if (is_framed(scene)) scene.no_camera->text += ": " + view_text(scene);
     for (std::optional<Warning>* missing : {&scene.no_camera, &scene.no_lights}) {
         if (*missing) scene.warnings.push_back(**missing);
         missing->reset();

@@ -3,6 +3,9 @@
 #include <iomanip>
 #include <sstream>
 
+#include "scene/extent.h"
+#include "scene/view_text.h"
+
 namespace covtrace {
 
 namespace {
@@ -44,9 +47,13 @@ std::string summarize(const SceneDescription& scene) {
         << ", lens radius " << camera.lens_radius << ", focal distance " << camera.focal_distance
         << ", shutter " << camera.shutter_open << " to " << camera.shutter_close
         << (camera.camera_to_world.is_animated() ? ", moving" : "") << "\n"
+        << "view       " << view_text(scene) << "\n"
         << "shapes     " << top.shapes << " (" << top.triangles << " triangles, " << top.patches
         << " patches, " << top.spheres << " spheres, " << top.disks << " disks; " << top.moving
         << " moving)\n";
+    if (const Bounds3 box = bounds(scene); !box.empty())
+        out << "extent     x " << box.lo.x << " to " << box.hi.x << ", y " << box.lo.y << " to "
+            << box.hi.y << ", z " << box.lo.z << " to " << box.hi.z << "\n";
     if (!scene.objects.empty())
         out << "objects    " << scene.objects.size() << " of " << objects.shapes << " shapes ("
             << objects.triangles << " triangles), " << scene.instances.size() << " instances\n";

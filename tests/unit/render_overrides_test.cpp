@@ -64,6 +64,30 @@ TEST(CameraOverride, AsksTheScenesOwnCameraWhatIsUp) {
     EXPECT_GT(scene.camera.camera_to_world.start().vector({0, 1, 0}).z, 0);
 }
 
+TEST(CameraOverride, AStandInFollowsTheShapeOfThePicture) {
+    // A shape ten times as wide as high, before the camera that a reader framed it with
+    SceneDescription scene;
+    TriangleMesh bar;
+    bar.positions = {{-5, -0.5f, 0}, {5, -0.5f, 0}, {5, 0.5f, 0}};
+    bar.triangles = {{0, 1, 2}};
+    scene.shapes.emplace_back().geometry = std::make_shared<const TriangleMesh>(bar);
+    scene.film.width = 1280, scene.film.height = 720;
+    scene.no_camera = Warning{{}, "no camera"};
+    scene.camera.where.file = std::make_shared<const std::string>("bar.glb");
+    const auto distance_at = [&scene](int width, int height) {
+        SceneDescription changed = scene;
+        SceneOverrides overrides;
+        overrides.resolution = {width, height};
+        apply(overrides, changed);
+        return length(changed.camera.camera_to_world.start().point({}));
+    };
+    EXPECT_GT(distance_at(300, 300), 1.5f * distance_at(1280, 720));
+    EXPECT_NEAR(distance_at(300, 300), distance_at(300, 900), 0.02f);
+    // A camera that somebody placed stays
+    scene.no_camera.reset();
+    EXPECT_EQ(distance_at(300, 300), 0);
+}
+
 TEST(EnvironmentOverride, ScalesWhatAnIlluminanceAsksFor) {
     SceneDescription scene = read_world(R"(LightSource "infinite" "float illuminance" 3
         LightSource "infinite" "rgb L" [1 2 3])");

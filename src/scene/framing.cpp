@@ -1,0 +1,92 @@
+#include "scene/framing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/extent.h"
+
+namespace covtrace {
+
+namespace {
+
+constexpr float kFov = 40, kDegrees = 180 / kPi;
+constexpr double kFilled = 0.9;  // share of the picture's width or height that the shapes take
+
+/// The dot product in double precision, for scenes far from the origin.
+double along(Vec3 p, Vec3 axis) {
+    return double(p.x) * double(axis.x) + double(p.y) * double(axis.y) +
+           double(p.z) * double(axis.z);
+}
+
+/// Extent of points in front of a camera of which only the position is open: for a pair of opposite
+/// sides of its pyramid of view, how far points reach beyond planes through the origin.
+class Slab {
+  public:
+    /// `slope`: tangent of the angle between the axis of view and the sides.
+    explicit Slab(double slope) : slope_(slope) {}
+
+    void add(double across, double depth) {
+        high_ = std::max(high_, across - slope_ * depth);
+        low_ = std::max(low_, -across - slope_ * depth);
+    }
+    double middle() const { return (high_ - low_) / 2; }
+    /// The largest depth from which both sides hold all points.
+    double depth() const { return -(high_ + low_) / (2 * slope_); }
+
+  private:
+    double slope_;
+    double high_ = -kInfinity, low_ = -kInfinity;
+};
+
+}  // namespace
+
+bool frame_all(SceneDescription& scene) {
+    const float azimuth = 30 / kDegrees, height = 20 / kDegrees;
+    const Vec3 forward = -Vec3{std::sin(azimuth) * std::cos(height), std::sin(height),
+                               std::cos(azimuth) * std::cos(height)};
+    const Vec3 right = normalize(cross(forward, {0, 1, 0})), up = cross(right, forward);
+    const double aspect = double(scene.film.width) / double(scene.film.height);
+    const double slope = kFilled * std::tan(0.5 * double(kFov / kDegrees));
+    Slab across(slope * std::max(1.0, aspect)), upright(slope * std::max(1.0, 1 / aspect));
+    Bounds3 box;
+    double nearest = kInfinity;
+    const auto add = [&](Vec3 p) {
+        const double depth = along(p, forward);
+        across.add(along(p, right), depth);
+        upright.add(along(p, up), depth);
+        nearest = std::min(nearest, depth);
+        box.extend(p);
+    };
+    visit_points(scene, add);
+    if (box.empty())
+        for (const float x : {-1.0f, 1.0f}) add({x, x, x});
+
+    // A point has no extent: it is seen from a little before it
+    const double before = nearest - 1e-3 * std::max(double(box.radius()), 1e-3);
+    const double depth = std::min({across.depth(), upright.depth(), before});
+    Matrix4 m;
+    Vec3 eye;
+    for (int row = 0; row < 3; ++row) {
+        const double axes[] = {double(right[row]), double(up[row]), double(forward[row])};
+        const double place =
+            axes[0] * across.middle() + axes[1] * upright.middle() + axes[2] * depth;
+        for (size_t column = 0; column < 3; ++column)
+            m.m[static_cast<size_t>(row)][column] = axes[column];
+        m.m[static_cast<size_t>(row)][3] = place;
+        eye[row] = static_cast<float>(place);
+    }
+    const auto to_world = Transform::from_matrix(m);
+    const auto focus = static_cast<float>(along(box.center(), forward) - depth);
+    if (!to_world || !is_finite(eye) || !std::isfinite(focus)) return false;
+    scene.camera.camera_to_world = AnimatedTransform(*to_world);
+    scene.camera.fov = kFov;
+    scene.camera.focal_distance = focus;
+    return true;
+}
+
+bool is_framed(const SceneDescription& scene) {
+    // A camera that a format itself puts in place of a missing one has no place in the file
+    return scene.no_camera && scene.camera.where.file;
+}
+
+}  // namespace covtrace
