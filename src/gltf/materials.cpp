@@ -23,4 +23,16 @@ const Surface& MaterialReader::surface(int index, ColourUse colours, bool is_unl
     return surfaces_.emplace(key, std::move(surface)).first->second;
 }
 
+bool MaterialReader::may_outline(int index) const {
+    constexpr double kBrightest = 0.05;
+    if (index < 0) return false;
+    const tinygltf::Material& m = document_.model.materials[static_cast<size_t>(index)];
+    const auto& colour = m.pbrMetallicRoughness.baseColorFactor;
+    const auto is_dark = [](double c) { return c <= kBrightest; };
+    return !m.doubleSided && m.alphaMode == "OPAQUE" && colour.size() == 4 &&
+           std::all_of(colour.begin(), colour.begin() + 3, is_dark) &&
+           std::all_of(m.emissiveFactor.begin(), m.emissiveFactor.end(), is_dark) &&
+           m.pbrMetallicRoughness.baseColorTexture.index < 0 && m.extensions.empty();
+}
+
 }  // namespace covtrace::gltf

@@ -36,6 +36,10 @@ class MaterialReader {
     /// material says.
     const Surface& surface(int index, ColourUse colours, bool is_unlit, const std::string& place);
 
+    /// Whether surfaces of materials[index] (-1: glTF's default) may be outlines of cartoons: seen
+    /// from the front alone, opaque, and of one colour that is next to black.
+    bool may_outline(int index) const;
+
   private:
     const Document& document_;
     SceneDescription& scene_;

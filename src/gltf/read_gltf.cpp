@@ -14,6 +14,7 @@
 #include "gltf/marks.h"
 #include "gltf/materials.h"
 #include "gltf/nodes.h"
+#include "scene/inside_out.h"
 #include "scene/with_limits.h"
 
 namespace covtrace {
@@ -136,12 +137,21 @@ class SceneAssembler {
         warn_of_left_out(document_, primitive.extensions, place, log_);
         // By the specification points and lines without normals are not lit.
         const bool is_unlit = has_marks(primitive) && !primitive.attributes.contains("NORMAL");
-        const Surface& surface =
-            materials_.surface(material_of(document_, primitive, variant_, place),
-                               geometry_.colours(mesh, index), is_unlit, place);
-        if (!surface.is_visible) return std::nullopt;
-        auto triangles = geometry_.mesh(mesh, index, surface.layout);
+        const int material = material_of(document_, primitive, variant_, place);
+        const auto surface_of = [&](bool unlit) -> const Surface& {
+            return materials_.surface(material, geometry_.colours(mesh, index), unlit, place);
+        };
+        const Surface* read = &surface_of(is_unlit);
+        if (!read->is_visible) return std::nullopt;
+        auto triangles = geometry_.mesh(mesh, index, read->layout);
         if (!triangles) return std::nullopt;
+        if (!is_unlit && materials_.may_outline(material) && is_inside_out(*triangles)) {
+            read = &surface_of(true);
+            log_.add(document_.place(place),
+                     "a dark shell that is inside out is an outline: only the camera sees it, and "
+                     "light passes it");
+        }
+        const Surface& surface = *read;
         Part part;
         for (const Vec3& p : triangles->positions) part.bounds.extend(p);
         part.shape.geometry = std::move(triangles);
