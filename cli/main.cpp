@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -15,6 +16,7 @@
 #include "cli/message.h"
 #include "core/error.h"
 #include "render/version.h"
+#include "scene/names.h"
 
 namespace {
 
@@ -34,13 +36,27 @@ void require_written_output() {
             std::string("cannot write to standard output: ") + std::strerror(errno));
 }
 
+bool is_option(const std::string& argument) {
+    return argument.size() > 1 && argument.front() == '-';
+}
+
 /// The reason why the command line is wrong; CLI11 itself does not name a command that it does not
-/// know.
+/// know, and takes the value of an option that it does not know for the next argument.
 std::string explain(const CLI::App& app, const CLI::ParseError& e) {
-    const std::vector<std::string> unknown = app.remaining();
-    if (app.get_subcommands().empty() && !unknown.empty())
-        return "unknown command or option '" + unknown.front() + "'";
-    return e.what();
+    using covtrace::did_you_mean, covtrace::in_quotes;
+    const std::vector<CLI::App*> commands = app.get_subcommands();
+    const CLI::App& command = commands.empty() ? app : *commands.front();
+    const std::vector<std::string> unknown = command.remaining();
+    const auto option = std::find_if(unknown.begin(), unknown.end(), is_option);
+    std::vector<std::string> known;
+    if (option != unknown.end()) {
+        for (const CLI::Option* o : command.get_options())
+            for (const std::string& name : o->get_lnames()) known.push_back("--" + name);
+        return "unknown option " + in_quotes(*option) + did_you_mean(*option, known);
+    }
+    if (!commands.empty() || unknown.empty()) return e.what();
+    for (const CLI::App* c : app.get_subcommands(nullptr)) known.push_back(c->get_name());
+    return "unknown command " + in_quotes(unknown.front()) + did_you_mean(unknown.front(), known);
 }
 
 int run(int argc, char** argv) {

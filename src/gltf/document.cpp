@@ -15,6 +15,7 @@
 #include "gltf/draco.h"
 #include "gltf/meshopt.h"
 #include "gltf/plain_json.h"
+#include "gltf/range_text.h"
 #include "scene/names.h"
 #include "scene/scene_files.h"
 
@@ -294,13 +295,8 @@ namespace {
 double checked(const Document& document, const tinygltf::Value& value, double least, double most,
                const std::string& place) {
     const double v = value.IsNumber() ? value.GetNumberAsDouble() : std::nan("");
-    if (!(v >= least && v <= most)) {
-        const bool bounded = std::abs(most) < 1e30;
-        document.refuse(
-            place, "expected a number " +
-                       (bounded ? "from " + std::to_string(least) + " to " + std::to_string(most)
-                                : "of at least " + std::to_string(least)));
-    }
+    if (!(v >= least && v <= most))
+        document.refuse(place, "expected a number " + range_text(least, most));
     return v;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gltf/extensions.h"
+#include "gltf/range_text.h"
 
 namespace covtrace::gltf {
 namespace {
@@ -14,8 +15,7 @@ using Channel = ImageTexture::Channel;
 float in_range(const Document& document, double v, double least, double most,
                const std::string& place) {
     if (!(v >= least && v <= most))
-        document.refuse(place, "expected a number from " + std::to_string(least) + " to " +
-                                   std::to_string(most));
+        document.refuse(place, "expected a number " + range_text(least, most));
     return static_cast<float>(v);
 }
 

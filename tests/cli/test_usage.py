@@ -54,8 +54,9 @@ class WrongCommandLines(CliTest):
 
     def test_no_command_or_an_unknown_one(self):
         self.assert_fails(self.run_program(), USAGE)
-        self.assert_fails(self.run_program("paint"), USAGE, "'paint'")
-        self.assert_fails(self.run_program("--frobnicate"), USAGE, "'--frobnicate'")
+        self.assert_fails(self.run_program("paint"), USAGE, 'unknown command "paint"')
+        self.assert_fails(self.run_program("rendr"), USAGE, 'did you mean "render"?')
+        self.assert_fails(self.run_program("--frobnicate"), USAGE, 'unknown option "--frobnicate"')
 
     def test_missing_and_superfluous_arguments(self):
         self.write("scene.pbrt", TINY)
@@ -149,7 +150,11 @@ class WrongCommandLines(CliTest):
                     self.assertNotIn("--help", result.stderr, result)
 
     def test_unknown_option(self):
-        self.assert_fails(self.render(TINY, "--frobnicate"), USAGE, "--frobnicate")
+        self.assert_fails(self.render(TINY, "--frobnicate"), USAGE, 'unknown option "--frobnicate"')
+        # The option is the one to be named, and not the scene behind its value.
+        result = self.run_program("render", "--sppp", "3", "scene.pbrt")
+        self.assert_fails(result, USAGE, 'unknown option "--sppp"; did you mean "--spp"?')
+        self.assertNotIn("scene.pbrt", result.stderr)
 
     def test_usage_is_checked_before_the_scene_is_read(self):
         result = self.run_program("render", "missing.pbrt", "--time", "soon")
