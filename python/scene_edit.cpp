@@ -270,6 +270,7 @@ void set_transforms(SceneDescription& s, const std::string& kind, size_t index, 
         s.lights[index].light_to_world = first;
         return;
     }
+    if (kind == "camera") s.no_camera.reset();
     AnimatedTransform& t = moving(s, kind, index);
     t = end ? AnimatedTransform(first, s.camera.shutter_open, transform_of(*end),
                                 s.camera.shutter_close)

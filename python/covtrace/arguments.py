@@ -130,11 +130,28 @@ def vector_of(name: str, value: Any, expected: str) -> tuple[float, float, float
         refuse(name, value, expected)
 
 
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+
+
+def vector_in(text: str) -> tuple[float, float, float] | None:
+    """The numbers of a text "x,y,z"; None where it is none."""
+    if not re.fullmatch(rf"{_NUMBER}(,{_NUMBER}){{2}}", text):
+        return None
+    x, y, z = map(float, text.split(","))
+    return x, y, z
+
+
 def environment_of(value: Any) -> str | tuple[float, float, float] | None:
     """The path of an image, or a colour."""
     expected = "an image's path, a number or (r, g, b)"
     if value is None:
         return None
+    if isinstance(value, str) and not os.path.exists(value):
+        # A colour as the program's option takes it
+        if re.fullmatch(_NUMBER, value):
+            return (float(value),) * 3
+        if colour := vector_in(value):
+            return colour
     if isinstance(value, (str, bytes, os.PathLike)):
         return path_of("environment", value, expected)
     try:
@@ -154,12 +171,34 @@ def choice_of(name: str, value: str | int | None) -> str:
     return value
 
 
+def is_camera_choice(value: Any) -> bool:
+    """Whether it names one of the file's cameras, and is no view such as "eye 0,1,6 target 0,0,0 fov 40"."""
+    return isinstance(value, int) or isinstance(value, str) and not value.split()[:1] == ["eye"]
+
+
+def _camera_in(text: str) -> dict[str, Any] | None:
+    """The values of a view as the program's option and `Scene.summary` have it; None where it is none."""
+    words = text.split()
+    camera: dict[str, Any] = dict(zip(words[::2], words[1::2]))
+    if len(words) % 2 or len(camera) * 2 < len(words):
+        return None
+    for name in camera.keys() - {"fov"}:
+        camera[name] = vector_in(camera[name])
+        if camera[name] is None:
+            return None
+    return camera
+
+
 def camera_of(value: Any) -> dict[str, Any] | None:
     """eye, target, fov and, where it is given, up."""
     expected = ("{'eye': (x, y, z), 'target': (x, y, z), 'fov': degrees}, 'up': (x, y, z) if need be, "
-                "or the name or number of one of the file's")
+                "a text 'eye x,y,z target x,y,z fov N', or the name or number of one of the file's")
     if value is None:
         return None
+    if isinstance(value, str):
+        text, value = value, _camera_in(value)
+        if value is None:
+            refuse("camera", text, "a view such as 'eye 0,1,6 target 0,0,0 fov 40'")
     if not isinstance(value, Mapping) or not {"eye", "target", "fov"} <= set(value) <= {"eye", "target", "fov", "up"}:
         refuse("camera", value, expected)
     camera: dict[str, Any] = {"up": None}

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, Protocol
 
 from . import _covtrace
-from .arguments import (camera_of, cancel_of, environment_of, films_of, function_of, layers_of, path_of, resolution_of,
+from .arguments import (camera_of, cancel_of, environment_of, films_of, function_of, is_camera_choice, layers_of, path_of, resolution_of,
                         seconds_of, shutter_of)
 from .builder import SceneBuilder
 from .errors import SceneWarning, UsageError
@@ -87,8 +87,9 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
         The nodes of a glTF file are placed when it is read: give `shutter` with the file's path, or
         to `Scene`.
     camera: {"eye": (x, y, z), "target": (x, y, z), "fov": degrees of the shorter side}, a pinhole in
-        place of the scene's; "up" where it is not what is up in the scene. Or one of a glTF file's
-        cameras, by its name or its number from 0.
+        place of the scene's; "up" where it is not what is up in the scene. The same as a text, as
+        `Scene.summary` tells it: "eye x,y,z target x,y,z fov N". Or one of a glTF file's cameras,
+        by its name or its number from 0.
     gltf_scene, animation, variant: one of a glTF file's scenes, animations and variants of materials,
         by its name or its number from 0; animations also "none" and "all", else the first. They and the camera are chosen when the file is read: give
         them with its path, or to `Scene`.
@@ -115,7 +116,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     Python's lock is released while it renders. An exception from `progress`, and Ctrl-C, end the
     render and come out of this call. Raises the classes of `covtrace.errors`.
     """
-    is_choice = isinstance(camera, (str, int))
+    is_choice = is_camera_choice(camera)
     choices: dict[str, Any] = {"camera": camera if is_choice else None, "gltf_scene": gltf_scene,
                                "animation": animation, "variant": variant}
     options = {"preset": preset, "method": method, "spp": spp, "time": seconds_of(time), "error": error, "cov_spp": cov_spp,

@@ -108,13 +108,13 @@ class Scene:
     @property
     def materials(self) -> Parts:
         """All materials, by index or name: `scene.materials["floor"]["roughness"] = 0.2`."""
-        return Parts(lambda i: Material(self._description, i),
+        return Parts("material", lambda i: Material(self._description, i),
                      [name for name, _ in self._description.parts()["materials"]])
 
     @property
     def lights(self) -> Parts:
         """Lights that are no shapes."""
-        return Parts(lambda i: Light(self._description, i), len(self._description.parts()["lights"]))
+        return Parts("light", lambda i: Light(self._description, i), len(self._description.parts()["lights"]))
 
     def remove_light(self, index: int) -> None:
         """Removes one of `lights`; those behind it move up."""
@@ -122,16 +122,16 @@ class Scene:
 
     @property
     def area_lights(self) -> Parts:
-        return Parts(lambda i: AreaLight(self._description, i), self._description.parts()["area_lights"])
+        return Parts("area light", lambda i: AreaLight(self._description, i), self._description.parts()["area_lights"])
 
     @property
     def shapes(self) -> Parts:
         """The shapes outside of objects."""
-        return Parts(lambda i: Shape(self._description, i), len(self._description.parts()["shapes"]))
+        return Parts("shape", lambda i: Shape(self._description, i), len(self._description.parts()["shapes"]))
 
     @property
     def instances(self) -> Parts:
-        return Parts(lambda i: Instance(self._description, i), self._description.parts()["instances"])
+        return Parts("instance", lambda i: Instance(self._description, i), self._description.parts()["instances"])
 
     def summary(self) -> str:
         """Several lines for people, as `covtrace info`."""

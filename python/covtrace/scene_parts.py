@@ -43,7 +43,10 @@ class Part:
         self._description.set_value(self._kind, self._index, name, value)
 
     def __repr__(self) -> str:
-        return f"<{self._kind} {dict(self._description.values(self._kind, self._index))}>"
+        return f"<{self._title()} {dict(self._description.values(self._kind, self._index))}>"
+
+    def _title(self) -> str:
+        return self._kind.replace("_", " ")
 
 
 class Placed:
@@ -106,6 +109,9 @@ class Material(Part):
     def kind(self) -> str:
         return self._description.parts()["materials"][self._index][1]
 
+    def _title(self) -> str:
+        return f"material {self.name!r} ({self.kind})"
+
 
 class Light(Part, Placed):
     """A light that is no shape: "I" (radiant intensity) or "L" (radiance) by its kind."""
@@ -115,6 +121,9 @@ class Light(Part, Placed):
     @property
     def kind(self) -> str:
         return self._description.parts()["lights"][self._index]
+
+    def _title(self) -> str:
+        return f"light ({self.kind})"
 
 
 class AreaLight(Part):
@@ -150,10 +159,13 @@ class Instance(Placed):
 
 
 class Parts(Sequence[Any]):
-    """All parts of one kind; those with names are found by their names, too."""
+    """All parts of one kind; those with names are found by their names, too. `kind`: what messages
+    call one of them."""
 
-    def __init__(self, make: Callable[[int], Any], names: Sequence[str] | int) -> None:
-        self._make = make
+    _ELSEWHERE = {"light": " of its own; `environment` of render takes the place of what lights it instead"}
+
+    def __init__(self, kind: str, make: Callable[[int], Any], names: Sequence[str] | int) -> None:
+        self._kind, self._make = kind, make
         self._names = [""] * names if isinstance(names, int) else list(names)
 
     def __len__(self) -> int:
@@ -162,9 +174,19 @@ class Parts(Sequence[Any]):
     def __getitem__(self, key: Any) -> Any:
         if isinstance(key, str):
             if not key or key not in self._names:
-                raise KeyError(f"there is no {key!r}; there are {', '.join(repr(n) for n in self._names if n)}")
+                names = dict.fromkeys(n for n in self._names if n)
+                known = f"the {self._kind}s are {', '.join(map(repr, names))}" if names else f"the {self._kind}s have no names"
+                raise KeyError(f"there is no {self._kind} {key!r}; {known}")
             return self._make(self._names.index(key))
         if isinstance(key, slice):
             return [self._make(i) for i in range(*key.indices(len(self)))]
-        index = range(len(self))[key]  # checks it, and counts from the end
+        try:
+            index = range(len(self))[key]  # checks it, and counts from the end
+        except IndexError:
+            elsewhere = "" if self._names else self._ELSEWHERE.get(self._kind, "")
+            raise IndexError(f"there is no {self._kind} {key}; the scene has {len(self) or 'none'}{elsewhere}") from None
         return self._make(index)
+
+    def __repr__(self) -> str:
+        names = ", ".join(repr(n) for n in dict.fromkeys(self._names) if n)
+        return f"<{len(self)} {self._kind}{'' if len(self) == 1 else 's'}{names and ': '}{names}>"

@@ -31,6 +31,8 @@ class Overrides(unittest.TestCase):
 
         numpy.testing.assert_allclose(mean(), 3, rtol=1e-4)
         numpy.testing.assert_allclose(mean(environment=0.5), 0.5, rtol=1e-4)
+        numpy.testing.assert_allclose(mean(environment="0.5"), 0.5, rtol=1e-4)
+        numpy.testing.assert_allclose(mean(environment="1,2,4"), (1, 2, 4), rtol=1e-4)
         numpy.testing.assert_allclose(mean(environment=(1, 2, 4), environment_scale=2), (2, 4, 8), rtol=1e-4)
         numpy.testing.assert_allclose(mean(environment_scale=0.5, environment_rotation=90), 1.5, rtol=1e-4)
         with tempfile.TemporaryDirectory() as folder:
@@ -49,13 +51,23 @@ class Overrides(unittest.TestCase):
     def test_camera(self):
         scene = covtrace.Scene.from_string(scenes.SKY)
 
-        def sees_ball(**camera):
-            image = covtrace.render(scene, method="uniform", spp=1, camera=camera, max_depth=0)
+        def sees_ball(text=None, **camera):
+            image = covtrace.render(scene, method="uniform", spp=1, camera=text or camera, max_depth=0)
             return bool((image["Z"][2:4, 3:5] > 1).all())  # 0 is the sky
 
         self.assertTrue(sees_ball(eye=(0, 0, 0), target=(0, 0, -9), fov=10))
         self.assertFalse(sees_ball(eye=(0, 0, 0), target=(0, 0, 9), fov=10))
         self.assertTrue(sees_ball(eye=(0, 9, -9), target=(0, 0, -9), fov=10, up=(1, 0, 0)))
+        self.assertTrue(sees_ball("eye 0,9,-9 target 0,0,-9 fov 1e1 up 1,0,0"))
+        self.assertFalse(sees_ball("eye 0,0,0 target 0,0,9 fov 10"))
+
+    def test_the_view_that_a_summary_tells(self):
+        """The line of `view` is what `camera` takes, and shows the same picture."""
+        scene = covtrace.Scene.from_string(scenes.SKY)
+        self.assertRegex(scene.summary(), r"\nextent +x \S+ to \S+, y \S+ to \S+, z \S+ to \S+\n")
+        view = next(line.split(None, 1)[1] for line in scene.summary().splitlines() if line.startswith("view"))
+        one, other = (covtrace.render(scene, method="uniform", spp=1, camera=camera) for camera in (None, view))
+        numpy.testing.assert_allclose(other["Z"], one["Z"], atol=1e-3)
 
     def test_choices_of_gltf_files(self):
         file = json.loads(scenes.gltf())
@@ -104,14 +116,16 @@ class Overrides(unittest.TestCase):
     def test_errors(self):
         scene = covtrace.Scene.from_string(scenes.SKY)
         for wrong in (
-                {"camera": "eye"}, {"camera": {"eye": (0, 0, 1), "fov": 40}},
+                {"camera": "eye"}, {"camera": "eye 0,0,1 target 0,0 fov 40"}, {"camera": "eye 0,0,1 fov 40"},
+                {"camera": "eye 0,0,1 target 0,0,0 fov 40 fov 40"}, {"camera": "eye 0,0,1 target 0,0,0 fov wide"},
+                {"camera": {"eye": (0, 0, 1), "fov": 40}},
                 {"camera": {"eye": (0, 0, 1), "target": (0, 0, 1), "fov": 40}},
                 {"camera": {"eye": (0, 0, 1), "target": (0, 0, 0), "fov": 180}},
                 {"camera": {"eye": (0, 0, 1), "target": (0, 0, 0), "fov": float("nan")}},
                 {"camera": {"eye": (0, 0, 1), "target": (0, 0, 0), "fov": 40, "up": (0, 0, 1)}},
                 {"camera": {"eye": (0, 0, 1), "target": (0, 0), "fov": 40}},
                 {"camera": {"eye": (0, 0, 1), "target": (0, 0, 0), "fov": 40, "roll": 1}},
-                {"environment": "no/such.exr"}, {"environment": -1}, {"environment": (1, 2)},
+                {"environment": "no/such.exr"}, {"environment": "1,2"}, {"environment": "-1"}, {"environment": -1}, {"environment": (1, 2)},
                 {"environment": (1, 2, -3)}, {"environment": float("nan")},
                 {"environment_rotation": "much"}, {"environment_rotation": float("inf")},
                 {"environment_scale": 0}, {"environment_scale": "x"}):

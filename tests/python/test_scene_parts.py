@@ -2,9 +2,11 @@
 
 import base64
 import json
+import pathlib
 import struct
 import tempfile
 import unittest
+import warnings
 
 import numpy
 
@@ -153,6 +155,10 @@ class Parts(unittest.TestCase):
         for action in (lambda: self.scene.lights[2], lambda: self.scene.shapes[-4], lambda: self.scene.remove_light(2)):
             with self.assertRaises(IndexError):
                 action()
+        with self.assertRaisesRegex(KeyError, "no material 'wall'; the materials are '.*floor"):
+            self.scene.materials["wall"]
+        with self.assertRaisesRegex(IndexError, "no shape 3; the scene has 3$"):
+            self.scene.shapes[3]
         with self.assertRaises(IndexError):
             self.scene.shapes[0].material = 7
         for matrix in (numpy.zeros((4, 4)), numpy.eye(3), numpy.full((4, 4), numpy.nan)):
@@ -161,6 +167,45 @@ class Parts(unittest.TestCase):
         with self.assertRaises(covtrace.UsageError):
             self.scene.camera.look_at((0, 0, 0), (0, 1, 0))
         self.assertTrue(covtrace.compare(self.render(self.scene), self.render(scene())).identical)
+
+
+    def test_texts_of_parts(self):
+        self.assertRegex(repr(self.scene.materials), "^<[0-9]+ materials: .*'floor'.*>$")
+        self.assertRegex(repr(self.scene.materials["metal"]), "^<material 'metal' \\(conductor\\) {")
+        self.assertRegex(repr(self.scene.lights[0]), "^<light \\([a-z]+\\) {")
+        self.assertEqual(repr(self.scene.shapes), "<3 shapes>")
+        self.assertEqual(repr(self.scene.area_lights), "<1 area light>")
+
+
+class StandIns(unittest.TestCase):
+    """A glTF file without camera and lights."""
+
+    def setUp(self):
+        positions = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
+        root = {"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
+                "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+                "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+                "bufferViews": [{"buffer": 0, "byteLength": 36}],
+                "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + base64.b64encode(positions).decode()}]}
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "scene.gltf")
+            file.write_text(json.dumps(root))
+            self.scene = covtrace.Scene(file)
+
+    def warnings_of(self, **options):
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            covtrace.render(self.scene, spp=1, method="uniform", resolution=(16, 9), **options)
+        return [str(w.message) for w in told]
+
+    def test_a_camera_that_was_placed_stands_in_for_nothing(self):
+        self.assertTrue(any("no camera" in text for text in self.warnings_of()))
+        self.scene.camera.look_at((0, 0, 5), (0, 0, 0))
+        self.assertFalse(any("no camera" in text for text in self.warnings_of()))
+
+    def test_lights_that_are_not_there(self):
+        with self.assertRaisesRegex(IndexError, "no light 0; the scene has none of its own; `environment`"):
+            self.scene.lights[0]
 
 
 class Gltf(unittest.TestCase):
