@@ -12,8 +12,9 @@ class Lattice:
 
     def __init__(self, cells, least, most, values_of):
         self._cells, self._values_of, self._table = cells, values_of, None
-        first = cells.min(axis=0) + least
-        spans = cells.max(axis=0) + most - first + 1
+        by_axis = np.ascontiguousarray(cells.T)  # along which extremes are found many times faster
+        first = by_axis.min(axis=1) + least
+        spans = by_axis.max(axis=1) + most - first + 1
         if np.prod(spans.astype(float)) > 2 * len(cells):
             return  # places so far apart share no cells
         strides = np.cumprod(np.append(1, spans[:0:-1]))[::-1]

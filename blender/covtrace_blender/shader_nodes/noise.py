@@ -46,16 +46,21 @@ def signed_noise(p):
     p = np.atleast_2d(np.asarray(p, np.float32))
     dimensions = p.shape[1]
     cells = np.floor(p)
-    local = (p - cells).T
+    local = np.ascontiguousarray((p - cells).T)
     lattice = Lattice(cells.astype(np.int64), 0, 1, _gradients)
-    fades = [t * t * t * (t * (t * 6 - 15) + 10) for t in local]
+    axes = []  # for each: (side, weight, distance from it) of its near side and its far one
+    for t in local:
+        fade = t * t * t * (t * (t * 6 - 15) + 10)
+        axes.append([(0, 1 - fade, t), (1, fade, t - 1)])
+        if not t.any():  # as on the plane of UV coordinates: far sides have no weight
+            axes[-1].pop()
     total = np.zeros(len(p), np.float32)
-    for corner in itertools.product((0, 1), repeat=dimensions):
-        gradient = lattice.at(corner).T
+    for corner in itertools.product(*axes):
+        gradient = np.ascontiguousarray(lattice.at([side for side, _, _ in corner]).T)
         weight, slope = np.float32(SCALES[dimensions]), np.float32(0)
-        for fade, t, k, g in zip(fades, local, corner, gradient):
-            weight = weight * (fade if k else 1 - fade)
-            slope = slope + g * (t - k)
+        for (_, share, distance), g in zip(corner, gradient):
+            weight = weight * share
+            slope = slope + g * distance
         total += weight * slope
     return total
 
