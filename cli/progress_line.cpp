@@ -34,8 +34,14 @@ int percent(const Progress& p) {
     return std::clamp(static_cast<int>(100 * p.fraction), 0, 99);
 }
 
+/// Two decimals at most, and none where the count is large: "0", "2.39", "1024".
+std::string samples(double per_pixel) {
+    return per_pixel < 100 ? fmt::format("{:.4g} spp", std::round(100 * per_pixel) / 100)
+                           : fmt::format("{:.0f} spp", per_pixel);
+}
+
 std::vector<std::string> details(const Progress& p) {
-    std::vector<std::string> parts{fmt::format("{:.4g} spp", p.samples_per_pixel)};
+    std::vector<std::string> parts{samples(p.samples_per_pixel)};
     if (std::isfinite(p.error)) parts.push_back(fmt::format("error {:.2g}", p.error));
     parts.push_back(clock(p.elapsed) + " elapsed");
     if (std::isfinite(p.remaining)) parts.push_back(clock(p.remaining) + " left");

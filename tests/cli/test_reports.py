@@ -330,7 +330,7 @@ class Progress(CliTest):
 
     def test_plain(self):
         for line in self.lines("plain"):
-            self.assertRegex(line, r"^\w+ +\d+% +\S+ spp")
+            self.assertRegex(line, r"^\w+ +\d+% +\d+(\.\d{1,2})? spp")
 
     def test_bar_fits_the_terminal(self):
         for columns in (100, 40, 12):
