@@ -77,17 +77,19 @@ TEST(Path, TheImageOfALampInAFlatMirrorIsItsEmitter) {
     // A lamp at z = 2 that lights the floor by a mirror at x = 1 is where its image is, at x = 2.
     const Vec3 mirror_point{1, 0, 1}, lamp_at{0, 0, 2}, image_at{2, 0, 2};
     const auto lamp = quad_lamp({0.5, 0, 0.5}, {0, 1, 0});
+    // Only a curved receiver knows how far away its lamp is.
+    const Surface curved = surface_with_normal<double>({0, 0, 1}, 0.5);
     const Surface wall = surface_with_normal<double>({-1, 0, 0});
     Path<double> path;
     path.begin(scene.eye);
-    path.add_vertex({floor_point, up, normalize(scene.eye)});
+    path.add_vertex({floor_point, curved, normalize(scene.eye)});
     path.add_vertex({mirror_point, wall, normalize(floor_point - mirror_point), Lobe::mirror()});
     path.add_lamp(lamp, lamp_at, {1, 1, 1});
     OccluderGrid<double> nothing;
     nothing.build();
     const auto mirrored = covariance_of(path, Part::scattered, nothing, scene.camera).first;
     path.begin(scene.eye);
-    path.add_vertex({floor_point, up, normalize(scene.eye)});
+    path.add_vertex({floor_point, curved, normalize(scene.eye)});
     path.add_lamp(quad_lamp({-0.5, 0, 0.5}, {0, 1, 0}), image_at, {1, 1, 1});
     expect_equal(mirrored, covariance_of(path, Part::scattered, nothing, scene.camera).first);
 }
