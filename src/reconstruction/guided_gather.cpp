@@ -31,7 +31,7 @@ constexpr size_t kGuides = 7;
 /// square.
 constexpr size_t kWeight = 3, kVariance = 4, kSums = 5;
 
-Rgb albedo_of(const Guides& guides, size_t i) {
+Rgb albedo_of(const FilterGuides& guides, size_t i) {
     const Rgb& a = guides.albedo[i];
     return {std::max(a.r, kLeastAlbedo), std::max(a.g, kLeastAlbedo), std::max(a.b, kLeastAlbedo)};
 }
@@ -51,7 +51,8 @@ struct Rows {
 };
 
 Rows rows_of(std::span<const Rgb> mean, std::span<const float> variance,
-             std::span<const uint32_t> count, const FilterField& field, const Guides& guides) {
+             std::span<const uint32_t> count, const FilterField& field,
+             const FilterGuides& guides) {
     Rows rows(field.width, field.height);
     parallel_for_rows(field.width, field.height, [&](int y) {
         for (int x = 0; x < field.width; ++x) {
@@ -145,7 +146,7 @@ covariance::Sym2<float> scaled_filter(const covariance::Sym2<float>& filter, flo
 
 std::vector<FilteredImage> guided_gather(std::span<const Rgb> mean, std::span<const float> variance,
                                          std::span<const uint32_t> count, const FilterField& field,
-                                         const Guides& guides) {
+                                         const FilterGuides& guides) {
     const Rows rows = rows_of(mean, variance, count, field, guides);
     std::vector<FilteredImage> candidates(kScales);
     for (FilteredImage& c : candidates)

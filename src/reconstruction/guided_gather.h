@@ -14,7 +14,7 @@
 namespace covtrace {
 
 /// Features of what is seen first, their noise filtered.
-struct Guides {
+struct FilterGuides {
     std::vector<Rgb> albedo;
     std::vector<Rgb> normal;          ///< x, y, z as r, g, b
     std::vector<float> log_distance;  ///< natural logarithm of the distance from the camera
@@ -42,6 +42,6 @@ covariance::Sym2<float> scaled_filter(const covariance::Sym2<float>& filter, flo
 /// the field.
 std::vector<FilteredImage> guided_gather(std::span<const Rgb> mean, std::span<const float> variance,
                                          std::span<const uint32_t> count, const FilterField& field,
-                                         const Guides& guides);
+                                         const FilterGuides& guides);
 
 }  // namespace covtrace

@@ -18,8 +18,8 @@ struct View {
     std::vector<Rgb> mean = std::vector<Rgb>(kPixels, Rgb(1.0f));
     std::vector<float> variance = std::vector<float>(kPixels, 0.01f);
     std::vector<uint32_t> count = std::vector<uint32_t>(kPixels, 16);
-    Guides guides{std::vector<Rgb>(kPixels, Rgb(0.5f)), std::vector<Rgb>(kPixels, Rgb(0, 0, 1)),
-                  std::vector<float>(kPixels, 0.0f)};
+    FilterGuides guides{std::vector<Rgb>(kPixels, Rgb(0.5f)),
+                        std::vector<Rgb>(kPixels, Rgb(0, 0, 1)), std::vector<float>(kPixels, 0.0f)};
 
     std::vector<FilteredImage> gathered() const {
         const FilterField field{kWidth, kHeight,

@@ -83,7 +83,7 @@ void add(const Parts& parts, const FilteredImage& in_view, FilteredImage& image)
 
 /// The features of what is seen first through the filters of the light, which have lens and shutter
 /// in them as these features do.
-Guides guides_of(const Film& film, const Parts& parts, const FilterField& field) {
+FilterGuides guides_of(const Film& film, const Parts& parts, const FilterField& field) {
     const size_t n = film.pixels.size();
     std::vector<Rgb> albedo(n), normal(n), distance(n);
     for (size_t i = 0; i < n; ++i) {
@@ -96,7 +96,7 @@ Guides guides_of(const Film& film, const Parts& parts, const FilterField& field)
     const auto filtered = [&](const std::vector<Rgb>& feature) {
         return gather(feature, parts.scattered.variance, parts.count, field).color;
     };
-    Guides guides{filtered(albedo), filtered(normal), std::vector<float>(n)};
+    FilterGuides guides{filtered(albedo), filtered(normal), std::vector<float>(n)};
     distance = filtered(distance);
     for (size_t i = 0; i < n; ++i) guides.log_distance[i] = distance[i].r;
     return guides;
