@@ -72,10 +72,13 @@ struct ConductorBsdf {
     Rgb eta, k;                      ///< relative to the outside
     float alpha_x = 0, alpha_y = 0;  ///< 0, 0: a perfect mirror
 };
+struct Dispersion;  // scene/dispersion.h
 struct DielectricBsdf {
     float eta = 1.5f;  ///< inside (-z) over outside (+z)
     float alpha_x = 0, alpha_y = 0;
     Rgb transmittance{1};  ///< of light that crosses the border
+    /// How `eta` depends on the wavelength, for paths to look up; none: not at all.
+    const Dispersion* dispersion = nullptr;
 };
 class CoatTable;  // hemispherical transmission of a rough dielectric coat
 /// A coat's reflectance in place of its index' Fresnel reflectance F: w (r + (1 - r) x), with r the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace covtrace {
 
@@ -91,19 +92,33 @@ constexpr std::array<Metal, 14> kMetals{{
        0.0f,     0.0f, 0.0f,       0.0f,     0.0f, 0.0f, 0.0f, 0.0f}}},
 }};
 
+/// A glass by the coefficients of Sellmeier's formula, lengths in micrometres.
 struct Glass {
     std::string_view name;
-    float index;  // at the helium d line, 587.6 nm
+    std::array<double, 3> b, c;
+    float index(double nanometres) const {
+        const double l2 = nanometres * nanometres * 1e-6;
+        double n2 = 1;
+        for (size_t i = 0; i < b.size(); ++i) n2 += b[i] * l2 / (l2 - c[i]);
+        return static_cast<float>(std::sqrt(n2));
+    }
 };
-// Glasses from pbrt-v4's tables of refractiveindex.info (CC0); F5, F10 and F11 are Schott's SF5,
-// SF10 and SF11.
-constexpr std::array<Glass, 7> kGlasses{{{"glass-BK7", 1.5168f},
-                                         {"glass-BAF10", 1.6700f},
-                                         {"glass-FK51A", 1.4866f},
-                                         {"glass-LASF9", 1.8502f},
-                                         {"glass-F5", 1.6727f},
-                                         {"glass-F10", 1.7283f},
-                                         {"glass-F11", 1.7847f}}};
+// Schott's data sheets (refractiveindex.info, CC0); F5, F10 and F11 are SF5, SF10 and SF11.
+constexpr std::array<Glass, 7> kGlasses{{
+    {"glass-BK7", {1.03961212, 0.231792344, 1.01046945}, {0.00600069867, 0.0200179144, 103.560653}},
+    {"glass-BAF10",
+     {1.5851495, 0.143559385, 1.08521269},
+     {0.00926681282, 0.0424489805, 105.613573}},
+    {"glass-FK51A",
+     {0.971247817, 0.216901417, 0.904651666},
+     {0.00472301995, 0.0153575612, 168.68133}},
+    {"glass-LASF9",
+     {2.00029547, 0.298926886, 1.80691843},
+     {0.0121426017, 0.0538736236, 156.530829}},
+    {"glass-F5", {1.52481889, 0.187085527, 1.42729015}, {0.011254756, 0.0588995392, 129.141675}},
+    {"glass-F10", {1.62153902, 0.256287842, 1.64447552}, {0.0122241457, 0.0595736775, 147.468793}},
+    {"glass-F11", {1.73759695, 0.313747346, 1.89878101}, {0.013188707, 0.0623068142, 155.23629}},
+}};
 
 struct Illuminant {
     std::string_view name;
@@ -134,17 +149,19 @@ auto entry(const Table& table, std::string_view name) {
 
 }  // namespace
 
-bool is_glass(std::string_view name) {
-    return entry(kGlasses, name) != kGlasses.end();
-}
-
 std::optional<Spectrum> material_spectrum(std::string_view name) {
-    if (const auto glass = entry(kGlasses, name); glass != kGlasses.end())
-        return Spectrum{{550}, {glass->index}, true};
-    const auto metal = entry(kMetals, name);
-    if (metal == kMetals.end()) return std::nullopt;
     Spectrum s;
     s.extends = true;
+    if (const auto glass = entry(kGlasses, name); glass != kGlasses.end()) {
+        constexpr int kFinest = 5, kCount = 81;  // nanometres: the index bends more towards blue
+        for (int i = 0; i < kCount; ++i) {
+            s.wavelengths.push_back(kFirst + float(kFinest * i));
+            s.values.push_back(glass->index(double(s.wavelengths.back())));
+        }
+        return s;
+    }
+    const auto metal = entry(kMetals, name);
+    if (metal == kMetals.end()) return std::nullopt;
     for (size_t i = 0; i < kSamples; ++i) {
         s.wavelengths.push_back(kFirst + kStep * static_cast<float>(i));
         s.values.push_back(metal->values[i]);

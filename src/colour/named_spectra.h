@@ -11,13 +11,11 @@
 
 namespace covtrace {
 
-/// The spectrum of a material: "metal-Ag-eta", "metal-Ag-k", …, and "glass-BK7", …, which are
-/// constant: the index at 587.6 nm.
+/// The spectrum of a material: "metal-Ag-eta", "metal-Ag-k", …, and "glass-BK7", ….
 std::optional<Spectrum> material_spectrum(std::string_view name);
 /// The colour, at luminance 1, of "stdillum-A", "stdillum-D50", "stdillum-D65", "stdillum-F1" to
 /// "stdillum-F12" or "illum-acesD60".
 std::optional<Rgb> illuminant_colour(std::string_view name);
-bool is_glass(std::string_view name);
 /// Names of all spectra, for messages.
 const std::vector<std::string>& spectrum_names();
 

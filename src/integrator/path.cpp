@@ -56,9 +56,11 @@ bool PathTracer::meet(bool found) {
     // the eye, so that the filter of the texture adds next to nothing to that of the pixel
     const Vec3 from_eye = hit.position - camera_origin_;
     const float away = length(from_eye);
+    const Lobes lobes =
+        scene_.description.regularizes && !sharp_so_far_ ? Lobes::regularized : Lobes::as_given;
     Bsdf bsdf = away > 0 ? scene_.materials.bsdf(material, hit, scene_.textures, from_eye / away,
-                                                 scene_.camera.half_pixel(away) / 4)
-                         : scene_.materials.bsdf(material, hit, scene_.textures);
+                                                 scene_.camera.half_pixel(away) / 4, lobes)
+                         : scene_.materials.bsdf(material, hit, scene_.textures, {}, 0, lobes);
     if (const auto* unlit = std::get_if<UnlitBsdf>(&bsdf)) {
         if (is_seen(*unlit)) return see_unlit(*unlit, material);
     } else if (!std::holds_alternative<InterfaceBsdf>(bsdf)) {
@@ -115,6 +117,8 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, M
     PathVertex* vertex = begin_vertex(hit, -1, wo);
     if (vertex) vertex->material = material;
     add_emission(hit, wo, vertex);
+    if (auto* glass = std::get_if<DielectricBsdf>(&bsdf); glass && glass->dispersion)
+        disperse(*glass);
     const Frame frame = frame_at(hit, shape, material);
     if (scene_.materials.turns_clearcoat(material))
         turn_clearcoat(bsdf, hit, shape, material, frame);
@@ -198,7 +202,8 @@ void PathTracer::describe_vertex(Vec3 position, Rgb albedo, Vec3 normal) {
     } else {
         travelled_ += distance(previous_position_, position);
     }
-    result_.features = {albedo * beta_, normal, travelled_};
+    result_.features = {albedo * (has_wavelengths_colour_ ? colourless_beta_ : beta_), normal,
+                        travelled_};
 }
 
 bool PathTracer::survives(float u) {

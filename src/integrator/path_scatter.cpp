@@ -2,7 +2,9 @@
 #include <array>
 #include <cmath>
 
+#include "bsdf/models.h"
 #include "integrator/path_tracer.h"
+#include "scene/dispersion.h"
 
 namespace covtrace {
 
@@ -93,6 +95,19 @@ PathTracer::ChosenKind PathTracer::choose_kind(const Surface& surface, Vec3 wi_l
     return chosen;
 }
 
+void PathTracer::disperse(DielectricBsdf& glass) {
+    const bool is_first = !wavelength_;
+    if (is_first) wavelength_ = sample_wavelength(sampler_.pair(kWavelengthPair).x);
+    glass.eta *= glass.dispersion->at(wavelength_->nanometres);
+    if (is_first && !is_specular(glass)) take_wavelength();
+}
+
+void PathTracer::take_wavelength() {
+    colourless_beta_ = beta_;
+    beta_ *= wavelength_->weight;
+    has_wavelengths_colour_ = true;
+}
+
 bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, float u_kind,
                          PathVertex* vertex) {
     // Sample the BSDF or the guide
@@ -109,8 +124,17 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, float u_k
         if (is_black(s->weight)) return false;
     }
     const Vec3 wi = normalize(surface.frame.to_world(s->wi));
+    // Take a wavelength where the colours part. A mirror image keeps all of them: glass reflects
+    // them nearly alike, and in the same direction
+    if (wavelength_ && !has_wavelengths_colour_) {
+        if (is_transmission(s->lobe))
+            take_wavelength();
+        else
+            wavelength_.reset();
+    }
     // Update the path's throughput and what is known of its lobes
     beta_ *= s->weight;
+    colourless_beta_ *= s->weight;
     pdf_ = s->pdf;
     specular_ = is_specular(s->lobe);
     sharp_so_far_ = sharp_so_far_ && specular_;

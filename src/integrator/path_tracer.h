@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "colour/sampled_wavelength.h"
 #include "integrator/path.h"
 #include "integrator/visibility.h"
 #include "shading/normal_map.h"
@@ -71,6 +72,7 @@ class PathTracer {
     /// surfaces see the same numbers with or without them: one pair for each piece between
     /// interfaces.
     static constexpr uint32_t kMediumPairs = 1u << 20;
+    static constexpr uint32_t kWavelengthPair = (1u << 20) - 1;  ///< of the path's wavelength
 
     /// A place on a surface with all that scattering there depends on.
     struct Surface {
@@ -159,6 +161,11 @@ class PathTracer {
     /// Chooses the kind of ray for a pair of directions of which the surface scatters `value`, by
     /// the lobes' luminances.
     ChosenKind choose_kind(const Surface& surface, Vec3 wi_local, Rgb value, float u) const;
+    /// Gives a dispersive glass its index at the path's wavelength, which the first such glass
+    /// chooses.
+    void disperse(DielectricBsdf& glass);
+    /// Goes on with the chosen wavelength alone.
+    void take_wavelength();
 
     // ---- path_medium.cpp
     /// Adds the emission of the medium on the way and decides whether the ray gets through.
@@ -186,6 +193,10 @@ class PathTracer {
     float travelled_ = 0;       // length of the path from the camera to the last described vertex
     // Probability of the specular lobes that were chosen, while all were specular.
     float sharp_probability_ = 1;
+    /// Wavelength since the first dispersive glass, and whether the throughput has its colour yet.
+    std::optional<SampledWavelength> wavelength_;
+    bool has_wavelengths_colour_ = false;
+    Rgb colourless_beta_{1};    // throughput without that colour, for the features
     float roulette_scale_ = 1;  // takes factors of refraction and guide out of beta_ for roulette
     MediumId medium_ = -1;
     int passed_interfaces_ = 0;

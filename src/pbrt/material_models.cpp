@@ -115,7 +115,9 @@ ConductorMaterial Builder::conductor(const std::string& prefix, float outside) {
 DielectricMaterial Builder::dielectric() {
     DielectricMaterial m;
     roughness(m);
-    m.eta = refractive_index(p, "eta", 1.5f, context);
+    RefractiveIndex index = refractive_index(p, "eta", 1.5f, context);
+    m.eta = index.eta;
+    m.dispersion = std::move(index.dispersion);
     // The parameter is ours, not pbrt's: the colour of glass, as exporters of other models need it.
     m.transmittance = textures.reflectance_or_none(p, "transmittance");
     return m;
@@ -128,7 +130,7 @@ CoatedDiffuseMaterial Builder::coated_diffuse() {
     m.thickness = textures.grey(p, "thickness", 0.01f);
     m.g = textures.grey(p, "g", 0);
     m.albedo = textures.reflectance(p, "albedo", Rgb{0});
-    m.eta = refractive_index(p, "eta", 1.5f, context);
+    m.eta = constant_index(p, "eta", 1.5f, context);
     m.max_depth = p.integer("maxdepth", 10);
     m.samples = p.integer("nsamples", 1);
     // The parameter is ours, not pbrt's: diffuse under specular as glTF and Blender have it.
@@ -138,7 +140,7 @@ CoatedDiffuseMaterial Builder::coated_diffuse() {
 
 CoatedConductorMaterial Builder::coated_conductor() {
     CoatedConductorMaterial m;
-    m.eta = refractive_index(p, "interface.eta", 1.5f, context);
+    m.eta = constant_index(p, "interface.eta", 1.5f, context);
     roughness(m, "interface.");
     m.conductor = conductor("conductor.", m.eta);
     m.thickness = textures.grey(p, "thickness", 0.01f);
@@ -207,7 +209,7 @@ CoatedDiffuseMaterial Builder::subsurface() {
     m.thickness = textures.constant(Rgb{0.01f}, false);
     m.g = textures.constant(Rgb{0}, false);
     m.albedo = textures.constant(Rgb{0}, true);
-    m.eta = refractive_index(p, "eta", 1.33f, context);
+    m.eta = constant_index(p, "eta", 1.33f, context);
     p.ignore_all();
     return m;
 }
@@ -300,7 +302,7 @@ Model material_model(Entity& entity, TextureBuilder& textures, BuildContext& con
     } else if (type == "coatedconductor") {
         model = b.coated_conductor();
     } else if (type == "thindielectric") {
-        model = ThinDielectricMaterial{refractive_index(b.p, "eta", 1.5f, context),
+        model = ThinDielectricMaterial{constant_index(b.p, "eta", 1.5f, context),
                                        textures.reflectance_or_none(b.p, "transmittance")};
     } else if (type == "subsurface") {
         model = b.subsurface();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "colour/named_spectra.h"
+#include "colour/sigmoid_spectrum.h"
 #include "pbrt/token_stream.h"
 #include "pbrt/tokenizer.h"
 #include "scene/imaging_scale.h"
@@ -48,6 +49,20 @@ Spectrum from_file(const std::string& name, const SourceLocation& where, BuildCo
 }
 
 constexpr double kHeliumLine = 587.6;
+constexpr float kLargestIndex = 1e6f;  // the squares of its squares must be numbers
+
+/// How an index varies about its value `eta`; null where it doesn't.
+std::shared_ptr<const Dispersion> dispersion_of(const Spectrum& index, float eta) {
+    Dispersion d;
+    for (size_t i = 0; i < d.ratio.size(); ++i) {
+        const auto n = static_cast<float>(index.at(double(d.kFirst + d.kStep * float(i))));
+        // Where there is no index it is 1, as in pbrt
+        d.ratio[i] = std::min(n > 0 ? n : 1, kLargestIndex) / eta;
+    }
+    const bool varies =
+        std::any_of(d.ratio.begin(), d.ratio.end(), [&](float r) { return r != d.ratio[0]; });
+    return varies ? std::make_shared<const Dispersion>(d) : nullptr;
+}
 
 }  // namespace
 
@@ -121,41 +136,46 @@ Rgb scaled_light(Rgb light, float factor, const SourceLocation& where,
     return scaled;
 }
 
-float refractive_index(ParameterList& parameters, std::string_view name, float otherwise,
-                       BuildContext& context) {
+RefractiveIndex refractive_index(ParameterList& parameters, std::string_view name, float otherwise,
+                                 BuildContext& context) {
     const Parameter* p =
         parameters.find(name, {ParameterType::floats, ParameterType::spectrum, ParameterType::rgb});
-    if (!p) return otherwise;
+    if (!p) return {otherwise, {}};
+    std::optional<Spectrum> varying;
     float eta = 0;
     if (p->type == ParameterType::floats) {
         eta = p->numbers[0];
     } else if (p->type == ParameterType::rgb) {
-        eta = rgb_value(*p).g;
-        context.log.add(p->where, "dispersion is not rendered; the green index of " +
-                                      in_quotes(p->name) + " is used");
+        const Rgb c = rgb_value(*p);
+        eta = c.g;
+        if ((c.r != c.g || c.g != c.b) && max_component(c) > 0) varying = unbounded_spectrum(c);
     } else {
-        const std::optional<Spectrum> s = spectrum_value(*p, context);
-        if (!s)
+        varying = spectrum_value(*p, context);
+        if (!varying)
             throw Error(ErrorKind::scene, p->where,
                         in_quotes(p->strings[0]) + " is a light; expected an index of refraction");
-        Spectrum index = *s;
-        index.extends = true;
-        eta = static_cast<float>(index.at(kHeliumLine));
-        const bool varies = is_glass(p->strings.empty() ? "" : p->strings[0]) ||
-                            std::any_of(s->values.begin(), s->values.end(),
-                                        [&](float v) { return v != s->values[0]; });
-        if (varies)
-            context.log.add(p->where, "dispersion is not rendered; parameter " +
-                                          in_quotes(p->name) + " has its value at 587.6 nm");
+    }
+    if (varying) {
+        varying->extends = true;
+        eta = static_cast<float>(varying->at(kHeliumLine));
     }
     if (!(eta > 0))
         throw Error(ErrorKind::scene, p->where,
                     "parameter " + in_quotes(p->name) + " must be greater than 0");
-    constexpr float kLargest = 1e6f;  // the squares of its squares must be numbers
-    if (eta > kLargest)
+    if (eta > kLargestIndex)
         throw Error(ErrorKind::scene, p->where,
                     "parameter " + in_quotes(p->name) + " is too large; expected at most 1e6");
-    return eta;
+    return {eta, varying ? dispersion_of(*varying, eta) : nullptr};
+}
+
+float constant_index(ParameterList& parameters, std::string_view name, float otherwise,
+                     BuildContext& context) {
+    const RefractiveIndex index = refractive_index(parameters, name, otherwise, context);
+    if (index.dispersion)
+        context.log.add(parameters.where(name, {}),
+                        "dispersion of coats and panes is not rendered; parameter " +
+                            in_quotes(name) + " has its value at 587.6 nm");
+    return index.eta;
 }
 
 }  // namespace covtrace

@@ -1,12 +1,14 @@
 /// Makes colours of parameters of the types rgb, spectrum and blackbody.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string_view>
 
 #include "colour/spectrum.h"
 #include "core/vec.h"
 #include "pbrt/build_context.h"
+#include "scene/dispersion.h"
 
 namespace covtrace {
 
@@ -25,9 +27,16 @@ Rgb light_colour(ParameterList& parameters, std::string_view name, BuildContext&
 /// can't hold it, or its product with the film's scale.
 Rgb scaled_light(Rgb light, float factor, const SourceLocation& where, const BuildContext& context);
 
-/// An index of refraction: a number, or a spectrum's value at 587.6 nm with a warning where it
-/// varies. Errors: Error(scene) where it isn't positive.
-float refractive_index(ParameterList& parameters, std::string_view name, float otherwise,
-                       BuildContext& context);
+/// An index of refraction.
+struct RefractiveIndex {
+    float eta = 1;                                 ///< of a spectrum that at 587.6 nm
+    std::shared_ptr<const Dispersion> dispersion;  ///< of one that varies
+};
+/// An index of refraction: a number, or a spectrum. Errors: Error(scene) where it isn't positive.
+RefractiveIndex refractive_index(ParameterList& parameters, std::string_view name, float otherwise,
+                                 BuildContext& context);
+/// The index of what is rendered without dispersion: coats and panes. Warns of one that varies.
+float constant_index(ParameterList& parameters, std::string_view name, float otherwise,
+                     BuildContext& context);
 
 }  // namespace covtrace

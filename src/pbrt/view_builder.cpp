@@ -282,8 +282,7 @@ void build_integrator(Entity& e, BuildContext& context) {
     const std::vector<std::string> volumetric{"volpath", "simplevolpath", "bdpt", "mlt"};
     context.scene.renders_media =
         std::find(volumetric.begin(), volumetric.end(), e.type) != volumetric.end();
-    if (p.flag("regularize", false))
-        context.log.add(p.where("regularize", e.where), "parameter \"regularize\" is ignored");
+    context.scene.regularizes = p.flag("regularize", false);
     p.ignore({"lightsampler"});
     p.warn_unused(context.log, owner("integrator", e));
 }

@@ -37,8 +37,10 @@ struct ConductorMaterial {
     TextureId u_roughness = -1, v_roughness = -1;
     bool remap_roughness = true;
 };
+struct Dispersion;  // dispersion.h
 struct DielectricMaterial {
-    float eta = 1.5f;
+    float eta = 1.5f;  ///< at 587.6 nm, where it varies with the wavelength
+    std::shared_ptr<const Dispersion> dispersion = {};  ///< none: all wavelengths have `eta`
     TextureId u_roughness = -1, v_roughness = -1;
     bool remap_roughness = true;
     TextureId transmittance = -1;  ///< multiplies light at each crossing of the border; none: 1
@@ -352,7 +354,10 @@ struct SceneDescription {
     int samples_per_pixel = 16;
     int max_depth = 5;
     bool renders_media = true;  ///< false: the integrator sees no media, as pbrt's "path"
-    std::optional<Vec3> up;     ///< axis of the world that points up, where the format or user says
+    /// Whether sharp lobes beyond a path's first lobe that is not specular are widened, as with
+    /// pbrt's "regularize".
+    bool regularizes = false;
+    std::optional<Vec3> up;  ///< axis of the world that points up, where the format or user says
     std::vector<TextureDescription> textures;
     std::vector<MaterialDescription> materials;
     std::vector<MediumDescription> media;

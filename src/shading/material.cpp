@@ -1,10 +1,10 @@
 #include "shading/material.h"
 
 #include <bit>
-#include <initializer_list>
 #include <utility>
 
 #include "core/hash.h"
+#include "shading/material_inputs.h"
 #include "shading/material_layers.h"
 
 namespace covtrace {
@@ -14,6 +14,12 @@ Rgb sqrt(Rgb c) {
     return {std::sqrt(c.r), std::sqrt(c.g), std::sqrt(c.b)};
 }
 
+/// A GGX width as pbrt-v4 regularizes it: twice as wide, within limits; wide ones stay.
+float regularized(float alpha) {
+    constexpr float kNarrowest = 0.1f, kWidest = 0.3f;
+    return alpha < kWidest ? std::clamp(2 * alpha, kNarrowest, kWidest) : alpha;
+}
+
 /// Values of a material's textures at one place; `fallback` where the file gives none.
 struct Values {
     const TextureStore& textures;
@@ -21,6 +27,7 @@ struct Values {
     const MaterialColours& colours;
     const AdaptationTable& adaptation;
     const ReflectancePowersTable& powers;
+    Lobes lobes = Lobes::as_given;
     Rgb reflectance() const { return colour(colours.reflectance); }
     ReflectancePowers powers_of_reflectance() const {
         const MaterialColour& c = colours.reflectance;
@@ -47,7 +54,9 @@ struct Values {
     }
     template <typename M>
     Vec2 alphas(const M& m) const {
-        return ggx_alphas(number(m.u_roughness, 0), number(m.v_roughness, 0), m.remap_roughness);
+        const Vec2 a =
+            ggx_alphas(number(m.u_roughness, 0), number(m.v_roughness, 0), m.remap_roughness);
+        return lobes == Lobes::regularized ? Vec2{regularized(a.x), regularized(a.y)} : a;
     }
 };
 
@@ -59,8 +68,6 @@ float refractive_index(float eta) {
 
 using Tables = MaterialTables;
 
-constexpr float kDefaultReflectance = 0.5f;
-constexpr float kDefaultTransmission = 0.25f;  // also the reflectance of what transmits
 constexpr float kDefaultThickness = 0.01f;
 
 Bsdf make(const DiffuseMaterial&, const Values& v, const Tables&) {
@@ -81,7 +88,7 @@ Bsdf make(const ConductorMaterial& m, const Values& v, const Tables&) {
 Bsdf make(const DielectricMaterial& m, const Values& v, const Tables&) {
     const Vec2 alpha = v.alphas(m);
     return DielectricBsdf{refractive_index(m.eta), alpha.x, alpha.y,
-                          m.transmittance < 0 ? Rgb(1) : v.transmittance()};
+                          m.transmittance < 0 ? Rgb(1) : v.transmittance(), m.dispersion.get()};
 }
 
 Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const Tables& tables) {
@@ -137,79 +144,6 @@ Bsdf make(const UnlitMaterial& m, const Values& v, const Tables&) {
     return UnlitBsdf{v.spectrum(m.colour, 1), m.two_sided};
 }
 
-using TextureIds = std::initializer_list<TextureId>;
-
-bool all_constant(const TextureStore& textures, TextureIds ids) {
-    return std::all_of(ids.begin(), ids.end(),
-                       [&](TextureId id) { return id < 0 || textures.is_constant(id); });
-}
-
-bool is_constant(const TextureStore& t, const DiffuseMaterial& m) {
-    return all_constant(t, {m.reflectance});
-}
-bool is_constant(const TextureStore& t, const ConductorMaterial& m) {
-    return all_constant(t, {m.eta, m.k, m.reflectance, m.u_roughness, m.v_roughness});
-}
-bool is_constant(const TextureStore& t, const DielectricMaterial& m) {
-    return all_constant(t, {m.u_roughness, m.v_roughness, m.transmittance});
-}
-bool is_constant(const TextureStore& t, const CoatedDiffuseMaterial& m) {
-    return all_constant(
-        t, {m.reflectance, m.u_roughness, m.v_roughness, m.normal_reflectance, m.coat_weight});
-}
-bool is_constant(const TextureStore& t, const DiffuseTransmissionMaterial& m) {
-    return all_constant(t, {m.reflectance, m.transmittance});
-}
-bool is_constant(const TextureStore& t, const CoatedConductorMaterial& m) {
-    return is_constant(t, m.conductor) &&
-           all_constant(t, {m.u_roughness, m.v_roughness, m.thickness});
-}
-bool is_constant(const TextureStore& t, const ThinDielectricMaterial& m) {
-    return all_constant(t, {m.transmittance});
-}
-bool is_constant(const TextureStore&, const InterfaceMaterial&) {
-    return true;
-}
-bool is_constant(const TextureStore&, const MeasuredMaterial&) {
-    return true;
-}
-bool is_constant(const TextureStore& t, const UnlitMaterial& m) {
-    return all_constant(t, {m.colour});
-}
-bool are_layers_constant(const TextureStore& t, const MaterialDescription& m) {
-    return (!m.sheen || all_constant(t, {m.sheen->colour, m.sheen->alpha})) &&
-           (!m.clearcoat || all_constant(t, {m.clearcoat->weight, m.clearcoat->alpha}));
-}
-
-/// The colours of a model as the file gives them; `fixed` where it gives none.
-MaterialColours colours(const DiffuseMaterial& m) {
-    return {{m.reflectance, 1, Rgb(kDefaultReflectance)}, {}};
-}
-MaterialColours colours(const ConductorMaterial& m) {
-    return {{m.reflectance, 1, Rgb(1)}, {}};
-}
-MaterialColours colours(const DielectricMaterial& m) {
-    return {{}, {m.transmittance, 1, Rgb(1)}};
-}
-MaterialColours colours(const CoatedDiffuseMaterial& m) {
-    return {{m.reflectance, 1, Rgb(kDefaultReflectance)}, {}};
-}
-MaterialColours colours(const DiffuseTransmissionMaterial& m) {
-    const Rgb otherwise = m.scale * Rgb(kDefaultTransmission);
-    return {{m.reflectance, m.scale, otherwise}, {m.transmittance, m.scale, otherwise}};
-}
-MaterialColours colours(const CoatedConductorMaterial& m) {
-    return colours(m.conductor);
-}
-MaterialColours colours(const ThinDielectricMaterial& m) {
-    return {{}, {m.transmittance, 1, Rgb(1)}};
-}
-/// All other models give none.
-template <typename Model>
-MaterialColours colours(const Model&) {
-    return {};
-}
-
 /// The middle of a texture, where parameters that may not vary are read.
 constexpr TexturePoint kMiddle{{0.5f, 0.5f}, {}, {}};
 
@@ -257,7 +191,7 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
     for (const MaterialDescription& description : scene.materials) {
         Material& material = materials_.emplace_back();
         material.description = description;
-        material.colours = std::visit([](const auto& m) { return colours(m); }, description.value);
+        material.colours = colours_of(description);
         for (MaterialColour* c : {&material.colours.reflectance, &material.colours.transmittance}) {
             settle(*c, textures);
             any_varies = any_varies || c->texture >= 0;
@@ -302,12 +236,18 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
         }
         std::visit(
             [&](const auto& m) {
-                material.is_constant =
-                    is_constant(textures, m) && are_layers_constant(textures, description);
+                material.is_constant = is_constant(description, textures);
                 if (!material.is_constant) return;
-                material.constant = make(m, at_middle, material.tables);
-                put_under_layers(material.constant, description, textures, at_middle.at,
-                                 material.tables.sheen);
+                const auto made = [&](const Values& v) {
+                    Bsdf bsdf = make(m, v, material.tables);
+                    put_under_layers(bsdf, description, textures, v.at, material.tables.sheen);
+                    return bsdf;
+                };
+                material.constant = made(at_middle);
+                if (scene.regularizes)
+                    material.constant_regularized =
+                        made({textures, kMiddle, material.colours, adaptation_, powers_,
+                              Lobes::regularized});
             },
             description.value);
     }
@@ -316,14 +256,14 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
 }
 
 Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStore& textures, Vec3 w,
-                         float width) const {
+                         float width, Lobes lobes) const {
     if (id < 0) return DiffuseBsdf{Rgb(kDefaultReflectance)};
     const Material& material = materials_[static_cast<size_t>(id)];
-    Bsdf found = material.constant;
+    Bsdf found = lobes == Lobes::as_given ? material.constant : material.constant_regularized;
     if (!material.is_constant) {
         const TexturePoint at{hit.uv, hit.position, footprint_on(hit, w, width), hit.ng,
                               hit.vertices()};
-        const Values values{textures, at, material.colours, adaptation_, powers_};
+        const Values values{textures, at, material.colours, adaptation_, powers_, lobes};
         found = std::visit([&](const auto& m) { return make(m, values, material.tables); },
                            material.description.value);
         put_under_layers(found, material.description, textures, at, material.tables.sheen);

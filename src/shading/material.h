@@ -52,6 +52,10 @@ struct MaterialTextures {
     TextureId reflectance = -1, transmittance = -1;
 };
 
+/// Widths of the sharp lobes of a BSDF: those of its material, or those that pbrt's "regularize"
+/// makes of them.
+enum class Lobes { as_given, regularized };
+
 /// All materials of a scene. Immutable and thread-safe after construction.
 class MaterialStore {
   public:
@@ -70,7 +74,7 @@ class MaterialStore {
     /// diffuse, 0.5. Images are filtered over the footprint of a pixel that sees the place along
     /// `w` and is `width` wide there; 0: they are not filtered.
     Bsdf bsdf(MaterialId id, const SurfaceHit& hit, const TextureStore& textures, Vec3 w = {},
-              float width = 0) const;
+              float width = 0, Lobes lobes = Lobes::as_given) const;
     MaterialTextures textures(MaterialId id) const;
     /// Whether all light passes the surface unchanged: interfaces and what is unlit.
     bool lets_light_pass(MaterialId id) const;
@@ -100,7 +104,8 @@ class MaterialStore {
         MaterialTables tables;
         bool is_constant = false;
         bool has_layers = false;  ///< of its own, or of a part of a mix
-        Bsdf constant;            ///< where no texture varies
+        /// Where no texture varies; the latter in scenes that regularize.
+        Bsdf constant, constant_regularized;
     };
     std::vector<Material> materials_;
     AdaptationTable adaptation_;     ///< for textures that vary

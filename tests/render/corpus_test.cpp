@@ -1,6 +1,7 @@
 // One feature of pbrt-v4 per file of scenes/tests: each says at its head what its image is.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 
 #include "tests/render/fixtures.h"
@@ -118,6 +119,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Known{"bump-ramp", Where::everywhere, 0.8f * kLit},
                     Known{"normal-map", Where::everywhere, kLit},
                     Known{"furnace-coatedconductor", Where::middle, Rgb(1)},
+                    Known{"furnace-dispersion", Where::everywhere, Rgb(1)},
+                    Known{"integrator-regularize", Where::everywhere, Rgb(0.489408f), 5e-3},
                     Known{"furnace-mix", Where::middle, Rgb(0.35f)},
                     Known{"furnace-thindielectric", Where::everywhere, Rgb(1)},
                     Known{"furnace-interface", Where::everywhere, Rgb(1)},
@@ -166,6 +169,13 @@ TEST(CorpusFile, SlideStandsUpright) {
     near(at(last, 0), {0, lit, 0});
     near(at(0, last), {0, 0, lit});
     near(at(last, last), Rgb(lit));
+}
+
+TEST(CorpusFile, PrismPartsColours) {
+    const Block b = block(render_file("material-dispersion", 1024), Where::everywhere);
+    const std::array<float, 3> expected{1.02711f, 0.29488f, -0.05315f};
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(b.mean[c], expected[size_t(c)], 5 * b.error[c] + 3e-3f) << "channel " << c;
 }
 
 TEST(CorpusFile, GbufferTellsWhatIsSeen) {

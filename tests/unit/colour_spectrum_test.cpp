@@ -145,8 +145,10 @@ TEST(SceneSpectrum, NamedSpectraAreListed) {
     for (const std::string& name : spectrum_names())
         EXPECT_TRUE(material_spectrum(name).has_value() || illuminant_colour(name).has_value())
             << name;
-    EXPECT_TRUE(is_glass("glass-F11"));
-    EXPECT_FALSE(is_glass("metal-Ag-k"));
+    // Index at the helium d line and Abbe's number of SF11, by Schott.
+    const Spectrum sf11 = *material_spectrum("glass-F11");
+    EXPECT_NEAR(sf11.at(587.6), 1.7847, 2e-4);
+    EXPECT_NEAR((sf11.at(587.6) - 1) / (sf11.at(486.1) - sf11.at(656.3)), 25.7, 0.15);
 }
 
 TEST(SceneSpectrum, FilesHoldPairsAndComments) {

@@ -1,4 +1,5 @@
 #include "pbrt_test_support.h"
+#include "scene/dispersion.h"
 
 namespace covtrace::test {
 namespace {
@@ -60,14 +61,41 @@ TEST(SceneMaterials, DefaultsAreThoseOfPbrt) {
     EXPECT_EQ(constant_value(t.scene, d.transmittance), Rgb{0.25f});
 }
 
-TEST(SceneMaterials, GlassHasItsIndexAtTheHeliumLine) {
+TEST(SceneMaterials, GlassHasItsIndexAtEachWavelength) {
     const auto made =
         material_of("\"dielectric\" \"spectrum eta\" \"glass-BK7\" \"float roughness\" .1");
-    EXPECT_NEAR(std::get<DielectricMaterial>(made.material.value).eta, 1.5168f, 1e-4f);
-    EXPECT_TRUE(contains(warnings_of(made.scene), "dispersion is not rendered"));
-    EXPECT_NEAR(
-        model_of<DielectricMaterial>("\"dielectric\" \"spectrum eta\" [ 500 1.4 600 1.6 ]").eta,
-        1.5752f, 1e-4f);
+    const auto& bk7 = std::get<DielectricMaterial>(made.material.value);
+    EXPECT_NEAR(bk7.eta, 1.5168f, 1e-4f);
+    EXPECT_TRUE(made.scene.warnings.empty()) << warnings_of(made.scene);
+    // Schott's indices of N-BK7 at the lines F' and C'.
+    ASSERT_TRUE(bk7.dispersion);
+    EXPECT_NEAR(bk7.eta * bk7.dispersion->at(480.0f), 1.5228f, 2e-4f);
+    EXPECT_NEAR(bk7.eta * bk7.dispersion->at(643.8f), 1.5147f, 2e-4f);
+    const auto pairs =
+        model_of<DielectricMaterial>("\"dielectric\" \"spectrum eta\" [ 500 1.4 600 1.6 ]");
+    EXPECT_NEAR(pairs.eta, 1.5752f, 1e-4f);
+    EXPECT_NEAR(pairs.eta * pairs.dispersion->at(552.5f), 1.505f, 1e-4f);
+    EXPECT_NEAR(pairs.eta * pairs.dispersion->at(400.0f), 1.4f, 1e-4f);
+    const auto rgb = model_of<DielectricMaterial>("\"dielectric\" \"rgb eta\" [ 1.4 1.5 1.6 ]");
+    ASSERT_TRUE(rgb.dispersion);
+    EXPECT_GT(rgb.dispersion->at(440), rgb.dispersion->at(640));
+}
+
+TEST(SceneMaterials, EvenIndicesDoNotDisperse) {
+    for (const char* eta : {"\"float eta\" 1.4", "\"rgb eta\" [ 1.4 1.4 1.4 ]",
+                            "\"spectrum eta\" [ 400 1.4 700 1.4 ]"}) {
+        const auto m = model_of<DielectricMaterial>(std::string("\"dielectric\" ") + eta);
+        EXPECT_NEAR(m.eta, 1.4f, 1e-6f) << eta;
+        EXPECT_EQ(m.dispersion, nullptr) << eta;
+    }
+}
+
+TEST(SceneMaterials, CoatsAndPanesHaveTheIndexAtTheHeliumLine) {
+    for (const char* type : {"coateddiffuse", "thindielectric"}) {
+        const auto made =
+            material_of(std::string("\"") + type + "\" \"spectrum eta\" \"glass-BK7\"");
+        EXPECT_TRUE(contains(warnings_of(made.scene), "dispersion of coats and panes"));
+    }
 }
 
 Rgb normal_reflectance(const Made& made) {

@@ -99,11 +99,17 @@ TEST(SceneView, WhatIsNotRenderedIsReplacedWithAWarning) {
     for (const char* text :
          {"Integrator \"bdpt\" \"bool visualizestrategies\" true", "Integrator \"sppm\"",
           "Film \"spectral\"", "Camera \"realistic\" \"string lensfile\" \"x.dat\"",
-          "Integrator \"path\" \"bool regularize\" true", "ColorSpace \"rec2020\" Film \"rgb\"",
-          "Film \"rgb\" \"float scale\" 2"}) {
+          "ColorSpace \"rec2020\" Film \"rgb\"", "Film \"rgb\" \"float scale\" 2"}) {
         const auto scene = read_options(text);
         EXPECT_EQ(scene.warnings.size(), 1u) << text << "\n" << warnings_of(scene);
     }
+}
+
+TEST(SceneView, IntegratorsRegularizeWhereAsked) {
+    EXPECT_FALSE(read_options("Integrator \"path\"").regularizes);
+    const auto scene = read_options("Integrator \"volpath\" \"bool regularize\" true");
+    EXPECT_TRUE(scene.regularizes);
+    EXPECT_TRUE(scene.warnings.empty()) << warnings_of(scene);
 }
 
 TEST(SceneView, GBuffersKeepTheFirstSurfaces) {

@@ -1,0 +1,17 @@
+/// Inputs of a material's BSDF: whether any of them varies, and its colours.
+#pragma once
+
+#include "scene/scene_description.h"
+#include "shading/material.h"
+#include "texture/texture.h"
+
+namespace covtrace {
+
+constexpr float kDefaultReflectance = 0.5f;  ///< where the scene gives none
+
+/// Whether no texture of the material's model and layers varies.
+bool is_constant(const MaterialDescription& m, const TextureStore& textures);
+/// The colours of the material's model as the scene gives them; `fixed` where it gives none.
+MaterialColours colours_of(const MaterialDescription& m);
+
+}  // namespace covtrace
