@@ -11,15 +11,6 @@ namespace cov = covariance;
 struct Vec {
     double x = 0, y = 0, z = 0;
 };
-Vec operator-(const Vec& a) {
-    return {-a.x, -a.y, -a.z};
-}
-Vec& operator+=(Vec& a, const Vec& b) {
-    return a = {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-Vec operator/(const Vec& a, double s) {
-    return {a.x / s, a.y / s, a.z / s};
-}
 
 cov::OccluderGrid<double> grid_of_scene() {
     const Vec a{-1, -1, 0}, b{1, -1, 0}, c{1, 1, 0}, velocity, center{0.25, 0, 0.2};
