@@ -126,7 +126,8 @@ FoundDenoiser denoiser_of(const RenderArguments& a, bool is_first) {
 /// by one takes seconds, after all that was asked for is done.
 RenderScene& kept_scene(SceneDescription description, const RenderArguments& a) {
     static RenderScene* kept = nullptr;  // reachable, so that it does not count as a leak
-    kept = new RenderScene(std::move(description), isa_name(a.isa), a.texture_bytes);
+    kept =
+        new RenderScene(std::move(description), isa_name(a.isa), a.texture_bytes, a.options.guides);
     return *kept;
 }
 

@@ -43,6 +43,7 @@ void add_method_options(CLI::App* c, RenderArguments& a) {
     add_choice(c, "--filter", a.options.filter, "its constant: verified, c = 1, thesis' eq. 5.7");
     add_whole(c, "--max-depth", a.options.max_depth, 0, std::numeric_limits<int>::max(),
               "most scattering events (default: the scene's)");
+    add_choice(c, "--guides", a.options.guides, "learnt guides to light: where they pay, or none");
     c->add_option_function<std::string>(
          "--seed", [&a](const std::string& text) { a.options.seed = parse_seed("--seed", text); },
          "seed of all random numbers (default 0)")

@@ -44,6 +44,18 @@ nlohmann::json replaced_json(const Metadata& image) {
     return {{"count", r->pixels}, {"first", {r->x, r->y}}, {"layers", r->layers}};
 }
 
+/// The outcome of each guide.
+nlohmann::json guides_json(const RenderScene& scene) {
+    nlohmann::json all;
+    for (const auto& [name, o] : scene.guide_outcomes())
+        all[name] = {{"state", std::string(name_of(o.state))},
+                     {"seconds", o.seconds},
+                     {"bytes", o.bytes},
+                     {"second_moment",
+                      o.second_moment > 0 ? nlohmann::json(o.second_moment) : nlohmann::json()}};
+    return all;
+}
+
 }  // namespace
 
 nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& result,
@@ -77,6 +89,7 @@ nlohmann::json statistics_json(const RenderScene& scene, const RenderResult& res
     return {{"seconds_total", monitor.elapsed()},
             {"seconds", named(result.statistics.seconds)},
             {"denoiser", denoiser_json(denoiser, result.image.metadata)},
+            {"guides", guides_json(scene)},
             {"memory", memory_json(scene, result)},
             {"spp", result.statistics.samples_per_pixel},
             {"k", k ? nlohmann::json(*k) : nlohmann::json()},

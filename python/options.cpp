@@ -15,6 +15,7 @@ RenderOptions render_options(const py::dict& o) {
     r.method = choice<Method>("method", text("method"));
     r.density = choice<DensityRule>("density", text("density"));
     r.occlusion = choice<Occlusion>("occlusion", text("occlusion"));
+    r.guides = choice<Guides>("guides", text("guides"));
     r.brdf_covariance = choice<BrdfCovariance>("brdf_covariance", text("brdf_covariance"));
     r.texture_bandwidth = choice<TextureBandwidth>("texture_bandwidth", text("texture_bandwidth"));
     r.filter = choice<FilterRule>("filter", text("filter"));

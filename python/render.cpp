@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <exception>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -98,6 +99,7 @@ struct Rendered {
     FoundDenoiser denoiser;
     std::string denoiser_failure;  ///< failure while the image was made
     std::optional<ReplacedPixels> replaced;
+    std::map<std::string, GuideOutcome> guides;
     double building = 0;  ///< seconds from the description to what is rendered
 };
 
@@ -133,7 +135,7 @@ Rendered render_description(SceneDescription description, RenderOptions options,
     });
     FilmKeeping keeping = films.keeping(true);
     const double begin = monitor.elapsed();
-    RenderScene scene(std::move(description), isa, texture_bytes);
+    RenderScene scene(std::move(description), isa, texture_bytes, options.guides);
     const double building = monitor.elapsed() - begin;
     RenderResult result = render(scene, options, monitor, std::move(keeping));
     films.finish();
@@ -157,6 +159,7 @@ Rendered render_description(SceneDescription description, RenderOptions options,
             std::move(denoiser),
             std::move(failure),
             replaced,
+            scene.guide_outcomes(),
             building};
 }
 
@@ -193,6 +196,21 @@ py::dict replaced_dict(const std::optional<ReplacedPixels>& r) {
     return d;
 }
 
+/// The outcome of each guide, as in the program's statistics.
+py::dict guides_dict(const std::map<std::string, GuideOutcome>& guides) {
+    py::dict all;
+    for (const auto& [name, o] : guides) {
+        py::dict d;
+        d["state"] = std::string(name_of(o.state));
+        d["seconds"] = o.seconds;
+        d["bytes"] = o.bytes;
+        d["second_moment"] =
+            o.second_moment > 0 ? py::object(py::float_(o.second_moment)) : py::object(py::none());
+        all[name.c_str()] = d;
+    }
+    return all;
+}
+
 py::dict statistics_dict(const Rendered& r, double elapsed) {
     py::dict d;
     d["seconds_total"] = elapsed;
@@ -204,6 +222,7 @@ py::dict statistics_dict(const Rendered& r, double elapsed) {
     d["k"] = r.statistics.density_factor;
     d["covariance"] = pass_dict(r.statistics.covariance);
     d["radiance"] = pass_dict(r.statistics.radiance);
+    d["guides"] = guides_dict(r.guides);
     d["replaced_pixels"] = replaced_dict(r.replaced);
     d["complete"] = r.complete;
     return d;

@@ -90,13 +90,20 @@ CausticGuide::CausticGuide(const LitScene& scene) {
     };
     trace(kCoarsePhotons);
     learn(scene, photons, kCoarseLeaf);
-    if (images_.empty()) return;
+    if (images_.empty()) {
+        *this = {};
+        if (!photons.empty()) outcome_.state = GuideState::gave_up;
+        return;
+    }
     trace(kFinePhotons);
     const CausticGuide coarse = std::move(*this);
     std::erase_if(photons,
                   [&coarse](const CausticPhoton& p) { return !coarse.guides(p.position); });
     *this = {};
     learn(scene, photons, kFineLeaf);
+    outcome_.state = images_.empty() ? GuideState::gave_up : GuideState::guides;
+    outcome_.bytes = nodes_.capacity() * sizeof(Node) + leaves_.capacity() * sizeof(Leaf) +
+                     images_.capacity() * sizeof(Image);
 }
 
 void CausticGuide::learn(const LitScene& scene, std::vector<CausticPhoton> photons,

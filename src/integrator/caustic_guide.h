@@ -16,6 +16,7 @@
 #include "core/vec.h"
 #include "integrator/caustic_image.h"
 #include "integrator/caustic_photons.h"
+#include "integrator/guide_outcome.h"
 
 namespace covtrace {
 
@@ -59,6 +60,8 @@ class CausticGuide {
     /// The guide at a point with the normal `n` on the side that is to be lit; n is zero where
     /// light counts from both sides.
     GuideMixture at(Vec3 position, Vec3 n) const;
+    /// The outcome, without a second moment, which no trial measures.
+    const GuideOutcome& outcome() const { return outcome_; }
 
   private:
     /// A light's image, and how much light it brings.
@@ -100,6 +103,7 @@ class CausticGuide {
     std::vector<Node> nodes_;
     std::vector<Leaf> leaves_;
     std::vector<Image> images_;
+    GuideOutcome outcome_;
 };
 
 }  // namespace covtrace

@@ -136,11 +136,12 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, M
     guide_ = has_diffuse_lobe(bsdf) && depth_ < max_depth_
                  ? caustic_guide_.at(hit.position, light_normal_)
                  : GuideMixture{};
-    sky_cell_ = sky_guide_ && light_normal_ != Vec3{} && !is_specular(bsdf)
-                    ? sky_guide_->at(hit.position, light_normal_)
-                    : nullptr;
+    const bool finds_lights = !is_specular(bsdf), is_led = finds_lights && light_normal_ != Vec3{};
+    sky_cell_ = is_led && sky_guide_ ? sky_guide_->at(hit.position, light_normal_) : nullptr;
+    lamp_factors_ =
+        is_led && lamp_guide_ ? lamp_guide_->at(hit.position, light_normal_) : LightTree::Factors{};
     // Sample direct illumination, then the direction in which the path goes on
-    if (!is_specular(bsdf)) add_direct(surface, u_choice.x, u_light, u_roulette.y, vertex);
+    if (finds_lights) add_direct(surface, u_choice.x, u_light, u_roulette.y, vertex);
     return scatter(surface, u_choice.y, u_scatter, u_roulette.y, vertex) && survives(u_roulette.x);
 }
 

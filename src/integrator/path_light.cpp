@@ -39,8 +39,8 @@ void PathTracer::add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex
     // Weight the emission against light sampling, which could not find it by a specular lobe
     float weight = 1;
     if (!specular_) {
-        const float p =
-            scene_.lights.pdf(previous_position_, previous_normal_, ray_.direction, hit);
+        const float p = scene_.lights.pdf(previous_position_, previous_normal_, ray_.direction, hit,
+                                          lamp_factors_);
         weight = power_heuristic(pdf_, p);
         if (p > 0 && is_shadowed(distance(ray_begin_, hit.position))) weight = 0;
     }
@@ -63,9 +63,9 @@ void PathTracer::add_direct(const Surface& surface, float u_select, Vec2 u, floa
                             PathVertex* vertex) {
     const SurfaceHit& hit = surface.hit;
     // Sample a light
-    const auto light =
-        scene_.lights.finish_draw(hit.position, light_normal_, hit.time, u_select,
-                                  draws_ahead_ ? light_draw_ : Lights::Draw{u, {}, 0}, sky_cell_);
+    const auto light = scene_.lights.finish_draw(
+        hit.position, light_normal_, hit.time, u_select,
+        draws_ahead_ ? light_draw_ : Lights::Draw{u, {}, 0}, sky_cell_, lamp_factors_);
     if (!light || is_black(light->radiance) || !(light->pdf > 0)) return;
     // Evaluate the BSDF for its direction
     const Vec3 wi_local = surface.frame.to_local(light->wi);

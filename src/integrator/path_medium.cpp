@@ -41,6 +41,7 @@ bool PathTracer::scatter_in_medium(float distance) {
     // Sample direct illumination
     light_normal_ = {};
     sky_cell_ = nullptr;
+    lamp_factors_ = {};
     Ray shadow;
     shadow.origin = place.position;
     shadow.time = place.time;

@@ -32,11 +32,13 @@ inline float power_heuristic(float a, float b) {
 /// all light behind specular lobes, and the glow of media, by the path alone.
 class PathTracer {
   public:
-    PathTracer(const LitScene& scene, const CausticGuide& guide, const SkyGuide* sky_guide, Ray ray,
-               const Sampler& sampler, int max_depth, PathRecord* record)
+    PathTracer(const LitScene& scene, const CausticGuide& guide, const SkyGuide* sky_guide,
+               const LampGuide* lamp_guide, Ray ray, const Sampler& sampler, int max_depth,
+               PathRecord* record)
         : scene_(scene),
           caustic_guide_(guide),
           sky_guide_(sky_guide),
+          lamp_guide_(lamp_guide),
           ray_(ray),
           sampler_(sampler),
           max_depth_(max_depth),
@@ -175,6 +177,7 @@ class PathTracer {
     const LitScene& scene_;
     const CausticGuide& caustic_guide_;
     const SkyGuide* const sky_guide_;
+    const LampGuide* const lamp_guide_;
     Ray ray_;
     Sampler sampler_;
     const int max_depth_;
@@ -209,6 +212,7 @@ class PathTracer {
     const bool draws_ahead_;  // not where most samples follow the guide to the sky
     // The parts of the sky that are seen from the last vertex; null: not known.
     const SkyCell* sky_cell_ = nullptr;
+    LightTree::Factors lamp_factors_;  // factors for the choice among lamps at the last vertex
     Vec3 light_normal_;  // normal that lights are sampled for at the current vertex; 0: both sides
     // Place and light normal of the last vertex, for the weights; where its ray began.
     Vec3 previous_position_, previous_normal_, ray_begin_;

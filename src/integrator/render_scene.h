@@ -1,7 +1,12 @@
 /// The scene that is rendered: all that a path may meet, and the guides that were learnt from it.
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "integrator/caustic_guide.h"
+#include "integrator/guide_outcome.h"
+#include "integrator/lamp_guide.h"
 #include "integrator/lit_scene.h"
 #include "integrator/sky_guide.h"
 
@@ -9,15 +14,24 @@ namespace covtrace {
 
 /// A scene and the guides that were learnt from it before anything is rendered.
 struct RenderScene : LitScene {
-    /// Builds scene and guides. Parameters and errors are LitScene's.
+    /// Builds the scene, and guides unless there are to be none. The other parameters, and errors,
+    /// are LitScene's.
     explicit RenderScene(SceneDescription scene_description, const std::string& isa = {},
-                         size_t texture_bytes = kNoTextureLimit);
+                         size_t texture_bytes = kNoTextureLimit, Guides guides = Guides::automatic);
 
     /// Bytes held, by use: what LitScene lists, and "guide".
     std::map<std::string, size_t> memory() const;
 
+    /// The outcome of each guide: "caustics", "sky", "lamps".
+    std::map<std::string, GuideOutcome> guide_outcomes() const;
+
+    Guides guides;  ///< which guides may lead paths
     CausticGuide guide;
     SkyGuide sky_guide;
+    LampGuide lamp_guide;
+
+  private:
+    std::map<std::string, double> learning_seconds_;  ///< by guide
 };
 
 }  // namespace covtrace

@@ -26,8 +26,6 @@ constexpr double kWorthwhile = 0.92;
 constexpr size_t kFewestSights = 32;   // in all: a guide is not made of less
 constexpr size_t kEnoughSights = 512;  // for a trial
 constexpr size_t kCellSights = 96;     // sights of a cell
-constexpr int kMostTreeDepth = 30;
-constexpr float kNormalSpread = 0.8f;  // widest range of a normal's component in a cell
 constexpr double kBlur = 0.15;         // weight of each neighbour of a block beside its own
 constexpr double kPriorSights = 16;    // sights of all cells that count in a cell's share
 constexpr std::array<float, 4> kShares{0, 0.5f, 0.8f, 0.95f};
@@ -62,7 +60,7 @@ template <typename Indices>
 Moments moments(std::span<const SkySight> sights, const Indices& indices) {
     Moments m;
     for (const auto i : indices)
-        if (sights[i].guide_pdf > 0) m.add(sights[i], sights[i].normal);
+        if (sights[i].guide_pdf > 0) m.add(sights[i], sights[i].place.normal);
     return m;
 }
 
@@ -106,8 +104,11 @@ SkyGuide::SkyGuide(const LitScene& scene) {
     std::vector<uint32_t> all(more.size());
     std::iota(all.begin(), all.end(), 0u);
     const Moments m = moments(more, all);
-    if (!(m.sum[m.best()] < kWorthwhile * m.sum[0])) {
-        *this = SkyGuide();
+    outcome_.second_moment = m.sum[0] > 0 ? m.sum[m.best()] / m.sum[0] : 1;
+    if (!(outcome_.second_moment < kWorthwhile)) {
+        tree_ = {};
+        cells_ = {};
+        outcome_.state = GuideState::gave_up;
         return;
     }
     // Learn in earnest, from places and directions that matter
@@ -117,14 +118,17 @@ SkyGuide::SkyGuide(const LitScene& scene) {
     more = look_for_sky(scene, *this, paths + trial, lesson, kLessonLooks);
     sights.insert(sights.end(), more.begin(), more.end());
     learn(sights);
+    outcome_.state = GuideState::guides;
+    outcome_.bytes = tree_.memory() + cells_.capacity() * sizeof(SkyCell);
 }
 
 void SkyGuide::learn(std::span<const SkySight> sights) {
-    std::vector<uint32_t> order(sights.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::vector<Part> parts;
-    nodes_.assign(1, {});
-    build(0, order, sights, 0, parts);
+    std::vector<PlaceTree::Place> places;
+    places.reserve(sights.size());
+    for (const SkySight& sight : sights) places.push_back(sight.place);
+    std::vector<uint32_t> order;
+    std::vector<PlaceTree::Part> parts;
+    tree_ = PlaceTree(places, kCellSights, order, parts);
     cells_.assign(parts.size(), {});
     std::vector<Moments> of_cell(parts.size());
     parallel_for(int64_t(parts.size()), [&](int64_t i) {
@@ -146,53 +150,6 @@ void SkyGuide::learn(std::span<const SkySight> sights) {
             m.sum[i] += kPriorSights * own * all.sum[i] / all.sum[0];
         cells_[k].share = kShares[m.best()];
     }
-}
-
-void SkyGuide::build(uint32_t node, Part part, std::span<const SkySight> sights, int depth,
-                     std::vector<Part>& parts) {
-    const auto key = [sights](uint32_t i, int axis) {
-        return axis < 3 ? sights[i].position[axis] : sights[i].normal[axis - 3];
-    };
-    Bounds3 places, normals;
-    for (uint32_t i : part) {
-        places.extend(sights[i].position);
-        normals.extend(sights[i].normal);
-    }
-    const auto longest = [](Vec3 size) {
-        return size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-    };
-    if (part.size() > kCellSights && depth < kMostTreeDepth) {
-        // Surfaces that face elsewhere see another part of the sky: normals are split first
-        int axis = longest(normals.diagonal());
-        float split = (normals.lo[axis] + normals.hi[axis]) / 2;
-        if (normals.diagonal()[axis] > kNormalSpread) {
-            axis += 3;
-        } else {
-            axis = longest(places.diagonal());
-            const auto middle = part.begin() + std::ptrdiff_t(part.size() / 2);
-            std::nth_element(part.begin(), middle, part.end(), [&](uint32_t a, uint32_t b) {
-                return key(a, axis) != key(b, axis) ? key(a, axis) < key(b, axis) : a < b;
-            });
-            split = key(*middle, axis);
-        }
-        const auto second = std::partition(part.begin(), part.end(),
-                                           [&](uint32_t i) { return key(i, axis) < split; });
-        const auto count = static_cast<size_t>(second - part.begin());
-        if (count > 0 && count < part.size()) {
-            const auto child = static_cast<uint32_t>(nodes_.size());
-            nodes_.resize(nodes_.size() + 2);
-            nodes_[node] = {axis, split, child};
-            build(child, part.first(count), sights, depth + 1, parts);
-            build(child + 1, part.subspan(count), sights, depth + 1, parts);
-            return;
-        }
-    }
-    nodes_[node] = {-1, 0, static_cast<uint32_t>(parts.size())};
-    parts.push_back(part);
-}
-
-size_t SkyGuide::memory() const {
-    return nodes_.capacity() * sizeof(Node) + cells_.capacity() * sizeof(SkyCell);
 }
 
 }  // namespace covtrace

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "integrator/guide_outcome.h"
+#include "integrator/place_tree.h"
 #include "light/sky_cell.h"
 
 namespace covtrace {
@@ -20,9 +22,9 @@ struct LitScene;
 
 /// Light of the sky that reaches a place.
 struct SkySight {
-    Vec3 position, normal;  ///< of the surface, the unit normal on the side of the viewer
-    Vec3 direction;         ///< unit, towards the sky
-    float light = 0;        ///< luminance of its irradiance per solid angle
+    PlaceTree::Place place;
+    Vec3 direction;   ///< unit, towards the sky
+    float light = 0;  ///< luminance of its irradiance per solid angle
     /// Densities: of the directions that were tried, of the lights' own sampling, and of that by
     /// the guide so far alone, 0 where there was none.
     float tried_pdf = 0, lights_pdf = 0, guide_pdf = 0;
@@ -35,41 +37,24 @@ class SkyGuide {
     /// Learns from a scene. The result is deterministic; it is empty where a guide would not pay.
     explicit SkyGuide(const LitScene& scene);
 
-    bool is_empty() const { return nodes_.empty(); }
+    bool is_empty() const { return tree_.is_empty(); }
     /// The sky as it is seen from a place with the unit normal `n` on the lit side; null where
     /// it is not known or needs no guide.
     const SkyCell* at(Vec3 position, Vec3 n) const {
         if (is_empty()) return nullptr;
-        const SkyCell& cell = cells_[leaf(position, n)];
+        const SkyCell& cell = cells_[tree_.leaf(position, n)];
         return cell.share > 0 ? &cell : nullptr;
     }
-    /// Bytes that it holds.
-    size_t memory() const;
+    /// The outcome, with the bytes that it holds.
+    const GuideOutcome& outcome() const { return outcome_; }
 
   private:
-    /// Node of a tree over places and normals.
-    struct Node {
-        int axis = -1;  ///< 0 to 2: position; 3 to 5: normal; -1: a leaf
-        float split = 0;
-        uint32_t child = 0;  ///< the first of the node's two children, for a leaf its cell
-    };
-    using Part = std::span<uint32_t>;  ///< indices of the sights in a leaf
-
-    uint32_t leaf(Vec3 position, Vec3 n) const {
-        const Node* node = nodes_.data();
-        while (node->axis >= 0) {
-            const float x = node->axis < 3 ? position[node->axis] : n[node->axis - 3];
-            node = &nodes_[node->child + (x < node->split ? 0 : 1)];
-        }
-        return node->child;
-    }
     /// Learns anew from sights, with shares by those among them that know the density of a guide.
     void learn(std::span<const SkySight> sights);
-    void build(uint32_t node, Part part, std::span<const SkySight> sights, int depth,
-               std::vector<Part>& parts);
 
-    std::vector<Node> nodes_;
+    PlaceTree tree_;
     std::vector<SkyCell> cells_;
+    GuideOutcome outcome_;
 };
 
 /// Traces `count` camera paths, the first of them number `first`, tries `trials` directions at

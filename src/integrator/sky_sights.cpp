@@ -1,24 +1,17 @@
 /// Rays to the sky, from places that paths from the camera meet.
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "core/frame.h"
-#include "core/hash.h"
-#include "core/parallel.h"
-#include "core/rng.h"
 #include "core/warp.h"
-#include "integrator/lit_scene.h"
-#include "integrator/path.h"
 #include "integrator/sky_guide.h"
+#include "integrator/training_places.h"
 
 namespace covtrace {
 
 namespace {
 
 constexpr uint64_t kSightKey = 0x736b79ull;  // key of the random numbers, "sky"
-constexpr int64_t kPathsPerChunk = 64;       // paths that one task traces
-constexpr int kDepth = 4;                    // most scattering events of a path
 constexpr float kByGuide = 0.6f;             // share of the directions that a guide chooses
 
 /// A place where a path scatters, with what is known there.
@@ -51,7 +44,7 @@ class Place {
         ray.direction = *w;
         ray.time = hit_.time;
         if (scene_.geometry.occluded(ray)) return;
-        SkySight sight{hit_.position, normal_, *w, light, 0, sky.pdf, 0};
+        SkySight sight{{hit_.position, normal_}, *w, light, 0, sky.pdf, 0};
         sight.tried_pdf = (1 - by_guide_) / 2 * (sky.pdf + cosine_hemisphere_pdf(cosine));
         if (by_guide_ > 0) {
             sight.tried_pdf += by_guide_ * cell_.pdf(*w);
@@ -85,34 +78,12 @@ class Place {
 
 std::vector<SkySight> look_for_sky(const LitScene& scene, const SkyGuide& guide, int64_t first,
                                    int64_t count, int trials) {
-    const FilmDescription& film = scene.description.film;
-    const int64_t chunks = (count + kPathsPerChunk - 1) / kPathsPerChunk;
-    std::vector<std::vector<SkySight>> found(static_cast<size_t>(chunks));
-    parallel_for(chunks, [&](int64_t chunk) {
-        PathRecord record;
-        const int64_t end = std::min(count, (chunk + 1) * kPathsPerChunk);
-        for (int64_t i = chunk * kPathsPerChunk; i < end; ++i) {
-            const auto index = static_cast<uint64_t>(first + i);
-            Rng rng(hash_combine(kSightKey, index));
-            const Vec2 u = rng.next_2d(), lens = rng.next_2d();
-            const Ray ray = scene.camera.generate_ray(
-                {u.x * float(film.width), u.y * float(film.height)}, lens, rng.next_float());
-            const Sampler sampler(kSightKey, int(index & 0xffff), int(index >> 16), 0);
-            trace_path(scene, {}, ray, sampler, std::min(kDepth, scene.description.max_depth),
-                       &record);
-            for (int k = 0; k < record.count; ++k) {
-                const PathVertex& vertex = record.vertices[static_cast<size_t>(k)];
-                const LobeShares& lobes = vertex.next_event.lobes;
-                if (!vertex.scatters || lobes.count == 0 || is_specular(lobes.lobes[0].kind))
-                    continue;
-                Place place(scene, guide, vertex, rng);
-                for (int t = 0; t < trials; ++t) place.look(found[static_cast<size_t>(chunk)]);
-            }
-        }
-    });
-    std::vector<SkySight> all;
-    for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
-    return all;
+    return visit_places<SkySight>(
+        scene, kSightKey, first, count,
+        [&](const PathVertex& vertex, Rng& rng, std::vector<SkySight>& found) {
+            Place place(scene, guide, vertex, rng);
+            for (int t = 0; t < trials; ++t) place.look(found);
+        });
 }
 
 }  // namespace covtrace

@@ -180,6 +180,12 @@ std::optional<LightSample> Lights::Impl::sample_area(int light, float probabilit
     return s;
 }
 
+std::optional<LightSample> Lights::Impl::sample_finite(int light, float probability, Vec3 p,
+                                                       float time, Vec2 u) const {
+    return light < first_point() ? sample_area(light, probability, p, time, u)
+                                 : sample_point(light, probability, p);
+}
+
 std::optional<LightSample> Lights::Impl::sample_point(int light, float probability, Vec3 p) const {
     const PointEmitter& point = points[static_cast<size_t>(light - first_point())];
     const Vec3 to_light = point.position - p;
@@ -240,19 +246,29 @@ void Lights::continue_draw(Draw& draw) const {
 }
 
 std::optional<LightSample> Lights::finish_draw(Vec3 p, Vec3 n, float time, float u_select,
-                                               Draw draw, const SkyCell* cell) const {
+                                               Draw draw, const SkyCell* cell,
+                                               LightTree::Factors factors) const {
     const InfiniteShare share = impl_->infinite_share(p, n);
     if (u_select < share.probability)
         return impl_->sample_infinite(share, p, n, u_select / share.probability, draw, cell);
     const float finite = 1 - share.probability;
     if (!(finite > 0)) return std::nullopt;
     const float u_tree = std::min((u_select - share.probability) / finite, kLargestBelowOne);
-    const auto choice = impl_->tree.sample(p, n, u_tree);
+    const auto choice = impl_->tree.sample(p, n, u_tree, factors);
     if (!choice) return std::nullopt;
-    const float probability = finite * choice->probability;
-    return choice->light < impl_->first_point()
-               ? impl_->sample_area(choice->light, probability, p, time, draw.u)
-               : impl_->sample_point(choice->light, probability, p);
+    return impl_->sample_finite(choice->light, finite * choice->probability, p, time, draw.u);
+}
+
+void Lights::try_finite(Vec3 p, Vec3 n, float time, float u_select, Vec2 u, Trial& trial) const {
+    trial.sample.reset();
+    const auto choice = impl_->tree.explore(p, n, u_select, trial.way);
+    if (!choice) return;
+    trial.sample = impl_->sample_finite(choice->light, choice->probability, p, time, u);
+    if (trial.sample) trial.place_pdf = trial.sample->pdf / choice->probability;
+}
+
+size_t Lights::factor_count() const {
+    return impl_->first_distant() > 1 ? impl_->tree.factor_count() : 0;
 }
 
 Rgb Lights::emitted(const SurfaceHit& hit, Vec3 wo) const {
@@ -262,22 +278,24 @@ Rgb Lights::emitted(const SurfaceHit& hit, Vec3 wo) const {
                               std::abs(dot(hit.ng, wo)));
 }
 
-float Lights::pdf(Vec3 p, Vec3 n, Vec3 wi, const SurfaceHit& hit) const {
+float Lights::pdf(Vec3 p, Vec3 n, Vec3 wi, const SurfaceHit& hit,
+                  LightTree::Factors factors) const {
     const AreaLight* area = impl_->area_light_of(hit);
     if (!area || !area->is_visible || (!area->two_sided && !(dot(hit.ng, wi) < 0))) return 0;
     return std::visit(
         [&](const auto& e) {
             const int local = e.light_of(hit);
-            const float probability = selection_probability(p, n, area->first_light + local);
+            const float probability =
+                selection_probability(p, n, area->first_light + local, factors);
             return probability > 0 ? probability * e.pdf(local, p, hit) : 0.0f;
         },
         area->emitter);
 }
 
-float Lights::selection_probability(Vec3 p, Vec3 n, int light) const {
+float Lights::selection_probability(Vec3 p, Vec3 n, int light, LightTree::Factors factors) const {
     const InfiniteShare share = impl_->infinite_share(p, n);
     if (light < impl_->first_distant())
-        return (1 - share.probability) * impl_->tree.probability(p, n, light);
+        return (1 - share.probability) * impl_->tree.probability(p, n, light, factors);
     if (!(share.probability > 0)) return 0;
     const auto i = static_cast<size_t>(light - impl_->first_distant());
     return share.probability * impl_->infinite_weight(share, i, p, n) / share.weight;

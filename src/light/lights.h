@@ -9,6 +9,7 @@
 #include "geometry/geometry.h"
 #include "light/environment_map.h"
 #include "light/sky_cell.h"
+#include "light/tree.h"
 #include "scene/scene_description.h"
 #include "texture/texture.h"
 
@@ -95,14 +96,30 @@ class Lights {
     void continue_draw(Draw& draw) const;
     /// Finishes `sample` with a draw that was taken as far as time allowed. A share of the samples
     /// of the sky, uniform infinite lights and environment maps, follows `cell`, if there is one.
+    /// The choice among finite lights is made with `factors`.
     std::optional<LightSample> finish_draw(Vec3 p, Vec3 n, float time, float u_select, Draw draw,
-                                           const SkyCell* cell = nullptr) const;
+                                           const SkyCell* cell = nullptr,
+                                           LightTree::Factors factors = {}) const;
+
+    /// A sample of a finite light to learn from.
+    struct Trial {
+        std::optional<LightSample> sample;  ///< its pdf is that of the trial
+        float place_pdf = 0;  ///< density of the place on the light alone, 1 for delta lights
+        std::vector<LightTree::Step> way;  ///< the steps to the light in the tree
+    };
+    /// Chooses a finite light as LightTree::explore does, then a point on it.
+    void try_finite(Vec3 p, Vec3 n, float time, float u_select, Vec2 u, Trial& trial) const;
+    /// Number of the tree's factors that are worth learning; 0 where there is no choice among
+    /// finite lights.
+    size_t factor_count() const;
 
     /// Radiance that the surface at `hit` emits towards `wo` (unit, away from the surface).
     Rgb emitted(const SurfaceHit& hit, Vec3 wo) const;
     /// Density per solid angle with which `sample(p, n)` finds the emitter point `hit` in the
-    /// direction wi, with the probability of choosing the emitter.
-    float pdf(Vec3 p, Vec3 n, Vec3 wi, const SurfaceHit& hit) const;
+    /// direction wi, with the probability of choosing the emitter; with factors, that of
+    /// `finish_draw`.
+    float pdf(Vec3 p, Vec3 n, Vec3 wi, const SurfaceHit& hit,
+              LightTree::Factors factors = {}) const;
 
     /// Whether there is a uniform infinite light or an environment map.
     bool has_environment() const;
@@ -136,7 +153,7 @@ class Lights {
     const Warnings& warnings() const;
     /// Probability that `sample(p, n)` chooses the light. Over all lights it sums to 1, or to less
     /// where a whole group of lights looks away from p: choosing the group then chooses none.
-    float selection_probability(Vec3 p, Vec3 n, int light) const;
+    float selection_probability(Vec3 p, Vec3 n, int light, LightTree::Factors factors = {}) const;
 
   private:
     friend class LightSpectra;

@@ -52,6 +52,8 @@ struct Lights::Impl {
 
     /// A sample of a light that was chosen with the given probability; empty where it can't light
     /// p.
+    std::optional<LightSample> sample_finite(int light, float probability, Vec3 p, float time,
+                                             Vec2 u) const;
     std::optional<LightSample> sample_area(int light, float probability, Vec3 p, float time,
                                            Vec2 u) const;
     std::optional<LightSample> sample_point(int light, float probability, Vec3 p) const;

@@ -1,5 +1,6 @@
 #include "light/tree.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/hash.h"
@@ -79,45 +80,79 @@ float LightTree::irradiance(Vec3 p, Vec3 n) const {
     return nodes_.empty() ? 0.0f : sum(nodes_.front().importance<Estimate::mean>(p, n));
 }
 
-std::optional<LightTree::Choice> LightTree::sample(Vec3 p, Vec3 n, float u) const {
+LightTree::Lanes LightTree::weights(uint32_t node, Vec3 p, Vec3 n, Factors factors) const {
+    Lanes w = nodes_[node].importance<Estimate::bound>(p, n);
+    if (const size_t first = kWidth * node; first < factors.size())
+        for (size_t i = 0; i < kWidth; ++i) w[i] *= factors[first + i];
+    return w;
+}
+
+size_t LightTree::choose(const Lanes& weights, float total, float& u) {
+    // The last child of any weight takes the probability that rounding leaves over.
+    float rest = u * total;
+    size_t chosen = 0;
+    for (size_t i = 0; i < kWidth; ++i) {
+        if (!(weights[i] > 0)) continue;
+        chosen = i;
+        if (rest < weights[i]) break;
+        rest -= weights[i];
+    }
+    u = std::min(rest / weights[chosen], kLargestBelowOne);
+    return chosen;
+}
+
+std::optional<LightTree::Choice> LightTree::sample(Vec3 p, Vec3 n, float u, Factors factors) const {
     if (nodes_.empty()) return std::nullopt;
     float probability = 1;
     uint32_t link = 0;
     while (!(link & kLeaf)) {
-        const Node& node = nodes_[link];
-        const Lanes importance = node.importance<Estimate::bound>(p, n);
-        const float total = sum(importance);
+        const Lanes w = weights(link, p, n, factors);
+        const float total = sum(w);
         if (!(total > 0)) return std::nullopt;
-        // The last child of any importance takes the probability that rounding leaves over.
-        float rest = u * total;
-        size_t chosen = 0;
-        for (size_t i = 0; i < kWidth; ++i) {
-            if (!(importance[i] > 0)) continue;
-            chosen = i;
-            if (rest < importance[i]) break;
-            rest -= importance[i];
-        }
-        u = std::min(rest / importance[chosen], kLargestBelowOne);
-        probability *= importance[chosen] / total;
-        link = node.link[chosen];
+        const size_t chosen = choose(w, total, u);
+        probability *= w[chosen] / total;
+        link = nodes_[link].link[chosen];
     }
     if (!(probability > 0)) return std::nullopt;
     return Choice{static_cast<int>(link & ~kLeaf), probability};
 }
 
-float LightTree::probability(Vec3 p, Vec3 n, int light) const {
+float LightTree::probability(Vec3 p, Vec3 n, int light, Factors factors) const {
     uint64_t trail = trails_[static_cast<size_t>(light)];
     if (trail == kNotInTree) return 0;
     float probability = 1;
     for (uint32_t link = 0; !(link & kLeaf); trail >>= 2) {
-        const Node& node = nodes_[link];
-        const Lanes importance = node.importance<Estimate::bound>(p, n);
-        const float own = importance[trail & 3];
+        const Lanes w = weights(link, p, n, factors);
+        const float own = w[trail & 3];
         if (!(own > 0)) return 0;
-        probability *= own / sum(importance);
-        link = node.link[trail & 3];
+        probability *= own / sum(w);
+        link = nodes_[link].link[trail & 3];
     }
     return probability;
+}
+
+std::optional<LightTree::Choice> LightTree::explore(Vec3 p, Vec3 n, float u,
+                                                    std::vector<Step>& way) const {
+    way.clear();
+    if (nodes_.empty()) return std::nullopt;
+    float probability = 1;
+    uint32_t link = 0;
+    while (!(link & kLeaf)) {
+        const Lanes importance = weights(link, p, n, {});
+        const float total = sum(importance);
+        if (!(total > 0)) return std::nullopt;
+        const auto lit = static_cast<float>(
+            std::count_if(importance.begin(), importance.end(), [](float x) { return x > 0; }));
+        Lanes tried{};
+        for (size_t i = 0; i < kWidth; ++i)
+            if (importance[i] > 0) tried[i] = 0.5f * importance[i] / total + 0.5f / lit;
+        const size_t chosen = choose(tried, sum(tried), u);
+        way.push_back({static_cast<uint32_t>(kWidth * link + chosen), importance[chosen],
+                       importance[chosen] / total, tried[chosen] / sum(tried)});
+        probability *= way.back().tried;
+        link = nodes_[link].link[chosen];
+    }
+    return Choice{static_cast<int>(link & ~kLeaf), probability};
 }
 
 }  // namespace covtrace

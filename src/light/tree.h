@@ -5,9 +5,11 @@
 /// instructions.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/vec.h"
@@ -38,16 +40,35 @@ class LightTree {
         int light = -1;
         float probability = 0;
     };
+    /// Factors on the importance of the children of the first nodes, all above 0: kWidth of them
+    /// for each node, of as many nodes as they are given for. None: the importance alone decides.
+    using Factors = std::span<const float>;
     /// Chooses a light for the point p. `n`: unit normal on the side that light is wanted for; the
     /// zero vector where there is none. `u` in [0, 1). Empty where no light can reach p.
-    std::optional<Choice> sample(Vec3 p, Vec3 n, float u) const;
+    std::optional<Choice> sample(Vec3 p, Vec3 n, float u, Factors factors = {}) const;
     /// Probability that `sample` returns this light.
-    float probability(Vec3 p, Vec3 n, int light) const;
+    float probability(Vec3 p, Vec3 n, int light, Factors factors = {}) const;
+
+    /// A step from a node to one of its children.
+    struct Step {
+        uint32_t child = 0;     ///< index of the child's factor
+        float importance = 0;   ///< of the child, without a factor
+        float probability = 0;  ///< of the child, by importance alone
+        float tried = 0;        ///< probability with which `explore` took the step
+    };
+    /// Chooses a light to learn from: half of the choices at every node are even among the children
+    /// that may light p, so that weak ones are not missed. `way` gets the steps to it.
+    std::optional<Choice> explore(Vec3 p, Vec3 n, float u, std::vector<Step>& way) const;
+    /// Number of factors that are worth having: for all nodes, or for those nearest to the root.
+    size_t factor_count() const {
+        constexpr size_t kMostNodes = 64;
+        return kWidth * std::min(nodes_.size(), kMostNodes);
+    }
+    static constexpr size_t kWidth = 4;  ///< most children of a node
     /// Estimated irradiance at p (of a facing surface where n is zero), without shadows.
     float irradiance(Vec3 p, Vec3 n) const;
 
   private:
-    static constexpr size_t kWidth = 4;
     /// How the cosine at the surface counts. `bound`, for choosing among lights, leaves out none
     /// that may shine; `mean` estimates the irradiance of all of them together.
     enum class Estimate { bound, mean };
@@ -70,7 +91,13 @@ class LightTree {
     static constexpr uint64_t kNotInTree = ~uint64_t{0};
     class Builder;
 
-    std::vector<Node> nodes_;  ///< the first is the root
+    /// Importance of a node's children with their factors.
+    Lanes weights(uint32_t node, Vec3 p, Vec3 n, Factors factors) const;
+    /// Takes the share u of the weights' sum: the child that it falls on, of those that have any
+    /// weight; u becomes its place within that child.
+    static size_t choose(const Lanes& weights, float total, float& u);
+
+    std::vector<Node> nodes_;  ///< level by level; the first is the root
     /// Per light, the way from the root to it: two bits for each level say which child to take, the
     /// lowest bits at the root.
     std::vector<uint64_t> trails_;

@@ -88,12 +88,19 @@ class LightTree::Builder {
         uint32_t link = 0;  ///< a leaf's light, or the second child; the first child comes next
     };
     uint32_t split(size_t begin, size_t end, int depth);
-    void widen(uint32_t pair, uint32_t node, uint64_t trail, int shift);
+    /// A node whose children are still to be set, from a pair of the binary tree.
+    struct Unset {
+        uint32_t pair = 0, node = 0;
+        uint64_t trail = 0;
+        int shift = 0;
+    };
+    void widen(const Unset& unset);
     static void set_child(Node& node, size_t i, const LightBounds& bounds);
 
     LightTree& tree_;
     std::vector<Item> items_;
     std::vector<Pair> pairs_;
+    std::vector<Unset> unset_;  ///< in the order of their nodes
 };
 
 uint32_t LightTree::Builder::split(size_t begin, size_t end, int depth) {
@@ -159,10 +166,10 @@ uint32_t LightTree::Builder::split(size_t begin, size_t end, int depth) {
     return index;
 }
 
-void LightTree::Builder::widen(uint32_t pair, uint32_t node, uint64_t trail, int shift) {
+void LightTree::Builder::widen(const Unset& unset) {
     // All pairs of a level are opened in turn: two levels fill a node, so that a wide tree is at
     // most half as deep. Room that leaves have spared goes to the levels below.
-    std::array<uint32_t, kWidth> child{pair};
+    std::array<uint32_t, kWidth> child{unset.pair};
     size_t count = 1;
     const auto open = [&](size_t i) {
         const Pair& p = pairs_[child[i]];
@@ -174,17 +181,17 @@ void LightTree::Builder::widen(uint32_t pair, uint32_t node, uint64_t trail, int
         for (size_t i = 0, known = count; i < known; ++i) open(i);
     for (size_t i = 0; i < count; ++i) {
         const Pair& p = pairs_[child[i]];
-        const uint64_t below = trail | uint64_t{i} << shift;
-        set_child(tree_.nodes_[node], i, p.bounds);
+        const uint64_t below = unset.trail | uint64_t{i} << unset.shift;
+        set_child(tree_.nodes_[unset.node], i, p.bounds);
         if (p.is_leaf) {
-            tree_.nodes_[node].link[i] = kLeaf | p.link;
+            tree_.nodes_[unset.node].link[i] = kLeaf | p.link;
             tree_.trails_[p.link] = below;
             continue;
         }
         const auto next = static_cast<uint32_t>(tree_.nodes_.size());
-        tree_.nodes_[node].link[i] = next;
+        tree_.nodes_[unset.node].link[i] = next;
         tree_.nodes_.emplace_back();
-        widen(child[i], next, below, shift + 2);
+        unset_.push_back({child[i], next, below, unset.shift + 2});
     }
 }
 
@@ -211,8 +218,10 @@ void LightTree::Builder::run() {
     if (items_.empty()) return;
     pairs_.reserve(2 * items_.size() - 1);
     split(0, items_.size(), 0);
+    // Level by level, so that the nodes nearest to the root come first
     tree_.nodes_.emplace_back();
-    widen(0, 0, 0, 0);
+    unset_.push_back({});
+    for (size_t i = 0; i < unset_.size(); ++i) widen(Unset(unset_[i]));
 }
 
 LightTree::LightTree(const std::vector<LightBounds>& lights) : trails_(lights.size(), kNotInTree) {

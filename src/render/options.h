@@ -11,6 +11,7 @@
 #include "core/enum_names.h"
 #include "frequency/brdf_covariance.h"
 #include "image/image.h"
+#include "integrator/guide_outcome.h"
 #include "planner/density.h"
 #include "reconstruction/denoiser.h"
 #include "reconstruction/filter_field.h"
@@ -73,9 +74,10 @@ struct RenderOptions {
     /// Denoiser whose image is one more candidate, hybrid only; null: none. Has no influence on the
     /// samples but on when `error` and `seconds` end them.
     std::shared_ptr<const Denoiser> denoiser;
-    bool even_counts = false;     ///< hybrid: every pixel the same count, for comparisons
-    bool emitters_apart = false;  ///< uniform: keeps the light of emitters in view apart
-    bool features = false;        ///< keeps what denoisers are told of each pixel, for the layers
+    Guides guides = Guides::automatic;  ///< what leads paths: for whoever builds the scene
+    bool even_counts = false;           ///< hybrid: every pixel the same count, for comparisons
+    bool emitters_apart = false;        ///< uniform: keeps the light of emitters in view apart
+    bool features = false;  ///< keeps what denoisers are told of each pixel, for the layers
     /// Keeps the first surfaces for the layers, in world space unless the scene says otherwise.
     bool surfaces = false;
     uint64_t seed = 0;

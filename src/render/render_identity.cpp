@@ -54,6 +54,7 @@ RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& op
         {"--focus", text(d.camera.focal_distance)},
         {"lens radius (--fstop)", text(d.camera.lens_radius)},
     };
+    id["--guides"] = std::string(name_of(scene.guides));
     id["--max-spp"] = text(options.max_spp);
     id["--camera"] = !d.camera_override.empty() ? d.camera_override
                      : !d.camera_choice.empty() ? d.camera_choice

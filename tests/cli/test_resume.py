@@ -179,6 +179,7 @@ class Refused(FilmTest):
             ([*same, "--fstop", "3"], "--fstop"),
             ([*same, "--shutter", "0,0.5"], "--shutter"),
             ([*same, "--isa", "sse2"], "instruction set"),
+            ([*same, "--guides", "none"], "--guides: auto, not none"),
             ([*same, "--progressive"], "--progressive: not given there, given here"),
         ):
             with self.subTest(arguments=arguments):

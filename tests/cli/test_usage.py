@@ -28,7 +28,7 @@ class Help(CliTest):
             self.assertIn(command, overview)
         options = self.run_program("render", "--help").stdout
         for option in (
-            "--output --preset --method --spp --time --cov-spp --density --k --max-spp --filter --resolution --crop --max-depth --seed "
+            "--output --preset --method --spp --time --guides --cov-spp --density --k --max-spp --filter --resolution --crop --max-depth --seed "
             "--threads --isa --shutter --focus --fstop --camera --environment --environment-rotation --environment-scale --png --exposure --view --layers --layer-names --tev --tev-layers --progress --texture-memory --stats --reproducible "
             "--film --checkpoint --every --resume --shard --max-memory --debug-pixel"
         ).split():

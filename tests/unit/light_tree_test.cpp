@@ -131,6 +131,51 @@ RC_GTEST_PROP(LightTree, SamplesEachLightWithItsProbability, (uint32_t seed)) {
         RC_ASSERT(std::abs(frequency[i] - double(tree.probability(p, n, int(i)))) < 2.1 / kSteps);
 }
 
+// Factors on the children, whatever they are, and the even half of `explore`: probabilities stay
+// those of the choices, and no light that may shine is ruled out.
+RC_GTEST_PROP(LightTree, SamplesByFactorsAndExploresWithTheirProbabilities, (uint32_t seed)) {
+    Rng rng(seed);
+    std::vector<LightBounds> lights;
+    const int count = 2 + int(rng.next_float() * 600);
+    for (int i = 0; i < count; ++i)
+        lights.push_back(bulb(square_to_sphere(rng.next_2d()) * (5 * rng.next_float()),
+                              0.1f + rng.next_float()));
+    const LightTree tree(lights);
+    std::vector<float> factors(tree.factor_count());
+    for (float& f : factors) f = 0.01f + sqr(rng.next_float());
+    const Vec3 p = square_to_sphere(rng.next_2d()) * 8.0f, n = square_to_sphere(rng.next_2d());
+    constexpr int kSteps = 20000;
+    std::vector<double> frequency(lights.size());
+    std::vector<LightTree::Step> way;
+    double explored = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const float u = (float(i) + 0.5f) / kSteps;
+        const auto choice = tree.sample(p, n, u, factors);
+        RC_ASSERT(choice.has_value());
+        const float probability = tree.probability(p, n, choice->light, factors);
+        RC_ASSERT(std::abs(choice->probability / probability - 1) < 1e-3f);
+        frequency[size_t(choice->light)] += 1.0 / kSteps;
+        // The steps tell both probabilities of the light that was explored
+        const auto trial = tree.explore(p, n, u, way);
+        RC_ASSERT(trial.has_value());
+        float tried = 1, by_importance = 1;
+        for (const LightTree::Step& step : way) {
+            tried *= step.tried;
+            by_importance *= step.probability;
+        }
+        RC_ASSERT(std::abs(trial->probability / tried - 1) < 1e-3f);
+        RC_ASSERT(std::abs(by_importance / tree.probability(p, n, trial->light) - 1) < 1e-3f);
+        RC_ASSERT(tried >= by_importance * std::pow(0.5f, float(way.size())));
+        explored += double(by_importance / tried) / kSteps;
+    }
+    for (size_t i = 0; i < lights.size(); ++i) {
+        const double p_i = double(tree.probability(p, n, int(i), factors));
+        RC_ASSERT(p_i > 0);
+        RC_ASSERT(std::abs(frequency[i] - p_i) < 2.1 / kSteps + 1e-4 * p_i);
+    }
+    RC_ASSERT(std::abs(explored - 1) < 0.02);
+}
+
 RC_GTEST_PROP(LightTree, NeverRulesOutALightThatShinesOnThePoint, (uint32_t seed)) {
     Rng rng(seed);
     std::vector<LightBounds> lights;
