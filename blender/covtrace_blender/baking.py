@@ -68,10 +68,10 @@ class Baked:
 
 
 class Baker:
-    """Bakes what functions of an Evaluator give. `pixels_of`: as Place has it."""
+    """Bakes what functions of an Evaluator give, to rays of the kind `ray`. `pixels_of`, `ray`: as Place has them."""
 
     def __init__(self, pixels_of):
-        self.pixels_of = pixels_of
+        self.pixels_of, self.ray = pixels_of, None
 
     def bake(self, get, surface, only_unit_square=False):
         """Bakes `get(evaluator)`, a number or a vector; only_unit_square: for what has no other layout.
@@ -80,7 +80,7 @@ class Baker:
         """
         def at(uv):
             nonlocal place
-            place = Place(np.asarray(uv, np.float32), surface.object_of_uv, self.pixels_of)
+            place = Place(np.asarray(uv, np.float32), surface.object_of_uv, self.pixels_of, self.ray)
             return get(Evaluator(place))
 
         place = None

@@ -6,10 +6,12 @@ import bpy
 
 from .shader_nodes.blackbody import blackbody, blackbody_temperature
 from .export_shaders import numbers
+from .visibility import hidden_from
 
 
-def write_lamp(out, lamp, transform, warn):
-    """One lamp; `transform`: text that places its object (no scale in it matters but an area's)."""
+def write_lamp(out, lamp, transform, hidden, warn):
+    """One lamp; `transform`: text that places its object (no scale in it matters but an area's); `hidden`: the kinds of rays
+    that do not find it. Rays pass a lamp, as in Cycles."""
     colour = [c * lamp.energy * shaded for c, shaded in zip(lamp.color, _shader_colour(lamp, warn))]
     if max(colour) <= 0:
         return
@@ -20,7 +22,7 @@ def write_lamp(out, lamp, transform, warn):
         # Blender's sun shines along -z of its object.
         out.write(f'LightSource "distant" "point3 from" [0 0 1] "point3 to" [0 0 0] "rgb L" [{numbers(colour)}]\n')
     elif lamp.type == "AREA":
-        _write_area(out, lamp, colour)
+        _write_area(out, lamp, colour, hidden)
     elif lamp.type == "SPOT":
         if lamp.shadow_soft_size > 0:
             warn(f"lamp '{lamp.name}': spots are points here; their radius is left out")
@@ -32,9 +34,8 @@ def write_lamp(out, lamp, transform, warn):
     elif lamp.shadow_soft_size > 0:
         radius = lamp.shadow_soft_size
         radiance = [c / (4 * math.pi * math.pi * radius**2) for c in colour]
-        # Lamps are not seen by the camera.
-        out.write(f'AreaLightSource "diffuse" "rgb L" [{numbers(radiance)}]\n'
-                  f'Shape "sphere" "float radius" {radius:.9g} "float alpha" 0\n')
+        out.write(f'AreaLightSource "diffuse" "rgb L" [{numbers(radiance)}] "bool letslightpass" true\n'
+                  f'Shape "sphere" "float radius" {radius:.9g}{hidden_from(hidden)}\n')
     else:
         out.write(f'LightSource "point" "rgb I" [{numbers(c / (4 * math.pi) for c in colour)}]\n')
     out.write("AttributeEnd\n")
@@ -63,7 +64,7 @@ def _shader_colour(lamp, warn):
     return tuple(c * strength for c in colour)
 
 
-def _write_area(out, lamp, colour):
+def _write_area(out, lamp, colour, hidden):
     """Shines along -z of its object, from one side, with the radiance W / (pi area); in Cycles 3.4 W / (4 area) (measured)."""
     width = lamp.size
     height = lamp.size if lamp.shape in ("SQUARE", "DISK") else lamp.size_y
@@ -80,8 +81,8 @@ def _write_area(out, lamp, colour):
     points = numbers(v for x, y in corners for v in (x, y, 0))
     # Clockwise seen from +z, so that the front looks along -z.
     indices = " ".join(f"0 {k + 1} {k}" for k in range(1, len(corners) - 1))
-    out.write(f'AreaLightSource "diffuse" "rgb L" [{numbers(radiance)}]\n'
-              f'Shape "trianglemesh" "float alpha" 0 "point3 P" [{points}] "integer indices" [{indices}]\n')
+    out.write(f'AreaLightSource "diffuse" "rgb L" [{numbers(radiance)}] "bool letslightpass" true\n'
+              f'Shape "trianglemesh" "point3 P" [{points}] "integer indices" [{indices}]{hidden_from(hidden)}\n')
 
 
 def area_scale(lamp, matrix):

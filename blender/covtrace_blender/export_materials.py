@@ -6,10 +6,22 @@ from .export_principled import PrincipledExporter
 from .export_sockets import Value
 from .export_textures import TextureFiles
 from .fresnel import mean_facing, mean_reflectance
+from .node_signature import all_nodes
+from .shader_nodes.light_path import RAYS, groups_of_rays
+
+TRANSPARENT = '"float alpha" 0'
+
+
+class Variant:
+    """A material as it is to some kinds of rays: its pbrt name, its Emission or None, the text of its alpha parameter, and
+    the names of the UV maps that it reads ("" is the mesh's)."""
+
+    def __init__(self, rays, name, emission=None, alpha="", uv_maps=()):
+        self.rays, self.name, self.emission, self.alpha, self.uv_maps = rays, name, emission, alpha, uv_maps
 
 
 class MaterialExporter(PrincipledExporter):
-    """Writes textures and materials into `out`, each once; `material(m)` returns what shapes need."""
+    """Writes textures and materials into `out`, each once; `variants(m)` returns what shapes need."""
 
     def __init__(self, out, folder, warn):
         self.out, self.warn = out, warn
@@ -18,8 +30,9 @@ class MaterialExporter(PrincipledExporter):
         self.known, self.of_objects = {}, set()
         self.count = 0
 
-    def material(self, material, object_name="", surface_of=lambda material_name: Surface()):
-        """(pbrt name, Emission or None, alpha parameter text, names of the UV maps that it reads; "" is the mesh's).
+    def variants(self, material, object_name="", surface_of=lambda material_name: Surface()):
+        """The Variants of a material: one, unless Light Path nodes show it to rays of different kinds as different ones. No
+        ray has two of them; one that has none passes.
 
         object_name: the object that it is on, for what hangs on it. surface_of(name of the material): its Surface there.
         """
@@ -27,7 +40,7 @@ class MaterialExporter(PrincipledExporter):
         key = (name, object_name if name in self.of_objects else None)
         if key not in self.known:
             self.surface, self.hangs_on_object = surface_of(name), False
-            exported = self._export(material)
+            exported = self._variants(material)
             if self.hangs_on_object:
                 self.of_objects.add(name)
                 key = (name, object_name)
@@ -36,11 +49,33 @@ class MaterialExporter(PrincipledExporter):
 
     # -- shaders
 
-    def _export(self, material):
+    def _variants(self, material):
         self.name = material.name if material else "none"
         if material is None or not material.use_nodes or not material.node_tree:
             colour = tuple(material.diffuse_color)[:3] if material else (0.8, 0.8, 0.8)
-            return self._make("diffuse", [self._colour("reflectance", Value(colour))]), None, "", ()
+            return [Variant(RAYS, self._make("diffuse", [self._colour("reflectance", Value(colour))]))]
+        nodes = list(all_nodes(material.node_tree))
+        if not any(node.type == "LIGHT_PATH" for node in nodes):
+            return [Variant(RAYS, *self._export(material))]
+        found = []
+        for rays in groups_of_rays(nodes):
+            self.baker.ray = rays[0]
+            found.append(Variant(rays, *self._export(material)))
+        self.baker.ray = None
+        return self._with_shadow([v for v in found if v.alpha != TRANSPARENT])
+
+    @staticmethod
+    def _with_shadow(variants):
+        """Joins what casts shadows to a variant that is as opaque: a shadow shows nothing else of a surface."""
+        alone = [v for v in variants if v.rays == ("shadow",)]
+        same = [v for v in variants if v not in alone and alone and v.alpha == alone[0].alpha]
+        if not same:
+            return variants
+        same[0].rays += ("shadow",)
+        return [v for v in variants if v not in alone]
+
+    def _export(self, material):
+        """(pbrt name, Emission or None, alpha parameter text, names of the UV maps), to rays of the baker's kind."""
         self.emission, self.alpha, self.uv_maps = None, "", []
         output = material.node_tree.get_output_node("CYCLES")
         for name in ("Volume", "Displacement"):
@@ -52,6 +87,9 @@ class MaterialExporter(PrincipledExporter):
         return self._shader(node), self.emission, self.alpha, tuple(self.uv_maps)
 
     def _shader(self, node):
+        if node.type == "BSDF_TRANSPARENT":
+            self.alpha = TRANSPARENT
+            return self._make("diffuse", ['"rgb reflectance" [0 0 0]'])
         known = {"BSDF_PRINCIPLED": self._principled, "BSDF_DIFFUSE": self._diffuse, "BSDF_GLOSSY": self._glossy,
                  "BSDF_GLASS": self._glass, "BSDF_REFRACTION": self._glass, "BSDF_TRANSLUCENT": self._translucent,
                  "EMISSION": self._emission, "MIX_SHADER": self._mix_shader, "ADD_SHADER": self._add_shader}
@@ -94,6 +132,8 @@ class MaterialExporter(PrincipledExporter):
             if whole:
                 return whole
         amount = Value(angular[1]) if angular else self._value(node.inputs[0], True)
+        if not amount.image and not 0 < amount.constant < 1:
+            return self._input_shader(node.inputs[2 if amount.constant >= 1 else 1])
         if first and first.type == "BSDF_TRANSPARENT":
             self.alpha = self._number("alpha", amount)
             return self._input_shader(node.inputs[2])

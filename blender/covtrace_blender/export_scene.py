@@ -11,11 +11,19 @@ from .export_camera import SceneCamera
 from .export_materials import MaterialExporter
 from .export_shaders import numbers
 from .placement import is_same, placement
-from .visibility import Visibility
+from .shader_nodes.light_path import RAYS
+from .visibility import Visibility, hidden_from
 
 CONTENT = "content.pbrt"
 
 SURFACES = ("MESH", "CURVE", "SURFACE", "FONT", "META")
+
+
+class Part:
+    """A mesh in a file, with a Variant of its material. motion: its transforms when the shutter opens and closes, or None."""
+
+    def __init__(self, file, variant, motion):
+        self.file, self.variant, self.motion = file, variant, motion
 
 
 class SceneExporter:
@@ -107,52 +115,44 @@ class SceneExporter:
         self.visibility = Visibility(self.depsgraph.view_layer)
         for key, instance in self._instances():
             obj = instance.object
-            if not self.visibility.is_seen(obj):
+            hidden = self.visibility.hidden(instance)
+            if hidden is None:
                 continue
             matrix = instance.matrix_world.copy()
             end = moving.get(key)
             if obj.type == "LIGHT" and instance.show_self:
                 if end is not None and not is_same(matrix, end):
                     self.warn(f"lamp '{obj.name}' moves while the shutter is open; it stays where it is at the opening")
-                self._write_lamp(obj.data, matrix)
+                self._write_lamp(obj.data, matrix, hidden)
             elif obj.type in SURFACES or obj.type == "CURVES":
                 # An emitter may be hidden behind its strands, and strands behind their emitter.
                 shown = (obj.name_full, obj.data.as_pointer(), instance.show_self, instance.show_particles)
                 if shown not in exported:
-                    exported[shown] = self._seen_parts(obj, (
-                        self._export_parts(obj) if instance.show_self and self.layer.use_solid else []) + (
-                        self._export_strands(obj) if instance.show_particles and self.layer.use_strand else []))
-                parts = exported[shown]
+                    exported[shown] = (self._export_parts(obj) if instance.show_self and self.layer.use_solid else []) + (
+                        self._export_strands(obj) if instance.show_particles and self.layer.use_strand else [])
+                parts = [part for part in exported[shown] if set(part.variant.rays) - hidden]
                 if not parts:
                     continue
                 if abs(matrix.determinant()) < 1e-30:
                     continue
-                if instance.is_instance and not any(emission for *_, emission, _ in parts):
+                if instance.is_instance and not any(part.variant.emission for part in parts):
+                    shown += (frozenset(hidden),)
                     if shown not in shared:
                         shared[shown] = f"object {len(shared)}"
                         self.out.write(f'ObjectBegin "{shared[shown]}"\n')
-                        self._write_parts(parts)
+                        self._write_parts(parts, hidden)
                         self.out.write("ObjectEnd\n")
                     self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end) +
                                    f'ObjectInstance "{shared[shown]}"\nAttributeEnd\n')
                 else:
                     self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end))
-                    self._write_parts(parts)
+                    self._write_parts(parts, hidden)
                     self.out.write("AttributeEnd\n")
             elif obj.type in ("VOLUME", "POINTCLOUD", "GPENCIL"):
                 self.warn(f"object '{obj.name}' is a {obj.type.lower()}, which is not rendered")
         self.visibility.tell(self.warn)
 
-    def _seen_parts(self, obj, parts):
-        """The parts of an object; those that shine are lamps that no ray meets where the camera shall not see them."""
-        if not self.visibility.is_hidden_from_camera(obj):
-            return parts
-        if not all(emission for *_, emission, _ in parts):
-            self.visibility.note_seen_by_camera(obj)
-        return [(file, name, '"float alpha" 0' if emission else alpha, emission, motion)
-                for file, name, alpha, emission, motion in parts]
-
-    def _write_lamp(self, lamp, matrix):
+    def _write_lamp(self, lamp, matrix, hidden):
         scale = export_lights.area_scale(lamp, matrix)
         if lamp.type != "AREA":
             matrix = matrix.normalized()
@@ -160,25 +160,21 @@ class SceneExporter:
             """The lamp with its energy for an area of unit scale."""
             def __getattr__(self, name):
                 return lamp.energy * scale if name == "energy" else getattr(lamp, name)
-        export_lights.write_lamp(self.out, Scaled(), placement("ConcatTransform", matrix, None), self.warn)
+        export_lights.write_lamp(self.out, Scaled(), placement("ConcatTransform", matrix, None), hidden, self.warn)
 
     def _export_parts(self, obj):
-        """[(file, material name, alpha, emission, (transform at the opening, at the closing) or None)] of an evaluated object, its files and
-        materials written."""
+        """The Parts of an evaluated object, its files and materials written."""
         if obj.type == "CURVES":
             tubes = export_strands.hair_curves(obj.data)
-            return [] if tubes is None else [self._tubes_part(obj, 0, *tubes)]
+            return [] if tubes is None else self._tubes_parts(obj, 0, *tubes)
         mesh = obj.to_mesh()
         if mesh is None:
             return []
         piece, motions = self._motions(obj, mesh)
         parts = []
 
-        def material_of(slot):
-            return self._material_of(obj, slot)
-
         def uv_of_slot(slot):
-            chosen, is_all = export_meshes.uv_map(mesh, material_of(slot)[3])
+            chosen, is_all = export_meshes.uv_map(mesh, self._uv_maps(obj, slot))
             if not is_all:
                 self.warn(f"object '{obj.name}': its textures want UV maps that it has not, or several; '{chosen}' is used for all")
             return chosen
@@ -198,28 +194,32 @@ class SceneExporter:
                 place = np.eye(4)
                 place[:3, 3] = origin
                 motion = place, motions[number] @ place
-            parts.append(self._part(obj, slot, positions, normals, uvs, triangles, motion))
+            parts += self._parts(obj, slot, positions, normals, uvs, triangles, motion)
         obj.to_mesh_clear()
         return parts
 
     def _export_strands(self, obj):
         """The same of its hair."""
         is_render = self.depsgraph.mode == "RENDER"
-        return [self._tubes_part(obj, *tubes) for tubes in export_strands.particle_systems(obj, is_render)]
+        return [part for tubes in export_strands.particle_systems(obj, is_render) for part in self._tubes_parts(obj, *tubes)]
 
-    def _tubes_part(self, obj, slot, positions, normals, triangles):
-        if self._material_of(obj, slot)[3]:
+    def _tubes_parts(self, obj, slot, positions, normals, triangles):
+        wants_uvs = bool(self._uv_maps(obj, slot))
+        if wants_uvs:
             self.warn(f"object '{obj.name}': strands have no texture coordinates; their images are looked up at one place")
-        uvs = np.zeros((len(positions), 2)) if self._material_of(obj, slot)[3] else None
-        return self._part(obj, slot, positions, normals, uvs, triangles)
+        return self._parts(obj, slot, positions, normals, np.zeros((len(positions), 2)) if wants_uvs else None, triangles)
 
     def _materials(self, obj):
         if self.layer.material_override is not None:
             return [self.layer.material_override] * max(1, len(obj.material_slots))
         return [s.material for s in obj.material_slots] if self._is_own(obj) else list(obj.data.materials)
 
-    def _material_of(self, obj, slot):
-        """The material of a slot, as it is on the object; on strands, which have no UV map, as anywhere."""
+    def _uv_maps(self, obj, slot):
+        """The names of the UV maps that a slot's material reads."""
+        return tuple(dict.fromkeys(name for variant in self._variants(obj, slot) for name in variant.uv_maps))
+
+    def _variants(self, obj, slot):
+        """The Variants of a slot's material, as it is on the object; on strands, which have no UV map, as anywhere."""
         materials = self._materials(obj)
 
         def surface_of(name):
@@ -227,7 +227,7 @@ class SceneExporter:
             is_mesh = obj.type == "MESH"
             return Surface(self.uv_ranges.of(name), surface_coordinates.object_of_uv(obj, obj.data) if is_mesh else {})
 
-        return self.materials.material(materials[min(slot, len(materials) - 1)] if materials else None, obj.name_full,
+        return self.materials.variants(materials[min(slot, len(materials) - 1)] if materials else None, obj.name_full,
                                        surface_of)
 
     def _uv_ranges(self):
@@ -238,11 +238,10 @@ class SceneExporter:
                 ranges.add(obj.data, {m.name_full for m in self._materials(obj) if m})
         return ranges
 
-    def _part(self, obj, slot, positions, normals, uvs, triangles, motion=None):
+    def _parts(self, obj, slot, positions, normals, uvs, triangles, motion=None):
         file = f"mesh{len(os.listdir(self.folder))}.ply"
         ply.write(os.path.join(self.folder, file), positions, normals, uvs, triangles)
-        name, emission, alpha, _ = self._material_of(obj, slot)
-        return file, name, alpha, emission, motion
+        return [Part(file, variant, motion) for variant in self._variants(obj, slot)]
 
     def _motions(self, obj, mesh):
         """(piece of each triangle, motion of each piece) of what changes its shape; (None, None) of what does not."""
@@ -261,14 +260,17 @@ class SceneExporter:
                       f"move as one can follow: {100 * left:.0f} % of the way are left out")
         return piece, motions
 
-    def _write_parts(self, parts):
-        for file, name, alpha, emission, motion in parts:
-            self.out.write("AttributeBegin\n" f'NamedMaterial "{name}"\n')
-            if motion is not None:
-                self.out.write(placement("ConcatTransform", *motion))
+    def _write_parts(self, parts, hidden):
+        for part in parts:
+            emission = part.variant.emission
+            self.out.write("AttributeBegin\n" f'NamedMaterial "{part.variant.name}"\n')
+            if part.motion is not None:
+                self.out.write(placement("ConcatTransform", *part.motion))
             if emission:
                 image = f' "string filename" "{emission.texture}"' if emission.texture else ""
                 scale = f'"float scale" {emission.radiance[0]:.9g}' if emission.texture else \
                     f'"rgb L" [{numbers(emission.radiance)}]'
                 self.out.write(f'AreaLightSource "diffuse" {scale}{image} "bool twosided" true\n')
-            self.out.write(f'Shape "plymesh" "string filename" "{file}" {alpha}\nAttributeEnd\n')
+            unseen = hidden | (set(RAYS) - set(part.variant.rays))
+            self.out.write(f'Shape "plymesh" "string filename" "{part.file}" {part.variant.alpha}{hidden_from(unseen)}\n'
+                           "AttributeEnd\n")

@@ -94,7 +94,7 @@ class SocketReader:
         def get(nodes):
             return nodes.number(socket) if is_number else nodes.vector(socket)
 
-        baked = self.baked.of(socket, self.surface, (is_number, only_unit_square),
+        baked = self.baked.of(socket, self.surface, (is_number, only_unit_square, self.baker.ray),
                               lambda: self.baker.bake(get, self.surface, only_unit_square))
         self.hangs_on_object |= baked.place.hangs_on_object
         if baked.is_cut:

@@ -6,9 +6,16 @@ import numpy as np
 from mathutils import Euler, Matrix
 
 from . import world_baking
+from .baking import Surface
 from .export_shaders import numbers
 from .export_textures import pixels, write_pfm
+from .node_signature import all_nodes
 from .shader_nodes.blackbody import blackbody, blackbody_temperature
+from .shader_nodes.evaluator import Evaluator
+from .shader_nodes.light_path import RAYS, groups_of_rays
+from .shader_nodes.place import Place
+from .shader_nodes.unsupported import Unsupported
+from .visibility import hidden_from
 
 LEAST_ROWS = 256  # of images that are brought to twice their height
 
@@ -18,19 +25,43 @@ def write_world(out, world, folder, warn, tell, time, is_preview=False):
 
     warn(text): what is left out; tell(text): what is done; time: in frames; is_preview: bakes are coarse.
     """
-    light = _light(world, warn, tell, time, is_preview)
-    if light is None:
+    is_dark = True
+    for rays in _groups(world):
+        light = _light(world, warn, tell, time, is_preview, rays[0])
+        if light is not None:
+            hidden = hidden_from(() if len(rays) == len(_SKY_RAYS) else set(RAYS) - set(rays))
+            _write_light(out, light, os.path.join(folder, f"world {rays[0]}.pfm"), hidden)
+            is_dark = False
+    if is_dark:
         out.write('LightSource "infinite" "rgb L" [0 0 0]\n')
-    elif isinstance(light, tuple):
-        out.write(f'LightSource "infinite" "rgb L" [{numbers(light)}]\n')
-    else:
-        values, turn = light.values, light.turn.inverted()
-        width = values.shape[1]
-        # Blender's azimuth runs the other way, from the middle of the image.
-        columns = (width // 2 - 1 - np.arange(width)) % width
-        write_pfm(os.path.join(folder, "world.pfm"), values[:, columns])
-        out.write(f'AttributeBegin\nConcatTransform [{numbers(turn[row][column] for column in range(4) for row in range(4))}]\n'
-                  'LightSource "infinite" "string filename" "world.pfm"\nAttributeEnd\n')
+
+
+# Kinds of rays that find a sky.
+_SKY_RAYS = tuple(ray for ray in RAYS if ray != "shadow")
+
+
+def _groups(world):
+    """The kinds of rays that see the world, in groups that see the same."""
+    if world is None:
+        return []
+    seen = getattr(world, "cycles_visibility", None)  # None where Cycles is not enabled
+    rays = [ray for ray in _SKY_RAYS if getattr(seen, "scatter" if ray == "volume" else ray, True)]
+    nodes = list(all_nodes(world.node_tree)) if world.use_nodes and world.node_tree else []
+    return groups_of_rays(nodes, rays)
+
+
+def _write_light(out, light, file, hidden):
+    """file: a path for the image of the light, in the scene's folder."""
+    if isinstance(light, tuple):
+        out.write(f'LightSource "infinite" "rgb L" [{numbers(light)}]{hidden}\n')
+        return
+    values, turn = light.values, light.turn.inverted()
+    width = values.shape[1]
+    # Blender's azimuth runs the other way, from the middle of the image.
+    columns = (width // 2 - 1 - np.arange(width)) % width
+    write_pfm(file, values[:, columns])
+    out.write(f'AttributeBegin\nConcatTransform [{numbers(turn[row][column] for column in range(4) for row in range(4))}]\n'
+              f'LightSource "infinite" "string filename" "{os.path.basename(file)}"{hidden}\nAttributeEnd\n')
 
 
 class Image:
@@ -40,10 +71,8 @@ class Image:
         self.values, self.turn = values, turn
 
 
-def _light(world, warn, tell, time, is_preview):
-    """None, a colour, or an Image."""
-    if world is None:
-        return None
+def _light(world, warn, tell, time, is_preview, ray):
+    """None, a colour, or an Image: the world as rays of a kind see it."""
     if not world.use_nodes or not world.node_tree:
         return _visible(tuple(world.color))
     output = next((n for n in world.node_tree.nodes if n.type == "OUTPUT_WORLD" and n.is_active_output), None)
@@ -51,22 +80,51 @@ def _light(world, warn, tell, time, is_preview):
         warn("the world's volume is not supported and left out")
     if output is None or not output.inputs["Surface"].is_linked:
         return None
-    background = output.inputs["Surface"].links[0].from_node
-    plain = _plain_light(background)
+    background = _seen_shader(output.inputs["Surface"], ray)
+    if background is None:
+        return None
+    plain = _plain_light(background, ray)
     if plain is not None:
         return _visible(plain) if isinstance(plain, tuple) else plain
-    return _baked(world, background, warn, tell, time, is_preview)
+    return _baked(world, background, warn, tell, time, is_preview, ray)
+
+
+def _seen_shader(socket, ray):
+    """The shader that is linked to a socket, behind mixtures of which rays of a kind see one part alone; None for no
+    shader."""
+    node = socket.links[0].from_node if socket.is_linked else None
+    while node is not None and node.type in ("MIX_SHADER", "REROUTE") and not node.mute:
+        share = 0.0 if node.type == "REROUTE" else _constant(node.inputs[0], ray)
+        if share is None or 0 < share < 1:
+            break
+        chosen = node.inputs[0 if node.type == "REROUTE" else 2 if share >= 1 else 1]
+        node = chosen.links[0].from_node if chosen.is_linked else None
+    return node
+
+
+def _constant(socket, ray):
+    """The number that a socket gets everywhere for rays of a kind; None for others."""
+    def pixels_of(image):
+        raise Unsupported(socket.node, f"the image '{image.name}' is not the same everywhere")
+    place = Place(np.zeros((1, 2), np.float32), Surface().object_of_uv, pixels_of, ray)
+    try:
+        value = np.asarray(Evaluator(place).number(socket))
+    except Unsupported:
+        return None
+    return None if place.uv_maps else float(value.ravel()[0])
 
 
 def _visible(colour):
     return colour if max(colour) > 0 else None
 
 
-def _plain_light(background):
+def _plain_light(background, ray):
     """The colour or Image of a Background node of either; None for all else."""
-    if background.type != "BACKGROUND" or background.mute or background.inputs["Strength"].is_linked:
+    if background.type != "BACKGROUND" or background.mute:
         return None
-    strength, socket = background.inputs["Strength"].default_value, background.inputs["Color"]
+    strength, socket = _constant(background.inputs["Strength"], ray), background.inputs["Color"]
+    if strength is None:
+        return None
     if not socket.is_linked:
         return tuple(c * strength for c in tuple(socket.default_value)[:3])
     temperature = blackbody_temperature(socket)
@@ -119,9 +177,9 @@ def _twice_as_wide(values):
     return (stretched[:, left % width] * (1 - share) + stretched[:, (left + 1) % width] * share).astype(np.float32)
 
 
-def _baked(world, background, warn, tell, time, is_preview):
+def _baked(world, background, warn, tell, time, is_preview, ray):
     try:
-        values = world_baking.bake(world, time, is_preview, tell, warn)
+        values = world_baking.bake(world, time, is_preview, tell, warn, ray)
     except world_baking.Failed as problem:
         warn(f"the world's '{background.name}' is not supported, and Cycles has not baked it ({problem}); "
              "its own colour is used" if background.type == "BACKGROUND" else

@@ -1,6 +1,14 @@
-"""Objects that Cycles shows to some rays only, and covtrace to all."""
+"""Which rays see an object, and what of that covtrace does not have."""
 
-RAYS = ("camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow")
+from .shader_nodes.light_path import RAYS
+
+_PROPERTIES = {ray: "visible_volume_scatter" if ray == "volume" else f"visible_{ray}" for ray in RAYS}
+
+
+def hidden_from(rays):
+    """The parameter of a shape or a sky that is hidden from some kinds of rays; with a space before it."""
+    names = " ".join(f'"{ray}"' for ray in RAYS if ray in rays)
+    return f' "string hiddenfrom" [{names}]' if names else ""
 
 
 class Visibility:
@@ -10,38 +18,35 @@ class Visibility:
         self.view_layer = view_layer
         self._names = {}
 
-    def is_seen(self, obj):
-        """Whether rays of any kind meet it; notes what the answer leaves out."""
+    def hidden(self, instance):
+        """The kinds of rays that an instance of the layer is hidden from; None where none sees it. Notes what the answer
+        leaves out."""
+        obj = instance.object
+        hidden = self._hidden(obj)
+        if instance.is_instance and instance.parent:
+            hidden |= self._hidden(instance.parent)
+        if not set(RAYS) - hidden - {"volume"}:
+            return None  # no scene here has a volume
         if obj.type == "LIGHT":
-            return self._is_lamp_lit(obj)
-        seen = [ray for ray in RAYS if getattr(obj, "visible_" + ray)]
-        if not set(seen) - {"volume_scatter"}:
-            return False
-        for ray in set(RAYS) - set(seen) - {"camera", "shadow", "volume_scatter"}:
-            self._note("seen by diffuse, glossy and transmitted rays alike", obj)
-        if "shadow" not in seen:
-            self._note("casting shadows although they should not", obj)
+            return hidden if self._is_lamp_lit(obj, hidden) else None
         if self._is_holdout(obj):
             self._note("rendered although they are holdouts", obj)
         if obj.is_shadow_catcher:
             self._note("rendered as surfaces although they catch shadows", obj)
-        return True
+        return hidden
 
-    def is_hidden_from_camera(self, obj):
-        return not obj.visible_camera or self._of_layer(obj, "indirect_only_get")
+    def _hidden(self, obj):
+        hidden = {ray for ray in RAYS if not getattr(obj, _PROPERTIES[ray])}
+        return hidden | ({"camera"} if self._of_layer(obj, "indirect_only_get") else set())
 
-    def note_seen_by_camera(self, obj):
-        """Notes that the camera sees an object that is_hidden_from_camera()."""
-        self._note("seen by the camera although they should not be", obj)
-
-    def _is_lamp_lit(self, obj):
+    def _is_lamp_lit(self, obj, hidden):
         of_cycles = getattr(obj.data, "cycles", None)  # None where Cycles is not enabled
         if getattr(of_cycles, "is_portal", False):
             return False  # a help for Cycles' sampling
-        rays = [ray for ray in ("diffuse", "glossy", "transmission") if not getattr(obj, "visible_" + ray)]
-        if len(rays) == 3:
+        dark = hidden & {"diffuse", "glossy", "transmission"}
+        if len(dark) == 3:
             return False
-        if rays:
+        if dark and not has_extent(obj.data):
             self._note("lighting diffuse, glossy and transmitting surfaces alike", obj)
         if not getattr(of_cycles, "cast_shadow", True) or not getattr(obj.data, "use_shadow", True):
             self._note("casting shadows although they should not", obj)
@@ -66,3 +71,8 @@ class Visibility:
         for kind, names in self._names.items():
             shown = ", ".join(f"'{name}'" for name in names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
             warn(f"ray visibility has no counterpart: {shown}: {kind}")
+
+
+def has_extent(lamp):
+    """Whether a lamp is written as a shape, which rays can meet."""
+    return lamp.type == "AREA" or lamp.type == "POINT" and lamp.shadow_soft_size > 0

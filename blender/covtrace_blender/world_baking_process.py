@@ -1,20 +1,26 @@
 """Run by a second Blender: renders a world of a library into an equirectangular image by Cycles, an array of numpy in the
 file IMAGE, rows from the top.
 
-    LIBRARY NAME TIME IMAGE ROWS SAMPLES, behind --
+    LIBRARY NAME TIME IMAGE ROWS SAMPLES RAY, behind --
+
+RAY: the kind of ray that sees the world.
 """
 
 import math
+import os
 import sys
 
 import bpy
 import numpy as np
 
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from shader_nodes.light_path import value_for
+
 # Texels this many times brighter than the mean, where they are few, are rendered again with more samples: suns.
 BRIGHT, MOST_OF_IMAGE, SAMPLES_OF_BRIGHT = 20, 0.01, 4096
 
 
-def main(library, name, time, image, rows, samples):
+def main(library, name, time, image, rows, samples, ray):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     if "cycles" not in bpy.context.preferences.addons:
         bpy.ops.preferences.addon_enable(module="cycles")
@@ -25,6 +31,8 @@ def main(library, name, time, image, rows, samples):
     tree = scene.world.node_tree
     for link in [k for k in tree.links if k.to_node.type == "OUTPUT_WORLD" and k.to_socket.name == "Volume"]:
         tree.links.remove(link)
+    for inside in [tree] + [group for group in bpy.data.node_groups if group.bl_idname == "ShaderNodeTree"]:
+        replace_light_paths(inside, ray)
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     scene.collection.objects.link(camera)
     scene.camera = camera
@@ -45,6 +53,16 @@ def main(library, name, time, image, rows, samples):
     cycles.use_adaptive_sampling, cycles.use_denoising, cycles.pixel_filter_type = False, False, "BOX"
     cycles.max_bounces, cycles.sample_clamp_direct = 0, 0
     np.save(image, render(scene, 2 * rows, rows, int(samples))[::-1])
+
+
+def replace_light_paths(tree, ray):
+    """Puts what Light Path nodes are to rays of a kind in their places."""
+    for link in [k for k in tree.links if k.from_node.type == "LIGHT_PATH"]:
+        value = value_for(link.from_socket, ray)
+        if value is not None:
+            constant = tree.nodes.new("ShaderNodeValue")
+            constant.outputs[0].default_value = value
+            tree.links.new(constant.outputs[0], link.to_socket)
 
 
 def render(scene, width, height, samples):

@@ -120,7 +120,7 @@ class WorldsTest(BlenderTest):
 
     def test_what_worlds_cannot_tell_apart_is_told(self):
         path, mixed, second = self.node("LightPath"), self.node("MixShader"), self.node("Background")
-        self.tree.links.new(path.outputs["Is Camera Ray"], mixed.inputs[0])
+        self.tree.links.new(path.outputs["Ray Length"], mixed.inputs[0])
         self.tree.links.new(self.background.outputs[0], mixed.inputs[1])
         self.tree.links.new(second.outputs[0], mixed.inputs[2])
         self.tree.links.new(mixed.outputs[0], self.tree.nodes["World Output"].inputs["Surface"])

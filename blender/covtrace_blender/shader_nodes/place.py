@@ -9,11 +9,12 @@ class Place:
     """Texture coordinates of n places.
 
     uv: (n, 2). object_of_uv: {"GENERATED" or "OBJECT": function from (n, 2) to (n, 3)}, of what hangs on UV alone.
-    pixels_of(image): (h, w, 4) linear, from the top.
+    pixels_of(image): (h, w, 4) linear, from the top. ray: the kind of ray that sees them, one of light_path.RAYS; None
+    where that is not known.
     """
 
-    def __init__(self, uv, object_of_uv, pixels_of):
-        self.uv, self.object_of_uv, self.pixels_of = uv, object_of_uv, pixels_of
+    def __init__(self, uv, object_of_uv, pixels_of, ray=None):
+        self.uv, self.object_of_uv, self.pixels_of, self.ray = uv, object_of_uv, pixels_of, ray
         self.uv_maps, self.images, self.hangs_on_object = [], [], False
 
     def uv_of(self, node, name):
