@@ -140,9 +140,20 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, M
     sky_cell_ = is_led && sky_guide_ ? sky_guide_->at(hit.position, light_normal_) : nullptr;
     lamp_factors_ =
         is_led && lamp_guide_ ? lamp_guide_->at(hit.position, light_normal_) : LightTree::Factors{};
+    const bool may_learn = light_normal_ != Vec3{} && has_diffuse_lobe(bsdf);
+    cell_ = path_guide_ && may_learn && depth_ < max_depth_
+                ? path_guide_->at({hit.position, light_normal_})
+                : nullptr;
+    if (vertex) {
+        vertex->is_specular = is_specular(bsdf);
+        if (may_learn) vertex->guided_normal = light_normal_;
+    }
     // Sample direct illumination, then the direction in which the path goes on
     if (finds_lights) add_direct(surface, u_choice.x, u_light, u_roulette.y, vertex);
-    return scatter(surface, u_choice.y, u_scatter, u_roulette.y, vertex) && survives(u_roulette.x);
+    const bool goes_on =
+        scatter(surface, u_choice.y, u_scatter, u_roulette.y, vertex) && survives(u_roulette.x);
+    if (vertex && goes_on) vertex->carried_on = luminance(beta_);
+    return goes_on;
 }
 
 Frame PathTracer::frame_at(const SurfaceHit& hit, const PlacedShape& shape,
@@ -185,6 +196,10 @@ PathVertex* PathTracer::begin_vertex(const SurfaceHit& hit, MediumId medium, Vec
     v->glow = glow_;
     glow_ = 0;
     v->in_view = in_view();
+    v->carried = luminance(beta_);
+    v->carried_on = v->next_value = v->next_bsdf_pdf = 0;
+    v->is_specular = false;
+    v->guided_normal = {};
     return v;
 }
 

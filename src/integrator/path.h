@@ -53,17 +53,18 @@ struct PathResult {
 };
 
 /// Traces one path and returns an unbiased estimate of the radiance along `ray`, whatever the
-/// guides that lead it; `sky_guide` and `lamp_guide` may be null. `max_depth` counts scattering
+/// guides that lead it: those of sky, lamps and paths may be null. `max_depth` counts scattering
 /// events as pbrt does: 0 shows emitters alone. `record` may be null; then nothing is recorded and
 /// nothing is paid for it. Non-finite estimates are returned as they are: the caller counts them.
 PathResult trace_path(const LitScene& scene, const CausticGuide& guide, Ray ray,
                       const Sampler& sampler, int max_depth, PathRecord* record,
-                      const SkyGuide* sky_guide = nullptr, const LampGuide* lamp_guide = nullptr);
+                      const SkyGuide* sky_guide = nullptr, const LampGuide* lamp_guide = nullptr,
+                      const PathGuide* path_guide = nullptr);
 /// Traces one path, led by the guides of the scene.
 inline PathResult trace_path(const RenderScene& scene, Ray ray, const Sampler& sampler,
                              int max_depth, PathRecord* record) {
     return trace_path(scene, scene.guide, ray, sampler, max_depth, record, &scene.sky_guide,
-                      &scene.lamp_guide);
+                      &scene.lamp_guide, &scene.path_guide);
 }
 
 }  // namespace covtrace

@@ -65,8 +65,8 @@ PathBatch::~PathBatch() = default;
 
 void PathBatch::add(const Ray& ray, const Sampler& sampler) {
     const RenderScene& scene = impl_->scene;
-    impl_->paths.emplace_back(scene, scene.guide, &scene.sky_guide, &scene.lamp_guide, ray, sampler,
-                              impl_->max_depth, nullptr);
+    impl_->paths.emplace_back(scene, scene.guide, &scene.sky_guide, &scene.lamp_guide,
+                              &scene.path_guide, ray, sampler, impl_->max_depth, nullptr);
 }
 
 size_t PathBatch::size() const {
@@ -87,8 +87,10 @@ const PathResult& PathBatch::result(size_t i) const {
 
 PathResult trace_path(const LitScene& scene, const CausticGuide& guide, Ray ray,
                       const Sampler& sampler, int max_depth, PathRecord* record,
-                      const SkyGuide* sky_guide, const LampGuide* lamp_guide) {
-    PathTracer path(scene, guide, sky_guide, lamp_guide, ray, sampler, max_depth, record);
+                      const SkyGuide* sky_guide, const LampGuide* lamp_guide,
+                      const PathGuide* path_guide) {
+    PathTracer path(scene, guide, sky_guide, lamp_guide, path_guide, ray, sampler, max_depth,
+                    record);
     trace_paths<1>(scene.geometry, {&path, 1}, [] { return false; });
     return path.result();
 }

@@ -48,6 +48,16 @@ struct PathVertex {
     /// Whether the path goes on from here; false at its last vertex.
     bool scatters = false;
     ScatterEvent next_event;  ///< scattering of the light from further along the path
+
+    /// Luminance of the path's throughput as it arrives here and as it goes on, after roulette; 0
+    /// where the path ends.
+    float carried = 0, carried_on = 0;
+    bool is_specular = false;  ///< whether the surface has specular lobes alone
+    /// Matter for guides that learn: the normal on the lit side of a surface with a diffuse lobe
+    /// that lets no light through (0 elsewhere), the luminance of BSDF times cosine of the next
+    /// direction, and that direction's density by the BSDF alone; 0 for specular lobes.
+    Vec3 guided_normal;
+    float next_value = 0, next_bsdf_pdf = 0;
 };
 
 struct PathRecord {

@@ -23,6 +23,7 @@ RayKind kind_of(LobeKind lobe) {
 }  // namespace
 
 float PathTracer::mixed_pdf(float own, Vec3 wi) const {
+    if (cell_) own = std::lerp(own, path_guide_->pdf(*cell_, wi), cell_->share);
     const float share = guide_.share();
     return share > 0 ? (1 - share) * own + share * guide_.pdf(wi) : own;
 }
@@ -34,13 +35,15 @@ BsdfValue PathTracer::eval_direction(const Surface& surface, Vec3 wi_local, Vec3
 
 std::optional<BsdfSample> PathTracer::sample_direction(const Surface& surface, float u_lobe,
                                                        Vec2 u) {
-    const float share = guide_.share();
+    const float by_caustics = guide_.share(), by_cell = cell_ ? cell_->share : 0;
+    const float share = by_caustics + (1 - by_caustics) * by_cell;
     if (!(share > 0)) return sample(surface.bsdf, surface.wo, u_lobe, u);
     std::optional<BsdfSample> s;
     BsdfValue own;
     Vec3 wi;
     if (u_lobe < share) {
-        wi = guide_.sample(u_lobe / share, u);
+        wi = u_lobe < by_caustics ? guide_.sample(u_lobe / by_caustics, u)
+                                  : path_guide_->sample(*cell_, u);
         s = BsdfSample{};
         s->wi = surface.frame.to_local(wi);
         s->lobe = s->wi.z * surface.wo.z > 0 ? LobeKind::diffuse_reflection
@@ -146,6 +149,8 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, float u_k
     if (vertex) {
         vertex->scatters = true;
         vertex->next_event.wi = wi;
+        vertex->next_value = luminance(s->weight) * s->pdf;
+        vertex->next_bsdf_pdf = specular_ ? 0 : pdf(surface.bsdf, surface.wo, s->wi);
         if (specular_) {
             vertex->next_event.lobes.count = 1;
             vertex->next_event.lobes.lobes[0] = {s->lobe, s->weight, 0, 0, s->eta};

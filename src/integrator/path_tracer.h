@@ -33,12 +33,13 @@ inline float power_heuristic(float a, float b) {
 class PathTracer {
   public:
     PathTracer(const LitScene& scene, const CausticGuide& guide, const SkyGuide* sky_guide,
-               const LampGuide* lamp_guide, Ray ray, const Sampler& sampler, int max_depth,
-               PathRecord* record)
+               const LampGuide* lamp_guide, const PathGuide* path_guide, Ray ray,
+               const Sampler& sampler, int max_depth, PathRecord* record)
         : scene_(scene),
           caustic_guide_(guide),
           sky_guide_(sky_guide),
           lamp_guide_(lamp_guide),
+          path_guide_(path_guide),
           ray_(ray),
           sampler_(sampler),
           max_depth_(max_depth),
@@ -178,6 +179,7 @@ class PathTracer {
     const CausticGuide& caustic_guide_;
     const SkyGuide* const sky_guide_;
     const LampGuide* const lamp_guide_;
+    const PathGuide* const path_guide_;
     Ray ray_;
     Sampler sampler_;
     const int max_depth_;
@@ -206,7 +208,8 @@ class PathTracer {
     int depth_ = 0;       // scattering events so far
     float glow_ = 0;      // luminance from media since the last vertex, for the record
     Vec3 camera_origin_;  // start of the path
-    GuideMixture guide_;  // guide at the current vertex
+    GuideMixture guide_;  // guide to caustics at the current vertex
+    const PathGuideCell* cell_ = nullptr;  // where light comes from there; null: not known
     // Light draw of the vertex to come, begun before that vertex is known.
     Lights::Draw light_draw_;
     const bool draws_ahead_;  // not where most samples follow the guide to the sky

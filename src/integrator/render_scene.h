@@ -8,6 +8,7 @@
 #include "integrator/guide_outcome.h"
 #include "integrator/lamp_guide.h"
 #include "integrator/lit_scene.h"
+#include "integrator/path_guide.h"
 #include "integrator/sky_guide.h"
 
 namespace covtrace {
@@ -22,13 +23,14 @@ struct RenderScene : LitScene {
     /// Bytes held, by use: what LitScene lists, and "guide".
     std::map<std::string, size_t> memory() const;
 
-    /// The outcome of each guide: "caustics", "sky", "lamps".
+    /// The outcome of each guide: "caustics", "sky", "lamps", "paths".
     std::map<std::string, GuideOutcome> guide_outcomes() const;
 
     Guides guides;  ///< which guides may lead paths
     CausticGuide guide;
     SkyGuide sky_guide;
     LampGuide lamp_guide;
+    PathGuide path_guide;
 
   private:
     std::map<std::string, double> learning_seconds_;  ///< by guide

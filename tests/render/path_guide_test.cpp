@@ -1,0 +1,165 @@
+// Light that comes from another room: the guide finds it, and it is counted right.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/parallel.h"
+#include "core/rng.h"
+#include "core/warp.h"
+#include "integrator/path.h"
+#include "pbrt/read_scene.h"
+#include "tests/statistical/chi_square.h"
+
+namespace covtrace {
+namespace {
+
+// Two closed grey rooms, of 4 by 4 by 2.4 each, with an opening of 1.2 by 1.6 in the wall between
+// them at x = 2. The camera is in one, a lamp, which faces away from the opening, in the other.
+const std::string kRooms = R"(
+Integrator "path" "integer maxdepth" 12
+Film "rgb" "integer xresolution" 96 "integer yresolution" 72
+PixelFilter "box"
+LookAt 1.8 -1.8 1.6  -2 2 0.8  0 0 1
+Camera "perspective" "float fov" 60
+WorldBegin
+Material "diffuse" "rgb reflectance" [ 0.6 0.5 0.4 ]
+Shape "trianglemesh" "point3 P" [ -2 -2 0 6 -2 0 6 2 0 -2 2 0 ] "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ -2 -2 2.4 6 -2 2.4 6 2 2.4 -2 2 2.4 ]
+  "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ -2 2 0 6 2 0 6 2 2.4 -2 2 2.4 ] "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ -2 -2 0 6 -2 0 6 -2 2.4 -2 -2 2.4 ]
+  "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ -2 -2 0 -2 2 0 -2 2 2.4 -2 -2 2.4 ]
+  "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ 6 -2 0 6 2 0 6 2 2.4 6 -2 2.4 ] "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ 2 -2 0 2 -0.6 0 2 -0.6 2.4 2 -2 2.4 ]
+  "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ 2 0.6 0 2 2 0 2 2 2.4 2 0.6 2.4 ] "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ 2 -0.6 0 2 0.6 0 2 0.6 0.4 2 -0.6 0.4 ]
+  "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ 2 -0.6 2 2 0.6 2 2 0.6 2.4 2 -0.6 2.4 ]
+  "integer indices" [ 0 1 2 0 2 3 ]
+AreaLightSource "diffuse" "rgb L" [ 50 50 50 ]
+Shape "trianglemesh" "point3 P" [ 2.1 -1 1 2.1 -0.5 1 2.1 -0.5 1.5 2.1 -1 1.5 ]
+  "integer indices" [ 0 1 2 0 2 3 ]
+)";
+
+RenderScene rooms() {
+    return RenderScene(read_pbrt_string(kRooms, "test", "."));
+}
+
+const PlaceTree::Place kFloor{{-0.5f, 0.5f, 0}, {0, 0, 1}};
+const Vec3 kOpening{2, 0, 1.3f}, kWall{2, -1.5f, 1.3f};
+
+struct Found {
+    double mean = 0, variance = 0;
+    double error(int paths) const { return std::sqrt(variance / paths); }
+};
+
+/// Light of paths through the middle of the image.
+Found found_light(const RenderScene& scene, int paths) {
+    double sum = 0, squares = 0;
+    for (int i = 0; i < paths; ++i) {
+        const Sampler sampler(3, i & 0xffff, i >> 16, 0);
+        const Ray ray = scene.camera.generate_ray({48, 60}, {}, 0);
+        const double l = trace_path(scene, ray, sampler, 12, nullptr).radiance.g;
+        sum += l / paths;
+        squares += l * l / paths;
+    }
+    return {sum, squares - sum * sum};
+}
+
+// The bound is 4.5 standard errors: false alarm 7e-6.
+TEST(PathGuide, FindsTheLightAndLeavesTheMean) {
+    RenderScene scene = rooms();
+    ASSERT_FALSE(scene.path_guide.is_empty());
+    EXPECT_GT(scene.path_guide.outcome().bytes, 0u);
+    constexpr int kPaths = 60000;
+    const Found guided = found_light(scene, kPaths);
+    scene.path_guide = PathGuide();
+    const Found alone = found_light(scene, kPaths);
+    EXPECT_LT(guided.variance, 0.6 * alone.variance);
+    EXPECT_NEAR(guided.mean, alone.mean,
+                4.5 * std::hypot(guided.error(kPaths), alone.error(kPaths)));
+}
+
+// Chi-square over cosine and azimuth, expectations by 32x32 points of each part: alpha 1e-4.
+TEST(PathGuide, SamplesItsDensity) {
+    const RenderScene scene = rooms();
+    const PathGuideCell* cell = scene.path_guide.at(kFloor);
+    ASSERT_NE(cell, nullptr);
+    const auto towards = [](Vec3 p) { return normalize(p - kFloor.position); };
+    EXPECT_GT(scene.path_guide.pdf(*cell, towards(kOpening)),
+              3 * scene.path_guide.pdf(*cell, towards(kWall)));
+    EXPECT_EQ(scene.path_guide.pdf(*cell, {0, 0, -1}), 0);
+    constexpr int kRings = 8, kSectors = 16, kSamples = 100000, kPoints = 32;
+    std::vector<double> counts(kRings * kSectors, 0.0), expected(kRings * kSectors, 0.0);
+    const Vec3 z = cell->frame.z;
+    Rng rng(17);
+    for (int i = 0; i < kSamples; ++i) {
+        const Vec3 local = cell->frame.to_local(scene.path_guide.sample(*cell, rng.next_2d()));
+        ASSERT_GE(local.z, 0);
+        const double phi = std::atan2(double(local.y), double(local.x)) / (2 * M_PI) + 0.5;
+        counts[size_t(std::min(int(double(local.z) * kRings), kRings - 1) * kSectors +
+                      std::min(int(phi * kSectors), kSectors - 1))] += 1;
+    }
+    ASSERT_NEAR(double(length(z)), 1, 1e-5);
+    double whole = 0;
+    for (int ring = 0; ring < kRings * kPoints; ++ring)
+        for (int sector = 0; sector < kSectors * kPoints; ++sector) {
+            const double c = (ring + 0.5) / (kRings * kPoints), s = std::sqrt(1 - c * c);
+            const double phi = 2 * M_PI * ((sector + 0.5) / (kSectors * kPoints) - 0.5);
+            const Vec3 w = cell->frame.to_world(
+                {float(s * std::cos(phi)), float(s * std::sin(phi)), float(c)});
+            const double share = double(scene.path_guide.pdf(*cell, w)) * 2 * M_PI /
+                                 (kRings * kSectors * kPoints * kPoints);
+            expected[size_t(ring / kPoints * kSectors + sector / kPoints)] += share * kSamples;
+            whole += share;
+        }
+    EXPECT_NEAR(whole, 1, 3e-3);  // the sum's own error, at the borders of bins
+    EXPECT_GT(chi_square_test(counts, expected).p, 1e-4);
+}
+
+// The same guide for any number of threads.
+TEST(PathGuide, DoesNotDependOnThreads) {
+    std::vector<float> densities[2];
+    for (int threads : {1, 3}) {
+        const ThreadLimit limit(threads);
+        const RenderScene scene = rooms();
+        const PathGuideCell* cell = scene.path_guide.at(kFloor);
+        ASSERT_NE(cell, nullptr);
+        Rng rng(5);
+        std::vector<float>& found = densities[threads == 1 ? 0 : 1];
+        found.push_back(cell->share);
+        for (int i = 0; i < 256; ++i)
+            found.push_back(scene.path_guide.pdf(
+                *cell, cell->frame.to_world(square_to_cosine_hemisphere(rng.next_2d()))));
+    }
+    EXPECT_EQ(densities[0], densities[1]);
+}
+
+// In an even light there is nothing to be learnt. Led by a guide all the same, paths bring what the
+// shell of the furnace sends: 4.5 standard errors, false alarm 7e-6.
+TEST(PathGuide, LeavesTheFurnaceAlone) {
+    RenderScene scene(
+        read_pbrt(std::string(COVTRACE_SCENES_FOLDER) + "/tests/furnace-closed.pbrt"));
+    EXPECT_TRUE(scene.path_guide.is_empty());
+    scene.path_guide.learn(trace_lesson(scene, scene.guide, scene.sky_guide, scene.lamp_guide,
+                                        scene.path_guide, 0, 4096));
+    ASSERT_FALSE(scene.path_guide.is_empty());
+    constexpr int kPaths = 40000;
+    double sum = 0, squares = 0;
+    for (int i = 0; i < kPaths; ++i) {
+        const Sampler sampler(3, i & 0xffff, i >> 16, 0);
+        const Ray ray = scene.camera.generate_ray({float(i % 64), 5}, {}, 0);
+        const double l = trace_path(scene, ray, sampler, 20, nullptr).radiance.g;
+        sum += l / kPaths;
+        squares += l * l / kPaths;
+    }
+    EXPECT_NEAR(sum, 1, 4.5 * std::sqrt((squares - sum * sum) / kPaths) + 1e-5);
+}
+
+}  // namespace
+}  // namespace covtrace
