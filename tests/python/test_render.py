@@ -287,7 +287,7 @@ class Errors(unittest.TestCase):
         """Whatever stands where something else is expected: nothing but UsageError comes out."""
         kinds = (0, -1, 1.5, True, float("nan"), 10**30, "", "x", "01", "\0", "\ud800", b"\0", (), (1,), [1, "a"], ("a",) * 4, {},
                  object())
-        right = {"search_paths": [(), {}, ("a",) * 4], "denoiser_library": ["", "x", "01"], "environment": [0, 1.5, True, 10**30]}
+        right = {"search_paths": [(), {}, ("a",) * 4], "denoiser_library": ["", "x", "01"], "environment": [0, 1.5, True, 10**30, "01"]}
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "scene.pbrt"
             file.write_text(scenes.FURNACE)

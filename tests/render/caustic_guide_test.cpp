@@ -70,6 +70,7 @@ TEST(CausticGuide, FindsWhatTheFloorAloneFindsByChance) {
         return squares / kPaths - sum / kPaths * sum / kPaths;
     };
     RenderScene scene(read_pbrt_string(kMirrorScene, "test", "."));
+    scene.path_guide = PathGuide();  // it leads to the mirror, too
     const double guided = variance(scene);
     scene.guide = CausticGuide();
     EXPECT_GT(variance(scene), 20 * guided);
