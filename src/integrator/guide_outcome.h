@@ -18,7 +18,7 @@ inline constexpr auto kEnumNames<Guides> = enum_names<Guides>({{Guides::automati
                                                                {Guides::none, "none"}});
 
 enum class GuideState {
-    unused,   ///< switched off, or the scene has nothing of its kind
+    unused,   ///< switched off, nothing of its kind in the scene, or paths too long to learn from
     gave_up,  ///< a trial told that it would not pay
     guides    ///< it leads paths
 };

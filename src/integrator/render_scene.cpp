@@ -4,12 +4,38 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/rng.h"
+#include "integrator/path.h"
+
 namespace covtrace {
+
+namespace {
+
+/// Whether paths take so many rays, through thousands of interfaces say, that the thousands of them
+/// which guides learn from would cost more than a render. The answer is deterministic.
+bool are_paths_too_long(const LitScene& scene) {
+    constexpr uint64_t kPaths = 16, kMostRays = 512;  // per path; a hundred events have 200
+    const FilmDescription& film = scene.description.film;
+    const CausticGuide no_guide;
+    Rng rng(0x6c6f6e67);
+    uint64_t rays = 0;
+    for (uint64_t i = 0; i < kPaths && rays <= kPaths * kMostRays; ++i) {
+        const Vec2 u = rng.next_2d(), lens = rng.next_2d();
+        const Ray ray = scene.camera.generate_ray(
+            {u.x * float(film.width), u.y * float(film.height)}, lens, rng.next_float());
+        const Sampler sampler(0x6c6f6e67, int(i), 0, 0);
+        rays += trace_path(scene, no_guide, ray, sampler, scene.description.max_depth, nullptr)
+                    .rays.total();
+    }
+    return rays > kPaths * kMostRays;
+}
+
+}  // namespace
 
 RenderScene::RenderScene(SceneDescription scene_description, const std::string& isa,
                          size_t texture_bytes, Guides which)
     : LitScene(std::move(scene_description), isa, texture_bytes), guides(which) {
-    if (guides == Guides::none) return;
+    if (guides == Guides::none || are_paths_too_long(*this)) return;
     const auto learn = [this](auto& learnt, const char* name, const auto&... others) {
         using Guide = std::decay_t<decltype(learnt)>;
         const auto start = std::chrono::steady_clock::now();

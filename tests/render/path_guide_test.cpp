@@ -140,6 +140,30 @@ TEST(PathGuide, DoesNotDependOnThreads) {
     EXPECT_EQ(densities[0], densities[1]);
 }
 
+// A ray through a thousand media, one inside the other, is a thousand rays: what guides learn from
+// would take longer than the render.
+TEST(PathGuide, IsNotLearntFromPathsOfThousandsOfRays) {
+    const auto outcomes = [](int media) {
+        std::string scene =
+            "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" 64\n"
+            "LookAt 0 0 4 0 0 0 0 1 0\nCamera \"perspective\" \"float fov\" 30\nWorldBegin\n"
+            "LightSource \"infinite\"\nShape \"sphere\"\nMaterial \"interface\"\n";
+        for (int i = 0; i < media; ++i) {
+            const std::string name = "m" + std::to_string(i);
+            scene += "MakeNamedMedium \"" + name +
+                     "\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 0.01 0.01 0.01 ]\n"
+                     "MediumInterface \"" +
+                     name + "\" \"" + (i + 1 < media ? "m" + std::to_string(i + 1) : "") +
+                     "\"\nShape \"sphere\" \"float radius\" " + std::to_string(1.1 + 1e-3 * i) +
+                     "\n";
+        }
+        return RenderScene(read_pbrt_string(scene, "test", ".")).guide_outcomes();
+    };
+    EXPECT_EQ(outcomes(1)["paths"].state, GuideState::gave_up);
+    for (const auto& [name, outcome] : outcomes(1000))
+        EXPECT_EQ(outcome.state, GuideState::unused) << name;
+}
+
 // In an even light there is nothing to be learnt. Led by a guide all the same, paths bring what the
 // shell of the furnace sends: 4.5 standard errors, false alarm 7e-6.
 TEST(PathGuide, LeavesTheFurnaceAlone) {
