@@ -22,6 +22,10 @@ constexpr int64_t kLessonPerPixel = 4, kEnoughLessonPaths = 32768, kMostLessonPa
 /// The guide pays where less than this share of the noise is left: a path that it leads takes a
 /// fifth longer. A trial tells of less than the lesson will reach.
 constexpr double kWorthTrying = 0.93, kWorthwhile = 0.85;
+/// Least second moment of a path over the square of the brightness around its pixel: noise as large
+/// as what it is of. Below, the even sequences that pixels sample with have most of what a guide
+/// gains on single paths, at no cost.
+constexpr double kLeastNoise = 2;
 
 constexpr size_t kFewestBounces = 256;  // in all: a guide is not made of less
 /// Most bounces of a cell: as many as the root of their number, within limits, so that more of them
@@ -129,7 +133,8 @@ PathGuide::PathGuide(const LitScene& scene, const CausticGuide& caustics, const 
         std::clamp(pixels / kTrialPixels, std::min(kFewestTrialPaths, pixels), kMostTrialPaths);
     PathLesson lesson = trace_lesson(scene, caustics, sky, lamps, *this, 0, trial);
     outcome_.second_moment = learn(lesson);
-    bool pays = outcome_.second_moment < kWorthTrying;
+    const bool is_noisy = lesson.second_moment > kLeastNoise * double(lesson.paths);
+    bool pays = is_noisy && outcome_.second_moment < kWorthTrying;
     if (pays) {
         // Learn in earnest, from directions that matter
         const int64_t paths =
