@@ -14,7 +14,7 @@ namespace {
 /// Whether paths take so many rays, through thousands of interfaces say, that the thousands of them
 /// which guides learn from would cost more than a render. The answer is deterministic.
 bool are_paths_too_long(const LitScene& scene) {
-    constexpr uint64_t kPaths = 16, kMostRays = 512;  // per path; a hundred events have 200
+    constexpr uint64_t kPaths = 16, kMostRays = 128;  // per path; sixty events have as many
     const FilmDescription& film = scene.description.film;
     const CausticGuide no_guide;
     Rng rng(0x6c6f6e67);
