@@ -3,7 +3,7 @@
 /// A place in a room gets most of its light from few directions: a floor in the sun, a wall beside
 /// a lamp, a door that stands ajar. The guide learns them once per scene, before anything is
 /// rendered, from paths of the camera (Müller et al. 2017, "Practical path guiding for efficient
-/// light-transport simulation"), with targets that count the noise of what is found, too (Rath et
+/// light-transport simulation"), and follows the root of the mean square of what they bring (Rath et
 /// al. 2020, "Variance-aware path guiding"). What a direction brings is not one path's estimate of
 /// it, but the mean of many paths that met surfaces around the place where it ends
 /// (`RadianceCache`): so few paths suffice. BSDF and guide share the samples, so that estimates
