@@ -4,10 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "core/hash.h"
 #include "core/parallel.h"
-#include "core/rng.h"
 #include "integrator/path.h"
+#include "integrator/training_places.h"
 
 namespace covtrace {
 
@@ -107,7 +106,6 @@ void append(PathLesson& lesson, const PathLesson& more) {
 PathLesson trace_lesson(const LitScene& scene, const CausticGuide& caustics, const SkyGuide& sky,
                         const LampGuide& lamps, const PathGuide& guide, int64_t first,
                         int64_t count) {
-    const FilmDescription& film = scene.description.film;
     std::vector<Chunk> chunks(static_cast<size_t>((count + kPathsPerChunk - 1) / kPathsPerChunk));
     parallel_for(int64_t(chunks.size()), [&](int64_t c) {
         Chunk& chunk = chunks[size_t(c)];
@@ -115,16 +113,12 @@ PathLesson trace_lesson(const LitScene& scene, const CausticGuide& caustics, con
         const int64_t end = std::min(count, (c + 1) * kPathsPerChunk);
         for (int64_t i = c * kPathsPerChunk; i < end; ++i) {
             const auto index = static_cast<uint64_t>(first + i);
-            Rng rng(hash_combine(kLessonKey, index));
-            const Vec2 u = rng.next_2d(), lens = rng.next_2d();
-            const Ray ray = scene.camera.generate_ray(
-                {u.x * float(film.width), u.y * float(film.height)}, lens, rng.next_float());
-            const Sampler sampler(kLessonKey, int(index & 0xffff), int(index >> 16), 0);
-            const PathResult result = trace_path(scene, caustics, ray, sampler,
+            const TrainingPath path = training_path(scene, kLessonKey, index);
+            const PathResult result = trace_path(scene, caustics, path.ray, path.sampler,
                                                  std::min(scene.description.max_depth, kDepth),
                                                  &record, &sky, &lamps, &guide);
             const float light = luminance(result.radiance - result.in_view);
-            chunk.blocks.push_back(block(u));
+            chunk.blocks.push_back(block(path.place));
             chunk.brightness.push_back(std::isfinite(light) ? light : 0);
             add(chunk.lesson, record, static_cast<uint32_t>(index));
         }

@@ -4,8 +4,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/rng.h"
 #include "integrator/path.h"
+#include "integrator/training_places.h"
 
 namespace covtrace {
 
@@ -15,16 +15,13 @@ namespace {
 /// which guides learn from would cost more than a render. The answer is deterministic.
 bool are_paths_too_long(const LitScene& scene) {
     constexpr uint64_t kPaths = 16, kMostRays = 128;  // per path; sixty events have as many
-    const FilmDescription& film = scene.description.film;
+    constexpr uint64_t kKey = 0x6c6f6e67;             // of their random numbers, "long"
     const CausticGuide no_guide;
-    Rng rng(0x6c6f6e67);
     uint64_t rays = 0;
     for (uint64_t i = 0; i < kPaths && rays <= kPaths * kMostRays; ++i) {
-        const Vec2 u = rng.next_2d(), lens = rng.next_2d();
-        const Ray ray = scene.camera.generate_ray(
-            {u.x * float(film.width), u.y * float(film.height)}, lens, rng.next_float());
-        const Sampler sampler(0x6c6f6e67, int(i), 0, 0);
-        rays += trace_path(scene, no_guide, ray, sampler, scene.description.max_depth, nullptr)
+        const TrainingPath path = training_path(scene, kKey, i);
+        rays += trace_path(scene, no_guide, path.ray, path.sampler, scene.description.max_depth,
+                           nullptr)
                     .rays.total();
     }
     return rays > kPaths * kMostRays;
