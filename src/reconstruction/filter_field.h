@@ -11,17 +11,19 @@
 
 namespace covtrace {
 
-/// Rules by which spectra become filters exp(-2 pi^2 c^2 p^T S p). Only `verified` has a limit by
-/// neighbours.
+/// Rules by which spectra become filters exp(-2 pi^2 c^2 p^T S p). `verified` and `predicted` are
+/// limited by narrower neighbours.
 enum class FilterRule {
-    verified,  ///< c grows with the count, so that a signal with the predicted spectrum is kept
-    matched,   ///< c = 1: the filter's spectrum has the signal's own covariance
-    thesis     ///< exp(-pi p^T S p), Belcour 2012, equation 5.7 as printed: c^2 = 1/(2 pi)
+    verified,   ///< as `predicted`, then wider, or mixed with raw pixels, where samples say so
+    predicted,  ///< c grows with the count, so that a signal with the predicted spectrum is kept
+    matched,    ///< c = 1: the filter's spectrum has the signal's own covariance
+    thesis      ///< exp(-pi p^T S p), Belcour 2012, equation 5.7 as printed: c^2 = 1/(2 pi)
 };
 
 template <>
 inline constexpr auto kEnumNames<FilterRule> =
     enum_names<FilterRule>({{FilterRule::verified, "verified"},
+                            {FilterRule::predicted, "predicted"},
                             {FilterRule::matched, "matched"},
                             {FilterRule::thesis, "thesis"}});
 

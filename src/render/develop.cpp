@@ -46,13 +46,13 @@ Image filtered_image(const RenderState& state) {
                               filters_of(parts.in_view, settings_in_view)};
     filters.has_in_view = std::any_of(parts.in_view.begin(), parts.in_view.end(),
                                       [](const PackedCovariance& c) { return c.weight > 0; });
-    const bool verified = state.filter == FilterRule::verified;
-    if (verified) {
+    const bool judged = state.filter == FilterRule::verified;
+    if (judged || state.filter == FilterRule::predicted) {
         covariance::limit_parts(filters.scattered, filters.in_view, light_known(parts.scattered),
                                 light_known(parts.in_view), settings, settings_in_view);
     }
     const FilteredImage image =
-        verified ? judged_image(film, filters) : gathered_image(film, filters);
+        judged ? judged_image(film, filters) : gathered_image(film, filters);
     const CovarianceBuffer all = merge(parts);
     const Prediction raw = preintegrated(all);
     return make_layers(film, state.display, state.has_holes,

@@ -72,7 +72,7 @@ class Layers(CliTest):
             self.assertAlmostEqual(sum(samples) / len(samples), 3.5, delta=0.035)
 
     def test_filters_by_their_constants(self):
-        rules = {rule: self.layers("--method", "covariance", "--spp", 16, "--filter", rule).pixels for rule in ("verified", "matched", "thesis")}
+        rules = {rule: self.layers("--method", "covariance", "--spp", 16, "--filter", rule).pixels for rule in ("verified", "predicted", "matched", "thesis")}
         compared = 0
         for matched, thesis in zip(*(zip(*(rules[r][f"filter.{s}"] for s in SYMMETRIC)) for r in ("matched", "thesis"))):
             self.assertLessEqual(matched[0], thesis[0] * 1.00001)
@@ -88,6 +88,10 @@ class Layers(CliTest):
         self.assertGreater(compared, 0)
         for pixel in range(len(rules["verified"]["R"])):
             self.assertEqual(rules["verified"]["raw.G"][pixel], rules["matched"]["raw.G"][pixel])
+        # Both have the same predicted filters, but only the first asks the samples whether to use them.
+        for s in SYMMETRIC:
+            self.assertEqual(rules["verified"][f"filter.{s}"], rules["predicted"][f"filter.{s}"])
+        self.assertNotEqual(rules["verified"]["G"], rules["predicted"]["G"])
 
     def test_every_voxel_occludes_more_than_the_nearest_at_their_distance(self):
         widths = {}

@@ -250,7 +250,8 @@ TEST(FilterField, SpectraBeyondFloatsGiveTheNarrowestFilter) {
     const std::vector<Sym2<float>> spectrum{
         {kMost, 0, 1}, {kInf, 0, kInf}, {kInf, kInf, kInf}, {kNan, 0, 1}, {1, kNan, 1}};
     const FilterSettings settings = covariance::filter_settings(16);
-    for (const FilterRule rule : {FilterRule::verified, FilterRule::matched, FilterRule::thesis})
+    for (const FilterRule rule :
+         {FilterRule::verified, FilterRule::predicted, FilterRule::matched, FilterRule::thesis})
         for (const auto& filter : filter_field(spectrum, 5, 1, rule, settings).covariance) {
             EXPECT_NEAR(filter.xx, settings.limits.s_min * settings.limits.s_min, 1e-6f);
             EXPECT_TRUE(std::isfinite(filter.xy) && std::isfinite(filter.yy));

@@ -31,7 +31,8 @@ TEST(FilmHeader, LyingHeadersAllocateNothing) {
 }
 
 TEST(FilmHeader, KeepsTheRuleOfTheFilters) {
-    for (const FilterRule rule : {FilterRule::verified, FilterRule::matched, FilterRule::thesis}) {
+    for (const FilterRule rule :
+         {FilterRule::verified, FilterRule::predicted, FilterRule::matched, FilterRule::thesis}) {
         RenderState s = random_state(Method::covariance, Stage::rounds, false, {0, 0, 3, 2});
         s.filter = rule;
         // Both formats have the same arrays of this method.
