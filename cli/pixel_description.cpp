@@ -193,7 +193,7 @@ std::string to_text(const PixelDescription& p) {
             format_number(std::round(p.spectrum->angle * 10) / 10),
             format_number(p.spectrum->minor));
     if (p.hypercube) {
-        text += "samples per unit hypercube (pixel, aperture, shutter): sqrt|S + W| = " +
+        text += "samples per unit hypercube (pixel, whole aperture, shutter): pi sqrt|S + W| = " +
                 format_number(p.hypercube->density);
         if (p.hypercube->k)
             text += ", times k = " + format_number(*p.hypercube->k) + ": " +

@@ -32,11 +32,12 @@ struct AxisBandwidth {
     std::string words;  ///< meaning of the value, such as "one period in 4 pixels"
 };
 
-/// The count N = k sqrt|S + W| of samples in one pixel (Belcour 2012, section 5.1, equation 5.3): S
-/// is the pixel's covariance, W that of the windows of lens and shutter, without which one constant
-/// axis would make the count vanish (covariance::hypercube_density).
+/// The count N = k pi sqrt|S + W| of samples in one pixel (Belcour 2012, section 5.1,
+/// equation 5.3): S is the pixel's covariance, W that of the windows of lens and shutter, without
+/// which one constant axis would make the count vanish. Both count per lens radius, of which an
+/// aperture of unit area has 1/sqrt(pi): hence pi (covariance::hypercube_density).
 struct HypercubeCount {
-    double density = 0;       ///< sqrt|S + W| per unit hypercube: pixel x aperture x shutter
+    double density = 0;       ///< pi sqrt|S + W| per unit hypercube: pixel x aperture x shutter
     std::optional<double> k;  ///< absent where the image was not planned by this density
 };
 

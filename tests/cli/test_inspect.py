@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import unittest
 
 import exr
@@ -91,7 +92,14 @@ class Inspect(CliTest):
             self.assertAlmostEqual(found["hypercube"]["k"] / float(k), 1, places=4)
             self.assertAlmostEqual(found["hypercube"]["samples"], found["hypercube"]["k"] * found["hypercube"]["sqrt_det"], places=6)
         text = self.run_program("inspect", "out.exr", "--pixel", "21,17").stdout
-        self.assertRegex(text, r"samples per unit hypercube .*sqrt\|S \+ W\| = \S+, times k = ")
+        told = re.search(r"samples per unit hypercube .*: pi sqrt\|S \+ W\| = (\S+), times k = (\S+): (\S+)\n", text)
+        self.assertIsNotNone(told, text)
+        found = self.inspect("--pixel", "21,17")["pixel"]
+        for text, name in zip(told.groups(), ("sqrt_det", "k", "samples")):
+            self.assertAlmostEqual(float(text) / found["hypercube"][name], 1, places=3)
+        # The matrix that is printed below counts per lens radius, bandwidths over the aperture: two radii.
+        bandwidth = {b["axis"]: b["value"] for b in found["bandwidth"]}
+        self.assertAlmostEqual(bandwidth["lens x"], 2 * math.sqrt(found["covariance"][2][2]), places=4)
         self.rendered("--spp", "6", "--resolution", "40x30")
         self.assertEqual(set(self.inspect("--pixel", "21,17")["pixel"]["hypercube"]), {"sqrt_det"})
 
