@@ -34,6 +34,7 @@ Section helicopter(Workshop& workshop) {
     s.tables.push_back(comparison_table(study));
     s.data = to_json(study);
     s.resolution = study.scene->resolution;
+    s.counts = study_counts(workshop);
     add_equal_time_claims(s, study, {{"covariance", 2.5}, {"hybrid", 4.0}}, workshop);
     s.notes.push_back(
         "The thesis' scene is not published: ours is a scene of its own with the same content. The "

@@ -74,6 +74,9 @@ std::string section_html(const Section& section) {
     std::string s =
         fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<p class=\"thesis\">{}</p>\n",
                     escaped(section.name), escaped(section.title), escaped(section.thesis));
+    if (!section.counts.empty())
+        s += fmt::format("<p>{}x{} pixels; {}.</p>\n", section.resolution[0], section.resolution[1],
+                         escaped(section.counts));
     if (!section.failure.empty())
         s += "<p class=\"no\">Not run: " + escaped(section.failure) + "</p>\n";
     for (const Figure& f : section.figures) {
@@ -141,7 +144,8 @@ void write_results(const std::vector<Section>& sections, const PageFacts& facts,
     for (const auto& [name, value] : facts.facts) all["facts"][name] = value;
     for (const Section& section : sections) {
         json& e = all["experiments"][section.name];
-        e = {{"title", section.title},     {"resolution", section.resolution},
+        e = {{"title", section.title},     {"thesis", section.thesis},
+             {"counts", section.counts},   {"resolution", section.resolution},
              {"notes", section.notes},     {"data", section.data},
              {"seconds_cpu", section.cpu}, {"seconds", section.wall},
              {"claims", json::object()},   {"figures", json::array()},

@@ -174,15 +174,15 @@ void add_notes(Section& s) {
         "pixels "
         "without any sample are gathered from their neighbours.");
     s.notes.push_back(
-        "Equation 5.7 prints exp(-pi p'Sp). With S the covariance of the spectrum in cycles per "
+        "Equation 5.7 prints exp(-π pᵀSp). With S the covariance of the spectrum in cycles per "
         "pixel "
         "that is a filter whose spectrum is narrower than the signal's by a factor of 2.5: it "
         "keeps 4 "
         "% of a sine wave at the edge of the spectrum (covariance/README.md has the constants). It "
         "would be consistent with an S that stands for 2 pi times the covariance. The text asks "
         "for "
-        "the Gaussian with the signal's own covariance, exp(-2 pi² p'Sp), and the author's library "
-        "filters with it (CovarianceTracing, second tutorial): --filter matched.");
+        "the Gaussian with the signal's own covariance, exp(-2π² pᵀSp), and the author's later "
+        "library filters with it (CovarianceTracing, second tutorial): --filter matched.");
 }
 
 }  // namespace
@@ -196,11 +196,14 @@ Section pipeline(Workshop& workshop) {
         "of "
         "samples, below one sample a pixel where little varies, and the filters; equation 5.7 is "
         "the "
-        "filter, A exp(-pi p' S p).";
+        "filter, A exp(-π pᵀ S p).";
     LoadedScene& scene = shared_scene(workshop, kSnookerScene);
     const Reference& reference = shared_reference(workshop, kSnookerScene);
     const Renders renders = render_all(workshop, scene);
     s.resolution = scene.resolution;
+    s.counts = fmt::format(
+        "counts at 2 samples a pixel, all else at {:g}, seed {}; reference of 2 x {:g}",
+        workshop.settings.spp, workshop.settings.seeds.front(), workshop.settings.reference_spp);
     s.figures.push_back(whole_way(renders.verified));
     s.figures.push_back(buffer_figure(renders, scene.resolution));
     s.figures.push_back(filters_figure(renders, scene.resolution, workshop.settings.spp));

@@ -98,6 +98,9 @@ Section progressive(Workshop& workshop) {
 
     const auto size = scene.resolution;
     s.resolution = size;
+    s.counts = fmt::format("{:g} samples a pixel with the limit, seeds {}; reference of 2 x {:g}",
+                           workshop.settings.spp, text_of(workshop.settings.seeds),
+                           workshop.settings.reference_spp);
     const Image &a = capped.first.result.image, &b = demand.first.result.image;
     Sheet sheet(size, 540.0f / float(size[0]), 2, 2, {false, true});
     const std::vector<std::string> commands{capped.first.command, demand.first.command};
@@ -113,8 +116,8 @@ Section progressive(Workshop& workshop) {
         {"progressive",
          fmt::format(
              "The thesis' density with a limit of {} samples a pixel, and the same time spent "
-             "in rounds that sample on demand. The frame is the part of the image where the limit "
-             "withholds the largest share of what the density asks for.",
+             "in rounds that sample on demand. The frame is the part of the image, a fifth of each "
+             "side, where the limit withholds the largest share of what the density asks for.",
              *options.max_spp),
          sheet.drawing, commands});
     s.figures.push_back(

@@ -46,12 +46,6 @@ std::vector<const Experiment*> chosen(const std::vector<std::string>& names) {
     return list;
 }
 
-std::string seeds_text(const std::vector<uint64_t>& seeds) {
-    std::string s;
-    for (const uint64_t seed : seeds) s += (s.empty() ? "" : ", ") + std::to_string(seed);
-    return s;
-}
-
 PageFacts facts_of(const Workshop& workshop, const std::string& command, double wall,
                    bool complete) {
     PageFacts f;
@@ -61,7 +55,7 @@ PageFacts facts_of(const Workshop& workshop, const std::string& command, double 
     f.facts = {
         {"program", fmt::format("covtrace {} ({})", std::string(kVersion), std::string(kCommit))},
         {"processor threads", std::to_string(std::thread::hardware_concurrency())},
-        {"seeds", seeds_text(workshop.settings.seeds)},
+        {"seeds", text_of(workshop.settings.seeds)},
         {"seconds so far", fmt::format("{:.0f}, CPU {:.0f}", wall, workshop.cpu())},
         {"times",
          "CPU seconds (user and system) of the render, the scene being loaded and its textures "

@@ -238,7 +238,7 @@ void add_alias(Section& s, const std::vector<Alias>& aliases, const std::string&
     s.claims.push_back({"sampling_replicas",
                         "energy that replicas leave behind the filter with the signal's covariance",
                         "drawn, without figures",
-                        "at most the sum of exp(-½ k' S^-1 k) over the replicas: " + asked, found,
+                        "at most the sum of exp(-½ qᵀ S⁻¹ q) over the replicas q: " + asked, found,
                         aliases.back().measured, holds, command});
 }
 
@@ -255,6 +255,9 @@ Section sampling(Workshop& workshop) {
     LoadedScene& scene = shared_scene(workshop, kSnookerScene);
     const Reference& reference = shared_reference(workshop, kSnookerScene);
     s.resolution = scene.resolution;
+    s.counts = fmt::format("prediction of {:g} samples a pixel, seed {}; light of 2 x {:g}",
+                           workshop.settings.spp, workshop.settings.seeds.front(),
+                           workshop.settings.reference_spp);
     RenderOptions options;
     options.method = Method::covariance;
     options.spp = workshop.settings.spp;
@@ -278,8 +281,8 @@ Section sampling(Workshop& workshop) {
         "two deviations of the predicted spectrum (orange) and of its replicas (cyan), and half "
         "the rate (red). Below: the samples through the Gaussian with the signal's covariance "
         "(c = 1), and the energy that differs from all pixels through it (mean over 16 places of "
-        "the "
-        "comb).",
+        "the comb). At two deviations the replicas' ellipses overlap at rates 2 and 3 and touch at "
+        "4.",
         patch.bounds.x0, patch.bounds.y0, patch.bounds.x1, patch.bounds.y1, patches.size(),
         patch.tightness());
     s.figures.push_back(std::move(figure));
@@ -290,7 +293,11 @@ Section sampling(Workshop& workshop) {
         "A patch's predicted spectrum is the mean of its pixels' spectra after lens and shutter, "
         "weighted by the light, plus the window's. In one dimension the teeth of the comb are "
         "1/a apart for samples a pixels apart; at m samples per deviation they are m deviations "
-        "apart. In five dimensions that makes N = m^5 √|S|, the thesis' count with k = m^5.");
+        "apart. In five dimensions that makes N = m^5 √|S|, the thesis' count with k = m^5. Half "
+        "the rate is m/2 deviations of the amplitudes, so that a Gaussian has the share "
+        "erfc(m/2) of its energy beyond it on one axis, and at most twice that on both: the "
+        "bounds of the first claim. In the bounds of the second q is the place of a replica in "
+        "frequency and S the predicted spectrum.");
     return s;
 }
 

@@ -41,6 +41,7 @@ struct Section {
     std::string name, title;
     std::string thesis;               ///< the result that Belcour 2012 shows
     std::array<int, 2> resolution{};  ///< of its images, pixels
+    std::string counts;               ///< samples per pixel and seeds, in words
     std::vector<std::string> notes;  ///< remarks; also: parts that could not be reproduced, and why
     std::vector<Figure> figures;
     std::vector<Table> tables;

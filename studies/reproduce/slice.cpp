@@ -264,6 +264,9 @@ Section slice(Workshop& workshop) {
         "over time takes the line at frequency 0 of time, which is the image's spectrum.";
     const Study study = studied(workshop);
     s.resolution = workshop.settings.board;
+    s.counts = fmt::format("prediction of {:g} samples a pixel, image of {:g}, seed {}",
+                           workshop.settings.board_spp, workshop.settings.reference_spp,
+                           workshop.settings.seeds.front());
     const std::string command = reproduce_command(workshop, s.name);
     s.figures.push_back(
         {"slice",
@@ -272,10 +275,14 @@ Section slice(Workshop& workshop) {
              "pixels to the right in a shutter interval; the slice shows three intervals, the "
              "middle one is the shutter's. Right: amplitudes of the deviations from the mean in a "
              "Gaussian window, a hundredth of the largest at black, frequencies of the image "
-             "right, of time down; two deviations of the predicted covariance, the mean over the "
-             "rows, with the windows'. Motion makes a line of the spectrum, the shutter smears it "
-             "along time, and "
-             "the image gets what is on the line at frequency 0 of time.",
+             "right, of time down, 0 in the middle (grey is logarithmic, two decades); two "
+             "deviations of the predicted covariance, the mean over the rows, with the windows'. "
+             "Below: the row's luminance at the middle instant (cyan) and as the shutter "
+             "integrates it (red), and the root mean square amplitudes of nine rows of both, with "
+             "the Gaussians of the predicted variances before the shutter (grey) and behind it "
+             "(orange). The mean is taken out, hence the dip at 0. Motion makes a line of the "
+             "spectrum, the shutter smears it along time, and the image gets what is on the line "
+             "at frequency 0 of time.",
              study.way),
          drawn(study),
          {study.prediction.command, study.image.command, command}});
@@ -284,7 +291,9 @@ Section slice(Workshop& workshop) {
         "The measured covariance is that of Gaussian amplitudes with the energies of nine rows' "
         "spectra, less the window's own. The shutter is a box, whose spectrum has side lobes: "
         "they let more of the image's high frequencies through than the Gaussian of the same "
-        "variance that the prediction takes for it.");
+        "variance that the prediction takes for it. Both predictions are too low, which makes "
+        "filters too wide: behind the shutter the side lobes are a reason; for the one before it "
+        "none was found.");
     return s;
 }
 

@@ -26,19 +26,10 @@ Breakdown breakdown_of(const Timed& timed, const SceneStudy& study) {
     b.analysis = phase(Phase::covariance) - delivered + phase(Phase::grid) +
                  phase(Phase::outlines) + b.spectra + phase(Phase::plan);
     b.radiance = phase(Phase::radiance) + delivered;
+    b.delivered = delivered;
     b.reconstruction = phase(Phase::reconstruction);
     b.total = timed.cpu;
     return b;
-}
-
-/// The filters that are compared: Belcour 2012, section 5.1, prints one and describes another; the
-/// last is ours.
-constexpr std::array kFilters{FilterRule::thesis, FilterRule::matched, FilterRule::verified};
-
-std::string label_of(FilterRule filter) {
-    return filter == FilterRule::thesis    ? "equation 5.7 as printed"
-           : filter == FilterRule::matched ? "matched filter, c = 1"
-                                           : "verified filter";
 }
 
 /// A method of ours under its name, and whether samples go where earlier ones left noise.
@@ -51,16 +42,17 @@ constexpr std::array kMethods{MethodChoice{"covariance", Method::covariance, fal
                               MethodChoice{"covariance on demand", Method::covariance, true},
                               MethodChoice{"hybrid", Method::hybrid, false}};
 
-RenderOptions thesis_options(const Workshop& workshop, const ThesisChoices& choices, int cap,
-                             FilterRule filter) {
+/// The choices of Belcour 2012, section 5.1, with so many samples beside the covariance paths.
+RenderOptions thesis_options(const Workshop& workshop, const ThesisChoices& choices, double spp,
+                             int cap, FilterRule filter) {
     RenderOptions o;
     o.method = Method::covariance;
-    o.spp = workshop.settings.spp + choices.cov_spp;
+    o.spp = spp + choices.cov_spp;
     o.cov_spp = choices.cov_spp;
     o.max_spp = cap;
     o.density = DensityRule::thesis;
     o.filter = filter;
-    o.occlusion = Occlusion::grid;
+    o.occlusion = Occlusion::voxels;
     o.brdf_covariance = BrdfCovariance::global;
     o.seed = workshop.settings.seeds.front();
     return o;
@@ -77,19 +69,42 @@ double interpolated_error(const UniformCurve& curve, double spp) {
     return points.back().error;
 }
 
-ThesisStudy thesis_study(Workshop& workshop, const SceneStudy& s, const ThesisChoices& choices,
-                         int cap, FilterRule filter) {
-    ThesisStudy t;
-    t.label = fmt::format("thesis' choices, at most {}, {}", cap, label_of(filter));
-    workshop.tell(s.name + ": " + t.label);
-    t.cap = cap;
-    t.filter = filter;
-    t.timed = workshop.render(*s.scene, thesis_options(workshop, choices, cap, filter));
-    t.error = s.reference->error(t.timed.result.image);
-    t.breakdown = breakdown_of(t.timed, s);
-    t.uniform_error_same_time = interpolated_error(*s.curve, s.curve->spp_in(t.timed.cpu));
-    t.uniform_cpu_same_error = s.curve->spp_for(t.error) * s.curve->cpu_per_spp();
-    return t;
+void add_variant(Workshop& workshop, SceneStudy& s, const std::string& name,
+                 const std::string& label, const RenderOptions& options) {
+    workshop.tell(s.name + ": " + label);
+    VariantStudy v{name, label, options, workshop.render(*s.scene, options), 0, 0, 0, {}};
+    v.error = s.reference->error(v.timed.result.image);
+    v.breakdown = breakdown_of(v.timed, s);
+    v.uniform_error_same_time = interpolated_error(*s.curve, s.curve->spp_in(v.timed.cpu));
+    v.uniform_cpu_same_error = s.curve->spp_for(v.error) * s.curve->cpu_per_spp();
+    s.variants.push_back(std::move(v));
+}
+
+/// The filters of the text, printed and described, and ours, without what the samples say and with
+/// it.
+void add_variants(Workshop& workshop, SceneStudy& s, const ThesisChoices& choices) {
+    RenderOptions alone;
+    alone.method = Method::covariance;
+    alone.spp = workshop.settings.spp;
+    alone.filter = FilterRule::predicted;
+    alone.seed = workshop.settings.seeds.front();
+    add_variant(workshop, s, "predicted", "covariance, predicted filters alone", alone);
+    const auto add = [&](const std::string& name, const std::string& label, double spp, int cap,
+                         FilterRule filter) {
+        add_variant(workshop, s, name, fmt::format("thesis' choices, at most {}, {}", cap, label),
+                    thesis_options(workshop, choices, spp, cap, filter));
+    };
+    const double spp = workshop.settings.spp;
+    add("thesis_printed", "equation 5.7 as printed", spp, choices.cap, FilterRule::thesis);
+    add("thesis_matched", "c = 1", spp, choices.cap, FilterRule::matched);
+    add("thesis_predicted", "our predicted filters alone", spp, choices.cap, FilterRule::predicted);
+    add("thesis_verified", "our filters", spp, choices.cap, FilterRule::verified);
+    if (!choices.budget_cap) return;
+    const double budget = workshop.settings.thesis_spp;
+    const int cap = *choices.budget_cap;
+    add("budget_matched", "c = 1, the thesis' budget", budget, cap, FilterRule::matched);
+    add("budget_predicted", "our predicted filters alone, the thesis' budget", budget, cap,
+        FilterRule::predicted);
 }
 
 }  // namespace
@@ -126,19 +141,30 @@ SceneStudy& study(Workshop& workshop, const std::string& name, const ThesisChoic
             m.equal_error =
                 match_error(workshop, *s.scene, *s.reference, *s.curve, m.ours.mean_error());
         }
-        for (const int cap : choices.caps)
-            for (const FilterRule filter : kFilters)
-                s.thesis.push_back(thesis_study(workshop, s, choices, cap, filter));
+        add_variants(workshop, s, choices);
         return s;
     });
+}
+
+const VariantStudy& SceneStudy::variant(const std::string& wanted) const {
+    for (const VariantStudy& v : variants)
+        if (v.name == wanted) return v;
+    throw Error(ErrorKind::internal, "a study without the variant " + wanted);
+}
+
+std::string time_of_same_error(const SceneStudy& s, const VariantStudy& v) {
+    return std::isfinite(v.uniform_cpu_same_error)
+               ? fmt::format("{:.2f} s (from the rounds)", v.uniform_cpu_same_error)
+               : fmt::format("more than {:.0f} samples", s.curve->points().back().spp);
 }
 
 Table comparison_table(const SceneStudy& s) {
     Table t;
     t.caption = fmt::format(
-        "Trimmed relMSE and CPU seconds (means over the seeds; ratios are the path tracer over "
-        "ours, "
-        "geometric mean with the least and the most). The reference's own error is {:.5f}.",
+        "Trimmed relMSE and CPU seconds. The first three rows: means over the seeds, ratios the "
+        "path tracer over ours, geometric mean over the seeds with the least and the most. The "
+        "others: the first seed. From the rounds: on the path tracer's curve of the first seed, "
+        "between its rounds or along its last two. The reference's own error is {:.5f}.",
         s.reference->own_error());
     t.columns = {"method",
                  "samples per pixel",
@@ -172,17 +198,15 @@ Table comparison_table(const SceneStudy& s) {
         t.commands.push_back(same_time.first.command);
         if (m.equal_error.found) t.commands.push_back(m.equal_error.uniform.first.command);
     }
-    for (const ThesisStudy& c : s.thesis) {
-        const bool reached = std::isfinite(c.uniform_cpu_same_error);
+    for (const VariantStudy& v : s.variants) {
+        const bool reached = std::isfinite(v.uniform_cpu_same_error);
         t.rows.push_back(
-            {c.label, fmt::format("{:.1f}", c.timed.result.statistics.samples_per_pixel),
-             fmt::format("{:.2f}", c.timed.cpu), fmt::format("{:.5f}", c.error),
-             fmt::format("{:.5f} (from the rounds)", c.uniform_error_same_time),
-             fmt::format("{:.2f}", c.uniform_error_same_time / c.error),
-             reached ? fmt::format("{:.2f} s (from the rounds)", c.uniform_cpu_same_error)
-                     : "not reached",
-             reached ? fmt::format("{:.2f}", c.uniform_cpu_same_error / c.timed.cpu) : ""});
-        t.commands.push_back(c.timed.command);
+            {v.label, fmt::format("{:.1f}", v.timed.result.statistics.samples_per_pixel),
+             fmt::format("{:.2f}", v.timed.cpu), fmt::format("{:.5f}", v.error),
+             fmt::format("{:.5f} (from the rounds)", v.uniform_error_same_time),
+             fmt::format("{:.2f}", v.uniform_error_same_time / v.error), time_of_same_error(s, v),
+             reached ? fmt::format("{:.2f}", v.uniform_cpu_same_error / v.timed.cpu) : ""});
+        t.commands.push_back(v.timed.command);
     }
     return t;
 }
@@ -199,6 +223,7 @@ nlohmann::json to_json(const SceneStudy& s) {
         return json{{"analysis", b.analysis},
                     {"spectra", b.spectra},
                     {"radiance", b.radiance},
+                    {"delivered", b.delivered},
                     {"reconstruction", b.reconstruction},
                     {"total", b.total}};
     };
@@ -218,15 +243,18 @@ nlohmann::json to_json(const SceneStudy& s) {
             o["equal_error_mismatch"] = m.equal_error.mismatch;
         }
     }
-    for (const ThesisStudy& t : s.thesis)
-        j["thesis"].push_back({{"label", t.label},
-                               {"cap", t.cap},
-                               {"filter", name_of(t.filter)},
-                               {"k", optional_number(t.timed.result.statistics.density_factor)},
-                               {"cpu", t.timed.cpu},
-                               {"error", t.error},
-                               {"spp", t.timed.result.statistics.samples_per_pixel},
-                               {"breakdown", parts(t.breakdown)}});
+    for (const VariantStudy& v : s.variants)
+        j["variants"][v.name] = {
+            {"label", v.label},
+            {"filter", name_of(v.options.filter)},
+            {"k", optional_number(v.timed.result.statistics.density_factor)},
+            {"cpu", v.timed.cpu},
+            {"error", v.error},
+            {"spp", v.timed.result.statistics.samples_per_pixel},
+            {"uniform_error_same_time", v.uniform_error_same_time},
+            {"uniform_cpu_same_error",
+             std::isfinite(v.uniform_cpu_same_error) ? json(v.uniform_cpu_same_error) : json()},
+            {"breakdown", parts(v.breakdown)}};
     return j;
 }
 
