@@ -91,6 +91,7 @@ class Reproduce(CliTest):
         page = (Path(self.folder) / "out/index.html").read_text()
         for name, experiment in results["experiments"].items():
             self.assertNotIn("failure", experiment, name)
+            self.assertIn("seed", experiment["counts"], name)
             self.assertIn(f'<section id="{name}">', page)
             for claim in experiment["claims"].values():
                 self.assertIn("covtrace re", claim["command"])
@@ -101,6 +102,15 @@ class Reproduce(CliTest):
         self.assertEqual(set(study["methods"]), {"covariance", "covariance on demand", "hybrid"})
         commands = [c for t in results["experiments"]["snooker"]["tables"] for c in t["commands"] if "--progressive" in c]
         self.assertEqual(len(commands), 1, commands)
+        # From ours towards Belcour's choices, which take every voxel and, once, the samples he had time for.
+        variants = study["variants"]
+        self.assertEqual(set(variants), {"predicted", "thesis_printed", "thesis_matched", "thesis_predicted", "thesis_verified",
+                                         "budget_matched", "budget_predicted"})
+        self.assertEqual([v["filter"] for v in variants.values()],
+                         ["matched", "predicted", "predicted", "matched", "predicted", "thesis", "verified"])
+        self.assertEqual((variants["thesis_matched"]["spp"], variants["budget_matched"]["spp"]), (19, 29))
+        voxels = [c for c in results["experiments"]["snooker"]["tables"][0]["commands"] if "--occlusion voxels" in c and "--brdf-covariance global" in c]
+        self.assertEqual(len(voxels), 6, voxels)
         for method in study["methods"].values():
             self.assertGreater(method["breakdown"]["total"], 0)
         # The references are kept for the next run.
