@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -32,7 +31,6 @@ struct MeasureArguments {
     SceneOverrides overrides;
     ReadOptions reading;
     MeasureOptions measure;
-    std::optional<int> max_depth;
     int voxels = RenderOptions{}.voxels, threads = 0;
     uint32_t paths = 1024;
     bool json = false, quiet = false;
@@ -168,7 +166,7 @@ int measure_pixel(MeasureArguments a) {
 
     // Predict, measure, and compare by filters
     const SensorRays rays(scene, {float(pixel[0]) + 0.5f, float(pixel[1]) + 0.5f});
-    const int depth = a.max_depth.value_or(scene.description.max_depth);
+    const int depth = scene.description.max_depth;
     const PathReplay replay(
         scene, spectra,
         {grid ? &*grid : nullptr, query ? &*query : nullptr, a.occlusion == Occlusion::voxels},
@@ -211,8 +209,6 @@ void add_measure(CLI::App& app, Invocation& invocation) {
     add_choice(c, "--brdf-covariance", a->brdf_covariance,
                "a BRDF's frequencies: at the path, or its peak's");
     add_whole(c, "--voxels", a->voxels, 1, 2048, "width of the occlusion grid (default 200)");
-    add_whole(c, "--max-depth", a->max_depth, 0, std::numeric_limits<int>::max(),
-              "most scattering events (default: the scene's)");
     c->add_option_function<std::string>(
          "--seed", [a](const std::string& text) { a->measure.seed = parse_seed("--seed", text); },
          "seed of all random numbers (default 0)")

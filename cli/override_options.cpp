@@ -1,5 +1,7 @@
 #include "cli/override_options.h"
 
+#include <limits>
+
 #include "cli/options.h"
 #include "cli/values.h"
 
@@ -62,6 +64,8 @@ void add_override_options(CLI::App* c, SceneOverrides& o, ReadOptions& r) {
                  SceneOverrides::kLeastOfLens);
     add_positive(c, "--fstop", o.f_number, 1e30, "lens by f-number (full-frame sensor, metres)",
                  SceneOverrides::kLeastOfLens);
+    add_whole(c, "--max-depth", o.max_depth, 0, std::numeric_limits<int>::max(),
+              "most scattering events (default: the scene's)");
     add_choice_options(c, o, r);
     add_environment(c, o);
 }

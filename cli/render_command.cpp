@@ -137,7 +137,7 @@ SceneDescription read_described(RenderArguments& a) {
     a.reading.shutter = a.overrides.shutter;
     SceneDescription description = read_scene(a.scene, a.reading);
     apply(a.overrides, description);
-    if (a.preset) apply(*a.preset, description, a.options);
+    if (a.preset) apply(*a.preset, a.overrides, description, a.options);
     return description;
 }
 

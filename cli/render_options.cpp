@@ -1,7 +1,5 @@
 #include "cli/render_options.h"
 
-#include <limits>
-
 #include "cli/display_options.h"
 #include "cli/options.h"
 #include "cli/override_options.h"
@@ -41,8 +39,6 @@ void add_method_options(CLI::App* c, RenderArguments& a) {
     add_choice(c, "--texture-bandwidth", a.options.texture_bandwidth,
                "textures' frequencies: own, or the image's");
     add_choice(c, "--filter", a.options.filter, "its constant: verified, c = 1, thesis' eq. 5.7");
-    add_whole(c, "--max-depth", a.options.max_depth, 0, std::numeric_limits<int>::max(),
-              "most scattering events (default: the scene's)");
     add_choice(c, "--guides", a.options.guides, "learnt guides to light: where they pay, or none");
     c->add_option_function<std::string>(
          "--seed", [&a](const std::string& text) { a.options.seed = parse_seed("--seed", text); },

@@ -29,10 +29,6 @@ RenderOptions render_options(const py::dict& o) {
     r.max_spp = positive<int>(o, "max_spp");
     r.voxels = value_of<int>(o, "voxels", "a whole number");
     require(r.voxels >= 1 && r.voxels <= 2048, "voxels must be from 1 to 2048");
-    if (is_given(o, "max_depth")) {
-        r.max_depth = value_of<int>(o, "max_depth", "a whole number");
-        require(*r.max_depth >= 0, "max_depth must not be negative");
-    }
     r.progressive = value_of<bool>(o, "progressive", "True or False");
     r.even_counts = value_of<bool>(o, "even_counts", "True or False");
     r.seed = value_of<uint64_t>(o, "seed", "a whole number from 0 to 2^64 - 1");
@@ -124,6 +120,10 @@ SceneOverrides scene_overrides(const py::dict& o) {
         s.shutter = checked_shutter(value_of<std::array<float, 2>>(o, "shutter", "(begin, end)"));
     s.focal_distance = positive<float>(o, "focus", SceneOverrides::kLeastOfLens);
     s.f_number = positive<float>(o, "fstop", SceneOverrides::kLeastOfLens);
+    if (is_given(o, "max_depth")) {
+        s.max_depth = value_of<int>(o, "max_depth", "a whole number");
+        require(*s.max_depth >= 0, "max_depth must not be negative");
+    }
     if (is_given(o, "camera")) s.camera = camera_override(o["camera"]);
     if (is_given(o, "environment")) s.environment = environment_override(o);
     if (is_given(o, "environment_rotation")) {

@@ -127,7 +127,7 @@ Rendered render_description(SceneDescription description, RenderOptions options,
     options.denoiser = denoiser.denoiser;
     const auto told = std::ptrdiff_t(description.warnings.size());
     apply(overrides, description);
-    if (bundle) apply(*bundle, description, options);
+    if (bundle) apply(*bundle, overrides, description, options);
     // Stand-ins for a camera or lights are known only now.
     Warnings warnings(description.warnings.begin() + told, description.warnings.end());
     FilmFiles films(deliverables.films, [&warnings](const std::string& text) {

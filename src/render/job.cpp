@@ -19,7 +19,7 @@ PassContext pass_context(const RenderScene& scene, const RenderOptions& options)
     const SceneDescription& d = scene.description;
     return {scene,
             options.seed,
-            options.max_depth.value_or(d.max_depth),
+            d.max_depth,
             imaging_scale(d),
             d.film.max_component_value,
             d.film.sensor,

@@ -66,8 +66,7 @@ struct RenderOptions {
     BrdfCovariance brdf_covariance = BrdfCovariance::local;
     TextureBandwidth texture_bandwidth = TextureBandwidth::own;
     FilterRule filter = FilterRule::verified;
-    std::optional<int> max_spp;    ///< most samples in any pixel; default 16 times the average
-    std::optional<int> max_depth;  ///< default: the scene's
+    std::optional<int> max_spp;  ///< most samples in any pixel; default 16 times the average
     /// Samples on demand, covariance only: each round samples where the noise of the samples so far
     /// asks for it, and `max_spp` limits the samples of a pixel in one round, not in all.
     bool progressive = false;

@@ -62,6 +62,7 @@ void apply(const SceneOverrides& overrides, SceneDescription& scene) {
                               : 0.012f / std::tan(scene.camera.fov * kPi / 360);
         scene.camera.lens_radius = focal_length / (2 * *overrides.f_number);
     }
+    if (overrides.max_depth) scene.max_depth = *overrides.max_depth;
     if (overrides.environment) replace_environment(*overrides.environment, scene);
     complete(scene);
     change_environment(overrides, scene);

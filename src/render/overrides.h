@@ -32,6 +32,7 @@ struct SceneOverrides {
     std::optional<std::array<float, 2>> shutter;
     std::optional<float> focal_distance;
     std::optional<float> f_number;
+    std::optional<int> max_depth;  ///< most scattering events of a path, at least 0
     std::optional<CameraOverride> camera;
     std::optional<EnvironmentOverride> environment;
     /// Degrees by which the infinite lights are turned about their poles: counterclockwise as seen

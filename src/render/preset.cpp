@@ -20,13 +20,14 @@ PresetValues values_of(Preset preset) {
     return {512, std::nullopt, true};
 }
 
-void apply(Preset preset, const SceneDescription& scene, RenderOptions& options) {
+void apply(Preset preset, const SceneOverrides& overrides, SceneDescription& scene,
+           RenderOptions& options) {
     const PresetValues values = values_of(preset);
     const bool has_budget =
         options.spp || options.seconds || options.error || options.density_factor;
     if (!has_budget) options.spp = values.spp;
-    if (!options.max_depth && values.most_depth)
-        options.max_depth = std::min(scene.max_depth, *values.most_depth);
+    if (!overrides.max_depth && values.most_depth)
+        scene.max_depth = std::min(scene.max_depth, *values.most_depth);
 }
 
 }  // namespace covtrace

@@ -5,6 +5,7 @@
 
 #include "core/enum_names.h"
 #include "render/options.h"
+#include "render/overrides.h"
 
 namespace covtrace {
 
@@ -26,8 +27,9 @@ struct PresetValues {
 };
 PresetValues values_of(Preset preset);
 
-/// Sets samples and depth as the preset says, where the options leave them open. The denoiser is
-/// its caller's to leave out.
-void apply(Preset preset, const SceneDescription& scene, RenderOptions& options);
+/// Sets the samples and the scene's depth as the preset says, where options and overrides, which
+/// have been applied before, leave them open. The denoiser is its caller's to leave out.
+void apply(Preset preset, const SceneOverrides& overrides, SceneDescription& scene,
+           RenderOptions& options);
 
 }  // namespace covtrace

@@ -49,7 +49,7 @@ RenderIdentity render_identity(const RenderScene& scene, const RenderOptions& op
         {"--seed", std::to_string(options.seed)},
         {"--resolution", text(d.film.width) + "x" + text(d.film.height)},
         {"--crop", text(render_region(d.film))},
-        {"--max-depth", text(options.max_depth.value_or(d.max_depth))},
+        {"--max-depth", text(d.max_depth)},
         {"--shutter", text(d.camera.shutter_open) + "," + text(d.camera.shutter_close)},
         {"--focus", text(d.camera.focal_distance)},
         {"lens radius (--fstop)", text(d.camera.lens_radius)},

@@ -32,6 +32,18 @@ class Presets(CliTest):
         self.assertTrue(self.same(["--preset", "draft", "--max-depth", "20"], ["--spp", "4"]))
         self.assertTrue(self.same(["--preset", "preview"], ["--spp", "32"], scene=TINY))  # 4 is less than 8
 
+    def test_guides_are_learnt_at_the_depth_that_is_rendered(self):
+        def lamps(*arguments, depth):
+            scene = TINY.replace('"integer maxdepth" 4', f'"integer maxdepth" {depth}')
+            self.rendered("--method", "uniform", "--spp", "1", "--stats", "s.json", *arguments, scene=scene)
+            guide = json.loads((self.folder / "s.json").read_text())["guides"]["lamps"]
+            self.assertIsNotNone(guide["second_moment"])
+            return guide["second_moment"]
+
+        self.assertNotEqual(lamps(depth=1), lamps(depth=4))
+        self.assertEqual(lamps("--max-depth", "1", depth=4), lamps(depth=1))
+        self.assertEqual(lamps("--preset", "draft", depth=20), lamps(depth=4))
+
     def test_denoiser(self):
         # A library that is none is told of, unless no denoiser is looked for.
         self.write("no.so", "no library")
