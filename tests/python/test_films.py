@@ -84,6 +84,35 @@ class Films(unittest.TestCase):
         self.assertTrue(covtrace.compare(rest, self.render(**{**options, "checkpoint": None})).identical)
         self.assertGreater(begun, 0)
 
+    def test_a_changed_scene_is_another_render(self):
+        film = self.folder / "state.film"
+        scene = covtrace.Scene(self.scene)
+        options = {"denoiser": "none", "resolution": (8, 6), "method": "uniform", "checkpoint": film}
+        covtrace.render(scene, spp=1, **options)
+        turned = numpy.diag([2.0, 2.0, 2.0, 1.0])
+        material = scene.shapes[0].material
+        changes = {"fov": lambda s: s.camera.__setitem__("fov", 20),
+                   "view": lambda s: s.camera.look_at((1, 1, 5), (0, 0, 0)),
+                   "material": lambda s: s.materials[0].__setitem__("reflectance", 0.11),
+                   "light": lambda s: s.lights[0].__setitem__("L", 3),
+                   "no light": lambda s: s.remove_light(0),
+                   "place": lambda s: s.shapes[0].place(turned),
+                   "motion": lambda s: s.shapes[0].place(s.shapes[0].to_world, turned),
+                   "assignment": lambda s: setattr(s.shapes[0], "material", (material + 1) % len(s.materials))}
+        for name, change in changes.items():
+            with self.subTest(name), self.assertRaisesRegex(covtrace.UsageError, "another render: scene"):
+                other = scene.copy()
+                change(other)
+                covtrace.render(other, spp=2, resume=True, **options)
+        # The values count, not the way to them.
+        same = scene.copy()
+        fov = same.camera["fov"]
+        for change in changes["fov"], changes["assignment"]:
+            change(same)
+        same.shapes[0].material = material
+        same.camera["fov"] = fov
+        covtrace.render(same, spp=2, resume=True, **options)
+
     def test_what_does_not_fit(self):
         film = self.folder / "a.film"
         for options, message in [({"shard": (1, 2)}, "shard: expected a film"),
