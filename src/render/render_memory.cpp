@@ -14,6 +14,18 @@ size_t image_bytes(Method method) {
     return method == Method::uniform ? 68 : method == Method::covariance ? 410 : 488;
 }
 
+/// Bytes per pixel of the layers that only some images have, measured likewise: of surfaces P, Ng,
+/// uv, dz and relvariance, of features and of emitters in view their colours.
+size_t further_layers_bytes(Method method, FilmParts parts) {
+    constexpr size_t kSurfaces = 13 * sizeof(float), kFeatures = 6 * sizeof(float),
+                     kInView = 3 * sizeof(float);
+    const size_t surfaces = parts.surfaces ? kSurfaces : 0;
+    if (method == Method::covariance) return surfaces;
+    // The features of the halves of `hybrid` are there while their mean is made.
+    const size_t features = !parts.features ? 0 : kFeatures * (method == Method::hybrid ? 2 : 1);
+    return surfaces + features + (method == Method::uniform && parts.in_view ? kInView : 0);
+}
+
 /// Bytes of the reconstruction's planes beyond the image, where they go on by the reach of its
 /// filters and by a vector of eight. Measured on images of one row and of one column, where borders
 /// are most of the memory.
@@ -58,14 +70,14 @@ size_t film_bytes_per_pixel(Method method, FilmParts parts) {
 
 std::map<std::string, size_t> render_memory(const FilmDescription& film,
                                             const RenderOptions& options) {
-    const size_t kept = film_bytes_per_pixel(
-        options.method, {options.emitters_apart, options.features,
-                         kept_surfaces(film, options) != FilmDescription::Surfaces::none});
+    const FilmParts parts{options.emitters_apart, options.features,
+                          kept_surfaces(film, options) != FilmDescription::Surfaces::none};
+    const size_t kept = film_bytes_per_pixel(options.method, parts),
+                 layers = image_bytes(options.method) + further_layers_bytes(options.method, parts);
     const PixelBounds region = render_region(film);
     const size_t pixels = size_t(region.width()) * size_t(region.height());
     std::map<std::string, size_t> bytes{
-        {"film", kept * pixels},
-        {"image", image_bytes(options.method) * pixels + border_bytes(options.method, region)}};
+        {"film", kept * pixels}, {"image", layers * pixels + border_bytes(options.method, region)}};
     if (options.method == Method::hybrid && options.denoiser)
         bytes["denoiser"] = denoiser_bytes(*options.denoiser, pixels);
     return bytes;

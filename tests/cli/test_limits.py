@@ -84,6 +84,19 @@ class Memory(FilmTest):
                 result = self.run_program("render", "plain.pbrt", "-o", "x.exr", "--method", method, *size, "--max-memory", str(int(peak / factor)))
                 self.assert_fails(result, LIMIT, "--max-memory")
 
+    @unittest.skipIf(SANITIZED, "a sanitizer takes several times what the program does")
+    def test_further_layers_count(self):
+        """Layers that are asked for by name take memory, which the estimate holds."""
+        names = "all,P,Ng,uv,dz,relvariance,featurealbedo,featureN"
+        for method in METHODS:
+            with self.subTest(method=method):
+                size = ["--resolution", "900x700", "--spp", "0.1", "--max-depth", "1", "--denoiser", "none", "--layers", names]
+                refused = self.run_program("render", "plain.pbrt", "-o", "x.exr", "--method", method, *size, "--max-memory", "1M")
+                needs = float(re.search(r"needs ([0-9.]+)M", refused.stderr)[1])
+                self.run_render("plain", method, *size, "--stats", "s.json")
+                peak = json.loads((self.folder / "s.json").read_text())["memory"]["peak_resident"] / (1 << 20)
+                self.assertLess(peak, 1.02 * needs + 12)
+
 
 class NotFinite(FilmTest):
     def test_counted_located_and_reproducible(self):
