@@ -119,6 +119,41 @@ TEST(OccluderGrid, TheSphereThatLightLeavesEndsAtItsContour) {
     EXPECT_TRUE(outlines(grid, n, -1.0 * n).empty());
 }
 
+TEST(OccluderGrid, ShapesThatAreNotFiniteAreLeftOut) {
+    OccluderGrid<double> grid, alone;
+    for (OccluderGrid<double>* g : {&grid, &alone}) {
+        g->add_sphere({0, 0, 0}, 1);
+        g->add_triangle({2, 0, 0}, {3, 0, 0}, {2, 1, 0});
+    }
+    const double infinity = std::numeric_limits<double>::infinity();
+    for (const double bad : {std::nan(""), infinity, -infinity, 1e300, 1e160}) {
+        grid.add_triangle({bad, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        grid.add_triangle({0, 0, 0}, {1, bad, 0}, {0, 1, 0});
+        grid.add_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, bad});
+        grid.add_sphere({bad, 0, 0}, 1);
+        grid.add_sphere({0, 0, 0}, bad);
+        grid.add_sphere({0, 0, 0}, 1, {0, bad, 0});
+        grid.add_huge_sphere({0, 0, bad}, 1);
+        grid.add_huge_sphere({0, 0, 0}, bad);
+    }
+    grid.build();
+    alone.build();
+    EXPECT_EQ(grid.smallest(), alone.smallest());
+    const auto found = outlines(grid, {1.02, 0, -2}, {1.02, 0, 2}),
+               expected = outlines(alone, {1.02, 0, -2}, {1.02, 0, 2});
+    ASSERT_FALSE(expected.empty());
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i)
+        EXPECT_EQ(found[i].distance, expected[i].distance);
+    // Times that are not finite find nothing, and neither do shapes that move out of all numbers.
+    OccluderGrid<double> moving;
+    moving.add_sphere({0, 0, 0}, 1, {1e150, 0, 0});
+    for (const double bad : {std::nan(""), infinity, 1e300}) {
+        moving.build(-bad, bad);
+        EXPECT_TRUE(outlines(moving, {1.02, 0, -2}, {1.02, 0, 2}, bad).empty());
+    }
+}
+
 TEST(OccluderGrid, LightFromInfinityEntersAtTheScenesBorder) {
     OccluderGrid<double> grid;
     EXPECT_EQ(grid.entry({1, 2, 3}, {0, 0, 1}), (Vec3{1, 2, 3}));

@@ -44,15 +44,18 @@ struct Outline {
 template <std::floating_point T = double>
 class OccluderGrid {
   public:
-    /// `cells`: their number along the longest side of the scene. With more of them a ray looks
-    /// less far to its sides, and is faster.
-    explicit OccluderGrid(int cells = 24) : cells_(std::max(1, cells)) {}
+    /// `cells`: their number along the longest side of the scene, at most 1000. With more of them a
+    /// ray looks less far to its sides, and is faster.
+    ///
+    /// Errors   none. Shapes that are not finite, or whose squares are not, are left out.
+    explicit OccluderGrid(int cells = 24) : cells_(std::clamp(cells, 1, 1000)) {}
 
     /// Adds a triangle that moves with `velocity` (of its middle: turning is not followed). Call
     /// `build` after the last shape. A quad is two triangles; the corners that they share must be
     /// the same to the last bit, or the diagonal counts as an outline: compute each corner once.
     void add_triangle(const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& c,
                       const Vec3<T>& velocity = {}) {
+        if (!(is_usable(a) && is_usable(b) && is_usable(c) && is_usable(velocity))) return;
         add_edge(a, b, c, velocity);
         add_edge(b, c, a, velocity);
         add_edge(c, a, b, velocity);
@@ -62,12 +65,15 @@ class OccluderGrid {
     /// starting or ending on it: positions of hits must be that exact, without an offset along the
     /// normal, or the sphere is an occluder of its own light.
     void add_sphere(const Vec3<T>& center, T radius, const Vec3<T>& velocity = {}) {
-        spheres_.push_back({center, velocity, radius});
+        if (is_usable(center) && is_usable(radius) && is_usable(velocity))
+            spheres_.push_back({center, velocity, radius});
     }
 
     /// Adds a sphere far larger than the rest of the scene, which stands for a ground or a wall:
     /// every segment looks at it, and it does not widen the cells.
-    void add_huge_sphere(const Vec3<T>& center, T radius) { huge_.push_back({center, {}, radius}); }
+    void add_huge_sphere(const Vec3<T>& center, T radius) {
+        if (is_usable(center) && is_usable(radius)) huge_.push_back({center, {}, radius});
+    }
 
     /// Sorts the shapes into cells. They stand where they were added at the time 0, and are
     /// found at times from `earliest` to `latest`, seconds.
@@ -143,6 +149,12 @@ class OccluderGrid {
         T radius;
     };
 
+    /// Whether squares of sums of a few such numbers are finite.
+    static bool is_usable(T v) noexcept { return 4096 * v * v <= std::numeric_limits<T>::max(); }
+    static bool is_usable(const Vec3<T>& v) noexcept {
+        return is_usable(v.x) && is_usable(v.y) && is_usable(v.z);
+    }
+
     static T component(const Vec3<T>& v, int k) noexcept {
         return k == 0 ? v.x : k == 1 ? v.y : v.z;
     }
@@ -163,6 +175,7 @@ class OccluderGrid {
         const T far = std::numeric_limits<T>::max();
         low_ = {far, far, far}, high_ = {-far, -far, -far};
         const auto cover = [&](const Vec3<T>& p, T r) {
+            if (!is_usable(p)) return;
             low_ = {std::min(low_.x, p.x - r), std::min(low_.y, p.y - r),
                     std::min(low_.z, p.z - r)};
             high_ = {std::max(high_.x, p.x + r), std::max(high_.y, p.y + r),
@@ -176,7 +189,8 @@ class OccluderGrid {
         if (!(low_.x <= high_.x)) low_ = high_ = {};
         const Vec3<T> extent = high_ - low_;
         const T longest = std::max({extent.x, extent.y, extent.z});
-        size_ = longest > 0 ? longest / T(cells_) : T(1);
+        const T least = std::numeric_limits<T>::min() * T(4 * cells_);
+        size_ = longest > least ? longest / T(cells_) : T(1);
         corner_ = low_ - Vec3<T>{size_, size_, size_};  // one more cell around all
         for (int k = 0; k < 3; ++k)
             n_[std::size_t(k)] = static_cast<int>(component(extent, k) / size_) + 3;
@@ -202,12 +216,13 @@ class OccluderGrid {
         const Edge edge = is_edge ? edges_[shape] : Edge{};
         const Vec3<T> velocity = is_edge ? edge.velocity : ball.velocity;
         const T way = length(velocity) * (latest - earliest);
-        const int times = way > 0 ? static_cast<int>(std::min(way / size_, T(1e4))) + 2 : 1;
+        const int times = way > 0 ? static_cast<int>(std::min(T(1e4), way / size_)) + 2 : 1;
         const T reach = T(1.87) * size_;
         for (int i = 0; i < times; ++i) {
             const T t = times > 1 ? earliest + (latest - earliest) * T(i) / T(times - 1) : earliest;
             const Vec3<T> a = (is_edge ? edge.a : ball.center) + t * velocity;
             const Vec3<T> b = (is_edge ? edge.b : ball.center) + t * velocity;
+            if (!is_usable(a) || !is_usable(b)) continue;
             std::array<int, 3> lo{}, hi{};
             for (int k = 0; k < 3; ++k) {
                 const T p = component(a, k) - component(corner_, k),
