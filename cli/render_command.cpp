@@ -69,6 +69,8 @@ void parse_texts(RenderArguments& a) {
     request_layers(a.layers, a.options);
     request_layers(a.tev_layers, a.options);
     check(a.film);
+    if (a.tev.empty() && (a.tev_layers.all || !a.tev_layers.names.empty()))
+        throw Error(ErrorKind::usage, "--tev-layers: expected --tev HOST:PORT");
     if (a.film.shard && !(a.output.empty() && a.png.empty() && a.tev.empty()))
         throw Error(
             ErrorKind::usage,
@@ -176,6 +178,15 @@ void tell_outcome(const RenderResult& result, const RenderArguments& a, const fs
         monitor.elapsed());
 }
 
+/// Tells what of the options and of the scene is not done as they say.
+void tell_warnings(const RenderArguments& a, const fs::path& output, const FoundDenoiser& denoiser,
+                   const RenderScene& scene) {
+    warn_of_unusable(denoiser);
+    warn_of_idle(a, output);
+    print_warnings(scene.description.warnings);
+    print_warnings(scene.materials.warnings());
+}
+
 /// Renders a scene. `ranks`: the processes that share the work; may be null.
 int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLimit& threads,
                  const Ranks* ranks) {
@@ -211,11 +222,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     RenderScene& scene = kept_scene(std::move(description), a);
     const double built = monitor.elapsed();
     progress.clear();
-    if (!a.quiet) {
-        warn_of_unusable(denoiser);
-        print_warnings(scene.description.warnings);
-        print_warnings(scene.materials.warnings());
-    }
+    if (!a.quiet) tell_warnings(a, output, denoiser, scene);
     require_memory(a.max_memory, render_memory(scene.description.film, a.options), &scene);
     // Tell one sample's path instead, for --debug-pixel
     if (a.debug_pixel) {

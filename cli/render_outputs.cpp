@@ -4,11 +4,14 @@
 #include <system_error>
 #include <vector>
 
+#include "cli/message.h"
 #include "cli/picture_name.h"
 #include "cli/same_file.h"
 #include "core/error.h"
 #include "image/output_file.h"
+#include "image/write_image.h"
 #include "render/film_file.h"
+#include "render/idle_options.h"
 
 namespace covtrace::cli {
 
@@ -78,6 +81,17 @@ void check_outputs(const RenderArguments& a, const fs::path& image, const SceneD
         if (!file.empty()) require_writable(file);
     for (const fs::path& file : {image, fs::path(a.png), fs::path(a.stats)})
         if (!file.empty()) remove_leftovers(file);
+}
+
+void warn_of_idle(const RenderArguments& a, const fs::path& image) {
+    const bool insists = a.denoiser.choice == DenoiserChoice::oidn;
+    for (const std::string& text : idle_options(a.options, insists)) say("warning: {}\n", text);
+    if (a.layer_names && !image.empty() && written_format(image) != WrittenFormat::exr)
+        say("warning: --layer-names changes nothing: '{}' holds no layers\n", image.string());
+    const bool has_files =
+        !(a.png.empty() && a.stats.empty() && a.film.film.empty() && a.film.checkpoint.empty());
+    if (a.debug_pixel && has_files)
+        say("warning: --debug-pixel: no file is written, but the sample's path is told\n");
 }
 
 }  // namespace covtrace::cli

@@ -20,4 +20,7 @@ std::filesystem::path image_path(const RenderArguments& arguments, SceneDescript
 void check_outputs(const RenderArguments& arguments, const std::filesystem::path& image,
                    const SceneDescription& scene);
 
+/// Warns of options that change nothing: of other methods, or for files that are not written.
+void warn_of_idle(const RenderArguments& arguments, const std::filesystem::path& image);
+
 }  // namespace covtrace::cli

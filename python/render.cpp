@@ -10,6 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "bindings.h"
 #include "core/parallel.h"
@@ -21,6 +22,7 @@
 #include "pbrt/read_scene.h"
 #include "planes.h"
 #include "python_lock.h"
+#include "render/idle_options.h"
 #include "render/layers.h"
 #include "render/scene_file.h"
 #include "render/session.h"
@@ -130,6 +132,8 @@ Rendered render_description(SceneDescription description, RenderOptions options,
     if (bundle) apply(*bundle, overrides, description, options);
     // Stand-ins for a camera or lights are known only now.
     Warnings warnings(description.warnings.begin() + told, description.warnings.end());
+    for (std::string& text : idle_options(options, search.choice == DenoiserChoice::oidn))
+        warnings.push_back({{}, std::move(text)});
     FilmFiles films(deliverables.films, [&warnings](const std::string& text) {
         warnings.push_back({{}, text});
     });

@@ -219,6 +219,7 @@ class Preview(CliTest):
         for address in ("", ":1", "host:", "host:0", "host:70000", "host:x", "a:b:1", "[::1"):
             self.assert_fails(self.render(TINY, f"--tev={address}"), USAGE, "--tev")
         self.assert_fails(self.render(TINY, "--tev-layers", "nope"), USAGE, "--tev-layers", "nope")
+        self.assert_fails(self.render(TINY, "--tev-layers", "raw"), USAGE, "--tev-layers", "--tev HOST:PORT")
 
 
 if __name__ == "__main__":

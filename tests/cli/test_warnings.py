@@ -60,6 +60,32 @@ class Warnings(CliTest):
         self.assertEqual(len(warnings_of(result)), 1, result)
         self.assertIn("49 more places", result.stderr)
 
+    def test_options_that_change_nothing(self):
+        for options, fragment in [
+            (["--method", "hybrid", "--density", "thesis"], "--density changes nothing: it is for the method covariance, and this is hybrid"),
+            (["--method", "hybrid", "--filter", "thesis"], "--filter"),
+            (["--method", "uniform", "--progressive"], "--progressive"),
+            (["--method", "covariance", "--even-counts"], "--even-counts"),
+            (["--method", "covariance", "--denoiser", "oidn"], "--denoiser changes nothing"),
+            (["--method", "uniform", "--cov-spp", "1"], "--cov-spp"),
+            (["--method", "uniform", "--max-spp", "3"], "--max-spp"),
+            (["--method", "uniform", "--occlusion", "none"], "--occlusion"),
+            (["--method", "uniform", "--brdf-covariance", "global"], "--brdf-covariance"),
+            (["--method", "uniform", "--texture-bandwidth", "highest"], "--texture-bandwidth"),
+            (["--voxels", "20"], "--voxels changes nothing"),
+            (["-o", "out.png", "--layer-names", "pbrt"], "--layer-names changes nothing: 'out.png'"),
+            (["--debug-pixel", "1,1,0", "--png", "out.png"], "--debug-pixel: no file is written"),
+        ]:
+            with self.subTest(options=options):
+                result = self.render(TINY, "--spp", "1", *options)
+                self.assertEqual(result.code, DONE, result)
+                texts = [text for _, text in warnings_of(result)]
+                self.assertEqual([fragment in text for text in texts], [True], result)
+                self.assertEqual(warnings_of(self.render(TINY, "--spp", "1", *options, "--quiet")), [])
+        for options in (["--method", "covariance", "--density", "thesis", "--filter", "matched", "--progressive", "--max-spp", "9"],
+                        ["--even-counts", "--occlusion", "grid", "--voxels", "20", "--cov-spp", "1"]):
+            self.assertEqual(warnings_of(self.render(TINY, "--spp", "1", *options)), [], options)
+
     def test_quiet_says_nothing(self):
         result = self.render(TINY + 'Shape "sphere" "float raduis" 2\n', "--quiet")
         self.assertEqual((result.code, result.stdout, result.stderr), (DONE, "", ""))
