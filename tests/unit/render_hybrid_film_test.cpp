@@ -32,6 +32,11 @@ TEST(HybridFilm, OneSamplePerPixelOfWhatIsEvenHasNoNoise) {
     }
 }
 
+TEST(HybridSeed, IsTheOneThatMeasurementsTakeForTheSameSamples) {
+    EXPECT_EQ(hybrid_seed(1), 15899793147604821525u);  // as bench/quality/same_samples.py has it
+    EXPECT_EQ(hybrid_seed(2), 2246501998551543546u);
+}
+
 TEST(PlaceInSequence, BothHalvesTogetherHaveTheFirstSamples) {
     for (uint32_t each = 2; each <= 1024; each *= 2) {
         std::set<uint32_t> places;
