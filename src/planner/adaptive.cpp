@@ -33,24 +33,6 @@ std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSett
     return density;
 }
 
-float even_share(std::span<const float> a, std::span<const float> b) {
-    constexpr double kLeast = 0.15, kNoise = 2;
-    double sum_a = 0, sum_b = 0, roots_a = 0, roots_b = 0, products = 0;
-    for (size_t i = 0; i < a.size(); ++i) {
-        const double root_a = std::sqrt(double(a[i])), root_b = std::sqrt(double(b[i]));
-        sum_a += double(a[i]);
-        sum_b += double(b[i]);
-        roots_a += root_a;
-        roots_b += root_b;
-        products += root_a * root_b;
-    }
-    const double n = double(a.size());
-    const double covariance = products - roots_a * roots_b / n;
-    const double variances = (sum_a - roots_a * roots_a / n) * (sum_b - roots_b * roots_b / n);
-    const double correlation = variances > 0 ? covariance / std::sqrt(variances) : 1;
-    return float(std::clamp(kNoise * (1 - correlation), kLeast, 1.0));
-}
-
 void spread_evenly(std::span<float> density, float share) {
     for (float& v : density) v = covariance::share_of_budget(v, 1.0f, 1.0f, share);
 }

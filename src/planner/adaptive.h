@@ -50,14 +50,6 @@ constexpr PlanSettings kHalvesPlan{false, 0.1f, 2, 0.2f};
 /// samples sigma / I itself is averaged.
 std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSettings& settings);
 
-/// The share of all samples that two densities of the same pixels, made from different samples,
-/// leave to be given out evenly, since light that the samples have not seen yet must not be
-/// starved: 2 (1 - r), but at least 0.15, r the correlation of their square roots. The loss by
-/// counts that are not the best ones is, to second order, the squared difference of the roots; of
-/// two measurements that agree by r, 1 - r of the variance is noise. Twice that and the least share
-/// are from a sweep (docs/decisions/0093). Pre: as many of both, none negative.
-float even_share(std::span<const float> a, std::span<const float> b);
-
 /// Gives `share` of all samples out evenly. Pre: densities with mean 1.
 void spread_evenly(std::span<float> density, float share);
 

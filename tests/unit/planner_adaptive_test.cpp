@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "core/rng.h"
+#include "planner/agreement.h"
 #include "planner/density.h"
 
 namespace covtrace {
@@ -134,15 +135,17 @@ struct RareLight {
         }
         return adaptive_density(known, kHalvesPlan);
     }
-    /// Doubles the average count. `even`: share of the samples given out evenly; none: as much as
-    /// the halves do not agree on.
+    /// Doubles the average count. `even`: share of the samples given out evenly; none: what the
+    /// halves agree on is kept, and the least share given out evenly.
     void round(uint32_t spp, std::optional<float> even) {
-        std::array density{density_from(half[1]), density_from(half[0])};
-        const float share = even.value_or(even_share(density[0], density[1]));
-        for (std::vector<float>& d : density) spread_evenly(d, share);
-        for (size_t k = 0; k < 2; ++k)
-            take(half[k],
-                 allocate(density[k], int64_t(spp / 2) * int64_t(kPixels), half[k].count, 8 * spp));
+        std::array<Plane, 2> density{Plane(kSide, kSide), Plane(kSide, kSide)};
+        for (size_t k = 0; k < 2; ++k) density[k].values = density_from(half[1 - k]);
+        if (!even) keep_what_agrees(density);
+        for (size_t k = 0; k < 2; ++k) {
+            spread_evenly(density[k].values, even.value_or(kLeastEvenShare));
+            take(half[k], allocate(density[k].values, int64_t(spp / 2) * int64_t(kPixels),
+                                   half[k].count, 8 * spp));
+        }
     }
     /// Mean of the mean of the halves; 1 is true.
     double mean() const {
@@ -179,30 +182,6 @@ TEST(AdaptiveDensity, BlackImageIsEven) {
     std::fill(c.known.variance.values.begin(), c.known.variance.values.end(), 0.0f);
     c.known.spectrum = c.spectrum;
     for (float d : adaptive_density(c.known, kHalvesPlan)) EXPECT_FLOAT_EQ(d, 1);
-}
-
-TEST(EvenShare, IsWhatPlansDoNotAgreeOn) {
-    // The roots are u + v and u + w of independent numbers in 1..2: their correlation is that of
-    // u's share of the variance, known to 0.02 (five deviations).
-    constexpr size_t kPixels = 60000;
-    for (const double common : {0.0, 0.6, 0.8, 1.0}) {
-        Rng rng(17);
-        std::vector<float> a(kPixels), b(kPixels);
-        for (size_t i = 0; i < kPixels; ++i) {
-            const double u = std::sqrt(common) * (1 + double(rng.next_float()));
-            const double rest = std::sqrt(1 - common);
-            a[i] = float(std::pow(u + rest * (1 + double(rng.next_float())), 2));
-            b[i] = float(std::pow(u + rest * (1 + double(rng.next_float())), 2));
-        }
-        EXPECT_NEAR(even_share(a, b), std::clamp(2 * (1 - common), 0.15, 1.0), 0.04);
-        for (float& v : a) v *= 3;  // a correlation knows no units
-        EXPECT_NEAR(even_share(a, b), std::clamp(2 * (1 - common), 0.15, 1.0), 0.04);
-    }
-}
-
-TEST(EvenShare, OfPlansThatAreEvenIsTheLeast) {
-    const std::vector<float> even(100, 1.0f);
-    EXPECT_FLOAT_EQ(even_share(even, even), 0.15f);
 }
 
 TEST(SpreadEvenly, KeepsTheMeanAndStarvesNothing) {

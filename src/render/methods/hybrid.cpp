@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "planner/agreement.h"
 #include "planner/error_goal.h"
 #include "reconstruction/hybrid.h"
 #include "reconstruction/luminance.h"
@@ -172,29 +173,30 @@ class HybridRender {
     }
 
     /// The density for one half, as the planner makes it of `film`, the samples of the other half.
-    std::vector<float> density_from(const Film& film) const {
+    Plane density_from(const Film& film) const {
         SampleKnowledge known = knowledge_from(film, prediction_->spectrum);
         for (size_t i = 0; i < size(); ++i)
             known.variance[i] =
                 std::max(known.variance[i], unmet_.variance(i, 2.0 * film.pixels[i].count));
-        return adaptive_density(known, kHalvesPlan);
+        Plane density(job_.region.width(), job_.region.height());
+        density.values = adaptive_density(known, kHalvesPlan);
+        return density;
     }
 
     bool plan_samples(double target) {
         const PhaseTimer timer(job_.monitor, job_.seconds(Phase::plan));
         const double most = std::clamp(0.5 * job_.most_samples(target), 1.0, 4e9);
         // Each half's density comes from the other half's samples
-        std::array<std::vector<float>, 2> density{density_from(s_.films[1]),
-                                                  density_from(s_.films[0])};
-        const float even_samples = even_share(density[0], density[1]);
-        for (std::vector<float>& d : density) spread_evenly(d, even_samples);
+        std::array<Plane, 2> density{density_from(s_.films[1]), density_from(s_.films[0])};
+        keep_what_agrees(density);
+        for (Plane& d : density) spread_evenly(d.values, kLeastEvenShare);
         const std::vector<float> even(size(), 1.0f);
         // Share the samples of both halves among the pixels
         std::vector<std::vector<uint32_t>> counts;
         for (size_t k = 0; k < 2; ++k) {
             std::vector<uint32_t> have(size());
             for (size_t i = 0; i < have.size(); ++i) have[i] = s_.films[k].pixels[i].count;
-            counts.push_back(allocate(job_.options.even_counts ? even : density[k],
+            counts.push_back(allocate(job_.options.even_counts ? even : density[k].values,
                                       std::llround(target / 2 * double(size())), have,
                                       uint32_t(most)));
         }
