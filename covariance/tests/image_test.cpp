@@ -76,6 +76,10 @@ TEST(Gather, LeavesOutEmptyPixelsAndWhatIsNotFinite) {
         EXPECT_FLOAT_EQ(c.x, 1);
         EXPECT_FLOAT_EQ(c.z, 3);
     }
+    // Numbers in double that the image cannot hold are left out, too.
+    std::vector<covariance::Vec3<double>> large(5, {1, 2, 3});
+    large[1] = {1e300, 0, 0};
+    for (const auto& c : gather(large, count, field)) EXPECT_FLOAT_EQ(c.x, 1);
 }
 
 TEST(FilterField, GrowsFromANarrowNeighbourByTheSlope) {

@@ -42,7 +42,9 @@ std::pair<Vec3<double>, double> gaussian_mean(std::span<const Color> mean,
         for (int px = first; px <= last; ++px) {
             const std::size_t i = std::size_t(py) * std::size_t(field.width) + std::size_t(px);
             const Vec3<double> m = mean[i];
-            if (count[i] == 0 || !(m.x - m.x + m.y - m.y + m.z - m.z == 0)) continue;
+            const Vec3<T> held{T(m.x), T(m.y), T(m.z)};  // infinite beyond the range of T
+            const bool is_finite = held.x - held.x + held.y - held.y + held.z - held.z == 0;
+            if (count[i] == 0 || !is_finite) continue;
             const double h = filter_weight(q, px - x, dy);
             sum += h * m;
             all += h;
@@ -58,9 +60,9 @@ std::pair<Vec3<double>, double> gaussian_mean(std::span<const Color> mean,
 /// Shapes   mean, count: width * height, row by row; colours of any type with members x, y, z
 ///          (`Vec3<float>` or your own).
 /// Errors   none. Pixels without samples (count 0) are left out, and so are means that are not
-///          finite: a NaN of the renderer is hidden here, not reported. A pixel with nothing to
-///          gather from gets filters four times as wide, up to five times over, until it has; one
-///          that still has nothing is black.
+///          finite in T: a NaN of the renderer is hidden here, not reported. A pixel with nothing
+///          to gather from gets filters four times as wide, up to five times over, until it has;
+///          one that still has nothing is black.
 template <Vec3Like Color, std::floating_point T>
 [[nodiscard]] std::vector<Vec3<T>> gather(std::span<const Color> mean,
                                           std::span<const std::uint32_t> count,
