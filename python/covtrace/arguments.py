@@ -15,10 +15,11 @@ def refuse(name: str, value: Any, expected: str) -> NoReturn:
 
 
 def path_of(name: str, value: str | os.PathLike[str], expected: str = "a file's path") -> str:
-    """A path that a file system can name: neither a number nor a text with a zero in it."""
+    """A path that a file system can name: neither a number nor a text with a zero in it, and of a file
+    no empty one."""
     try:
         path = os.fspath(value)
-        if b"\0" in os.fsencode(path):
+        if b"\0" in os.fsencode(path) or (not path and "folder" not in expected):
             refuse(name, value, expected)
     except (TypeError, UnicodeError):
         refuse(name, value, expected)

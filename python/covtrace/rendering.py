@@ -151,6 +151,9 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
             if value is not None:
                 raise UsageError(f"{name} is {value!r}, but the choice is made when the file is read; "
                                  f"expected Scene(file, {name}={value!r})")
+        if not isinstance(search_paths, (list, tuple)) or search_paths:
+            raise UsageError(f"search_paths is {search_paths!r}, but the files of a scene are found when it "
+                             f"is read; expected Scene(file, search_paths={search_paths!r})")
         if scene._is_placed and shutter is not None and options["shutter"] != scene._shutter:
             raise UsageError(f"shutter is {shutter!r}, but the nodes of a glTF scene are placed when "
                              f"it is read; expected Scene(file, shutter={shutter!r})")

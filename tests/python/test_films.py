@@ -121,7 +121,8 @@ class Films(unittest.TestCase):
                                  ({"shard": (1, 2), "film": film, "checkpoint": film}, "must differ"),
                                  ({"resume": True}, "resume: expected a checkpoint"),
                                  ({"every": 5}, "every: expected a checkpoint"),
-                                 ({"film": 3}, "film is 3")]:
+                                 ({"film": 3}, "film is 3"), ({"film": ""}, "film is ''"),
+                                 ({"checkpoint": ""}, "checkpoint is ''")]:
             with self.subTest(options), self.assertRaisesRegex(covtrace.UsageError, message):
                 self.render(**options)
         with self.assertRaisesRegex(covtrace.UsageError, "films is empty"):

@@ -294,7 +294,7 @@ class Errors(unittest.TestCase):
         """Whatever stands where something else is expected: nothing but UsageError comes out."""
         kinds = (0, -1, 1.5, True, float("nan"), 10**30, "", "x", "01", "\0", "\ud800", b"\0", (), (1,), [1, "a"], ("a",) * 4, {},
                  object())
-        right = {"search_paths": [(), {}, ("a",) * 4], "denoiser_library": ["", "x", "01"], "environment": [0, 1.5, True, 10**30, "01"]}
+        right = {"search_paths": [(), {}, ("a",) * 4], "denoiser_library": ["x", "01"], "environment": [0, 1.5, True, 10**30, "01"]}
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "scene.pbrt"
             file.write_text(scenes.FURNACE)
@@ -314,6 +314,8 @@ class Errors(unittest.TestCase):
                             self.assertIsInstance(kind, str)  # a path to a file that is not there
                         else:
                             self.fail("it renders")
+            with self.assertRaisesRegex(covtrace.UsageError, "search_paths is .* when it is read"):
+                covtrace.render(scene, spp=1, search_paths=[folder])  # its files have been found
             for kind in (0, (), object(), "\ud800"):
                 for argument in ("text", "name", "folder", "search_paths"):
                     with self.subTest(argument, kind=kind):
