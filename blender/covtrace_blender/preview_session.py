@@ -76,8 +76,8 @@ class PreviewSession:
                 view, self._wanted = self._wanted, None
             try:
                 self._render(view)
-            except (OSError, RuntimeError, ValueError) as problem:
-                self.failure = str(problem)
+            except Exception as problem:  # the session goes on, whatever is wrong with one image
+                self.failure = str(problem) or type(problem).__name__
                 self._set(self.image)
             with self._changed:
                 self.is_busy = self._wanted is not None
@@ -95,6 +95,7 @@ class PreviewSession:
         """Shows images of the scene while it renders, and the last one; False where there is none."""
         image = file + ".exr"
         receiver = TevReceiver()
+        is_ended = False
         command = [self.program, "render", file, "-o", image, "--layers", "none", "--quiet", "--tev", receiver.address, *options]
         try:
             with self._changed:
@@ -110,6 +111,7 @@ class PreviewSession:
                 elif time.monotonic() - before < SECONDS_TO_WAIT / 2:
                     time.sleep(SECONDS_TO_WAIT)  # the program has ended the connection and not yet itself
                 if ends_early and self._wanted is not None:
+                    is_ended = True
                     self._process.kill()
             messages = self._process.stderr.read()
             self._process.stderr.close()
@@ -117,10 +119,15 @@ class PreviewSession:
         finally:
             receiver.close()
             with self._changed:
-                self._process = None
+                process, self._process = self._process, None
+            if process is not None and process.poll() is None:  # nobody knows of it any more
+                process.kill()
+                process.wait()
+                process.stderr.close()
         if code != 0:
-            if code > 0:  # else it was killed
-                self.failure = messages.strip().splitlines()[-1] if messages.strip() else f"exit code {code}"
+            if not is_ended and not self._is_stopped:
+                said = messages.strip().splitlines()
+                self.failure = said[-1] if said else f"covtrace was ended by signal {-code}" if code < 0 else f"exit code {code}"
                 self._set(self.image)
             return False
         self.failure = ""

@@ -6,7 +6,9 @@ from . import export_meshes
 
 
 def _uvs(mesh, layer):
-    values = np.empty(2 * len(mesh.loops), np.float32)
+    values = np.zeros(2 * len(mesh.loops), np.float32)
+    if len(layer.data) != len(mesh.loops):  # of a mesh that is being edited
+        return values.reshape(-1, 2)
     layer.data.foreach_get("uv", values)
     return values.reshape(-1, 2)
 

@@ -8,6 +8,7 @@ import subprocess
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 import bpy
 import addon_support  # makes the add-on known
@@ -70,6 +71,31 @@ class SessionTest(unittest.TestCase):
         self.session.stop()
         self.assertIsNotNone(process.poll())
 
+    def test_programs_that_are_ended_by_others_are_told(self):
+        self.session.show(self.view(30, 1e6))
+        self.wait(lambda: self.session.image is not None and len(self.session.image) == 48)
+        self.session._process.kill()
+        self.wait(lambda: not self.session.is_busy)
+        self.assertIn("signal 9", self.session.failure)
+
+    def test_what_is_no_image_ends_the_program_and_not_the_session(self):
+        for broken in (MemoryError(), IndexError("no such channel")):
+            self.session.image = None
+            self.session.show(self.view(30, 1e6))
+            self.wait(lambda: self.session.image is not None and len(self.session.image) == 48)
+            process = self.session._process
+
+            def understand(receiver, message):
+                raise broken
+
+            with unittest.mock.patch.object(preview_session.TevReceiver, "_understand", understand):
+                self.wait(lambda: not self.session.is_busy)
+            self.assertIsNotNone(process.returncode)
+            self.assertIn(str(broken) or "MemoryError", self.session.failure)
+        self.session.show(self.view(30, 4))
+        self.wait(lambda: not self.session.is_busy)
+        self.assertEqual(self.session.failure, "")
+
     def test_failures_are_told_and_overcome(self):
         pathlib.Path(self.folder, "content.pbrt").write_text("WorldBegin\nNonsense\n")
         self.session.show(self.view(30, 4))
@@ -100,7 +126,7 @@ class WindowTest(unittest.TestCase):
         lines = [line for line in done.stdout.splitlines() if line.startswith("FOUND ")]
         self.assertTrue(lines, done)
         found = json.loads(lines[0][6:])
-        self.assertEqual(set(found["views"]), {"perspective", "nearer", "moved", "ortho", "camera"})
+        self.assertEqual(set(found["views"]), {"perspective", "nearer", "moved", "ortho", "camera", "edited"})
         for name, view in found["views"].items():
             with self.subTest(name):
                 self.assertEqual(view["failure"], "")
@@ -110,7 +136,7 @@ class WindowTest(unittest.TestCase):
                     for a, b in zip(view[shown], view["expected"]):
                         self.assertAlmostEqual(a, b, delta=0.02, msg=f"{shown} {view}")
         places = [tuple(view["expected"]) for view in found["views"].values()]
-        self.assertEqual(len(set(places)), 5)
+        self.assertEqual(len(set(places)), 6)
         self.assertTrue(found["runs"])
         self.assertFalse(found["left"])
         self.assertEqual(found["sessions"], 0)

@@ -75,6 +75,12 @@ def look(name):
                             "failure": s.failure}
 
 
+def edit(mode):
+    with bpy.context.temp_override(window=window(), screen=window().screen, area=area()):
+        bpy.context.view_layer.objects.active = bpy.data.objects["ball"]
+        bpy.ops.object.mode_set(mode=mode)
+
+
 def build():
     bpy.ops.object.select_all(action="SELECT")
     bpy.ops.object.delete()
@@ -125,6 +131,13 @@ def steps():
         yield is_done
         yield 0.5
         look(kind.lower())
+    edit("EDIT")
+    bpy.data.objects["ball"].location.x += 0.6
+    yield 1.0
+    yield is_done
+    yield 0.5
+    look("edited")
+    edit("OBJECT")
     bpy.context.scene.covtrace.viewport_samples = 1e6
     bpy.data.objects["ball"].location.x += 0.1
     yield lambda: session()._process is not None and "1000000.0" in session()._process.args
