@@ -9,9 +9,14 @@ from .export_shaders import numbers
 from .visibility import hidden_from
 
 
-def write_lamp(out, lamp, transform, hidden, warn):
+# Kinds of lamps that are shapes, which may move while the shutter is open.
+MAY_MOVE = ("POINT", "AREA")
+LEAST_MOVING_RADIUS = 1e-3  # of points that move: there is no other light without extent that does
+
+
+def write_lamp(out, lamp, transform, hidden, warn, moves=False):
     """One lamp; `transform`: text that places its object (no scale in it matters but an area's); `hidden`: the kinds of rays
-    that do not find it. Rays pass a lamp, as in Cycles."""
+    that do not find it; `moves`: whether the transform does. Rays pass a lamp, as in Cycles."""
     colour = [c * lamp.energy * shaded for c, shaded in zip(lamp.color, _shader_colour(lamp, warn))]
     if max(colour) <= 0:
         return
@@ -31,8 +36,8 @@ def write_lamp(out, lamp, transform, hidden, warn):
         inner = math.acos(math.cos(outer) + (1 - math.cos(outer)) * lamp.spot_blend)
         out.write(f'LightSource "spot" "point3 from" [0 0 0] "point3 to" [0 0 -1] "rgb I" [{numbers(intensity)}] '
                   f'"float coneangle" {math.degrees(outer):.9g} "float conedeltaangle" {math.degrees(outer - inner):.9g}\n')
-    elif lamp.shadow_soft_size > 0:
-        radius = lamp.shadow_soft_size
+    elif lamp.shadow_soft_size > 0 or moves:
+        radius = max(lamp.shadow_soft_size, LEAST_MOVING_RADIUS if moves else 0)
         radiance = [c / (4 * math.pi * math.pi * radius**2) for c in colour]
         out.write(f'AreaLightSource "diffuse" "rgb L" [{numbers(radiance)}] "bool letslightpass" true\n'
                   f'Shape "sphere" "float radius" {radius:.9g}{hidden_from(hidden)}\n')

@@ -121,9 +121,7 @@ class SceneExporter:
             matrix = instance.matrix_world.copy()
             end = moving.get(key)
             if obj.type == "LIGHT" and instance.show_self:
-                if end is not None and not is_same(matrix, end):
-                    self.warn(f"lamp '{obj.name}' moves while the shutter is open; it stays where it is at the opening")
-                self._write_lamp(obj.data, matrix, hidden)
+                self._write_lamp(obj, matrix, end, hidden)
             elif obj.type in SURFACES or obj.type == "CURVES":
                 # An emitter may be hidden behind its strands, and strands behind their emitter.
                 shown = (obj.name_full, obj.data.as_pointer(), instance.show_self, instance.show_particles)
@@ -152,15 +150,22 @@ class SceneExporter:
                 self.warn(f"object '{obj.name}' is a {obj.type.lower()}, which is not rendered")
         self.visibility.tell(self.warn)
 
-    def _write_lamp(self, lamp, matrix, hidden):
+    def _write_lamp(self, obj, matrix, end, hidden):
+        lamp = obj.data
         scale = export_lights.area_scale(lamp, matrix)
+        moves = end is not None and not is_same(matrix, end)
+        if moves and lamp.type not in export_lights.MAY_MOVE:
+            self.warn(f"lamp '{obj.name}' is a {lamp.type.lower()} and moves while the shutter is open; it stays where it is "
+                      "at the opening")
+            moves = False
         if lamp.type != "AREA":
-            matrix = matrix.normalized()
+            matrix, end = matrix.normalized(), end and end.normalized()
         class Scaled:
             """The lamp with its energy for an area of unit scale."""
             def __getattr__(self, name):
                 return lamp.energy * scale if name == "energy" else getattr(lamp, name)
-        export_lights.write_lamp(self.out, Scaled(), placement("ConcatTransform", matrix, None), hidden, self.warn)
+        export_lights.write_lamp(self.out, Scaled(), placement("ConcatTransform", matrix, end if moves else None), hidden,
+                                 self.warn, moves)
 
     def _export_parts(self, obj):
         """The Parts of an evaluated object, its files and materials written."""

@@ -114,7 +114,7 @@ class MaterialsTest(BlenderTest):
         tree.links.new(noise.outputs["Color"], output.inputs["Displacement"])
         tree.links.new(noise.outputs["Fac"], output.inputs["Volume"])
         self.plane(m)
-        lamp = self.lamp("POINT", energy=10)
+        lamp = self.lamp("SPOT", energy=10)
         lamp.data.use_nodes = True
         falloff = lamp.data.node_tree.nodes.new("ShaderNodeLightFalloff")
         lamp.data.node_tree.links.new(falloff.outputs["Linear"], lamp.data.node_tree.nodes["Emission"].inputs["Strength"])

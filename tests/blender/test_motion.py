@@ -3,7 +3,7 @@
 import math
 
 import bpy
-from addon_support import BlenderTest, mean, render
+from addon_support import BlenderTest, material, mean, render
 
 
 class MotionTest(BlenderTest):
@@ -85,3 +85,40 @@ class MotionTest(BlenderTest):
                 self.assertAlmostEqual(mean(ours, x, y, x + 4, y + 4)[0], mean(theirs, x, y, x + 4, y + 4)[0], delta=0.04)
         self.export()
         self.assertEqual(self.warnings, [])
+
+    def test_lamps_shine_from_all_of_their_way(self):
+        self.plane(material(**self.MATT))
+        for kind, values in (("POINT", {"shadow_soft_size": 0}), ("POINT", {"shadow_soft_size": 0.3}), ("AREA", {"size": 0.5})):
+            with self.subTest(kind, **values):
+                lamp = self.lamp(kind, energy=100, location=(0, 0, 1), **values)
+                self.scene.render.use_motion_blur = False
+                steps = []
+                for k in range(8):  # the middles of eight parts of the way
+                    lamp.location.x = (k + 0.5) / 2 - 2
+                    steps.append(render("COVTRACE", 64))
+                for frame, x in ((0, -2), (2, 2)):
+                    lamp.location.x = x
+                    lamp.keyframe_insert("location", frame=frame)
+                for curve in lamp.animation_data.action.fcurves:
+                    for key in curve.keyframe_points:
+                        key.interpolation = "LINEAR"
+                self.scene.frame_set(1)
+                self.scene.render.use_motion_blur, self.scene.render.motion_blur_shutter = True, 2.0
+                blurred = render("COVTRACE", 256)
+                for x in range(0, 32, 8):
+                    part = (x, 8, x + 8, 16)
+                    self.assertAlmostEqual(mean(blurred, *part)[0] / (sum(mean(s, *part)[0] for s in steps) / 8), 1, delta=0.05)
+                self.export()
+                self.assertEqual(self.warnings, [])
+                bpy.data.objects.remove(lamp)
+
+    def test_lamps_that_stand_still_are_told(self):
+        self.plane(material(**self.MATT))
+        lamp = self.lamp("SPOT", energy=100)
+        for frame, x in ((0, -2), (2, 2)):
+            lamp.location.x = x
+            lamp.keyframe_insert("location", frame=frame)
+        self.scene.frame_set(1)
+        self.scene.render.use_motion_blur = True
+        self.export()
+        self.assertTrue(any("is a spot and moves" in w for w in self.warnings), self.warnings)
