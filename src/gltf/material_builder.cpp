@@ -46,6 +46,8 @@ Surface MaterialBuilder::build() {
         build_unlit();
         return surface_;
     }
+    surface_.is_seen_from_back =
+        material_.doubleSided || extension(material_.extensions, "KHR_materials_transmission");
     read_emission();
     read_normal_map();
     base_ = tinted(

@@ -18,9 +18,10 @@ struct Surface {
     TextureId alpha = -1;
     std::optional<AreaLightDescription> emission;
     MediumId inside = -1;
-    VertexLayout layout;           ///< of the meshes that have it
-    bool is_visible = true;        ///< false where alpha is 0 everywhere
-    bool is_strong_light = false;  ///< emits more than 1, which makes it a lamp
+    VertexLayout layout;            ///< of the meshes that have it
+    bool is_seen_from_back = true;  ///< double-sided, or a body that light passes through
+    bool is_visible = true;         ///< false where alpha is 0 everywhere
+    bool is_strong_light = false;   ///< emits more than 1, which makes it a lamp
 };
 
 /// glTF's model is a mixture of two: metal, whose reflectance at the normal is the base colour, and

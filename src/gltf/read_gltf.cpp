@@ -158,6 +158,7 @@ class SceneAssembler {
         part.shape.material = surface.material;
         part.shape.alpha = surface.alpha;
         part.shape.inside = surface.inside;
+        part.shape.is_seen_from_back = surface.is_seen_from_back;
         part.shape.where = document_.place(place);
         part.emission = surface.emission;
         part.is_strong_light = surface.is_strong_light;

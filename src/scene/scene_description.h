@@ -227,6 +227,9 @@ struct ShapeDescription {
     std::optional<Displacement> displacement = {};  ///< of triangles with normals and uvs only
     /// Rays that the shape is there for; always `any`, and every one for interfaces.
     RayKinds visible_to = kEveryRay;
+    /// Whether rays by which the camera sees, straight, in perfect mirrors and through clear glass,
+    /// meet the shape's inside, too; else they pass it. All others meet both sides.
+    bool is_seen_from_back = true;
 };
 
 struct ObjectDescription {
