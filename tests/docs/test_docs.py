@@ -1,7 +1,9 @@
 """The documents: every link leads somewhere, every command is one that the program understands, constants are those of the
 code, prose is wrapped, the decisions' index lists each record, the reproduction's tables are those of its numbers."""
 
+import contextlib
 import functools
+import io
 import json
 import os
 import pathlib
@@ -9,6 +11,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tempfile
 import unittest
 from urllib.parse import unquote
 
@@ -277,6 +280,36 @@ class Documents(unittest.TestCase):
             for claim in experiment["claims"].values():
                 for text in (claim["statement"], claim["required"], claim["found"]):
                     self.assertIn(reproduction.cell(text), document)
+
+    def test_a_run_is_held_against_the_published_numbers(self):
+        numbers = json.loads(text_of(reproduction.NUMBERS))
+
+        def outcome(change):
+            own = json.loads(text_of(reproduction.NUMBERS))
+            change(own)
+            return reproduction.compare(numbers, own)[1]
+
+        def scaled(experiment, claim, factor):
+            def change(own):
+                own[experiment]["claims"][claim]["value"] *= factor
+            return change
+
+        self.assertEqual(outcome(lambda own: None), 0)
+        # An error may be off by 5 %, what depends on seconds by 30 %.
+        self.assertEqual(outcome(scaled("pipeline", "pipeline_equation_5_7", 1.04)), 0)
+        self.assertEqual(outcome(scaled("pipeline", "pipeline_equation_5_7", 1.2)), 1)
+        self.assertEqual(outcome(scaled("snooker", "snooker_equal_error_hybrid", 1.2)), 0)
+        self.assertEqual(outcome(scaled("snooker", "snooker_equal_error_hybrid", 0.6)), 1)
+        self.assertEqual(outcome(lambda own: own["voxels"]["claims"]["voxels_query"].update(holds=False)), 1)
+        self.assertEqual(outcome(lambda own: [e.update(size="full") for e in own.values()]), 2)
+        # Nothing is written, whatever comes of it.
+        before = {file: file.stat().st_mtime_ns for file in (reproduction.NUMBERS, reproduction.DOCUMENT)}
+        with tempfile.TemporaryDirectory() as folder:
+            run = pathlib.Path(folder) / "results.json"
+            run.write_text(json.dumps({"command": "covtrace reproduce", "size": "tiny", "facts": {"program": "covtrace"}, "experiments": {}}))
+            with contextlib.redirect_stdout(io.StringIO()):
+                self.assertEqual(reproduction.main([str(run)]), 2)
+        self.assertEqual(before, {file: file.stat().st_mtime_ns for file in before})
 
     def test_authorities_exist(self):
         """Works are named by author, title, year; no document is cited that readers do not have."""
