@@ -40,6 +40,19 @@ void replace_empty_half(Halves& halves) {
         }
 }
 
+/// How few samples the halves have: 1 up to 4 per pixel of both together, 0 from 16 on, in between
+/// linear in the variance of a pixel. Halves with noise of their own, as of other renderers, never
+/// count as few.
+float fewness(const Halves& halves, HalvesNoise noise) {
+    constexpr double kFew = 4, kEnough = 16;
+    if (noise != HalvesNoise::of_one_sequence) return 0;
+    double samples = 0;
+    for (const HalfBuffer& half : halves)
+        for (float count : half.count.values) samples += double(count);
+    const double mean = samples / double(halves[0].count.size());
+    return float(std::clamp((kEnough / mean - 1) / (kEnough / kFew - 1), 0.0, 1.0));
+}
+
 /// Brightness that errors are measured against, as a first guess: the mean over all candidates but
 /// the raw one, the same for all channels.
 ColorPlanes common_brightness(std::span<const Candidate> candidates) {
@@ -77,6 +90,14 @@ ColorPlanes mean_of(const Selection& s) {
     return mean;
 }
 
+/// The light of all samples that is not in the halves any more.
+ColorPlanes cut_off(ColorPlanes all, const Halves& halves) {
+    for (size_t k = 0; k < 3; ++k)
+        for (size_t i = 0; i < all[k].size(); ++i)
+            all[k][i] -= 0.5f * (halves[0].color[k][i] + halves[1].color[k][i]);
+    return all;
+}
+
 /// Blends the selection's mixture with the denoiser's results: the mixture keeps the share `own` of
 /// every pixel, and the denoiser gets the rest as one more candidate. In `image` that part is from
 /// all samples denoised together, which is cleaner than the mean of the denoised halves.
@@ -98,12 +119,11 @@ void blend(const Plane& own, const Denoised& clean, Selection& s, ColorPlanes& i
 /// Denoises both halves and, upright and turned, all samples. Returns nothing without a denoiser,
 /// or where it fails, and then `failure` says why.
 std::optional<Denoised> denoised(const Denoiser* denoiser, const Halves& halves,
-                                 const ColorPlanes& all, std::string& failure) {
+                                 const ColorPlanes& all, bool draft_features,
+                                 std::string& failure) {
     if (!denoiser) return std::nullopt;
     NoisyFeatures features;
-    // Noisy features are smoothed in about a third of the time then, and the image errs 0.7 % more
-    // (docs/decisions/0085)
-    features.draft = true;
+    features.draft = draft_features;
     for (size_t k = 0; k < 3; ++k) {
         features.albedo[k] = mean_of(halves[0].feature[k], halves[1].feature[k]);
         features.normal[k] = mean_of(halves[0].feature[3 + k], halves[1].feature[3 + k]);
@@ -139,8 +159,11 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     replace_empty_half(halves);
     const ColorPlanes all = mean_of(halves);
     HybridImage image;
+    // Noisy features are smoothed in about a third of the time as a draft, and the image errs 0.7 %
+    // more at 16 samples (docs/decisions/0085), but 2 % at 4, and 8 % behind a lens (0117)
+    const float few = fewness(halves, settings.noise);
     const std::optional<Denoised> clean =
-        denoised(settings.denoiser, halves, all, image.denoiser_failure);
+        denoised(settings.denoiser, halves, all, few == 0, image.denoiser_failure);
     std::array<ColorPlanes, 2> samples, variance;  // the halves before anything is cut off
     if (clean)
         for (size_t k = 0; k < 2; ++k) {
@@ -148,7 +171,7 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
             variance[k] = halves[k].color_variance;
         }
     // Limit rare bright paths; light_return knows the halves as they were
-    const LightReturn light_return(halves, settings.noise);
+    const LightReturn light_return(halves, settings.noise, clean ? few : 0);
     limit_outliers(halves);
     // Smooth the variances: unsmoothed ones follow their own pixel's mean, and would let bright
     // pixels accept dark ones and not the other way round
@@ -173,10 +196,7 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     Selection s = select(halves, candidates, g, likeness, settings.mix);
     image.color = mean_of(s);
     if (clean) {
-        ColorPlanes lost = all;
-        for (size_t k = 0; k < 3; ++k)
-            for (size_t i = 0; i < lost[k].size(); ++i)
-                lost[k][i] -= 0.5f * (halves[0].color[k][i] + halves[1].color[k][i]);
+        const ColorPlanes lost = cut_off(all, halves);
         blend(own_share({samples, variance, s.half, lost, g}, *clean, likeness), *clean, s,
               image.color);
         candidates.push_back(clean->half);

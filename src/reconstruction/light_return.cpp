@@ -30,6 +30,9 @@ constexpr int stride(int level) {
 /// more even than their spread tells: the light that it lacks is mostly real. With 0 the error is 1
 /// % larger at 4 samples per pixel.
 constexpr float kNoise = 1, kNoiseOfAll = 0.1f;
+/// Both factors where samples are few: with more the error is a little less, but the light of
+/// tenths of the brightness is further off (docs/decisions/0117).
+constexpr float kNoiseOfFew = 3;
 /// Factor by which a place may become brighter at most; it may become darker by the same factor.
 constexpr float kMostTimes = 10;
 
@@ -143,7 +146,10 @@ void keep_in_place(const Plane& around, const ColorPlanes& e, ColorPlanes& color
 
 }  // namespace
 
-LightReturn::LightReturn(const Halves& halves, HalvesNoise noise) : noise_(noise) {
+LightReturn::LightReturn(const Halves& halves, HalvesNoise noise, float few)
+    : noise_(noise),
+      windows_noise_(std::lerp(kNoise, kNoiseOfFew, few)),
+      all_noise_(std::lerp(kNoiseOfAll, kNoiseOfFew, few)) {
     if (noise == HalvesNoise::independent) {
         half_difference_ = luminance(halves[0].color);
         const Plane other = luminance(halves[1].color);
@@ -197,7 +203,7 @@ ColorPlanes LightReturn::lacking(const ColorPlanes& e, const Plane& light) const
             const float variance =
                 level == 0 ? sums.squares[0][i] : noise_of_lack(sums, noise_, level, i, lack);
             const float all = sums.linear[kLight][i];
-            const Rgb given = times_lacking(lack, all, variance, kNoise);
+            const Rgb given = times_lacking(lack, all, variance, windows_noise_);
             for (size_t c = 0; c < 3; ++c) {
                 times[c][i] += given[int(c)];
                 sums.linear[c][i] -= given[int(c)] * all;  // the wider windows lack it no more
@@ -224,7 +230,7 @@ void LightReturn::give_to_all(const ColorPlanes& e, const ColorPlanes& in_place,
     }
     for (float v : block_variance().values) variance += sqr(sqr(double(kFinest))) * double(v);
     const Rgb times = times_lacking({float(lack[0]), float(lack[1]), float(lack[2])}, float(all),
-                                    float(variance), kNoiseOfAll);
+                                    float(variance), all_noise_);
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < light.size(); ++i) {
             float& v = color[c][i];

@@ -25,7 +25,9 @@ enum class HalvesNoise : uint8_t {
 /// samples around say, from a tenth to ten times, where they say more than their noise could (James
 /// and Stein's factor). This is done with w of deviations of 12, 48 and 192 pixels, wider windows
 /// giving what narrower ones left (k = 1), then once over the whole image, where nearly everything
-/// counts (k = 0.1), so that the image has the light of the samples.
+/// counts (k = 0.1), so that the image has the light of the samples. Where samples are few, light
+/// that is given wrongly costs more than light that is missing: k grows to 3 everywhere
+/// (docs/decisions/0117).
 ///
 /// In the narrowest windows and in the whole image s^2 = sum w^2 V, V the variance of L(raw). Over
 /// wider ones an image keeps the noise of its samples, so that e is hardly noisy: with V an image
@@ -41,8 +43,9 @@ enum class HalvesNoise : uint8_t {
 class LightReturn {
   public:
     /// Keeps features and variances of the halves, with their holes filled, before outliers are
-    /// limited.
-    explicit LightReturn(const Halves& halves, HalvesNoise noise = HalvesNoise::of_one_sequence);
+    /// limited. `few` tells how few samples they have, from 0 to 1.
+    explicit LightReturn(const Halves& halves, HalvesNoise noise = HalvesNoise::of_one_sequence,
+                         float few = 0);
 
     /// Gives light back to `color`; `raw` is the mean of the samples. No pixel becomes negative
     /// that is not so already.
@@ -62,8 +65,9 @@ class LightReturn {
     void keep_what_both_saw(const ColorPlanes& e, ColorPlanes& in_place) const;
 
     HalvesNoise noise_;
-    std::vector<Plane> features_;  ///< features of the blocks, in units that tell pixels apart
-    Plane variance_;               ///< variance of raw's luminance in the blocks
+    float windows_noise_, all_noise_;  ///< factors k of the windows and of the whole image
+    std::vector<Plane> features_;      ///< features of the blocks, in units that tell pixels apart
+    Plane variance_;                   ///< variance of raw's luminance in the blocks
     /// Half the difference of the halves' luminances, where their noise is independent, else empty:
     /// of the pixels and of the blocks.
     Plane half_difference_, block_half_difference_;

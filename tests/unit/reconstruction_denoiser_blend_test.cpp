@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/vec.h"
 #include "reconstruction/hybrid.h"
 #include "reconstruction_images.h"
 
@@ -31,6 +32,18 @@ class FailingDenoiser : public FixedDenoiser {
     std::vector<ColorPlanes> denoise(const NoisyFeatures&, std::vector<NoisyImage>) const override {
         throw Error(ErrorKind::limit, "out of order");
     }
+};
+
+/// A denoiser that remembers whether the features of its last images were a draft.
+class AskedDenoiser : public FixedDenoiser {
+  public:
+    AskedDenoiser() : FixedDenoiser(constant(1)) {}
+    std::vector<ColorPlanes> denoise(const NoisyFeatures& features,
+                                     std::vector<NoisyImage> images) const override {
+        is_draft = features.draft;
+        return FixedDenoiser::denoise(features, std::move(images));
+    }
+    mutable bool is_draft = false;
 };
 
 ColorPlanes grey(const auto& truth) {
@@ -89,6 +102,47 @@ TEST(DenoiserBlend, RareLightIsTheDenoisers) {
                 half.color_variance[c][i] = 2500;
             }
     EXPECT_GT(mean_share(with(FixedDenoiser(constant(1)), halves)), 0.95);
+}
+
+TEST(DenoiserBlend, FeaturesOfFewSamplesAreNoDraft) {
+    const AskedDenoiser denoiser;
+    Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.2f, 36);  // 8 samples in each half
+    with(denoiser, halves);
+    EXPECT_TRUE(denoiser.is_draft);
+    halves[0].count = Plane(kSize, kSize, 7);
+    with(denoiser, halves);
+    EXPECT_FALSE(denoiser.is_draft);
+    // The samples of other renderers are not counted
+    HybridSettings settings;
+    settings.denoiser = &denoiser;
+    settings.noise = HalvesNoise::independent;
+    reconstruct(halves, kSpectrum, settings);
+    EXPECT_TRUE(denoiser.is_draft);
+}
+
+TEST(DenoiserBlend, FewSamplesKeepLessOfRareLight) {
+    // The denoiser leaves out what four pixels alone have seen, as a network does. Of 16 samples
+    // nearly all of that light comes back, of 4 a fourth.
+    constexpr float kLight = 60;
+    const auto light_of = [&](float samples_of_half) {
+        Halves halves = noisy_halves(
+            kSize, kSize, [](int, int) { return 1.0f; }, 0, 37);
+        for (HalfBuffer& half : halves) {
+            half.count = Plane(kSize, kSize, samples_of_half);
+            for (size_t c = 0; c < 3; ++c)
+                for (const int x : {kSize / 4, 3 * kSize / 4})
+                    half.color[c](x, &half == &halves[0] ? 16 : 48) += 2 * kLight;
+        }
+        for (const int x : {kSize / 4, 3 * kSize / 4})
+            for (size_t c = 0; c < 3; ++c) {
+                halves[0].color_variance[c](x, 16) = 4 * sqr(kLight);
+                halves[1].color_variance[c](x, 48) = 4 * sqr(kLight);
+            }
+        return mean_of(with(FixedDenoiser(constant(1)), halves).color) - 1;
+    };
+    constexpr double kAll = 4 * kLight / (kSize * kSize);
+    EXPECT_GT(light_of(8), 0.9 * kAll);
+    EXPECT_LT(light_of(2), 0.5 * kAll);
 }
 
 TEST(DenoiserBlend, OneThatFailsIsLeftOut) {

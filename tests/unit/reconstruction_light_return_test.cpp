@@ -78,6 +78,29 @@ TEST(LightReturn, TheWholeImageHasTheLightOfItsSamples) {
     EXPECT_NEAR(mean_of_columns(color, 0, kSize) / mean_of_columns(raw, 0, kSize), 1, 0.01);
 }
 
+TEST(LightReturn, FewSamplesGiveLessOfWhatFewPlacesHave) {
+    // The image lacks the light of four bright paths, a sum whose variance is a fourth of its
+    // square: wide windows give 1 - k / 4 of it, k = 1 or 3, and the whole image some of the rest.
+    constexpr float kLight = 40, kLacking = 4 * kLight / (kSize * kSize);
+    ColorPlanes raw = constant(1);
+    Halves halves = halves_with(0);
+    for (const int x : {kSize / 4, 3 * kSize / 4})
+        for (const int y : {kSize / 4, 3 * kSize / 4})
+            for (size_t c = 0; c < 3; ++c) {
+                raw[c](x, y) += kLight;
+                halves[0].color_variance[c](x, y) = 4 * sqr(kLight);
+            }
+    const auto given = [&](float few) {
+        ColorPlanes color = constant(1);
+        LightReturn(halves, HalvesNoise::of_one_sequence, few).give_back(raw, color);
+        return mean_of_columns(color, 0, kSize) - 1;
+    };
+    EXPECT_GT(given(0), 0.85 * kLacking);
+    EXPECT_GT(given(1), 0.1 * kLacking);
+    EXPECT_LT(given(1), 0.3 * kLacking);
+    EXPECT_GT(given(0.3f), given(0.6f));
+}
+
 TEST(LightReturn, NothingBecomesNegative) {
     // A spot that no sample has seen stands in an image that is twice as bright as its samples.
     ColorPlanes raw, color;
