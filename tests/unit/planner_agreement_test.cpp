@@ -1,4 +1,4 @@
-// Of two densities the noise goes and what both know stays.
+// Two densities lose their noise and keep what both know.
 #include "planner/agreement.h"
 
 #include <gtest/gtest.h>
