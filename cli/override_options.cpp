@@ -9,7 +9,7 @@ namespace covtrace::cli {
 
 namespace {
 
-void add_environment(CLI::App* c, SceneOverrides& o) {
+void add_lights(CLI::App* c, SceneOverrides& o) {
     const auto parse = [&o](const std::string& text) {
         o.environment = parse_environment("--environment", text);
     };
@@ -23,6 +23,15 @@ void add_environment(CLI::App* c, SceneOverrides& o) {
                                         "turn it about the scene's up axis")
         ->option_text("DEGREES");
     add_positive(c, "--environment-scale", o.environment_scale, 1e12, "make it brighter or darker");
+    const auto add_lamp = [&o](const std::vector<std::string>& texts) {
+        o.lamps.clear();
+        for (const std::string& text : texts) o.lamps.push_back(parse_lamp("--light", text));
+    };
+    c->add_option_function<std::vector<std::string>>(
+         "--light", add_lamp, "a lamp, 'x,y,z power N' or 'camera'; repeatable")
+        ->allow_extra_args(false)
+        ->take_all()
+        ->option_text("camera|TEXT");
 }
 
 /// Adds an option for the name or number of something in the file.
@@ -67,7 +76,7 @@ void add_override_options(CLI::App* c, SceneOverrides& o, ReadOptions& r) {
     add_whole(c, "--max-depth", o.max_depth, 0, std::numeric_limits<int>::max(),
               "most scattering events (default: the scene's)");
     add_choice_options(c, o, r);
-    add_environment(c, o);
+    add_lights(c, o);
 }
 
 }  // namespace covtrace::cli

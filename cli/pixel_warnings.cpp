@@ -1,6 +1,7 @@
 #include "cli/pixel_warnings.h"
 
 #include "cli/message.h"
+#include "image/darkness.h"
 #include "image/finite_pixels.h"
 
 namespace covtrace::cli {
@@ -13,6 +14,13 @@ void warn_of_rejected(const RenderStatistics& statistics) {
         say("; --debug-pixel {},{},{} shows one", r.x, r.y, r.sample);
     }
     say("\n");
+}
+
+void warn_of_darkness(double dark) {
+    if (dark < kMostlyDark) return;
+    say("warning: {:.0f} % of the surfaces in view are black, as no light reaches them; --light "
+        "camera adds a lamp, --light 'x,y,z' one at a place, and --environment the sky's light\n",
+        100 * dark);
 }
 
 void warn_of_replaced(const Image& image) {

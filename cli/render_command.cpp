@@ -26,6 +26,7 @@
 #include "cli/scene_input.h"
 #include "core/memory_limit.h"
 #include "core/parallel.h"
+#include "image/darkness.h"
 #include "image/image.h"
 #include "image/output_file.h"
 #include "image/write_image.h"
@@ -160,9 +161,9 @@ void require_samples(const RenderResult& result, const Monitor& monitor) {
                     "interrupted before the first sample: nothing is written");
 }
 
-/// Tells what was rendered, and what went wrong with it.
+/// Tells what was rendered, and what went wrong with it. `dark`: dark_share of the image.
 void tell_outcome(const RenderResult& result, const RenderArguments& a, const fs::path& output,
-                  const Monitor& monitor) {
+                  double dark, const Monitor& monitor) {
     warn_of_rejected(result.statistics);
     warn_of_replaced(result.image);
     if (result.is_below_least)
@@ -170,6 +171,7 @@ void tell_outcome(const RenderResult& result, const RenderArguments& a, const fs
             "needs\n");
     if (a.quiet) return;
     warn_of_failed_denoiser(result.image);
+    warn_of_darkness(dark);
     say("{}: {:.4g} samples per pixel{} in {:.1f} s\n",
         a.film.shard ? a.film.film : output.string(), result.statistics.samples_per_pixel,
         result.statistics.density_factor
@@ -247,6 +249,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     result.statistics.seconds[Phase::load] = loaded;
     result.statistics.seconds[Phase::build] = built - loaded;
     const double rendered = monitor.elapsed();
+    const double dark = dark_share(result.image);
     // Write the files and tell what was done
     progress.clear();
     if (viewer) viewer->show(copy_layers(result.image, a.tev_layers));
@@ -258,7 +261,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
         write_text(statistics_json(scene, result, denoiser, monitor).dump(2) + "\n", a.stats);
     if (result.complete || (is_shard && !monitor.cancelled()))
         progress.done(result.statistics.samples_per_pixel, monitor.elapsed(), monitor.error());
-    tell_outcome(result, a, output, monitor);
+    tell_outcome(result, a, output, dark, monitor);
     // A viewer that still takes the last image may do so; all else is done.
     if (viewer) {
         viewer->finish(std::max(0.25, 0.01 * monitor.elapsed()));

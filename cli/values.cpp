@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <system_error>
@@ -228,6 +230,48 @@ EnvironmentOverride parse_environment(const std::string& option, const std::stri
     if (!std::filesystem::is_regular_file(text, ignored))
         refuse(option, text, "the name of a file that is there, a colour r,g,b or a number");
     return {text, Rgb(1)};
+}
+
+LampDescription parse_lamp(const std::string& option, const std::string& text) {
+    constexpr auto kExpected =
+        "a lamp such as 'camera' or '0,2.5,1', with 'power 40', 'radius 0.1' or 'colour 1,0.9,0.8' "
+        "after it";
+    constexpr float kMost = 1e20f;
+    const auto expect = [&](bool is_right) {
+        if (!is_right) refuse(option, text, kExpected);
+    };
+    const auto vector = [&](const std::string& value, float least) {
+        const auto v = list_of<float, 3>(value, ',');
+        expect(v && std::all_of(v->begin(), v->end(),
+                                [&](float c) { return c >= least && c <= kMost; }));
+        return *v;
+    };
+    std::istringstream words(text);
+    std::string place;
+    words >> place;
+    LampDescription lamp;
+    if (place != "camera") {
+        const auto v = vector(place, -kMost);
+        lamp.at = Vec3{v[0], v[1], v[2]};
+    }
+    std::set<std::string> given;
+    for (std::string name, value; words >> name;) {
+        expect(bool(words >> value) && given.insert(name).second);
+        if (name == "colour") {
+            const auto v = vector(value, 0);
+            lamp.colour = {v[0], v[1], v[2]};
+            expect(luminance(lamp.colour) > 1e-6f);
+            continue;
+        }
+        const auto number = list_of<float, 1>(value, ',');
+        expect(number && (*number)[0] > 0 && (*number)[0] <= kMost);
+        expect(name == "power" || (name == "radius" && lamp.at));
+        if (name == "power")
+            lamp.power = (*number)[0];
+        else
+            lamp.radius = (*number)[0];
+    }
+    return lamp;
 }
 
 float parse_degrees(const std::string& option, const std::string& text) {

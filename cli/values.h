@@ -44,6 +44,8 @@ CameraOverride parse_camera(const std::string& option, const std::string& text);
 /// Reads a light from all around: a colour "r,g,b" or one number, or the name of a file that is
 /// there.
 EnvironmentOverride parse_environment(const std::string& option, const std::string& text);
+/// Reads a lamp: "camera" or its place "x,y,z", then any of "power N", "radius N", "colour r,g,b".
+LampDescription parse_lamp(const std::string& option, const std::string& text);
 /// Reads an angle: a finite number of degrees.
 float parse_degrees(const std::string& option, const std::string& text);
 /// Reads a number in [least, most].

@@ -103,6 +103,19 @@ EnvironmentOverride environment_override(const py::dict& o) {
     return {image, Rgb(1)};
 }
 
+/// A place, or None for the camera's; radius, colour, power or None.
+LampDescription lamp(const py::handle& given) {
+    const auto parts = given.cast<std::tuple<std::optional<std::array<float, 3>>, float,
+                                             std::array<float, 3>, std::optional<float>>>();
+    const auto& [at, radius, colour, power] = parts;
+    LampDescription lamp;
+    if (at) lamp.at = Vec3{(*at)[0], (*at)[1], (*at)[2]};
+    lamp.radius = radius;
+    lamp.colour = {colour[0], colour[1], colour[2]};
+    lamp.power = power;
+    return lamp;
+}
+
 }  // namespace
 
 SceneOverrides scene_overrides(const py::dict& o) {
@@ -131,6 +144,7 @@ SceneOverrides scene_overrides(const py::dict& o) {
         require(std::isfinite(*s.environment_rotation), "environment_rotation must be finite");
     }
     s.environment_scale = positive<float>(o, "environment_scale");
+    for (const py::handle& given : o["light"]) s.lamps.push_back(lamp(given));
     return s;
 }
 

@@ -2,6 +2,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstddef>
 #include <exception>
@@ -17,6 +18,7 @@
 #include "films.h"
 #include "geometry/instruction_set.h"
 #include "gltf/read_gltf.h"
+#include "image/darkness.h"
 #include "image/finite_pixels.h"
 #include "options.h"
 #include "pbrt/read_scene.h"
@@ -116,6 +118,12 @@ std::vector<std::string> texts_of(const Warnings& warnings) {
     return texts;
 }
 
+std::string darkness_text(double dark) {
+    return std::to_string(std::lround(100 * dark)) +
+           " % of the surfaces in view are black, as no light reaches them; light=\"camera\" "
+           "adds a lamp, light=\"x,y,z\" one at a place, and environment= the sky's light";
+}
+
 /// Builds the scene and renders it, without Python.
 Rendered render_description(SceneDescription description, RenderOptions options,
                             const std::optional<Preset>& bundle, const DenoiserSearch& search,
@@ -130,12 +138,11 @@ Rendered render_description(SceneDescription description, RenderOptions options,
     const auto told = std::ptrdiff_t(description.warnings.size());
     apply(overrides, description);
     if (bundle) apply(*bundle, overrides, description, options);
-    // Stand-ins for a camera or lights are known only now.
-    Warnings warnings(description.warnings.begin() + told, description.warnings.end());
+    Warnings of_options;
     for (std::string& text : idle_options(options, search.choice == DenoiserChoice::oidn))
-        warnings.push_back({{}, std::move(text)});
-    FilmFiles films(deliverables.films, [&warnings](const std::string& text) {
-        warnings.push_back({{}, text});
+        of_options.push_back({{}, std::move(text)});
+    FilmFiles films(deliverables.films, [&of_options](const std::string& text) {
+        of_options.push_back({{}, text});
     });
     FilmKeeping keeping = films.keeping(true);
     const double begin = monitor.elapsed();
@@ -143,8 +150,11 @@ Rendered render_description(SceneDescription description, RenderOptions options,
     const double building = monitor.elapsed() - begin;
     RenderResult result = render(scene, options, monitor, std::move(keeping));
     films.finish();
-    const Warnings& of_materials = scene.materials.warnings();
-    warnings.insert(warnings.end(), of_materials.begin(), of_materials.end());
+    // Stand-ins for a camera or lights, and what building the scene found, are new.
+    const Warnings& of_scene = scene.description.warnings;
+    Warnings warnings(of_scene.begin() + told, of_scene.end());
+    for (const Warnings* w : {&scene.materials.warnings(), &std::as_const(of_options)})
+        warnings.insert(warnings.end(), w->begin(), w->end());
     if (denoiser.is_unusable) warnings.push_back({{}, "no denoiser is used: " + denoiser.why_none});
     std::string failure;
     if (const auto it = result.image.metadata.find("covtrace:denoiserFailure");
@@ -154,6 +164,8 @@ Rendered render_description(SceneDescription description, RenderOptions options,
     }
     const std::optional<ReplacedPixels> replaced = replaced_pixels(result.image.metadata);
     if (replaced) warnings.push_back({{}, describe(*replaced)});
+    if (const double dark = dark_share(result.image); dark >= kMostlyDark)
+        warnings.push_back({{}, darkness_text(dark)});
     if (!is_shard) select_layers(result.image, deliverables.layers, warnings);
     return {std::make_shared<Planes>(std::move(result.image)),
             std::move(result.statistics),

@@ -214,6 +214,36 @@ def camera_of(value: Any) -> dict[str, Any] | None:
     return camera
 
 
+_LAMP = ("'camera' or '0,2.5,1', with 'power 40', 'radius 0.1' or 'colour 1,0.9,0.8' after it, or a list of such texts")
+
+
+def _lamp_in(text: Any) -> tuple[Any, float, tuple[float, float, float], float | None]:
+    """Place or None for the camera's, radius, colour and power or None, as the program's option has them."""
+    if not isinstance(text, str) or len(words := text.split()) % 2 == 0:
+        refuse("light", text, _LAMP)
+    at = None if words[0] == "camera" else vector_in(words[0])
+    names = words[1::2]
+    given = dict(zip(names, words[2::2]))
+    colour = vector_in(given.pop("colour", "1,1,1"))
+    numbers = {name: float(value) if re.fullmatch(_NUMBER, value) else 0 for name, value in given.items()}
+    if (at is None and (words[0] != "camera" or "radius" in given) or len(set(names)) != len(names)
+            or not numbers.keys() <= {"power", "radius"} or not all(0 < v <= 1e20 for v in numbers.values())
+            or at is not None and not all(abs(c) <= 1e20 for c in at)
+            or colour is None or not all(0 <= c <= 1e20 for c in colour) or not max(colour) > 1e-5):
+        refuse("light", text, _LAMP)
+    return at, numbers.get("radius", 0.0), colour, numbers.get("power")
+
+
+def lamps_of(value: Any) -> list[tuple[Any, float, tuple[float, float, float], float | None]]:
+    """Lamps to be added, of one text or of several."""
+    if value is None:
+        return []
+    try:
+        return [_lamp_in(text) for text in ([value] if isinstance(value, str) else value)]
+    except TypeError:
+        refuse("light", value, _LAMP)
+
+
 def function_of(name: str, value: Callable[..., Any] | None) -> Callable[..., Any] | None:
     if value is not None and not callable(value):
         refuse(name, value, "a function")

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, Protocol
 
 from . import _covtrace
-from .arguments import (camera_of, cancel_of, environment_of, films_of, function_of, is_camera_choice, layers_of, path_of, resolution_of,
+from .arguments import (camera_of, cancel_of, environment_of, films_of, function_of, is_camera_choice, lamps_of, layers_of, path_of, resolution_of,
                         seconds_of, shutter_of)
 from .builder import SceneBuilder
 from .errors import SceneWarning, UsageError
@@ -60,6 +60,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
            variant: str | int | None = None,
            environment: str | os.PathLike[str] | float | tuple[float, float, float] | None = None,
            environment_rotation: float | None = None, environment_scale: float | None = None,
+           light: str | Iterable[str] | None = None,
            seed: int = 0, threads: int = 0,
            isa: Literal["sse2", "avx", "avx2", "avx512"] | None = None,
            texture_memory: int | str | None = None,
@@ -97,6 +98,8 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
     environment, environment_rotation, environment_scale: an image's path, a number or (r, g, b), in
         place of the scene's infinite lights; degrees about what is up; a factor. The last two change
         the scene's own where no environment is given.
+    light: a lamp beside the scene's lights, or a list of them: "camera", or a place "x,y,z", with
+        "power N", "radius N" and "colour r,g,b" after it where they are not to be the renderer's.
     threads: 0 for all cores; holds for the process while the render runs.
     layers: which layers the image has beside R, G, B and A: "all" and "none" as in the program, names
         as a text with commas or a list, such as ["raw", "featurealbedo"]; by default all that are
@@ -132,6 +135,7 @@ def render(scene: str | os.PathLike[str] | Scene | SceneBuilder, *,
                "crop": crop, "shutter": shutter_of(shutter), "focus": focus, "fstop": fstop,
                "camera": camera_of(None if is_choice else camera), "environment": environment_of(environment),
                "environment_rotation": environment_rotation, "environment_scale": environment_scale,
+               "light": lamps_of(light),
                "seed": seed,
                "layers": layers_of(layers), **films_of(film, checkpoint, every, resume, shard),
                "threads": threads, "isa": isa, "texture_memory": _bytes(texture_memory),

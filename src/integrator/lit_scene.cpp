@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "integrator/displacement.h"
+#include "integrator/lamps.h"
 
 namespace covtrace {
 
@@ -50,7 +51,7 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
     : description(std::move(scene_description)),
       textures(description, texture_bytes),
       geometry(displace(description, textures), isa),
-      lights(description, geometry, &textures),
+      lights(stand_lamps(description, geometry), geometry, &textures),
       materials(description, textures, IlluminantAdaptation(lights.total_power())),
       camera(description.camera, description.film.width, description.film.height),
       filter(description.filter) {

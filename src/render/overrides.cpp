@@ -8,6 +8,7 @@
 #include "core/vec.h"
 #include "render/camera_override.h"
 #include "render/environment_override.h"
+#include "scene/added_lamps.h"
 #include "scene/defaults.h"
 #include "scene/framing.h"
 
@@ -63,6 +64,7 @@ void apply(const SceneOverrides& overrides, SceneDescription& scene) {
         scene.camera.lens_radius = focal_length / (2 * *overrides.f_number);
     }
     if (overrides.max_depth) scene.max_depth = *overrides.max_depth;
+    add_lamps(overrides.lamps, scene);
     if (overrides.environment) replace_environment(*overrides.environment, scene);
     complete(scene);
     change_environment(overrides, scene);

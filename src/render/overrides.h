@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "image/image.h"
 #include "scene/scene_description.h"
@@ -39,6 +40,7 @@ struct SceneOverrides {
     /// from above, so that a picture moves to its left.
     std::optional<float> environment_rotation;
     std::optional<float> environment_scale;  ///< of the infinite lights, above 0
+    std::vector<LampDescription> lamps;      ///< to be added, without area lights
     /// Least focal distance and f-number: smaller ones ask for lenses that single precision cannot
     /// hold.
     static constexpr double kLeastOfLens = 1e-9;

@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "core/transform.h"
 #include "core/vec.h"
+#include "scene/lamp_description.h"
 #include "scene/lens_description.h"
 #include "scene/ray_kind.h"
 #include "scene/texture_description.h"
@@ -366,6 +367,8 @@ struct SceneDescription {
     std::vector<MediumDescription> media;
     std::vector<AreaLightDescription> area_lights;
     std::vector<LightDescription> lights;
+    std::vector<LampDescription>
+        lamps;  ///< beside them, until the renderer has made lights of them
     std::vector<ShapeDescription> shapes;
     std::vector<ObjectDescription> objects;
     std::vector<InstanceDescription> instances;
@@ -378,9 +381,9 @@ struct SceneDescription {
     /// the defaults that it puts there. Empty where the file has one, or where another one took the
     /// place.
     std::optional<Warning> no_camera, no_lights;
-    /// Camera and environment in place of the file's, as text for a render's identity; empty: its
-    /// own.
-    std::string camera_override, environment_override;
+    /// Camera and environment in place of the file's, and lamps beside its own, as text for a
+    /// render's identity; empty: its own, and none.
+    std::string camera_override, environment_override, lamps_text;
     /// Choices among the file's cameras, scenes, animations and variants of materials, as text for
     /// a render's identity; empty: the reader's own.
     std::string camera_choice, gltf_scene_choice, animation_choice, variant_choice;

@@ -41,6 +41,30 @@ class Overrides(unittest.TestCase):
             numpy.testing.assert_allclose(mean(environment=sky), 7, rtol=1e-4)
             numpy.testing.assert_allclose(mean(environment=str(sky), environment_rotation=-30), 7, rtol=1e-4)
 
+    def test_lamps(self):
+        room = covtrace.Scene.from_string("""LookAt 0 0 0  1 0.3 1  0 1 0
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 16 "integer yresolution" 8
+Integrator "path" "integer maxdepth" 1
+WorldBegin
+LightSource "infinite"
+Shape "sphere" "float radius" 3
+""")
+
+        def mean(light):
+            return covtrace.render(room, method="uniform", spp=4, light=light).rgb.mean((0, 1))
+
+        with self.assertWarnsRegex(covtrace.SceneWarning, '100 % of the surfaces in view are black.*light="camera"'):
+            self.assertEqual(mean(None).max(), 0)
+        direct = 0.5 / numpy.pi / (4 * numpy.pi * 9)
+        # Few samples choose the sky, which does not get there.
+        numpy.testing.assert_allclose(mean("0,0,0 power 200"), 200 * direct, rtol=0.02)
+        numpy.testing.assert_allclose(mean(["0,0,0 power 200", "0,0,0 power 100 radius 0.5"]), 300 * direct, rtol=0.02)
+        red, green, _ = mean("0,0,0 colour 1,0.5,0 power 9")
+        numpy.testing.assert_allclose(green / red, 0.5, rtol=1e-3)
+        with self.assertWarnsRegex(covtrace.SceneWarning, '"0,0,0 power '):
+            numpy.testing.assert_allclose(mean("camera"), 0.3, rtol=0.02)
+
     def test_preset(self):
         scene = covtrace.Scene.from_string(scenes.SKY)
         self.assertEqual(covtrace.render(scene, preset="draft").statistics["spp"], 4)
@@ -128,7 +152,9 @@ class Overrides(unittest.TestCase):
                 {"environment": "no/such.exr"}, {"environment": "1,2"}, {"environment": "-1"}, {"environment": -1}, {"environment": (1, 2)},
                 {"environment": (1, 2, -3)}, {"environment": float("nan")},
                 {"environment_rotation": "much"}, {"environment_rotation": float("inf")},
-                {"environment_scale": 0}, {"environment_scale": "x"}):
+                {"environment_scale": 0}, {"environment_scale": "x"},
+                {"light": "x"}, {"light": ""}, {"light": 1}, {"light": "camera radius 1"}, {"light": "camera power 0"},
+                {"light": "1,2"}, {"light": ["camera", "0,0,0 colour 0,0,0"]}, {"light": "camera power 1 power 2"}, {"light": [None]}):
             with self.subTest(wrong), self.assertRaises(covtrace.UsageError):
                 covtrace.render(scene, **wrong)
 

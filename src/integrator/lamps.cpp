@@ -1,0 +1,151 @@
+#include "integrator/lamps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+#include "core/warp.h"
+#include "integrator/camera.h"
+#include "scene/imaging_scale.h"
+
+namespace covtrace {
+
+namespace {
+
+constexpr int kSide = 24;        // rays per side of the picture, or of all directions
+constexpr int kMostPassed = 64;  // backs that a ray passes
+/// Value of a white surface in the direct light of all lamps, where that is more than in so large a
+/// share of what is seen. The rest, near the lamp, may be brighter.
+constexpr float kGoal = 0.6f, kBrighterThan = 0.75f;
+constexpr float kLeastLit = 0.1f;  // share of the rays by which a lamp has to be seen to light
+
+/// Follows a ray past surfaces that it does not see. `passed`: the place of the last one.
+bool follow(const Geometry& geometry, Ray ray, SurfaceHit& hit, Vec3* passed = nullptr) {
+    for (int i = 0; i < kMostPassed; ++i) {
+        if (!geometry.intersect(ray, hit)) return false;
+        const PlacedShape& shape = geometry.shapes()[hit.shape];
+        const bool is_back = !shape.description.is_seen_from_back && dot(ray.direction, hit.ng) > 0;
+        if (!shape.lets_light_pass && !is_back) return true;
+        ray.origin = Geometry::offset_origin(hit, ray.direction);
+        if (passed && is_back) *passed = ray.origin;
+    }
+    return false;
+}
+
+/// Lamps of one scene.
+class Lamps {
+  public:
+    Lamps(SceneDescription& scene, const Geometry& geometry)
+        : scene_(scene),
+          geometry_(geometry),
+          camera_(scene.camera, scene.film.width, scene.film.height) {}
+
+    void stand() {
+        const auto open = std::count_if(scene_.lamps.begin(), scene_.lamps.end(),
+                                        [](const LampDescription& l) { return !l.power; });
+        for (LampDescription& lamp : scene_.lamps) {
+            const Vec3 place = lamp.at ? *lamp.at : beside_camera();
+            if (!lamp.power) {
+                lamp.power = power_at(place) / static_cast<float>(open);
+                tell(lamp, place);
+            }
+            light(lamp, place);
+        }
+        scene_.lamps.clear();
+    }
+
+  private:
+    Ray view_ray(float x, float y) const {
+        Ray ray = camera_.generate_ray(
+            {x * float(scene_.film.width), y * float(scene_.film.height)}, {0.5f, 0.5f}, 0);
+        ray.kind = RayKind::camera;
+        return ray;
+    }
+
+    Vec3 beside_camera() const {
+        const Ray ray = view_ray(0.5f, 0.5f);
+        Vec3 place = ray.origin;
+        SurfaceHit hit;
+        follow(geometry_, ray, hit, &place);
+        return place;
+    }
+
+    /// The irradiance of a hit by a point light of intensity 1; 0 where something is between.
+    float irradiance(const SurfaceHit& hit, Vec3 place) const {
+        const Vec3 away = place - hit.position;
+        const float distance = length(away);
+        if (!(distance > 0)) return 0;
+        Ray shadow{Geometry::offset_origin(hit, away), away / distance, hit.time};
+        shadow.t_max = 0.999f * distance;
+        shadow.kind = RayKind::shadow;
+        if (geometry_.occluded(shadow)) return 0;
+        return std::abs(dot(hit.ng, away)) / (distance * distance * distance);
+    }
+
+    /// Power by which a point light brings what it lights to the goal.
+    float power_at(Vec3 place) const {
+        std::vector<float> lit;
+        const auto add = [&](const Ray& ray) {
+            SurfaceHit hit;
+            if (!follow(geometry_, ray, hit)) return;
+            if (const float e = irradiance(hit, place); e > 0 && std::isfinite(e)) lit.push_back(e);
+        };
+        const auto for_all = [](const auto& visit) {
+            for (int i = 0; i < kSide * kSide; ++i)
+                visit((float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
+        };
+        for_all([&](float x, float y) { add(view_ray(x, y)); });
+        if (float(lit.size()) < kLeastLit * kSide * kSide)  // nothing that is in view: all around
+            for_all([&](float x, float y) {
+                add(Ray{place, square_to_sphere({x, y}), scene_.camera.shutter_open});
+            });
+        const float scale = imaging_scale(scene_);
+        float typical = 1 / std::max(sqr(geometry_.bounds().radius()), 1e-12f);
+        if (!lit.empty()) {
+            const auto bright =
+                lit.begin() + static_cast<std::ptrdiff_t>(kBrighterThan * float(lit.size()));
+            std::nth_element(lit.begin(), bright, lit.end());
+            typical = *bright;
+        }
+        const float power = 4 * kPi * kGoal * kPi / (typical * (scale > 0 ? scale : 1));
+        return std::clamp(power, 1e-20f, 1e20f);
+    }
+
+    void tell(const LampDescription& lamp, Vec3 place) {
+        std::ostringstream text;
+        text.precision(4);
+        text << "the lamp at ";
+        const auto name = [&] { text << place.x << ',' << place.y << ',' << place.z; };
+        name();
+        text << " has the power that suits the view: \"";
+        name();
+        text << " power " << *lamp.power << '"';
+        scene_.warnings.push_back({{}, text.str()});
+    }
+
+    void light(const LampDescription& lamp, Vec3 place) {
+        if (lamp.area_light >= 0) {
+            scene_.area_lights[static_cast<size_t>(lamp.area_light)].power = lamp.power;
+            return;
+        }
+        PointLight point;
+        point.intensity = lamp.colour;
+        point.power = lamp.power;
+        point.from = place;
+        scene_.lights.push_back({point, {}, {}});
+    }
+
+    SceneDescription& scene_;
+    const Geometry& geometry_;
+    const Camera camera_;
+};
+
+}  // namespace
+
+const SceneDescription& stand_lamps(SceneDescription& scene, const Geometry& geometry) {
+    if (!scene.lamps.empty()) Lamps(scene, geometry).stand();
+    return scene;
+}
+
+}  // namespace covtrace

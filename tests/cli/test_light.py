@@ -1,0 +1,112 @@
+"""--light: lamps beside the scene's own, how bright they are, that films know them, and what tells of dark images."""
+
+import math
+import re
+import unittest
+
+import exr
+from support import DONE, TINY, USAGE, CliTest, warnings_of
+
+RADIUS, REFLECTANCE = 3, 0.5
+ROOM = f"""\
+LookAt 0 0 0  1 0.3 1  0 1 0
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 24 "integer yresolution" 16
+Sampler "zsobol" "integer pixelsamples" 16
+Integrator "path" "integer maxdepth" 1
+WorldBegin
+LightSource "infinite"
+Material "diffuse" "rgb reflectance" [{REFLECTANCE} {REFLECTANCE} {REFLECTANCE}]
+Shape "sphere" "float radius" {RADIUS}
+"""
+
+
+class Light(CliTest):
+    def seen(self, *arguments, scene=ROOM):
+        """The channels and the warnings, as texts."""
+        result = self.render(scene, "--method", "uniform", *arguments)
+        self.assertEqual(result.code, DONE, result)
+        return exr.read(self.folder / "out.exr").pixels, [text for _, text in warnings_of(result)]
+
+    @staticmethod
+    def mean(values):
+        return sum(values) / len(values)
+
+    def test_dark_images_tell_the_way_out(self):
+        image, warnings = self.seen()
+        self.assertEqual(max(image["G"]), 0)
+        self.assertEqual(len(warnings), 1, warnings)
+        for part in ("100 % of the surfaces in view are black", "--light camera", "--light 'x,y,z'", "--environment"):
+            self.assertIn(part, warnings[0])
+        self.assertEqual(self.render(ROOM, "--quiet").stderr, "")
+        # Night skies, and pictures that are dark in half of what they show, are as they are meant.
+        for scene in (ROOM.replace("0 0 0  1 0.3 1", "0 0 9  0 0 99"), ROOM.replace('LightSource "infinite"', 'LightSource "point" "rgb I" [.1 .1 .1]')):
+            self.assertEqual(self.seen(scene=scene)[1], [])
+
+    def test_a_lamp_at_the_camera_suits_the_view(self):
+        image, warnings = self.seen("--light", "camera")
+        for value in image["G"]:
+            self.assertAlmostEqual(value, 0.6 * REFLECTANCE, delta=0.01)
+        self.assertEqual(len(warnings), 1, warnings)
+        text = re.search('"(.*)"', warnings[0])[1]
+        self.assertRegex(text, r"^0,0,0 power [\d.]+$")
+        again, warnings = self.seen("--light", text)
+        self.assertEqual(warnings, [])
+        for a, b in zip(again["G"], image["G"]):
+            self.assertAlmostEqual(a, b, delta=1e-3)
+        # Two of them share the light, and the film's speed takes nothing of it.
+        slow = ROOM.replace('"float fov" 40', '"float fov" 40 "float shutterclose" 0.02')
+        for arguments, scene in ((("--light", "camera", "--light", "camera"), ROOM), (("--light", "camera"), slow)):
+            self.assertAlmostEqual(self.mean(self.seen(*arguments, scene=scene)[0]["G"]), 0.6 * REFLECTANCE, delta=0.01)
+
+    def test_a_lamp_has_its_power_and_colour(self):
+        power = 200
+        expected = REFLECTANCE / math.pi * power / (4 * math.pi * RADIUS**2)
+        off_the_middle = ROOM.replace("0 0 0  1 0.3 1", "-1 -0.3 -1  1 0.3 1")
+        for more, radius in (("", 0), (" radius 0.4", 0.4)):
+            image, _ = self.seen("--light", f"0,0,0 power {power} colour 1,0.5,0" + more, scene=off_the_middle)
+            y = [0.2126 * r + 0.7152 * g for r, g in zip(image["R"], image["G"])]
+            # The camera looks through the lamp, which it does not see.
+            self.assertAlmostEqual(self.mean(y) / expected, 1, delta=0.02, msg=more)
+            self.assertLess(max(y), 1.3 * expected)
+            self.assertAlmostEqual(self.mean(image["G"]) / self.mean(image["R"]), 0.5, delta=0.001)
+            self.assertEqual(max(image["B"]), 0)
+
+    def test_spheres_throw_soft_shadows(self):
+        scene = TINY.replace('LightSource "point" "point3 from" [2 3 4] "rgb I" [10 10 10]', "").replace(
+            '  AreaLightSource "diffuse" "rgb L" [3 3 3]\n', "")
+        hard, _ = self.seen("--light", "3,4,-1 power 800", "--spp", "64", scene=scene)
+        soft, _ = self.seen("--light", "3,4,-1 power 800 radius 1.5", "--spp", "64", scene=scene)
+        difference = [abs(a - b) for a, b in zip(hard["G"], soft["G"])]
+        self.assertGreater(max(difference), 0.02)
+        self.assertAlmostEqual(self.mean(soft["G"]) / self.mean(hard["G"]), 1, delta=0.1)
+
+    def test_lamps_take_the_place_of_the_lights_of_a_scene_without(self):
+        dark = TINY.split("WorldBegin")[0] + 'WorldBegin\nShape "sphere" "float radius" 1\n'
+        image, warnings = self.seen("--light", "camera", scene=dark)
+        self.assertEqual(image["G"][0], 0)
+        self.assertGreater(max(image["G"]), 0.1)
+        self.assertNotIn("no lights", "".join(warnings))
+        image, _ = self.seen("--light", "camera", "--environment", "0.25", scene=dark)
+        self.assertAlmostEqual(image["G"][0], 0.25, places=4)
+
+    def test_films_know_them(self):
+        arguments = ["--checkpoint", "a.film", "--light", "camera", "--spp", "2", "--quiet"]
+        self.assertEqual(self.render(ROOM, *arguments).code, DONE)
+        self.assertEqual(self.render(ROOM, *arguments, "--resume").code, DONE)
+        for other in (["--light", "1,0,0"], ["--light", "0,0,0 power 2"]):
+            self.assert_fails(self.render(ROOM, *arguments, *other, "--resume"), USAGE, "film of another render", "--light")
+
+    def test_errors(self):
+        for wrong in ("x", "1,2", "nan,0,0", "camera radius 1", "camera power", "camera power 0", "camera power 1 power 2", "0,0,0 radius -1",
+                      "0,0,0 colour 1,2", "0,0,0 colour 0,0,0", "0,0,0 size 1", "camera camera"):
+            self.assert_fails(self.render(ROOM, f"--light={wrong}"), USAGE, "--light", "'camera' or '0,2.5,1'")
+
+    def test_measure_takes_it(self):
+        self.write("scene.pbrt", TINY)
+        arguments = ["measure", "scene.pbrt", "--pixel", "12,10", "--samples", "4096", "--paths", "16", "--json"]
+        self.assertNotEqual(self.run_program(*arguments).stdout, self.run_program(*arguments, "--light", "3,3,3 power 400").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
