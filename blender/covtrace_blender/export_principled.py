@@ -38,8 +38,8 @@ def either(inputs, *names):
 
 # Features of Principled that are left out: names of the socket, and the value at which it changes
 # nothing.
-LEFT_OUT = ((("Subsurface Weight", "Subsurface"), 0), (("Sheen Weight", "Sheen"), 0), (("Anisotropic",), 0),
-            (("Coat Tint",), 1), (("Coat Normal", "Clearcoat Normal"), 0), (("Diffuse Roughness",), 0), (("Thin Film Thickness",), 0))
+LEFT_OUT = ((("Subsurface Weight", "Subsurface"), 0), (("Sheen",), 0), (("Anisotropic",), 0),
+            (("Coat Normal", "Clearcoat Normal"), 0), (("Diffuse Roughness",), 0), (("Thin Film Thickness",), 0))
 
 
 class PrincipledExporter(ShaderWriter):
@@ -65,6 +65,15 @@ class PrincipledExporter(ShaderWriter):
         # nothing.
         return 2 * reflectance_of_eta(max(self._plain(inputs["IOR"]), 1e-3)) * self._plain(inputs["Specular IOR Level"])
 
+    def _sheen(self, inputs):
+        """Parameters of the fibres over all else, which Principled has since Blender 4.0."""
+        if "Sheen Weight" not in inputs or not (weight := self._plain(inputs["Sheen Weight"])) > 0:
+            return []
+        tint = self._value(inputs["Sheen Tint"])
+        colour = tint.times(weight) if tint.image else Value(tuple(weight * c for c in tint.constant))
+        return [self._colour("sheen", colour),
+                self._number("sheenroughness", self._value(inputs["Sheen Roughness"], True), squared, "squared")]
+
     def _coat(self, inputs):
         """(weight, roughness, index of refraction) of the coat as Values, the last as a number; weight 0: there is none."""
         weight = self._value(either(inputs, "Coat Weight", "Clearcoat"), True)
@@ -74,6 +83,20 @@ class PrincipledExporter(ShaderWriter):
         eta = max(self._plain(inputs["Coat IOR"]), 1.0001)
         return weight, self._value(inputs["Coat Roughness"], True), eta
 
+    def _seen_through_coat(self, inputs):
+        """The share of light that gets through a full coat with a tint, down and back, per channel: the tint is that of light
+        along the normal, and other light has a longer way through the coat."""
+        if "Coat Tint" not in inputs:
+            return np.ones(3)
+        tint = self._value(inputs["Coat Tint"])
+        if tint.image:
+            self.warn(f"material '{self.name}': an image as the coat's tint is not supported and left out")
+            return np.ones(3)
+        eta = self._coat(inputs)[2]
+        # The mean, over light from all around, of the way by that along the normal
+        way = np.mean(1 / np.sqrt(1 - (1 - (np.arange(64) + 0.5) / 64) / eta**2))
+        return np.clip(tint.constant, 0, 1) ** way
+
     def _under_coat(self, inputs, base, roughness, normal):
         """Diffuse under specular under the coat. Two borders are one that reflects as much as both, and that is at each
         hit as rough as the one or the other, in the proportion of what they reflect."""
@@ -82,12 +105,18 @@ class PrincipledExporter(ShaderWriter):
         if weight.image:
             self.warn(f"material '{self.name}': a coat over no metal that an image weighs is not supported and left out")
             weight = Value(0.0)
-        coat = min(max(weight.constant, 0), 1) * reflectance_of_eta(coat_eta)
+        share = min(max(weight.constant, 0), 1)
+        coat = share * reflectance_of_eta(coat_eta)
         eta = eta_of_reflectance(specular + coat)
+        tinted = ()
+        if share > 0:
+            through = 1 - share + share * self._seen_through_coat(inputs)
+            tinted = (lambda r: r * through, ("through", *through))
 
         def layers(rough):
             return self._make("coateddiffuse", [
-                self._colour("reflectance", base), *self._roughness(rough), f'"float eta" {max(eta, 1.0001):.9g}',
+                self._colour("reflectance", base, *tinted), *self._roughness(rough),
+                f'"float eta" {max(eta, 1.0001):.9g}',
                 '"bool reflectsthroughcoat" true', *normal])
 
         if coat == 0:
@@ -99,8 +128,10 @@ class PrincipledExporter(ShaderWriter):
         weight, coat_roughness, eta = self._coat(inputs)
         if not weight.image and weight.constant <= 0:
             return metal
+        through = self._seen_through_coat(inputs)
         coated = self._make("coatedconductor", [
-            self._colour("reflectance", base, lambda r: covered_reflectance(r, eta), ("under", eta)), self._number("conductor.roughness", roughness, squared, "squared"),
+            self._colour("reflectance", base, lambda r: covered_reflectance(r * through, eta), ("under", eta, *through)),
+            self._number("conductor.roughness", roughness, squared, "squared"),
             self._number("interface.roughness", coat_roughness, squared, "squared"), f'"float interface.eta" {eta:.9g}',
             '"float thickness" 0', '"bool remaproughness" false', *normal])
         return self._mix(metal, coated, weight)
@@ -110,7 +141,7 @@ class PrincipledExporter(ShaderWriter):
         base, roughness = self._value(get["Base Color"]), self._value(get["Roughness"], True)
         metallic = self._value(get["Metallic"], True)
         transmission = self._value(either(get, "Transmission Weight", "Transmission"), True)
-        normal = self._normal_map(node)
+        normal = self._normal_map(node) + self._sheen(get)
         self._tell_left_out(get)
         self._emit(self._value(either(get, "Emission Color", "Emission"), only_unit_square=True), self._plain(get["Emission Strength"]))
         alpha = self._value(get["Alpha"], True)

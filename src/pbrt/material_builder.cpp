@@ -62,6 +62,7 @@ MaterialId MaterialBuilder::build(Declared& d) {
     if (d.entity.type == "mix") {
         d.id = build_mix(d);
     } else {
+        const std::optional<SheenLayer> sheen = sheen_layer(d.entity, textures_);
         const NormalMaps maps = normal_maps(d.entity, textures_, context_);
         MaterialDescription m{d.name,
                               material_model(d.entity, textures_, context_),
@@ -69,6 +70,7 @@ MaterialId MaterialBuilder::build(Declared& d) {
                               {},
                               maps.displacement,
                               maps.normal_map};
+        m.sheen = sheen;
         d.id = static_cast<MaterialId>(context_.scene.materials.size());
         context_.scene.materials.push_back(std::move(m));
     }

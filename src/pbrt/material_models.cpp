@@ -240,6 +240,10 @@ DiffuseMaterial Builder::hair() {
     return m;
 }
 
+bool is_interface(const std::string& type) {
+    return type == "interface" || type.empty() || type == "none";
+}
+
 /// The BRDF of a file, read once for all materials that name it.
 std::shared_ptr<const BrdfTensor> brdf_of(const std::filesystem::path& file,
                                           const SourceLocation& where, BuildContext& context) {
@@ -285,6 +289,14 @@ NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& c
     return maps;
 }
 
+std::optional<SheenLayer> sheen_layer(Entity& entity, TextureBuilder& textures) {
+    constexpr float kRoughness = 0.25f;  // that of Blender's Principled, squared
+    if (is_interface(entity.type)) return std::nullopt;
+    const TextureId colour = textures.reflectance_or_none(entity.parameters, "sheen");
+    if (colour < 0) return std::nullopt;
+    return SheenLayer{colour, textures.grey(entity.parameters, "sheenroughness", kRoughness)};
+}
+
 Model material_model(Entity& entity, TextureBuilder& textures, BuildContext& context) {
     Builder b{entity, entity.parameters, textures, context};
     const std::string& type = entity.type;
@@ -310,7 +322,7 @@ Model material_model(Entity& entity, TextureBuilder& textures, BuildContext& con
         model = b.hair();
     } else if (type == "measured") {
         model = measured(b);
-    } else if (type == "interface" || type.empty() || type == "none") {
+    } else if (is_interface(type)) {
         model = InterfaceMaterial{};
     } else {
         throw unknown_type_error(entity.where, "material", type,

@@ -18,4 +18,8 @@ struct NormalMaps {
 };
 NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& context);
 
+/// The fibres over a surface, which have parameters of ours: "sheen", a colour, and
+/// "sheenroughness", the width of their distribution. None without the colour, and over interfaces.
+std::optional<SheenLayer> sheen_layer(Entity& entity, TextureBuilder& textures);
+
 }  // namespace covtrace
