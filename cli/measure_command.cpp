@@ -16,6 +16,7 @@
 #include "laboratory/local_spectrum.h"
 #include "laboratory/prediction.h"
 #include "occluders/voxel_grid.h"
+#include "render/methods/idle_options.h"
 #include "render/overrides.h"
 #include "render/session.h"
 
@@ -154,6 +155,9 @@ int measure_pixel(MeasureArguments a) {
     if (!a.quiet) {
         print_warnings(scene.description.warnings);
         print_warnings(scene.materials.warnings());
+        const RenderOptions prediction{
+            .method = Method::covariance, .occlusion = a.occlusion, .voxels = a.voxels};
+        for (const std::string& text : idle_options(prediction, false)) say("warning: {}\n", text);
     }
     // Prepare the analysis
     const SceneSpectra spectra(scene);

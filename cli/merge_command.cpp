@@ -19,6 +19,7 @@
 #include "render/develop.h"
 #include "render/film_file.h"
 #include "render/merge.h"
+#include "render/methods/idle_options.h"
 
 namespace covtrace::cli {
 
@@ -57,6 +58,9 @@ int merge_films(const MergeArguments& a) {
         Image image = develop(state, denoiser.denoiser.get());
         if (!a.quiet) {
             warn_of_unusable(denoiser);
+            const bool insists = a.denoiser.choice == DenoiserChoice::oidn;
+            for (const std::string& text : idle_options({.method = state.method}, insists))
+                say("warning: {}\n", text);
             warn_of_failed_denoiser(image);
             warn_of_absent_layers(image, a.layers);
             warn_of_no_picture(a.display, a.output, a.png);

@@ -86,6 +86,15 @@ class Warnings(CliTest):
                         ["--even-counts", "--occlusion", "grid", "--voxels", "20", "--cov-spp", "1"]):
             self.assertEqual(warnings_of(self.render(TINY, "--spp", "1", *options)), [], options)
 
+    def test_options_of_merge_and_measure_that_change_nothing(self):
+        self.render(TINY, "--method", "uniform", "--spp", "1", "--film", "u.film")
+        merged = self.run_program("merge", "u.film", "-o", "m.exr", "--denoiser", "oidn")
+        self.assertIn("--denoiser changes nothing: it is for the method hybrid, and this is uniform", merged.stderr)
+        measured = self.run_program("measure", "scene.pbrt", "--pixel", "9,9", "--samples", "4096", "--voxels", "20")
+        self.assertIn("--voxels changes nothing", measured.stderr)
+        for result in merged, measured:
+            self.assertEqual((result.code, len(warnings_of(result))), (DONE, 1), result)
+
     def test_quiet_says_nothing(self):
         result = self.render(TINY + 'Shape "sphere" "float raduis" 2\n', "--quiet")
         self.assertEqual((result.code, result.stdout, result.stderr), (DONE, "", ""))
