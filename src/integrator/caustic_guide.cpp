@@ -8,16 +8,21 @@
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "core/warp.h"
+#include "integrator/lamp_guide.h"
 #include "integrator/lit_scene.h"
 #include "integrator/path.h"
+#include "integrator/path_guide.h"
+#include "integrator/path_lesson.h"
+#include "integrator/sky_guide.h"
 
 namespace covtrace {
 
 namespace {
 
 constexpr int64_t kRoundPaths = 4096, kMostRounds = 16;
-// A coarse guide of few photons tells where a fine one pays.
-constexpr size_t kCoarsePhotons = 8192, kCoarseLeaf = 256;
+// A sketch of few photons tells whether a guide pays, a coarse guide of more where a fine one does.
+constexpr size_t kSketchPhotons = 2048, kCoarsePhotons = 8192, kCoarseLeaf = 256;
+constexpr int64_t kSketchRounds = 4;
 constexpr size_t kFinePhotons = 32768, kFineLeaf = 64;
 constexpr int kMostTreeDepth = 24;
 constexpr uint64_t kProbeKey = 0x70726f6265730000ull;
@@ -27,6 +32,14 @@ constexpr int kProbeScales = 4;        // lobes about a photon's direction
 constexpr float kProbeScaleStep = 16;  // times as concentrated as the one before
 constexpr float kMostKappa = 1e7f;     // single precision tells no narrower lobe from its axis
 constexpr float kMostShare = 0.5f, kLeastShare = 0.02f;
+/// Light is hidden where a path that meets it by the surface's own sampling is so many times as
+/// bright as the place in the mean: so rare that paths cannot measure what it costs. Where it is
+/// more than this share of the light over the photons' leaves, the guide leads paths in any case.
+constexpr double kHiddenBrightness = 1000, kMuchHidden = 0.2;
+/// Elsewhere it pays where it leaves less than this share of the second moment of paths, which
+/// takes thousands of them to tell: two for each pixel, within a limit.
+constexpr double kWorthwhile = 0.78;
+constexpr int64_t kTrialPerPixel = 2, kMostTrialPaths = 16384;
 
 /// The von Mises-Fisher density about an axis at the cosine `c`; exact for large kappa, too.
 float fisher_pdf(float kappa, float c) {
@@ -76,39 +89,59 @@ float GuideMixture::pdf(Vec3 w) const {
     return p;
 }
 
-CausticGuide::CausticGuide(const LitScene& scene) {
+CausticGuide::CausticGuide(const LitScene& scene, const SkyGuide& sky, const LampGuide& lamps) {
     const FilmDescription& film = scene.description.film;
-    const int64_t round = std::min(kRoundPaths, int64_t(film.width) * int64_t(film.height));
+    const int64_t pixels = int64_t(film.width) * int64_t(film.height);
+    const int64_t round = std::min(kRoundPaths, pixels);
     std::vector<CausticPhoton> photons;
     int64_t rounds = 0;
-    const auto trace = [&](size_t enough) {
-        for (; rounds < kMostRounds && photons.size() < enough; ++rounds) {
+    const auto trace = [&](size_t enough, int64_t most_rounds) {
+        for (; rounds < most_rounds && photons.size() < enough; ++rounds) {
             const auto more = trace_caustic_photons(scene, rounds * round, round);
             photons.insert(photons.end(), more.begin(), more.end());
             if (photons.size() < CausticImage::kFewestPhotons) return;
         }
     };
-    trace(kCoarsePhotons);
-    learn(scene, photons, kCoarseLeaf);
-    if (images_.empty()) {
+    const auto measure_paths = [&] {
+        const int64_t count = std::min(kTrialPerPixel * pixels, kMostTrialPaths);
+        return second_moment(trace_lesson(scene, *this, sky, lamps, {}, 0, count));
+    };
+    const auto give_up = [&](double left) {
         *this = {};
+        outcome_.second_moment = left;
         if (!photons.empty()) outcome_.state = GuideState::gave_up;
+    };
+    // Learn from a few photons whether it pays
+    trace(kSketchPhotons, kSketchRounds);
+    const bool is_hidden = learn(scene, photons, kCoarseLeaf) > kMuchHidden;
+    const double left = is_hidden || images_.empty() ? 0 : measure_paths();
+    if (images_.empty() || !(left < kWorthwhile)) {
+        give_up(left);
         return;
     }
-    trace(kFinePhotons);
+    // Learn where it does, then in earnest there
+    *this = {};
+    trace(kCoarsePhotons, kMostRounds);
+    learn(scene, photons, kCoarseLeaf);
+    trace(kFinePhotons, kMostRounds);
     const CausticGuide coarse = std::move(*this);
     std::erase_if(photons,
                   [&coarse](const CausticPhoton& p) { return !coarse.guides(p.position); });
     *this = {};
     learn(scene, photons, kFineLeaf);
-    outcome_.state = images_.empty() ? GuideState::gave_up : GuideState::guides;
+    if (images_.empty()) {
+        give_up(0);
+        return;
+    }
+    outcome_.state = GuideState::guides;
+    outcome_.second_moment = is_hidden ? measure_paths() : left;
     outcome_.bytes = nodes_.capacity() * sizeof(Node) + leaves_.capacity() * sizeof(Leaf) +
                      images_.capacity() * sizeof(Image);
 }
 
-void CausticGuide::learn(const LitScene& scene, std::vector<CausticPhoton> photons,
-                         size_t leaf_photons) {
-    if (photons.size() < CausticImage::kFewestPhotons) return;
+double CausticGuide::learn(const LitScene& scene, std::vector<CausticPhoton> photons,
+                           size_t leaf_photons) {
+    if (photons.size() < CausticImage::kFewestPhotons) return 0;
     limit_weights(photons);
     // Divide them into leaves, with the images that each may see
     std::vector<Region> regions;
@@ -118,11 +151,14 @@ void CausticGuide::learn(const LitScene& scene, std::vector<CausticPhoton> photo
         const auto k = static_cast<size_t>(i);
         leaves_[k].share = measure(scene, regions[k], uint64_t(i));
     });
+    double hidden = 0;
     for (size_t i = 0; i < leaves_.size(); ++i) {
         leaves_[i].first = uint32_t(images_.size());
         leaves_[i].count = uint32_t(regions[i].images.size());
         images_.insert(images_.end(), regions[i].images.begin(), regions[i].images.end());
+        hidden += double(regions[i].hidden) / double(leaves_.size());
     }
+    return hidden;
 }
 
 uint32_t CausticGuide::build(std::span<CausticPhoton> photons, std::vector<Image> images,
@@ -294,6 +330,8 @@ float CausticGuide::measure(const LitScene& scene, Region& region, uint64_t key)
     region.images.clear();
     double found = 0;
     for (Probes::Found& f : all) {
+        if (f.second_moment > kHiddenBrightness * f.image.irradiance * total)
+            region.hidden += f.image.irradiance / float(total);
         // A part of the leaf that the probes missed may be lit brightly.
         f.image.irradiance = std::max(f.image.irradiance, float(kLeastShare * total));
         region.images.push_back(f.image);

@@ -5,7 +5,9 @@
 /// knows those images. It is learnt once per scene, from light sent over the glossy surfaces that
 /// camera paths meet, and mixed with the BSDF's own sampling, so that estimates stay unbiased
 /// whatever it holds (Jensen 1995, "Importance driven path tracing using the photon map", with
-/// clusters of photons fitted by one lobe each instead of a histogram).
+/// clusters of photons fitted by one lobe each instead of a histogram). It leads paths only where
+/// that light is most of their noise, or so rare that they would hardly ever meet it: elsewhere the
+/// samples that it takes from other light cost more than they save.
 #pragma once
 
 #include <array>
@@ -21,6 +23,9 @@
 namespace covtrace {
 
 struct LitScene;
+class LampGuide;
+struct PathLesson;
+class SkyGuide;
 
 /// A density over directions: von Mises-Fisher lobes at one point.
 class GuideMixture {
@@ -54,13 +59,13 @@ class CausticGuide {
   public:
     /// Makes an empty guide: shares are 0 everywhere.
     CausticGuide() = default;
-    /// Learns from a scene by paths that no guide leads. The result is deterministic.
-    explicit CausticGuide(const LitScene& scene);
+    /// Learns from a scene. `sky` and `lamps` lead the paths that its outcome is measured on beside
+    /// it. The result is deterministic; it is empty where a guide would not pay.
+    CausticGuide(const LitScene& scene, const SkyGuide& sky, const LampGuide& lamps);
 
     /// The guide at a point with the normal `n` on the side that is to be lit; n is zero where
     /// light counts from both sides.
     GuideMixture at(Vec3 position, Vec3 n) const;
-    /// The outcome, without a second moment, which no trial measures.
     const GuideOutcome& outcome() const { return outcome_; }
 
   private:
@@ -85,20 +90,25 @@ class CausticGuide {
     struct Region {
         std::span<const CausticPhoton> photons;
         std::vector<Image> images;
+        float hidden = 0;  ///< share of its light that paths without a guide hardly ever meet
     };
     class Probes;
-    /// Adds to the guide what photons tell, in leaves of at most `leaf_photons`.
-    void learn(const LitScene& scene, std::vector<CausticPhoton> photons, size_t leaf_photons);
+    /// Adds to the guide what photons tell, in leaves of at most `leaf_photons`. Returns the share
+    /// of hidden light, mean over the leaves.
+    double learn(const LitScene& scene, std::vector<CausticPhoton> photons, size_t leaf_photons);
     uint32_t build(std::span<CausticPhoton> photons, std::vector<Image> images, size_t leaf_photons,
                    int depth, std::vector<Region>& regions);
     /// Fits an image to each source that the photons suffice for; other images stay as they are.
     static void refine(std::span<const CausticPhoton> photons, std::vector<Image>& images);
     /// Measures how much light there is to be found in each image, drops images that bring nothing,
-    /// and returns the share of the samples for the others. `key` seeds the leaf's random numbers.
+    /// notes how much is hidden, and returns the share of the samples for the others. `key` seeds
+    /// the leaf's random numbers.
     static float measure(const LitScene& scene, Region& region, uint64_t key);
     /// The leaf that guides at a place; null where none does.
     const Leaf* find(Vec3 position) const;
     bool guides(Vec3 position) const;
+    /// Second moment of the light of paths, which this guide has led, over that without it.
+    double second_moment(const PathLesson& lesson) const;
 
     std::vector<Node> nodes_;
     std::vector<Leaf> leaves_;

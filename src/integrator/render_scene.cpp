@@ -40,9 +40,9 @@ RenderScene::RenderScene(SceneDescription scene_description, const std::string& 
         learning_seconds_[name] =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
-    learn(guide, "caustics");
     learn(sky_guide, "sky");
     learn(lamp_guide, "lamps");
+    learn(guide, "caustics", sky_guide, lamp_guide);
     learn(path_guide, "paths", guide, sky_guide, lamp_guide);
 }
 
