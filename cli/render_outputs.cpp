@@ -11,7 +11,7 @@
 #include "image/output_file.h"
 #include "image/write_image.h"
 #include "render/film_file.h"
-#include "render/idle_options.h"
+#include "render/methods/idle_options.h"
 
 namespace covtrace::cli {
 

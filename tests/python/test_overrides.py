@@ -1,4 +1,4 @@
-"""Keywords of covtrace.render by which something else takes the place of the scene's camera and light."""
+"""Keywords of covtrace.render by which something else takes the place of the scene's camera and light, or that change nothing."""
 
 import json
 import pathlib
@@ -157,6 +157,13 @@ Shape "sphere" "float radius" 3
                 {"light": "1,2"}, {"light": ["camera", "0,0,0 colour 0,0,0"]}, {"light": "camera power 1 power 2"}, {"light": [None]}):
             with self.subTest(wrong), self.assertRaises(covtrace.UsageError):
                 covtrace.render(scene, **wrong)
+
+
+class Idle(unittest.TestCase):
+    def test_an_option_that_changes_nothing_is_told(self):
+        for name, value in (("even_counts", True), ("progressive", True), ("cov_spp", 1), ("max_spp", 4), ("density", "thesis")):
+            with self.subTest(name), self.assertWarnsRegex(covtrace.SceneWarning, f"--{name.replace('_', '-')} changes nothing"):
+                covtrace.render(covtrace.Scene.from_string(scenes.LIT), method="uniform", spp=1, **{name: value})
 
 
 if __name__ == "__main__":

@@ -195,13 +195,6 @@ class Rendering(unittest.TestCase):
         self.assertTrue(covtrace.compare(one, three).identical)
 
 
-class Idle(unittest.TestCase):
-    def test_an_option_that_changes_nothing_is_told(self):
-        for name, value in (("even_counts", True), ("progressive", True), ("cov_spp", 1), ("max_spp", 4), ("density", "thesis")):
-            with self.subTest(name), self.assertWarnsRegex(covtrace.SceneWarning, f"--{name.replace('_', '-')} changes nothing"):
-                covtrace.render(covtrace.Scene.from_string(scenes.LIT), method="uniform", spp=1, **{name: value})
-
-
 class Gltf(unittest.TestCase):
     """A square of the radiance 2, a quarter as wide as the picture and half as high."""
 

@@ -1,4 +1,4 @@
-#include "render/idle_options.h"
+#include "render/methods/idle_options.h"
 
 namespace covtrace {
 
