@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/parallel.h"
@@ -112,6 +113,10 @@ ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> ca
     });
     bilateral_blur(std::array{&error.color, &error.luminance}, known, log_brightness(bright),
                    kSmoothing, kAlike);
+    // A brightness whose square is no number has no error that could be told, and would have none.
+    for (size_t i = 0; i < bright.size(); ++i)
+        if (!std::isfinite(sqr(bright[i])))
+            error.color[i] = error.luminance[i] = std::numeric_limits<float>::infinity();
     return error;
 }
 
