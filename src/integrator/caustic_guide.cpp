@@ -331,7 +331,8 @@ float CausticGuide::measure(const LitScene& scene, Region& region, uint64_t key)
     double found = 0;
     for (Probes::Found& f : all) {
         if (f.second_moment > kHiddenBrightness * f.image.irradiance * total)
-            region.hidden += f.image.irradiance / float(total);
+            region.hidden +=
+                total > 0 ? f.image.irradiance / float(total) : 1 / static_cast<float>(all.size());
         // A part of the leaf that the probes missed may be lit brightly.
         f.image.irradiance = std::max(f.image.irradiance, float(kLeastShare * total));
         region.images.push_back(f.image);

@@ -9,6 +9,7 @@
 #include "core/warp.h"
 #include "integrator/caustic_photons.h"
 #include "integrator/lit_scene.h"
+#include "integrator/visibility.h"
 
 namespace covtrace {
 
@@ -38,15 +39,17 @@ class Pilot {
             {u.x * float(film.width), u.y * float(film.height)}, lens, rng_.next_float());
         if (!seen.sees) return;
         Ray ray = seen;
+        bool sees = true;  // all lobes so far were specular
         for (int i = 0; i < kCameraVertices; ++i) {
             SurfaceHit hit;
             Bsdf bsdf;
-            if (!next_surface(ray, hit, bsdf)) return;
+            if (!next_surface(ray, hit, bsdf, sees)) return;
             const Frame frame = shading_frame(hit);
             if (has_sharp_lobe(bsdf)) send_light_around(hit.position, hit.t, hit.time);
             const float u_lobe = rng_.next_float();
             const auto s = sample(bsdf, frame.to_local(-ray.direction), u_lobe, rng_.next_2d());
             if (!s || is_black(s->weight)) return;
+            sees = sees && is_specular(s->lobe);
             follow(ray, hit, normalize(frame.to_world(s->wi)));
         }
     }
@@ -70,8 +73,10 @@ class Pilot {
     }
 
     /// Finds the nearest surface that light does not pass unchanged; returns its distance from
-    /// where `ray` began. The ray itself begins at the last interface afterwards.
-    std::optional<float> next_surface(Ray& ray, SurfaceHit& hit, Bsdf& bsdf) const {
+    /// where `ray` began. The ray itself begins at the last interface afterwards. `sees`: the ray
+    /// is one by which the camera sees.
+    std::optional<float> next_surface(Ray& ray, SurfaceHit& hit, Bsdf& bsdf,
+                                      bool sees = false) const {
         float distance = 0;
         for (int i = 0; i < kMostInterfaces; ++i) {
             if (!scene_.geometry.intersect(ray, hit)) return std::nullopt;
@@ -80,7 +85,8 @@ class Pilot {
             const MaterialId material =
                 scene_.materials.at(shape.description.material, hit, scene_.textures);
             bsdf = scene_.materials.bsdf(material, hit, scene_.textures);
-            if (!shape.lets_light_pass && !scene_.materials.lets_light_pass(material))
+            if (!shape.lets_light_pass && !scene_.materials.lets_light_pass(material) &&
+                !(sees && is_unseen_back(shape, hit, ray.direction)))
                 return distance;
             ray.origin = Geometry::offset_origin(hit, ray.direction);
         }

@@ -49,8 +49,7 @@ bool PathTracer::meet(bool found) {
         pass_emitter(hit, shape);
         return pass(hit, shape);
     }
-    if (sharp_so_far_ && !shape.description.is_seen_from_back && dot(ray_.direction, hit.ng) > 0)
-        return pass(hit, shape);
+    if (sharp_so_far_ && is_unseen_back(shape, hit, ray_.direction)) return pass(hit, shape);
     const MaterialId material =
         scene_.materials.at(shape.description.material, hit, scene_.textures);
     // Evaluate the BSDF, with textures filtered as in pbrt at 64 samples per pixel and more,

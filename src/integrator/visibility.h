@@ -6,6 +6,12 @@
 
 namespace covtrace {
 
+/// Whether `hit` is the back of a surface that is seen from its front alone. Rays in `direction` by
+/// which the camera sees pass it; light meets it all the same.
+inline bool is_unseen_back(const PlacedShape& shape, const SurfaceHit& hit, Vec3 direction) {
+    return !shape.description.is_seen_from_back && dot(direction, hit.ng) > 0;
+}
+
 /// The medium that a ray is in after it leaves `hit` in the direction `w`; before, it was in
 /// `current`.
 MediumId medium_beyond(const PlacedShape& shape, const SurfaceHit& hit, Vec3 w, MediumId current);
