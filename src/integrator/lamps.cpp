@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <variant>
 #include <vector>
 
 #include "core/warp.h"
 #include "integrator/camera.h"
+#include "integrator/visibility.h"
+#include "scene/added_lamps.h"
 #include "scene/imaging_scale.h"
 
 namespace covtrace {
@@ -20,13 +22,24 @@ constexpr int kMostPassed = 64;  // backs that a ray passes
 constexpr float kGoal = 0.6f, kBrighterThan = 0.75f;
 constexpr float kLeastLit = 0.1f;  // share of the rays by which a lamp has to be seen to light
 
-/// Follows a ray past surfaces that it does not see. `passed`: the place of the last one.
-bool follow(const Geometry& geometry, Ray ray, SurfaceHit& hit, Vec3* passed = nullptr) {
+/// Whether light passes surfaces of a material: borders of media, and what is seen but throws no
+/// shadow.
+bool lets_light_pass(const MaterialDescription& material) {
+    return std::holds_alternative<InterfaceMaterial>(material.value) ||
+           std::holds_alternative<UnlitMaterial>(material.value);
+}
+
+/// Follows a ray past surfaces that it does not see. `passed`: the place of the last back.
+bool follow(const SceneDescription& scene, const Geometry& geometry, Ray ray, SurfaceHit& hit,
+            Vec3* passed = nullptr) {
     for (int i = 0; i < kMostPassed; ++i) {
         if (!geometry.intersect(ray, hit)) return false;
         const PlacedShape& shape = geometry.shapes()[hit.shape];
-        const bool is_back = !shape.description.is_seen_from_back && dot(ray.direction, hit.ng) > 0;
-        if (!shape.lets_light_pass && !is_back) return true;
+        const bool is_back = is_unseen_back(shape, hit, ray.direction);
+        const MaterialId material = shape.description.material;
+        if (!shape.lets_light_pass && !is_back &&
+            (material < 0 || !lets_light_pass(scene.materials[static_cast<size_t>(material)])))
+            return true;
         ray.origin = Geometry::offset_origin(hit, ray.direction);
         if (passed && is_back) *passed = ray.origin;
     }
@@ -67,7 +80,7 @@ class Lamps {
         const Ray ray = view_ray(0.5f, 0.5f);
         Vec3 place = ray.origin;
         SurfaceHit hit;
-        follow(geometry_, ray, hit, &place);
+        follow(scene_, geometry_, ray, hit, &place);
         return place;
     }
 
@@ -88,7 +101,7 @@ class Lamps {
         std::vector<float> lit;
         const auto add = [&](const Ray& ray) {
             SurfaceHit hit;
-            if (!follow(geometry_, ray, hit)) return;
+            if (!follow(scene_, geometry_, ray, hit)) return;
             if (const float e = irradiance(hit, place); e > 0 && std::isfinite(e)) lit.push_back(e);
         };
         const auto for_all = [](const auto& visit) {
@@ -112,16 +125,10 @@ class Lamps {
         return std::clamp(power, 1e-20f, 1e20f);
     }
 
-    void tell(const LampDescription& lamp, Vec3 place) {
-        std::ostringstream text;
-        text.precision(4);
-        text << "the lamp at ";
-        const auto name = [&] { text << place.x << ',' << place.y << ',' << place.z; };
-        name();
-        text << " has the power that suits the view: \"";
-        name();
-        text << " power " << *lamp.power << '"';
-        scene_.warnings.push_back({{}, text.str()});
+    void tell(LampDescription lamp, Vec3 place) {
+        lamp.at = place;
+        scene_.warnings.push_back(
+            {{}, "a lamp has the power that suits the view: \"" + lamp_text(lamp) + '"'});
     }
 
     void light(const LampDescription& lamp, Vec3 place) {

@@ -1,6 +1,8 @@
 #include "scene/added_lamps.h"
 
-#include <sstream>
+#include <array>
+#include <charconv>
+#include <string>
 #include <utility>
 
 namespace covtrace {
@@ -28,26 +30,37 @@ void add_sphere(LampDescription& lamp, SceneDescription& scene) {
     scene.shapes.push_back(std::move(sphere));
 }
 
+/// The shortest text that gives the same number when it is read.
+std::string shortest(float value) {
+    std::array<char, 32> text;
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
 }  // namespace
+
+std::string lamp_text(const LampDescription& lamp) {
+    const auto three = [](float a, float b, float c) {
+        return shortest(a) + ',' + shortest(b) + ',' + shortest(c);
+    };
+    std::string text = lamp.at ? three(lamp.at->x, lamp.at->y, lamp.at->z) : "camera";
+    if (lamp.radius > 0) text += " radius " + shortest(lamp.radius);
+    const Rgb& c = lamp.colour;
+    if (!(c == Rgb(1))) text += " colour " + three(c.r, c.g, c.b);
+    if (lamp.power) text += " power " + shortest(*lamp.power);
+    return text;
+}
 
 void add_lamps(const std::vector<LampDescription>& lamps, SceneDescription& scene) {
     if (lamps.empty()) return;
     scene.no_lights.reset();
-    std::ostringstream text;
-    text.precision(9);
+    std::string text;
     for (LampDescription lamp : lamps) {
-        if (!scene.lamps.empty()) text << " and ";
-        if (lamp.at)
-            text << lamp.at->x << ',' << lamp.at->y << ',' << lamp.at->z;
-        else
-            text << "camera";
-        text << " radius " << lamp.radius << " colour " << lamp.colour.r << ',' << lamp.colour.g
-             << ',' << lamp.colour.b;
-        if (lamp.power) text << " power " << *lamp.power;
+        if (!text.empty()) text += " and ";
+        text += lamp_text(lamp);
         if (lamp.at && lamp.radius > 0) add_sphere(lamp, scene);
         scene.lamps.push_back(lamp);
     }
-    scene.lamps_text = text.str();
+    scene.lamps_text = text;
 }
 
 }  // namespace covtrace

@@ -1,6 +1,7 @@
 """glTF's one-sided surfaces: the camera sees their fronts, light meets both sides."""
 
 import json
+import re
 import unittest
 
 import exr
@@ -57,6 +58,18 @@ class Sides(CliTest):
         # Light does not pass what the camera passes.
         under = self.seen(lit_square(MATT, UP, UP))[0]
         self.assertLess(self.seen(self.with_card(card, UP, over))[0], 0.05 * under)
+
+    def test_a_lamp_at_the_camera_stands_behind_the_backs(self):
+        black = {"pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0}}
+        heights = []
+        for material in (black, black | TWO_SIDED):
+            self.write("a.gltf", self.with_card(material, UP, [1, 0, 0, 0]))
+            result = self.run_program("render", "a.gltf", "-o", "a.exr", "--method", "uniform", "--spp", "1", "--resolution", "4x4", "--light", "camera")
+            self.assertEqual(result.code, DONE, result)
+            heights.append(max(abs(float(v)) for v in re.search(r'"([^" ]*) power', result.stderr)[1].split(",")))
+        behind, before = heights
+        self.assertAlmostEqual(behind, 10, delta=0.01)  # the card hangs there
+        self.assertGreater(before, 20)
 
     def test_mirrors_show_fronts_too(self):
         # The card hangs face down over a mirror: the camera looks through its back and sees its front below.

@@ -59,6 +59,19 @@ class Light(CliTest):
         for arguments, scene in ((("--light", "camera", "--light", "camera"), ROOM), (("--light", "camera"), slow)):
             self.assertAlmostEqual(self.mean(self.seen(*arguments, scene=scene)[0]["G"]), 0.6 * REFLECTANCE, delta=0.01)
 
+    def test_what_is_told_of_a_lamp_is_that_lamp(self):
+        image, warnings = self.seen("--light", "0.0123456,-0.5,0 radius 0.4 colour 1,0.5,0")
+        text = re.search('"(.*)"', warnings[0])[1]
+        self.assertRegex(text, r"^0\.0123456,-0\.5,0 radius 0\.4 colour 1,0\.5,0 power [\d.]+$")
+        again, _ = self.seen("--light", text)
+        for channel in "RGB":
+            self.assertEqual(again[channel], image[channel])
+
+    def test_borders_of_media_are_not_what_it_lights(self):
+        border = 'AttributeBegin\nMaterial "interface"\nShape "sphere" "float radius" 0.2\nAttributeEnd\n'
+        image, _ = self.seen("--light", "camera", scene=ROOM + border)
+        self.assertAlmostEqual(self.mean(image["G"]), 0.6 * REFLECTANCE, delta=0.01)
+
     def test_a_lamp_has_its_power_and_colour(self):
         power = 200
         expected = REFLECTANCE / math.pi * power / (4 * math.pi * RADIUS**2)
