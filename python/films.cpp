@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "bindings.h"
 #include "core/parallel.h"
@@ -14,6 +15,7 @@
 #include "render/develop.h"
 #include "render/film_file.h"
 #include "render/merge.h"
+#include "render/methods/idle_options.h"
 
 namespace covtrace::python {
 
@@ -85,6 +87,9 @@ Merged merge_films(const std::vector<fs::path>& films, const fs::path& film,
     image = develop(state, denoiser.denoiser.get());
     const auto warn = [&](const std::string& text) { merged.warnings.push_back({{}, text}); };
     if (denoiser.is_unusable) warn("no denoiser is used: " + denoiser.why_none);
+    for (const std::string& text :
+         idle_options({.method = state.method}, search.choice == DenoiserChoice::oidn))
+        warn(text);
     if (const auto it = image.metadata.find("covtrace:denoiserFailure"); it != image.metadata.end())
         warn("the image is without the denoiser: " + std::get<std::string>(it->second));
     if (const auto replaced = replaced_pixels(image.metadata)) warn(describe(*replaced));
