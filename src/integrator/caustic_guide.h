@@ -6,8 +6,9 @@
 /// camera paths meet, and mixed with the BSDF's own sampling, so that estimates stay unbiased
 /// whatever it holds (Jensen 1995, "Importance driven path tracing using the photon map", with
 /// clusters of photons fitted by one lobe each instead of a histogram). It leads paths only where
-/// that light is most of their noise, or so rare that they would hardly ever meet it: elsewhere the
-/// samples that it takes from other light cost more than they save.
+/// it takes away more than a fifth of their noise, or where that light is so rare that they would
+/// hardly ever meet it: elsewhere the samples that it takes from other light cost more than they
+/// save.
 #pragma once
 
 #include <array>

@@ -9,8 +9,9 @@ namespace covtrace {
 /// Makes lights of the scene's lamps, and returns the scene. Those at the camera stand at its eye
 /// or, where the middle of its view passes the backs of surfaces that it does not see, behind the
 /// last of them. Where the power is left open, white surfaces are at most 0.6 times as bright as
-/// white in three quarters of what is seen, in the light of all such lamps that comes straight; a
-/// warning tells the power. Deterministic.
+/// white in three quarters of what is seen, in the lamp's light that comes straight. Of several
+/// such lamps each would reach that by itself and has its share of that power, one over their
+/// number: together they may reach more or less. A warning tells the power. Deterministic.
 const SceneDescription& stand_lamps(SceneDescription& scene, const Geometry& geometry);
 
 }  // namespace covtrace

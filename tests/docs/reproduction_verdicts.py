@@ -1,11 +1,16 @@
 """The first table of docs/results/reproduction.md: whether each figure and the table of Belcour's thesis are
 reproduced. Numbers and verdicts come from the numbers of a run; the reasons are written by hand."""
 
+PRINTED = 5.8  # times that the path tracer takes for equal error, in table 5.1
+AHEAD = 1  # the figures show less noise in the same time, without a number
+
 
 def held(experiment):
-    """`reproduced` where all claims that were judged hold."""
+    """`reproduced` where all claims that were judged hold, `not judged` where none was."""
     judged = [c["holds"] for c in experiment["claims"].values() if c["holds"] is not None]
-    return "reproduced" if judged and all(judged) else "in part" if any(judged) else "**not**"
+    if not judged:
+        return "not judged"
+    return "reproduced" if all(judged) else "in part" if any(judged) else "**not**"
 
 
 def found(experiment, name):
@@ -32,11 +37,14 @@ def comparison(experiment, column):
     return {row[0]: row[table["columns"].index(column)] for row in table["rows"]}
 
 
-def of_choices(variants, ratio):
-    """`reproduced` where the choices of Belcour 2012, with c = 1 and its budget if that is known, are ahead."""
+def of_choices(variants, ratio, bound):
+    """`reproduced` where the choices of Belcour 2012, with c = 1 and its budget if that is known, reach the bound, `in
+    part` where they are ahead of the path tracer by less."""
     chosen = variants.get("budget_matched", variants["thesis_matched"])
     value = ratio(chosen)
-    return "**not** by its choices; in part by ours" if value is not None and value < 1 else "reproduced"
+    if value is None or value >= bound:
+        return "reproduced"
+    return "in part" if value > 1 else "**not** by its choices; in part by ours"
 
 
 def pipeline(e):
@@ -71,7 +79,7 @@ def shininess(e):
 
 def snooker(e):
     v = e["variants"]
-    return ["figures 5.9 and 5.10", "snooker", of_choices(v, ratio_of_errors),
+    return ["figures 5.9 and 5.10", "snooker", of_choices(v, ratio_of_errors, AHEAD),
             f"path tracer's error over ours, equal time: thesis' choices with c = 1 {ratio_of_errors(v['thesis_matched']):.2f}, "
             f"at its budget {ratio_of_errors(v['budget_matched']):.2f}; its choices with our predicted filters "
             f"{ratio_of_errors(v['thesis_predicted']):.2f}, at its budget {ratio_of_errors(v['budget_predicted']):.2f}; `covariance` {comparison(e, 'ratio of errors')['covariance'].split(' ')[0]}",
@@ -80,7 +88,7 @@ def snooker(e):
 
 def helicopter(e):
     v = e["variants"]
-    return ["figure 5.11", "helicopter", of_choices(v, ratio_of_errors),
+    return ["figure 5.11", "helicopter", of_choices(v, ratio_of_errors, AHEAD),
             f"the same: c = 1 {ratio_of_errors(v['thesis_matched']):.2f}; our predicted filters {ratio_of_errors(v['thesis_predicted']):.2f}; "
             f"`covariance` {comparison(e, 'ratio of errors')['covariance'].split(' ')[0]}",
             "as above; the thesis gives no error and no count of its path tracer for it"]
@@ -94,13 +102,13 @@ def analysis_share(variant):
 
 def table(e):
     v = e["variants"]
-    return ["table 5.1: 5.8 times", "table", of_choices(v, ratio_of_times),
+    return [f"table 5.1: {PRINTED} times", "table", of_choices(v, ratio_of_times, PRINTED),
             f"path tracer's time over ours, equal error: thesis' choices as printed {times(ratio_of_times(v['thesis_printed']))}, "
             f"c = 1 {times(ratio_of_times(v['thesis_matched']))}, at its budget {times(ratio_of_times(v['budget_matched']))}, with our predicted filters "
             f"{times(ratio_of_times(v['thesis_predicted']))}; `covariance` {comparison(e, 'ratio of times')['covariance'].split(' ')[0]}, "
             f"on demand {comparison(e, 'ratio of times')['covariance on demand'].split(' ')[0]}; 3.3 and 4.1 at 640x360 with 64 samples, by hand. "
             f"Share of the analysis at its budget {analysis_share(v['budget_matched']):.1f} %, printed 10.4 %",
-            "blur of c = 1, not noise. `hybrid`, which has about 5.8 there, is another method"]
+            f"blur of c = 1, not noise. `hybrid`, which has {comparison(e, 'ratio of times')['hybrid'].split(' ')[0]} there, is another method"]
 
 
 def voxels(e):

@@ -19,6 +19,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import decisions
 import markdown
 import reproduction
+import reproduction_verdicts
 import wrap_prose
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -287,7 +288,7 @@ class Documents(unittest.TestCase):
         def outcome(change):
             own = json.loads(text_of(reproduction.NUMBERS))
             change(own)
-            return reproduction.compare(numbers, own)[1]
+            return reproduction.compare(numbers, own, {})[1]
 
         def scaled(experiment, claim, factor):
             def change(own):
@@ -300,6 +301,13 @@ class Documents(unittest.TestCase):
         self.assertEqual(outcome(scaled("pipeline", "pipeline_equation_5_7", 1.2)), 1)
         self.assertEqual(outcome(scaled("snooker", "snooker_equal_error_hybrid", 1.2)), 0)
         self.assertEqual(outcome(scaled("snooker", "snooker_equal_error_hybrid", 0.6)), 1)
+        # Small claims are not lost in what is allowed absolutely; an angle that is rounding may be another.
+        for experiment, own in numbers.items():
+            for claim in own["claims"]:
+                factor = 10 if own["claims"][claim]["value"] < 0.1 else 2
+                self.assertEqual(outcome(scaled(experiment, claim, factor)), 1, claim)
+        self.assertEqual(outcome(scaled("sampling", "sampling_beyond", 1.04)), 0)
+        self.assertEqual(outcome(scaled("motion", "motion_direction", 2)), 0)
         self.assertEqual(outcome(lambda own: own["voxels"]["claims"]["voxels_query"].update(holds=False)), 1)
         self.assertEqual(outcome(lambda own: [e.update(size="full") for e in own.values()]), 2)
         # Nothing is written, whatever comes of it.
@@ -310,6 +318,47 @@ class Documents(unittest.TestCase):
             with contextlib.redirect_stdout(io.StringIO()):
                 self.assertEqual(reproduction.main([str(run)]), 2)
         self.assertEqual(before, {file: file.stat().st_mtime_ns for file in before})
+
+    def test_what_is_missing_in_a_run_is_a_fault(self):
+        numbers = json.loads(text_of(reproduction.NUMBERS))
+        own = json.loads(text_of(reproduction.NUMBERS))
+        del own["lens"]["claims"]["lens_grows"]
+        lines, code = reproduction.compare(numbers, own, {})
+        self.assertEqual(code, 1)
+        self.assertIn("lens_grows: published and MISSING here", lines)
+        # An experiment that was not asked for is no fault, one that failed is, with others and alone.
+        del own["lens"]
+        self.assertEqual(reproduction.compare(numbers, own, {})[1], 0)
+        failed = {"claims": {}, "failure": "foliage/scene.pbrt: cannot be read"}
+        self.assertEqual(reproduction.compare(numbers, own, {"lens": failed["failure"]})[1], 1)
+        with tempfile.TemporaryDirectory() as folder:
+            run = pathlib.Path(folder) / "results.json"
+            run.write_text(json.dumps({"command": "covtrace reproduce", "size": "quick", "facts": {"program": "covtrace"}, "experiments": {"voxels": failed}}))
+            with contextlib.redirect_stdout(io.StringIO()) as said:
+                self.assertEqual(reproduction.main([str(run)]), 1)
+        self.assertIn("voxels: FAILED: foliage/scene.pbrt: cannot be read", said.getvalue())
+
+    def test_verdicts_on_the_reproduction(self):
+        def held(*holds):
+            return reproduction_verdicts.held({"claims": {str(i): {"holds": h} for i, h in enumerate(holds)}})
+
+        self.assertEqual([held(), held(None), held(True, None), held(True, False), held(False, None)],
+                         ["not judged", "not judged", "reproduced", "in part", "**not**"])
+
+        # Table 5.1 prints 5.8 times: less, but more than 1, is a part of that.
+        numbers = json.loads(text_of(reproduction.NUMBERS))
+        chosen = numbers["snooker"]["variants"]["budget_matched"]
+
+        def table(ratio):
+            chosen["uniform_cpu_same_error"] = ratio and ratio * chosen["cpu"]
+            return next(row for row in reproduction_verdicts.rows(numbers) if row[1] == "`table`")
+
+        self.assertEqual([table(ratio)[2] for ratio in (5.9, None, 5.7, 1.1)], ["reproduced", "reproduced", "in part", "in part"])
+        self.assertIn("**not**", table(0.9)[2])
+        # The number of `hybrid` is that of the run.
+        rows = numbers["snooker"]["tables"][0]
+        next(row for row in rows["rows"] if row[0] == "hybrid")[rows["columns"].index("ratio of times")] = "4.25 (4.20 to 4.30)"
+        self.assertIn("`hybrid`, which has 4.25 there", table(0.9)[4])
 
     def test_authorities_exist(self):
         """Works are named by author, title, year; no document is cited that readers do not have."""
