@@ -236,7 +236,7 @@ LampDescription parse_lamp(const std::string& option, const std::string& text) {
     constexpr auto kExpected =
         "a lamp such as 'camera' or '0,2.5,1', with 'power 40', 'radius 0.1' or 'colour 1,0.9,0.8' "
         "after it";
-    constexpr float kMost = 1e20f;
+    constexpr float kLeast = 1e-37f, kMost = 1e20f;
     const auto expect = [&](bool is_right) {
         if (!is_right) refuse(option, text, kExpected);
     };
@@ -264,7 +264,7 @@ LampDescription parse_lamp(const std::string& option, const std::string& text) {
             continue;
         }
         const auto number = list_of<float, 1>(value, ',');
-        expect(number && (*number)[0] > 0 && (*number)[0] <= kMost);
+        expect(number && (*number)[0] >= kLeast && (*number)[0] <= kMost);
         expect(name == "power" || (name == "radius" && lamp.at));
         if (name == "power")
             lamp.power = (*number)[0];

@@ -227,9 +227,10 @@ def _lamp_in(text: Any) -> tuple[Any, float, tuple[float, float, float], float |
     colour = vector_in(given.pop("colour", "1,1,1"))
     numbers = {name: float(value) if re.fullmatch(_NUMBER, value) else 0 for name, value in given.items()}
     if (at is None and (words[0] != "camera" or "radius" in given) or len(set(names)) != len(names)
-            or not numbers.keys() <= {"power", "radius"} or not all(0 < v <= 1e20 for v in numbers.values())
+            or not numbers.keys() <= {"power", "radius"} or not all(1e-37 <= v <= 1e20 for v in numbers.values())
             or at is not None and not all(abs(c) <= 1e20 for c in at)
-            or colour is None or not all(0 <= c <= 1e20 for c in colour) or not max(colour) > 1e-5):
+            or colour is None or not all(0 <= c <= 1e20 for c in colour)
+            or not 0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2] > 1e-6):
         refuse("light", text, _LAMP)
     return at, numbers.get("radius", 0.0), colour, numbers.get("power")
 

@@ -112,7 +112,7 @@ class Light(CliTest):
 
     def test_errors(self):
         for wrong in ("x", "1,2", "nan,0,0", "camera radius 1", "camera power", "camera power 0", "camera power 1 power 2", "0,0,0 radius -1",
-                      "0,0,0 colour 1,2", "0,0,0 colour 0,0,0", "0,0,0 size 1", "camera camera"):
+                      "0,0,0 colour 1,2", "0,0,0 colour 0,0,0", "0,0,0 colour 0,0,1.2e-5", "0,0,0 power 1e-50", "0,0,0 size 1", "camera camera"):
             self.assert_fails(self.render(ROOM, f"--light={wrong}"), USAGE, "--light", "'camera' or '0,2.5,1'")
 
     def test_measure_takes_it(self):

@@ -154,7 +154,7 @@ Shape "sphere" "float radius" 3
                 {"environment_rotation": "much"}, {"environment_rotation": float("inf")},
                 {"environment_scale": 0}, {"environment_scale": "x"},
                 {"light": "x"}, {"light": ""}, {"light": 1}, {"light": "camera radius 1"}, {"light": "camera power 0"},
-                {"light": "1,2"}, {"light": ["camera", "0,0,0 colour 0,0,0"]}, {"light": "camera power 1 power 2"}, {"light": [None]}):
+                {"light": "1,2"}, {"light": ["camera", "0,0,0 colour 0,0,0"]}, {"light": "camera power 1 power 2"}, {"light": "0,0,0 power 1e-50"}, {"light": "0,0,0 colour 0,0,1.2e-5"}, {"light": [None]}):
             with self.subTest(wrong), self.assertRaises(covtrace.UsageError):
                 covtrace.render(scene, **wrong)
 
