@@ -1,8 +1,9 @@
 #include "foreign/layer_search.h"
 
+#include <array>
 #include <charconv>
-#include <initializer_list>
 #include <set>
+#include <span>
 #include <string_view>
 
 #include "core/error.h"
@@ -11,16 +12,18 @@ namespace covtrace {
 
 namespace {
 
-using Names = std::initializer_list<std::string_view>;
+using Names = std::span<const std::string_view>;
 
 // Names in the order in which they are preferred.
-constexpr Names kColor{"raw", ""};
-constexpr Names kVariance{"variance", "Variance"};
-constexpr Names kAlbedo{"featurealbedo", "albedo", "Albedo", "Denoising Albedo"};
-constexpr Names kNormal{"featureN", "Ns",     "N",  "Denoising Normal", "normal",
-                        "normals",  "Normal", "nn", "sh_normal"};
-constexpr Names kDepth{"Z", "Denoising Depth", "depth", "Depth", "dd", "dd.y"};
-constexpr Names kPlace{"P"};
+constexpr auto kColor = std::to_array<std::string_view>({"raw", ""});
+constexpr auto kVariance = std::to_array<std::string_view>({"variance", "Variance"});
+constexpr auto kAlbedo =
+    std::to_array<std::string_view>({"featurealbedo", "albedo", "Albedo", "Denoising Albedo"});
+constexpr auto kNormal = std::to_array<std::string_view>(
+    {"featureN", "Ns", "N", "Denoising Normal", "normal", "normals", "Normal", "nn", "sh_normal"});
+constexpr auto kDepth =
+    std::to_array<std::string_view>({"Z", "Denoising Depth", "depth", "Depth", "dd", "dd.y"});
+constexpr auto kPlace = std::to_array<std::string_view>({"P"});
 
 /// The channel `suffix` of a layer. The root's have no dot, and pbrt-v4 wrote "Nsx" once.
 const Channel* channel_of(const Image& image, std::string_view layer, char suffix) {
