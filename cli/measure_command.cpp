@@ -155,8 +155,10 @@ int measure_pixel(MeasureArguments a) {
     if (!a.quiet) {
         print_warnings(scene.description.warnings);
         print_warnings(scene.materials.warnings());
-        const RenderOptions prediction{
-            .method = Method::covariance, .occlusion = a.occlusion, .voxels = a.voxels};
+        RenderOptions prediction;
+        prediction.method = Method::covariance;
+        prediction.occlusion = a.occlusion;
+        prediction.voxels = a.voxels;
         for (const std::string& text : idle_options(prediction, false)) say("warning: {}\n", text);
     }
     // Prepare the analysis

@@ -59,7 +59,9 @@ int merge_films(const MergeArguments& a) {
         if (!a.quiet) {
             warn_of_unusable(denoiser);
             const bool insists = a.denoiser.choice == DenoiserChoice::oidn;
-            for (const std::string& text : idle_options({.method = state.method}, insists))
+            RenderOptions of_films;
+            of_films.method = state.method;
+            for (const std::string& text : idle_options(of_films, insists))
                 say("warning: {}\n", text);
             warn_of_failed_denoiser(image);
             warn_of_absent_layers(image, a.layers);

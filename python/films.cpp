@@ -87,8 +87,9 @@ Merged merge_films(const std::vector<fs::path>& films, const fs::path& film,
     image = develop(state, denoiser.denoiser.get());
     const auto warn = [&](const std::string& text) { merged.warnings.push_back({{}, text}); };
     if (denoiser.is_unusable) warn("no denoiser is used: " + denoiser.why_none);
-    for (const std::string& text :
-         idle_options({.method = state.method}, search.choice == DenoiserChoice::oidn))
+    RenderOptions of_films;
+    of_films.method = state.method;
+    for (const std::string& text : idle_options(of_films, search.choice == DenoiserChoice::oidn))
         warn(text);
     if (const auto it = image.metadata.find("covtrace:denoiserFailure"); it != image.metadata.end())
         warn("the image is without the denoiser: " + std::get<std::string>(it->second));
