@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "camera/exit_pupil.h"
+#include "camera/lens_system.h"
 #include "core/error.h"
-#include "integrator/exit_pupil.h"
-#include "integrator/lens_system.h"
 #include "pbrt/lens_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -6,10 +6,10 @@
 
 #include "bsdf/bsdf.h"
 #include "bsdf/coat_table.h"
+#include "camera/pixel_filter.h"
 #include "core/rng.h"
 #include "core/sampler.h"
 #include "core/warp.h"
-#include "integrator/pixel_filter.h"
 #include "light/environment_map.h"
 #include "light/spherical_triangle.h"
 #include "light/tree.h"

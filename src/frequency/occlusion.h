@@ -2,9 +2,9 @@
 /// and the operator applied at each.
 #pragma once
 
+#include "camera/camera.h"
 #include "covariance/covariance.hpp"
 #include "frequency/light_source.h"
-#include "integrator/camera.h"
 #include "integrator/path_record.h"
 #include "occluders/query.h"
 #include "occluders/voxel_grid.h"

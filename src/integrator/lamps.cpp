@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
+#include "camera/camera.h"
 #include "core/warp.h"
-#include "integrator/camera.h"
 #include "integrator/visibility.h"
 #include "scene/added_lamps.h"
 #include "scene/imaging_scale.h"

@@ -4,9 +4,9 @@
 #include <map>
 #include <string>
 
+#include "camera/camera.h"
+#include "camera/pixel_filter.h"
 #include "geometry/geometry.h"
-#include "integrator/camera.h"
-#include "integrator/pixel_filter.h"
 #include "light/lights.h"
 #include "scene/scene_description.h"
 #include "shading/material.h"

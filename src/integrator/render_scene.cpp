@@ -4,8 +4,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "integrator/guides/training_places.h"
 #include "integrator/path.h"
-#include "integrator/training_places.h"
 
 namespace covtrace {
 

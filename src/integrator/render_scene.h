@@ -4,12 +4,12 @@
 #include <map>
 #include <string>
 
-#include "integrator/caustic_guide.h"
-#include "integrator/guide_outcome.h"
-#include "integrator/lamp_guide.h"
+#include "integrator/guides/caustic_guide.h"
+#include "integrator/guides/guide_outcome.h"
+#include "integrator/guides/lamp_guide.h"
+#include "integrator/guides/path_guide.h"
+#include "integrator/guides/sky_guide.h"
 #include "integrator/lit_scene.h"
-#include "integrator/path_guide.h"
-#include "integrator/sky_guide.h"
 
 namespace covtrace {
 

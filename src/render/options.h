@@ -11,7 +11,7 @@
 #include "core/enum_names.h"
 #include "frequency/brdf_covariance.h"
 #include "image/image.h"
-#include "integrator/guide_outcome.h"
+#include "integrator/guides/guide_outcome.h"
 #include "planner/density.h"
 #include "reconstruction/denoiser.h"
 #include "reconstruction/filter_field.h"

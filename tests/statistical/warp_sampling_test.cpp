@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "camera/pixel_filter.h"
 #include "chi_square.h"
 #include "core/rng.h"
 #include "core/warp.h"
-#include "integrator/pixel_filter.h"
 #include "light/environment_map.h"
 #include "shading/medium.h"
 #include "shading/phase_function.h"
