@@ -1,6 +1,7 @@
 #include "geometry/surface.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/frame.h"
 #include "core/parallel.h"
@@ -42,6 +43,38 @@ SurfaceDerivatives surface_derivatives(const LocalShape& shape, uint32_t primiti
     return quadric_derivatives(std::get<Quadric>(shape), near);
 }
 
+/// Tangents where (s, t) rests in a direction at least: there it is taken to change by 1 over
+/// kRestingLengths times the size of the primitive, so that a pixel's footprint in (s, t) is next
+/// to nothing, as it truly is.
+void solve_resting_tangents(Vec3d dpda, Vec3d dpdb, Vec2 duvda, Vec2 duvdb, Vec3d normal,
+                            Vec3d& dpdu, Vec3d& dpdv) {
+    // More would show in steps of bump maps, which are no smaller than the rounding of (s, t).
+    constexpr double kRestingLengths = 1000;
+    const Frame frame = Frame::from_z(normal.to_float());
+    const Vec3d x(frame.x), y(frame.y);
+    const double ax = dot(dpda, x), ay = dot(dpda, y), bx = dot(dpdb, x), by = dot(dpdb, y);
+    const double area = ax * by - ay * bx;
+    const double resting =
+        kRestingLengths * std::sqrt(std::max(ax * ax + ay * ay, bx * bx + by * by));
+    dpdu = x;
+    dpdv = y;
+    if (!(std::abs(area) > 0 && std::isfinite(resting))) return;
+    dpdu = x * resting;
+    dpdv = y * resting;
+
+    const auto gradient = [&](double by_a, double by_b) {
+        return (x * (by_a * by - by_b * ay) + y * (by_b * ax - by_a * bx)) * (1 / area);
+    };
+    const Vec3d s = gradient(duvda.x, duvdb.x), t = gradient(duvda.y, duvdb.y);
+    const double size = std::sqrt(dot(s, s) + dot(t, t));
+    if (!(size * resting > 1 && std::isfinite(size))) return;
+    const Vec3d along = normalize(dot(s, s) > dot(t, t) ? s : t);
+    const Vec3d across = cross(Vec3d(frame.z), along);
+    const double by_s = dot(s, along) / size, by_t = dot(t, along) / size;
+    dpdu = along * (by_s / size) - across * (by_t * resting);
+    dpdv = along * (by_t / size) + across * (by_s * resting);
+}
+
 void solve_tangents(Vec3d dpda, Vec3d dpdb, Vec2 duvda, Vec2 duvdb, Vec3d normal, Vec3d& dpdu,
                     Vec3d& dpdv) {
     const double ua = duvda.x, va = duvda.y, ub = duvdb.x, vb = duvdb.y;
@@ -54,9 +87,7 @@ void solve_tangents(Vec3d dpda, Vec3d dpdb, Vec2 duvda, Vec2 duvdb, Vec3d normal
         const double a2 = dot(area, area);
         if (a2 > 0 && std::isfinite(static_cast<float>(a2))) return;
     }
-    const Frame frame = Frame::from_z(normal.to_float());
-    dpdu = Vec3d(frame.x);
-    dpdv = Vec3d(frame.y);
+    solve_resting_tangents(dpda, dpdb, duvda, duvdb, normal, dpdu, dpdv);
 }
 
 std::vector<Vec3> transform_points(const std::vector<Vec3>& positions, const Transform& map,

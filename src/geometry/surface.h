@@ -25,6 +25,7 @@ struct TriangleShape {
     Affine tangent_map;  ///< maps the mesh's tangents to local ones
     bool flip = false;   ///< whether the outside is opposite to (p1 - p0) x (p2 - p0)
 };
+};
 
 struct PatchShape {
     std::shared_ptr<const BilinearMesh> mesh;
@@ -83,7 +84,8 @@ SurfaceDerivatives surface_derivatives(const LocalShape& shape, uint32_t primiti
                                        Vec2 barycentric, Vec3d near);
 
 /// Tangents dp/ds, dp/dt of the coordinates (s, t), whose derivatives by the parameters of dp are
-/// given; an orthonormal pair about `normal` where (s, t) is degenerate.
+/// given. Where (s, t) rests in a direction, the tangents are a thousand times as long there as the
+/// larger of dpda and dpdb; an orthonormal pair where these are parallel.
 void solve_tangents(Vec3d dpda, Vec3d dpdb, Vec2 duvda, Vec2 duvdb, Vec3d normal, Vec3d& dpdu,
                     Vec3d& dpdv);
 

@@ -92,16 +92,6 @@ TEST(GeometryHits, TriangleDefaultUvsAreThoseOfPbrt) {
     EXPECT_TRUE(near_vec(hit.dpdv, {-1, 1, 0}, 1e-6f));
 }
 
-TEST(GeometryHits, DegenerateUvsGiveAnOrthonormalPair) {
-    TriangleMesh m = unit_triangle();
-    m.uvs = {{0.3f, 0.3f}, {0.3f, 0.3f}, {0.3f, 0.3f}};
-    const SurfaceHit hit = must_hit(Geometry{scene_of({mesh(m)})}, {0.25f, 0.25f, 3}, {0, 0, -1});
-    EXPECT_NEAR(length(hit.dpdu), 1, 1e-6f);
-    EXPECT_NEAR(length(hit.dpdv), 1, 1e-6f);
-    EXPECT_NEAR(dot(hit.dpdu, hit.dpdv), 0, 1e-6f);
-    EXPECT_NEAR(dot(hit.dpdu, hit.ng), 0, 1e-6f);
-}
-
 TEST(GeometryHits, OrientationOfTriangles) {
     const Vec3 up{0, 0, 1};
     const AnimatedTransform mirror(Transform::scale(-1, 1, 1));
