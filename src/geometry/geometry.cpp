@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "core/hash.h"
@@ -160,6 +161,16 @@ bool Geometry::Impl::nearest(const Ray& ray, unsigned mask, SurfaceHit& hit) con
 }
 
 void Geometry::Impl::fill(const EmbreeHit& found, const Ray& ray, SurfaceHit& hit) const {
+    fill_found(found, ray, hit);
+    const auto* triangles = std::get_if<TriangleShape>(&local[hit.shape]);
+    if (!triangles || !triangles->opposites || !(dot(ray.direction, hit.ng) > 0)) return;
+    EmbreeHit front = found;
+    std::tie(front.primitive, front.barycentric) =
+        triangles->opposites->at(*triangles->mesh, found.primitive, found.barycentric);
+    if (front.primitive != found.primitive) fill_found(front, ray, hit);
+}
+
+void Geometry::Impl::fill_found(const EmbreeHit& found, const Ray& ray, SurfaceHit& hit) const {
     hit.t = found.t;
     hit.time = ray.time;
     hit.primitive = found.primitive;

@@ -78,8 +78,11 @@ struct Geometry::Impl {
     }
     /// Finds the nearest hit of the shapes in `mask`, whatever alpha says there.
     bool nearest(const Ray& ray, unsigned mask, SurfaceHit& hit) const;
-    /// Describes the place of a hit of `ray`.
+    /// Describes the place of a hit of `ray`: of triangles on each other the one with its front to
+    /// the ray.
     void fill(const EmbreeHit& found, const Ray& ray, SurfaceHit& hit) const;
+    /// The same of the very primitive that was found.
+    void fill_found(const EmbreeHit& found, const Ray& ray, SurfaceHit& hit) const;
     /// Do for a packet of rays at most what `nearest` and `occluded` do for one, apart from alpha.
     void find_nearest(std::span<HitQuery> packet) const;
     void find_solid(std::span<OcclusionQuery> packet) const;

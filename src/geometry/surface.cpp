@@ -15,9 +15,12 @@ LocalShape make_local_shape(const ShapeDescription& description,
     return std::visit(
         [&](const auto& geometry) -> LocalShape {
             using G = std::decay_t<decltype(geometry)>;
-            if constexpr (std::is_same_v<G, std::shared_ptr<const TriangleMesh>>)
-                return make_triangle_shape(geometry, local_from_object, reverse);
-            else if constexpr (std::is_same_v<G, std::shared_ptr<const BilinearMesh>>)
+            if constexpr (std::is_same_v<G, std::shared_ptr<const TriangleMesh>>) {
+                TriangleShape shape = make_triangle_shape(geometry, local_from_object, reverse);
+                if (!description.is_seen_from_back)
+                    shape.opposites = OppositeTriangles::of(*geometry);
+                return shape;
+            } else if constexpr (std::is_same_v<G, std::shared_ptr<const BilinearMesh>>)
                 return make_patch_shape(geometry, local_from_object, reverse);
             else
                 return make_quadric(geometry, local_from_object, reverse);

@@ -9,6 +9,7 @@
 
 #include "geometry/affine.h"
 #include "geometry/bilinear_patch.h"
+#include "geometry/opposite_triangles.h"
 #include "geometry/vertex_place.h"
 #include "scene/scene_description.h"
 
@@ -24,7 +25,8 @@ struct TriangleShape {
     Affine normal_map;
     Affine tangent_map;  ///< maps the mesh's tangents to local ones
     bool flip = false;   ///< whether the outside is opposite to (p1 - p0) x (p2 - p0)
-};
+    /// Of shapes that are seen from their fronts alone: what lies on each other; null: nothing.
+    std::shared_ptr<const OppositeTriangles> opposites = {};
 };
 
 struct PatchShape {
