@@ -25,7 +25,7 @@ class MaterialExporter(PrincipledExporter):
 
     def __init__(self, out, folder, warn):
         self.out, self.warn = out, warn
-        self.files = TextureFiles(folder)
+        self.files = TextureFiles(folder, warn)
         self.baker, self.baked = Baker(self.files.source), BakedImages()
         self.known, self.of_objects = {}, set()
         self.count = 0

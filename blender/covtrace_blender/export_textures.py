@@ -21,11 +21,15 @@ def to_srgb(values):
     return np.where(values <= 0.0031308, values * 12.92, 1.055 * values ** (1 / 2.4) - 0.055)
 
 
-def pixels(image):
+MISSING = (1, 0, 1, 1)  # linear; the magenta by which Blender shows images whose files are missing
+
+
+def pixels(image, warn):
     """(height, width, 4) float32 from the top, colours linear where the image says that it is sRGB."""
     width, height = image.size
     if width == 0 or height == 0 or image.channels == 0:
-        raise RuntimeError(f"covtrace: image '{image.name}' has no pixels (is its file missing?)")
+        warn(f"the image '{image.name}' has no pixels (is its file '{image.filepath}' missing?); it is magenta, as in Cycles")
+        return np.array([[MISSING]], dtype=np.float32)
     values = np.empty(width * height * image.channels, dtype=np.float32)
     image.pixels.foreach_get(values)
     values = values.reshape(height, width, image.channels)[::-1]
@@ -69,8 +73,8 @@ def write_pfm(path, values):
 class TextureFiles:
     """Writes each combination of image and treatment once."""
 
-    def __init__(self, folder):
-        self.folder = folder
+    def __init__(self, folder, warn):
+        self.folder, self.warn = folder, warn
         self.files = {}
         self.cache = {}
 
@@ -79,7 +83,7 @@ class TextureFiles:
         if isinstance(image, BakedImage):
             return image.values
         if image.name_full not in self.cache:
-            self.cache[image.name_full] = pixels(image)
+            self.cache[image.name_full] = pixels(image, self.warn)
         return self.cache[image.name_full]
 
     def write(self, image, key, treat):

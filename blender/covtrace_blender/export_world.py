@@ -83,7 +83,7 @@ def _light(world, warn, tell, time, is_preview, ray):
     background = _seen_shader(output.inputs["Surface"], ray)
     if background is None:
         return None
-    plain = _plain_light(background, ray)
+    plain = _plain_light(background, warn, ray)
     if plain is not None:
         return _visible(plain) if isinstance(plain, tuple) else plain
     return _baked(world, background, warn, tell, time, is_preview, ray)
@@ -118,7 +118,7 @@ def _visible(colour):
     return colour if max(colour) > 0 else None
 
 
-def _plain_light(background, ray):
+def _plain_light(background, warn, ray):
     """The colour or Image of a Background node of either; None for all else."""
     if background.type != "BACKGROUND" or background.mute:
         return None
@@ -134,7 +134,7 @@ def _plain_light(background, ray):
     if node.type == "TEX_ENVIRONMENT" and not node.mute and node.image and node.projection == "EQUIRECTANGULAR":
         turn = _turn(node)
         if turn is not None:
-            return Image(_twice_as_wide(pixels(node.image)[..., :3] * strength), turn)
+            return Image(_twice_as_wide(pixels(node.image, warn)[..., :3] * strength), turn)
     return None
 
 

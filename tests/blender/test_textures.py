@@ -57,6 +57,28 @@ class TexturesTest(BlenderTest):
                 self.assertEqual(self.warnings, [])
             bpy.data.objects.remove(plane)
 
+    def test_images_whose_files_are_missing_are_magenta_as_in_cycles(self):
+        image = bpy.data.images.new("lost", 4, 4)
+        image.source, image.filepath = "FILE", "//lost.png"
+        m = bpy.data.materials.new("shown")
+        m.use_nodes = True
+        texture, emission = m.node_tree.nodes.new("ShaderNodeTexImage"), m.node_tree.nodes.new("ShaderNodeEmission")
+        m.node_tree.links.new(texture.outputs["Color"], emission.inputs["Color"])
+        m.node_tree.links.new(emission.outputs["Emission"], m.node_tree.nodes["Material Output"].inputs["Surface"])
+        self.plane(m, size=1)
+        world = self.scene.world.node_tree
+        around = world.nodes.new("ShaderNodeTexEnvironment")
+        around.image = texture.image = image
+        world.links.new(around.outputs["Color"], self.background.inputs["Color"])
+        self.background.inputs["Strength"].default_value = 0.5
+        ours, theirs = render("COVTRACE", 4), render("CYCLES", 4)
+        for place in ((14, 10, 18, 14), (0, 0, 4, 4)):
+            self.assertGreater(mean(theirs, *place)[0], 0.4)
+            for a, b in zip(mean(ours, *place), mean(theirs, *place)):
+                self.assertAlmostEqual(a, b, delta=0.01)
+        self.export()
+        self.assertEqual(len([w for w in self.warnings if "//lost.png" in w]), 1, self.warnings)
+
     def test_images_go_on_as_in_cycles(self):
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)
         for extension in ("REPEAT", "EXTEND", "CLIP"):
