@@ -164,7 +164,7 @@ def _size(values_at, layout, images, random):
     """(width, height): whole multiples of the largest image's, and as fine as the nodes need."""
     sizes = []
     for axis in (0, 1):
-        base = max([image.size[axis] for image in images if image.size[axis] <= LARGEST], default=SMALLEST)
+        base = max([image.size[axis] for image in images if 0 < image.size[axis] <= LARGEST], default=SMALLEST)
         size = base * -(-SMALLEST // base)
         sizes.append([size * 2**k for k in range(3) if size * 2**k <= LARGEST] or [LARGEST])
     steps = max(len(s) for s in sizes)

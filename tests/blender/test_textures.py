@@ -78,6 +78,13 @@ class TexturesTest(BlenderTest):
                 self.assertAlmostEqual(a, b, delta=0.01)
         self.export()
         self.assertEqual(len([w for w in self.warnings if "//lost.png" in w]), 1, self.warnings)
+        # The image is baked where other nodes hang on it.
+        gamma = m.node_tree.nodes.new("ShaderNodeGamma")
+        gamma.inputs["Gamma"].default_value = 2
+        m.node_tree.links.new(texture.outputs["Color"], gamma.inputs["Color"])
+        m.node_tree.links.new(gamma.outputs["Color"], emission.inputs["Color"])
+        for a, b in zip(mean(render("COVTRACE", 4), 14, 10, 18, 14), (1, 0, 1)):
+            self.assertAlmostEqual(a, b, delta=0.01)
 
     def test_images_go_on_as_in_cycles(self):
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)
