@@ -5,19 +5,22 @@ from .baking import Baker, Surface
 from .export_principled import PrincipledExporter
 from .export_sockets import Value
 from .export_textures import TextureFiles
+from .export_volumes import Media, coefficients
 from .fresnel import mean_facing, mean_reflectance
 from .node_signature import all_nodes
+from .shader_nodes.unsupported import Unsupported
 from .shader_nodes.light_path import RAYS, groups_of_rays
 
 TRANSPARENT = '"float alpha" 0'
 
 
 class Variant:
-    """A material as it is to some kinds of rays: its pbrt name, its Emission or None, the text of its alpha parameter, and
-    the names of the UV maps that it reads ("" is the mesh's)."""
+    """A material as it is to some kinds of rays: its pbrt name, its Emission or None, the text of its alpha parameter, the
+    names of the UV maps that it reads ("" is the mesh's), and the name of the medium that fills what it is on, or ""."""
 
-    def __init__(self, rays, name, emission=None, alpha="", uv_maps=()):
+    def __init__(self, rays, name, emission=None, alpha="", uv_maps=(), medium=""):
         self.rays, self.name, self.emission, self.alpha, self.uv_maps = rays, name, emission, alpha, uv_maps
+        self.medium = medium
 
 
 class MaterialExporter(PrincipledExporter):
@@ -25,7 +28,7 @@ class MaterialExporter(PrincipledExporter):
 
     def __init__(self, out, folder, warn):
         self.out, self.warn = out, warn
-        self.files = TextureFiles(folder, warn)
+        self.files, self.media = TextureFiles(folder, warn), Media(out)
         self.baker, self.baked = Baker(self.files.source), BakedImages()
         self.known, self.of_objects = {}, set()
         self.count = 0
@@ -75,16 +78,39 @@ class MaterialExporter(PrincipledExporter):
         return [v for v in variants if v not in alone]
 
     def _export(self, material):
-        """(pbrt name, Emission or None, alpha parameter text, names of the UV maps), to rays of the baker's kind."""
+        """(pbrt name, Emission or None, alpha parameter text, names of the UV maps, medium), to rays of the baker's kind."""
         self.emission, self.alpha, self.uv_maps = None, "", []
         output = material.node_tree.get_output_node("CYCLES")
-        for name in ("Volume", "Displacement"):
-            if output and output.inputs[name].is_linked:
-                self.warn(f"material '{self.name}': {name} is not supported and left out")
+        if output and output.inputs["Displacement"].is_linked:
+            self.warn(f"material '{self.name}': Displacement is not supported and left out")
         node, _ = self._linked(output.inputs["Surface"]) if output else (None, None)
+        volume, _ = self._linked(output.inputs["Volume"]) if output else (None, None)
+        medium = self._medium(volume) if volume else ""
+        if volume and (node is None or node.type == "BSDF_TRANSPARENT"):
+            # A body that is nothing but its volume.
+            return self._make("interface", []), None, "", (), medium
         if node is None:
-            return self._make("diffuse", ['"rgb reflectance" [0 0 0]']), None, "", ()
-        return self._shader(node), self.emission, self.alpha, tuple(self.uv_maps)
+            return self._make("diffuse", ['"rgb reflectance" [0 0 0]']), None, "", (), ""
+        return self._shader(node), self.emission, self.alpha, tuple(self.uv_maps), medium
+
+    def _medium(self, node):
+        """The name of the medium that a volume shader makes; "" for what is left out."""
+        def tell(text):
+            self.warn(f"material '{self.name}': {text}")
+
+        def colour(socket):
+            value = self._value(socket)
+            if value.image:
+                tell(f"an image at '{socket.name}' of a volume is not supported; the socket's own value is used")
+                return tuple(socket.default_value)[:3]
+            return value.constant
+
+        try:
+            found = coefficients(node, colour, self._plain, tell)
+        except Unsupported as problem:
+            tell(f"its volume is not supported and left out ({problem})")
+            return ""
+        return self.media.add(found)
 
     def _shader(self, node):
         if node.type == "BSDF_TRANSPARENT":

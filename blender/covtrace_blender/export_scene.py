@@ -1,15 +1,18 @@
 """A scene of Blender as a pbrt-v4 file with its meshes and textures in one folder."""
 
+import io
 import math
 import os
 
 import numpy as np
+from mathutils import Vector
 
 from . import export_lights, export_meshes, export_motion, export_strands, export_world, ply, surface_coordinates
 from .baking import Surface
 from .export_camera import SceneCamera
 from .export_materials import MaterialExporter
 from .export_shaders import numbers
+from .export_volumes import Volumes, has_volume
 from .placement import is_same, placement
 from .shader_nodes.light_path import RAYS
 from .visibility import Visibility, hidden_from
@@ -46,9 +49,13 @@ class SceneExporter:
         moving, self.shutter = self._look_at_close()
         path = os.path.join(self.folder, "scene.pbrt")
         try:
+            content = io.StringIO()
+            self._write_content(content, moving)
+            around = self.materials.media.sum(self.volumes.media_at(self.camera.matrix().translation))
             with open(path, "w", encoding="utf-8") as out:
+                out.write(f'MediumInterface "" "{around}"\n' if around else "")
                 out.write(self.camera.text(self.shutter, moving.get("camera")))
-                self._write_content(out, moving)
+                out.write(content.getvalue())
         finally:
             if self.shutter:
                 self._go_to(self.frame)
@@ -63,10 +70,11 @@ class SceneExporter:
 
     def _write_content(self, out, moving):
         self.out = out
-        out.write("WorldBegin\n")
+        out.write('WorldBegin\nMediumInterface "" ""\n')
         self.materials = MaterialExporter(out, self.folder, self.warn)
         self._write_world()
         self.uv_ranges = self._uv_ranges()
+        self.volumes = self._find_volumes()
         self._write_objects(moving)
         self.materials.baked.keep()
 
@@ -110,6 +118,19 @@ class SceneExporter:
 
     # -- objects
 
+    def _find_volumes(self):
+        found = Volumes()
+        for _, instance in self._instances():
+            obj = instance.object
+            if obj.type != "MESH" or not instance.show_self:
+                continue
+            for slot, material in enumerate(self._materials(obj)):
+                media = [v.medium for v in self._variants(obj, slot) if v.medium] if has_volume(material) else []
+                if media:
+                    found.add(obj, instance.matrix_world, media[0])
+                    break
+        return found
+
     def _write_objects(self, moving):
         shared, exported = {}, {}
         self.visibility = Visibility(self.depsgraph.view_layer)
@@ -138,13 +159,13 @@ class SceneExporter:
                     if shown not in shared:
                         shared[shown] = f"object {len(shared)}"
                         self.out.write(f'ObjectBegin "{shared[shown]}"\n')
-                        self._write_parts(parts, hidden)
+                        self._write_parts(parts, hidden, self._media_around(obj, matrix))
                         self.out.write("ObjectEnd\n")
                     self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end) +
                                    f'ObjectInstance "{shared[shown]}"\nAttributeEnd\n')
                 else:
                     self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end))
-                    self._write_parts(parts, hidden)
+                    self._write_parts(parts, hidden, self._media_around(obj, matrix))
                     self.out.write("AttributeEnd\n")
             elif obj.type in ("VOLUME", "POINTCLOUD", "GPENCIL"):
                 self.warn(f"object '{obj.name}' is a {obj.type.lower()}, which is not rendered")
@@ -265,10 +286,18 @@ class SceneExporter:
                       f"move as one can follow: {100 * left:.0f} % of the way are left out")
         return piece, motions
 
-    def _write_parts(self, parts, hidden):
+    def _media_around(self, obj, matrix):
+        """The names of the media that an object stands in, by the middle of the box around it."""
+        middle = sum((Vector(corner) for corner in obj.bound_box), Vector()) / 8
+        return self.volumes.media_at(matrix @ middle, obj)
+
+    def _write_parts(self, parts, hidden, around):
         for part in parts:
             emission = part.variant.emission
             self.out.write("AttributeBegin\n" f'NamedMaterial "{part.variant.name}"\n')
+            if part.variant.medium:
+                media = self.materials.media
+                self.out.write(f'MediumInterface "{media.sum((part.variant.medium, *around))}" "{media.sum(around)}"\n')
             if part.motion is not None:
                 self.out.write(placement("ConcatTransform", *part.motion))
             if emission:

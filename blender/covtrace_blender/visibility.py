@@ -25,8 +25,8 @@ class Visibility:
         hidden = self._hidden(obj)
         if instance.is_instance and instance.parent:
             hidden |= self._hidden(instance.parent)
-        if not set(RAYS) - hidden - {"volume"}:
-            return None  # no scene here has a volume
+        if not set(RAYS) - hidden:
+            return None
         if obj.type == "LIGHT":
             return hidden if self._is_lamp_lit(obj, hidden) else None
         if self._is_holdout(obj):
