@@ -4,11 +4,25 @@
 #include <cmath>
 
 #include "gltf/material_builder.h"
+#include "scene/dispersion.h"
 
 namespace covtrace::gltf {
 namespace {
 
 using Channel = ImageTexture::Channel;
+
+/// The dispersion of a glass of index `eta` at the Fraunhofer line d, by the specification:
+/// Cauchy's formula, such that the index falls by strength (eta - 1) / 20 from the line F to the
+/// line C.
+std::shared_ptr<const Dispersion> fraunhofer_dispersion(float eta, float strength) {
+    constexpr float kAbbeOfOne = 20;     // Abbe number of strength 1
+    constexpr float kSquare = 523655;    // nm², 1 / (F^-2 - C^-2)
+    constexpr float kOfLineD = 1.5168f;  // kSquare / d²
+    const float per_step = (eta - 1) * strength / kAbbeOfOne;
+    return dispersion_of(
+        [&](float nm) { return std::max(eta + per_step * (kSquare / (nm * nm) - kOfLineD), 1.0f); },
+        eta);
+}
 
 }  // namespace
 
@@ -53,6 +67,9 @@ MaterialId MaterialBuilder::glass() {
             "rendered as the rough border of a solid body, which refracts");
     DielectricMaterial m;
     m.eta = border_.mean_eta;
+    if (const auto* dispersion = extension(material_.extensions, "KHR_materials_dispersion"))
+        m.dispersion = fraunhofer_dispersion(m.eta, number(document_, *dispersion, "dispersion", 0,
+                                                           0, 1e3, in("KHR_materials_dispersion")));
     m.u_roughness = widths_.u;
     m.v_roughness = widths_.v;
     m.remap_roughness = false;

@@ -51,17 +51,10 @@ Spectrum from_file(const std::string& name, const SourceLocation& where, BuildCo
 constexpr double kHeliumLine = 587.6;
 constexpr float kLargestIndex = 1e6f;  // the squares of its squares must be numbers
 
-/// How an index varies about its value `eta`; null where it doesn't.
-std::shared_ptr<const Dispersion> dispersion_of(const Spectrum& index, float eta) {
-    Dispersion d;
-    for (size_t i = 0; i < d.ratio.size(); ++i) {
-        const auto n = static_cast<float>(index.at(double(d.kFirst + d.kStep * float(i))));
-        // Where there is no index it is 1, as in pbrt
-        d.ratio[i] = std::min(n > 0 ? n : 1, kLargestIndex) / eta;
-    }
-    const bool varies =
-        std::any_of(d.ratio.begin(), d.ratio.end(), [&](float r) { return r != d.ratio[0]; });
-    return varies ? std::make_shared<const Dispersion>(d) : nullptr;
+/// The index at a wavelength in nanometres; 1 where there is none, as in pbrt.
+float index_at(const Spectrum& index, float wavelength) {
+    const auto n = static_cast<float>(index.at(double(wavelength)));
+    return std::min(n > 0 ? n : 1, kLargestIndex);
 }
 
 }  // namespace
@@ -165,7 +158,8 @@ RefractiveIndex refractive_index(ParameterList& parameters, std::string_view nam
     if (eta > kLargestIndex)
         throw Error(ErrorKind::scene, p->where,
                     "parameter " + in_quotes(p->name) + " is too large; expected at most 1e6");
-    return {eta, varying ? dispersion_of(*varying, eta) : nullptr};
+    if (!varying) return {eta, nullptr};
+    return {eta, dispersion_of([&](float w) { return index_at(*varying, w); }, eta)};
 }
 
 float constant_index(ParameterList& parameters, std::string_view name, float otherwise,

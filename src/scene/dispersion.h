@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
 
 namespace covtrace {
 
@@ -20,5 +21,17 @@ struct Dispersion {
         return (1 - t) * ratio[i] + t * ratio[i + 1];
     }
 };
+
+/// The dispersion of what has index(nanometres), in [1e-6, 1e6], and `eta` at 587.6 nm; null where
+/// all wavelengths have one.
+template <typename Index>
+std::shared_ptr<const Dispersion> dispersion_of(const Index& index, float eta) {
+    Dispersion d;
+    for (size_t i = 0; i < d.ratio.size(); ++i)
+        d.ratio[i] = index(d.kFirst + d.kStep * static_cast<float>(i)) / eta;
+    const bool varies =
+        std::any_of(d.ratio.begin(), d.ratio.end(), [&](float r) { return r != d.ratio[0]; });
+    return varies ? std::make_shared<const Dispersion>(d) : nullptr;
+}
 
 }  // namespace covtrace

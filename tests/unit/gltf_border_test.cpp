@@ -2,6 +2,7 @@
 // -pbrSpecularGlossiness and -anisotropy, as descriptions. The values are held against Khronos's
 // formulas in tests/cli/test_gltf_materials.py.
 #include "gltf_fixtures.h"
+#include "scene/dispersion.h"
 
 namespace covtrace::test {
 namespace {
@@ -66,6 +67,30 @@ TEST(GltfBorder, WhatTransmitsLightTakesTheMean) {
     // Half of an amplitude is a quarter of the light.
     EXPECT_NEAR(eta(1000, {{"specularFactor", 0.25}}), 2.994f, 1e-2f);
     EXPECT_NEAR(eta(1.5, {{"specularColorFactor", {1e9, 1e9, 1e9}}}), 1000, 1);
+}
+
+TEST(GltfBorder, BodiesDisperse) {
+    const auto glass = [](double ior, double strength) {
+        const auto scene =
+            with_extensions({{"KHR_materials_ior", {{"ior", ior}}},
+                             {"KHR_materials_dispersion", {{"dispersion", strength}}},
+                             {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                             {"KHR_materials_volume", {{"thicknessFactor", 1}}}});
+        EXPECT_FALSE(contains(all_warnings(scene), "KHR_materials_dispersion"));
+        return model_of<DielectricMaterial>(scene, scene.shapes[0].material);
+    };
+    EXPECT_EQ(glass(1.5, 0).dispersion, nullptr);
+    EXPECT_EQ(glass(1, 1).dispersion, nullptr);
+    // Diamond, whose Abbe number is 55, and the extension's exaggerated 10.
+    for (const double abbe : {55.0, 10.0}) {
+        const DielectricMaterial m = glass(2.4, 20 / abbe);
+        ASSERT_NE(m.dispersion, nullptr);
+        const auto index = [&](float nm) { return m.eta * m.dispersion->at(nm); };
+        EXPECT_NEAR(index(587.6f), 2.4f, 1e-3f);
+        EXPECT_NEAR((index(587.6f) - 1) / (index(486.1f) - index(656.3f)), abbe, 0.01 * abbe);
+    }
+    // No index falls below that of empty space.
+    EXPECT_EQ(1.2f * glass(1.2, 500).dispersion->at(700), 1);
 }
 
 TEST(GltfBorder, SpecularGlossinessTakesThePlaceOfMetallicRoughness) {

@@ -15,16 +15,17 @@ std::vector<std::string> warnings_with(const SceneDescription& scene, const std:
 TEST(GltfLeftOut, EachExtensionIsToldOnceWithItsLoss) {
     GltfFile file;
     for (int i = 0; i < 3; ++i) {
-        json extensions = {{"KHR_materials_dispersion", json::object()}};
+        json extensions = {{"KHR_materials_volume_scatter", json::object()}};
         if (i == 2) extensions["KHR_materials_iridescence"] = json::object();
         if (i == 2) extensions["ACME_paint"] = json::object();
         file.root["materials"].push_back({{"extensions", extensions}});
         file.add_node({{"mesh", file.add_square({{"material", i}})}});
     }
     const auto scene = read(file);
-    EXPECT_EQ(warnings_with(scene, "KHR_materials_dispersion"),
-              (std::vector<std::string>{"extension KHR_materials_dispersion is left out: glass "
-                                        "refracts all colours alike (and in 2 more places)"}));
+    EXPECT_EQ(
+        warnings_with(scene, "KHR_materials_volume_scatter"),
+        (std::vector<std::string>{"extension KHR_materials_volume_scatter is left out: volumes "
+                                  "absorb light but do not scatter it (and in 2 more places)"}));
     EXPECT_EQ(warnings_with(scene, "KHR_materials_iridescence"),
               (std::vector<std::string>{"extension KHR_materials_iridescence is left out: the "
                                         "colours of thin films are missing"}));
