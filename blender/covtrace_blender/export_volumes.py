@@ -11,7 +11,7 @@ MOST_CROSSINGS = 1000  # of a mesh by a ray: one that is caught between faces mu
 
 
 class Coefficients:
-    """What an even medium scatters and absorbs per unit of length, each in R, G, B; g: the mean cosine of scattering."""
+    """Scattering and absorption of an even medium per unit of length, each in R, G, B; g: the mean cosine of scattering."""
 
     def __init__(self, scattering=(0, 0, 0), absorption=(0, 0, 0), g=0.0):
         self.scattering, self.absorption, self.g = tuple(scattering), tuple(absorption), g

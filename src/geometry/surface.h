@@ -25,7 +25,7 @@ struct TriangleShape {
     Affine normal_map;
     Affine tangent_map;  ///< maps the mesh's tangents to local ones
     bool flip = false;   ///< whether the outside is opposite to (p1 - p0) x (p2 - p0)
-    /// Of shapes that are seen from their fronts alone: what lies on each other; null: nothing.
+    /// Pairs of triangles on each other, where fronts alone are seen; null: none.
     std::shared_ptr<const OppositeTriangles> opposites = {};
 };
 
