@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 # Corners around a strand; it is widened so that seen from all sides it is as wide on average as the round one.
-SIDES = 4
+SIDES = 6
 WIDENED = math.pi / (SIDES * math.sin(math.pi / SIDES))
 
 
