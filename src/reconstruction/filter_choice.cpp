@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <limits>
+#include <utility>
 
 #include "reconstruction/luminance.h"
 
@@ -10,9 +11,13 @@ namespace covtrace {
 
 namespace {
 
-/// Deviation in pixels of the Gaussian over which estimates of the error are averaged, and of that
-/// which smooths the seams.
-constexpr float kNeighbourhood = 2, kSeam = 1;
+/// Deviation in pixels of the Gaussian over which noise and outliers are judged, of that over which
+/// estimates of the error are averaged, and of that which smooths the seams.
+constexpr float kNeighbourhood = 2, kNearby = 1, kSeam = 1;
+
+/// Difference of estimated errors, as a part of the variance of the raw pixels around, by which a
+/// candidate's share falls to 1/e of the best one's.
+constexpr float kDoubt = 0.05f;
 
 /// Squared standard deviations beyond which a pixel is an outlier, as in unfiltered_share.cpp.
 constexpr float kOutlier = 4;
@@ -78,8 +83,8 @@ Judgement judge(const RawLuminance& raw, const RelativeNoise& noise,
         for (size_t i = 0; i < around.size(); ++i)
             j.error[i] = std::min(j.error[i], kOutlier * around[i]);
     }
-    j.error = gaussian_blur(j.error, kNeighbourhood);
-    expected = gaussian_blur(expected, kNeighbourhood);
+    j.error = gaussian_blur(j.error, kNearby);
+    expected = gaussian_blur(expected, kNearby);
     for (size_t i = 0; i < expected.size(); ++i) j.error[i] -= expected[i];
     j.contradicted = gaussian_blur(j.contradicted, kSeam);
     return j;
@@ -92,24 +97,32 @@ std::vector<Plane> choose_filters(const RawLuminance& raw,
                                   const Plane& brightness) {
     const Plane none(raw.value.width, raw.value.height);
     const RelativeNoise noise = relative_noise(raw, brightness);
-    std::vector<uint8_t> best(none.size(), 0);
-    Plane least;
-    for (size_t k = 0; k < candidates.size(); ++k) {
-        const Judgement j = judge(raw, noise, candidates[k]);
-        if (k == 0) {
-            least = j.error;
+    // Errors of the candidates, infinite where one is left out
+    std::vector<Plane> errors;
+    for (const FilteredImage& candidate : candidates) {
+        Judgement j = judge(raw, noise, candidate);
+        for (size_t i = 0; i < none.size() && !errors.empty(); ++i)
+            if (j.contradicted[i] > kMayContradict || !std::isfinite(candidate.variance[i]))
+                j.error[i] = std::numeric_limits<float>::infinity();
+        errors.push_back(std::move(j.error));
+    }
+    // Shares by how sure the differences are
+    Plane doubt = none;
+    for (size_t i = 0; i < none.size(); ++i) doubt[i] = noise.part[i] * noise.variance[i];
+    doubt = gaussian_blur(doubt, kNearby);
+    std::vector<Plane> shares(candidates.size(), none);
+    for (size_t i = 0; i < none.size(); ++i) {
+        const float unit = std::max(kDoubt * doubt[i], 1e-9f);
+        float least = errors.front()[i], all = 0;
+        for (const Plane& error : errors) least = std::min(least, error[i]);
+        if (!(doubt[i] > 0) && least == errors.front()[i]) {
+            shares.front()[i] = 1;
             continue;
         }
-        for (size_t i = 0; i < none.size(); ++i) {
-            const bool left_out =
-                j.contradicted[i] > kMayContradict || !std::isfinite(candidates[k].variance[i]);
-            if (left_out || !(j.error[i] < least[i])) continue;
-            least[i] = j.error[i];
-            best[i] = uint8_t(k);
-        }
+        for (size_t k = 0; k < shares.size(); ++k)
+            all += shares[k][i] = std::exp(-(errors[k][i] - least) / unit);
+        for (Plane& share : shares) share[i] /= all;
     }
-    std::vector<Plane> shares(candidates.size(), none);
-    for (size_t i = 0; i < none.size(); ++i) shares[best[i]][i] = 1;
     for (Plane& share : shares) share = gaussian_blur(share, kSeam);
     return shares;
 }

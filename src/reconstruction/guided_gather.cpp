@@ -27,9 +27,9 @@ constexpr float kLeastPower = -16;
 
 constexpr size_t kScales = kGuidedScales.size();
 constexpr size_t kGuides = 7;
-/// Sums of red, green, blue and whether a pixel has samples, by the weight; of the variance, by its
-/// square.
-constexpr size_t kWeight = 3, kVariance = 4, kSums = 5;
+/// Sums by the weight: red, green and blue of light without its texture, the same with it, whether
+/// a pixel has samples. By the squared weight: the variances of both lights' luminance.
+constexpr size_t kTextured = 3, kWeight = 6, kVariance = 7, kSums = 9;
 
 Rgb albedo_of(const FilterGuides& guides, size_t i) {
     const Rgb& a = guides.albedo[i];
@@ -64,10 +64,14 @@ Rows rows_of(std::span<const Rgb> mean, std::span<const float> variance,
             rows.guides[6][at] = guides.log_distance[i] / kLogDistanceReach;
             if (count[i] == 0 || !is_finite(mean[i])) continue;
             const Rgb albedo = albedo_of(guides, i), light = mean[i] / albedo;
-            for (int c = 0; c < 3; ++c) rows.sums[size_t(c)][at] = light[c];
+            for (int c = 0; c < 3; ++c) {
+                rows.sums[size_t(c)][at] = light[c];
+                rows.sums[kTextured + size_t(c)][at] = mean[i][c];
+            }
             rows.sums[kWeight][at] = 1;
-            if (std::isfinite(variance[i]))
-                rows.sums[kVariance][at] = variance[i] / sqr(luminance(albedo));
+            if (!std::isfinite(variance[i])) continue;
+            rows.sums[kVariance][at] = variance[i] / sqr(luminance(albedo));
+            rows.sums[kVariance + 1][at] = variance[i];
         }
     });
     return rows;
@@ -126,8 +130,9 @@ ScaledSums sums_around(const Rows& rows, const FilterField& field, int x, int y)
                 const Float8 h = within
                                      ? exp_of_negative(multiply_add(all8(-0.5f), distance, guided))
                                      : Float8{};
+                const Float8 squared = h * h;
                 for (size_t j = 0; j < kSums; ++j)
-                    sum[k][j] = multiply_add(j == kVariance ? h * h : h, value[j], sum[k][j]);
+                    sum[k][j] = multiply_add(j < kVariance ? h : squared, value[j], sum[k][j]);
             }
         }
     }
@@ -148,7 +153,7 @@ std::vector<FilteredImage> guided_gather(std::span<const Rgb> mean, std::span<co
                                          std::span<const uint32_t> count, const FilterField& field,
                                          const FilterGuides& guides) {
     const Rows rows = rows_of(mean, variance, count, field, guides);
-    std::vector<FilteredImage> candidates(kScales);
+    std::vector<FilteredImage> candidates(2 * kScales);
     for (FilteredImage& c : candidates)
         c = {std::vector<Rgb>(mean.size()),
              std::vector<float>(mean.size(), std::numeric_limits<float>::infinity()),
@@ -159,11 +164,15 @@ std::vector<FilteredImage> guided_gather(std::span<const Rgb> mean, std::span<co
             const ScaledSums sums = sums_around(rows, field, x, y);
             const Rgb albedo = albedo_of(guides, i);
             for (size_t k = 0; k < kScales; ++k) {
-                const float all = sums[k][kWeight];
+                const std::array<float, kSums>& sum = sums[k];
+                const float all = sum[kWeight];
                 if (!(all > 0)) continue;
-                candidates[k].color[i] = albedo * Rgb(sums[k][0], sums[k][1], sums[k][2]) / all;
-                candidates[k].variance[i] = sums[k][kVariance] * sqr(luminance(albedo) / all);
-                candidates[k].own_weight[i] = count[i] > 0 ? 1 / all : 0;
+                FilteredImage &without = candidates[2 * k], &with = candidates[2 * k + 1];
+                without.color[i] = albedo * Rgb(sum[0], sum[1], sum[2]) / all;
+                without.variance[i] = sum[kVariance] * sqr(luminance(albedo) / all);
+                with.color[i] = Rgb(sum[kTextured], sum[kTextured + 1], sum[kTextured + 2]) / all;
+                with.variance[i] = sum[kVariance + 1] / sqr(all);
+                without.own_weight[i] = with.own_weight[i] = count[i] > 0 ? 1 / all : 0;
             }
         }
     });

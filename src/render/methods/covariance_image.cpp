@@ -102,9 +102,10 @@ FilterGuides guides_of(const Film& film, const Parts& parts, const FilterField& 
     return guides;
 }
 
-/// The candidate whose luminance errors are relative to: led, at twice the predicted width.
-/// Narrower ones are noisy, wider ones are far off more often (docs/decisions/0108).
-constexpr size_t kSteady = 2;
+/// The candidate whose luminance errors are relative to: led, at twice the predicted width, light
+/// without its texture. Narrower ones are noisy, wider ones are far off more often
+/// (docs/decisions/0108).
+constexpr size_t kSteady = 3;
 
 /// The luminance of a candidate, and of the other one where it found nothing.
 Plane brightness_of(const RawLuminance& raw, const FilteredImage& candidate,
