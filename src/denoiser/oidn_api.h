@@ -12,7 +12,7 @@ using Filter = struct OIDNFilterImpl*;
 
 enum DeviceType : int { kCpu = 1 };
 enum Format : int { kFloat3 = 3 };
-enum Quality : int { kBalanced = 5, kHigh = 6 };
+enum Quality : int { kFast = 4, kBalanced = 5, kHigh = 6 };
 
 /// Functions of the library; every pointer is set.
 struct Api {

@@ -20,6 +20,8 @@ constexpr int kMostMegabytes = 2000;
 constexpr size_t kBytes = 700;
 /// Memory of the library and its weights.
 constexpr size_t kLibraryBytes = size_t(64) << 20;
+/// The first version with the quality kFast, 2.3.0.
+constexpr int kFirstWithFast = 20300;
 
 /// Whether a feature tells anything: one that is 0 everywhere is not known.
 bool is_known(const std::array<Plane, 3>& feature) {
@@ -80,6 +82,7 @@ struct OidnDenoiser::Impl {
         : api(library.api), file(std::move(library.file)), device(api.new_device(oidn::kCpu)) {
         if (!device) throw Error(ErrorKind::usage, file.string() + ": " + error());
         const int number = api.get_device_int(device, "version");
+        if (number >= kFirstWithFast) draft = oidn::kFast;
         version = std::to_string(number / 10000) + "." + std::to_string(number / 100 % 100) + "." +
                   std::to_string(number % 100);
         try {
@@ -117,24 +120,32 @@ struct OidnDenoiser::Impl {
         const char* name;
         Pixels& pixels;
     };
-    /// Denoises the first input in place, guided by the others.
-    void filter(const std::vector<Input>& inputs, bool hdr, oidn::Quality quality) const {
-        const auto release = [this](oidn::Filter f) { api.release_filter(f); };
-        const std::unique_ptr<oidn::OIDNFilterImpl, decltype(release)> f(
-            api.new_filter(device, "RT"), release);
+    struct Release {
+        const oidn::Api* api;
+        void operator()(oidn::Filter f) const { api->release_filter(f); }
+    };
+    /// Filters that are no longer used, but whose working memory the next ones share: to ask for
+    /// it anew takes a tenth of the time.
+    using Filters = std::vector<std::unique_ptr<oidn::OIDNFilterImpl, Release>>;
+    /// Denoises the first input in place, guided by the others, by a filter that it leaves in
+    /// `filters`.
+    void filter(const std::vector<Input>& inputs, bool hdr, oidn::Quality quality,
+                Filters& filters) const {
+        filters.emplace_back(api.new_filter(device, "RT"), Release{&api});
+        const oidn::Filter f = filters.back().get();
         check();
         const auto set = [&](const char* name, Pixels& p) {
-            api.set_image(f.get(), name, p.data(), oidn::kFloat3, p.width(), p.height(), 0, 0, 0);
+            api.set_image(f, name, p.data(), oidn::kFloat3, p.width(), p.height(), 0, 0, 0);
         };
         for (const Input& input : inputs) set(input.name, input.pixels);
         set("output", inputs.begin()->pixels);
-        if (hdr) api.set_filter_bool(f.get(), "hdr", true);
+        if (hdr) api.set_filter_bool(f, "hdr", true);
         // The library has weights for features without noise where it gets both of them.
-        if (inputs.size() == 3) api.set_filter_bool(f.get(), "cleanAux", true);
-        api.set_filter_int(f.get(), "quality", quality);
-        api.set_filter_int(f.get(), "maxMemoryMB", kMostMegabytes);
-        api.commit_filter(f.get());
-        api.execute_filter(f.get());
+        if (inputs.size() == 3) api.set_filter_bool(f, "cleanAux", true);
+        api.set_filter_int(f, "quality", quality);
+        api.set_filter_int(f, "maxMemoryMB", kMostMegabytes);
+        api.commit_filter(f);
+        api.execute_filter(f);
         check();
         inputs.begin()->pixels.repair();
     }
@@ -143,6 +154,7 @@ struct OidnDenoiser::Impl {
     const std::filesystem::path file;
     const oidn::Device device;
     std::string version;
+    oidn::Quality draft = oidn::kBalanced;  ///< quality of images that are drafts
 };
 
 OidnDenoiser::OidnDenoiser(const std::filesystem::path& file)
@@ -157,8 +169,9 @@ std::vector<ColorPlanes> OidnDenoiser::denoise(const NoisyFeatures& features,
     // The library takes normals only beside an albedo.
     const bool has_albedo = is_known(features.albedo),
                has_normal = has_albedo && is_known(features.normal);
-    if (has_albedo) impl_->filter({{"albedo", albedo}}, false, quality);
-    if (has_normal) impl_->filter({{"normal", normal}}, false, quality);
+    Impl::Filters filters;
+    if (has_albedo) impl_->filter({{"albedo", albedo}}, false, quality, filters);
+    if (has_normal) impl_->filter({{"normal", normal}}, false, quality, filters);
     bool turned = false;
     std::vector<ColorPlanes> results;
     for (NoisyImage& image : images) {
@@ -178,7 +191,7 @@ std::vector<ColorPlanes> OidnDenoiser::denoise(const NoisyFeatures& features,
         std::vector<Impl::Input> inputs{{"color", color}};
         if (has_albedo) inputs.push_back({"albedo", albedo});
         if (has_normal) inputs.push_back({"normal", normal});
-        impl_->filter(inputs, true, image.draft ? oidn::kBalanced : oidn::kHigh);
+        impl_->filter(inputs, true, image.draft ? impl_->draft : oidn::kHigh, filters);
         results.push_back(color.planes());
         image = {};
     }

@@ -25,7 +25,7 @@ struct NoisyImage {
     /// in another way then, and the mean of both results errs less than either
     /// (docs/decisions/0085).
     bool turned = false;
-    /// Whether it is denoised in about a third of the time, to judge by and not to look at.
+    /// Whether it is denoised in about a quarter of the time, to judge by and not to look at.
     bool draft = false;
 };
 
