@@ -1,7 +1,7 @@
 // The part of Open Image Denoise's interface that covtrace uses, around a box of 3 x 3 pixels. One
 // of the definitions FAKE_… says what is wrong with it. Where the environment has
 // FAKE_OIDN_THREADS, no other number of threads is accepted; where it has FAKE_OIDN_IMAGES, "color
-// albedo", no others for light.
+// albedo", no others for light; where it has FAKE_OIDN_QUALITY, no other quality for light.
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -15,6 +15,8 @@ namespace {
 
 #ifdef FAKE_VERSION_ONE
 constexpr int kVersion = 10403;
+#elif defined(FAKE_VERSION_TWO)
+constexpr int kVersion = 20201;
 #else
 constexpr int kVersion = 20399;
 #endif
@@ -30,6 +32,7 @@ struct Filter {
     float* output = nullptr;
     size_t width = 0, height = 0;
     std::string images;  // the names of its inputs, in order
+    int quality = 0;
 };
 
 #ifdef FAKE_NO_DEVICE
@@ -119,7 +122,9 @@ void oidnSetSharedFilterImage(Filter* filter, const char* name, void* data, int,
 }
 
 void oidnSetFilterBool(Filter*, const char*, bool) {}
-void oidnSetFilterInt(Filter*, const char*, int) {}
+void oidnSetFilterInt(Filter* filter, const char* name, int value) {
+    if (std::strcmp(name, "quality") == 0) filter->quality = value;
+}
 
 #ifndef FAKE_LACKS_A_FUNCTION
 void oidnCommitFilter(Filter*) {}
@@ -129,6 +134,9 @@ void oidnExecuteFilter(Filter* filter) {
     const char* images = std::getenv("FAKE_OIDN_IMAGES");
     if (images && filter->images.starts_with("color") && filter->images != images)
         filter->device->error = "the filter gets other images";
+    const char* quality = std::getenv("FAKE_OIDN_QUALITY");
+    if (quality && filter->images.starts_with("color") && filter->quality != std::atoi(quality))
+        filter->device->error = "the filter gets another quality";
 #ifdef FAKE_EXECUTE_FAILS
     filter->device->error = "the filter is out of order";
 #else

@@ -51,6 +51,22 @@ TEST(OidnDenoiser, FeaturesThatAreNotKnownAreLeftOut) {
     images_are("color", false, true);  // the library takes no normals without an albedo
 }
 
+TEST(OidnDenoiser, DraftsTakeTheLeastQualityThatTheVersionHas) {
+    constexpr const char *kFast = "4", *kBalanced = "5", *kHigh = "6";
+    const auto quality_is = [](const char* library, bool draft, const char* quality) {
+        const OidnDenoiser denoiser = fake(library);
+        const NoisyView view = noisy_view(9, 7);
+        ::setenv("FAKE_OIDN_QUALITY", quality, 1);
+        EXPECT_NO_THROW(denoiser.denoise(view.features, {{.color = view.color, .draft = draft}}))
+            << library << ", quality " << quality;
+        ::unsetenv("FAKE_OIDN_QUALITY");
+    };
+    quality_is("good", true, kFast);
+    quality_is("version-two", true, kBalanced);  // before 2.3 there is no faster one
+    quality_is("good", false, kHigh);
+    quality_is("version-two", false, kHigh);
+}
+
 TEST(OidnDenoiser, WhatIsNoNumberIsThePixelOfBefore) {
     const NoisyView image = noisy_view(9, 7);
     const ColorPlanes good = denoised(fake("good"), image),
