@@ -6,12 +6,14 @@
 
 namespace covtrace {
 
-/// Ray masks: a bit for each kind of ray, for `intersect`, and two for `occluded`, which sees no
-/// interfaces, and surfaces with alpha where they are opaque.
+/// Ray masks: a bit for each kind of ray, for `intersect`, two for `occluded`, which sees no
+/// interfaces, and surfaces with alpha where they are opaque, and two for what is behind panes: for
+/// `blocked`, all that is solid but panes, and for `intersect_behind_panes`, all but panes.
 constexpr unsigned ray_mask(RayKind kind) {
     return set_of(kind);
 }
-inline constexpr unsigned kSolidMask = 0x80, kAlphaMask = 0x100, kEveryMask = 0x1ff;
+inline constexpr unsigned kSolidMask = 0x80, kAlphaMask = 0x100, kBlockingMask = 0x200,
+                          kBehindPanesMask = 0x400, kEveryMask = 0x7ff;
 
 /// A committed geometry that refers to `shape`, which must stay where it is; null where the shape
 /// has no primitives. `mask`: the rays that see it, of the masks above.

@@ -194,15 +194,27 @@ void Geometry::Impl::fill_found(const EmbreeHit& found, const Ray& ray, SurfaceH
 }
 
 bool Geometry::occluded(const Ray& ray) const {
-    if (!impl_->can_follow(ray)) return false;
+    return impl_->meets_any(ray, kSolidMask);
+}
+
+bool Geometry::blocked(const Ray& ray) const {
+    return impl_->meets_any(ray, kBlockingMask);
+}
+
+bool Geometry::intersect_behind_panes(const Ray& ray, SurfaceHit& hit) const {
+    return impl_->nearest_opaque(ray, kBehindPanesMask, hit);
+}
+
+bool Geometry::Impl::meets_any(const Ray& ray, unsigned mask) const {
+    if (!can_follow(ray)) return false;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay query;
-    set_ray(query, ray, impl_->clock, kSolidMask);
-    rtcOccluded1(impl_->top.scene.get(), &context, &query);
+    set_ray(query, ray, clock, mask);
+    rtcOccluded1(top.scene.get(), &context, &query);
     if (query.tfar < 0) return true;
     SurfaceHit hit;
-    return impl_->any_alpha && impl_->nearest_opaque(ray, kAlphaMask, hit);
+    return any_alpha && nearest_opaque(ray, kAlphaMask, hit);
 }
 
 Vec3 Geometry::offset_origin(const SurfaceHit& hit, Vec3 direction) {
@@ -243,6 +255,10 @@ WorldTriangle Geometry::world_triangle(uint32_t shape, uint32_t triangle, float 
 const std::string& Geometry::isa() const {
     return impl_->device.isa();
 }
+bool Geometry::has_panes() const {
+    return impl_->any_pane;
+}
+
 bool Geometry::has_interfaces() const {
     return impl_->any_interface;
 }

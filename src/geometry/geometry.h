@@ -21,6 +21,7 @@ struct PlacedShape {
     bool flip_normal = false;  ///< reverse orientation xor mirrored transform
     bool is_instanced = false;
     bool lets_light_pass = false;  ///< whether it is an emitter that rays pass
+    bool is_pane = false;          ///< pane.h
 };
 
 /// Corners of a triangle or of half a patch in world space at some time.
@@ -72,11 +73,16 @@ class Geometry {
     /// Whether any surface that shadow rays see, but for interfaces, lies in (0, ray.t_max),
     /// whatever the ray's kind. Thread-safe.
     bool occluded(const Ray& ray) const;
-    /// Do for many rays what `intersect`, `intersect_seen` and `occluded` do for one, in less time.
-    /// Each ray gets the same bits as from those, whichever others are with it.
+    /// Whether anything that `occluded` tells of, but for panes, lies in (0, ray.t_max).
+    bool blocked(const Ray& ray) const;
+    /// Finds the nearest hit in (0, ray.t_max) of all shapes but panes, whatever the ray's kind.
+    bool intersect_behind_panes(const Ray& ray, SurfaceHit& hit) const;
+    /// Do for many rays what `intersect`, `intersect_seen`, `occluded` and `blocked` do for one, in
+    /// less time. Each ray gets the same bits as from those, whichever others are with it.
     void intersect(std::span<HitQuery> queries) const;
     void intersect_seen(std::span<HitQuery> queries) const;
     void occluded(std::span<OcclusionQuery> queries) const;
+    void blocked(std::span<OcclusionQuery> queries) const;
     /// `origin` moved off the surface of `hit` to the side of `direction`, so that a ray from there
     /// does not meet it again.
     static Vec3 offset_origin(const SurfaceHit& hit, Vec3 direction);
@@ -94,6 +100,8 @@ class Geometry {
     const std::string& isa() const;
     /// Whether any shape is, or by its mix may be, no surface but a border between media.
     bool has_interfaces() const;
+    /// Whether any shape is a pane.
+    bool has_panes() const;
     /// Whether rays that were scattered differently (kScatteredRays) meet different shapes.
     bool kinds_differ() const;
     /// Whether anything is in the way of shadow rays alone, or of scattered rays alone.

@@ -6,6 +6,7 @@
 #include "geometry/embree_instances.h"
 #include "geometry/embree_shapes.h"
 #include "geometry/placed_scene.h"
+#include "scene/pane.h"
 
 namespace covtrace {
 
@@ -81,7 +82,7 @@ struct Geometry::Impl::Builder {
         const bool flip =
             shape.reverse_orientation != shape.object_to_world.start().swaps_handedness();
         const bool passes = lets_light_pass(scene, shape);
-        g.placed.push_back({shape, flip, is_instanced, passes});
+        g.placed.push_back({shape, flip, is_instanced, passes, is_pane(scene, shape)});
         constexpr RayKinds kSeen = set_of(RayKind::camera) | set_of(RayKind::shadow);
         g.is_in_the_way.push_back(!passes && !has_interface_material(scene, shape) &&
                                   (shape.visible_to & kSeen) != 0);
@@ -116,6 +117,10 @@ struct Geometry::Impl::Builder {
         // Light passes what is unlit, so that rays to lights need not know of it.
         else if (!may_pass && !is_unlit(scene, material) && (mask & ray_mask(RayKind::shadow)) != 0)
             mask |= has_alpha ? kAlphaMask : kSolidMask;
+        if (g.placed[shape].is_pane)
+            g.any_pane = true;
+        else if (mask != 0)
+            mask |= kBehindPanesMask | ((mask & kSolidMask) != 0 ? kBlockingMask : 0);
         g.any_interface = g.any_interface || may_pass;
         g.any_alpha = g.any_alpha || has_alpha;
         GeometryHandle geometry = new_shape_geometry(g.device, g.local[shape], mask);

@@ -55,6 +55,7 @@ struct Geometry::Impl {
     std::vector<bool> is_in_the_way;  ///< whether a shape is a surface for camera or shadow rays
     bool any_alpha = false;
     bool any_interface = false;
+    bool any_pane = false;
     bool kinds_differ = false, shadows_differ = false;
     /// Whether Embree traces rays in packets to the bits of single rays (docs/decisions/0102).
     bool packets_are_exact = false;
@@ -83,9 +84,14 @@ struct Geometry::Impl {
     void fill(const EmbreeHit& found, const Ray& ray, SurfaceHit& hit) const;
     /// The same of the very primitive that was found.
     void fill_found(const EmbreeHit& found, const Ray& ray, SurfaceHit& hit) const;
-    /// Do for a packet of rays at most what `nearest` and `occluded` do for one, apart from alpha.
+    /// Does for a packet of rays at most what `nearest` does for one.
     void find_nearest(std::span<HitQuery> packet) const;
-    void find_solid(std::span<OcclusionQuery> packet) const;
+    /// Whether any shape in `mask`, or in kAlphaMask where it is opaque, is in a ray's way.
+    bool meets_any(const Ray& ray, unsigned mask) const;
+    /// Does so for many rays.
+    void meet_any(std::span<OcclusionQuery> queries, unsigned mask) const;
+    /// Does for a packet of rays at most what `meets_any` does for one, apart from alpha.
+    void meet_any_solid(std::span<OcclusionQuery> packet, unsigned mask) const;
     /// Finds the nearest hit of the shapes in `mask` that alpha does not let through.
     bool nearest_opaque(const Ray& ray, unsigned mask, SurfaceHit& hit) const;
 

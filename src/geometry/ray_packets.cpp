@@ -59,13 +59,13 @@ void Geometry::Impl::find_nearest(std::span<HitQuery> packet) const {
     }
 }
 
-void Geometry::Impl::find_solid(std::span<OcclusionQuery> packet) const {
+void Geometry::Impl::meet_any_solid(std::span<OcclusionQuery> packet, unsigned mask) const {
     ActiveLanes active;
     RTCRay8 query;
     for (size_t k = 0; k < packet.size(); ++k) {
         if (!can_follow(*packet[k].ray)) continue;
         active.lane[k] = -1;
-        set_lane(query, k, *packet[k].ray, clock, kSolidMask);
+        set_lane(query, k, *packet[k].ray, clock, mask);
     }
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -100,15 +100,23 @@ void Geometry::intersect_seen(std::span<HitQuery> queries) const {
 }
 
 void Geometry::occluded(std::span<OcclusionQuery> queries) const {
-    if (!impl_->packets_are_exact || queries.size() == 1) {
-        for (OcclusionQuery& q : queries) q.occluded = occluded(*q.ray);
+    impl_->meet_any(queries, kSolidMask);
+}
+
+void Geometry::blocked(std::span<OcclusionQuery> queries) const {
+    impl_->meet_any(queries, kBlockingMask);
+}
+
+void Geometry::Impl::meet_any(std::span<OcclusionQuery> queries, unsigned mask) const {
+    if (!packets_are_exact || queries.size() == 1) {
+        for (OcclusionQuery& q : queries) q.occluded = meets_any(*q.ray, mask);
         return;
     }
-    for_each_packet(queries,
-                    [this](std::span<OcclusionQuery> packet) { impl_->find_solid(packet); });
-    if (impl_->any_alpha)
+    for_each_packet(
+        queries, [this, mask](std::span<OcclusionQuery> packet) { meet_any_solid(packet, mask); });
+    if (any_alpha)
         for (OcclusionQuery& q : queries)
-            if (!q.occluded) q.occluded = occluded(*q.ray);
+            if (!q.occluded) q.occluded = meets_any(*q.ray, mask);
 }
 
 }  // namespace covtrace

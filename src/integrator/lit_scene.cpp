@@ -70,6 +70,7 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
     has_interfaces = geometry.has_interfaces();
     shadows_differ = geometry.shadows_differ();
     kinds_differ = shadows_differ || geometry.kinds_differ() || lights.kinds_differ();
+    samples_through_panes = geometry.has_panes() && !kinds_differ;
     unbounded_distance = 2 * radius_of_media(description, geometry.bounds());
 }
 

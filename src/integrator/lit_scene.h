@@ -40,6 +40,8 @@ struct LitScene {
     /// Whether rays that were scattered differently meet different shapes or find different lights.
     bool kinds_differ = false;
     bool shadows_differ = false;  ///< Geometry::shadows_differ
+    /// Whether light is sampled through panes: where there are any, and all rays meet the same.
+    bool samples_through_panes = false;
     /// Length of a ray's way through a medium without an end, in scene units: twice the radius of
     /// the scene's bounds, as far away as pbrt-v4 puts its infinite lights; for a camera in the
     /// medium, the radius of a sphere that holds camera and lights as well.

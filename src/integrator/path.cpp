@@ -52,22 +52,26 @@ bool PathTracer::meet(bool found) {
     if (sharp_so_far_ && is_unseen_back(shape, hit, ray_.direction)) return pass(hit, shape);
     const MaterialId material =
         scene_.materials.at(shape.description.material, hit, scene_.textures);
-    // Evaluate the BSDF, with textures filtered as in pbrt at 64 samples per pixel and more,
-    // wherever the path has been: over an eighth of the pixel's width at the straight distance from
-    // the eye, so that the filter of the texture adds next to nothing to that of the pixel
-    const Vec3 from_eye = hit.position - camera_origin_;
-    const float away = length(from_eye);
-    const Lobes lobes =
-        scene_.description.regularizes && !sharp_so_far_ ? Lobes::regularized : Lobes::as_given;
-    Bsdf bsdf = away > 0 ? scene_.materials.bsdf(material, hit, scene_.textures, from_eye / away,
-                                                 scene_.camera.half_pixel(away) / 4, lobes)
-                         : scene_.materials.bsdf(material, hit, scene_.textures, {}, 0, lobes);
+    Bsdf bsdf = bsdf_at(hit, material);
     if (const auto* unlit = std::get_if<UnlitBsdf>(&bsdf)) {
         if (is_seen(*unlit)) return see_unlit(*unlit, material);
     } else if (!std::holds_alternative<InterfaceBsdf>(bsdf)) {
         return meet_surface(hit, shape, material, bsdf);
     }
     return pass(hit, shape);
+}
+
+Bsdf PathTracer::bsdf_at(const SurfaceHit& hit, MaterialId material) const {
+    // Textures are filtered as in pbrt at 64 samples per pixel and more, wherever the path has
+    // been: over an eighth of the pixel's width at the straight distance from the eye, so that the
+    // filter of the texture adds next to nothing to that of the pixel
+    const Vec3 from_eye = hit.position - camera_origin_;
+    const float away = length(from_eye);
+    const Lobes lobes =
+        scene_.description.regularizes && !sharp_so_far_ ? Lobes::regularized : Lobes::as_given;
+    if (!(away > 0)) return scene_.materials.bsdf(material, hit, scene_.textures, {}, 0, lobes);
+    return scene_.materials.bsdf(material, hit, scene_.textures, from_eye / away,
+                                 scene_.camera.half_pixel(away) / 4, lobes);
 }
 
 bool PathTracer::pass(const SurfaceHit& hit, const PlacedShape& shape) {
@@ -133,21 +137,20 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, M
     sampler_.set_dimension(static_cast<uint32_t>(depth_) * kPairsPerBounce);
     const auto [u_choice, u_light, u_scatter, u_roulette] = sampler_.next_four_2d();
     // Choose the side that lights are sampled for: the viewer's, or both where light passes through
-    light_normal_ = transmits(bsdf) ? Vec3{} : face_forward(frame.z, wo);
-    guide_ = has_diffuse_lobe(bsdf) && depth_ < max_depth_
-                 ? caustic_guide_.at(hit.position, light_normal_)
-                 : GuideMixture{};
-    const bool finds_lights = !is_specular(bsdf), is_led = finds_lights && light_normal_ != Vec3{};
-    sky_cell_ = is_led && sky_guide_ ? sky_guide_->at(hit.position, light_normal_) : nullptr;
-    lamp_factors_ =
-        is_led && lamp_guide_ ? lamp_guide_->at(hit.position, light_normal_) : LightTree::Factors{};
-    const bool may_learn = light_normal_ != Vec3{} && has_diffuse_lobe(bsdf);
+    const Vec3 normal = transmits(bsdf) ? Vec3{} : face_forward(frame.z, wo);
+    lit_ = {hit.position, normal};
+    guide_ = has_diffuse_lobe(bsdf) && depth_ < max_depth_ ? caustic_guide_.at(hit.position, normal)
+                                                           : GuideMixture{};
+    const bool finds_lights = !is_specular(bsdf), is_led = finds_lights && normal != Vec3{};
+    if (is_led && sky_guide_) lit_.sky_cell = sky_guide_->at(hit.position, normal);
+    if (is_led && lamp_guide_) lit_.lamp_factors = lamp_guide_->at(hit.position, normal);
+    const bool may_learn = normal != Vec3{} && has_diffuse_lobe(bsdf);
     cell_ = path_guide_ && may_learn && depth_ < max_depth_
-                ? path_guide_->at({hit.position, light_normal_})
+                ? path_guide_->at({hit.position, normal})
                 : nullptr;
     if (vertex) {
         vertex->is_specular = is_specular(bsdf);
-        if (may_learn) vertex->guided_normal = light_normal_;
+        if (may_learn) vertex->guided_normal = normal;
     }
     // Sample direct illumination, then the direction in which the path goes on
     if (finds_lights) add_direct(surface, u_choice.x, u_light, u_roulette.y, vertex);
@@ -217,7 +220,7 @@ void PathTracer::describe_vertex(Vec3 position, Rgb albedo, Vec3 normal) {
         result_.normal = normal;
         result_.depth = travelled_ = distance(camera_origin_, position);
     } else {
-        travelled_ += distance(previous_position_, position);
+        travelled_ += distance(lit_.position, position);
     }
     result_.features = {albedo * (has_wavelengths_colour_ ? colourless_beta_ : beta_), normal,
                         travelled_};

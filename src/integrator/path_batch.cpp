@@ -45,6 +45,18 @@ bool trace_paths(const Geometry& geometry, std::span<PathTracer> paths, const St
         const std::span<OcclusionQuery> to_light(shadows.data(), shadow_count);
         geometry.occluded(to_light);
         for (size_t i = 0; i < shadow_count; ++i) lit[i]->add_sampled_light(to_light[i].occluded);
+        // Look whether nothing but panes hides the others
+        size_t hidden_count = 0;
+        for (size_t i = 0; i < shadow_count; ++i) {
+            const Ray* ray = lit[i]->ray_to_light();
+            if (!ray) continue;
+            lit[hidden_count] = lit[i];
+            shadows[hidden_count++] = {ray};
+        }
+        const std::span<OcclusionQuery> to_hidden(shadows.data(), hidden_count);
+        geometry.blocked(to_hidden);
+        for (size_t i = 0; i < hidden_count; ++i)
+            lit[i]->add_light_through_panes(to_hidden[i].occluded);
     }
     return true;
 }

@@ -18,9 +18,10 @@ void PathTracer::escape() {
     float weight = 1;
     if (specular_) {
         sky.radiance = scene_.lights.environment(ray_.origin, ray_.direction, ray_.kind);
+        if (came_through_panes() && !is_black(sky.radiance)) weight = weight_through_panes();
     } else {
-        sky = scene_.lights.sky(previous_position_, previous_normal_, ray_.direction, sky_cell_,
-                                ray_.kind);
+        sky =
+            scene_.lights.sky(lit_.position, lit_.normal, ray_.direction, lit_.sky_cell, ray_.kind);
         weight = power_heuristic(pdf_, sky.pdf);
         if (sky.pdf > 0 && is_shadowed(kInfinity)) weight = 0;
     }
@@ -39,10 +40,12 @@ void PathTracer::add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex
     // Weight the emission against light sampling, which could not find it by a specular lobe
     float weight = 1;
     if (!specular_) {
-        const float p = scene_.lights.pdf(previous_position_, previous_normal_, ray_.direction, hit,
-                                          lamp_factors_);
+        const float p =
+            scene_.lights.pdf(lit_.position, lit_.normal, ray_.direction, hit, lit_.lamp_factors);
         weight = power_heuristic(pdf_, p);
         if (p > 0 && is_shadowed(distance(ray_begin_, hit.position))) weight = 0;
+    } else if (came_through_panes()) {
+        weight = weight_through_panes();
     }
     const Rgb contribution = beta_ * light * weight;
     result_.radiance += contribution;
@@ -64,8 +67,8 @@ void PathTracer::add_direct(const Surface& surface, float u_select, Vec2 u, floa
     const SurfaceHit& hit = surface.hit;
     // Sample a light
     const auto light = scene_.lights.finish_draw(
-        hit.position, light_normal_, hit.time, u_select,
-        draws_ahead_ ? light_draw_ : Lights::Draw{u, {}, 0}, sky_cell_, lamp_factors_);
+        hit.position, lit_.normal, hit.time, u_select,
+        draws_ahead_ ? light_draw_ : Lights::Draw{u, {}, 0}, lit_.sky_cell, lit_.lamp_factors);
     if (!light || is_black(light->radiance) || !(light->pdf > 0)) return;
     // Evaluate the BSDF for its direction
     const Vec3 wi_local = surface.frame.to_local(light->wi);
@@ -97,10 +100,15 @@ bool PathTracer::keep_light(LightSample light, const BsdfValue& value, Ray shado
         shadow.direction = to_light / d;
         shadow.t_max = d * (1 - 1e-4f);
     }
-    const float weight = light.is_delta ? 1.0f : power_heuristic(light.pdf, value.pdf);
-    sampled_light_ = {
-        shadow, light.distance, medium, beta_ * value.f * light.radiance, weight / light.pdf,
-        vertex, 1 / light.pdf};
+    sampled_light_ = {shadow,
+                      light.distance,
+                      medium,
+                      beta_ * value.f,
+                      light.radiance,
+                      light.pdf,
+                      light.is_delta ? 0.0f : value.pdf,
+                      lit_,
+                      vertex};
     if (vertex) {
         vertex->light = light;
         vertex->direct_event = {light.wi, {}};
@@ -109,17 +117,20 @@ bool PathTracer::keep_light(LightSample light, const BsdfValue& value, Ray shado
 }
 
 void PathTracer::add_sampled_light(bool occluded) {
+    ++result_.rays.shadow;
+    // No way through panes leads to a light without extent
+    if (occluded && samples_through_panes_ && sampled_light_->path_pdf > 0) return;
     const SampledLight light = *sampled_light_;
     sampled_light_.reset();
-    ++result_.rays.shadow;
     if (occluded) return;
     const Rgb visible =
         visibility(scene_, light.ray, light.distance, light.medium, result_.rays.shadow);
     if (is_black(visible)) return;
+    // Where no path of the ray's kind gets from here to the light it is found by sampling alone
     const bool is_found_alone =
         scene_.shadows_differ && is_met(scene_, light.ray, result_.rays.shadow);
-    const Rgb contribution =
-        light.light * visible * (is_found_alone ? light.weight_alone : light.weight);
+    const float weight = is_found_alone ? 1.0f : power_heuristic(light.pdf, light.path_pdf);
+    const Rgb contribution = light.scattered * light.radiance * visible * (weight / light.pdf);
     result_.radiance += contribution;
     if (light.vertex) light.vertex->direct = luminance(contribution);
 }

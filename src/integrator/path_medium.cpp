@@ -39,9 +39,7 @@ bool PathTracer::scatter_in_medium(float distance) {
     sampler_.set_dimension(static_cast<uint32_t>(depth_) * kPairsPerBounce);
     const auto [u_choice, u_light, u_phase, u_roulette] = sampler_.next_four_2d();
     // Sample direct illumination
-    light_normal_ = {};
-    sky_cell_ = nullptr;
-    lamp_factors_ = {};
+    lit_ = {place.position, {}};
     Ray shadow;
     shadow.origin = place.position;
     shadow.time = place.time;
@@ -59,11 +57,10 @@ bool PathTracer::scatter_in_medium(float distance) {
         vertex->scatters = true;
         vertex->next_event = {wi, {}};
     }
-    previous_position_ = place.position;
-    previous_normal_ = {};
     ray_.origin = ray_begin_ = place.position;
     ray_.direction = wi;
     ray_.kind = RayKind::volume;
+    leave();
     return survives(u_roulette.x);
 }
 

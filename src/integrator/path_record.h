@@ -67,6 +67,10 @@ struct PathRecord {
     std::array<PathVertex, kCapacity> vertices;
     int count = 0;
     Ray camera_ray;
+    /// Whether light sampled through panes counts as `direct`, though the record does not tell what
+    /// the panes did to it. Else the path finds such light by itself alone. Stays what it is set
+    /// to.
+    bool holds_light_through_panes = false;
     float escaped = 0;            ///< luminance from the infinite lights where the path left
     Vec3 escape_direction;        ///< direction in which the path left the scene, unit
     float escape_glow = 0;        ///< luminance from the media behind the last vertex

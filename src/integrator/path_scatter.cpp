@@ -160,12 +160,16 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, float u_k
     }
     // Move the ray to the surface, into the medium beyond
     const SurfaceHit& hit = surface.hit;
-    previous_position_ = hit.position;
-    previous_normal_ = light_normal_;
     medium_ = medium_beyond(surface.shape, hit, wi, medium_);
     ray_.origin = ray_begin_ = Geometry::offset_origin(hit, wi);
     ray_.direction = wi;
     ray_.t_max = kInfinity;
+    if (!specular_)
+        leave();
+    else if (departure_.panes >= 0 && surface.shape.is_pane && is_transmission(s->lobe))
+        leave_through_pane(hit.position, s->pdf);
+    else
+        departure_.panes = -1;
     return true;
 }
 

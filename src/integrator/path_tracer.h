@@ -4,32 +4,18 @@
 #include <optional>
 
 #include "colour/sampled_wavelength.h"
+#include "integrator/panes.h"
 #include "integrator/path.h"
+#include "integrator/power_heuristic.h"
 #include "integrator/visibility.h"
 #include "shading/normal_map.h"
 
 namespace covtrace {
 
-/// Weight of a sample of density a whose direction another strategy samples with density b: the
-/// power heuristic with exponent 2 (Veach 1997, "Robust Monte Carlo methods for light transport
-/// simulation", section 9.2.3). An infinite density outweighs any other.
-inline float power_heuristic(float a, float b) {
-    if (std::isinf(a)) return 1;
-    if (std::isinf(b)) return 0;
-    // Squares of large densities, as of a lamp far away, would be no floats any more.
-    constexpr float kLargest = 1e18f;
-    if (const float largest = std::max(a, b); largest > kLargest) {
-        a /= largest;
-        b /= largest;
-    }
-    const float a2 = a * a, b2 = b * b;
-    return a2 + b2 > 0 ? a2 / (a2 + b2) : 0;
-}
-
 /// A path in the making. The estimate is  sum over vertices of  beta * (emission + direct light),
 /// beta = product of  f |cos| / pdf  and of the weights of media so far. Lamps of some extent and
-/// skies are found by two strategies whose weights add to one; point lights by sampling alone, and
-/// all light behind specular lobes, and the glow of media, by the path alone.
+/// skies are found by two strategies whose weights add to one, behind panes, too; point lights by
+/// sampling alone, and light behind other specular lobes, and the glow of media, by the path alone.
 class PathTracer {
   public:
     PathTracer(const LitScene& scene, const CausticGuide& guide, const SkyGuide* sky_guide,
@@ -44,7 +30,9 @@ class PathTracer {
           sampler_(sampler),
           max_depth_(max_depth),
           record_(record),
-          draws_ahead_(scene.lights.draws_ahead() && (!sky_guide || sky_guide->is_empty())) {
+          draws_ahead_(scene.lights.draws_ahead() && (!sky_guide || sky_guide->is_empty())),
+          samples_through_panes_(scene.samples_through_panes &&
+                                 (!record || record->holds_light_through_panes)) {
         camera_origin_ = ray.origin;
         medium_ = scene.description.camera.medium;
         if (record_) {
@@ -64,8 +52,12 @@ class PathTracer {
     bool meet(bool found);
     /// The ray to the light sampled at the current vertex; null where none was.
     const Ray* ray_to_light() const { return sampled_light_ ? &sampled_light_->ray : nullptr; }
-    /// Adds the sampled light, unless something solid is in its way.
+    /// Adds the sampled light, unless something solid is in its way. Where that may be panes alone,
+    /// its ray stays and is to be looked at again.
     void add_sampled_light(bool occluded);
+    /// Adds the light that comes from the direction of the sampled light through panes, unless
+    /// something else is in the way of that one.
+    void add_light_through_panes(bool blocked);
 
     const PathResult& result() const { return result_; }
 
@@ -91,12 +83,23 @@ class PathTracer {
         Ray ray;  ///< towards the light, up to just before it
         float distance = kInfinity;
         MediumId medium = -1;  ///< around the origin of the ray
-        Rgb light;             ///< the light times what the path scatters of it
-        float weight = 1;      ///< weight of the sample
+        Rgb scattered;         ///< what the path scatters of light from there
+        Rgb radiance;          ///< the light
+        float pdf = 0;         ///< density of the sample
+        /// Density with which the path would have found its direction; 0 for delta lights.
+        float path_pdf = 0;
+        LitPlace place;
         PathVertex* vertex = nullptr;
-        /// Weight where no path of the ray's kind gets from here to the light, so that it is found
-        /// by sampling alone.
-        float weight_alone = 1;
+    };
+
+    /// The last place where light was sampled, while the path has since met panes alone and gone
+    /// through them.
+    struct Departure {
+        LitPlace place;
+        Vec3 origin, direction;  ///< of the ray that left it
+        float pdf = 0;           ///< density of its direction, and of going through the panes
+        float to_pane = 0;       ///< distance of the first pane
+        int panes = 0;           ///< that the path went through; -1: it met something else
     };
 
     /// A kind of ray, and a factor on what is scattered that leaves the part of that kind alone.
@@ -149,6 +152,19 @@ class PathTracer {
     /// Whether shadow rays alone meet something between the last vertex and light that the path
     /// has found `distance` away: that light counts where it can be sampled (docs/decisions/0112).
     bool is_shadowed(float distance);
+
+    // ---- path_panes.cpp
+    /// Whether the path has come through panes, and met nothing else, from a place where light was
+    /// sampled.
+    bool came_through_panes() const { return departure_.panes > 0; }
+    /// Notes that the path leaves the last vertex along its ray, or a pane that it goes through
+    /// with the probability `pdf`.
+    void leave();
+    void leave_through_pane(Vec3 position, float pdf);
+    /// Weight of light that the path has found through panes.
+    float weight_through_panes();
+    /// The BSDF where a ray hits a material, its textures filtered.
+    Bsdf bsdf_at(const SurfaceHit& hit, MaterialId material) const;
 
     // ---- path_scatter.cpp: where the path goes on
     /// Density of sample_direction to return a direction by other than specular lobes, given the
@@ -210,15 +226,13 @@ class PathTracer {
     Vec3 camera_origin_;  // start of the path
     GuideMixture guide_;  // guide to caustics at the current vertex
     const PathGuideCell* cell_ = nullptr;  // where light comes from there; null: not known
+    Departure departure_{{}, {}, {}, 0, 0, -1};
     // Light draw of the vertex to come, begun before that vertex is known.
     Lights::Draw light_draw_;
     const bool draws_ahead_;  // not where most samples follow the guide to the sky
-    // The parts of the sky that are seen from the last vertex; null: not known.
-    const SkyCell* sky_cell_ = nullptr;
-    LightTree::Factors lamp_factors_;  // factors for the choice among lamps at the last vertex
-    Vec3 light_normal_;  // normal that lights are sampled for at the current vertex; 0: both sides
-    // Place and light normal of the last vertex, for the weights; where its ray began.
-    Vec3 previous_position_, previous_normal_, ray_begin_;
+    const bool samples_through_panes_;
+    LitPlace lit_;    // the last vertex
+    Vec3 ray_begin_;  // where its ray began
 };
 
 }  // namespace covtrace

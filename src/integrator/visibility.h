@@ -26,6 +26,12 @@ Rgb transmittance(const LitScene& scene, MediumId medium, float distance);
 /// next medium, other surfaces take all of it. The rays that are traced are added to `rays`.
 Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, uint64_t& rays);
 
+/// Whether anything in (0, ray.t_max) hides a sampled light: light that comes through panes is
+/// found where it is sampled through them.
+inline bool is_hidden(const LitScene& scene, const Ray& ray) {
+    return scene.samples_through_panes ? scene.geometry.blocked(ray) : scene.geometry.occluded(ray);
+}
+
 /// Whether a ray of its kind meets a surface in (0, ray.t_max); interfaces and emitters that let
 /// light pass are none. The rays that are traced are added to `rays`.
 bool is_met(const LitScene& scene, Ray ray, uint64_t& rays);

@@ -9,6 +9,8 @@
 #include "core/warp.h"
 #include "integrator/guides/caustic_photons.h"
 #include "integrator/lit_scene.h"
+#include "integrator/panes.h"
+#include "integrator/power_heuristic.h"
 #include "integrator/visibility.h"
 
 namespace covtrace {
@@ -119,6 +121,7 @@ class Pilot {
         Frame frame = shading_frame(hit);
         Vec3 towards_light = light->wi;
         auto source = uint64_t(light->light);
+        float through_panes = scene_.samples_through_panes ? 1 : 0;  // probability; 0: other ways
         for (int i = 0; i < kChainVertices; ++i) {
             const float u_lobe = rng_.next_float();
             const auto s = sample(bsdf, frame.to_local(towards_light), u_lobe, rng_.next_2d());
@@ -126,6 +129,8 @@ class Pilot {
             weight *= s->weight;
             const bool is_reflected = (frame.to_local(towards_light).z > 0) == (s->wi.z > 0);
             source = hash_combine(source, hit.shape, hit.instance, is_reflected);
+            const bool is_pane = scene_.geometry.shapes()[hit.shape].is_pane;
+            through_panes *= is_pane && is_transmission(s->lobe) ? s->pdf : 0;
             follow(ray, hit, normalize(frame.to_world(s->wi)));
             const std::optional<float> distance = next_surface(ray, hit, bsdf);
             if (!distance) return;
@@ -133,7 +138,7 @@ class Pilot {
             towards_light = -ray.direction;
             if (has_diffuse_lobe(bsdf)) {
                 const float y = luminance(weight);
-                if (std::isfinite(y) && y > 0)
+                if (std::isfinite(y) && y > 0 && !is_sampled(hit, towards_light, through_panes))
                     photons_.push_back({Geometry::offset_origin(hit, towards_light),
                                         face_forward(hit.ns, towards_light), hit.time,
                                         towards_light, travelled, y, source});
@@ -141,6 +146,19 @@ class Pilot {
             }
             frame = shading_frame(hit);
         }
+    }
+
+    /// Whether a photon that came through panes with a probability is to be left out: such light
+    /// is sampled, and it is kept with the weight that is left to paths.
+    bool is_sampled(const SurfaceHit& hit, Vec3 towards_light, float probability) {
+        if (!(probability > 0)) return false;
+        const Vec3 normal = face_forward(hit.ns, towards_light);
+        const Ray ray{Geometry::offset_origin(hit, towards_light), towards_light, hit.time,
+                      kInfinity, RayKind::any};
+        uint64_t rays = 0;
+        const float sampled = density_through_panes(scene_, {hit.position, normal}, ray, 0, rays);
+        const float own = cosine_hemisphere_pdf(dot(normal, towards_light)) * probability;
+        return rng_.next_float() < power_heuristic(sampled, own);
     }
 
     const LitScene& scene_;

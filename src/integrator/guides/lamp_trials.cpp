@@ -3,6 +3,7 @@
 
 #include "integrator/guides/lamp_guide.h"
 #include "integrator/guides/training_places.h"
+#include "integrator/visibility.h"
 
 namespace covtrace {
 
@@ -49,7 +50,7 @@ class LitPlace {
         if (!(distance > 0)) return;
         ray.direction = to_light / distance;
         ray.t_max = distance * (1 - 1e-4f);
-        if (scene_.geometry.occluded(ray)) return;
+        if (is_hidden(scene_, ray)) return;
         t.light = light.light;
         t.light_found = brought;
         t.tried_pdf = light.pdf;

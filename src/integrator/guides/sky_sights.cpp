@@ -6,6 +6,7 @@
 #include "core/warp.h"
 #include "integrator/guides/sky_guide.h"
 #include "integrator/guides/training_places.h"
+#include "integrator/visibility.h"
 
 namespace covtrace {
 
@@ -43,7 +44,7 @@ class Place {
         ray.origin = Geometry::offset_origin(hit_, *w);
         ray.direction = *w;
         ray.time = hit_.time;
-        if (scene_.geometry.occluded(ray)) return;
+        if (is_hidden(scene_, ray)) return;
         SkySight sight{{hit_.position, normal_}, *w, light, 0, sky.pdf, 0};
         sight.tried_pdf = (1 - by_guide_) / 2 * (sky.pdf + cosine_hemisphere_pdf(cosine));
         if (by_guide_ > 0) {

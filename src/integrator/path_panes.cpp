@@ -1,0 +1,127 @@
+/// The ways through panes: by sampled light, and by the path itself.
+#include <cmath>
+
+#include "integrator/panes.h"
+#include "integrator/path_tracer.h"
+
+namespace covtrace {
+
+namespace {
+
+/// Goes through a pane: empty where all is reflected.
+std::optional<BsdfSample> refract(const Bsdf& pane, Vec3 wo) {
+    constexpr float kLast = 0x1.fffffep-1f;  // reflection has the numbers below its share
+    const std::optional<BsdfSample> s = sample(pane, wo, kLast, {});
+    return s && is_transmission(s->lobe) ? s : std::nullopt;
+}
+
+/// Whether all light passes the surface at a hit unchanged.
+bool passes(const LitScene& scene, const SurfaceHit& hit) {
+    const PlacedShape& shape = scene.geometry.shapes()[hit.shape];
+    return shape.lets_light_pass || scene.materials.lets_light_pass(scene.materials.at(
+                                        shape.description.material, hit, scene.textures));
+}
+
+}  // namespace
+
+float density_through_panes(const LitScene& scene, const LitPlace& place, Ray ray, float to_pane,
+                            uint64_t& rays) {
+    ray.t_max = kInfinity;
+    float density = 0, travelled = 0;
+    SurfaceHit hit;
+    for (int i = 0; i < kMostInterfaces; ++i) {
+        ++rays;
+        if (!scene.geometry.intersect_behind_panes(ray, hit)) {
+            if (!scene.lights.has_environment()) return density;
+            const Lights::Sky sky =
+                scene.lights.sky(place.position, place.normal, ray.direction, place.sky_cell);
+            return is_black(sky.radiance) ? density : density + sky.pdf;
+        }
+        travelled += hit.t;
+        if (travelled > to_pane && !is_black(scene.lights.emitted(hit, -ray.direction)))
+            density += scene.lights.pdf(place.position, place.normal, ray.direction, hit,
+                                        place.lamp_factors);
+        if (!passes(scene, hit)) return density;
+        ray.origin = Geometry::offset_origin(hit, ray.direction);
+    }
+    return density;
+}
+
+void PathTracer::leave() {
+    departure_ = {lit_, ray_.origin, ray_.direction, pdf_, 0, samples_through_panes_ ? 0 : -1};
+}
+
+void PathTracer::leave_through_pane(Vec3 position, float pdf) {
+    if (departure_.panes++ == 0) departure_.to_pane = distance(departure_.origin, position);
+    departure_.pdf *= pdf;
+}
+
+float PathTracer::weight_through_panes() {
+    Ray ray;
+    ray.origin = departure_.origin;
+    ray.direction = departure_.direction;
+    ray.time = ray_.time;
+    return power_heuristic(departure_.pdf,
+                           density_through_panes(scene_, departure_.place, ray, departure_.to_pane,
+                                                 result_.rays.shadow));
+}
+
+void PathTracer::add_light_through_panes(bool blocked) {
+    const SampledLight light = *sampled_light_;
+    sampled_light_.reset();
+    ++result_.rays.shadow;
+    if (blocked) return;
+    Ray ray = light.ray;
+    ray.t_max = kInfinity;
+    MediumId medium = light.medium;
+    Rgb carried = light.scattered;
+    float path_pdf = light.path_pdf;
+    int panes = 0;
+    float to_pane = 0;  // distance of the first one
+    float pdf = -1;     // density of the sample, looked for where there is light
+    const auto add = [&](Rgb radiance) {
+        if (panes == 0 || is_black(radiance)) return;
+        if (pdf < 0)
+            pdf =
+                density_through_panes(scene_, light.place, light.ray, to_pane, result_.rays.shadow);
+        if (!(pdf > 0)) return;
+        const Rgb contribution = carried * radiance * (power_heuristic(pdf, path_pdf) / pdf);
+        result_.radiance += contribution;
+        if (light.vertex) light.vertex->direct += luminance(contribution);
+    };
+    SurfaceHit hit;
+    for (int i = 0; i < kMostInterfaces && !is_black(carried); ++i) {
+        // Find what the way meets, and its light
+        ++result_.rays.shadow;
+        const bool found = scene_.geometry.intersect(ray, hit);
+        carried *= transmittance(scene_, medium, found ? hit.t : kInfinity);
+        if (!found) {
+            if (scene_.lights.has_environment())
+                add(scene_.lights.environment(ray.origin, ray.direction, ray.kind));
+            return;
+        }
+        add(scene_.lights.emitted(hit, -ray.direction));
+        // Go through it if it is a pane, or if it is not in the way
+        const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
+        if (shape.is_pane) {
+            if (panes == 0) to_pane = distance(light.ray.origin, hit.position);
+            if (depth_ + panes++ == max_depth_) return;
+            const MaterialId material = shape.description.material;
+            const Frame frame = frame_at(hit, shape, material);
+            const auto s = refract(bsdf_at(hit, material), frame.to_local(-ray.direction));
+            if (!s) return;
+            carried *= s->weight * s->pdf;
+            path_pdf *= s->pdf;
+            ray.direction = normalize(frame.to_world(s->wi));
+            ray.kind = RayKind::transmission;
+        } else if (!shape.lets_light_pass &&
+                   !scene_.materials.lets_light_pass(
+                       scene_.materials.at(shape.description.material, hit, scene_.textures))) {
+            return;
+        }
+        medium = medium_beyond(shape, hit, ray.direction, medium);
+        ray.origin = Geometry::offset_origin(hit, ray.direction);
+    }
+}
+
+}  // namespace covtrace

@@ -1,0 +1,139 @@
+// Light that is sampled through panes: the same image as by paths alone, with less noise.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "../render/fixtures.h"
+#include "core/parallel.h"
+#include "core/rng.h"
+#include "integrator/path.h"
+
+namespace covtrace {
+namespace {
+
+struct PaneScene {
+    const char* name;
+    const char* world;
+    int max_depth = 6;
+    double most_noise = 1;  ///< variance of a path over that without sampling through panes
+};
+void PrintTo(const PaneScene& s, std::ostream* out) {
+    *out << s.name;
+}
+
+/// A floor, looked at from above, and a wall beside it.
+const char* const kRoom = R"(
+Material "diffuse" "rgb reflectance" [ 0.7 0.6 0.5 ]
+Shape "trianglemesh" "point3 P" [ -4 0 -4  4 0 -4  4 0 4  -4 0 4 ] "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ -4 0 2  4 0 2  4 5 2  -4 5 2 ] "integer indices" [ 0 1 2 0 2 3 ]
+)";
+/// A slab of glass over the floor, 0.2 thick.
+#define SLAB \
+    R"(Material "dielectric" "float eta" 1.5
+Shape "trianglemesh" "point3 P" [ -5 2 -5  -5 2 5  5 2 5  5 2 -5 ] "integer indices" [ 0 2 1 0 3 2 ]
+Shape "trianglemesh" "point3 P" [ -5 2.2 -5  -5 2.2 5  5 2.2 5  5 2.2 -5 ] "integer indices" [ 0 1 2 0 2 3 ]
+)"
+#define LAMP \
+    R"(AttributeBegin
+AreaLightSource "diffuse" "rgb L" [ 30 30 25 ]
+Translate 0.4 3.5 0.3
+Shape "sphere" "float radius" 0.3
+AttributeEnd
+)"
+
+const PaneScene kPanes[] = {
+    {"slab", LAMP SLAB, 6, 0.2},
+    {"slab_at_the_last_bounce", LAMP SLAB, 3, 0.2},
+    {"slab_beyond_the_last_bounce", LAMP SLAB, 2},
+    {"slab_in_the_sky", R"(LightSource "infinite" "rgb L" [ 1 1.2 1.5 ])" SLAB},
+    {"thin", LAMP R"(Material "thindielectric" "float eta" 1.4
+Shape "trianglemesh" "point3 P" [ -5 2 -5  -5 2 5  5 2 5  5 2 -5 ] "integer indices" [ 0 2 1 0 3 2 ]
+)",
+     6, 0.2},
+    {"ball", LAMP R"(Translate 0.4 1.4 0.2
+Material "dielectric" "float eta" 1.5
+Shape "sphere" "float radius" 0.8
+)"},
+    {"bulb", R"(Translate 0.4 2.8 0.2
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [ 60 50 40 ]
+Shape "sphere" "float radius" 0.15
+AttributeEnd
+Material "dielectric" "float eta" 1.5
+Shape "sphere" "float radius" 0.4
+ReverseOrientation
+Shape "sphere" "float radius" 0.37
+)",
+     8, 0.2},
+    {"coloured_glass_and_lamps_that_let_light_pass", R"(
+LightSource "infinite" "rgb L" [ 0.3 0.4 0.5 ]
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [ 5 4 3 ] "bool letslightpass" true
+Shape "trianglemesh" "point3 P" [ -1 3 -1  1 3 -1  1 3 1  -1 3 1 ] "integer indices" [ 0 1 2 0 2 3 ]
+AttributeEnd
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [ 5 4 3 ] "bool letslightpass" true
+Shape "trianglemesh" "point3 P" [ -1 1 -1  1 1 -1  1 1 1  -1 1 1 ] "integer indices" [ 0 1 2 0 2 3 ]
+AttributeEnd
+MakeNamedMedium "ink" "string type" "homogeneous" "rgb sigma_a" [ 3 1 0.2 ] "rgb sigma_s" [ 0.5 0.5 0.5 ]
+AttributeBegin
+MediumInterface "ink" ""
+)" SLAB "AttributeEnd\n" LAMP},
+};
+
+class Panes : public testing::TestWithParam<PaneScene> {};
+
+/// Mean and variance of the luminance of paths.
+struct Moments {
+    double count = 0, sum = 0, squares = 0;
+    double mean() const { return sum / count; }
+    double variance() const { return squares / count - mean() * mean(); }
+};
+
+/// Traces paths that see the room. Those that are recorded do not sample through panes.
+Moments trace_many(const RenderScene& scene, bool recorded) {
+    constexpr int64_t kChunks = 64, kPaths = 4096;
+    std::vector<Moments> parts(kChunks);
+    parallel_for(kChunks, [&](int64_t chunk) {
+        PathRecord record;
+        Moments& m = parts[size_t(chunk)];
+        for (int64_t i = 0; i < kPaths; ++i) {
+            Rng rng(uint64_t(chunk * kPaths + i) + (recorded ? uint64_t(1) << 40 : 0));
+            const Vec2 place = rng.next_2d();
+            const Ray ray = scene.camera.generate_ray(place * 8, rng.next_2d(), rng.next_float());
+            const Sampler sampler(recorded ? 5 : 6, int(chunk), int(i), 0);
+            const double y = luminance(trace_path(scene, ray, sampler, scene.description.max_depth,
+                                                  recorded ? &record : nullptr)
+                                           .radiance);
+            m.count += 1, m.sum += y, m.squares += y * y;
+        }
+    });
+    Moments all;
+    for (const Moments& m : parts) all.count += m.count, all.sum += m.sum, all.squares += m.squares;
+    return all;
+}
+
+/// Eight scenes at 4.5 standard errors: false alarms with a probability of 5e-5 together, were the
+/// means normal; 262144 paths make them nearly so.
+TEST_P(Panes, SampledLightLeavesTheImageAsItIs) {
+    const PaneScene& p = GetParam();
+    const std::string text = "Integrator \"volpath\" \"integer maxdepth\" " +
+                             std::to_string(p.max_depth) + R"(
+Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+LookAt 0 1.2 -3.5  0 0.2 0  0 1 0
+Camera "perspective" "float fov" 60
+WorldBegin
+)" + kRoom + p.world;
+    const RenderScene scene(read_pbrt_string(text, "test", "."), {}, kNoTextureLimit, Guides::none);
+    ASSERT_TRUE(scene.samples_through_panes);
+    const Moments by_paths = trace_many(scene, true), sampled = trace_many(scene, false);
+    const double error = std::sqrt((by_paths.variance() + sampled.variance()) / sampled.count);
+    EXPECT_NEAR(by_paths.mean(), sampled.mean(), 4.5 * error + 1e-6 * by_paths.mean());
+    EXPECT_LE(sampled.variance(), p.most_noise * by_paths.variance() * 1.05);
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, Panes, testing::ValuesIn(kPanes),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace covtrace
