@@ -48,7 +48,7 @@ float density_through_panes(const LitScene& scene, const LitPlace& place, Ray ra
 }
 
 void PathTracer::leave() {
-    departure_ = {lit_, ray_.origin, ray_.direction, pdf_, 0, samples_through_panes_ ? 0 : -1};
+    if (samples_through_panes_) departure_ = {lit_, ray_.origin, ray_.direction, pdf_, 0, 0};
 }
 
 void PathTracer::leave_through_pane(Vec3 position, float pdf) {
