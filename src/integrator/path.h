@@ -50,6 +50,10 @@ struct PathResult {
     PathFeatures features;
     RayCounts rays;
     uint32_t vertices = 0;
+    /// What sampling light through panes did: the second moment of the path's luminance that it
+    /// took away, and the rays of `rays.shadow` that it cost.
+    float saved_by_panes = 0;
+    uint64_t rays_through_panes = 0;
 };
 
 /// Traces one path and returns an unbiased estimate of the radiance along `ray`, whatever the

@@ -69,8 +69,12 @@ float PathTracer::weight_through_panes() {
 void PathTracer::add_light_through_panes(bool blocked) {
     const SampledLight light = *sampled_light_;
     sampled_light_.reset();
-    ++result_.rays.shadow;
-    if (blocked) return;
+    const uint64_t rays_before = result_.rays.shadow++;
+    if (!blocked) follow_through_panes(light);
+    result_.rays_through_panes += result_.rays.shadow - rays_before;
+}
+
+void PathTracer::follow_through_panes(const SampledLight& light) {
     Ray ray = light.ray;
     ray.t_max = kInfinity;
     MediumId medium = light.medium;
@@ -85,7 +89,11 @@ void PathTracer::add_light_through_panes(bool blocked) {
             pdf =
                 density_through_panes(scene_, light.place, light.ray, to_pane, result_.rays.shadow);
         if (!(pdf > 0)) return;
-        const Rgb contribution = carried * radiance * (power_heuristic(pdf, path_pdf) / pdf);
+        const Rgb found = carried * radiance;
+        const Rgb contribution = found * (power_heuristic(pdf, path_pdf) / pdf);
+        // The path alone would find it with the second moment found^2 / path_pdf, both together
+        // with about found^2 / (path_pdf + pdf); this sample stands for 1 / pdf of them
+        result_.saved_by_panes += sqr(luminance(found)) / (path_pdf * (path_pdf + pdf));
         result_.radiance += contribution;
         if (light.vertex) light.vertex->direct += luminance(contribution);
     };

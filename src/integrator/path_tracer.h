@@ -157,6 +157,8 @@ class PathTracer {
     /// Whether the path has come through panes, and met nothing else, from a place where light was
     /// sampled.
     bool came_through_panes() const { return departure_.panes > 0; }
+    /// Adds the light that is found where the direction of a sampled light leads through panes.
+    void follow_through_panes(const SampledLight& light);
     /// Notes that the path leaves the last vertex along its ray, or a pane that it goes through
     /// with the probability `pdf`.
     void leave();

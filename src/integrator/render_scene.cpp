@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "integrator/guides/pane_trial.h"
 #include "integrator/guides/training_places.h"
 #include "integrator/path.h"
 
@@ -33,13 +34,18 @@ RenderScene::RenderScene(SceneDescription scene_description, const std::string& 
                          size_t texture_bytes, Guides which)
     : LitScene(std::move(scene_description), isa, texture_bytes), guides(which) {
     if (guides == Guides::none || are_paths_too_long(*this)) return;
-    const auto learn = [this](auto& learnt, const char* name, const auto&... others) {
-        using Guide = std::decay_t<decltype(learnt)>;
+    const auto time = [this](const char* name, const auto& work) {
         const auto start = std::chrono::steady_clock::now();
-        learnt = Guide(static_cast<const LitScene&>(*this), others...);
+        work();
         learning_seconds_[name] =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
+    const auto learn = [&](auto& learnt, const char* name, const auto&... others) {
+        using Guide = std::decay_t<decltype(learnt)>;
+        time(name, [&] { learnt = Guide(static_cast<const LitScene&>(*this), others...); });
+    };
+    time("panes", [this] { panes_ = try_panes(*this); });
+    samples_through_panes = panes_.state == GuideState::guides;
     learn(sky_guide, "sky");
     learn(lamp_guide, "lamps");
     learn(guide, "caustics", sky_guide, lamp_guide);
@@ -50,7 +56,8 @@ std::map<std::string, GuideOutcome> RenderScene::guide_outcomes() const {
     std::map<std::string, GuideOutcome> outcomes{{"caustics", guide.outcome()},
                                                  {"sky", sky_guide.outcome()},
                                                  {"lamps", lamp_guide.outcome()},
-                                                 {"paths", path_guide.outcome()}};
+                                                 {"paths", path_guide.outcome()},
+                                                 {"panes", panes_}};
     for (const auto& [name, seconds] : learning_seconds_) outcomes[name].seconds = seconds;
     return outcomes;
 }

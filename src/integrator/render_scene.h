@@ -23,7 +23,8 @@ struct RenderScene : LitScene {
     /// Bytes held, by use: what LitScene lists, and "guide".
     std::map<std::string, size_t> memory() const;
 
-    /// The outcome of each guide: "caustics", "sky", "lamps", "paths".
+    /// The outcome of each guide: "caustics", "sky", "lamps", "paths", and
+    /// "panes": whether light is sampled through them.
     std::map<std::string, GuideOutcome> guide_outcomes() const;
 
     Guides guides;  ///< which guides may lead paths
@@ -33,6 +34,7 @@ struct RenderScene : LitScene {
     PathGuide path_guide;
 
   private:
+    GuideOutcome panes_;
     std::map<std::string, double> learning_seconds_;  ///< by guide
 };
 

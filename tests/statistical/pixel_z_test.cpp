@@ -24,8 +24,8 @@ TEST(PixelZTest, AlarmsAsOftenAsItsAlpha) {
         SCOPED_TRACE(s.name);
         const RenderScene scene(
             read_pbrt_string(scene_text(s.view, std::string(s.world) + kFloor, 4), "test", "."));
-        const Reference reference(render_seeds(scene, 1000, 120, kSpp));
-        const std::vector<Pixels> tests = render_seeds(scene, 1, kSeeds, kSpp);
+        const Reference reference(render_seeds(scene, 3000, 120, kSpp));
+        const std::vector<Pixels> tests = render_seeds(scene, 2001, kSeeds, kSpp);
         size_t testable = 0;
         for (size_t i = 0; i < kPixels; ++i)
             testable += reference.is_testable(i) || reference.is_constant(i);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "integrator/guides/block_brightness.h"
 #include "integrator/guides/training_places.h"
 #include "integrator/path.h"
 
@@ -14,7 +15,6 @@ namespace {
 
 constexpr uint64_t kLessonKey = 0x6c6573736f6eull;  // key of the random numbers, "lesson"
 constexpr int64_t kPathsPerChunk = 64;              // paths that one task traces
-constexpr int kBlocks = 12;                         // blocks of the image along each side
 constexpr double kMostRelative = 20;                // brightness over its block's that counts
 /// Most scattering events of a path: light from further on tells little, and memory is bounded.
 constexpr int kDepth = 16;
@@ -25,11 +25,6 @@ struct Chunk {
     std::vector<uint16_t> blocks;  ///< of each path
     std::vector<float> brightness;
 };
-
-uint16_t block(Vec2 u) {
-    const auto along = [](float v) { return std::min(int(v * kBlocks), kBlocks - 1); };
-    return static_cast<uint16_t>(along(u.y) * kBlocks + along(u.x));
-}
 
 bool is_specular_event(const PathVertex& v) {
     return v.next_event.lobes.count > 0 && is_specular(v.next_event.lobes.lobes[0].kind);
@@ -119,33 +114,27 @@ PathLesson trace_lesson(const LitScene& scene, const CausticGuide& caustics, con
                                                  std::min(scene.description.max_depth, kDepth),
                                                  &record, &sky, &lamps, &guide);
             const float light = luminance(result.radiance - result.in_view);
-            chunk.blocks.push_back(block(path.place));
+            chunk.blocks.push_back(BlockBrightness::block(path.place));
             chunk.brightness.push_back(std::isfinite(light) ? light : 0);
             add(chunk.lesson, record, static_cast<uint32_t>(index));
         }
     });
-    // Brightness of the image, by blocks
-    std::vector<double> sums(kBlocks * kBlocks, 0.0), counts(kBlocks * kBlocks, 0.0);
-    double all = 0;
+    BlockBrightness image;
     for (const Chunk& chunk : chunks)
-        for (size_t i = 0; i < chunk.blocks.size(); ++i) {
-            sums[chunk.blocks[i]] += double(chunk.brightness[i]);
-            counts[chunk.blocks[i]] += 1;
-            all += double(chunk.brightness[i]) / double(count);
-        }
-    if (!(all > 0)) return {};
-    for (size_t i = 0; i < sums.size(); ++i) sums[i] = (sums[i] + 2 * all) / (counts[i] + 2);
+        for (size_t i = 0; i < chunk.blocks.size(); ++i)
+            image.add(chunk.blocks[i], chunk.brightness[i]);
+    if (image.is_black()) return {};
     PathLesson lesson;
     for (size_t c = 0; c < chunks.size(); ++c) {
         Chunk& chunk = chunks[c];
         for (size_t i = 0; i < chunk.blocks.size(); ++i) {
-            const double relative =
-                std::min(double(chunk.brightness[i]) / sums[chunk.blocks[i]], kMostRelative);
+            const double relative = std::min(
+                double(chunk.brightness[i]) / image.around(chunk.blocks[i]), kMostRelative);
             chunk.lesson.second_moment += relative * relative;
         }
         for (GuideBounce& b : chunk.lesson.bounces) {
             const size_t i = size_t(int64_t(b.path) - first) - c * size_t(kPathsPerChunk);
-            b.carried /= float(sums[chunk.blocks[i]]);
+            b.carried /= float(image.around(chunk.blocks[i]));
         }
         append(lesson, chunk.lesson);
     }

@@ -1,0 +1,64 @@
+// Light is sampled through panes where that pays.
+#include "integrator/guides/pane_trial.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "fixtures.h"
+
+namespace covtrace {
+namespace {
+
+const char* const kRoom = R"(
+Film "rgb" "integer xresolution" 48 "integer yresolution" 27
+LookAt 0 1.2 -3.5  0 0.2 0  0 1 0
+Camera "perspective" "float fov" 60
+WorldBegin
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [ 30 30 25 ]
+Translate 0.4 3.5 0.3
+Shape "sphere" "float radius" 0.2
+AttributeEnd
+Material "diffuse"
+Shape "trianglemesh" "point3 P" [ -4 0 -4  4 0 -4  4 0 4  -4 0 4 ] "integer indices" [ 0 1 2 0 2 3 ]
+Material "dielectric" "float eta" 1.5
+)";
+
+RenderScene scene_with(const std::string& glass, Guides guides = Guides::automatic) {
+    return RenderScene(read_pbrt_string(kRoom + glass, "test", "."), {}, kNoTextureLimit, guides);
+}
+
+std::string pane(const std::string& height) {
+    return "Shape \"trianglemesh\" \"point3 P\" [ -5 " + height + " -5  -5 " + height + " 5  5 " +
+           height + " 5  5 " + height + " -5 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n";
+}
+
+TEST(PaneTrial, AWindowBeforeALampPays) {
+    const RenderScene scene =
+        scene_with("ReverseOrientation\n" + pane("2") + "ReverseOrientation\n" + pane("2.2"));
+    const GuideOutcome outcome = scene.guide_outcomes().at("panes");
+    EXPECT_EQ(outcome.state, GuideState::guides);
+    EXPECT_LT(outcome.second_moment, 0.5);
+    EXPECT_TRUE(scene.samples_through_panes);
+}
+
+TEST(PaneTrial, GlassUnderABoardDoesNot) {
+    const RenderScene scene = scene_with(
+        R"(Shape "trianglemesh" "point3 P" [ -5 2 -5  -5 2 5  0 2 5  0 2 -5 ] "integer indices" [ 0 1 2 0 2 3 ]
+Material "diffuse"
+Shape "trianglemesh" "point3 P" [ -6 2.1 -6  -6 2.1 6  0.2 2.1 6  0.2 2.1 -6 ] "integer indices" [ 0 1 2 0 2 3 ])");
+    const GuideOutcome outcome = scene.guide_outcomes().at("panes");
+    EXPECT_EQ(outcome.state, GuideState::gave_up);
+    EXPECT_FALSE(scene.samples_through_panes);
+}
+
+TEST(PaneTrial, IsUnusedWithoutPanesAndWithoutGuides) {
+    EXPECT_EQ(scene_with("").guide_outcomes().at("panes").state, GuideState::unused);
+    const RenderScene unguided = scene_with(pane("2.9"), Guides::none);
+    EXPECT_EQ(unguided.guide_outcomes().at("panes").state, GuideState::unused);
+    EXPECT_TRUE(unguided.samples_through_panes);
+}
+
+}  // namespace
+}  // namespace covtrace
