@@ -10,6 +10,9 @@ namespace {
 
 using Triangle = std::array<uint32_t, 3>;
 
+/// Most triangles on each other that are searched for one that looks the other way.
+constexpr size_t kMostAlike = 16;
+
 bool is_before(Vec3 a, Vec3 b) {
     return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
 }
@@ -64,7 +67,8 @@ std::shared_ptr<const OppositeTriangles> OppositeTriangles::of(const TriangleMes
         const uint32_t first = by_hash[i].second;
         const Sorted a(mesh, mesh.triangles[first]);
         if (!a.has_area || found->opposite_[first] != first) continue;
-        for (size_t k = i + 1; k < count && by_hash[k].first == by_hash[i].first; ++k) {
+        const size_t end = std::min(count, i + 1 + kMostAlike);
+        for (size_t k = i + 1; k < end && by_hash[k].first == by_hash[i].first; ++k) {
             const uint32_t second = by_hash[k].second;
             const Sorted b(mesh, mesh.triangles[second]);
             if (a.corners != b.corners || a.is_turned == b.is_turned) continue;
