@@ -50,8 +50,8 @@ struct PathResult {
     PathFeatures features;
     RayCounts rays;
     uint32_t vertices = 0;
-    /// What sampling light through panes did: the second moment of the path's luminance that it
-    /// took away, and the rays of `rays.shadow` that it cost.
+    /// Second moment of the path's luminance that sampling light through panes took away, and the
+    /// rays of `rays.shadow` that it cost.
     float saved_by_panes = 0;
     uint64_t rays_through_panes = 0;
 };
