@@ -17,6 +17,10 @@ bool has_interface_material(const SceneDescription& scene, const ShapeDescriptio
                                       scene.materials[static_cast<size_t>(shape.material)].value);
 }
 
+bool is_mix(const SceneDescription& scene, MaterialId material) {
+    return material >= 0 && scene.materials[static_cast<size_t>(material)].mix.has_value();
+}
+
 bool is_unlit(const SceneDescription& scene, MaterialId material) {
     return material >= 0 && std::holds_alternative<UnlitMaterial>(
                                 scene.materials[static_cast<size_t>(material)].value);
@@ -117,10 +121,14 @@ struct Geometry::Impl::Builder {
         // Light passes what is unlit, so that rays to lights need not know of it.
         else if (!may_pass && !is_unlit(scene, material) && (mask & ray_mask(RayKind::shadow)) != 0)
             mask |= has_alpha ? kAlphaMask : kSolidMask;
+        // What is there for the camera alone is not in the way of light that is sampled through
+        // panes; a mix with an interface is, so that which of both it is need not be known twice.
         if (g.placed[shape].is_pane)
             g.any_pane = true;
-        else if (mask != 0)
-            mask |= kBehindPanesMask | ((mask & kSolidMask) != 0 ? kBlockingMask : 0);
+        else if ((mask & kScatteredRays) != 0)
+            mask |= kBehindPanesMask;
+        if (!g.placed[shape].is_pane && ((mask & kSolidMask) != 0 || is_mix(scene, material)))
+            mask |= kBlockingMask;
         g.any_interface = g.any_interface || may_pass;
         g.any_alpha = g.any_alpha || has_alpha;
         GeometryHandle geometry = new_shape_geometry(g.device, g.local[shape], mask);

@@ -33,15 +33,18 @@ float density_through_panes(const LitScene& scene, const LitPlace& place, Ray ra
         ++rays;
         if (!scene.geometry.intersect_behind_panes(ray, hit)) {
             if (!scene.lights.has_environment()) return density;
-            const Lights::Sky sky =
-                scene.lights.sky(place.position, place.normal, ray.direction, place.sky_cell);
+            const Lights::Sky sky = scene.lights.sky(place.position, place.normal, ray.direction,
+                                                     place.sky_cell, RayKind::diffuse);
             return is_black(sky.radiance) ? density : density + sky.pdf;
         }
         travelled += hit.t;
         if (travelled > to_pane && !is_black(scene.lights.emitted(hit, -ray.direction)))
             density += scene.lights.pdf(place.position, place.normal, ray.direction, hit,
                                         place.lamp_factors);
-        if (!passes(scene, hit)) return density;
+        // Where a mix stands, no sample is followed
+        const PlacedShape& shape = scene.geometry.shapes()[hit.shape];
+        if (!shape.lets_light_pass && !scene.materials.lets_light_pass(shape.description.material))
+            return density;
         ray.origin = Geometry::offset_origin(hit, ray.direction);
     }
     return density;
@@ -122,9 +125,7 @@ void PathTracer::follow_through_panes(const SampledLight& light) {
             path_pdf *= s->pdf;
             ray.direction = normalize(frame.to_world(s->wi));
             ray.kind = RayKind::transmission;
-        } else if (!shape.lets_light_pass &&
-                   !scene_.materials.lets_light_pass(
-                       scene_.materials.at(shape.description.material, hit, scene_.textures))) {
+        } else if (!passes(scene_, hit)) {
             return;
         }
         medium = medium_beyond(shape, hit, ray.direction, medium);

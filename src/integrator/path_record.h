@@ -40,7 +40,8 @@ struct PathVertex {
     /// border.
     bool in_view = false;
 
-    /// Luminance that reaches the sensor by the light sampled here; 0 where there is none.
+    /// Luminance that reaches the sensor by the light sampled here; 0 where there is none. Light
+    /// that comes through panes counts as if it came straight.
     float direct = 0;
     LightSample light;          ///< the light sampled here, where `direct` is above 0
     ScatterEvent direct_event;  ///< scattering of the sampled light
@@ -67,10 +68,6 @@ struct PathRecord {
     std::array<PathVertex, kCapacity> vertices;
     int count = 0;
     Ray camera_ray;
-    /// Whether light sampled through panes counts as `direct`, though the record does not tell what
-    /// the panes did to it. Else the path finds such light by itself alone. Stays what it is set
-    /// to.
-    bool holds_light_through_panes = false;
     float escaped = 0;            ///< luminance from the infinite lights where the path left
     Vec3 escape_direction;        ///< direction in which the path left the scene, unit
     float escape_glow = 0;        ///< luminance from the media behind the last vertex

@@ -31,8 +31,7 @@ class PathTracer {
           max_depth_(max_depth),
           record_(record),
           draws_ahead_(scene.lights.draws_ahead() && (!sky_guide || sky_guide->is_empty())),
-          samples_through_panes_(scene.samples_through_panes &&
-                                 (!record || record->holds_light_through_panes)) {
+          samples_through_panes_(scene.samples_through_panes) {
         camera_origin_ = ray.origin;
         medium_ = scene.description.camera.medium;
         if (record_) {
@@ -111,6 +110,8 @@ class PathTracer {
     // ---- path.cpp
     bool meet_surface(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material,
                       Bsdf& bsdf);
+    /// The BSDF where a ray hits a material, its textures filtered.
+    Bsdf bsdf_at(const SurfaceHit& hit, MaterialId material) const;
     /// Goes on behind a surface that lets the path pass; returns false after too many of them.
     bool pass(const SurfaceHit& hit, const PlacedShape& shape);
     /// Adds what an emitter that lets light pass sends along the ray.
@@ -165,8 +166,6 @@ class PathTracer {
     void leave_through_pane(Vec3 position, float pdf);
     /// Weight of light that the path has found through panes.
     float weight_through_panes();
-    /// The BSDF where a ray hits a material, its textures filtered.
-    Bsdf bsdf_at(const SurfaceHit& hit, MaterialId material) const;
 
     // ---- path_scatter.cpp: where the path goes on
     /// Density of sample_direction to return a direction by other than specular lobes, given the

@@ -21,9 +21,9 @@ bool are_paths_too_long(const LitScene& scene) {
     uint64_t rays = 0;
     for (uint64_t i = 0; i < kPaths && rays <= kPaths * kMostRays; ++i) {
         const TrainingPath path = training_path(scene, kKey, i);
-        rays += trace_path(scene, no_guide, path.ray, path.sampler, scene.description.max_depth,
-                           nullptr)
-                    .rays.total();
+        const PathResult found = trace_path(scene, no_guide, path.ray, path.sampler,
+                                            scene.description.max_depth, nullptr);
+        rays += found.rays.total() - found.rays_through_panes;
     }
     return rays > kPaths * kMostRays;
 }
@@ -33,6 +33,7 @@ bool are_paths_too_long(const LitScene& scene) {
 RenderScene::RenderScene(SceneDescription scene_description, const std::string& isa,
                          size_t texture_bytes, Guides which)
     : LitScene(std::move(scene_description), isa, texture_bytes), guides(which) {
+    panes_.state = samples_through_panes ? GuideState::guides : GuideState::unused;
     if (guides == Guides::none || are_paths_too_long(*this)) return;
     const auto time = [this](const char* name, const auto& work) {
         const auto start = std::chrono::steady_clock::now();

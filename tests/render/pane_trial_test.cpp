@@ -53,10 +53,10 @@ Shape "trianglemesh" "point3 P" [ -6 2.1 -6  -6 2.1 6  0.2 2.1 6  0.2 2.1 -6 ] "
     EXPECT_FALSE(scene.samples_through_panes);
 }
 
-TEST(PaneTrial, IsUnusedWithoutPanesAndWithoutGuides) {
+TEST(PaneTrial, IsUnusedWithoutPanesAndNotMadeWithoutGuides) {
     EXPECT_EQ(scene_with("").guide_outcomes().at("panes").state, GuideState::unused);
     const RenderScene unguided = scene_with(pane("2.9"), Guides::none);
-    EXPECT_EQ(unguided.guide_outcomes().at("panes").state, GuideState::unused);
+    EXPECT_EQ(unguided.guide_outcomes().at("panes").state, GuideState::guides);
     EXPECT_TRUE(unguided.samples_through_panes);
 }
 

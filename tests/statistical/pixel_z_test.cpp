@@ -24,6 +24,8 @@ TEST(PixelZTest, AlarmsAsOftenAsItsAlpha) {
         SCOPED_TRACE(s.name);
         const RenderScene scene(
             read_pbrt_string(scene_text(s.view, std::string(s.world) + kFloor, 4), "test", "."));
+        // With other seeds `glass` has 13 to 19 alarms of 60 at 0.2, and once 25: all renders share
+        // one reference, whose own error moves them together.
         const Reference reference(render_seeds(scene, 3000, 120, kSpp));
         const std::vector<Pixels> tests = render_seeds(scene, 2001, kSeeds, kSpp);
         size_t testable = 0;

@@ -14,6 +14,7 @@
 #include "integrator/guides/sky_guide.h"
 #include "integrator/lit_scene.h"
 #include "integrator/path.h"
+#include "integrator/visibility.h"
 
 namespace covtrace {
 
@@ -298,7 +299,8 @@ class CausticGuide::Probes {
         // The part of the light that the cosine finds as well is counted with the other paths.
         const float cosine = std::max(0.0f, dot(at.normal, light->wi));
         const float density = light->pdf + (light->is_delta ? 0.0f : cosine * kInvPi);
-        if (scene_.geometry.occluded(shadow)) return 0;
+        if (light->is_delta ? scene_.geometry.occluded(shadow) : is_hidden(scene_, shadow))
+            return 0;
         return luminance(light->radiance) * cosine / density;
     }
 

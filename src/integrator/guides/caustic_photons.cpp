@@ -19,10 +19,10 @@ namespace {
 
 constexpr uint64_t kPilotKey = 0x6361757374696373ull;  // key of the random numbers, "caustics"
 constexpr int kPathsPerChunk = 64;                     // pilot paths that one task traces
-constexpr int kCameraVertices = 4;   // vertices of a pilot path that may be glossy surfaces
-constexpr int kChainVertices = 8;    // most glossy surfaces in a row that light is sent over
-constexpr int kMostInterfaces = 64;  // most interfaces between media that a ray passes through
-constexpr int kLightSamples = 4;     // samples of lights at and around every glossy surface found
+constexpr int kCameraVertices = 4;  // vertices of a pilot path that may be glossy surfaces
+constexpr int kChainVertices = 8;   // most glossy surfaces in a row that light is sent over
+constexpr int kMostPassed = 64;     // most interfaces between media that a ray passes through
+constexpr int kLightSamples = 4;    // samples of lights at and around every glossy surface found
 /// Largest radius of the search around such a surface, as a share of its distance, and the smallest
 /// as a share of that; the logarithms in between are alike.
 constexpr float kWidestSearch = 0.3f, kNarrowestSearch = 0.03f;
@@ -80,7 +80,7 @@ class Pilot {
     std::optional<float> next_surface(Ray& ray, SurfaceHit& hit, Bsdf& bsdf,
                                       bool sees = false) const {
         float distance = 0;
-        for (int i = 0; i < kMostInterfaces; ++i) {
+        for (int i = 0; i < kMostPassed; ++i) {
             if (!scene_.geometry.intersect(ray, hit)) return std::nullopt;
             distance += hit.t;
             const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];

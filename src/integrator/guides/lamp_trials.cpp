@@ -12,9 +12,9 @@ namespace {
 constexpr uint64_t kTrialKey = 0x6c616d7073ull;  // key of the random numbers, "lamps"
 
 /// A place where a path scatters, with what is known there.
-class LitPlace {
+class TrialPlace {
   public:
-    LitPlace(const LitScene& scene, const PathVertex& vertex)
+    TrialPlace(const LitScene& scene, const PathVertex& vertex)
         : scene_(scene),
           vertex_(vertex),
           bsdf_(scene.materials.bsdf(vertex.material, vertex.hit, scene.textures)),
@@ -50,7 +50,8 @@ class LitPlace {
         if (!(distance > 0)) return;
         ray.direction = to_light / distance;
         ray.t_max = distance * (1 - 1e-4f);
-        if (is_hidden(scene_, ray)) return;
+        // Light without extent is not sampled through panes
+        if (light.is_delta ? scene_.geometry.occluded(ray) : is_hidden(scene_, ray)) return;
         t.light = light.light;
         t.light_found = brought;
         t.tried_pdf = light.pdf;
@@ -91,7 +92,7 @@ std::vector<LampTrial> try_lamps(const LitScene& scene, int64_t first, int64_t c
     return visit_places<LampTrial>(
         scene, kTrialKey, first, count,
         [&](const PathVertex& vertex, Rng& rng, std::vector<LampTrial>& found) {
-            LitPlace place(scene, vertex);
+            TrialPlace place(scene, vertex);
             for (int t = 0; t < trials; ++t) place.try_lamp(rng, found);
         });
 }

@@ -10,7 +10,8 @@ struct LitScene;
 
 /// Tries it on paths from the camera that no guide leads. It pays where it takes away a
 /// larger share of the noise than it adds to the time, as its rays tell. The outcome is
-/// deterministic; `unused` where there are no panes to sample light through.
+/// deterministic; `unused` where there are no panes to sample light through. Without a trial panes
+/// are sampled through.
 GuideOutcome try_panes(const LitScene& scene);
 
 }  // namespace covtrace

@@ -105,7 +105,6 @@ PathLesson trace_lesson(const LitScene& scene, const CausticGuide& caustics, con
     parallel_for(int64_t(chunks.size()), [&](int64_t c) {
         Chunk& chunk = chunks[size_t(c)];
         PathRecord record;
-        record.holds_light_through_panes = true;
         const int64_t end = std::min(count, (c + 1) * kPathsPerChunk);
         for (int64_t i = c * kPathsPerChunk; i < end; ++i) {
             const auto index = static_cast<uint64_t>(first + i);
