@@ -22,6 +22,7 @@ KILLS = int(os.environ.get("COVTRACE_KILLS", "3"))
 
 class Killed(FilmTest):
     def test_killed_renders_end_the_same(self):
+        all_renders = all_kills = 0
         for method in METHODS:
             for i, scene in enumerate(SCENES):
                 with self.subTest(method=method, scene=scene):
@@ -41,6 +42,8 @@ class Killed(FilmTest):
                         self.assert_identical("whole.exr", "out.exr", f"after {kills} kills, {renders} renders")
                         self.assertIn("; complete", self.assert_sound(film))
                         self.assert_no_leftovers()
+                    all_renders, all_kills = all_renders + renders, all_kills + kills
+        print(f"{all_renders} renders, {all_kills} kills, all identical")
 
     def test_something_is_kept_between_two_kills(self):
         """A render that is killed each time after a while that is too short for the whole ends nevertheless."""
