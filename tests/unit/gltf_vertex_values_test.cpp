@@ -57,7 +57,7 @@ TEST(GltfVertexColours, AreReadInAllTypes) {
 }
 
 TEST(GltfVertexColours, MultiplyTheBaseColour) {
-    ColouredSquare square({{"pbrMetallicRoughness", kDielectric}});
+    ColouredSquare square(json::object({{"pbrMetallicRoughness", kDielectric}}));
     square.set_rgba();
     const auto scene = read(square.file);
     const auto& base = model_of<CoatedDiffuseMaterial>(scene, scene.shapes[0].material);
