@@ -51,7 +51,7 @@ class SceneExporter:
         try:
             content = io.StringIO()
             self._write_content(content, moving)
-            around = self.materials.media.sum(self.volumes.media_at(self.camera.matrix().translation))
+            around = self.materials.media.sum(self.volumes.media_at(self.camera.matrix().translation, rays=("camera",)))
             with open(path, "w", encoding="utf-8") as out:
                 out.write(f'MediumInterface "" "{around}"\n' if around else "")
                 out.write(self.camera.text(self.shutter, moving.get("camera")))
@@ -74,6 +74,7 @@ class SceneExporter:
         self.materials = MaterialExporter(out, self.folder, self.warn)
         self._write_world()
         self.uv_ranges = self._uv_ranges()
+        self.visibility = Visibility(self.depsgraph.view_layer)
         self.volumes = self._find_volumes()
         self._write_objects(moving)
         self.materials.baked.keep()
@@ -119,21 +120,25 @@ class SceneExporter:
     # -- objects
 
     def _find_volumes(self):
+        """The Volumes of all instances that are written."""
         found = Volumes()
         for _, instance in self._instances():
             obj = instance.object
-            if obj.type != "MESH" or not instance.show_self:
+            slots = [slot for slot, material in enumerate(self._materials(obj)) if has_volume(material)] \
+                if obj.type == "MESH" and instance.show_self and self.layer.use_solid else []
+            hidden = self.visibility.hidden(instance) if slots else None
+            if hidden is None:
                 continue
-            for slot, material in enumerate(self._materials(obj)):
-                media = [v.medium for v in self._variants(obj, slot) if v.medium] if has_volume(material) else []
-                if media:
-                    found.add(obj, instance.matrix_world, media[0])
+            for slot in slots:
+                filled = [v for v in self._variants(obj, slot) if v.medium and set(v.rays) - hidden]
+                if filled:
+                    rays = {ray for variant in filled for ray in variant.rays} - hidden
+                    found.add(obj, instance.matrix_world, filled[0].medium, rays)
                     break
         return found
 
     def _write_objects(self, moving):
         shared, exported = {}, {}
-        self.visibility = Visibility(self.depsgraph.view_layer)
         for key, instance in self._instances():
             obj = instance.object
             hidden = self.visibility.hidden(instance)
@@ -154,18 +159,19 @@ class SceneExporter:
                     continue
                 if abs(matrix.determinant()) < 1e-30:
                     continue
+                around = self._media_around(obj, matrix) if any(part.variant.medium for part in parts) else ()
                 if instance.is_instance and not any(part.variant.emission for part in parts):
-                    shown += (frozenset(hidden),)
+                    shown += (frozenset(hidden), around)
                     if shown not in shared:
                         shared[shown] = f"object {len(shared)}"
                         self.out.write(f'ObjectBegin "{shared[shown]}"\n')
-                        self._write_parts(parts, hidden, self._media_around(obj, matrix))
+                        self._write_parts(parts, hidden, around)
                         self.out.write("ObjectEnd\n")
                     self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end) +
                                    f'ObjectInstance "{shared[shown]}"\nAttributeEnd\n')
                 else:
                     self.out.write("AttributeBegin\n" + placement("ConcatTransform", matrix, end))
-                    self._write_parts(parts, hidden, self._media_around(obj, matrix))
+                    self._write_parts(parts, hidden, around)
                     self.out.write("AttributeEnd\n")
             elif obj.type in ("VOLUME", "POINTCLOUD", "GPENCIL"):
                 self.warn(f"object '{obj.name}' is a {obj.type.lower()}, which is not rendered")
@@ -289,7 +295,7 @@ class SceneExporter:
     def _media_around(self, obj, matrix):
         """The names of the media that an object stands in, by the middle of the box around it."""
         middle = sum((Vector(corner) for corner in obj.bound_box), Vector()) / 8
-        return self.volumes.media_at(matrix @ middle, obj)
+        return self.volumes.media_at(matrix @ middle, obj.name_full)
 
     def _write_parts(self, parts, hidden, around):
         for part in parts:

@@ -2,12 +2,12 @@
 
 import functools
 
-from mathutils import Vector
+import numpy as np
 
 from .export_shaders import numbers
+from .shader_nodes.light_path import RAYS
 from .shader_nodes.unsupported import Unsupported
-
-MOST_CROSSINGS = 1000  # of a mesh by a ray: one that is caught between faces must end
+from .solid import Solid
 
 
 class Coefficients:
@@ -75,7 +75,8 @@ class Media:
         return name
 
     def sum(self, names):
-        """The name of the medium where all these are at once, as in Cycles; "" of none."""
+        """The name of the medium where all these are at once, in any order, as in Cycles; "" of none."""
+        names = tuple(sorted(names))
         if len(names) < 2:
             return "".join(names)
         if names not in self._sums:
@@ -87,26 +88,35 @@ class Volumes:
     """Instances whose materials have media. `add` them all before asking where a place is."""
 
     def __init__(self):
-        self._found = []
+        self._solids, self._bodies, self._inverses = {}, [], []
 
-    def add(self, obj, matrix, medium):
-        self._found.append((obj, matrix.copy(), medium))
+    def add(self, obj, matrix, medium, rays):
+        """rays: the kinds that see it."""
+        if abs(matrix.determinant()) < 1e-30 or not obj.data.polygons:
+            return
+        mesh = obj.data.as_pointer()
+        if mesh not in self._solids:
+            self._solids[mesh] = Solid(obj.data)
+        self._bodies.append((obj.name_full, self._solids[mesh], medium, set(rays)))
+        self._inverses.append(np.array(matrix.inverted()))
 
-    def media_at(self, place, but=None):
-        """The names of the media of all that hold a place of the world; `but`: an object that does not count."""
-        return tuple(medium for obj, matrix, medium in self._found
-                     if (but is None or obj.name_full != but.name_full) and _holds(obj, matrix, place))
+    @functools.cached_property
+    def _boxes(self):
+        """(inverse matrix, low and high corner in its own space) of each body."""
+        solids = [solid for _, solid, _, _ in self._bodies]
+        return np.array(self._inverses), np.array([s.low for s in solids]), np.array([s.high for s in solids])
 
-
-def _holds(obj, matrix, place):
-    """Whether an object's closed mesh holds a place: a ray from there crosses it an odd number of times."""
-    if abs(matrix.determinant()) < 1e-30 or obj.type != "MESH":
-        return False
-    origin, direction = matrix.inverted() @ place, Vector((0.5773, 0.5411, 0.6115))
-    step = 1e-5 * max(max(obj.dimensions), 1e-6)
-    for crossings in range(MOST_CROSSINGS):
-        is_hit, where, _, _ = obj.ray_cast(origin, direction)
-        if not is_hit:
-            return crossings % 2 == 1
-        origin = where + direction * step
-    return False
+    def media_at(self, place, but="", rays=RAYS):
+        """The names of the media of all that hold a place of the world and that one of these kinds of rays sees; `but`: the
+        name of an object that does not count."""
+        if not self._bodies:
+            return ()
+        inverses, low, high = self._boxes
+        # Few boxes hold the place; only these are worth rays.
+        places = inverses[:, :3, :3] @ np.array(place) + inverses[:, :3, 3]
+        found = []
+        for index in np.flatnonzero(((low <= places) & (places <= high)).all(1)):
+            name, solid, medium, seen_by = self._bodies[index]
+            if name != but and seen_by.intersection(rays) and solid.holds(places[index]):
+                found.append(medium)
+        return tuple(found)
