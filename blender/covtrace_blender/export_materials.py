@@ -88,10 +88,18 @@ class MaterialExporter(PrincipledExporter):
         medium = self._medium(volume) if volume else ""
         if volume and (node is None or node.type == "BSDF_TRANSPARENT"):
             # A body that is nothing but its volume.
+            if node:
+                self._tell_of_tint(node)
             return self._make("interface", []), None, "", (), medium
         if node is None:
             return self._make("diffuse", ['"rgb reflectance" [0 0 0]']), None, "", (), ""
         return self._shader(node), self.emission, self.alpha, tuple(self.uv_maps), medium
+
+    def _tell_of_tint(self, node):
+        """Warns where a Transparent colours what passes: an interface has no colour."""
+        tint = self._value(node.inputs["Color"])
+        if tint.image or max(abs(c - 1) for c in tint.constant) > 0.01:
+            self.warn(f"material '{self.name}': the colour of '{node.name}' around a volume is not supported and left out")
 
     def _medium(self, node):
         """The name of the medium that a volume shader makes; "" for what is left out."""

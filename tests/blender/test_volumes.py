@@ -153,6 +153,15 @@ class VolumesTest(BlenderTest):
         # Each bottle asks where it stands and finds its own box alone; planes have no volume and do not ask.
         self.assertEqual(holds.call_count, 0)
 
+    def test_the_colour_of_a_transparent_around_a_volume_is_told(self):
+        m = self.body((0, 0, 0), (4, 4, 2), "ShaderNodeVolumeAbsorption", "ShaderNodeBsdfTransparent", Density=0.5)
+        self.export()
+        self.assertEqual(self.warnings, [])
+        m.node_tree.nodes["Transparent BSDF"].inputs["Color"].default_value = (1, 0.5, 0.5, 1)
+        self.export()
+        self.assertEqual(self.warnings, ["material 'filled': the colour of 'Transparent BSDF' around a volume is not supported and "
+                                         "left out"])
+
     def test_volumes_that_are_not_even_are_told_and_hide_nothing(self):
         m = self.body((0, 0, 0), (4, 4, 2), "ShaderNodeVolumeScatter", Density=0.5)
         tree = m.node_tree
