@@ -121,7 +121,7 @@ struct Geometry::Impl::Builder {
         // Light passes what is unlit, so that rays to lights need not know of it.
         else if (!may_pass && !is_unlit(scene, material) && (mask & ray_mask(RayKind::shadow)) != 0)
             mask |= has_alpha ? kAlphaMask : kSolidMask;
-        // What is there for the camera alone is not in the way of light that is sampled through
+        // Shapes that the camera alone sees are not in the way of light that is sampled through
         // panes; a mix with an interface is, so that which of both it is need not be known twice.
         if (g.placed[shape].is_pane)
             g.any_pane = true;

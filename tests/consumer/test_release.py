@@ -105,7 +105,7 @@ class Wheel(Made):
 BPY = """
 import sys
 from unittest.mock import MagicMock
-for name in ("bpy", "bpy_extras", "gpu", "gpu_extras", "gpu_extras.presets", "mathutils"):
+for name in ("bpy", "bpy_extras", "gpu", "gpu_extras", "gpu_extras.presets", "mathutils", "mathutils.bvhtree"):
     sys.modules[name] = MagicMock()
 for name in ("AddonPreferences", "PropertyGroup", "Panel", "RenderEngine"):
     setattr(sys.modules["bpy"].types, name, type(name, (), {}))
