@@ -8,7 +8,7 @@ namespace covtrace {
 
 /// Ray masks: a bit for each kind of ray, for `intersect`, two for `occluded`, which sees no
 /// interfaces, and surfaces with alpha where they are opaque, and two for what is behind panes: for
-/// `blocked`, all that is solid but panes, and for `intersect_behind_panes`, all but panes.
+/// `blocked`, what is solid and mixes, and for `intersect_behind_panes`, all scattered rays see.
 constexpr unsigned ray_mask(RayKind kind) {
     return set_of(kind);
 }

@@ -73,9 +73,9 @@ class Geometry {
     /// Whether any surface that shadow rays see, but for interfaces, lies in (0, ray.t_max),
     /// whatever the ray's kind. Thread-safe.
     bool occluded(const Ray& ray) const;
-    /// Whether anything that `occluded` tells of, but for panes, lies in (0, ray.t_max).
+    /// Whether anything that `occluded` tells of but panes, or a mix, lies in (0, ray.t_max).
     bool blocked(const Ray& ray) const;
-    /// Finds the nearest hit in (0, ray.t_max) of all shapes but panes, whatever the ray's kind.
+    /// Finds the nearest hit in (0, ray.t_max) of what scattered rays of any kind see, but panes.
     bool intersect_behind_panes(const Ray& ray, SurfaceHit& hit) const;
     /// Do for many rays what `intersect`, `intersect_seen`, `occluded` and `blocked` do for one, in
     /// less time. Each ray gets the same bits as from those, whichever others are with it.
