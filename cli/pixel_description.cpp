@@ -231,7 +231,7 @@ nlohmann::json to_json(const PixelDescription& p) {
     j["covariance"] = *p.covariance;
     j["covariance_units"] = {"cycles/pixel", "cycles/pixel", "cycles/aperture radius",
                              "cycles/aperture radius", "cycles/shutter"};
-    j["hypercube"] = {{"sqrt_det", number_or_null(p.hypercube->density)}};
+    j["hypercube"] = {{"density", number_or_null(p.hypercube->density)}};
     if (p.hypercube->k) {
         j["hypercube"]["k"] = *p.hypercube->k;
         j["hypercube"]["samples"] = number_or_null(p.hypercube->density * *p.hypercube->k);

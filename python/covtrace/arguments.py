@@ -14,12 +14,13 @@ def refuse(name: str, value: Any, expected: str) -> NoReturn:
     raise UsageError(f"{name} is {value!r}; expected {expected}")
 
 
-def path_of(name: str, value: str | os.PathLike[str], expected: str = "a file's path") -> str:
-    """A path that a file system can name: neither a number nor a text with a zero in it, and of a file
-    no empty one."""
+def path_of(name: str, value: str | os.PathLike[str], expected: str = "a file's path",
+            may_be_empty: bool = False) -> str:
+    """A path that a file system can name: neither a number nor a text with a zero in it. No file has an
+    empty one, which among folders is the working one (`may_be_empty`)."""
     try:
         path = os.fspath(value)
-        if b"\0" in os.fsencode(path) or (not path and "folder" not in expected):
+        if b"\0" in os.fsencode(path) or not (path or may_be_empty):
             refuse(name, value, expected)
     except (TypeError, UnicodeError):
         refuse(name, value, expected)
@@ -31,7 +32,7 @@ def paths_of(name: str, values: Iterable[str | os.PathLike[str]],
     if isinstance(values, (str, bytes)):  # whose letters would be the folders
         refuse(name, values, expected)
     try:
-        return [path_of(name, v, expected) for v in values]
+        return [path_of(name, v, expected, may_be_empty=True) for v in values]
     except TypeError:
         refuse(name, values, expected)
 

@@ -66,7 +66,7 @@ class Scene:
         scene = cls.__new__(cls)
         scene._is_placed, scene._shutter, scene._named = False, None, str
         scene._take(_covtrace.SceneDescription.read_string(
-            text_of("text", text), text_of("name", name), path_of("folder", folder, "a folder's path"),
+            text_of("text", text), text_of("name", name), path_of("folder", folder, "a folder's path", True),
             paths_of("search_paths", search_paths)))
         return scene
 

@@ -88,20 +88,20 @@ class Inspect(CliTest):
             matrix = [[v + (window[i] if i == j else 0) for j, v in enumerate(row)] for i, row in enumerate(found["covariance"])]
             # Per aperture: pi lens radii squared.
             expected = math.pi * math.sqrt(max(0, determinant(matrix)))
-            self.assertAlmostEqual(found["hypercube"]["sqrt_det"], expected, delta=1e-3 * expected + 1e-6)
+            self.assertAlmostEqual(found["hypercube"]["density"], expected, delta=1e-3 * expected + 1e-6)
             self.assertAlmostEqual(found["hypercube"]["k"] / float(k), 1, places=4)
-            self.assertAlmostEqual(found["hypercube"]["samples"], found["hypercube"]["k"] * found["hypercube"]["sqrt_det"], places=6)
+            self.assertAlmostEqual(found["hypercube"]["samples"], found["hypercube"]["k"] * found["hypercube"]["density"], places=6)
         text = self.run_program("inspect", "out.exr", "--pixel", "21,17").stdout
         told = re.search(r"samples per unit hypercube .*: pi sqrt\|S \+ W\| = (\S+), times k = (\S+): (\S+)\n", text)
         self.assertIsNotNone(told, text)
         found = self.inspect("--pixel", "21,17")["pixel"]
-        for text, name in zip(told.groups(), ("sqrt_det", "k", "samples")):
+        for text, name in zip(told.groups(), ("density", "k", "samples")):
             self.assertAlmostEqual(float(text) / found["hypercube"][name], 1, places=3)
         # The matrix that is printed below counts per lens radius, bandwidths over the aperture: two radii.
         bandwidth = {b["axis"]: b["value"] for b in found["bandwidth"]}
         self.assertAlmostEqual(bandwidth["lens x"], 2 * math.sqrt(found["covariance"][2][2]), places=4)
         self.rendered("--spp", "6", "--resolution", "40x30")
-        self.assertEqual(set(self.inspect("--pixel", "21,17")["pixel"]["hypercube"]), {"sqrt_det"})
+        self.assertEqual(set(self.inspect("--pixel", "21,17")["pixel"]["hypercube"]), {"density"})
 
     def relative_error(self, x, y):
         light = 0.2126 * self.value("R", x, y) + 0.7152 * self.value("G", x, y) + 0.0722 * self.value("B", x, y)
