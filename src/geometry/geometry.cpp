@@ -133,7 +133,10 @@ bool Geometry::Impl::nearest_opaque(const Ray& ray, unsigned mask, SurfaceHit& h
     const auto find = [this, mask](const Ray& r, SurfaceHit& h) { return nearest(r, mask, h); };
     if (!any_alpha) return find(ray, hit);
     return first_that_stops(ray, hit, find, [this](const Ray& r, const SurfaceHit& h) {
-        const TextureId texture = placed[h.shape].description.alpha;
+        const PlacedShape& shape = placed[h.shape];
+        const Vec3 outward = shape.description.reverse_orientation ? -h.ng : h.ng;
+        if (shape.is_left_freely && dot(r.direction, outward) > 0) return false;
+        const TextureId texture = shape.description.alpha;
         const float opacity =
             texture >= 0 && alpha ? alpha(texture, h.uv, h.position, h.vertices()) : 1.0f;
         return opacity >= 1 || (opacity > 0 && ray_hash(r) < opacity);

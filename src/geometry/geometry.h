@@ -22,6 +22,10 @@ struct PlacedShape {
     bool is_instanced = false;
     bool lets_light_pass = false;  ///< whether it is an emitter that rays pass
     bool is_pane = false;          ///< pane.h
+    bool is_left_freely = false;   ///< whether rays within it pass it
+
+    /// Whether rays pass it somewhere, or from some side.
+    bool may_let_pass() const { return description.alpha >= 0 || is_left_freely; }
 };
 
 /// Corners of a triangle or of half a patch in world space at some time.

@@ -26,20 +26,35 @@ bool is_unlit(const SceneDescription& scene, MaterialId material) {
                                 scene.materials[static_cast<size_t>(material)].value);
 }
 
-/// For each material, whether it may turn out to be no surface at all, by being mixed with an
-/// interface. A mix comes after its parts, so each material is looked at once however deep they
-/// nest.
-std::vector<bool> may_be_interface(const SceneDescription& scene) {
-    std::vector<bool> may;
-    may.reserve(scene.materials.size());
+/// For each material, whether `is` says so of it or, where it is a mix, of any part. A mix comes
+/// after its parts, so each material is looked at once however deep they nest.
+template <typename Is>
+std::vector<bool> of_any_part(const SceneDescription& scene, const Is& is) {
+    std::vector<bool> any;
+    any.reserve(scene.materials.size());
     for (const MaterialDescription& m : scene.materials) {
-        bool is = !m.mix && std::holds_alternative<InterfaceMaterial>(m.value);
+        bool found = !m.mix && is(m);
         if (m.mix)
             for (MaterialId part : m.mix->materials)
-                is = is || (part >= 0 && may.at(static_cast<size_t>(part)));
-        may.push_back(is);
+                found = found || (part >= 0 && any.at(static_cast<size_t>(part)));
+        any.push_back(found);
     }
-    return may;
+    return any;
+}
+
+/// For each material, whether it may turn out to be no surface at all, by being mixed with an
+/// interface.
+std::vector<bool> may_be_interface(const SceneDescription& scene) {
+    return of_any_part(scene, [](const MaterialDescription& m) {
+        return std::holds_alternative<InterfaceMaterial>(m.value);
+    });
+}
+
+/// For each material, whether it or a part of it scatters light through a surface.
+std::vector<bool> are_translucent(const SceneDescription& scene) {
+    return of_any_part(scene, [](const MaterialDescription& m) {
+        return std::holds_alternative<DiffuseTransmissionMaterial>(m.value);
+    });
 }
 
 /// Whether alpha hides all of the shape. Such a shape is a light that can't be seen: no other one
@@ -81,12 +96,16 @@ struct Geometry::Impl::Builder {
     Impl& g;
     const SceneDescription& scene;
     const std::vector<bool> may_be_interface;  ///< by material: whether it may be an interface
+    const std::vector<bool> translucent;       ///< by material: whether light is scattered through
 
     void place(const ShapeDescription& shape, bool is_instanced) {
         const bool flip =
             shape.reverse_orientation != shape.object_to_world.start().swaps_handedness();
         const bool passes = lets_light_pass(scene, shape);
-        g.placed.push_back({shape, flip, is_instanced, passes, is_pane(scene, shape)});
+        const bool is_translucent =
+            shape.material >= 0 && translucent[static_cast<size_t>(shape.material)];
+        g.placed.push_back({shape, flip, is_instanced, passes, is_pane(scene, shape),
+                            shape.is_tube_for_ribbon && is_translucent});
         constexpr RayKinds kSeen = set_of(RayKind::camera) | set_of(RayKind::shadow);
         g.is_in_the_way.push_back(!passes && !has_interface_material(scene, shape) &&
                                   (shape.visible_to & kSeen) != 0);
@@ -109,7 +128,7 @@ struct Geometry::Impl::Builder {
     ShapeScene new_scene() const { return {g.device.new_scene(), {}}; }
 
     void add(ShapeScene& target, uint32_t shape) const {
-        const bool has_alpha = g.placed[shape].description.alpha >= 0;
+        const bool may_let_pass = g.placed[shape].may_let_pass();
         // A shape that may be an interface in places is asked for its material there by
         // `visibility`.
         const MaterialId material = g.placed[shape].description.material;
@@ -120,7 +139,7 @@ struct Geometry::Impl::Builder {
             mask &= ~(ray_mask(RayKind::any) | ray_mask(RayKind::shadow));
         // Light passes what is unlit, so that rays to lights need not know of it.
         else if (!may_pass && !is_unlit(scene, material) && (mask & ray_mask(RayKind::shadow)) != 0)
-            mask |= has_alpha ? kAlphaMask : kSolidMask;
+            mask |= may_let_pass ? kAlphaMask : kSolidMask;
         // Shapes that the camera alone sees are not in the way of light that is sampled through
         // panes; a mix with an interface is, so that which of both it is need not be known twice.
         if (g.placed[shape].is_pane)
@@ -130,7 +149,7 @@ struct Geometry::Impl::Builder {
         if (!g.placed[shape].is_pane && ((mask & kSolidMask) != 0 || is_mix(scene, material)))
             mask |= kBlockingMask;
         g.any_interface = g.any_interface || may_pass;
-        g.any_alpha = g.any_alpha || has_alpha;
+        g.any_alpha = g.any_alpha || may_let_pass;
         GeometryHandle geometry = new_shape_geometry(g.device, g.local[shape], mask);
         if (geometry) attach(target, geometry.get(), shape);
     }
@@ -261,7 +280,7 @@ struct Geometry::Impl::Builder {
 Geometry::Impl::Impl(const SceneDescription& scene, const std::string& isa)
     : device(isa), clock(scene.camera.shutter_open, scene.camera.shutter_close, key_times(scene)) {
     try {
-        Builder{*this, scene, may_be_interface(scene)}.run();
+        Builder{*this, scene, may_be_interface(scene), are_translucent(scene)}.run();
     } catch (const std::bad_alloc&) {
         throw Error(ErrorKind::limit, "out of memory while building the scene's geometry");
     }

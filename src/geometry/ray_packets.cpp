@@ -84,7 +84,7 @@ void Geometry::intersect(std::span<HitQuery> queries) const {
     for_each_packet(queries, [this](std::span<HitQuery> packet) {
         impl_->find_nearest(packet);
         for (HitQuery& q : packet)
-            if (q.found && impl_->placed[q.hit->shape].description.alpha >= 0)
+            if (q.found && impl_->placed[q.hit->shape].may_let_pass())
                 q.found = intersect(*q.ray, *q.hit);
     });
 }

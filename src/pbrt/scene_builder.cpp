@@ -203,6 +203,7 @@ void SceneBuilder::shape(Entity entity) {
         }
     }
     s.reverse_orientation = is_inside_out(entity.type, s, state_.reverse_orientation);
+    s.is_tube_for_ribbon = entity.type == "curve";
     BuiltShape built = shapes_.build(entity);
     pending.mesh_file = built.mesh_file;
     if (built.mesh_file) pending_.push_back(pending);

@@ -231,6 +231,9 @@ struct ShapeDescription {
     /// Whether rays by which the camera sees, straight, in perfect mirrors and through clear glass,
     /// meet the shape's inside, too; else they pass it. All others meet both sides.
     bool is_seen_from_back = true;
+    /// Whether the shape is a tube in the place of a ribbon, at which light is scattered once, from
+    /// one side to the other: rays within it pass its wall where that is translucent.
+    bool is_tube_for_ribbon = false;
 };
 
 struct ObjectDescription {

@@ -2,6 +2,8 @@
 // occluders.
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "geometry_fixtures.h"
 #include "occluders/query.h"
 #include "occluders/voxel_grid.h"
@@ -53,6 +55,51 @@ TEST(GeometryAlpha, HolesLetRaysThroughToWhatLiesBehind) {
     EXPECT_TRUE(g.occluded({{-0.5f, 0.2f, -1}, {0, 0, 1}, 0, 1.5f}));
     EXPECT_FALSE(g.occluded({{0.5f, 0.2f, -1}, {0, 0, 1}, 0, 3.9f}));
     EXPECT_TRUE(g.occluded({{0.5f, 0.2f, -1}, {0, 0, 1}, 0, 4.1f}));
+}
+
+/// Two walls at z = 0 and 1 whose fronts are away from each other.
+TriangleMesh two_walls() {
+    TriangleMesh m = square(0);
+    for (auto& t : m.triangles) std::swap(t[1], t[2]);
+    const TriangleMesh upper = square(1);
+    m.positions.insert(m.positions.end(), upper.positions.begin(), upper.positions.end());
+    m.uvs.insert(m.uvs.end(), upper.uvs.begin(), upper.uvs.end());
+    for (auto t : upper.triangles) m.triangles.push_back({t[0] + 4, t[1] + 4, t[2] + 4});
+    return m;
+}
+
+TEST(GeometryAlpha, TubesForRibbonsAreLeftFreelyWhereTheyAreTranslucent) {
+    const auto first_wall = [](const Geometry& g, float from, float direction) {
+        const Ray ray{{0.5f, 0.2f, from}, {0, 0, direction}};
+        SurfaceHit hit, packet_hit;
+        HitQuery queries[2] = {{&ray, &packet_hit, false}, {&ray, &packet_hit, false}};
+        g.intersect(queries);
+        const bool found = g.intersect(ray, hit);
+        EXPECT_EQ(g.occluded(ray), found);
+        EXPECT_EQ(queries[1].found, found);
+        return found ? std::optional(hit.position.z) : std::nullopt;
+    };
+    for (const bool is_reversed : {false, true})
+        for (const float mirrored : {1.0f, -1.0f})
+            for (const bool is_translucent : {true, false}) {
+                ShapeDescription tube =
+                    mesh(two_walls(), AnimatedTransform(Transform::scale(mirrored, 1, 1)));
+                tube.reverse_orientation = is_reversed;
+                tube.is_tube_for_ribbon = true;
+                tube.material = 1;
+                SceneDescription scene = scene_of({tube});
+                scene.materials.resize(2);
+                if (is_translucent) {
+                    scene.materials[0].value = DiffuseTransmissionMaterial{};
+                    scene.materials[1].mix = MaterialMix{{0, 0}, 0};
+                }
+                const Geometry g(scene);
+                EXPECT_EQ(first_wall(g, 3, -1), 1.0f);
+                EXPECT_EQ(first_wall(g, -3, 1), 0.0f);
+                const auto up = first_wall(g, 0.5f, 1), down = first_wall(g, 0.5f, -1);
+                EXPECT_EQ(up, is_translucent ? std::nullopt : std::optional(1.0f));
+                EXPECT_EQ(down, is_translucent ? std::nullopt : std::optional(0.0f));
+            }
 }
 
 TEST(GeometryAlpha, CountsOnWhatMayBeAnInterfaceToo) {

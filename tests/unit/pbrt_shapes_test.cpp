@@ -154,6 +154,7 @@ TEST(SceneShapes, CurvesBecomeTubesAroundThem) {
         "\"float width\" 0");
     expect_near(mesh_of(scene).positions.front(), {4, 1, 0}, 1e-5f);
     expect_near(mesh_of(scene).positions.back(), {1, 4, 1}, 1e-5f);
+    EXPECT_TRUE(scene.shapes.front().is_tube_for_ribbon) << "light is scattered by it once";
 }
 
 TEST(SceneShapes, MeshFilesAreReadOnceAndShared) {
