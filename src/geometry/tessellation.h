@@ -35,6 +35,11 @@ class Tessellation {
     const std::vector<std::array<uint32_t, 3>>& triangles() const {
         return mesh_ ? mesh_->mesh->triangles : triangles_;
     }
+    /// Bytes of its own, without what belongs to the shape.
+    size_t memory() const {
+        return positions_.capacity() * sizeof(Vec3) +
+               triangles_.capacity() * sizeof(std::array<uint32_t, 3>);
+    }
 
   private:
     template <class PointAt>

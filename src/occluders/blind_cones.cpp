@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parallel.h"
-
 namespace covtrace {
 
 namespace {
@@ -102,8 +100,7 @@ std::vector<BlindCones> blind_cones(const BoxHierarchy& hierarchy,
             of_node[i] = {of_node[i].end > 0 ? of_node[i].begin : r.begin, r.end};
         }
     std::vector<BlindCones> all(nodes.size());
-    parallel_for(static_cast<int64_t>(nodes.size()), [&](int64_t index) {
-        const auto i = static_cast<size_t>(index);
+    for (size_t i = 0; i < nodes.size(); ++i)
         for (size_t k = 0; k < BoxHierarchy::kWidth; ++k) {
             const uint32_t child = nodes[i].child[k];
             if (child == BoxHierarchy::kNone) continue;
@@ -116,7 +113,6 @@ std::vector<BlindCones> blind_cones(const BoxHierarchy& hierarchy,
             const Vec3x8& h = nodes[i].half;
             all[i].radius[k] = length(Vec3{h.x[k], h.y[k], h.z[k]});
         }
-    });
     return all;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace covtrace {
 
@@ -76,23 +77,6 @@ Bounds3 transformed(const Bounds3& b, const Affine& map) {
 }
 
 }  // namespace
-
-EdgeSet::EdgeSet(const std::vector<FoldEdge>& found) : count(found.size()) {
-    std::vector<Bounds3> boxes(count);
-    for (size_t i = 0; i < count; ++i) {
-        boxes[i].extend(found[i].a);
-        boxes[i].extend(found[i].b);
-    }
-    hierarchy = BoxHierarchy(boxes, BoxHierarchy::kWidth);
-    std::vector<FoldEdge> edges;
-    edges.reserve(count);
-    blocks.reserve(hierarchy.items());
-    for (size_t i = 0; i < hierarchy.items(); ++i) {
-        for (uint32_t k : hierarchy.item(i)) edges.push_back(found[k]);
-        blocks.emplace_back(std::span(edges).last(hierarchy.item(i).size()));
-    }
-    cones = blind_cones(hierarchy, edges);
-}
 
 OccluderBodies::OccluderBodies(const Geometry::Impl& g, std::function<bool()> cancelled)
     : geometry(g), cancelled_(std::move(cancelled)) {
@@ -220,17 +204,16 @@ Tessellation OccluderBodies::perforated(uint32_t shape, const Affine& world_from
 /// sphere gets an edge set as well, for the instances that make an ellipsoid of it.
 std::vector<OccluderBody> OccluderBodies::add(const std::vector<uint32_t>& shapes,
                                               const Affine& world_from_local, bool are_deformed) {
-    FoldEdgeFinder flat;
+    std::vector<Tessellation> flat;
     std::vector<OccluderBody> parts;
     for (uint32_t shape : shapes) {
         if (is_cancelled()) break;
         if (!geometry.is_in_the_way[shape]) continue;
         const LocalShape& local = geometry.local[shape];
         if (is_flat(local)) {
-            const Tessellation surface = has_holes(shape) && per_edge_ >= kLeastPerEdge
-                                             ? perforated(shape, world_from_local)
-                                             : Tessellation(local, 1, 1);
-            flat.add(surface.positions(), surface.triangles());
+            flat.push_back(has_holes(shape) && per_edge_ >= kLeastPerEdge
+                               ? perforated(shape, world_from_local)
+                               : Tessellation(local, 1, 1));
             continue;
         }
         OccluderBody body = ball_of(local).value_or(OccluderBody());
@@ -239,23 +222,22 @@ std::vector<OccluderBody> OccluderBodies::add(const std::vector<uint32_t>& shape
             parts.push_back(body);
             continue;
         }
-        FoldEdgeFinder curved;
-        const Tessellation surface(local, piece_of(local), 1);
-        curved.add(surface.positions(), surface.triangles());
-        keep(curved, body, parts);
+        keep({Tessellation(local, piece_of(local), 1)}, body, parts);
     }
-    keep(flat, {}, parts);
+    keep(std::move(flat), {}, parts);
     return parts;
 }
 
-/// Adds to `parts` a body like `body` with the edges that the finder has found, if there are any.
-void OccluderBodies::keep(FoldEdgeFinder& finder, const OccluderBody& body,
+/// Adds to `parts` a body like `body` with the edges of surfaces, if there may be any.
+void OccluderBodies::keep(std::vector<Tessellation> surfaces, const OccluderBody& body,
                           std::vector<OccluderBody>& parts) {
-    const std::vector<FoldEdge> edges = finder.take();
-    if (edges.empty()) return;
+    const EdgeClusters& clusters = sets.emplace_back(std::move(surfaces));
+    if (clusters.hierarchy().empty()) {
+        sets.pop_back();
+        return;
+    }
     parts.push_back(body);
-    parts.back().index = static_cast<uint32_t>(sets.size());
-    sets.emplace_back(edges);
+    parts.back().index = static_cast<uint32_t>(sets.size() - 1);
 }
 
 /// Length of a curved shape's tessellation pieces, in local space: around_ of them make the widest
@@ -283,7 +265,7 @@ Bounds3 OccluderBodies::bounds_of(const OccluderBody& body) const {
     }
     const Bounds3 local = body.kind == OccluderBody::Kind::moving_ball
                               ? bounds_of_ball(body.center, body.radius)
-                              : sets[body.index].hierarchy.bounds();
+                              : sets[body.index].hierarchy().bounds();
     if (!body.instance) return local;
     if (!body.instance->moves) return transformed(local, body.instance->still);
     // A moving body's corners go along curves between two times: its bounds are the boxes at many

@@ -2,31 +2,20 @@
 /// where in the world they stand. Only for query.cpp.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <vector>
 
 #include "geometry/placed_scene.h"
 #include "geometry/tessellation.h"
 #include "occluders/ball_block.h"
-#include "occluders/blind_cones.h"
 #include "occluders/box_hierarchy.h"
-#include "occluders/edge_block.h"
-#include "occluders/fold_edges.h"
+#include "occluders/edge_clusters.h"
 #include "occluders/query.h"
 
 namespace covtrace {
 
-/// The edges of one body, in the local space of a scene of Embree.
-struct EdgeSet {
-    size_t count = 0;
-    BoxHierarchy hierarchy;
-    std::vector<EdgeBlock> blocks;  ///< its items, in their order
-    std::vector<BlindCones> cones;  ///< for each node of the hierarchy
-
-    explicit EdgeSet(const std::vector<FoldEdge>& found);
-};
-
-/// An edge set, or balls, somewhere in the world.
+/// Clusters of edges, or balls, somewhere in the world.
 struct OccluderBody {
     enum class Kind { edges, balls, moving_ball };
     Kind kind = Kind::edges;
@@ -42,7 +31,7 @@ class OccluderBodies {
     OccluderBodies(const Geometry::Impl& geometry, std::function<bool()> cancelled);
 
     const Geometry::Impl& geometry;
-    std::vector<EdgeSet> sets;
+    std::deque<EdgeClusters> sets;
     std::vector<BallBlock> balls;      ///< that do not move
     std::vector<OccluderBody> bodies;  ///< in the order of `hierarchy`
     BoxHierarchy hierarchy;            ///< over the bodies, throughout the shutter
@@ -61,7 +50,8 @@ class OccluderBodies {
     std::vector<OccluderBody> add(const std::vector<uint32_t>& shapes,
                                   const Affine& world_from_local, bool are_deformed);
     void add_balls(const std::vector<OccluderBall>& all);
-    void keep(FoldEdgeFinder& finder, const OccluderBody& body, std::vector<OccluderBody>& parts);
+    void keep(std::vector<Tessellation> surfaces, const OccluderBody& body,
+              std::vector<OccluderBody>& parts);
     double piece_of(const LocalShape& shape) const;
     bool keeps_angles(const EmbreeInstance& instance) const;
     Bounds3 bounds_of(const OccluderBody& body) const;

@@ -46,6 +46,7 @@ struct BoxHierarchy::Builder {
     std::span<const Bounds3> boxes;
     uint32_t per_item;
     const std::function<bool()>& is_cancelled;
+    bool by_many_threads;
     float margin = 0;
     std::atomic<bool> was_cancelled = false;
     static constexpr uint32_t kSerial = 1 << 14;  ///< ranges below are built by one thread each
@@ -241,11 +242,12 @@ struct BoxHierarchy::Builder {
         const Part all = part_of({0, static_cast<uint32_t>(boxes.size())});
         h.bounds_ = all.extent.bounds();
         margin = kMargin * length(h.bounds_.diagonal());
-        build(all, 0, h.nodes_, true);
-        parallel_for(static_cast<int64_t>(tasks.size()), [&](int64_t i) {
-            Task& t = tasks[static_cast<size_t>(i)];
-            build(t.part, t.depth, t.nodes, false);
-        });
+        build(all, 0, h.nodes_, by_many_threads);
+        if (by_many_threads)
+            parallel_for(static_cast<int64_t>(tasks.size()), [&](int64_t i) {
+                Task& t = tasks[static_cast<size_t>(i)];
+                build(t.part, t.depth, t.nodes, false);
+            });
         if (was_cancelled) {
             h = BoxHierarchy();
             return;
@@ -266,7 +268,15 @@ struct BoxHierarchy::Builder {
 
 BoxHierarchy::BoxHierarchy(std::span<const Bounds3> boxes, uint32_t per_item,
                            const std::function<bool()>& cancelled) {
-    if (!boxes.empty()) Builder{*this, boxes, per_item, cancelled}.run();
+    if (!boxes.empty())
+        Builder{*this, boxes, per_item, cancelled, boxes.size() >= Builder::kSerial}.run();
+}
+
+BoxHierarchy BoxHierarchy::by_one_thread(std::span<const Bounds3> boxes, uint32_t per_item) {
+    const std::function<bool()> never;
+    BoxHierarchy h;
+    if (!boxes.empty()) Builder{h, boxes, per_item, never, false}.run();
+    return h;
 }
 
 }  // namespace covtrace

@@ -33,6 +33,9 @@ class BoxHierarchy {
     /// `cancelled`, asked from any thread, says yes.
     explicit BoxHierarchy(std::span<const Bounds3> boxes, uint32_t per_item = 1,
                           const std::function<bool()>& cancelled = {});
+    /// The same on the calling thread alone, as in the midst of a path: where many threads share
+    /// the work, one that waits for the others takes up another path.
+    static BoxHierarchy by_one_thread(std::span<const Bounds3> boxes, uint32_t per_item);
 
     bool empty() const { return nodes_.empty(); }
     /// The root is the first; parents come before their children.

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/frame.h"
-#include "core/parallel.h"
 
 namespace covtrace {
 
@@ -30,49 +29,53 @@ uint64_t hash_of(Vec3 p) {
     return h;
 }
 
-/// One triangle beside an edge, as stored with the edge's smaller corner.
-struct Side {
-    uint32_t other = 0;     ///< the edge's second corner, the larger
-    uint32_t opposite = 0;  ///< the triangle's third corner
+/// Unit directions from an edge into the surfaces around it, at right angles to it.
+using Directions = std::span<const Vec3>;
+
+/// The two of the directions, at right angles to `along`, between which all others lie on one side,
+/// and whether that side is less than half a turn: where it is not, the edge is no outline from
+/// anywhere.
+struct Wedge {
+    Vec3 first, last;
+    bool is_bent = false;
 };
 
-/// Makes the wedge that the triangles at the edge a-b fill, from their third corners. Returns false
-/// where the edge is no outline from anywhere: it has no length, or no gap around it is wider than
-/// pi.
-bool wedge(Vec3 a, Vec3 b, const std::vector<Vec3>& corners, const Side* begin, const Side* end,
-           FoldEdge& edge) {
-    if (!(distance(a, b) > 0)) return false;
-    const Frame frame = Frame::from_z(normalize(b - a));
-    static thread_local std::vector<float> angles;
-    angles.clear();
-    for (const Side* s = begin; s != end; ++s) {
-        const Vec3 d = corners[s->opposite] - a;
-        const float x = dot(d, frame.x), y = dot(d, frame.y);
-        if (x != 0 || y != 0) angles.push_back(std::atan2(y, x));
-    }
-    if (angles.empty()) return false;
-    std::sort(angles.begin(), angles.end());
-    // The wedge is all but the widest gap between neighbouring angles.
-    float widest = angles.front() + 2 * kPi - angles.back();
-    float first = angles.front(), last = angles.back();
-    for (size_t i = 0; i + 1 < angles.size(); ++i)
-        if (angles[i + 1] - angles[i] > widest) {
-            widest = angles[i + 1] - angles[i];
-            first = angles[i + 1];
-            last = angles[i];
+/// The wedge of one or two directions: a border, or two faces.
+Wedge narrow_wedge(Vec3 first, Vec3 last) {
+    // Where the directions differ from opposite ones by the angle e, their sum is 2 sin(e / 2)
+    // long.
+    return {first, last, length_squared(first + last) > sqr(kLeastBend)};
+}
+
+/// The wedge of any directions: all but the widest gap between neighbours.
+Wedge wide_wedge(Vec3 along, Directions directions) {
+    const Frame frame = Frame::from_z(along);
+    std::vector<std::pair<float, Vec3>> sorted;
+    for (const Vec3 d : directions)
+        sorted.emplace_back(std::atan2(dot(d, frame.y), dot(d, frame.x)), d);
+    std::sort(sorted.begin(), sorted.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
+    float widest = sorted.front().first + 2 * kPi - sorted.back().first;
+    Wedge wedge{sorted.front().second, sorted.back().second};
+    for (size_t i = 0; i + 1 < sorted.size(); ++i)
+        if (sorted[i + 1].first - sorted[i].first > widest) {
+            widest = sorted[i + 1].first - sorted[i].first;
+            wedge = {sorted[i + 1].second, sorted[i].second};
         }
-    if (widest < kPi + kLeastBend) return false;
-    const auto normal = [&frame](float angle) {
-        return frame.y * std::cos(angle) - frame.x * std::sin(angle);
-    };
-    edge = {a, b, normal(first), normal(last)};
-    return true;
+    wedge.is_bent = widest > kPi + kLeastBend;
+    return wedge;
 }
 
 }  // namespace
 
+FoldEdgeFinder::FoldEdgeFinder(size_t most) {
+    sides_.reserve(3 * most);
+    corners_.reserve(most);
+    grow(std::bit_ceil(2 * most + 16));
+}
+
 uint32_t FoldEdgeFinder::weld(Vec3 position) {
-    if (2 * (corners_.size() + 1) > table_.size()) grow();
+    if (2 * (corners_.size() + 1) > table_.size()) grow(2 * table_.size());
     const size_t mask = table_.size() - 1;
     for (size_t i = hash_of(position) & mask;; i = (i + 1) & mask) {
         if (table_[i] == kFree) {
@@ -84,8 +87,8 @@ uint32_t FoldEdgeFinder::weld(Vec3 position) {
     }
 }
 
-void FoldEdgeFinder::grow() {
-    table_.assign(std::max<size_t>(1024, 2 * table_.size()), kFree);
+void FoldEdgeFinder::grow(size_t slots) {
+    table_.assign(slots, kFree);
     const size_t mask = table_.size() - 1;
     for (uint32_t c = 0; c < corners_.size(); ++c) {
         size_t i = hash_of(corners_[c]) & mask;
@@ -94,70 +97,57 @@ void FoldEdgeFinder::grow() {
     }
 }
 
-void FoldEdgeFinder::add(const std::vector<Vec3>& positions,
-                         const std::vector<std::array<uint32_t, 3>>& triangles) {
-    std::vector<uint32_t> corner_of(positions.size(), kFree);
-    for (const auto& t : triangles) {
-        std::array<uint32_t, 3> corners{};
-        bool finite = true;
-        for (size_t k = 0; k < 3; ++k) {
-            const Vec3 p = positions[t[k]];
-            finite = finite && is_finite(p);
-            if (!finite) break;
-            uint32_t& c = corner_of[t[k]];
-            if (c == kFree) c = weld(p);
-            corners[k] = c;
-        }
-        if (finite && corners[0] != corners[1] && corners[1] != corners[2] &&
-            corners[2] != corners[0])
-            triangles_.push_back(corners);
+void FoldEdgeFinder::add(const std::array<Vec3, 3>& corners, const Owners& owners) {
+    for (const Vec3 p : corners)
+        if (!is_finite(p)) return;
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) return;
+    std::array<uint32_t, 3> welded{};
+    for (size_t k = 0; k < 3; ++k) welded[k] = weld(corners[k]);
+    for (size_t k = 0; k < 3; ++k) {
+        size_t a = k, b = (k + 1) % 3;
+        if (is_before(corners[b], corners[a])) std::swap(a, b);
+        if (owners[a]) sides_.push_back({welded[a], welded[b], welded[(k + 2) % 3]});
     }
 }
 
-std::vector<FoldEdge> FoldEdgeFinder::take() {
-    // Sides are sorted by the smaller corner of their edge.
-    std::vector<uint32_t> first(corners_.size() + 1, 0);
-    const auto for_sides = [this](const auto& body) {
-        for (const auto& t : triangles_)
-            for (size_t k = 0; k < 3; ++k) {
-                const uint32_t i = t[k], j = t[(k + 1) % 3];
-                body(std::min(i, j), Side{std::max(i, j), t[(k + 2) % 3]});
-            }
-    };
-    for_sides([&](uint32_t corner, Side) { ++first[corner + 1]; });
-    for (size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-    std::vector<Side> sides(first.back());
-    std::vector<uint32_t> next(first.begin(), first.end() - 1);
-    for_sides([&](uint32_t corner, Side side) { sides[next[corner]++] = side; });
-    triangles_ = decltype(triangles_)();
-    table_ = decltype(table_)();
+bool FoldEdgeFinder::find(std::span<const Side> sides, FoldEdge& edge) const {
+    const Vec3 a = corners_[sides[0].a], b = corners_[sides[0].b], along = normalize(b - a);
+    directions_.clear();
+    for (const Side& s : sides) {
+        const Vec3 d = corners_[s.opposite] - a, across = normalize(d - along * dot(d, along));
+        if (across != Vec3{}) directions_.push_back(across);
+    }
+    if (along == Vec3{} || directions_.empty()) return false;
+    const Wedge wedge = directions_.size() > 2
+                            ? wide_wedge(along, directions_)
+                            : narrow_wedge(directions_.front(), directions_.back());
+    edge = {a, b, cross(along, wedge.first), cross(along, wedge.last)};
+    return wedge.is_bent;
+}
 
-    constexpr size_t kBlock = 8192;  // corners
-    const size_t blocks = (corners_.size() + kBlock - 1) / kBlock;
-    std::vector<std::vector<FoldEdge>> found(blocks);
-    parallel_for(static_cast<int64_t>(blocks), [&](int64_t block) {
-        const auto b = static_cast<size_t>(block);
-        for (size_t c = b * kBlock; c < std::min(corners_.size(), (b + 1) * kBlock); ++c) {
-            Side *begin = sides.data() + first[c], *end = sides.data() + first[c + 1];
-            std::sort(begin, end, [](Side s, Side t) {
-                return s.other < t.other || (s.other == t.other && s.opposite < t.opposite);
-            });
-            for (Side* group = begin; group != end;) {
-                Side* last = group;
-                while (last != end && last->other == group->other) ++last;
-                FoldEdge edge;
-                if (wedge(corners_[c], corners_[group->other], corners_, group, last, edge))
-                    found[b].push_back(edge);
-                group = last;
-            }
-        }
-    });
+std::vector<FoldEdge> FoldEdgeFinder::take() {
+    // Sides are sorted by the first corner of their edge.
+    std::vector<uint32_t> first(corners_.size() + 1, 0);
+    for (const Side& s : sides_) ++first[s.a + 1];
+    for (size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+    std::vector<Side> sides(sides_.size());
+    std::vector<uint32_t> next(first.begin(), first.end() - 1);
+    for (const Side& s : sides_) sides[next[s.a]++] = s;
+
     std::vector<FoldEdge> all;
-    size_t count = 0;
-    for (const auto& edges : found) count += edges.size();
-    all.reserve(count);
-    for (const auto& edges : found) all.insert(all.end(), edges.begin(), edges.end());
-    corners_ = decltype(corners_)();
+    all.reserve(sides.size() / 2 + 1);
+    for (size_t c = 0; c < corners_.size(); ++c) {
+        const std::span of_corner = std::span(sides).subspan(first[c], first[c + 1] - first[c]);
+        std::sort(of_corner.begin(), of_corner.end(), [](const Side& s, const Side& t) {
+            return s.b < t.b || (s.b == t.b && s.opposite < t.opposite);
+        });
+        for (size_t i = 0, end = 0; i < of_corner.size(); i = end) {
+            while (end < of_corner.size() && of_corner[end].b == of_corner[i].b) ++end;
+            FoldEdge edge;
+            if (find(of_corner.subspan(i, end - i), edge)) all.push_back(edge);
+        }
+    }
+    *this = FoldEdgeFinder();
     return all;
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/vec.h"
@@ -19,24 +20,43 @@ struct FoldEdge {
     Vec3 normal0, normal1;
 };
 
-/// Collects triangles of one space and finds their edges. Corners at the very same place are one,
-/// whichever mesh they belong to.
+/// An order of places: by x, then y, then z.
+inline bool is_before(Vec3 a, Vec3 b) {
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+
+/// Collects triangles of one space and finds their edges. Corners at the very same place are one.
 class FoldEdgeFinder {
   public:
-    /// Adds triangles; those with a corner that is not finite are dropped.
-    void add(const std::vector<Vec3>& positions,
-             const std::vector<std::array<uint32_t, 3>>& triangles);
+    /// `most`: about how many triangles will be added.
+    explicit FoldEdgeFinder(size_t most = 0);
+
+    /// Whose edges are wanted, by the triangle's corners. An edge belongs to its first corner
+    /// by is_before().
+    using Owners = std::array<bool, 3>;
+    /// Adds a triangle; dropped where a corner is not finite or two of them are at one place. All
+    /// triangles at an edge have to name the same corners as owners.
+    void add(const std::array<Vec3, 3>& corners, const Owners& owners = {true, true, true});
     /// Gives the edges, in an order that depends on nothing but what was added, and forgets
     /// everything.
     std::vector<FoldEdge> take();
 
   private:
+    /// One triangle at an edge, which belongs to the corner `a`.
+    struct Side {
+        uint32_t a = 0, b = 0;
+        uint32_t opposite = 0;  ///< the triangle's third corner
+    };
+
     uint32_t weld(Vec3 position);
-    void grow();
+    void grow(size_t slots);
+    /// Makes an edge from all sides at it. Returns false where it is no outline from anywhere.
+    bool find(std::span<const Side> sides, FoldEdge& edge) const;
 
     std::vector<Vec3> corners_;
     std::vector<uint32_t> table_;  ///< open addressing by the position's bits
-    std::vector<std::array<uint32_t, 3>> triangles_;
+    std::vector<Side> sides_;
+    mutable std::vector<Vec3> directions_;  ///< of `find`
 };
 
 }  // namespace covtrace

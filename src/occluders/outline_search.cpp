@@ -36,14 +36,18 @@ void OutlineSearch::enter(const Affine& m) {
     local_end_ = m.inverse().point(Vec3d(end_)).to_float();
 }
 
-BoxHierarchy::Met OutlineSearch::near_local(const BoxHierarchy::Node& node,
-                                            const BlindCones& cones) {
+BoxHierarchy::Met OutlineSearch::near_local(const BoxHierarchy::Node& node) {
     const auto row = [this](size_t i) { return all8(rows_[i]); };
     const Vec3x8 x = row(0), y = row(1), z = row(2), shift = all8(shift_ - end_);
     const Vec3x8 middle{dot8(x, node.middle) + shift.x, dot8(y, node.middle) + shift.y,
                         dot8(z, node.middle) + shift.z};
     const Vec3x8 half{dot8(abs8(x), node.half), dot8(abs8(y), node.half), dot8(abs8(z), node.half)};
-    BoxHierarchy::Met met = may_matter(middle, half);
+    return may_matter(middle, half);
+}
+
+BoxHierarchy::Met OutlineSearch::near_local(const BoxHierarchy::Node& node,
+                                            const BlindCones& cones) {
+    BoxHierarchy::Met met = near_local(node);
     met.bits &= ~bits8(cones.hide(node.middle - all8(local_end_)));
     return met;
 }

@@ -36,6 +36,7 @@ class OutlineSearch {
 
     /// Sets the local space of the nodes and edges that near_local and meet_local are given next.
     void enter(const Affine& world_from_local);
+    BoxHierarchy::Met near_local(const BoxHierarchy::Node& node);
     BoxHierarchy::Met near_local(const BoxHierarchy::Node& node, const BlindCones& cones);
     void meet_local(const EdgeBlock& edges, uint32_t body);
 

@@ -12,6 +12,26 @@ struct OccluderQuery::Impl : OccluderBodies {
     using OccluderBodies::OccluderBodies;
 };
 
+namespace {
+
+/// Calls meet(edges) for the blocks of edges that a search comes by. `near`: the boxes of a node
+/// that it enters, of the node alone or of the node and its blind cones.
+template <class Limit, class Near, class Meet>
+void search_clusters(const EdgeClusters& clusters, const Limit& limit, const Near& near,
+                     const Meet& meet) {
+    using Node = BoxHierarchy::Node;
+    clusters.hierarchy().search(
+        [&](const Node& node, uint32_t) { return near(node); }, limit,
+        [&](uint32_t cluster) {
+            const EdgeSet& set = clusters.edges(cluster);
+            set.hierarchy.search(
+                [&](const Node& node, uint32_t i) { return near(node, set.cones[i]); }, limit,
+                [&](uint32_t i) { meet(set.blocks[i]); });
+        });
+}
+
+}  // namespace
+
 OccluderQuery::OccluderQuery(const Geometry& geometry, std::function<bool()> cancelled) {
     try {
         impl_ = std::make_unique<Impl>(geometry.impl(), std::move(cancelled));
@@ -23,15 +43,13 @@ OccluderQuery::~OccluderQuery() = default;
 
 size_t OccluderQuery::edges() const {
     size_t count = 0;
-    for (const EdgeSet& set : impl_->sets) count += set.count;
+    for (const EdgeClusters& set : impl_->sets) count += set.count();
     return count;
 }
 
 size_t OccluderQuery::memory() const {
     size_t bytes = impl_->hierarchy.memory() + impl_->bodies.capacity() * sizeof(OccluderBody);
-    for (const EdgeSet& set : impl_->sets)
-        bytes += set.hierarchy.memory() + set.blocks.capacity() * sizeof(EdgeBlock) +
-                 set.cones.capacity() * sizeof(BlindCones);
+    for (const EdgeClusters& set : impl_->sets) bytes += set.memory();
     return bytes + impl_->balls.capacity() * sizeof(BallBlock);
 }
 
@@ -60,19 +78,16 @@ OutlineEvents OccluderQuery::operator()(const Segment& segment, const EdgeMeasur
                 const OccluderBall ball = g.moved(body, segment.time);
                 return search.meet_balls(BallBlock(std::span(&ball, 1)), 0, index);
             }
-            const EdgeSet& set = g.sets[body.index];
-            if (!body.instance) {
-                set.hierarchy.search(
-                    [&](const Node& node, uint32_t i) {
-                        return search.near_world(node, set.cones[i]);
-                    },
-                    limit, [&](uint32_t i) { search.meet_world(set.blocks[i], index); });
-                return;
-            }
+            const EdgeClusters& set = g.sets[body.index];
+            if (!body.instance)
+                return search_clusters(
+                    set, limit,
+                    [&](const auto&... of_node) { return search.near_world(of_node...); },
+                    [&](const EdgeBlock& edges) { search.meet_world(edges, index); });
             search.enter(g.geometry.world_from_local(*body.instance, segment.time));
-            set.hierarchy.search(
-                [&](const Node& node, uint32_t i) { return search.near_local(node, set.cones[i]); },
-                limit, [&](uint32_t i) { search.meet_local(set.blocks[i], index); });
+            search_clusters(
+                set, limit, [&](const auto&... of_node) { return search.near_local(of_node...); },
+                [&](const EdgeBlock& edges) { search.meet_local(edges, index); });
         });
 
     OutlineEvents events;

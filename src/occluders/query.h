@@ -54,12 +54,14 @@ class OccluderQuery {
     };
     /// The narrowest edge by `measure` in each of four sectors of direction, without those that
     /// repeat a narrower one's direction and those many times wider than the narrowest. `nearest`:
-    /// edges that pass closer than this to either end do not count. Thread-safe, no heap use.
+    /// edges that pass closer than this to either end do not count. The edges of meshes are found
+    /// where a search first comes by. Thread-safe; the same whoever asks first. Throws
+    /// std::bad_alloc.
     OutlineEvents operator()(const Segment& segment, const EdgeMeasure& measure,
                              float nearest) const;
 
-    size_t edges() const;
-    size_t memory() const;  ///< bytes
+    size_t edges() const;   ///< of all meshes; finds those that no search has come by
+    size_t memory() const;  ///< bytes, of what was found so far
 
   private:
     struct Impl;

@@ -35,7 +35,8 @@ BoxHierarchy::Met any_order(const Mask8& boxes) {
 
 std::vector<FoldEdge> edges_of(const TriangleMesh& m) {
     FoldEdgeFinder finder;
-    finder.add(m.positions, m.triangles);
+    for (const auto& t : m.triangles)
+        finder.add({m.positions[t[0]], m.positions[t[1]], m.positions[t[2]]});
     return finder.take();
 }
 
