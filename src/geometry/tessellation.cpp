@@ -14,6 +14,11 @@ int pieces(double length, double piece, int least) {
 }
 }  // namespace
 
+bool is_flat(const LocalShape& shape) {
+    const auto* patches = std::get_if<PatchShape>(&shape);
+    return std::holds_alternative<TriangleShape>(shape) || (patches && patches->parallelograms);
+}
+
 Tessellation::Tessellation(const LocalShape& shape, double piece, double scale) {
     if ((mesh_ = std::get_if<TriangleShape>(&shape))) return;
     if (const auto* patches = std::get_if<PatchShape>(&shape)) {
@@ -41,10 +46,11 @@ Tessellation::Tessellation(const LocalShape& shape, double piece, double scale) 
 }
 
 Tessellation::Tessellation(const LocalShape& shape, double piece, double scale,
-                           const Opacity& opacity, int most) {
+                           const Opacity& opacity) {
     // The number of pieces is bounded: small pieces of large triangles would outgrow memory, and
     // holes of a 64th of a triangle do.
-    const auto count = [&](double edge) { return std::min(most, pieces(scale * edge, piece, 1)); };
+    constexpr int kMost = 64;
+    const auto count = [&](double edge) { return std::min(kMost, pieces(scale * edge, piece, 1)); };
     if (const auto* mesh = std::get_if<TriangleShape>(&shape)) {
         for (uint32_t i = 0; i < mesh->mesh->triangles.size(); ++i) {
             const auto& t = mesh->mesh->triangles[i];

@@ -9,6 +9,9 @@
 
 namespace covtrace {
 
+/// Whether `shape` has triangles of its own, or parallelograms that are two of them each.
+bool is_flat(const LocalShape& shape);
+
 /// Triangles over positions; either list may belong to the shape itself, which must outlive this.
 class Tessellation {
   public:
@@ -18,12 +21,10 @@ class Tessellation {
     /// `scale` is how much longer a local unit may be in the scene.
     Tessellation(const LocalShape& shape, double piece, double scale);
 
-    /// Makes a surface with holes: the shape is cut into pieces of about `piece` everywhere. Pieces
-    /// that `opacity` makes opaque are kept, and a part of those that are partly so. `opacity` gets
-    /// a point in local space. A primitive has at most `most` pieces along an
-    /// edge.
-    Tessellation(const LocalShape& shape, double piece, double scale, const Opacity& opacity,
-                 int most = 64);
+    /// Makes a surface with holes: the shape is cut into pieces of about `piece` everywhere, at
+    /// most 64 along a primitive's edge. Pieces that `opacity` makes opaque are kept, and a part of
+    /// those that are partly so. `opacity` gets a point in local space.
+    Tessellation(const LocalShape& shape, double piece, double scale, const Opacity& opacity);
 
     size_t size() const { return triangles().size(); }
     std::array<Vec3, 3> operator[](size_t i) const {

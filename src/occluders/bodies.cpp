@@ -50,11 +50,6 @@ std::optional<OccluderBody> ball_of(const LocalShape& shape) {
     return body.radius > 0 ? std::optional(body) : std::nullopt;
 }
 
-bool is_flat(const LocalShape& shape) {
-    const auto* patches = std::get_if<PatchShape>(&shape);
-    return std::holds_alternative<TriangleShape>(shape) || (patches && patches->parallelograms);
-}
-
 /// Number of triangles of a flat shape.
 size_t triangle_count(const LocalShape& shape) {
     if (const auto* mesh = std::get_if<TriangleShape>(&shape)) return mesh->mesh->triangles.size();
@@ -185,18 +180,20 @@ bool OccluderBodies::has_holes(uint32_t shape) const {
     return geometry.placed[shape].description.alpha >= 0 && geometry.alpha;
 }
 
-/// The triangles that alpha leaves of a flat shape. Alpha that depends on the place in the world is
+/// A flat shape with the holes that alpha makes. Alpha that depends on the place in the world is
 /// looked up where `world_from_local` puts the shape.
-Tessellation OccluderBodies::perforated(uint32_t shape, const Affine& world_from_local) const {
+OccluderSurface OccluderBodies::flat_surface(uint32_t shape, const Affine& world_from_local) const {
+    const LocalShape& local = geometry.local[shape];
+    OccluderSurface surface{Tessellation(local, 1, 1)};
+    if (!has_holes(shape) || per_edge_ < kLeastPerEdge) return surface;
     const TextureId texture = geometry.placed[shape].description.alpha;
-    // No piece is as small as 1e-30 units, so that per_edge_ alone decides how many there are.
-    return Tessellation(
-        geometry.local[shape], 1e-30, 1,
-        [&](const SurfacePoint& p) {
-            const Vec3 at = world_from_local.point(p.position).to_float();
-            return geometry.alpha(texture, p.uv, at, p.vertices) > kOpaque ? 1.0f : 0.0f;
-        },
-        per_edge_);
+    surface.holes = {&local,
+                     [this, texture, world_from_local](const SurfacePoint& p) {
+                         const Vec3 at = world_from_local.point(p.position).to_float();
+                         return geometry.alpha(texture, p.uv, at, p.vertices) > kOpaque;
+                     },
+                     per_edge_};
+    return surface;
 }
 
 /// Makes bodies of the shapes of one of Embree's scenes: one edge set for all flat shapes together,
@@ -204,16 +201,14 @@ Tessellation OccluderBodies::perforated(uint32_t shape, const Affine& world_from
 /// sphere gets an edge set as well, for the instances that make an ellipsoid of it.
 std::vector<OccluderBody> OccluderBodies::add(const std::vector<uint32_t>& shapes,
                                               const Affine& world_from_local, bool are_deformed) {
-    std::vector<Tessellation> flat;
+    std::vector<OccluderSurface> flat;
     std::vector<OccluderBody> parts;
     for (uint32_t shape : shapes) {
         if (is_cancelled()) break;
         if (!geometry.is_in_the_way[shape]) continue;
         const LocalShape& local = geometry.local[shape];
         if (is_flat(local)) {
-            flat.push_back(has_holes(shape) && per_edge_ >= kLeastPerEdge
-                               ? perforated(shape, world_from_local)
-                               : Tessellation(local, 1, 1));
+            flat.push_back(flat_surface(shape, world_from_local));
             continue;
         }
         OccluderBody body = ball_of(local).value_or(OccluderBody());
@@ -222,14 +217,16 @@ std::vector<OccluderBody> OccluderBodies::add(const std::vector<uint32_t>& shape
             parts.push_back(body);
             continue;
         }
-        keep({Tessellation(local, piece_of(local), 1)}, body, parts);
+        std::vector<OccluderSurface> curved;
+        curved.push_back({Tessellation(local, piece_of(local), 1)});
+        keep(std::move(curved), body, parts);
     }
     keep(std::move(flat), {}, parts);
     return parts;
 }
 
 /// Adds to `parts` a body like `body` with the edges of surfaces, if there may be any.
-void OccluderBodies::keep(std::vector<Tessellation> surfaces, const OccluderBody& body,
+void OccluderBodies::keep(std::vector<OccluderSurface> surfaces, const OccluderBody& body,
                           std::vector<OccluderBody>& parts) {
     const EdgeClusters& clusters = sets.emplace_back(std::move(surfaces));
     if (clusters.hierarchy().empty()) {

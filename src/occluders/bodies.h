@@ -44,13 +44,13 @@ class OccluderBodies {
 
     bool is_cancelled() const { return cancelled_ && cancelled_(); }
     bool has_holes(uint32_t shape) const;
-    Tessellation perforated(uint32_t shape, const Affine& world_from_local) const;
+    OccluderSurface flat_surface(uint32_t shape, const Affine& world_from_local) const;
     /// Whether an instance of each of Embree's scenes makes ellipsoids of its balls.
     std::vector<bool> deformed_scenes() const;
     std::vector<OccluderBody> add(const std::vector<uint32_t>& shapes,
                                   const Affine& world_from_local, bool are_deformed);
     void add_balls(const std::vector<OccluderBall>& all);
-    void keep(std::vector<Tessellation> surfaces, const OccluderBody& body,
+    void keep(std::vector<OccluderSurface> surfaces, const OccluderBody& body,
               std::vector<OccluderBody>& parts);
     double piece_of(const LocalShape& shape) const;
     bool keeps_angles(const EmbreeInstance& instance) const;

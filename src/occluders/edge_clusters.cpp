@@ -10,12 +10,13 @@ namespace covtrace {
 namespace {
 
 constexpr uint32_t kNoCluster = ~uint32_t{0};
-/// Most corners of a cluster, but where many are at the very same place.
+/// Most corners of a cluster, those of pieces among them, but where many belong to one place.
 constexpr size_t kMostCorners = 512;
 
 struct Corner {
     Vec3 place;
-    size_t index = 0;  ///< among the corners of all surfaces
+    uint32_t pieces = 1;  ///< about how many corners of pieces it stands for
+    size_t index = 0;     ///< among the corners of all surfaces
 };
 
 /// Numbers clusters of corners. Which one a corner falls into depends on its place alone: ranges
@@ -27,11 +28,15 @@ class CornerClusters {
     void cut(std::span<Corner> corners) {
         if (corners.empty()) return;
         Bounds3 bounds;
-        for (const Corner& c : corners) bounds.extend(c.place);
+        size_t all = 0;
+        for (const Corner& c : corners) {
+            bounds.extend(c.place);
+            all += c.pieces;
+        }
         const Vec3 size = bounds.diagonal();
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         const float lo = bounds.lo[axis], hi = bounds.hi[axis];
-        if (corners.size() <= kMostCorners || lo == hi) {
+        if (all <= kMostCorners || lo == hi) {
             for (const Corner& c : corners) cluster_of_[c.index] = count_;
             ++count_;
             return;
@@ -50,6 +55,11 @@ class CornerClusters {
     std::vector<uint32_t>& cluster_of_;
     uint32_t count_ = 0;
 };
+
+/// An order of places: by x, then y, then z.
+inline bool is_before(Vec3 a, Vec3 b) {
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
 
 /// The order of a triangle's corners by is_before(); none where two of them are at one place or
 /// one is nowhere.
@@ -72,9 +82,10 @@ bool sort_corners(const std::array<Vec3, 3>& p, std::array<size_t, 3>& order) {
 template <class Body>
 void EdgeClusters::for_edge_owners(const Body& body) const {
     for (uint32_t s = 0; s < surfaces_.size(); ++s) {
-        const auto& triangles = surfaces_[s].triangles();
+        const Tessellation& surface = surfaces_[s].triangles;
+        const auto& triangles = surface.triangles();
         for (uint32_t t = 0; t < triangles.size(); ++t) {
-            const std::array<Vec3, 3> p = surfaces_[s][t];
+            const std::array<Vec3, 3> p = surface[t];
             std::array<size_t, 3> order;
             if (!sort_corners(p, order)) continue;
             const auto cluster = [&](size_t i) {
@@ -89,24 +100,28 @@ void EdgeClusters::for_edge_owners(const Body& body) const {
     }
 }
 
-EdgeClusters::EdgeClusters(std::vector<Tessellation> surfaces) : surfaces_(std::move(surfaces)) {
+EdgeClusters::EdgeClusters(std::vector<OccluderSurface> surfaces) : surfaces_(std::move(surfaces)) {
     size_t corner_count = 0;
-    for (const Tessellation& surface : surfaces_) {
+    for (const OccluderSurface& surface : surfaces_) {
         first_corner_.push_back(corner_count);
-        corner_count += surface.positions().size();
+        corner_count += surface.triangles.positions().size();
     }
     cluster_of_.assign(corner_count, kNoCluster);
     std::vector<Corner> corners;
     corners.reserve(corner_count);
-    for (size_t s = 0; s < surfaces_.size(); ++s)
-        for (const auto& triangle : surfaces_[s].triangles())
+    for (size_t s = 0; s < surfaces_.size(); ++s) {
+        const Tessellation& surface = surfaces_[s].triangles;
+        const int per_edge = surfaces_[s].holes ? surfaces_[s].holes->per_edge : 1;
+        const auto pieces = static_cast<uint32_t>(std::max(1, per_edge * per_edge / 2));
+        for (const auto& triangle : surface.triangles())
             for (const uint32_t k : triangle) {
                 uint32_t& cluster = cluster_of_[first_corner_[s] + k];
-                const Vec3 place = surfaces_[s].positions()[k];
+                const Vec3 place = surface.positions()[k];
                 if (cluster != kNoCluster || !is_finite(place)) continue;
                 cluster = 0;
-                corners.push_back({place, first_corner_[s] + k});
+                corners.push_back({place, pieces, first_corner_[s] + k});
             }
+    }
     CornerClusters clusters(cluster_of_);
     clusters.cut(corners);
     corners = {};
@@ -145,18 +160,40 @@ EdgeClusters::~EdgeClusters() {
     for (const auto& set : found_) delete set.load();
 }
 
+/// Adds a triangle, or its pieces, with the edges that a cluster owns. An edge of a triangle, and
+/// all pieces of it, belongs to its first corner; edges between pieces belong to the first corner
+/// of all.
+void EdgeClusters::add(const Reference& reference, uint32_t cluster, FoldEdgeFinder& finder) const {
+    const OccluderSurface& surface = surfaces_[reference.surface];
+    const auto& triangle = surface.triangles.triangles()[reference.triangle];
+    const std::array<Vec3, 3> p = surface.triangles[reference.triangle];
+    const auto owns = [&](size_t k) {
+        return cluster_of_[first_corner_[reference.surface] + triangle[k]] == cluster;
+    };
+    const auto first = [&](size_t k, size_t other) {
+        return is_before(p[other], p[k]) ? other : k;
+    };
+    const FoldEdgeFinder::Wanted wanted{owns(first(0, 1)), owns(first(1, 2)), owns(first(2, 0))};
+    if (!surface.holes) {
+        finder.add(p, wanted);
+        return;
+    }
+    const bool wants_inside = owns(first(first(0, 1), 2));
+    const auto is_wanted = [&](size_t edge) {
+        return edge == PiercedTriangle::kInside ? wants_inside : wanted[edge];
+    };
+    const OccluderSurface::Holes& holes = *surface.holes;
+    for (const PiercedTriangle::Piece& piece :
+         PiercedTriangle(*holes.shape, reference.triangle).pieces(holes.per_edge, holes.is_opaque))
+        finder.add(piece.corners, {is_wanted(piece.edges[0]), is_wanted(piece.edges[1]),
+                                   is_wanted(piece.edges[2])});
+}
+
 std::vector<FoldEdge> EdgeClusters::find(uint32_t cluster) const {
     const std::span references =
         std::span(references_).subspan(first_[cluster], first_[cluster + 1] - first_[cluster]);
     FoldEdgeFinder finder(references.size());
-    for (const Reference& r : references) {
-        const Tessellation& surface = surfaces_[r.surface];
-        const auto owns = [&](size_t k) {
-            return cluster_of_[first_corner_[r.surface] + surface.triangles()[r.triangle][k]] ==
-                   cluster;
-        };
-        finder.add(surface[r.triangle], {owns(0), owns(1), owns(2)});
-    }
+    for (const Reference& reference : references) add(reference, cluster, finder);
     return finder.take();
 }
 
@@ -182,7 +219,7 @@ size_t EdgeClusters::memory() const {
                    first_.capacity() * sizeof(size_t) + references_.capacity() * sizeof(Reference) +
                    found_.capacity() * sizeof found_[0] +
                    cluster_of_item_.capacity() * sizeof(uint32_t);
-    for (const Tessellation& surface : surfaces_) bytes += surface.memory();
+    for (const OccluderSurface& surface : surfaces_) bytes += surface.triangles.memory();
     for (const auto& set : found_)
         if (const EdgeSet* s = set.load(std::memory_order_acquire)) bytes += s->memory();
     return bytes;

@@ -5,20 +5,34 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "geometry/pierced_triangle.h"
 #include "geometry/tessellation.h"
 #include "occluders/box_hierarchy.h"
 #include "occluders/edge_set.h"
 
 namespace covtrace {
 
+/// Triangles that occlude, or, where `holes` tells of any, the pieces of them that are left.
+struct OccluderSurface {
+    Tessellation triangles;
+    /// A flat shape with holes: its triangles are those of `triangles`.
+    struct Holes {
+        const LocalShape* shape = nullptr;
+        PiercedTriangle::IsOpaque is_opaque;
+        int per_edge = 1;  ///< pieces of a triangle's edge
+    };
+    std::optional<Holes> holes = {};
+};
+
 class EdgeClusters {
   public:
     /// Sorts triangles of one space into clusters; those with a corner that is not finite are
     /// dropped. Corners at the very same place are one, whichever surface they belong to. What a
     /// surface refers to must outlive this.
-    explicit EdgeClusters(std::vector<Tessellation> surfaces);
+    explicit EdgeClusters(std::vector<OccluderSurface> surfaces);
     ~EdgeClusters();
     EdgeClusters(const EdgeClusters&) = delete;
     EdgeClusters& operator=(const EdgeClusters&) = delete;
@@ -41,9 +55,10 @@ class EdgeClusters {
     void build_hierarchy(const std::vector<Bounds3>& boxes);
     template <class Body>
     void for_edge_owners(const Body& body) const;
+    void add(const Reference& reference, uint32_t cluster, FoldEdgeFinder& finder) const;
     std::vector<FoldEdge> find(uint32_t cluster) const;
 
-    std::vector<Tessellation> surfaces_;
+    std::vector<OccluderSurface> surfaces_;
     std::vector<size_t> first_corner_;  ///< for each surface, into cluster_of_
     std::vector<uint32_t> cluster_of_;  ///< of all corners of all surfaces
     std::vector<size_t> first_;         ///< for each cluster, into references_

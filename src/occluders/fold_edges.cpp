@@ -97,17 +97,17 @@ void FoldEdgeFinder::grow(size_t slots) {
     }
 }
 
-void FoldEdgeFinder::add(const std::array<Vec3, 3>& corners, const Owners& owners) {
+void FoldEdgeFinder::add(const std::array<Vec3, 3>& corners, const Wanted& wanted) {
     for (const Vec3 p : corners)
         if (!is_finite(p)) return;
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) return;
     std::array<uint32_t, 3> welded{};
     for (size_t k = 0; k < 3; ++k) welded[k] = weld(corners[k]);
-    for (size_t k = 0; k < 3; ++k) {
-        size_t a = k, b = (k + 1) % 3;
-        if (is_before(corners[b], corners[a])) std::swap(a, b);
-        if (owners[a]) sides_.push_back({welded[a], welded[b], welded[(k + 2) % 3]});
-    }
+    for (size_t k = 0; k < 3; ++k)
+        if (wanted[k]) {
+            const auto [a, b] = std::minmax({welded[k], welded[(k + 1) % 3]});
+            sides_.push_back({a, b, welded[(k + 2) % 3]});
+        }
 }
 
 bool FoldEdgeFinder::find(std::span<const Side> sides, FoldEdge& edge) const {

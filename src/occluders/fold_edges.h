@@ -20,31 +20,25 @@ struct FoldEdge {
     Vec3 normal0, normal1;
 };
 
-/// An order of places: by x, then y, then z.
-inline bool is_before(Vec3 a, Vec3 b) {
-    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-}
-
 /// Collects triangles of one space and finds their edges. Corners at the very same place are one.
 class FoldEdgeFinder {
   public:
     /// `most`: about how many triangles will be added.
     explicit FoldEdgeFinder(size_t most = 0);
 
-    /// Whose edges are wanted, by the triangle's corners. An edge belongs to its first corner
-    /// by is_before().
-    using Owners = std::array<bool, 3>;
-    /// Adds a triangle; dropped where a corner is not finite or two of them are at one place. All
-    /// triangles at an edge have to name the same corners as owners.
-    void add(const std::array<Vec3, 3>& corners, const Owners& owners = {true, true, true});
+    /// Which edges of a triangle are wanted, each from the corner of its index to the next one. All
+    /// triangles at an edge have to want it or not.
+    using Wanted = std::array<bool, 3>;
+    /// Adds a triangle; dropped where a corner is not finite or two of them are at one place.
+    void add(const std::array<Vec3, 3>& corners, const Wanted& wanted = {true, true, true});
     /// Gives the edges, in an order that depends on nothing but what was added, and forgets
     /// everything.
     std::vector<FoldEdge> take();
 
   private:
-    /// One triangle at an edge, which belongs to the corner `a`.
+    /// One triangle at an edge.
     struct Side {
-        uint32_t a = 0, b = 0;
+        uint32_t a = 0, b = 0;  ///< the edge's corners, the smaller number first
         uint32_t opposite = 0;  ///< the triangle's third corner
     };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "core/parallel.h"
@@ -15,10 +16,14 @@ namespace {
 
 using namespace test;
 
-/// The ends of edges, in order.
-std::vector<std::array<float, 6>> ends_of(const std::vector<FoldEdge>& edges) {
-    std::vector<std::array<float, 6>> ends;
-    for (const FoldEdge& e : edges) ends.push_back({e.a.x, e.a.y, e.a.z, e.b.x, e.b.y, e.b.z});
+/// The two ends of edges in steps of 2^-12 units, each edge's and all of them in order.
+using Ends = std::array<std::array<long, 3>, 2>;
+Ends ends_of(Vec3 a, Vec3 b) {
+    const auto steps = [](Vec3 p) {
+        return std::array{std::lround(4096 * p.x), std::lround(4096 * p.y),
+                          std::lround(4096 * p.z)};
+    };
+    Ends ends{steps(a), steps(b)};
     std::sort(ends.begin(), ends.end());
     return ends;
 }
@@ -35,27 +40,45 @@ TEST(EdgeClusters, HoldEveryEdgeOnceWhicheverMeshItsFacesBelongTo) {
         (i % 2 == 0 ? even : odd).triangles.push_back(t);
         finder.add({ball.positions[t[0]], ball.positions[t[1]], ball.positions[t[2]]});
     }
-    const auto all = ends_of(finder.take());
+    std::vector<Ends> all, found;
+    for (const FoldEdge& e : finder.take()) all.push_back(ends_of(e.a, e.b));
     const Geometry g{scene_of({mesh(even), mesh(odd)})};
-    std::vector<Tessellation> surfaces;
-    for (const LocalShape& shape : g.impl().local) surfaces.emplace_back(shape, 1, 1);
+    std::vector<OccluderSurface> surfaces;
+    for (const LocalShape& shape : g.impl().local) surfaces.push_back({Tessellation(shape, 1, 1)});
     const EdgeClusters clusters(std::move(surfaces));
     ASSERT_GT(clusters.hierarchy().items(), 8u);
     EXPECT_EQ(clusters.count(), all.size());
 
-    std::vector<std::array<float, 6>> found;
     for (size_t i = 0; i < clusters.hierarchy().items(); ++i)
         for (const EdgeBlock& block : clusters.edges(i).blocks)
             for (size_t k = 0; k < kLanes; ++k) {
                 const Vec3 a{block.a.x[k], block.a.y[k], block.a.z[k]};
-                if (!is_finite(a)) continue;
-                found.push_back({a.x, a.y, a.z, a.x + block.along.x[k], a.y + block.along.y[k],
-                                 a.z + block.along.z[k]});
+                const Vec3 along{block.along.x[k], block.along.y[k], block.along.z[k]};
+                if (is_finite(a)) found.push_back(ends_of(a, a + along));
             }
-    ASSERT_EQ(found.size(), all.size());
+    std::sort(all.begin(), all.end());
     std::sort(found.begin(), found.end());
-    for (size_t i = 0; i < all.size(); ++i)
-        for (size_t k = 0; k < 3; ++k) ASSERT_EQ(found[i][k], all[i][k]);
+    EXPECT_EQ(found, all);
+}
+
+TEST(EdgeClusters, PiecesHaveEdgesAroundThemAloneWhicheverClusterTheyAreIn) {
+    const Geometry g{scene_of(
+        {patches(patch({0, 0, 5}, {3, 0, 5}, {0, 2, 5}, {3, 2, 5})), mesh(unit_triangle())})};
+    const auto count = [&](size_t shape, float u) {
+        const LocalShape& local = g.impl().local[shape];
+        OccluderSurface surface{Tessellation(local, 1, 1)};
+        surface.holes = {&local, [u](const SurfacePoint& p) { return p.uv.x < u; }, 64};
+        std::vector<OccluderSurface> surfaces;
+        surfaces.push_back(std::move(surface));
+        const EdgeClusters clusters(std::move(surfaces));
+        // 64^2 pieces are too many for a cluster with more than one corner of the shape.
+        EXPECT_GT(clusters.hierarchy().items(), 1u);
+        return clusters.count();
+    };
+    EXPECT_EQ(count(0, 2), 4 * 64u);
+    EXPECT_EQ(count(0, 0.5f), 2 * 64u + 2 * 32u);
+    EXPECT_EQ(count(1, 2), 3 * 64u);
+    EXPECT_EQ(count(1, -1), 0u);
 }
 
 TEST(EdgeClusters, AreFoundWhereASearchComesBy) {
