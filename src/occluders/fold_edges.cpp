@@ -29,26 +29,23 @@ uint64_t hash_of(Vec3 p) {
     return h;
 }
 
-/// Unit directions from an edge into the surfaces around it, at right angles to it.
-using Directions = std::span<const Vec3>;
-
-/// The two of the directions, at right angles to `along`, between which all others lie on one side,
-/// and whether that side is less than half a turn: where it is not, the edge is no outline from
-/// anywhere.
+/// The two directions, of those into the surfaces around an edge, between which all others lie.
 struct Wedge {
     Vec3 first, last;
+    /// Whether they are less than half a turn apart: otherwise the edge is no outline from
+    /// anywhere.
     bool is_bent = false;
 };
 
-/// The wedge of one or two directions: a border, or two faces.
+/// The wedge of a border, whose one direction is both, or of two faces. Directions are of unit
+/// length and at right angles to the edge.
 Wedge narrow_wedge(Vec3 first, Vec3 last) {
-    // Where the directions differ from opposite ones by the angle e, their sum is 2 sin(e / 2)
-    // long.
+    // The sum of unit vectors that lack the angle e to being opposite is 2 sin(e / 2) long.
     return {first, last, length_squared(first + last) > sqr(kLeastBend)};
 }
 
-/// The wedge of any directions: all but the widest gap between neighbours.
-Wedge wide_wedge(Vec3 along, Directions directions) {
+/// The wedge of any number of them: all but the widest gap between neighbours.
+Wedge wide_wedge(Vec3 along, std::span<const Vec3> directions) {
     const Frame frame = Frame::from_z(along);
     std::vector<std::pair<float, Vec3>> sorted;
     for (const Vec3 d : directions)
