@@ -177,6 +177,8 @@ std::vector<Slot> slots_of(SceneDescription&, LightDescription& light) {
                 slots.push_back(colour_slot("L", l.radiance));
             else
                 slots.push_back(number_slot("scale", l.scale));
+            if constexpr (requires { l.angle; })
+                slots.push_back(number_slot("angle", l.angle, 0, 180));
         },
         light.value);
     return slots;

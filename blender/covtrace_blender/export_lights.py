@@ -6,7 +6,7 @@ import bpy
 
 from .shader_nodes.blackbody import blackbody, blackbody_temperature
 from .export_shaders import numbers
-from .visibility import hidden_from
+from .visibility import has_extent, hidden_from
 
 
 # Kinds of lamps that are shapes, which may move while the shutter is open.
@@ -22,28 +22,32 @@ def write_lamp(out, lamp, transform, hidden, warn, moves=False):
         return
     out.write("AttributeBegin\n" + transform)
     if lamp.type == "SUN":
-        if lamp.angle > math.radians(1):
-            warn(f"lamp '{lamp.name}': suns are points here; its angle is left out")
         # Blender's sun shines along -z of its object.
-        out.write(f'LightSource "distant" "point3 from" [0 0 1] "point3 to" [0 0 0] "rgb L" [{numbers(colour)}]\n')
+        out.write(f'LightSource "distant" "point3 from" [0 0 1] "point3 to" [0 0 0] "rgb L" [{numbers(colour)}] '
+                  f'"float angle" {math.degrees(lamp.angle):.9g}{hidden_from(hidden) if has_extent(lamp) else ""}\n')
     elif lamp.type == "AREA":
         _write_area(out, lamp, colour, hidden)
     elif lamp.type == "SPOT":
-        if lamp.shadow_soft_size > 0:
-            warn(f"lamp '{lamp.name}': spots are points here; their radius is left out")
-        intensity = [c / (4 * math.pi) for c in colour]
         outer = lamp.spot_size / 2
         inner = math.acos(math.cos(outer) + (1 - math.cos(outer)) * lamp.spot_blend)
-        out.write(f'LightSource "spot" "point3 from" [0 0 0] "point3 to" [0 0 -1] "rgb I" [{numbers(intensity)}] '
-                  f'"float coneangle" {math.degrees(outer):.9g} "float conedeltaangle" {math.degrees(outer - inner):.9g}\n')
+        cone = f'"float coneangle" {math.degrees(outer):.9g} "float conedeltaangle" {math.degrees(outer - inner):.9g}'
+        if lamp.shadow_soft_size > 0:
+            out.write("Rotate 180 1 0 0\n")  # cones of shapes lie about +z
+            _write_ball(out, lamp.shadow_soft_size, colour, cone, hidden)
+        else:
+            intensity = numbers(c / (4 * math.pi) for c in colour)
+            out.write(f'LightSource "spot" "point3 from" [0 0 0] "point3 to" [0 0 -1] "rgb I" [{intensity}] {cone}\n')
     elif lamp.shadow_soft_size > 0 or moves:
-        radius = max(lamp.shadow_soft_size, LEAST_MOVING_RADIUS if moves else 0)
-        radiance = [c / (4 * math.pi * math.pi * radius**2) for c in colour]
-        out.write(f'AreaLightSource "diffuse" "rgb L" [{numbers(radiance)}] "bool letslightpass" true\n'
-                  f'Shape "sphere" "float radius" {radius:.9g}{hidden_from(hidden)}\n')
+        _write_ball(out, max(lamp.shadow_soft_size, LEAST_MOVING_RADIUS if moves else 0), colour, "", hidden)
     else:
         out.write(f'LightSource "point" "rgb I" [{numbers(c / (4 * math.pi) for c in colour)}]\n')
     out.write("AttributeEnd\n")
+
+
+def _write_ball(out, radius, colour, cone, hidden):
+    radiance = numbers(c / (4 * math.pi * math.pi * radius**2) for c in colour)
+    out.write(f'AreaLightSource "diffuse" "rgb L" [{radiance}] "bool letslightpass" true {cone}\n'
+              f'Shape "sphere" "float radius" {radius:.9g}{hidden_from(hidden)}\n')
 
 
 def _shader_colour(lamp, warn):

@@ -65,13 +65,19 @@ LightField area_field(const SourceSpectrum& s, Vec3 travel, bool seen_sharply, d
     return motion.at_rest() ? left : cov::motion_exit(left, motion);
 }
 
+/// Light that a spot's cone has narrowed.
+LightField within_cone(const LightField& field, const SourceSpectrum& s) {
+    if (!(s.cone_variance > 0)) return field;
+    return cov::add_angular_window(field, cov::spot_window(std::sqrt(double(s.cone_variance))));
+}
+
 }  // namespace
 
 LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sharply,
                         double smallest, const cov::Sym2<double>& texture) {
     switch (source.kind) {
         case SourceSpectrum::Kind::area:
-            return area_field(source, travel, seen_sharply, smallest, texture);
+            return within_cone(area_field(source, travel, seen_sharply, smallest, texture), source);
         case SourceSpectrum::Kind::point: {
             const bool has_image = source.a11 + source.a22 > 0;
             const cov::Frame<double> frame =
@@ -80,9 +86,7 @@ LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sha
             const LightField field = cov::point_source(frame, smallest);
             if (has_image)
                 return cov::add_angular_window(field, {source.a11, source.a12, source.a22});
-            if (!(source.cone_variance > 0)) return field;
-            return cov::add_angular_window(
-                field, cov::spot_window(std::sqrt(double(source.cone_variance))));
+            return within_cone(field, source);
         }
         case SourceSpectrum::Kind::directional:
         case SourceSpectrum::Kind::environment:
@@ -91,7 +95,14 @@ LightField source_field(const SourceSpectrum& source, Vec3 travel, bool seen_sha
     // Directions of the map are those towards the light, against its travel: both slopes change
     // their signs, which a covariance does not see.
     const cov::Frame<double> frame{source.tangent.x, source.tangent.y, travel};
-    return cov::distant_source(frame, {source.a11, source.a12, source.a22});
+    cov::Sym2<double> angular{source.a11, source.a12, source.a22};
+    if (std::isfinite(source.border_distance)) {
+        constexpr double kNearest = 1e-4;  // radians, as far as single precision tells rims apart
+        const double q = cov::edge_variance(std::max<double>(source.border_distance, kNearest));
+        const double dx = source.border_direction.x, dy = source.border_direction.y;
+        angular = angular + cov::Sym2<double>{q * dx * dx, q * dx * dy, q * dy * dy};
+    }
+    return cov::distant_source(frame, angular);
 }
 
 LightField unlit_field(const cov::Surface<double>& surface, const cov::Motion<double>& motion,

@@ -118,7 +118,7 @@ void PathWalk::find_visibilities() {
 void PathWalk::arrive_from_sky() {
     const float escaped = taken(record_.escaped, record_.escape_in_view);
     if (counts(escaped)) {
-        light_.add(sky_field(record_.escape_direction), escaped);
+        light_.add(sky_field(record_.escape_direction, record_.escape_in_view), escaped);
         carry_from_infinity(*light_.field, record_.escape_direction, record_.count - 1,
                             light_.weight);
     }
@@ -224,7 +224,7 @@ PathWalk::SampledLight PathWalk::sampled_light(int i, double weight) const {
     const LightSample& sample = v.light;
     const bool from_infinity = !std::isfinite(sample.distance);
     if (from_infinity && !sample.is_delta) {
-        SampledLight sky{sky_field(sample.wi), {}};
+        SampledLight sky{sky_field(sample.wi, false), {}};
         carry_from_infinity(sky.field, sample.wi, i, weight);
         return sky;
     }
@@ -240,9 +240,10 @@ PathWalk::SampledLight PathWalk::sampled_light(int i, double weight) const {
     return light;
 }
 
-LightField PathWalk::sky_field(Vec3 w) const {
+LightField PathWalk::sky_field(Vec3 w, bool seen_sharply) const {
     if (spectra_.lights.has_even_sky()) return {{}, cov::frame_along<double>(-w)};
-    return source_field(spectra_.lights.environment_spectrum(w), -w, false, context_.smallest);
+    return source_field(spectra_.lights.environment_spectrum(w, seen_sharply), -w, false,
+                        context_.smallest);
 }
 
 // ---- The way between two vertices

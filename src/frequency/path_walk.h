@@ -65,7 +65,7 @@ class PathWalk {
     PathCovariance at_sensor();
 
     SampledLight sampled_light(int i, double weight) const;
-    LightField sky_field(Vec3 w) const;
+    LightField sky_field(Vec3 w, bool seen_sharply) const;
     /// Carries light past occluders to vertex i, to the camera where i is below 0. `own` is the
     /// outline of the surface that it has left.
     void carry(LightField& field, Vec3 from, Owner owner_of_from, int i, double weight,

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "light/image.h"
+#include "light/spot_cone.h"
 #include "light/tree.h"
 #include "scene/scene_description.h"
 
@@ -15,8 +16,8 @@ struct PointEmitter {
     Vec3 position;
     Rgb intensity;  ///< radiant intensity, of a spot within its inner cone
     bool is_spot = false;
-    Vec3 axis{0, 0, 1};                    ///< unit; of a spot
-    float cos_inner = -1, cos_outer = -1;  ///< where the fall-off starts and ends
+    Vec3 axis{0, 0, 1};               ///< unit; of a spot
+    SpotCone cone;                    ///< of a spot, and around a slide
     float cone_variance = 0;          ///< of a spot: angular variance along one axis, radians^2
     std::optional<LightImage> image;  ///< multiplies the intensity
     Rgb image_integral;               ///< of the image over all directions

@@ -48,6 +48,12 @@ Environment::Environment(const InfiniteLight& light, const Transform& light_to_w
     }
 }
 
+Environment::Environment(const DistantLight& light, const Transform& light_to_world)
+    : light_to_world_(light_to_world),
+      to_world_(linear(light_to_world)),
+      to_light_(linear(light_to_world.inverse())),
+      disc_(std::in_place, light, make_distant_emitter(light, light_to_world).direction) {}
+
 Environment::Linear Environment::linear(const Transform& t) {
     return {t.vector({1, 0, 0}), t.vector({0, 1, 0}), t.vector({0, 0, 1})};
 }
@@ -57,6 +63,7 @@ Vec3 Environment::direction(Vec3 p, Vec3 n, const EnvironmentMap::Draw& draw) co
         const auto view = portal_->view(p);
         return view ? portal_->sample(*view, draw.u) : Vec3{0, 0, 1};
     }
+    if (disc_) return disc_->sample(draw.u);
     if (map_) return normalize(to_world_(map_->direction(draw)));
     if (n == Vec3{}) return square_to_sphere(draw.u);
     return normalize(Frame::from_z(n).to_world(square_to_cosine_hemisphere(draw.u)));
@@ -70,6 +77,7 @@ EnvironmentMap::Sight Environment::look(Vec3 p, Vec3 n, Vec3 w) const {
 }
 
 EnvironmentMap::Sight Environment::look_at_sky(Vec3 n, Vec3 w) const {
+    if (disc_) return disc_->look(w);
     if (!map_) return {scale_, n == Vec3{} ? kUniformSpherePdf : cosine_hemisphere_pdf(dot(n, w))};
     Vec3 local = to_light_(w);
     float stretch = 1;
@@ -85,7 +93,8 @@ EnvironmentMap::Sight Environment::look_at_sky(Vec3 n, Vec3 w) const {
     return sight;
 }
 
-float Environment::irradiance(Vec3 p) const {
+float Environment::irradiance(Vec3 p, Vec3 n) const {
+    if (disc_) return disc_->choice_weight_at(n);
     if (portal_) {
         const auto view = portal_->view(p);
         return view ? static_cast<float>(view->light) : 0.0f;
@@ -96,6 +105,7 @@ float Environment::irradiance(Vec3 p) const {
 
 Rgb Environment::power(float radius) const {
     if (portal_) return portal_->area() * portal_->fluence();
+    if (disc_) return kPi * sqr(radius) * disc_->irradiance();
     return 4 * sqr(kPi * radius) * (map_ ? scale_ * map_->mean() : scale_);
 }
 

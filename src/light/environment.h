@@ -1,11 +1,12 @@
-/// An infinite light: the same radiance from everywhere, or an image around the scene; perhaps seen
-/// through a portal only.
+/// An infinite light with extent: the same radiance from everywhere, an image around the scene,
+/// either perhaps seen through a portal only, or a disc.
 #pragma once
 
 #include <optional>
 
 #include "core/frame.h"
 #include "core/transform.h"
+#include "light/distant_disc.h"
 #include "light/environment_map.h"
 #include "light/portal.h"
 #include "scene/scene_description.h"
@@ -19,6 +20,9 @@ class Environment {
     /// Reads the light's image, if it has one. Throws as EnvironmentMap::read does.
     Environment(const InfiniteLight& light, const Transform& light_to_world,
                 const SourceLocation& where, Warnings& warnings);
+    /// Makes the disc of a distant light that has an extent. Scale in the transform does not change
+    /// its angle.
+    Environment(const DistantLight& light, const Transform& light_to_world);
 
     /// Radiance that comes to the point p: none past the portal, if there is one.
     Rgb radiance(Vec3 p, Vec3 w) const { return is_open(p, w) ? sky(w) : Rgb(); }
@@ -26,7 +30,7 @@ class Environment {
     Rgb sky(Vec3 w) const { return look_at_sky({}, w).radiance; }
     /// A direction for a surface at p with the unit normal n; with n zero, for light from all
     /// sides. Uniform light is sampled by the cosine to n, an image as EnvironmentMap does, in the
-    /// same three steps, and what comes through a portal as Portal does, from `u` alone.
+    /// same three steps, and what comes through a portal, or from a disc, from `u` alone.
     EnvironmentMap::Draw begin_draw(Vec2 u) const {
         return is_map() ? map_->begin_draw(u) : EnvironmentMap::Draw{u};
     }
@@ -37,13 +41,16 @@ class Environment {
     /// Whether directions are drawn from the image alone.
     bool is_map() const { return map_ && !portal_; }
     /// Whether the light is the same from everywhere.
-    bool is_even() const { return !map_ && !portal_; }
+    bool is_even() const { return !map_ && !portal_ && !disc_; }
     float pdf(Vec3 p, Vec3 n, Vec3 w) const { return look(p, n, w).pdf; }
     /// Radiance and density together, for less than both one by one.
     EnvironmentMap::Sight look(Vec3 p, Vec3 n, Vec3 w) const;
-    /// Rough irradiance of any surface at p, mean of the channels: of a map, by the part of its
-    /// light that directions are drawn for. 0 where no light comes.
-    float irradiance(Vec3 p) const;
+    /// The disc, if the light is one.
+    const DistantDisc* disc() const { return disc_ ? &*disc_ : nullptr; }
+    /// Rough irradiance of a surface at p with the unit normal n, mean of the channels: of a map,
+    /// by the part of its light that directions are drawn for. Only that of a disc depends on n. 0
+    /// where no light comes.
+    float irradiance(Vec3 p, Vec3 n) const;
     /// Power that enters a scene with the given radius, or that comes through the portal. Exact
     /// where the transform is rigid.
     Rgb power(float radius) const;
@@ -72,6 +79,7 @@ class Environment {
     Rgb scale_{1};
     std::optional<EnvironmentMap> map_;
     std::optional<Portal> portal_;
+    std::optional<DistantDisc> disc_;
 };
 
 }  // namespace covtrace

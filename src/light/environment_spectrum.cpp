@@ -60,6 +60,9 @@ AngularCovariance EnvironmentSpectrum::at(Vec3 w) const {
     AngularCovariance a;
     if (!image_) {
         a.tangent = Frame::from_z(-w);
+        // The second moments of a disc are a quarter of the square of its radius
+        if (const DistantDisc* disc = light_->disc(); disc && disc->contains(w))
+            a.a11 = a.a22 = 1 / sqr(kPi * disc->angular_radius());
         return a;
     }
     const Vec3 local = normalize(light_->to_light(w));

@@ -23,8 +23,8 @@ class EnvironmentSpectrum {
 
     /// The covariance around the world direction `w` (unit, away from the scene).
     AngularCovariance at(Vec3 w) const;
-    /// Whether the light has an image; without one the spectrum is zero everywhere.
-    bool varies() const { return image_.has_value(); }
+    /// Whether the light has an image or is a disc; else the spectrum is zero everywhere.
+    bool varies() const { return image_.has_value() || light_->disc(); }
 
   private:
     const Environment* light_;

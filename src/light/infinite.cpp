@@ -1,5 +1,5 @@
-/// Lights that are infinitely far away, among all others: distant lights and the sky, which is all
-/// uniform infinite lights and environment maps together.
+/// Lights that are infinitely far away, among all others: distant lights without extent and the
+/// sky, which is all others together.
 #include <algorithm>
 
 #include "light/lights_impl.h"
@@ -19,7 +19,7 @@ float Lights::Impl::infinite_weight(const InfiniteShare& share, size_t i, Vec3 p
     if (i >= distants.size()) {
         if ((environment_visible_to[i - distants.size()] & kScatteredRays) == 0) return 0;
         const Environment& e = environments[i - distants.size()];
-        return e.irradiance(p) * (e.is_even() ? share.even : 1.0f);
+        return e.irradiance(p, n) * (e.is_even() ? share.even : 1.0f);
     }
     const float facing = choice_weight(distants[i].irradiance);
     return n == Vec3{} ? facing : facing * side_weight(dot(distants[i].direction, n));
@@ -60,15 +60,21 @@ Rgb Lights::Impl::environment(Vec3 p, Vec3 w, RayKind kind) const {
 Lights::Sky Lights::Impl::sky(const InfiniteShare& share, Vec3 p, Vec3 n, Vec3 w,
                               const SkyCell* cell, RayKind kind) const {
     Sky sky;
-    float weights = 0;
+    float weights = 0, discs = 0;
     for (size_t i = 0; i < environments.size(); ++i) {
         const EnvironmentMap::Sight sight = environments[i].look(p, n, w);
         const float weight = infinite_weight(share, distants.size() + i, p, n);
         if (contains(environment_visible_to[i], kind)) sky.radiance += sight.radiance;
-        if (weight > 0) sky.pdf += weight * sight.pdf;
-        weights += weight;
+        if (!(weight > 0)) continue;
+        if (environments[i].disc()) {
+            discs += weight * sight.pdf;
+        } else {
+            sky.pdf += weight * sight.pdf;
+            weights += weight;
+        }
     }
     if (cell) sky.pdf = (1 - cell->share) * sky.pdf + cell->share * weights * cell->pdf(w);
+    sky.pdf += discs;
     sky.pdf *= share.probability > 0 ? share.probability / share.weight : 0;
     return sky;
 }
@@ -97,7 +103,7 @@ std::optional<LightSample> Lights::Impl::sample_infinite(const InfiniteShare& sh
         return s;
     }
     const Environment& environment_light = environments[chosen - distants.size()];
-    if (cell && rest / chosen_weight < cell->share) {
+    if (cell && !environment_light.disc() && rest / chosen_weight < cell->share) {
         s.wi = cell->sample(draw.u);
     } else {
         advance(environment_light, draw, 2);

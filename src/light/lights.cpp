@@ -1,5 +1,6 @@
 #include "light/lights.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -47,6 +48,21 @@ bool is_hidden(const SceneDescription& scene, TextureId alpha) {
     const auto* constant =
         std::get_if<ConstantTexture>(&scene.textures[static_cast<size_t>(alpha)].value);
     return constant && constant->value.r == 0;
+}
+
+void set_cone(AreaLight& area, const AreaLightDescription::Cone& cone,
+              const ShapeDescription& shape) {
+    area.cone = SpotCone::from_degrees(cone.angle, cone.delta_angle);
+    area.cone_variance = area.cone->variance();
+    area.cone_axis = normalize(shape.object_to_world.start().vector({0, 0, 1}));
+}
+
+/// Leaves of a light's directions those within its cone.
+void narrow(LightBounds& bounds, const AreaLight& area) {
+    bounds.axis = area.cone_axis;
+    bounds.theta_o = std::acos(area.cone->cos_inner);
+    bounds.theta_e = std::acos(area.cone->cos_outer) - bounds.theta_o;
+    bounds.two_sided = false;
 }
 
 }  // namespace
@@ -97,6 +113,7 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
             area.mean_factor *= alpha;
             choice_factor *= std::max(alpha, kLeast);
         }
+        if (light.cone) set_cone(area, *light.cone, shape);
         if (!note_kinds(area.visible_to)) choice_factor = {};
         std::visit(
             [&](const auto& emitter) {
@@ -104,6 +121,7 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
                     LightBounds bounds = emitter.bounds(k);
                     bounds.intensity *= choice_weight(area.radiance * choice_factor);
                     bounds.two_sided = bounds.two_sided || light.two_sided;
+                    if (area.cone) narrow(bounds, area);
                     finite.push_back(bounds);
                     owner.push_back(static_cast<uint32_t>(area_lights.size()));
                 }
@@ -112,24 +130,24 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
         area_light_of_shape[i] = static_cast<int>(area_lights.size());
         area_lights.push_back(std::move(area));
     }
-    for (const LightDescription& light : scene.lights) {
-        if (const auto* point = std::get_if<PointLight>(&light.value))
-            points.push_back(make_point_emitter(*point, light.light_to_world));
-        else if (const auto* spot = std::get_if<SpotLight>(&light.value))
-            points.push_back(make_point_emitter(*spot, light.light_to_world));
-        else if (const auto* round = std::get_if<GoniometricLight>(&light.value))
-            points.push_back(
-                make_point_emitter(*round, light.light_to_world, light.where, warnings));
-        else if (const auto* slide = std::get_if<ProjectionLight>(&light.value))
-            points.push_back(
-                make_point_emitter(*slide, light.light_to_world, light.where, warnings));
-        else if (const auto* distant = std::get_if<DistantLight>(&light.value))
-            distants.push_back(make_distant_emitter(*distant, light.light_to_world));
-        else
-            add_environment(std::get<InfiniteLight>(light.value), light);
-    }
+    for (const LightDescription& light : scene.lights) add_light(light);
     for (const PointEmitter& point : points) finite.push_back(bounds(point));
     tree = LightTree(finite);
+}
+
+void Lights::Impl::add_light(const LightDescription& light) {
+    if (const auto* point = std::get_if<PointLight>(&light.value))
+        points.push_back(make_point_emitter(*point, light.light_to_world));
+    else if (const auto* spot = std::get_if<SpotLight>(&light.value))
+        points.push_back(make_point_emitter(*spot, light.light_to_world));
+    else if (const auto* round = std::get_if<GoniometricLight>(&light.value))
+        points.push_back(make_point_emitter(*round, light.light_to_world, light.where, warnings));
+    else if (const auto* slide = std::get_if<ProjectionLight>(&light.value))
+        points.push_back(make_point_emitter(*slide, light.light_to_world, light.where, warnings));
+    else if (const auto* distant = std::get_if<DistantLight>(&light.value))
+        add_distant(*distant, light.light_to_world);
+    else
+        add_environment(std::get<InfiniteLight>(light.value), light);
 }
 
 bool Lights::Impl::note_kinds(RayKinds visible_to) {
@@ -140,6 +158,16 @@ bool Lights::Impl::note_kinds(RayKinds visible_to) {
 
 void Lights::Impl::add_environment(const InfiniteLight& light, const LightDescription& placed) {
     environments.emplace_back(light, placed.light_to_world, placed.where, warnings);
+    environment_visible_to.push_back(light.visible_to);
+    note_kinds(light.visible_to);
+}
+
+void Lights::Impl::add_distant(const DistantLight& light, const Transform& light_to_world) {
+    if (!DistantDisc::has_extent(light)) {
+        distants.push_back(make_distant_emitter(light, light_to_world));
+        return;
+    }
+    environments.emplace_back(light, light_to_world);
     environment_visible_to.push_back(light.visible_to);
     note_kinds(light.visible_to);
 }
@@ -162,7 +190,7 @@ std::optional<LightSample> Lights::Impl::sample_area(int light, float probabilit
                     e.uv(local, *point, time), point->position, {}, {}, e.vertices(local, *point)};
             },
             area.emitter);
-        s.radiance = radiance_at(area, at, std::abs(dot(point->normal, point->wi)));
+        s.radiance = radiance_at(area, at, point->normal, -point->wi);
         if (area.alpha >= 0) s.radiance *= clamp01(textures->eval_float(area.alpha, at));
         if (is_black(s.radiance)) return std::nullopt;
     }
@@ -203,8 +231,9 @@ std::optional<LightSample> Lights::Impl::sample_point(int light, float probabili
     return s;
 }
 
-Rgb Lights::Impl::radiance_at(const AreaLight& area, const TexturePoint& at, float cosine) const {
-    const float share = area.layers < 0 ? 1 : emission_share(area.layers, at, cosine);
+Rgb Lights::Impl::radiance_at(const AreaLight& area, const TexturePoint& at, Vec3 n, Vec3 w) const {
+    float share = area.layers < 0 ? 1 : emission_share(area.layers, at, std::abs(dot(n, w)));
+    if (area.cone) share *= area.cone->falloff(dot(area.cone_axis, w));
     const Rgb radiance = share * area.radiance;
     return area.image < 0 ? radiance : radiance * textures->eval(area.image, at);
 }
@@ -274,8 +303,7 @@ size_t Lights::factor_count() const {
 Rgb Lights::emitted(const SurfaceHit& hit, Vec3 wo) const {
     const AreaLight* area = impl_->area_light_of(hit);
     if (!area || !area->is_visible || (!area->two_sided && !(dot(hit.ng, wo) > 0))) return {};
-    return impl_->radiance_at(*area, {hit.uv, hit.position, {}, {}, hit.vertices()},
-                              std::abs(dot(hit.ng, wo)));
+    return impl_->radiance_at(*area, {hit.uv, hit.position, {}, {}, hit.vertices()}, hit.ng, wo);
 }
 
 float Lights::pdf(Vec3 p, Vec3 n, Vec3 wi, const SurfaceHit& hit,
@@ -303,6 +331,14 @@ float Lights::selection_probability(Vec3 p, Vec3 n, int light, LightTree::Factor
 
 bool Lights::has_environment() const {
     return !impl_->environments.empty();
+}
+bool Lights::has_sky() const {
+    return std::any_of(impl_->environments.begin(), impl_->environments.end(),
+                       [](const Environment& e) { return !e.disc(); });
+}
+bool Lights::is_in_disc(Vec3 w) const {
+    return std::any_of(impl_->environments.begin(), impl_->environments.end(),
+                       [w](const Environment& e) { return e.disc() && e.disc()->contains(w); });
 }
 Rgb Lights::environment(Vec3 p, Vec3 w, RayKind kind) const {
     return impl_->environment(p, w, kind);
@@ -340,6 +376,7 @@ Rgb Lights::total_power() const {
     for (const AreaLight& area : impl_->area_lights)
         if ((area.visible_to & kScatteredRays) != 0)
             sum += static_cast<float>(total_area(area.emitter)) *
+                   (area.cone ? area.cone->solid_angle() / (4 * kPi) : 1.0f) *
                    exitance(area.radiance * area.mean_factor, area.two_sided);
     for (const PointEmitter& point : impl_->points) sum += power(point);
     const float radius = impl_->geometry->bounds().radius();

@@ -71,8 +71,9 @@ class Lights {
     /// and phase functions, and so is what environment maps have below EnvironmentMap::kLeftOut of
     /// their mean (docs/decisions/0074).
     ///
-    /// Uniform infinite lights and environment maps count as one light here: `radiance` and `pdf`
-    /// are those of all of them together. Distant lights are not among them.
+    /// Uniform infinite lights, environment maps and distant lights with an extent count as one
+    /// light here, the sky: `radiance` and `pdf` are those of all of them together. Distant lights
+    /// without extent are not among them.
     std::optional<LightSample> sample(Vec3 p, Vec3 n, float time, float u_select, Vec2 u) const {
         return finish_draw(p, n, time, u_select, {u, {}, 0});
     }
@@ -95,7 +96,7 @@ class Lights {
     /// takes as long as memory does to answer.
     void continue_draw(Draw& draw) const;
     /// Finishes `sample` with a draw that was taken as far as time allowed. A share of the samples
-    /// of the sky, uniform infinite lights and environment maps, follows `cell`, if there is one.
+    /// of the sky, but for its discs, follows `cell`, if there is one.
     /// The choice among finite lights is made with `factors`.
     std::optional<LightSample> finish_draw(Vec3 p, Vec3 n, float time, float u_select, Draw draw,
                                            const SkyCell* cell = nullptr,
@@ -121,10 +122,15 @@ class Lights {
     float pdf(Vec3 p, Vec3 n, Vec3 wi, const SurfaceHit& hit,
               LightTree::Factors factors = {}) const;
 
-    /// Whether there is a uniform infinite light or an environment map.
+    /// Whether there is an infinite light that rays find: a uniform one, an environment map, or a
+    /// distant light with an extent.
     bool has_environment() const;
-    /// Radiance of all uniform infinite lights and environment maps that a ray of a kind finds from
-    /// the point p in the direction `w` (unit, away from the scene). Distant lights have none.
+    /// Whether there is one that is more than a disc.
+    bool has_sky() const;
+    /// Whether a direction is one of the disc of a distant light.
+    bool is_in_disc(Vec3 w) const;
+    /// Radiance of all infinite lights that a ray of a kind finds from the point p in the direction
+    /// `w` (unit, away from the scene).
     Rgb environment(Vec3 p, Vec3 w, RayKind kind = RayKind::any) const;
     /// Whether scattered rays of different kinds find different lights. Then a sample of the sky
     /// has the light of all of them: that of one kind is `environment`.

@@ -22,12 +22,15 @@ struct AreaLight {
     TextureId image = -1, alpha = -1;  ///< textures that the radiance varies by; -1: none
     bool is_visible = true;  ///< false where a constant alpha of 0 hides the shape from all rays
     RayKinds visible_to = kEveryRay;
-    MaterialId layers = -1;  ///< material whose layers the light has to get through; -1: none
-    Rgb mean_factor{1};      ///< mean of image and alpha together
-    int first_light = 0;     ///< id of its first light
+    std::optional<SpotCone> cone;  ///< that the light stays within
+    float cone_variance = 0;       ///< SpotCone::variance
+    Vec3 cone_axis;                ///< unit
+    MaterialId layers = -1;        ///< material whose layers the light has to get through; -1: none
+    Rgb mean_factor{1};            ///< mean of image and alpha together
+    int first_light = 0;           ///< id of its first light
     Emitter emitter;
 
-    bool varies() const { return image >= 0 || alpha >= 0 || layers >= 0; }
+    bool varies() const { return image >= 0 || alpha >= 0 || layers >= 0 || cone; }
 };
 
 /// The balance between all infinite lights and all finite ones at a point, for choosing among them.
@@ -42,12 +45,14 @@ struct InfiniteShare {
 struct Lights::Impl {
     Impl(const SceneDescription& scene, const Geometry& geometry, const TextureStore* textures);
 
-    /// Radiance of an area light at a place, by its image and the layers above it, in a direction
-    /// with the given cosine to the normal; alpha does not count.
-    Rgb radiance_at(const AreaLight& area, const TexturePoint& at, float cosine) const;
+    /// Radiance of an area light at a place with the unit normal n, by its image, its cone and the
+    /// layers above it, in a unit direction w away from it; alpha does not count.
+    Rgb radiance_at(const AreaLight& area, const TexturePoint& at, Vec3 n, Vec3 w) const;
 
     /// Notes which rays find a light; returns whether any scattered ones do.
     bool note_kinds(RayKinds visible_to);
+    void add_light(const LightDescription& light);
+    void add_distant(const DistantLight& light, const Transform& light_to_world);
     void add_environment(const InfiniteLight& light, const LightDescription& placed);
 
     /// A sample of a light that was chosen with the given probability; empty where it can't light
@@ -85,7 +90,7 @@ struct Lights::Impl {
     std::vector<uint32_t> owner;  ///< for each area light's id, an index into area_lights
     std::vector<PointEmitter> points;
     std::vector<DistantEmitter> distants;
-    std::vector<Environment> environments;
+    std::vector<Environment> environments;  ///< with the discs of distant lights that have one
     std::vector<RayKinds> environment_visible_to;  ///< for the environment of the same index
     bool kinds_differ = false;
     EmissionShare emission_share;

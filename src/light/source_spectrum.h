@@ -21,14 +21,15 @@ struct SourceSpectrum {
     Vec3 velocity, angular_velocity;  ///< area
     /// area: from the point to the nearest point of the emitter's border (edges that belong to one
     /// triangle only, the rim of a disk); infinite for closed meshes and for spheres, whose
-    /// silhouette depends on the view.
+    /// silhouette depends on the view. environment: radians to the nearest rim of a disc; infinite
+    /// where there is none, or where rims were not asked for.
     float border_distance = kInfinity;
-    /// Area: unit vector towards that border point, in (tangent.x, tangent.y).
+    /// Unit vector towards that border point, in (tangent.x, tangent.y).
     Vec2 border_direction{1, 0};
     /// environment, directional, and point for the image of a goniometric or projection light:
     /// angular covariance in (tangent.x, tangent.y), (cycles per radian)^2
     float a11 = 0, a12 = 0, a22 = 0;
-    float cone_variance = 0;  ///< point: angular variance of a spot's cone, 0 for none
+    float cone_variance = 0;  ///< point, area: angular variance of a spot's cone, 0: none
 };
 
 }  // namespace covtrace

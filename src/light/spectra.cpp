@@ -1,5 +1,8 @@
 #include "light/spectra.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "light/lights_impl.h"
 
 namespace covtrace {
@@ -47,8 +50,8 @@ LightSpectra::LightSpectra(const Lights& lights) : lights_(lights.impl_.get()) {
 
 SourceSpectrum LightSpectra::source_spectrum(const LightSample& s, float time) const {
     if (s.light < lights_->first_point())
-        return emitters_[lights_->owner[static_cast<size_t>(s.light)]].at(s.position, s.normal,
-                                                                          time, false);
+        return area_spectrum(lights_->owner[static_cast<size_t>(s.light)], s.position, s.normal,
+                             time, false);
     if (s.light < lights_->first_distant()) {
         const auto i = static_cast<size_t>(s.light - lights_->first_point());
         return point_spectrum(lights_->points[i], images_[i], s.wi);
@@ -60,11 +63,36 @@ SourceSpectrum LightSpectra::source_spectrum(const LightSample& s, float time) c
 SourceSpectrum LightSpectra::source_spectrum(const SurfaceHit& emitter, bool with_border) const {
     const int light = lights_->area_light_of_shape[emitter.shape];
     if (light < 0) return {};
-    return emitters_[static_cast<size_t>(light)].at(emitter.position, emitter.ng, emitter.time,
-                                                    with_border);
+    return area_spectrum(static_cast<size_t>(light), emitter.position, emitter.ng, emitter.time,
+                         with_border);
 }
 
-SourceSpectrum LightSpectra::environment_spectrum(Vec3 w) const {
+SourceSpectrum LightSpectra::area_spectrum(size_t i, Vec3 position, Vec3 normal, float time,
+                                           bool with_border) const {
+    SourceSpectrum s = emitters_[i].at(position, normal, time, with_border);
+    s.cone_variance = lights_->area_lights[i].cone_variance;
+    return s;
+}
+
+SourceSpectrum LightSpectra::environment_spectrum(Vec3 w, bool with_rims) const {
+    SourceSpectrum s = sky_spectrum(w);
+    if (!with_rims) return s;
+    for (const Environment& e : lights_->environments) {
+        const DistantDisc* disc = e.disc();
+        if (!disc) continue;
+        const Vec3 to_centre = disc->centre() - w;
+        const float from_centre = 2 * std::asin(std::min(1.0f, length(to_centre) / 2));
+        const float distance = std::abs(disc->angular_radius() - from_centre);
+        if (!(distance < s.border_distance)) continue;
+        s.border_distance = distance;
+        const Vec2 d{dot(to_centre, s.tangent.x), dot(to_centre, s.tangent.y)};
+        const float l = std::hypot(d.x, d.y);
+        s.border_direction = l > 0 ? Vec2{d.x / l, d.y / l} : Vec2{1, 0};
+    }
+    return s;
+}
+
+SourceSpectrum LightSpectra::sky_spectrum(Vec3 w) const {
     SourceSpectrum s;
     s.kind = SourceSpectrum::Kind::environment;
     if (environments_.size() == 1) {

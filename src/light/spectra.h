@@ -26,10 +26,15 @@ class LightSpectra {
     SourceSpectrum source_spectrum(const SurfaceHit& emitter, bool with_border) const;
     /// Whether the infinite lights shine alike from all directions, with a spectrum that is zero.
     bool has_even_sky() const { return environments_.size() == 1 && !environments_[0].varies(); }
-    /// Spectrum of all infinite lights together around the direction `w`, weighted by radiance.
-    SourceSpectrum environment_spectrum(Vec3 w) const;
+    /// Spectrum of all infinite lights together around the direction `w`, weighted by radiance;
+    /// with the rims of discs where `w` is seen itself.
+    SourceSpectrum environment_spectrum(Vec3 w, bool with_rims = false) const;
 
   private:
+    SourceSpectrum area_spectrum(size_t i, Vec3 position, Vec3 normal, float time,
+                                 bool with_border) const;
+    SourceSpectrum sky_spectrum(Vec3 w) const;
+
     const Lights::Impl* lights_;
     // One for each light of its kind, in the order of the tables of `lights_`.
     std::vector<EmitterSpectrum> emitters_;

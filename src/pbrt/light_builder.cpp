@@ -54,6 +54,18 @@ PointLight point_light(Entity& e, BuildContext& context) {
     return light;
 }
 
+/// Reads the angles of a spot's cone, degrees.
+void read_cone(ParameterList& p, const SourceLocation& where, float& angle, float& delta_angle) {
+    angle = p.number("coneangle", 30);
+    delta_angle = p.number("conedeltaangle", 5);
+    if (!(angle > 0 && angle <= 180))
+        throw Error(ErrorKind::scene, p.where("coneangle", where),
+                    "parameter \"coneangle\" must be between 0 and 180 degrees");
+    if (!(delta_angle >= 0 && delta_angle <= 2 * angle))
+        throw Error(ErrorKind::scene, p.where("conedeltaangle", where),
+                    "parameter \"conedeltaangle\" must be between 0 and twice coneangle");
+}
+
 SpotLight spot_light(Entity& e, BuildContext& context) {
     ParameterList& p = e.parameters;
     SpotLight light;
@@ -61,14 +73,7 @@ SpotLight spot_light(Entity& e, BuildContext& context) {
     light.from = p.triple("from", {});
     light.to = p.triple("to", {0, 0, 1});
     direction(light.from, light.to, e);
-    light.cone_angle = p.number("coneangle", 30);
-    light.cone_delta_angle = p.number("conedeltaangle", 5);
-    if (!(light.cone_angle > 0 && light.cone_angle <= 180))
-        throw Error(ErrorKind::scene, p.where("coneangle", e.where),
-                    "parameter \"coneangle\" must be between 0 and 180 degrees");
-    if (!(light.cone_delta_angle >= 0 && light.cone_delta_angle <= 2 * light.cone_angle))
-        throw Error(ErrorKind::scene, p.where("conedeltaangle", e.where),
-                    "parameter \"conedeltaangle\" must be between 0 and twice coneangle");
+    read_cone(p, e.where, light.cone_angle, light.cone_delta_angle);
     light.power = target(e, "power", light.intensity, context);
     return light;
 }
@@ -83,6 +88,11 @@ DistantLight distant_light(Entity& e, BuildContext& context) {
     if (const auto v = e.parameters.number("illuminance"); v && *v > 0)
         light.radiance =
             scaled_light(light.radiance, *v, e.parameters.where("illuminance", e.where), context);
+    light.angle = e.parameters.number("angle", 0);
+    if (!(light.angle >= 0 && light.angle <= 180))
+        throw Error(ErrorKind::scene, e.parameters.where("angle", e.where),
+                    "parameter \"angle\" must be between 0 and 180 degrees");
+    if (light.angle > 0) light.visible_to = visible_to(e);
     return light;
 }
 
@@ -190,6 +200,15 @@ AreaLightDescription build_area_light(Entity& e, BuildContext& context) {
     light.two_sided = p.flag("twosided", false);
     light.lets_light_pass = p.flag("letslightpass", false);
     light.power = target(e, "power", light.radiance, context);
+    if (p.has("coneangle")) {
+        if (light.power)
+            throw Error(
+                ErrorKind::scene, p.where("power", e.where),
+                "an area light has both \"power\" and \"coneangle\"; expected \"L\" beside a "
+                "cone");
+        light.cone = AreaLightDescription::Cone{};
+        read_cone(p, e.where, light.cone->angle, light.cone->delta_angle);
+    }
     if (const std::string file = p.text("filename"); !file.empty()) {
         const SourceLocation where = p.where("filename", e.where);
         if (has_colour)

@@ -1,4 +1,4 @@
-/// The parameter "hiddenfrom" of shapes and skies, which pbrt-v4 does not have.
+/// The parameter "hiddenfrom" of shapes, skies and suns, which pbrt-v4 does not have.
 #pragma once
 
 #include "pbrt/build_context.h"

@@ -200,6 +200,11 @@ struct AreaLightDescription {
     /// Whether the shape is no surface but for its light: rays that meet it take up its light and
     /// go on, and it casts no shadow.
     bool lets_light_pass = false;
+    /// A cone about the z axis of the shape's space that light stays within as a SpotLight's.
+    struct Cone {
+        float angle = 30, delta_angle = 5;
+    };
+    std::optional<Cone> cone = {};
 };
 
 /// Moves the vertices of a mesh along their normals, after its triangles have been split.
@@ -275,6 +280,8 @@ struct ProjectionLight {
 struct DistantLight {
     Rgb radiance{1};          ///< irradiance on a surface that faces it
     Vec3 direction{0, 0, 1};  ///< from the scene towards the light, light space, unit length
+    float angle = 0;          ///< degrees across the disc that it shines from, in [0, 180]
+    RayKinds visible_to = kEveryRay;  ///< rays that find a light with extent; always `any`
 };
 struct InfiniteLight {
     Rgb radiance{1};  ///< of the uniform light; multiplies the image
@@ -375,14 +382,12 @@ struct SceneDescription {
     std::vector<ShapeDescription> shapes;
     std::vector<ObjectDescription> objects;
     std::vector<InstanceDescription> instances;
-    /// Warnings of the reader: features of the file that covtrace replaces or ignores, in file
-    /// order.
+    /// Warnings of the reader, in file order: features that covtrace replaces or ignores.
     Warnings warnings;
     /// Hash of all bytes read for the description: scene files and meshes.
     uint64_t content_hash = 0;
-    /// Warnings of a file that has no camera, or no light at all: `complete` gives them out with
-    /// the defaults that it puts there. Empty where the file has one, or where another one took the
-    /// place.
+    /// Warnings of a file that has no camera, or no light: `complete` gives them out with its
+    /// defaults. Empty where the file has one, or where another one took the place.
     std::optional<Warning> no_camera, no_lights;
     /// Camera and environment in place of the file's, and lamps beside its own, as text for a
     /// render's identity; empty: its own, and none.

@@ -97,6 +97,15 @@ class Parts(unittest.TestCase):
         self.scene.area_lights[0]["L"] = 5
         self.assert_like(sky="1 .5 .25", lamp="-3 2 1", area="5 5 5")
 
+    def test_the_angle_of_a_sun(self):
+        text = TEXT.format(**VALUES) + 'LightSource "distant" "float angle" {}\n'
+        narrow, wide = (covtrace.Scene.from_string(text.format(angle)) for angle in (0.5, 20))
+        self.assertEqual(narrow.lights[2]["angle"], 0.5)
+        narrow.lights[2]["angle"] = 20
+        self.assertTrue(covtrace.compare(self.render(narrow), self.render(wide)).identical)
+        with self.assertRaises(ValueError):
+            narrow.lights[2]["angle"] = 200
+
     def test_removed_lights(self):
         self.scene.remove_light(-1)
         self.assertEqual([light.kind for light in self.scene.lights], ["infinite"])

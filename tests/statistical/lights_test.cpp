@@ -58,6 +58,12 @@ std::vector<Case> all_cases() {
             s.add_light(light, t);
         };
     };
+    const Vec3 slanted{0.6f, 0, 0.8f};
+    const auto sun = [slanted](float angle) {
+        return [slanted, angle](LightScene& s) {
+            s.add_light(DistantLight{.direction = slanted, .angle = angle});
+        };
+    };
     const Transform tilted = Transform::rotate(50, {1, 2, 3});
     const auto portal = [](const TemporaryImage* image, const Transform& t) {
         InfiniteLight light;
@@ -197,8 +203,19 @@ std::vector<Case> all_cases() {
         {"portal_aside", portal(nullptr, {}), {4, 1, 1.5f}, {-1, 0, 0}, {-4, -1, 0.5f}, 14},
         {"portal_and_square", portal(&square_map(), tilted), {0.3f, 0, 0}, up, up, 50},
         {"portal_and_lat_long", portal(&lat_long_map(), {}), {0.3f, 0, 0}, up, up, 50},
+        {"sun", sun(0.53f), {}, up, slanted, 0.3f},
+        {"wide_sun", sun(120), {}, up, slanted, 70},
+        {"sun_in_the_sky",
+         [=](LightScene& s) {
+             sky(square_map(), tilted)(s);
+             s.add_light(InfiniteLight{});
+             sun(30)(s);
+         },
+         {},
+         up},
         {"everything",
          [=](LightScene& s) {
+             sun(20)(s);
              sky(square_map(), tilted)(s);
              sky(lat_long_map(), {})(s);
              portal(&lat_long_map(), tilted)(s);

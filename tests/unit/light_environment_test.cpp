@@ -263,7 +263,7 @@ TEST(Environment, LightComesThroughThePortalAlone) {
         seen += expected;
     }
     EXPECT_GT(seen, 500);
-    EXPECT_EQ(light.irradiance({0, 0, 1.001f}), 0);
+    EXPECT_EQ(light.irradiance({0, 0, 1.001f}, {}), 0);
     EXPECT_EQ(light.pdf({0, 0, 3}, {}, {0, 0, 1}), 0);
 }
 
@@ -288,7 +288,7 @@ TEST(Environment, PortalsAreSampledByWhatComesThrough) {
             square += v * v;
         }
         const double mean = sum / kSamples;
-        EXPECT_NEAR(mean / light.irradiance(p), 1, 0.02) << p.x;
+        EXPECT_NEAR(mean / light.irradiance(p, {}), 1, 0.02) << p.x;
         EXPECT_LT(square / kSamples / (mean * mean) - 1, 0.05) << p.x;
     }
 }

@@ -73,6 +73,31 @@ TEST(SceneLights, DistantLightsPointBackToWhereTheyComeFrom) {
     expect_near(d.radiance, {4, 2, 0}, 1e-6f);
 }
 
+TEST(SceneLights, DistantLightsMayBeDiscs) {
+    EXPECT_EQ(light_of<DistantLight>("\"distant\"").angle, 0);
+    const auto d =
+        light_of<DistantLight>("\"distant\" \"float angle\" 0.53 \"string hiddenfrom\" \"camera\"");
+    EXPECT_EQ(d.angle, 0.53f);
+    EXPECT_FALSE(contains(d.visible_to, RayKind::camera));
+    EXPECT_TRUE(contains(d.visible_to, RayKind::glossy));
+    // Without extent no ray finds it, and nothing can be hidden
+    const auto scene = read_world("LightSource \"distant\" \"string hiddenfrom\" \"camera\"");
+    EXPECT_TRUE(contains(warnings_of(scene), "hiddenfrom"));
+}
+
+TEST(SceneLights, AreaLightsMayHaveACone) {
+    const auto cone_of = [](const std::string& parameters) {
+        const auto scene =
+            read_world("AreaLightSource \"diffuse\" " + parameters + "\nShape \"sphere\"");
+        return scene.area_lights.at(0).cone;
+    };
+    EXPECT_FALSE(cone_of("").has_value());
+    const auto cone = cone_of("\"float coneangle\" 40 \"float conedeltaangle\" 12");
+    ASSERT_TRUE(cone.has_value());
+    EXPECT_EQ(cone->angle, 40);
+    EXPECT_EQ(cone->delta_angle, 12);
+}
+
 TEST(SceneLights, InfiniteLightsAreUniformOrAnImage) {
     const auto u = light_of<InfiniteLight>("\"infinite\" \"rgb L\" [ 1 1 2 ] \"float scale\" .5");
     expect_near(u.radiance, {0.5f, 0.5f, 1}, 0);
@@ -191,6 +216,11 @@ TEST(SceneLights, ErrorsNameThePlace) {
         {"LightSource \"infinite\" \"rgb L\" [1 1 1] \"string filename\" \"no.exr\"",
          "both \"L\" and \"filename\""},
         {"LightSource \"distant\" \"point3 to\" [ 0 0 0 ]", "are the same point"},
+        {"LightSource \"distant\" \"float angle\" 181", "between 0 and 180"},
+        {"LightSource \"distant\" \"float angle\" -1", "test.pbrt:2:23: parameter \"angle\""},
+        {"AreaLightSource \"diffuse\" \"float coneangle\" 200", "between 0 and 180"},
+        {"AreaLightSource \"diffuse\" \"float coneangle\" 20 \"float power\" 3",
+         "both \"power\" and \"coneangle\""},
         {"LightSource \"spot\" \"float coneangle\" 0", "between 0 and 180"},
         {"LightSource \"spot\" \"float conedeltaangle\" 61", "between 0 and twice coneangle"},
         {"LightSource \"point\" \"float scale\" -1", "must not be negative"},

@@ -87,7 +87,7 @@ std::array<double, SkyCell::kBlocks> block_weights(std::span<const SkySight> sig
 }  // namespace
 
 SkyGuide::SkyGuide(const LitScene& scene) {
-    if (!scene.lights.has_environment()) return;
+    if (!scene.lights.has_sky()) return;
     const FilmDescription& film = scene.description.film;
     const int64_t pixels = int64_t(film.width) * int64_t(film.height);
     const int64_t trial = std::clamp(pixels / kTrialPixels, int64_t(1), kMostTrialPaths);

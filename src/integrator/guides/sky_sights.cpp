@@ -35,7 +35,8 @@ class Place {
         const std::optional<Vec3> w = direction();
         if (!w) return;
         const float cosine = dot(normal_, *w);
-        if (!(cosine > 0)) return;
+        // Discs are sampled as they are, whatever the guide knows
+        if (!(cosine > 0) || scene_.lights.is_in_disc(*w)) return;
         const Lights::Sky sky =
             scene_.lights.sky(hit_.position, normal_, *w, nullptr, RayKind::diffuse);
         const float light = luminance(sky.radiance) * cosine;
