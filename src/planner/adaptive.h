@@ -50,6 +50,27 @@ constexpr PlanSettings kHalvesPlan{false, 0.1f, 2, 0.2f};
 /// samples sigma / I itself is averaged.
 std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSettings& settings);
 
+/// Scales densities to mean 1; those that are not finite count as 0. Where all would be 0, each is
+/// 1.
+std::vector<float> relative(std::vector<float> density);
+
+/// Knowledge of every pixel behind its filter, row by row.
+struct FilteredKnowledge {
+    Plane brightness;  ///< luminance of the filtered image
+    Plane variance;    ///< variance of that luminance
+    Plane count;       ///< samples that the pixel has
+};
+
+/// Makes relative densities with mean 1 from the noise that filters have left; where all would be
+/// 0, each is 1.
+///
+/// Where filters hardly change from pixel to pixel, the variance V_q of the filtered image is
+/// sigma_q^2 / n_q sum_p a_qp^2, so that the counts of adaptive_density are
+///     n ~ sqrt(n_q V_q / (I^2 + eps)),
+/// whatever filters the image has, and however much of a texture they keep. The square is averaged
+/// over a few pixels.
+std::vector<float> density_of_noise_left(const FilteredKnowledge& known);
+
 /// Gives `share` of all samples out evenly. Pre: densities with mean 1.
 void spread_evenly(std::span<float> density, float share);
 

@@ -4,13 +4,15 @@
 
 namespace covtrace {
 
-Plane emphasis(const Prediction& prediction, DensityRule rule, float c,
+using PredictedRule = covariance::DensityRule;
+
+Plane emphasis(const Prediction& prediction, PredictedRule rule, float c,
                const covariance::FilterLimits<float>& limits) {
     constexpr float kExponent = 0.7f, kSmoothing = 3;  // pixels
     Plane beyond(prediction.width, prediction.height, 1);
-    if (rule == DensityRule::tempered) return beyond;
+    if (rule == PredictedRule::tempered) return beyond;
     const std::vector<float> asked = covariance::densities(prediction, rule, c, limits),
-                             tempered = covariance::densities(prediction, DensityRule::tempered, c,
+                             tempered = covariance::densities(prediction, PredictedRule::tempered, c,
                                                               limits);
     for (size_t i = 0; i < beyond.size(); ++i)
         beyond[i] = tempered[i] > 0 ? std::pow(asked[i] / tempered[i], kExponent) : 0.0f;

@@ -13,16 +13,29 @@
 
 namespace covtrace {
 
-using covariance::DensityRule;
+/// Rules for the density of samples.
+enum class DensityRule {
+    verified,  ///< tempered, until samples tell where filters leave noise (density_of_noise_left)
+    tempered,  ///< the covariance library's rule of that name
+    thesis     ///< the covariance library's rule of that name
+};
 
 template <>
 inline constexpr auto kEnumNames<DensityRule> =
-    enum_names<DensityRule>({{DensityRule::tempered, "tempered"}, {DensityRule::thesis, "thesis"}});
+    enum_names<DensityRule>({{DensityRule::verified, "verified"},
+                             {DensityRule::tempered, "tempered"},
+                             {DensityRule::thesis, "thesis"}});
+
+/// The covariance library's rule by which counts follow from the prediction alone.
+constexpr covariance::DensityRule predicted_rule(DensityRule rule) {
+    return rule == DensityRule::thesis ? covariance::DensityRule::thesis
+                                       : covariance::DensityRule::tempered;
+}
 
 /// Emphasis of `rule` beyond the tempered density, (g / g_tempered)^0.7, as a mean over a few
 /// pixels since a few paths tell it with much noise: SampleKnowledge::emphasis (docs/decisions/0062
 /// has the sweep of the exponent). One in every pixel for the tempered rule itself.
-Plane emphasis(const Prediction& prediction, DensityRule rule, float c,
+Plane emphasis(const Prediction& prediction, covariance::DensityRule rule, float c,
                const covariance::FilterLimits<float>& limits);
 
 using covariance::allocate;

@@ -13,18 +13,6 @@ namespace covtrace {
 
 namespace {
 
-FilterField filters_of_smoothed(FilterRule rule, const CovarianceBuffer& buffer,
-                                const FilterSettings& settings) {
-    const Prediction p = preintegrated(smoothed(buffer));
-    return filter_field(p.spectrum, p.width, p.height, rule, settings);
-}
-
-std::vector<bool> light_known(const std::vector<PackedCovariance>& covariances) {
-    std::vector<bool> known(covariances.size());
-    for (size_t i = 0; i < known.size(); ++i) known[i] = covariances[i].weight > 0;
-    return known;
-}
-
 /// The layer `density`: what the last plan asked for; before the first plan, the mean count.
 std::vector<float> density_layer(const RenderState& state) {
     if (!state.density.empty()) return state.density;
@@ -32,30 +20,12 @@ std::vector<float> density_layer(const RenderState& state) {
 }
 
 Image filtered_image(const RenderState& state) {
-    const Film& film = state.films[0];
     const CovarianceBuffers& parts = state.parts();
-    const double taken = film.mean_count();
-    const FilterSettings settings = covariance::filter_settings(taken),
-                         settings_in_view = covariance::filter_settings_in_view(taken);
-    const auto filters_of = [&](const std::vector<PackedCovariance>& part,
-                                const FilterSettings& its_settings) {
-        return filters_of_smoothed(
-            state.filter, unpack(part, state.region.width(), state.region.height()), its_settings);
-    };
-    CovarianceFilters filters{filters_of(parts.scattered, settings),
-                              filters_of(parts.in_view, settings_in_view)};
-    filters.has_in_view = std::any_of(parts.in_view.begin(), parts.in_view.end(),
-                                      [](const PackedCovariance& c) { return c.weight > 0; });
-    const bool judged = state.filter == FilterRule::verified;
-    if (judged || state.filter == FilterRule::predicted) {
-        covariance::limit_parts(filters.scattered, filters.in_view, light_known(parts.scattered),
-                                light_known(parts.in_view), settings, settings_in_view);
-    }
-    const FilteredImage image =
-        judged ? judged_image(film, filters) : gathered_image(film, filters);
+    const CovarianceFilters filters = covariance_filters(state);
+    const FilteredImage image = covariance_image(state, filters);
     const CovarianceBuffer all = merge(parts);
     const Prediction raw = preintegrated(all);
-    return make_layers(film, state.display, state.has_holes,
+    return make_layers(state.films[0], state.display, state.has_holes,
                        CovarianceLayers{all, raw, density_layer(state), filters.scattered, image,
                                         filters.has_in_view ? &parts.scattered : nullptr,
                                         filters.has_in_view ? &filters.in_view : nullptr});

@@ -57,7 +57,7 @@ struct RenderOptions {
         error;  ///< stop at this estimated sqrt(relMSE) of the image; not covariance
     /// Covariance paths per pixel, below 1 in so many of the pixels; default 2, hybrid: 1.
     std::optional<double> cov_spp;
-    DensityRule density = DensityRule::tempered;
+    DensityRule density = DensityRule::verified;
     /// Factor k of N = k sqrt|S|, a budget that no average bounds; covariance with
     /// DensityRule::thesis.
     std::optional<double> density_factor;

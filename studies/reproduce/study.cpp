@@ -86,6 +86,7 @@ void add_variants(Workshop& workshop, SceneStudy& s, const ThesisChoices& choice
     RenderOptions alone;
     alone.method = Method::covariance;
     alone.spp = workshop.settings.spp;
+    alone.density = DensityRule::tempered;
     alone.filter = FilterRule::predicted;
     alone.seed = workshop.settings.seeds.front();
     add_variant(workshop, s, "predicted", "covariance, predicted filters alone", alone);

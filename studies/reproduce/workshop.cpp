@@ -86,7 +86,7 @@ std::string render_command(const LoadedScene& scene, const RenderOptions& o) {
     if (o.spp) s += fmt::format(" --spp {}", *o.spp);  // as few digits as give the same number
     if (o.cov_spp) s += fmt::format(" --cov-spp {}", *o.cov_spp);
     if (o.max_spp) s += fmt::format(" --max-spp {}", *o.max_spp);
-    if (o.density != d.density) s += " --density thesis";
+    if (o.density != d.density) s += fmt::format(" --density {}", name_of(o.density));
     if (o.density_factor) s += fmt::format(" --k {}", *o.density_factor);
     if (o.filter != d.filter) s += fmt::format(" --filter {}", name_of(o.filter));
     if (o.occlusion != d.occlusion) s += fmt::format(" --occlusion {}", name_of(o.occlusion));

@@ -97,7 +97,7 @@ TEST(Emphasis, IsWhatTheThesisAsksForBeyondTheTemperedDensity) {
     for (size_t i = 0; i < kPixels; ++i)
         if (i % kSide >= kSide / 2) p.interior_count[i] = 128;
     const covariance::FilterLimits<float> limits{0.4f, 15};
-    const Plane thesis = emphasis(p, DensityRule::thesis, 2, limits);
+    const Plane thesis = emphasis(p, covariance::DensityRule::thesis, 2, limits);
     const float detail = std::sqrt(0.015f);
     EXPECT_NEAR(thesis(0, 20), std::pow(2 * detail * detail / (detail * std::sqrt(2.0f)), 0.7f),
                 1e-4f);
@@ -105,7 +105,7 @@ TEST(Emphasis, IsWhatTheThesisAsksForBeyondTheTemperedDensity) {
     // The emphasis is a mean over a few pixels.
     EXPECT_NEAR(thesis(19, 20) + thesis(20, 20), thesis(0, 20) + thesis(39, 20), 1e-3f);
     EXPECT_GT(thesis(19, 20), 3 * thesis(0, 20));
-    for (const float v : emphasis(p, DensityRule::tempered, 2, limits).values) EXPECT_EQ(v, 1);
+    for (const float v : emphasis(p, covariance::DensityRule::tempered, 2, limits).values) EXPECT_EQ(v, 1);
 }
 
 TEST(RelativeDensity, HasMeanOneAndAnEvenShare) {
@@ -113,11 +113,12 @@ TEST(RelativeDensity, HasMeanOneAndAnEvenShare) {
                  2,
                  {{1e-4f, 0, 1e-4f}, {0.1f, 0, 0.1f}, {0, 0, 0}, {0.02f, 0.01f, 0.03f}},
                  {1, 1, 50, 2}};
-    for (DensityRule rule : {DensityRule::tempered, DensityRule::thesis}) {
+    using Rule = covariance::DensityRule;
+    for (Rule rule : {Rule::tempered, Rule::thesis}) {
         const auto g = relative_density(p, rule, 2, {0.4f, 15});
         EXPECT_NEAR(std::accumulate(g.begin(), g.end(), 0.0f) / 4, 1, 1e-5f);
         EXPECT_GT(g[1], g[0]);
-        if (rule == DensityRule::tempered) {
+        if (rule == Rule::tempered) {
             EXPECT_GE(*std::min_element(g.begin(), g.end()), 0.1f);
         }
     }

@@ -8,6 +8,7 @@
 #include "planner/density.h"
 #include "reconstruction/filter_field.h"
 #include "render/develop.h"
+#include "render/methods/covariance_image.h"
 #include "render/rounds.h"
 #include "render/sample_knowledge.h"
 #include "render/scene_analysis.h"
@@ -18,6 +19,10 @@ namespace {
 
 /// Share of the samples on demand that is spread evenly.
 constexpr float kEvenShare = 0.1f;
+
+/// Samples per pixel from which on samples tell where filters leave noise, and the factor of them
+/// after which they are asked again: it costs as much as to make the image.
+constexpr double kFirstVerified = 4, kVerifiedAgain = 4;
 
 /// Name, in films and images, of the factor k of the density N = k sqrt|S| (Belcour 2012, section
 /// 5.1, equation 5.3).
@@ -138,8 +143,33 @@ class CovarianceRender {
         return *job_.enough;
     }
 
+    /// Whether the last plan's density was made of samples and holds still.
+    bool has_verified_density() const {
+        double again = kFirstVerified;
+        while (again < s_.taken) again *= kVerifiedAgain;
+        return !s_.density.empty() && again != s_.taken;
+    }
+
+    /// The density of the noise that the filters leave.
+    std::vector<float> verified_density() const {
+        if (has_verified_density()) return relative(s_.density);
+        const FilteredImage image = covariance_image(s_, covariance_filters(s_));
+        const Plane none(s_.region.width(), s_.region.height());
+        FilteredKnowledge known{none, none, none};
+        for (size_t i = 0; i < none.size(); ++i) {
+            known.brightness[i] = luminance(image.color[i]);
+            known.variance[i] = image.variance[i];
+            known.count[i] = float(s_.films[0].pixels[i].count);
+        }
+        std::vector<float> density = density_of_noise_left(known);
+        spread_evenly(density, kEvenShare);
+        return density;
+    }
+
     std::vector<float> relative_counts(const FilterSettings& settings) const {
-        const DensityRule rule = job_.options.density;
+        if (job_.options.density == DensityRule::verified && s_.taken >= kFirstVerified)
+            return verified_density();
+        const covariance::DensityRule rule = predicted_rule(job_.options.density);
         if (!job_.options.progressive)
             return relative_density(*prediction_, rule, settings.c, settings.limits);
         SampleKnowledge known = knowledge_from(s_.films[0], prediction_->spectrum);

@@ -133,17 +133,15 @@ void mix_unfiltered(const Film& film, const RawLuminance& raw, FilteredImage& im
     }
 }
 
-}  // namespace
-
-FilteredImage gathered_image(const Film& film, const CovarianceFilters& filters) {
-    const Parts parts = parts_of(film);
+/// Both parts of the light, each through its filters.
+FilteredImage gathered_image(const Parts& parts, const CovarianceFilters& filters) {
     FilteredImage image = through(parts.scattered, parts.count, filters.scattered);
     add(parts, in_view_image(parts, filters), image);
     return image;
 }
 
-FilteredImage judged_image(const Film& film, const CovarianceFilters& filters) {
-    const Parts parts = parts_of(film);
+/// The candidates' mixture that the samples ask for.
+FilteredImage judged_image(const Film& film, const Parts& parts, const CovarianceFilters& filters) {
     std::vector<FilteredImage> candidates =
         guided_gather(parts.scattered.mean, parts.scattered.variance, parts.count,
                       filters.scattered, guides_of(film, parts, filters.scattered));
@@ -154,6 +152,42 @@ FilteredImage judged_image(const Film& film, const CovarianceFilters& filters) {
     FilteredImage image = mixed(candidates, choose_filters(parts.whole, candidates, brightness));
     mix_unfiltered(film, parts.whole, image);
     return image;
+}
+
+std::vector<bool> light_known(const std::vector<PackedCovariance>& covariances) {
+    std::vector<bool> known(covariances.size());
+    for (size_t i = 0; i < known.size(); ++i) known[i] = covariances[i].weight > 0;
+    return known;
+}
+
+}  // namespace
+
+CovarianceFilters covariance_filters(const RenderState& state) {
+    const CovarianceBuffers& parts = state.parts();
+    const double taken = state.films[0].mean_count();
+    const FilterSettings settings = covariance::filter_settings(taken),
+                         settings_in_view = covariance::filter_settings_in_view(taken);
+    const auto filters_of = [&](const std::vector<PackedCovariance>& part,
+                                const FilterSettings& its_settings) {
+        const Prediction p = preintegrated(
+            smoothed(unpack(part, state.region.width(), state.region.height())));
+        return filter_field(p.spectrum, p.width, p.height, state.filter, its_settings);
+    };
+    CovarianceFilters filters{filters_of(parts.scattered, settings),
+                              filters_of(parts.in_view, settings_in_view)};
+    filters.has_in_view = std::any_of(parts.in_view.begin(), parts.in_view.end(),
+                                      [](const PackedCovariance& c) { return c.weight > 0; });
+    if (state.filter == FilterRule::verified || state.filter == FilterRule::predicted)
+        covariance::limit_parts(filters.scattered, filters.in_view, light_known(parts.scattered),
+                                light_known(parts.in_view), settings, settings_in_view);
+    return filters;
+}
+
+FilteredImage covariance_image(const RenderState& state, const CovarianceFilters& filters) {
+    const Film& film = state.films[0];
+    const Parts parts = parts_of(film);
+    return state.filter == FilterRule::verified ? judged_image(film, parts, filters)
+                                                : gathered_image(parts, filters);
 }
 
 }  // namespace covtrace

@@ -3,7 +3,7 @@
 
 #include "reconstruction/filter_field.h"
 #include "reconstruction/filtered_image.h"
-#include "render/film.h"
+#include "render/render_state.h"
 
 namespace covtrace {
 
@@ -14,12 +14,13 @@ struct CovarianceFilters {
     bool has_in_view = false;  ///< whether emitters are in view; else their part stays as it is
 };
 
-/// Gathers both parts of the light, each through its filters. This is all that Belcour 2012,
-/// section 5.1.3, does.
-FilteredImage gathered_image(const Film& film, const CovarianceFilters& filters);
+/// The filters that the state's covariances and the number of its samples lead to.
+CovarianceFilters covariance_filters(const RenderState& state);
 
-/// The gathered image, or where the samples say that these have less error, means of the same
-/// surface by the same filters or by wider ones (guided_gather.h), or the raw pixels.
-FilteredImage judged_image(const Film& film, const CovarianceFilters& filters);
+/// Gathers both parts of the light, each through its filters, which is all that Belcour 2012,
+/// section 5.1.3, does. With FilterRule::verified where the samples say that these have less error:
+/// means of the same surface by the same filters or by wider ones (guided_gather.h), or the raw
+/// pixels.
+FilteredImage covariance_image(const RenderState& state, const CovarianceFilters& filters);
 
 }  // namespace covtrace
