@@ -46,7 +46,11 @@ std::vector<float> relative(std::vector<float> density) {
     return density;
 }
 
-std::vector<float> density_of_noise_left(const FilteredKnowledge& known) {
+std::vector<float> density_of_noise_left(const FilteredKnowledge& known,
+                                         std::span<const float> predicted) {
+    // Deviation in pixels over which noise is averaged, and the predicted density's exponent
+    // (docs/decisions/0128)
+    constexpr float kNoiseSmoothing = 1.2f, kPredicted = 0.35f;
     const Plane brightness = gaussian_blur(known.brightness, kSmoothing);
     Plane noise(known.variance.width, known.variance.height);
     for (size_t i = 0; i < noise.size(); ++i) {
@@ -55,9 +59,11 @@ std::vector<float> density_of_noise_left(const FilteredKnowledge& known) {
         const float v = known.count[i] * relative_variance;
         noise[i] = std::isfinite(v) ? v : 0.0f;
     }
-    noise = gaussian_blur(noise, kSmoothing);
-    for (float& v : noise.values) v = std::sqrt(v);
-    return relative(std::move(noise.values));
+    noise = gaussian_blur(noise, kNoiseSmoothing);
+    std::vector<float> density(noise.size());
+    for (size_t i = 0; i < density.size(); ++i)
+        density[i] = std::pow(noise[i], (1 - kPredicted) / 2) * std::pow(predicted[i], kPredicted);
+    return relative(std::move(density));
 }
 
 void spread_evenly(std::span<float> density, float share) {

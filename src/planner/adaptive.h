@@ -61,15 +61,17 @@ struct FilteredKnowledge {
     Plane count;       ///< samples that the pixel has
 };
 
-/// Makes relative densities with mean 1 from the noise that filters have left; where all would be
-/// 0, each is 1.
+/// Makes relative densities with mean 1 from the noise that filters have left, and from `predicted`
+/// ones; where all would be 0, each is 1.
 ///
 /// Where filters hardly change from pixel to pixel, the variance V_q of the filtered image is
 /// sigma_q^2 / n_q sum_p a_qp^2, so that the counts of adaptive_density are
 ///     n ~ sqrt(n_q V_q / (I^2 + eps)),
 /// whatever filters the image has, and however much of a texture they keep. The square is averaged
-/// over a few pixels.
-std::vector<float> density_of_noise_left(const FilteredKnowledge& known);
+/// over a few pixels. As few samples tell V with much noise of its own, the density is a weighted
+/// geometric mean of this one and the predicted one.
+std::vector<float> density_of_noise_left(const FilteredKnowledge& known,
+                                         std::span<const float> predicted);
 
 /// Gives `share` of all samples out evenly. Pre: densities with mean 1.
 void spread_evenly(std::span<float> density, float share);

@@ -12,8 +12,8 @@ Plane emphasis(const Prediction& prediction, PredictedRule rule, float c,
     Plane beyond(prediction.width, prediction.height, 1);
     if (rule == PredictedRule::tempered) return beyond;
     const std::vector<float> asked = covariance::densities(prediction, rule, c, limits),
-                             tempered = covariance::densities(prediction, PredictedRule::tempered, c,
-                                                              limits);
+                             tempered = covariance::densities(prediction, PredictedRule::tempered,
+                                                              c, limits);
     for (size_t i = 0; i < beyond.size(); ++i)
         beyond[i] = tempered[i] > 0 ? std::pow(asked[i] / tempered[i], kExponent) : 0.0f;
     return gaussian_blur(beyond, kSmoothing);

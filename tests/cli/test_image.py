@@ -72,7 +72,7 @@ class Layers(CliTest):
             self.assertAlmostEqual(sum(samples) / len(samples), 3.5, delta=0.035)
 
     def test_filters_by_their_constants(self):
-        rules = {rule: self.layers("--method", "covariance", "--spp", 16, "--filter", rule).pixels for rule in ("verified", "predicted", "matched", "thesis")}
+        rules = {rule: self.layers("--method", "covariance", "--spp", 16, "--density", "tempered", "--filter", rule).pixels for rule in ("verified", "predicted", "matched", "thesis")}
         compared = 0
         for matched, thesis in zip(*(zip(*(rules[r][f"filter.{s}"] for s in SYMMETRIC)) for r in ("matched", "thesis"))):
             self.assertLessEqual(matched[0], thesis[0] * 1.00001)
@@ -92,6 +92,22 @@ class Layers(CliTest):
         for s in SYMMETRIC:
             self.assertEqual(rules["verified"][f"filter.{s}"], rules["predicted"][f"filter.{s}"])
         self.assertNotEqual(rules["verified"]["G"], rules["predicted"]["G"])
+
+    def test_counts_follow_the_noise_that_filters_leave(self):
+        def samples(spp, *arguments):
+            return self.layers("--method", "covariance", "--spp", spp, *arguments).pixels["samples.Y"]
+
+        self.assertEqual(samples(4), samples(4, "--density", "tempered"))
+        verified, tempered = samples(16), samples(16, "--density", "tempered")
+        # The noise is that of an image of 4 samples per pixel.
+        few = self.layers("--method", "covariance", "--spp", 4).pixels
+        noise = [n * v / (y * y + 0.01) for n, v, y in zip(few["samples.Y"], few["variance.G"], few["G"])]
+        middle = sorted(noise)[len(noise) // 2]
+
+        def share_of_noisy(counts):
+            return sum(c for c, v in zip(counts, noise) if v > middle) / sum(counts)
+
+        self.assertGreater(share_of_noisy(verified), 1.02 * share_of_noisy(tempered))
 
     def test_every_voxel_occludes_more_than_the_nearest_at_their_distance(self):
         widths = {}

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -40,6 +41,57 @@ struct Case {
             for (int x = kSize / 2; x < kSize; ++x) body(size_t(y) * kSize + size_t(x));
     }
 };
+
+/// Density of the noise left at the middle of the right half over that of the left one; there
+/// the numbers are those given, on the left 1, and the brightness is 1 everywhere.
+double ratio_of_noise_left(float variance, float count, float predicted) {
+    const Plane one(kSize, kSize, 1);
+    FilteredKnowledge known{one, one, one};
+    Plane prediction = one;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = kSize / 2; x < kSize; ++x) {
+            known.variance(x, y) = variance;
+            known.count(x, y) = count;
+            prediction(x, y) = predicted;
+        }
+    const std::vector<float> d = density_of_noise_left(known, prediction.values);
+    EXPECT_NEAR(std::accumulate(d.begin(), d.end(), 0.0) / double(d.size()), 1, 1e-4);
+    const size_t row = size_t(kSize) * kSize / 2;
+    return double(d[row + 3 * kSize / 4]) / double(d[row + kSize / 4]);
+}
+
+TEST(DensityOfNoiseLeft, FollowsTheNoiseOfOneSampleBehindTheFilter) {
+    // A deviation three times as large
+    EXPECT_NEAR(ratio_of_noise_left(9, 1, 1), std::pow(3, 0.65), 0.01);
+    // The same variance of four times as many samples: a single one has twice the deviation.
+    EXPECT_NEAR(ratio_of_noise_left(1, 4, 1), std::pow(2, 0.65), 0.01);
+    // More samples have lowered the variance: the same density.
+    EXPECT_NEAR(ratio_of_noise_left(0.25f, 4, 1), 1, 0.01);
+}
+
+TEST(DensityOfNoiseLeft, KeepsAPartOfThePrediction) {
+    EXPECT_NEAR(ratio_of_noise_left(1, 1, 4), std::pow(4, 0.35), 0.01);
+}
+
+TEST(DensityOfNoiseLeft, FollowsTheInverseBrightness) {
+    const Plane one(kSize, kSize, 1);
+    FilteredKnowledge known{one, one, one};
+    for (int y = 0; y < kSize; ++y)
+        for (int x = kSize / 2; x < kSize; ++x) known.brightness(x, y) = 4;
+    const std::vector<float> d = density_of_noise_left(known, one.values);
+    const size_t row = size_t(kSize) * kSize / 2;
+    EXPECT_NEAR(d[row + 3 * kSize / 4] / d[row + kSize / 4], std::pow(1.01 / 16.01, 0.325), 0.01);
+}
+
+TEST(DensityOfNoiseLeft, IsEvenWithoutNoiseAndFiniteBesideInfiniteVariances) {
+    const Plane one(kSize, kSize, 1);
+    const std::vector<float> dark =
+        density_of_noise_left({one, Plane(kSize, kSize), one}, one.values);
+    for (const float d : dark) EXPECT_EQ(d, 1);
+    FilteredKnowledge known{one, one, one};
+    known.variance[100] = std::numeric_limits<float>::infinity();
+    for (const float d : density_of_noise_left(known, one.values)) EXPECT_TRUE(std::isfinite(d));
+}
 
 TEST(AdaptiveDensity, FollowsTheDeviation) {
     Case c;

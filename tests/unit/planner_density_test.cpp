@@ -105,7 +105,8 @@ TEST(Emphasis, IsWhatTheThesisAsksForBeyondTheTemperedDensity) {
     // The emphasis is a mean over a few pixels.
     EXPECT_NEAR(thesis(19, 20) + thesis(20, 20), thesis(0, 20) + thesis(39, 20), 1e-3f);
     EXPECT_GT(thesis(19, 20), 3 * thesis(0, 20));
-    for (const float v : emphasis(p, covariance::DensityRule::tempered, 2, limits).values) EXPECT_EQ(v, 1);
+    for (const float v : emphasis(p, covariance::DensityRule::tempered, 2, limits).values)
+        EXPECT_EQ(v, 1);
 }
 
 TEST(RelativeDensity, HasMeanOneAndAnEvenShare) {

@@ -151,7 +151,7 @@ class CovarianceRender {
     }
 
     /// The density of the noise that the filters leave.
-    std::vector<float> verified_density() const {
+    std::vector<float> verified_density(const FilterSettings& settings) const {
         if (has_verified_density()) return relative(s_.density);
         const FilteredImage image = covariance_image(s_, covariance_filters(s_));
         const Plane none(s_.region.width(), s_.region.height());
@@ -161,14 +161,16 @@ class CovarianceRender {
             known.variance[i] = image.variance[i];
             known.count[i] = float(s_.films[0].pixels[i].count);
         }
-        std::vector<float> density = density_of_noise_left(known);
+        std::vector<float> density = density_of_noise_left(
+            known, relative_density(*prediction_, predicted_rule(DensityRule::verified), settings.c,
+                                    settings.limits));
         spread_evenly(density, kEvenShare);
         return density;
     }
 
     std::vector<float> relative_counts(const FilterSettings& settings) const {
         if (job_.options.density == DensityRule::verified && s_.taken >= kFirstVerified)
-            return verified_density();
+            return verified_density(settings);
         const covariance::DensityRule rule = predicted_rule(job_.options.density);
         if (!job_.options.progressive)
             return relative_density(*prediction_, rule, settings.c, settings.limits);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "reconstruction/filter_choice.h"
@@ -61,6 +62,12 @@ Parts parts_of(const Film& film) {
 FilteredImage through(const Part& part, const std::vector<uint32_t>& count,
                       const FilterField& field) {
     return gather(part.mean, part.variance, count, field);
+}
+
+/// Filters half as wide.
+FilterField narrowed(FilterField field) {
+    for (auto& s : field.covariance) s = 0.25f * s;
+    return field;
 }
 
 FilteredImage in_view_image(const Parts& parts, const CovarianceFilters& filters) {
@@ -146,8 +153,15 @@ FilteredImage judged_image(const Film& film, const Parts& parts, const Covarianc
         guided_gather(parts.scattered.mean, parts.scattered.variance, parts.count,
                       filters.scattered, guides_of(film, parts, filters.scattered));
     candidates.insert(candidates.begin(), through(parts.scattered, parts.count, filters.scattered));
+    // With samples where noise is, the outlines of emitters in view may have narrower filters
+    std::optional<FilteredImage> sharper;
+    if (filters.has_in_view) {
+        sharper = candidates.front();
+        add(parts, through(parts.in_view, parts.count, narrowed(filters.in_view)), *sharper);
+    }
     const FilteredImage in_view = in_view_image(parts, filters);
     for (FilteredImage& candidate : candidates) add(parts, in_view, candidate);
+    if (sharper) candidates.push_back(std::move(*sharper));
     const Plane brightness = brightness_of(parts.whole, candidates[kSteady], candidates.front());
     FilteredImage image = mixed(candidates, choose_filters(parts.whole, candidates, brightness));
     mix_unfiltered(film, parts.whole, image);
@@ -169,8 +183,8 @@ CovarianceFilters covariance_filters(const RenderState& state) {
                          settings_in_view = covariance::filter_settings_in_view(taken);
     const auto filters_of = [&](const std::vector<PackedCovariance>& part,
                                 const FilterSettings& its_settings) {
-        const Prediction p = preintegrated(
-            smoothed(unpack(part, state.region.width(), state.region.height())));
+        const Prediction p =
+            preintegrated(smoothed(unpack(part, state.region.width(), state.region.height())));
         return filter_field(p.spectrum, p.width, p.height, state.filter, its_settings);
     };
     CovarianceFilters filters{filters_of(parts.scattered, settings),
