@@ -50,11 +50,27 @@ std::vector<bool> may_be_interface(const SceneDescription& scene) {
     });
 }
 
-/// For each material, whether it or a part of it scatters light through a surface.
+/// For each material, whether light gets through it, or through a part of it, and is scattered
+/// wherever it does.
 std::vector<bool> are_translucent(const SceneDescription& scene) {
-    return of_any_part(scene, [](const MaterialDescription& m) {
+    std::vector<bool> are = of_any_part(scene, [](const MaterialDescription& m) {
         return std::holds_alternative<DiffuseTransmissionMaterial>(m.value);
     });
+    const std::vector<bool> clear = of_any_part(scene, [](const MaterialDescription& m) {
+        return std::holds_alternative<DielectricMaterial>(m.value) ||
+               std::holds_alternative<ThinDielectricMaterial>(m.value) ||
+               std::holds_alternative<InterfaceMaterial>(m.value);
+    });
+    for (size_t m = 0; m < are.size(); ++m) are[m] = are[m] && !clear[m];
+    return are;
+}
+
+/// Whether rays pass a shape from within: a tube in the place of a ribbon with nothing in it, whose
+/// inside does not shine.
+bool is_left_freely(const ShapeDescription& shape, const std::vector<bool>& translucent) {
+    return shape.is_tube_for_ribbon && shape.material >= 0 &&
+           translucent[static_cast<size_t>(shape.material)] && shape.inside == shape.outside &&
+           shape.area_light < 0;
 }
 
 /// Whether alpha hides all of the shape. Such a shape is a light that can't be seen: no other one
@@ -102,10 +118,8 @@ struct Geometry::Impl::Builder {
         const bool flip =
             shape.reverse_orientation != shape.object_to_world.start().swaps_handedness();
         const bool passes = lets_light_pass(scene, shape);
-        const bool is_translucent =
-            shape.material >= 0 && translucent[static_cast<size_t>(shape.material)];
         g.placed.push_back({shape, flip, is_instanced, passes, is_pane(scene, shape),
-                            shape.is_tube_for_ribbon && is_translucent});
+                            is_left_freely(shape, translucent)});
         constexpr RayKinds kSeen = set_of(RayKind::camera) | set_of(RayKind::shadow);
         g.is_in_the_way.push_back(!passes && !has_interface_material(scene, shape) &&
                                   (shape.visible_to & kSeen) != 0);

@@ -79,26 +79,32 @@ TEST(GeometryAlpha, TubesForRibbonsAreLeftFreelyWhereTheyAreTranslucent) {
         EXPECT_EQ(queries[1].found, found);
         return found ? std::optional(hit.position.z) : std::nullopt;
     };
+    enum class Tube { translucent, opaque, glass_in_places, filled, shining };
     for (const bool is_reversed : {false, true})
         for (const float mirrored : {1.0f, -1.0f})
-            for (const bool is_translucent : {true, false}) {
+            for (const Tube kind : {Tube::translucent, Tube::opaque, Tube::glass_in_places,
+                                    Tube::filled, Tube::shining}) {
+                const bool is_left_freely = kind == Tube::translucent;
                 ShapeDescription tube =
                     mesh(two_walls(), AnimatedTransform(Transform::scale(mirrored, 1, 1)));
                 tube.reverse_orientation = is_reversed;
                 tube.is_tube_for_ribbon = true;
-                tube.material = 1;
+                tube.material = 2;
+                if (kind == Tube::filled) tube.inside = 0;
+                if (kind == Tube::shining) tube.area_light = 0;
                 SceneDescription scene = scene_of({tube});
-                scene.materials.resize(2);
-                if (is_translucent) {
-                    scene.materials[0].value = DiffuseTransmissionMaterial{};
-                    scene.materials[1].mix = MaterialMix{{0, 0}, 0};
-                }
+                scene.materials.resize(3);
+                scene.media.resize(1);
+                scene.area_lights.resize(1);
+                if (kind != Tube::opaque) scene.materials[0].value = DiffuseTransmissionMaterial{};
+                if (kind == Tube::glass_in_places) scene.materials[1].value = DielectricMaterial{};
+                scene.materials[2].mix = MaterialMix{{0, 1}, 0};
                 const Geometry g(scene);
                 EXPECT_EQ(first_wall(g, 3, -1), 1.0f);
                 EXPECT_EQ(first_wall(g, -3, 1), 0.0f);
                 const auto up = first_wall(g, 0.5f, 1), down = first_wall(g, 0.5f, -1);
-                EXPECT_EQ(up, is_translucent ? std::nullopt : std::optional(1.0f));
-                EXPECT_EQ(down, is_translucent ? std::nullopt : std::optional(0.0f));
+                EXPECT_EQ(up, is_left_freely ? std::nullopt : std::optional(1.0f));
+                EXPECT_EQ(down, is_left_freely ? std::nullopt : std::optional(0.0f));
             }
 }
 
