@@ -4,15 +4,22 @@ import numpy as np
 
 
 def _rotated(x, bits):
-    return (x << np.uint32(bits)) | (x >> np.uint32(32 - bits))
+    turned = x << np.uint32(bits)
+    turned |= x >> np.uint32(32 - bits)
+    return turned
 
 
 def _final(a, b, c):
     for bits in ((14, 11, 25), (16, 4, 14)):
-        c = (c ^ b) - _rotated(b, bits[0])
-        a = (a ^ c) - _rotated(c, bits[1])
-        b = (b ^ a) - _rotated(a, bits[2])
-    return (c ^ b) - _rotated(b, 24)
+        c = c ^ b
+        c -= _rotated(b, bits[0])
+        a = a ^ c
+        a -= _rotated(c, bits[1])
+        b = b ^ a
+        b -= _rotated(a, bits[2])
+    c ^= b
+    c -= _rotated(b, 24)
+    return c
 
 
 def _mixed(a, b, c):
@@ -46,14 +53,19 @@ def hashed_number(*values):
     """In [0, 1], of the bits of one to four float32 arrays."""
     values = np.broadcast_arrays(*(np.asarray(v, np.float32) for v in values))
     shape = values[0].shape
-    return (hashed(*(bits(v).reshape(shape) for v in values)).astype(np.float64) / 0xFFFFFFFF).astype(np.float32)
+    return hashed(*(bits(v).reshape(shape) for v in values)).astype(np.float32) / np.float32(0xFFFFFFFF)
 
 
-def hashed_vector(*values):
-    """(..., 3) in [0, 1], of one to four numbers."""
+def hashed_numbers(*values):
+    """Three arrays in [0, 1], of one to four numbers."""
     if len(values) == 4:
         x, y, z, w = values
         keys = ((x, y, z, w), (z, x, w, y), (w, z, y, x))
     else:
         keys = (values, (*values, 1.0), (*values, 2.0))
-    return np.stack([hashed_number(*key) for key in keys], axis=-1)
+    return [hashed_number(*key) for key in keys]
+
+
+def hashed_vector(*values):
+    """(..., 3) in [0, 1], of one to four numbers."""
+    return np.stack(hashed_numbers(*values), axis=-1)

@@ -6,24 +6,24 @@ import numpy as np
 class Lattice:
     """Values of the cells about n places.
 
-    cells: (n, d) whole numbers, those that the places are in. least, most: of what is added to them. values_of: from
-    (m, d) cells to (m, k).
+    cells: d arrays (n,) of whole numbers, int32: the cells that the places are in. least, most: of what is added to them.
+    values_of: from d arrays (m,) of cells to k arrays (m,).
     """
 
     def __init__(self, cells, least, most, values_of):
-        self._cells, self._values_of, self._table = cells, values_of, None
-        by_axis = np.ascontiguousarray(cells.T)  # along which extremes are found many times faster
-        first = by_axis.min(axis=1) + least
-        spans = by_axis.max(axis=1) + most - first + 1
-        if np.prod(spans.astype(float)) > 2 * len(cells):
+        self._cells, self._values_of, self._tables = cells, values_of, None
+        first = [int(axis.min()) + least for axis in cells]
+        spans = [int(axis.max()) + most - low + 1 for axis, low in zip(cells, first)]
+        if np.prod(np.array(spans, float)) > 2 * len(cells[0]):
             return  # places so far apart share no cells
-        strides = np.cumprod(np.append(1, spans[:0:-1]))[::-1]
-        grid = np.stack(np.meshgrid(*(np.arange(span) for span in spans), indexing="ij"), axis=-1)
-        self._table, self._strides = values_of(grid.reshape(-1, len(spans)) + first), strides
-        self._index = (cells - first) @ strides
+        self._strides = [int(np.prod(spans[axis + 1:])) for axis in range(len(spans))]
+        grid = np.meshgrid(*(np.arange(low, low + span, dtype=np.int32) for low, span in zip(first, spans)), indexing="ij")
+        self._tables = values_of([axis.ravel() for axis in grid])
+        self._index = sum((axis - np.int32(low)).astype(np.intp) * stride for axis, low, stride in zip(cells, first, self._strides))
 
     def at(self, offset):
-        """(n, k) of the cells that lie by the whole numbers `offset` beside those of the places."""
-        if self._table is None:
-            return self._values_of(self._cells + np.asarray(offset))
-        return np.take(self._table, self._index + np.dot(offset, self._strides), axis=0)
+        """k arrays (n,) of the cells that lie by the whole numbers `offset` beside those of the places."""
+        if self._tables is None:
+            return self._values_of([axis + np.int32(k) if k else axis for axis, k in zip(self._cells, offset)])
+        index = self._index + sum(k * stride for k, stride in zip(offset, self._strides))
+        return [table.take(index, mode="clip") for table in self._tables]

@@ -11,58 +11,62 @@ from .lattice import Lattice
 SCALES = {1: 0.25, 2: 0.6616, 3: 0.9820, 4: 0.8344}
 
 
-def _signed(h, bit):
-    return np.where(h & np.uint32(bit), np.float32(-1), np.float32(1))
+def _directions(dimensions):
+    """d arrays (2^k,): the components of the gradients that a hash chooses among, by its last k bits."""
+    h = np.arange({1: 16, 2: 8, 3: 16, 4: 32}[dimensions])
+    sign = [1.0 - 2.0 * (h >> bit & 1) for bit in range(4)]
+    gradients = np.zeros((dimensions, len(h)))
+    if dimensions == 1:
+        gradients[0] = sign[3] * (1 + (h & 7))
+    elif dimensions == 2:
+        first = np.where(h < 4, 0, 1)
+        gradients[first, h] = sign[0]
+        gradients[1 - first, h] = 2 * sign[1]
+    elif dimensions == 3:
+        gradients[np.where(h < 8, 0, 1), h] += sign[0]
+        gradients[np.where(h < 4, 1, np.where((h == 12) | (h == 14), 0, 2)), h] += sign[1]
+    else:
+        gradients[np.where(h < 24, 0, 1), h] = sign[0]
+        gradients[np.where(h < 16, 1, 2), h] = sign[1]
+        gradients[np.where(h < 8, 2, 3), h] = sign[2]
+    return list(gradients.astype(np.float32))
+
+
+_DIRECTIONS = {dimensions: _directions(dimensions) for dimensions in SCALES}
 
 
 def _gradients(cells):
-    """(m, d): the gradient at each corner (m, d), of few directions, as its hash chooses."""
-    dimensions = cells.shape[1]
-    h = hashed(*(cells[:, i].astype(np.uint32) for i in range(dimensions)))
-    gradients = np.zeros(cells.shape, np.float32)
-    rows = np.arange(len(cells))
-    if dimensions == 1:
-        h = h & np.uint32(15)
-        gradients[:, 0] = _signed(h, 8) * (1 + (h & np.uint32(7)))
-    elif dimensions == 2:
-        h = h & np.uint32(7)
-        first = np.where(h < 4, 0, 1)
-        gradients[rows, first] = _signed(h, 1)
-        gradients[rows, 1 - first] = 2 * _signed(h, 2)
-    elif dimensions == 3:
-        h = h & np.uint32(15)
-        gradients[rows, np.where(h < 8, 0, 1)] = _signed(h, 1)
-        gradients[rows, np.where(h < 4, 1, np.where((h == 12) | (h == 14), 0, 2))] = _signed(h, 2)
-    else:
-        h = h & np.uint32(31)
-        gradients[rows, np.where(h < 24, 0, 1)] = _signed(h, 1)
-        gradients[rows, np.where(h < 16, 1, 2)] = _signed(h, 2)
-        gradients[rows, np.where(h < 8, 2, 3)] = _signed(h, 4)
-    return gradients
+    """d arrays (m,): the gradients at corners, d arrays (m,), of few directions, as their hashes choose."""
+    directions = _DIRECTIONS[len(cells)]
+    chosen = hashed(*(axis.view(np.uint32) for axis in cells)) & np.uint32(len(directions[0]) - 1)
+    return [component.take(chosen, mode="clip") for component in directions]
 
 
 def signed_noise(p):
     """(n,) in about [-1, 1] at (n, d)."""
-    p = np.atleast_2d(np.asarray(p, np.float32))
-    dimensions = p.shape[1]
-    cells = np.floor(p)
-    local = np.ascontiguousarray((p - cells).T)
-    lattice = Lattice(cells.astype(np.int64), 0, 1, _gradients)
-    axes = []  # for each: (side, weight, distance from it) of its near side and its far one
-    for t in local:
-        fade = t * t * t * (t * (t * 6 - 15) + 10)
-        axes.append([(0, 1 - fade, t), (1, fade, t - 1)])
-        if not t.any():  # as on the plane of UV coordinates: far sides have no weight
-            axes[-1].pop()
-    total = np.zeros(len(p), np.float32)
-    for corner in itertools.product(*axes):
-        gradient = np.ascontiguousarray(lattice.at([side for side, _, _ in corner]).T)
-        weight, slope = np.float32(SCALES[dimensions]), np.float32(0)
-        for (_, share, distance), g in zip(corner, gradient):
-            weight = weight * share
-            slope = slope + g * distance
-        total += weight * slope
-    return total
+    axes = np.ascontiguousarray(np.atleast_2d(np.asarray(p, np.float32)).T)
+    dimensions = len(axes)
+    cells = np.floor(axes)
+    local = axes - cells
+    lattice = Lattice(list(cells.astype(np.int32)), 0, 1, _gradients)
+    # Distances along each axis from the near side and the far one. Places on the near side have nothing of the far one, as on the
+    # plane of UV coordinates.
+    sides = [(t, t - 1) if t.any() else (t,) for t in local]
+    values = {}
+    for corner in itertools.product(*(range(len(side)) for side in sides)):
+        values[corner] = sum(gradient * side[k] for gradient, side, k in zip(lattice.at(corner), sides, corner))
+    for axis in reversed(range(dimensions)):
+        if len(sides[axis]) == 2:
+            t = local[axis]
+            fade = t * t * t * (t * (t * 6 - 15) + 10)
+            values = {corner[:-1]: value + fade * (values[(*corner[:-1], 1)] - value) for corner, value in values.items() if not corner[-1]}
+        else:
+            values = {corner[:-1]: value for corner, value in values.items()}
+    return np.float32(SCALES[dimensions]) * values[()]
+
+
+# Share of the whole that the last octaves may have together and be left out: half a step of 8 bits.
+_LEAST_SHARE = 1 / 512
 
 
 def fractal(p, detail, roughness, lacunarity=2.0):
@@ -72,17 +76,17 @@ def fractal(p, detail, roughness, lacunarity=2.0):
     roughness = np.maximum(np.asarray(roughness, np.float32), 0)
     whole = np.floor(detail)
     share = detail - whole
-    frequency, strength, total, weight, value = 1.0, np.float32(1), 0, 0, 0
-    for octave in range(int(whole.max()) + 2):
-        is_needed = octave <= whole + (share > 0)
-        if not is_needed.any():
+    octaves = int(np.ceil(detail.max())) + 1
+    strengths = [roughness**octave for octave in range(octaves)]
+    # The mean of the whole octaves, and one with the next octave, each by its share.
+    weights, with_next = (sum(np.where(octave <= limit, strength, 0) for octave, strength in enumerate(strengths))
+                          for limit in (whole, whole + 1))
+    of_octave = [strength * (np.where(octave <= whole, (1 - share) / weights, 0) + np.where(octave <= whole + 1, share / with_next, 0))
+                 for octave, strength in enumerate(strengths)]
+    total, frequency = np.float32(0), np.float32(1)
+    for octave, weight in enumerate(of_octave):
+        if sum(np.max(rest) for rest in of_octave[octave:]) < _LEAST_SHARE:
             break
-        before, before_weight = total, weight
-        total = total + strength * signed_noise(p * np.asarray(frequency)[..., None])
-        weight = weight + strength
-        mean = total / weight
-        value = np.where(octave <= whole, mean, np.where(octave == whole + 1, (1 - share) * before / np.where(
-            np.asarray(before_weight) > 0, before_weight, 1) + share * mean, value))
-        strength = strength * roughness
+        total = total + weight.astype(np.float32) * signed_noise(p * np.asarray(frequency)[..., None])
         frequency = frequency * lacunarity
-    return value
+    return total
