@@ -19,10 +19,9 @@ class BakedImages:
         tree = socket.id_data
         if any(_may_change(node.image) for node in all_nodes(tree) if getattr(node, "image", None)):
             return bake()
-        key = (signature(tree), socket.node.name, socket.identifier, how, repr(surface.ranges), baking.SMALLEST, baking.LARGEST)
+        key = (signature(tree), socket.node.name, socket.identifier, how, surface.key(), baking.SMALLEST, baking.LARGEST)
         found = self._used.get(key) or _known.get(key) or bake()
-        if not found.place.hangs_on_object:
-            self._used[key] = found
+        self._used[key] = found
         return found
 
     def keep(self):

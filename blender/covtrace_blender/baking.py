@@ -4,71 +4,48 @@ import itertools
 
 import numpy as np
 
+from . import edges
+from .baked import Baked, BakedImage, Layout
+from .body_baking import bake_body
+from .parts import PART, by_parts
 from .shader_nodes.evaluator import Evaluator
-from .shader_nodes.place import Place
+from .shader_nodes.place import UvPlace
 
 SMALLEST, LARGEST = 512, 2048  # pixels along a side
 PROBES = 256
 # Mean error of an image against the nodes, at which a finer one is not worth its memory: a step of 8 bits.
 TOLERANCE = 1 / 255
-SAMPLES_AT_ONCE = 4096  # whose arrays stay in the caches
-
-# Step between neighbours, as a share of the image's range, from which a texel is a mean over its square: the centre alone
-# would round the width of mortar and the like to whole texels.
-EDGE = 1 / 32
-# Places in such a texel, (u, v) in [0, 1]: Hammersley's points, no two of which are in line along an axis.
-PLACES = np.array([((k + 0.5) / 16, (int(f"{k:04b}"[::-1], 2) + 0.5) / 16) for k in range(16)])
-
-
-_numbers = itertools.count(1)  # of names, which are unique among all exports
-
-
-class BakedImage:
-    """Pixels that no image of Blender has."""
-
-    def __init__(self, name_full, values):
-        self.name_full, self.values = name_full, values
-
-
-class Layout:
-    """The part of the UV plane that an image shows: (u, v) from `low` on, `extent` wide; beyond it, it `wrap`s."""
-
-    def __init__(self, low, extent, wrap):
-        self.low, self.extent, self.wrap = np.array(low, float), np.array(extent, float), wrap
-
-    def is_unit_square(self):
-        return bool((self.low == 0).all() and (self.extent == 1).all())
-
-    def mapping(self):
-        """Scale and offset of (u, v), as Value has them."""
-        return (*(1 / self.extent), *(-self.low / self.extent))
 
 
 class Surface:
     """The meshes that a material is on, as far as baking has to know them.
 
-    ranges: {UV map: ((u, v) smallest, (u, v) largest)}, "" being the one that is active for rendering. object_of_uv: as
-    Place has it.
+    ranges: {UV map: ((u, v) smallest, (u, v) largest)}, "" being the one that is active for rendering. body_of: makes the
+    Body, with its atlas, for what hangs on the place on it; None where there is none.
     """
 
-    def __init__(self, ranges=None, object_of_uv=None):
-        self.ranges, self.object_of_uv = ranges or {}, object_of_uv or {}
+    body = None
+
+    def __init__(self, ranges=None, body_of=None):
+        self.ranges, self.body_of = ranges or {}, body_of
+
+    def on_body(self):
+        """The same, on which all is baked to the body's atlas."""
+        found = Surface(self.ranges)
+        found.body = self.body_of()
+        return found
+
+    def key(self):
+        """A text that is equal for surfaces that look alike."""
+        return self.body.key if self.body else repr(self.ranges)
 
     def range(self, uv_map):
         found = self.ranges.get(uv_map, self.ranges.get("", ((0, 0), (1, 1))))
         return np.array(found[0], float), np.array(found[1], float)
 
 
-class Baked:
-    """The result: a constant, or an image and its layout; and what it hangs on. is_cut: it repeats where the nodes do
-    not."""
-
-    def __init__(self, constant=None, image=None, layout=None, place=None, is_cut=False):
-        self.constant, self.image, self.layout, self.place, self.is_cut = constant, image, layout, place, is_cut
-
-
 class Baker:
-    """Bakes what functions of an Evaluator give, to rays of the kind `ray`. `pixels_of`, `ray`: as Place has them."""
+    """Bakes what functions of an Evaluator give, to rays of the kind `ray`. `pixels_of`, `ray`: as UvPlace has them."""
 
     def __init__(self, pixels_of):
         self.pixels_of, self.ray = pixels_of, None
@@ -78,16 +55,19 @@ class Baker:
 
         Raises Unsupported of the node that cannot be evaluated.
         """
+        if surface.body:
+            return bake_body(get, surface.body, only_unit_square, self.pixels_of, self.ray)
+
         def at(uv):
             nonlocal place
-            place = Place(np.asarray(uv, np.float32), surface.object_of_uv, self.pixels_of, self.ray)
+            place = UvPlace(np.asarray(uv, np.float32), self.pixels_of, self.ray)
             return get(Evaluator(place))
 
         place = None
         random = np.random.default_rng(0)
         value = at(random.random((PROBES, 2)))
-        if not place.uv_maps:
-            return Baked(constant=value, place=place)
+        if place.is_uniform:
+            return Baked(constant=value)
         shape = value.shape if len(value.shape) and value.shape[0] == PROBES else (PROBES, *value.shape)
 
         def values_at(uv):
@@ -102,7 +82,7 @@ class Baker:
             layout = Layout((0, 0), (1, 1), "repeat")
         size = _size(values_at, layout, place.images, random)
         pixels = self._pixels(values_at, layout, size, len(shape) > 1)
-        return Baked(image=BakedImage(f"baked {next(_numbers)}", pixels), layout=layout, place=place, is_cut=is_cut)
+        return Baked(image=BakedImage(pixels), layout=layout, uv_maps=place.uv_maps, is_cut=is_cut)
 
     @staticmethod
     def _pixels(values_at, layout, size, is_colour):
@@ -113,33 +93,23 @@ class Baker:
 
         def mean_at(columns, rows, places):
             """Mean over `places` of the texels' squares."""
-            corner = layout.low + np.column_stack((columns, height - 1 - rows)) * texel
+            middle = layout.low + (np.column_stack((columns, height - 1 - rows)) + 0.5) * texel
             found = np.zeros((len(columns), channels), np.float32)
-            at_once = max(1, SAMPLES_AT_ONCE // len(places))
-            for first in range(0, len(columns), at_once):
-                uv = corner[first:first + at_once, None] + places * texel
-                found[first:first + at_once] = values_at(uv.reshape(-1, 2)).reshape(len(uv), len(places), channels).mean(1)
+
+            def work(first, end):
+                uv = middle[first:end, None] + np.array(places) * texel
+                found[first:end] = values_at(uv.reshape(-1, 2)).reshape(len(uv), len(places), channels).mean(1)
+
+            by_parts(work, len(columns), max(1, PART // len(places)))
             return found
 
         rows, columns = (axis.ravel() for axis in np.mgrid[:height, :width])
-        values = mean_at(columns, rows, np.array([[0.5, 0.5]])).reshape(height, width, channels)
-        rows, columns = np.nonzero(_edges(values))
-        values[rows, columns] = mean_at(columns, rows, PLACES)
+        values = mean_at(columns, rows, [(0, 0)]).reshape(height, width, channels)
+        rows, columns = np.nonzero(edges.edges(values))
+        values[rows, columns] = mean_at(columns, rows, edges.places(len(rows), width * height))
         pixels = np.ones((height, width, 4), np.float32)
         pixels[..., :3] = values
         return pixels
-
-
-def _edges(values):
-    """(h, w): where (h, w, n) values step more than EDGE to a neighbour."""
-    least_step = EDGE * max(float(np.ptp(values)), 1e-30)
-    is_edge = np.zeros(values.shape[:2], bool)
-    for axis in (0, 1):
-        steps = np.abs(np.diff(values, axis=axis)).max(-1) > least_step
-        before, after = (slice(None, -1), slice(1, None))
-        for side in (before, after):
-            is_edge[(side, slice(None)) if axis == 0 else (slice(None), side)] |= steps
-    return is_edge
 
 
 def _repeats(values_at, uv, period):

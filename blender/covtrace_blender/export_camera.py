@@ -51,6 +51,19 @@ class SceneCamera:
         """Its place at the time at which the depsgraph stands."""
         return self._object().matrix_world.copy()
 
+    def _window(self):
+        """(x0, x1, y0, y1) of the whole frame, at distance 1 of cameras with a perspective."""
+        data = self._object().data
+        corners = data.view_frame(scene=self.scene)
+        depth = -corners[0].z if data.type == "PERSP" else 1.0
+        xs, ys = [c.x / depth for c in corners], [c.y / depth for c in corners]
+        return min(xs), max(xs), min(ys), max(ys)
+
+    def pixel(self):
+        """(width of a pixel in _window's unit, whether it grows with the distance)."""
+        x0, x1, _, _ = self._window()
+        return (x1 - x0) / self.size[0], self._object().data.type != "ORTHO"
+
     def text(self, shutter=None, end=None):
         """shutter: (open, close) in frames; end: its matrix at the closing, where it moves."""
         data = self._object().data
@@ -58,11 +71,8 @@ class SceneCamera:
             raise RuntimeError("covtrace: panoramic cameras are not supported")
         times = f"TransformTimes {shutter[0]:.9g} {shutter[1]:.9g}\n" if shutter else ""
         place = placement("Transform", _world_to_camera(self.matrix()), _world_to_camera(end) if end else None)
-        corners = data.view_frame(scene=self.scene)
         is_perspective = data.type == "PERSP"
-        depth = -corners[0].z if is_perspective else 1.0
-        xs, ys = [c.x / depth for c in corners], [c.y / depth for c in corners]
-        parameters = [f'"float screenwindow" [{numbers((min(xs), max(xs), min(ys), max(ys)))}]']
+        parameters = [f'"float screenwindow" [{numbers(self._window())}]']
         if is_perspective:
             parameters.append('"float fov" 90')
         if shutter:

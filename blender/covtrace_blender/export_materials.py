@@ -1,5 +1,7 @@
 """Shader node trees as pbrt-v4 materials; docs/guide/blender.md has the table."""
 
+import io
+
 from .baked_images import BakedImages
 from .baking import Baker, Surface
 from .export_principled import PrincipledExporter
@@ -8,7 +10,7 @@ from .export_textures import TextureFiles
 from .export_volumes import Media, coefficients
 from .fresnel import mean_facing, mean_reflectance
 from .node_signature import all_nodes
-from .shader_nodes.unsupported import Unsupported
+from .shader_nodes.unsupported import NeedsBody, Unsupported
 from .shader_nodes.light_path import RAYS, groups_of_rays
 
 TRANSPARENT = '"float alpha" 0'
@@ -16,7 +18,10 @@ TRANSPARENT = '"float alpha" 0'
 
 class Variant:
     """A material as it is to some kinds of rays: its pbrt name, its Emission or None, the text of its alpha parameter, the
-    names of the UV maps that it reads ("" is the mesh's), and the name of the medium that fills what it is on, or ""."""
+    names of the UV maps that it reads ("" is the mesh's), and the name of the medium that fills what it is on, or "". body:
+    the Body whose atlas stands for the UV map, or None."""
+
+    body = None
 
     def __init__(self, rays, name, emission=None, alpha="", uv_maps=(), medium=""):
         self.rays, self.name, self.emission, self.alpha, self.uv_maps = rays, name, emission, alpha, uv_maps
@@ -33,22 +38,40 @@ class MaterialExporter(PrincipledExporter):
         self.known, self.of_objects = {}, set()
         self.count = 0
 
-    def variants(self, material, object_name="", surface_of=lambda material_name: Surface()):
+    def variants(self, material, place=None, surface_of=lambda material_name: Surface()):
         """The Variants of a material: one, unless Light Path nodes show it to rays of different kinds as different ones. No
         ray has two of them; one that has none passes.
 
-        object_name: the object that it is on, for what hangs on it. surface_of(name of the material): its Surface there.
+        place: what it is on, for what hangs on it. surface_of(name of the material): its Surface there.
         """
         name = material.name_full if material else None
-        key = (name, object_name if name in self.of_objects else None)
+        key = (name, place if name in self.of_objects else None)
         if key not in self.known:
-            self.surface, self.hangs_on_object = surface_of(name), False
-            exported = self._variants(material)
+            exported = self._on(surface_of(name), material)
             if self.hangs_on_object:
                 self.of_objects.add(name)
-                key = (name, object_name)
+                key = (name, place)
             self.known[key] = exported
         return self.known[key]
+
+    def _on(self, surface, material):
+        """The Variants on a Surface, all of them on its body where one needs that."""
+        self.surface, self.hangs_on_object = surface, False
+        out, warn, told = self.out, self.warn, []
+        self.out, self.warn = io.StringIO(), told.append
+        try:
+            exported = self._variants(material)
+        except NeedsBody:
+            self.surface, self.out, told[:] = surface.on_body(), io.StringIO(), ()
+            exported = self._variants(material)
+        finally:
+            self.out, written, self.warn = out, self.out, warn
+        out.write(written.getvalue())
+        for text in told:
+            warn(text)
+        for variant in exported:
+            variant.body = self.surface.body
+        return exported
 
     # -- shaders
 
@@ -113,11 +136,15 @@ class MaterialExporter(PrincipledExporter):
                 return tuple(socket.default_value)[:3]
             return value.constant
 
+        surface = self.surface
+        self.surface = Surface(surface.ranges)  # an even medium needs no body
         try:
             found = coefficients(node, colour, self._plain, tell)
         except Unsupported as problem:
             tell(f"its volume is not supported and left out ({problem})")
             return ""
+        finally:
+            self.surface = surface
         return self.media.add(found)
 
     def _shader(self, node):

@@ -39,46 +39,66 @@ def triangles(mesh):
     return _triangles(mesh, "vertices")
 
 
-def parts(mesh, uv_of_slot, piece_of_triangle=None):
+def triangle_loops(mesh):
+    """(n, 3) corners of faces."""
+    return _triangles(mesh, "loops")
+
+
+def triangle_slots(mesh):
+    """(n,) material slots."""
+    return _triangles(mesh, "material_index", 1)
+
+
+def smooth_triangles(mesh):
+    """(n,) whether the face of each has smooth shading."""
+    smooth_polygons = np.empty(len(mesh.polygons), dtype=bool)
+    mesh.polygons.foreach_get("use_smooth", smooth_polygons)
+    return smooth_polygons[_triangles(mesh, "polygon_index", 1)]
+
+
+def loop_normals(mesh):
+    """(n, 3) of the corners of faces."""
+    if hasattr(mesh, "calc_normals_split"):  # from Blender 4.1 on they are there
+        mesh.calc_normals_split()
+    normals = np.empty(3 * len(mesh.loops), dtype=np.float32)
+    mesh.loops.foreach_get("normal", normals)
+    return normals.reshape(-1, 3)
+
+
+def loop_uvs(mesh, layer):
+    """(n, 2) of the corners of faces; zero in a mesh that is being edited, which has none."""
+    uvs = np.zeros(2 * len(mesh.loops), dtype=np.float32)
+    if len(layer.data) == len(mesh.loops):
+        layer.data.foreach_get("uv", uvs)
+    return uvs.reshape(-1, 2)
+
+
+def parts(mesh, uvs_of_slot, piece_of_triangle=None):
     """Yields (material slot, piece, positions, normals or None, uvs or None, triangles).
 
-    uv_of_slot(slot): the name of its UV map, or None. piece_of_triangle: pieces that stay apart; None: all is piece 0. Corners that
-    agree in everything are one vertex, so that smooth surfaces are closed. Faces without smooth shading have no normals: the
-    triangles' own are theirs.
+    uvs_of_slot(slot): (n, 3, 2) of all triangles' corners, or None. piece_of_triangle: pieces that stay apart; None: all is piece 0.
+    Corners that agree in everything are one vertex, so that smooth surfaces are closed. Faces without smooth shading have no
+    normals: the triangles' own are theirs.
     """
     mesh.calc_loop_triangles()
     if not mesh.loop_triangles:
         return
     points = positions(mesh)
-    vertices, loops = _triangles(mesh, "vertices"), _triangles(mesh, "loops")
-    slots = _triangles(mesh, "material_index", 1)
-    smooth_polygons = np.empty(len(mesh.polygons), dtype=bool)
-    mesh.polygons.foreach_get("use_smooth", smooth_polygons)
-    smooth = smooth_polygons[_triangles(mesh, "polygon_index", 1)]
-    normals = None
-    if smooth.any():
-        if hasattr(mesh, "calc_normals_split"):  # from Blender 4.1 on they are there
-            mesh.calc_normals_split()
-        normals = np.empty(3 * len(mesh.loops), dtype=np.float32)
-        mesh.loops.foreach_get("normal", normals)
-        normals = normals.reshape(-1, 3)
+    vertices, loops, slots = triangles(mesh), triangle_loops(mesh), triangle_slots(mesh)
+    smooth = smooth_triangles(mesh)
+    normals = loop_normals(mesh) if smooth.any() else None
     piece = np.zeros(len(slots), dtype=int) if piece_of_triangle is None else piece_of_triangle
     for slot, number in np.unique(np.column_stack((slots, piece)), axis=0):
-        name, uvs = uv_of_slot(int(slot)), None
-        if name is not None:
-            uvs = np.empty(2 * len(mesh.loops), dtype=np.float32)
-            mesh.uv_layers[name].data.foreach_get("uv", uvs)
-            uvs = uvs.reshape(-1, 2)
+        uvs = uvs_of_slot(int(slot))
         for is_smooth in (False, True):
             chosen = (slots == slot) & (piece == number) & (smooth == is_smooth)
             if not chosen.any():
                 continue
-            corner_loops = loops[chosen].ravel()
             columns = [points[vertices[chosen].ravel()]]
             if is_smooth:
-                columns.append(normals[corner_loops])
+                columns.append(normals[loops[chosen].ravel()])
             if uvs is not None:
-                columns.append(uvs[corner_loops])
+                columns.append(uvs[chosen].reshape(-1, 2))
             distinct, corners = _join(np.hstack(columns).astype(np.float32))
             yield (int(slot), int(number), distinct[:, :3], distinct[:, 3:6] if is_smooth else None,
                    distinct[:, -2:] if uvs is not None else None, corners.reshape(-1, 3))

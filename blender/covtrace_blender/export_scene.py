@@ -7,14 +7,18 @@ import os
 import numpy as np
 from mathutils import Vector
 
-from . import export_lights, export_meshes, export_motion, export_strands, export_world, ply, surface_coordinates
+from . import export_lights, export_meshes, export_motion, export_strands, export_world, ply
 from .baking import Surface
+from .body import Body
 from .export_camera import SceneCamera
 from .export_materials import MaterialExporter
 from .export_shaders import numbers
 from .export_volumes import Volumes, has_volume
+from .node_signature import hangs_on_world
 from .placement import is_same, placement
 from .shader_nodes.light_path import RAYS
+from .texel_density import Placements
+from .uv_ranges import UvRanges
 from .visibility import Visibility, hidden_from
 
 CONTENT = "content.pbrt"
@@ -73,7 +77,7 @@ class SceneExporter:
         out.write('WorldBegin\nMediumInterface "" ""\n')
         self.materials = MaterialExporter(out, self.folder, self.warn)
         self._write_world()
-        self.uv_ranges = self._uv_ranges()
+        self._look_at_instances()
         self.visibility = Visibility(self.depsgraph.view_layer)
         self.volumes = self._find_volumes()
         self._write_objects(moving)
@@ -130,7 +134,7 @@ class SceneExporter:
             if hidden is None:
                 continue
             for slot in slots:
-                filled = [v for v in self._variants(obj, slot) if v.medium and set(v.rays) - hidden]
+                filled = [v for v in self._variants(obj, slot, obj.data) if v.medium and set(v.rays) - hidden]
                 if filled:
                     rays = {ray for variant in filled for ray in variant.rays} - hidden
                     found.add(obj, instance.matrix_world, filled[0].medium, rays)
@@ -205,13 +209,17 @@ class SceneExporter:
         piece, motions = self._motions(obj, mesh)
         parts = []
 
-        def uv_of_slot(slot):
-            chosen, is_all = export_meshes.uv_map(mesh, self._uv_maps(obj, slot))
+        def uvs_of_slot(slot):
+            variants = self._variants(obj, slot, mesh)
+            body = next((variant.body for variant in variants if variant.body), None)
+            if body:
+                return body.corner_uvs()
+            chosen, is_all = export_meshes.uv_map(mesh, self._uv_maps(variants))
             if not is_all:
                 self.warn(f"object '{obj.name}': its textures want UV maps that it has not, or several; '{chosen}' is used for all")
-            return chosen
+            return export_meshes.loop_uvs(mesh, mesh.uv_layers[chosen])[export_meshes.triangle_loops(mesh)] if chosen else None
 
-        for slot, number, positions, normals, uvs, triangles in export_meshes.parts(mesh, uv_of_slot, piece):
+        for slot, number, positions, normals, uvs, triangles in export_meshes.parts(mesh, uvs_of_slot, piece):
             if not np.isfinite(positions).all():
                 self.warn(f"object '{obj.name}' has vertices that are not finite and is left out")
                 break
@@ -226,7 +234,7 @@ class SceneExporter:
                 place = np.eye(4)
                 place[:3, 3] = origin
                 motion = place, motions[number] @ place
-            parts += self._parts(obj, slot, positions, normals, uvs, triangles, motion)
+            parts += self._parts(self._variants(obj, slot, mesh), positions, normals, uvs, triangles, motion)
         obj.to_mesh_clear()
         return parts
 
@@ -236,44 +244,56 @@ class SceneExporter:
         return [part for tubes in export_strands.particle_systems(obj, is_render) for part in self._tubes_parts(obj, *tubes)]
 
     def _tubes_parts(self, obj, slot, positions, normals, triangles):
-        wants_uvs = bool(self._uv_maps(obj, slot))
+        variants = self._variants(obj, slot, None)
+        wants_uvs = bool(self._uv_maps(variants))
         if wants_uvs:
             self.warn(f"object '{obj.name}': strands have no texture coordinates; their images are looked up at one place")
-        return self._parts(obj, slot, positions, normals, np.zeros((len(positions), 2)) if wants_uvs else None, triangles)
+        return self._parts(variants, positions, normals, np.zeros((len(positions), 2)) if wants_uvs else None, triangles)
 
     def _materials(self, obj):
         if self.layer.material_override is not None:
             return [self.layer.material_override] * max(1, len(obj.material_slots))
         return [s.material for s in obj.material_slots] if self._is_own(obj) else list(obj.data.materials)
 
-    def _uv_maps(self, obj, slot):
-        """The names of the UV maps that a slot's material reads."""
-        return tuple(dict.fromkeys(name for variant in self._variants(obj, slot) for name in variant.uv_maps))
+    @staticmethod
+    def _uv_maps(variants):
+        """The names of the UV maps that they read."""
+        return tuple(dict.fromkeys(name for variant in variants for name in variant.uv_maps))
 
-    def _variants(self, obj, slot):
-        """The Variants of a slot's material, as it is on the object; on strands, which have no UV map, as anywhere."""
+    def _variants(self, obj, slot, mesh):
+        """The Variants of a slot's material, as it is on the object's mesh; None: on its strands, which have no places on a body
+        and no UV map, so that they are as anywhere."""
         materials = self._materials(obj)
+        material = materials[min(slot, len(materials) - 1)] if materials else None
+
+        def body():
+            slots = [k for k in range(max(1, len(materials))) if not materials or materials[k] == material]
+            mesh.calc_loop_triangles()
+            chosen = np.isin(np.minimum(export_meshes.triangle_slots(mesh), max(len(materials) - 1, 0)), slots)
+            found = Body(mesh, chosen, self.placements.only_matrix(obj) if hangs_on_world(material.node_tree) else None)
+            found.lay_out(self.placements.density(obj, mesh)[found.chosen], self.placements.most_texels,
+                          self.placements.is_mirrored(obj))
+            return found
 
         def surface_of(name):
-            # Curves and the like have meshes only while they are exported; their UV maps are unit squares.
-            is_mesh = obj.type == "MESH"
-            return Surface(self.uv_ranges.of(name), surface_coordinates.object_of_uv(obj, obj.data) if is_mesh else {})
+            return Surface(self.uv_ranges.of(name), body if mesh and Body.is_of(mesh) else None)
 
-        return self.materials.variants(materials[min(slot, len(materials) - 1)] if materials else None, obj.name_full,
-                                       surface_of)
+        return self.materials.variants(material, (*Placements.key(obj), mesh is None), surface_of)
 
-    def _uv_ranges(self):
-        ranges = surface_coordinates.UvRanges()
+    def _look_at_instances(self):
+        self.uv_ranges = UvRanges()
+        self.placements = Placements(None if self.is_preview else self.camera)
         for _, instance in self._instances():
             obj = instance.object
+            if obj.type in SURFACES:
+                self.placements.add(instance)
             if obj.type == "MESH":
-                ranges.add(obj.data, {m.name_full for m in self._materials(obj) if m})
-        return ranges
+                self.uv_ranges.add(obj.data, {m.name_full for m in self._materials(obj) if m})
 
-    def _parts(self, obj, slot, positions, normals, uvs, triangles, motion=None):
+    def _parts(self, variants, positions, normals, uvs, triangles, motion=None):
         file = f"mesh{len(os.listdir(self.folder))}.ply"
         ply.write(os.path.join(self.folder, file), positions, normals, uvs, triangles)
-        return [Part(file, variant, motion) for variant in self._variants(obj, slot)]
+        return [Part(file, variant, motion) for variant in variants]
 
     def _motions(self, obj, mesh):
         """(piece of each triangle, motion of each piece) of what changes its shape; (None, None) of what does not."""

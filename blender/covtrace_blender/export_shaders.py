@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from . import body_normals
 from .export_sockets import SocketReader, Value
 from .shader_nodes.unsupported import Unsupported
 
@@ -82,6 +83,8 @@ class ShaderWriter(SocketReader):
             strength = self._plain(source.inputs["Strength"])
             if source.uv_map and source.uv_map not in self.uv_maps:
                 self.uv_maps.append(source.uv_map)
+            if value.image and self.surface.body:
+                return self._normals_on_body(value.image, ("UV", source.uv_map), strength)
             if value.image:
                 def scaled(colour):
                     # Cycles blends from the flat normal.
@@ -94,6 +97,15 @@ class ShaderWriter(SocketReader):
         self.warn(f"material '{self.name}': only bumps and tangent space normal maps change normals")
         return []
 
+    def _normals_on_body(self, image, uv_map, strength):
+        """A normal map in the frame of the atlas, of one in the frame of a UV map."""
+        body = self.surface.body
+        if not body.knows(uv_map):
+            self.warn(f"material '{self.name}': a normal map without a UV map is left out")
+            return []
+        found = body_normals.turned(image, body, uv_map, strength)
+        return [f'"string normalmap" "{self.files.write(found, "normals", lambda pixels: pixels[..., :3])}"']
+
     def _bump(self, node):
         """A texture of heights in the scene's unit."""
         if node.inputs["Normal"].is_linked:
@@ -101,6 +113,7 @@ class ShaderWriter(SocketReader):
         try:
             height = self._baked_value(node.inputs["Height"], is_number=True)
         except Unsupported as problem:
+            self._ask_for_body(problem)
             self.warn(f"material '{self.name}': node '{problem.node.name}' at 'Height' is not supported ({problem.reason}); "
                       "the surface is flat there")
             return []

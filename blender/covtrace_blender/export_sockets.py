@@ -3,7 +3,7 @@
 import numpy as np
 
 from .baking import Surface
-from .shader_nodes.unsupported import Unsupported
+from .shader_nodes.unsupported import NeedsBody, Unsupported
 
 
 class Value:
@@ -77,13 +77,14 @@ class SocketReader:
         node, output = self._linked(socket)
         if node is None:
             return self._constant(socket.default_value, grey)
-        direct = self._direct_value(node, output, grey)
+        direct = None if self.surface.body else self._direct_value(node, output, grey)
         if direct is not None:
             return direct
         try:
             return self._baked_value(socket, grey, only_unit_square)
         except Unsupported as problem:
-            if node.type == "TEX_IMAGE" and node.image:
+            self._ask_for_body(problem)
+            if node.type == "TEX_IMAGE" and node.image and not self.surface.body:
                 return self._image_as_it_lies(node, output, grey, problem)
             self.warn(f"material '{self.name}': node '{problem.node.name}' at '{socket.name}' is not supported "
                       f"({problem.reason}); the socket's own value is used")
@@ -96,15 +97,21 @@ class SocketReader:
 
         baked = self.baked.of(socket, self.surface, (is_number, only_unit_square, self.baker.ray),
                               lambda: self.baker.bake(get, self.surface, only_unit_square))
-        self.hangs_on_object |= baked.place.hangs_on_object
         if baked.is_cut:
             self.warn(f"material '{self.name}': a texture that can only lie on the unit square repeats beyond it")
-        for name in baked.place.uv_maps:
+        for name in baked.uv_maps:
             self._note_uv_map(name)
         if baked.image is None:
             value = np.asarray(baked.constant)
             return Value(tuple(float(v) for v in value) if value.ndim else float(value))
         return Value(image=baked.image, mapping=baked.layout.mapping(), wrap=baked.layout.wrap)
+
+    def _ask_for_body(self, problem):
+        """Raises `problem` again where the surface has a body that solves it."""
+        if isinstance(problem, NeedsBody):
+            self.hangs_on_object = True
+            if self.surface.body_of:
+                raise problem
 
     def _plain(self, socket):
         """A number where there can be no image; what is linked and no constant is told."""

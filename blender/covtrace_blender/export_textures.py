@@ -6,7 +6,7 @@ import zlib
 
 import numpy as np
 
-from .baking import BakedImage
+from .baked import BakedImage
 
 
 def to_linear(values):

@@ -13,7 +13,7 @@ from .node_signature import all_nodes
 from .shader_nodes.blackbody import blackbody, blackbody_temperature
 from .shader_nodes.evaluator import Evaluator
 from .shader_nodes.light_path import RAYS, groups_of_rays
-from .shader_nodes.place import Place
+from .shader_nodes.place import UvPlace
 from .shader_nodes.unsupported import Unsupported
 from .visibility import hidden_from
 
@@ -106,7 +106,7 @@ def _constant(socket, ray):
     """The number that a socket gets everywhere for rays of a kind; None for others."""
     def pixels_of(image):
         raise Unsupported(socket.node, f"the image '{image.name}' is not the same everywhere")
-    place = Place(np.zeros((1, 2), np.float32), Surface().object_of_uv, pixels_of, ray)
+    place = UvPlace(np.zeros((1, 2), np.float32), pixels_of, ray)
     try:
         value = np.asarray(Evaluator(place).number(socket))
     except Unsupported:

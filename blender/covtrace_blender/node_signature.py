@@ -13,6 +13,11 @@ def all_nodes(tree):
             yield from all_nodes(node.node_tree)
 
 
+def hangs_on_world(tree):
+    """Whether nodes ask for places in the world, not on the object alone."""
+    return any(node.type == "NEW_GEOMETRY" or node.type == "TEX_COORD" and node.object for node in all_nodes(tree))
+
+
 # Properties of nodes that change no picture.
 _LAYOUT = {"location", "location_absolute", "width", "height", "width_hidden", "label", "select", "hide", "color", "color_tag",
            "show_options", "show_preview", "show_texture", "use_custom_color", "warning_propagation"}

@@ -105,10 +105,9 @@ class MaterialsTest(BlenderTest):
         noise = tree.nodes.new("ShaderNodeTexNoise")
         image = tree.nodes.new("ShaderNodeTexImage")
         image.image, image.projection = bpy.data.images.new("image", 2, 2), "BOX"
-        hsv = tree.nodes.new("ShaderNodeSeparateColor")
-        hsv.mode = "HSV"
-        tree.links.new(image.outputs["Color"], hsv.inputs[0])
-        tree.links.new(hsv.outputs[0], principled.inputs["Roughness"])
+        mirrored = tree.nodes.new("ShaderNodeTexNoise")
+        tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Reflection"], mirrored.inputs["Vector"])
+        tree.links.new(mirrored.outputs["Fac"], principled.inputs["Roughness"])
         tree.links.new(image.outputs["Color"], principled.inputs["Specular"])
         tree.links.new(noise.outputs["Fac"], principled.inputs["Emission Strength"])
         tree.links.new(noise.outputs["Color"], output.inputs["Displacement"])
@@ -124,7 +123,7 @@ class MaterialsTest(BlenderTest):
         self.scene.render.use_motion_blur = True
         self.scene.frame_set(1)
         self.export()
-        for text in ("'Image Texture' at 'Roughness'", "an image at 'Specular'", "projection box", "an image at 'Emission Strength'",
+        for text in ("'Texture Coordinate' at 'Roughness'", "reflection coordinates", "an image at 'Specular'", "an image at 'Emission Strength'",
                      "Displacement is not", "volume is not", "linked to 'Strength' of its shader",
                      "moves while the shutter is open"):
             self.assertTrue(any(text in w for w in self.warnings), f"{text}: {self.warnings}")

@@ -16,7 +16,7 @@ sys.modules["covtrace_blender"] = package
 from covtrace_blender import baking
 from covtrace_blender.shader_nodes import hashing, images, noise, voronoi
 from covtrace_blender.shader_nodes.evaluator import Evaluator
-from covtrace_blender.shader_nodes.place import Place
+from covtrace_blender.shader_nodes.place import UvPlace
 from covtrace_blender.shader_nodes.unsupported import Unsupported
 
 
@@ -66,8 +66,8 @@ def coordinate(axis):
     return Node("SEPXYZ", {"Vector": (UV, 0)}, {"X": "VALUE", "Y": "VALUE", "Z": "VALUE"}), axis
 
 
-def evaluated(socket, uv=((0.25, 0.5),), is_vector=False, object_of_uv=None):
-    nodes = Evaluator(Place(np.array(uv, np.float32), object_of_uv or {}, lambda image: image.values))
+def evaluated(socket, uv=((0.25, 0.5),), is_vector=False):
+    nodes = Evaluator(UvPlace(np.array(uv, np.float32), lambda image: image.values))
     return (nodes.vector if is_vector else nodes.number)(socket)
 
 
@@ -99,8 +99,6 @@ class NodesTest(unittest.TestCase):
         checker = Node("TEX_CHECKER", {"Vector": 0.0, "Scale": 5.0, "Color1": (1, 0, 0), "Color2": (0, 0, 1)})
         with self.assertRaisesRegex(Unsupported, "generated coordinates"):
             evaluated(input_of(checker), is_vector=True)
-        there = {"GENERATED": lambda uv: np.column_stack((uv, 0 * uv[:, 0]))}
-        np.testing.assert_allclose(evaluated(input_of(checker), ((0.1, 0.1), (0.3, 0.1)), True, there), [[0, 0, 1], [1, 0, 0]])
 
     def test_hashes_are_lookup3(self):
         """Against the hash of plain whole numbers, of which every step is reduced to 32 bits."""

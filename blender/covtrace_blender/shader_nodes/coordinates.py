@@ -8,11 +8,25 @@ from .unsupported import Unsupported
 
 
 def _texture_coordinates(node, output, inputs):
+    other = getattr(node, "object", None)
     if output.identifier == "UV":
         return inputs.place.uv_of(node, "")
-    if output.identifier in ("Generated", "Object") and getattr(node, "object", None) is None:
-        return inputs.place.object_coordinates(node, output.identifier.upper())
+    if output.identifier == "Object" and other is not None:
+        to_other = np.linalg.inv(np.array(other.matrix_world, float)).astype(np.float32)
+        return inputs.place.coordinates(node, "WORLD") @ to_other[:3, :3].T + to_other[:3, 3]
+    if output.identifier in ("Generated", "Object", "Normal"):
+        return inputs.place.coordinates(node, output.identifier.upper())
     raise Unsupported(node, f"its {output.identifier.lower()} coordinates have no counterpart")
+
+
+# Outputs of the node Geometry; bumps aside, the true normal differs from the other one where surfaces are smooth.
+_GEOMETRY = {"Position": "WORLD", "Normal": "WORLD NORMAL", "True Normal": "WORLD FACE NORMAL"}
+
+
+def _geometry(node, output, inputs):
+    if output.identifier not in _GEOMETRY:
+        raise Unsupported(node, f"its {output.identifier.lower()} has no counterpart")
+    return inputs.place.coordinates(node, _GEOMETRY[output.identifier])
 
 
 def rotation(euler):
@@ -40,5 +54,5 @@ def _mapping(node, output, inputs):
     return normal / np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-30)
 
 
-NODES = {"TEX_COORD": _texture_coordinates, "MAPPING": _mapping,
+NODES = {"TEX_COORD": _texture_coordinates, "NEW_GEOMETRY": _geometry, "MAPPING": _mapping,
          "UVMAP": lambda node, output, inputs: inputs.place.uv_of(node, node.uv_map)}

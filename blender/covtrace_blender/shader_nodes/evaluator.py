@@ -42,7 +42,7 @@ class Inputs:
             return self._evaluator.vector(socket)
         if unlinked == "UV":
             return self.place.uv_of(self.node, "")
-        return self.place.object_coordinates(self.node, unlinked)
+        return self.place.coordinates(self.node, unlinked)
 
     def _found(self, name):
         socket = self.socket(name)

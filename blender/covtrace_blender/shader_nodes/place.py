@@ -1,39 +1,73 @@
-"""The places of a surface at which nodes are evaluated, and what nodes ask of them."""
+"""The places of a surface at which nodes are evaluated, and what nodes ask of them.
+
+Each has `ray`: the kind of ray that sees them, one of light_path.RAYS, None where that is not known; `images`: those that nodes
+have asked for; `is_uniform`: whether they have asked for nothing that changes from place to place.
+"""
 
 import numpy as np
 
-from .unsupported import Unsupported
+from .unsupported import NeedsBody, Unsupported
 
 
-class Place:
-    """Texture coordinates of n places.
+class _Place:
+    def __init__(self, pixels_of, ray):
+        self._pixels_of, self.ray, self.images = pixels_of, ray, []
 
-    uv: (n, 2). object_of_uv: {"GENERATED" or "OBJECT": function from (n, 2) to (n, 3)}, of what hangs on UV alone.
-    pixels_of(image): (h, w, 4) linear, from the top. ray: the kind of ray that sees them, one of light_path.RAYS; None
-    where that is not known.
-    """
+    def pixels(self, image):
+        """(h, w, 4) linear, from the top."""
+        if image not in self.images:
+            self.images.append(image)
+        return self._pixels_of(image)
 
-    def __init__(self, uv, object_of_uv, pixels_of, ray=None):
-        self.uv, self.object_of_uv, self.pixels_of, self.ray = uv, object_of_uv, pixels_of, ray
-        self.uv_maps, self.images, self.hangs_on_object = [], [], False
+
+class UvPlace(_Place):
+    """n places of a UV map. uv: (n, 2). uv_maps: the names by which nodes have asked for it."""
+
+    def __init__(self, uv, pixels_of, ray=None):
+        super().__init__(pixels_of, ray)
+        self.uv, self.uv_maps = uv, []
+
+    @property
+    def is_uniform(self):
+        return not self.uv_maps
 
     def uv_of(self, node, name):
         """(n, 3) coordinates of the UV map `name`; "" is the mesh's."""
         if name not in self.uv_maps:
             self.uv_maps.append(name)
         if len(self.uv_maps) > 1:
-            raise Unsupported(node, "several UV maps meet")
+            raise NeedsBody(node, "several UV maps meet")
         return np.column_stack((self.uv, np.zeros(len(self.uv), np.float32)))
 
-    def object_coordinates(self, node, kind):
-        """(n, 3) coordinates "GENERATED" or "OBJECT"."""
-        self.hangs_on_object = True
-        if kind not in self.object_of_uv:
-            raise Unsupported(node, f"{kind.lower()} coordinates do not follow from the mesh's UV map")
-        self.uv_of(node, "")
-        return self.object_of_uv[kind](self.uv).astype(np.float32)
+    def coordinates(self, node, kind):
+        """(n, 3): "OBJECT" or "GENERATED" coordinates, the "NORMAL" in the object's space; "WORLD" and "WORLD NORMAL"."""
+        raise NeedsBody(node, f"{kind.lower()} coordinates do not follow from a UV map")
 
-    def pixels(self, image):
-        if image not in self.images:
-            self.images.append(image)
-        return self.pixels_of(image)
+
+class BodyPlace(_Place):
+    """Texels of the atlas of `body`, which has `knows(kind)` and `values(kind, texels, shift)`; shift: by the share of a texel."""
+
+    def __init__(self, body, texels, shift, pixels_of, ray=None):
+        super().__init__(pixels_of, ray)
+        self._body, self._texels, self._shift, self._known = body, texels, shift, {}
+
+    @property
+    def is_uniform(self):
+        return not self._known
+
+    def uv_of(self, node, name):
+        kind = ("UV", name)
+        if not self._body.knows(kind):
+            # As in Cycles: a map that a mesh has not is zero everywhere.
+            self._known[kind] = np.zeros((len(self._texels), 3), np.float32)
+        return self._values(kind)
+
+    def coordinates(self, node, kind):
+        if not self._body.knows(kind):
+            raise Unsupported(node, "the world's coordinates are not known of what has instances")
+        return self._values(kind)
+
+    def _values(self, kind):
+        if kind not in self._known:
+            self._known[kind] = self._body.values(kind, self._texels, self._shift)
+        return self._known[kind]

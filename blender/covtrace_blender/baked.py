@@ -1,0 +1,36 @@
+"""Results of baking a socket: constants and images."""
+
+import itertools
+
+import numpy as np
+
+_numbers = itertools.count(1)  # of names, which are unique among all exports
+
+
+class BakedImage:
+    """Pixels that no image of Blender has: (h, w, 4) float32 from the top."""
+
+    def __init__(self, values):
+        self.name_full, self.values = f"baked {next(_numbers)}", values
+
+
+class Layout:
+    """The part of the UV plane that an image shows: (u, v) from `low` on, `extent` wide; beyond it, it `wrap`s."""
+
+    def __init__(self, low, extent, wrap):
+        self.low, self.extent, self.wrap = np.array(low, float), np.array(extent, float), wrap
+
+    def is_unit_square(self):
+        return bool((self.low == 0).all() and (self.extent == 1).all())
+
+    def mapping(self):
+        """Scale and offset of (u, v), as Value has them."""
+        return (*(1 / self.extent), *(-self.low / self.extent))
+
+
+class Baked:
+    """The result: a constant, or an image and its layout; the names of the UV maps that it reads. is_cut: it repeats where the nodes
+    do not."""
+
+    def __init__(self, constant=None, image=None, layout=None, uv_maps=(), is_cut=False):
+        self.constant, self.image, self.layout, self.uv_maps, self.is_cut = constant, image, layout, tuple(uv_maps), is_cut

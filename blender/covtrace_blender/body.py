@@ -1,0 +1,98 @@
+"""Coordinates and normals at the corners of a mesh's triangles, which nodes ask for."""
+
+import hashlib
+
+import numpy as np
+
+from . import export_meshes
+from .atlas import Atlas
+from .charts import face_normals
+
+
+def texture_space(mesh):
+    """(least corner, size) of the box in which Generated coordinates are 0 to 1."""
+    half = np.array(mesh.texspace_size, float)
+    half = np.where(half == 0, 0.5, half)
+    return np.array(mesh.texspace_location, float) - half, 2 * half
+
+
+def undeformed(mesh):
+    """(n, 3) places of the vertices before modifiers moved them, as far as the mesh knows."""
+    values = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("undeformed_co", values)
+    return values.reshape(-1, 3)
+
+
+def _corner_normals(mesh, positions, triangles, loops):
+    """(n, 3, 3) unit normals, of smooth faces those of their corners."""
+    normals = np.repeat(face_normals(positions[triangles])[:, None], 3, axis=1)
+    smooth = export_meshes.smooth_triangles(mesh)
+    if smooth.any():
+        normals[smooth] = export_meshes.loop_normals(mesh)[loops[smooth]]
+    return normals
+
+
+class Body:
+    """The triangles of a mesh that one material is on, with an Atlas of them.
+
+    chosen: (n,) bool, which of the mesh's triangles these are; none: all. matrix: 4x4 from the mesh to the world; None where there
+    is none that is the only one.
+    """
+
+    @staticmethod
+    def is_of(mesh):
+        """Whether a mesh has faces, all of whose vertices are somewhere."""
+        return len(mesh.polygons) > 0 and bool(np.isfinite(export_meshes.positions(mesh)).all() and np.isfinite(undeformed(mesh)).all())
+
+    def __init__(self, mesh, chosen, matrix=None):
+        mesh.calc_loop_triangles()
+        chosen = chosen if chosen.any() else ~chosen
+        vertices, loops = export_meshes.triangles(mesh), export_meshes.triangle_loops(mesh)
+        positions, rest = export_meshes.positions(mesh), undeformed(mesh)
+        low, size = texture_space(mesh)
+        self.chosen, self.triangles = chosen, vertices[chosen]
+        loops = loops[chosen]
+        self._rest = rest[self.triangles].astype(float)
+        of_vertex = {"OBJECT": positions, "GENERATED": (rest - low) / size}
+        self._corners = {kind: values[self.triangles] for kind, values in of_vertex.items()}
+        self._corners["NORMAL"] = _corner_normals(mesh, positions, vertices, export_meshes.triangle_loops(mesh))[chosen]
+        for layer in mesh.uv_layers:
+            uvs = export_meshes.loop_uvs(mesh, layer)[loops]
+            uvs = np.concatenate((uvs, np.zeros((*uvs.shape[:2], 1), np.float32)), axis=-1)
+            self._corners["UV", layer.name] = uvs
+            if layer.active_render:
+                self._corners["UV", ""] = uvs
+        if matrix is not None:
+            turn = np.linalg.inv(matrix[:3, :3]).T
+            self._corners["WORLD"] = self._corners["OBJECT"] @ matrix[:3, :3].T + matrix[:3, 3]
+            self._corners["WORLD NORMAL"] = self._corners["NORMAL"] @ turn.T
+            faces = face_normals(self._corners["OBJECT"]) @ turn.T
+            self._corners["WORLD FACE NORMAL"] = np.repeat(faces[:, None], 3, axis=1)
+
+    def lay_out(self, density, most_texels, is_mirrored):
+        """Makes the atlas; density: (n,) texels per unit at each triangle; is_mirrored: as Atlas has it."""
+        self.atlas = Atlas(self._rest, self.triangles, density, most_texels, is_mirrored)
+        digest = hashlib.sha256(repr((self.atlas.width, self.atlas.height, is_mirrored)).encode())
+        for kind in sorted(self._corners, key=str):
+            digest.update(repr(kind).encode() + np.ascontiguousarray(self._corners[kind], np.float32).tobytes())
+        self.key = digest.hexdigest()
+
+    def knows(self, kind):
+        return kind in self._corners
+
+    def corners(self, kind):
+        """(n, 3, 3) of the triangles' corners."""
+        return self._corners[kind]
+
+    def values(self, kind, texels, shift):
+        """(n, 3) of what `kind` names, at the atlas' texels."""
+        found = self.atlas.interpolated(self._corners[kind], texels, shift)
+        if "NORMAL" in kind:
+            found /= np.maximum(np.linalg.norm(found, axis=-1, keepdims=True), 1e-30)
+        return found
+
+    def corner_uvs(self):
+        """(m, 3, 2) of all triangles of the mesh, zero where another material is."""
+        uvs = np.zeros((len(self.chosen), 3, 2), np.float32)
+        uvs[self.chosen] = self.atlas.corner_uvs
+        return uvs

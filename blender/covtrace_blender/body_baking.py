@@ -1,0 +1,74 @@
+"""Trees of nodes as images over the atlas of a body."""
+
+import numpy as np
+
+from . import edges
+from .baked import Baked, BakedImage, Layout
+from .parts import by_parts
+from .shader_nodes.evaluator import Evaluator
+from .shader_nodes.place import BodyPlace
+
+PROBES = 256
+
+
+def bake_body(get, body, only_unit_square, pixels_of, ray):
+    """Bakes `get(evaluator)`, a number or a vector, to the atlas of `body`; only_unit_square: for what has no other layout. The rest as
+    BodyPlace has it."""
+    atlas = body.atlas
+
+    def at(texels, shift=(0.0, 0.0)):
+        nonlocal place
+        place = BodyPlace(body, texels, shift, pixels_of, ray)
+        return get(Evaluator(place))
+
+    place = None
+    count = len(atlas.triangle)
+    probe = at(np.random.default_rng(0).integers(0, max(count, 1), PROBES if count else 0))
+    if place.is_uniform or not count or probe.shape in ((), (3,)):
+        return Baked(constant=probe if count else np.zeros(probe.shape[1:]))
+    channels = 3 if probe.ndim == 2 else 1
+
+    def values_at(texels, shift):
+        return np.broadcast_to(at(texels, shift).reshape(-1, channels), (len(texels), channels))
+
+    def mean_at(texels, places):
+        found = np.empty((len(texels), channels), np.float32)
+
+        def work(first, end):
+            found[first:end] = sum(values_at(texels[first:end], shift) for shift in places) / len(places)
+
+        by_parts(work, len(texels))
+        return found
+
+    values = mean_at(np.arange(count), [(0.0, 0.0)])
+    chart = _scattered(atlas, atlas.chart[:, None] + 1)[..., 0]
+    crossed = np.flatnonzero(edges.edges(_scattered(atlas, values), chart)[atlas.rows, atlas.columns])
+    values[crossed] = mean_at(crossed, edges.places(len(crossed), count))
+    side = max(atlas.width, atlas.height)
+    pixels = np.ones((side, side, 4) if only_unit_square else (atlas.height, atlas.width, 4), np.float32)
+    pixels[:atlas.height, :atlas.width, :3] = filled(_scattered(atlas, values), chart > 0)
+    height, width = np.array(pixels.shape[:2]) / side
+    return Baked(image=BakedImage(pixels), layout=Layout((0, 1 - height), (width, height), "repeat"))
+
+
+def _scattered(atlas, values):
+    """(h, w, d) of (k, d) values of texels, zero elsewhere."""
+    image = np.zeros((atlas.height, atlas.width, values.shape[1]), values.dtype)
+    image[atlas.rows, atlas.columns] = values
+    return image
+
+
+def filled(image, known):
+    """(h, w, d) with the mean of what is known nearby where nothing is: coarse levels of filters look there, too."""
+    if known.all() or not known.any():
+        return image
+    height, width = known.shape
+    if height == width == 1:
+        return image
+    padded = np.pad(image * known[..., None], ((0, height % 2), (0, width % 2), (0, 0)))
+    weight = np.pad(known.astype(np.float32), ((0, height % 2), (0, width % 2)))
+    rows, columns = weight.shape[0] // 2, weight.shape[1] // 2
+    count = weight.reshape(rows, 2, columns, 2).sum(axis=(1, 3))
+    total = padded.reshape(rows, 2, columns, 2, -1).sum(axis=(1, 3))
+    coarse = filled(total / np.maximum(count, 1)[..., None], count > 0)
+    return np.where(known[..., None], image, coarse.repeat(2, axis=0).repeat(2, axis=1)[:height, :width])

@@ -1,0 +1,73 @@
+"""How many texels bodies need: as many as the picture has pixels where they are nearest to the camera."""
+
+import math
+
+import numpy as np
+
+from . import export_meshes
+
+# In one atlas of a picture, and of a viewport.
+MOST_TEXELS, MOST_TEXELS_OF_PREVIEWS = 1 << 22, 1 << 19
+ACROSS = 512  # texels along a body's diagonal where no camera tells
+NEAREST = 8  # instances that are looked at triangle by triangle
+MOST_RATIO = 64  # between the densities of one mesh
+LEAST_DISTANCE = 0.1  # of a camera to a triangle, in the triangle's radius
+
+
+class Placements:
+    """Where the instances of each mesh stand, as `camera`, a SceneCamera or None, sees them."""
+
+    def __init__(self, camera):
+        self.camera, self._matrices, self._instanced = camera, {}, set()
+        self.most_texels = MOST_TEXELS if camera else MOST_TEXELS_OF_PREVIEWS
+
+    @staticmethod
+    def key(obj):
+        """Tells an object's mesh from others: geometry nodes place several under one name."""
+        return obj.name_full, obj.data.as_pointer()
+
+    def add(self, instance):
+        key = self.key(instance.object)
+        self._matrices.setdefault(key, []).append(np.array(instance.matrix_world))
+        if instance.is_instance:
+            self._instanced.add(key)
+
+    def only_matrix(self, obj):
+        """4x4 from a mesh to the world; None of what has instances."""
+        key = self.key(obj)
+        return None if key in self._instanced or len(self._matrices.get(key, ())) != 1 else self._matrices[key][0]
+
+    def is_mirrored(self, obj):
+        """Whether a mesh stands in the world as in a mirror; of several instances the first one tells."""
+        matrices = self._matrices.get(self.key(obj))
+        return bool(matrices) and float(np.linalg.det(matrices[0][:3, :3])) < 0
+
+    def density(self, obj, mesh):
+        """(n,) texels per unit at each triangle of a mesh: between one and two per pixel, powers of two, so that small moves change
+        nothing."""
+        corners = export_meshes.positions(mesh)[export_meshes.triangles(mesh)].astype(float)
+        middles = corners.mean(axis=1)
+        radii = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
+        low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+        size = max(float(np.linalg.norm(high - low)), 1e-30)
+        matrices = self._matrices.get(self.key(obj), []) if self.camera else []
+        if not matrices:
+            return np.full(len(corners), 2.0 ** math.ceil(math.log2(ACROSS / size)))
+        # The whole mesh at its nearest place of each instance; for those that come nearest, each triangle at its own.
+        of_whole = np.array([self._seen(m, (low + high)[None] / 2, np.array([size / 2]), size)[0] for m in matrices])
+        order = np.argsort(-of_whole)
+        wanted = np.full(len(corners), of_whole[order[NEAREST]] if len(order) > NEAREST else 0.0)
+        for number in order[:NEAREST]:
+            wanted = np.maximum(wanted, self._seen(matrices[number], middles, radii, 1e-3 * size))
+        wanted = np.clip(wanted, max(wanted.max() / MOST_RATIO, 1e-30), None)
+        return 2.0 ** np.ceil(np.log2(wanted))
+
+    def _seen(self, matrix, middles, radii, least):
+        """(n,) pixels per unit of the mesh around (n, 3) places in it, as far as `radii`, which count as no smaller than `least`."""
+        width, has_perspective = self.camera.pixel()
+        scale = np.linalg.norm(matrix[:3, :3], axis=0).max()
+        if not has_perspective:
+            return np.full(len(middles), scale / width)
+        eye = np.array(self.camera.matrix().translation)
+        distance = np.linalg.norm(middles @ matrix[:3, :3].T + matrix[:3, 3] - eye, axis=1) - radii * scale
+        return scale / (width * np.maximum(distance, LEAST_DISTANCE * scale * np.maximum(radii, least)))

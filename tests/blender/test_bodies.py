@@ -1,0 +1,168 @@
+"""Nodes that hang on the place on a body, against Cycles: each body has a cell of the picture to itself."""
+
+import pathlib
+import re
+import struct
+import tempfile
+import unittest.mock
+
+import bpy
+import numpy as np
+from addon_support import BlenderTest, render
+from covtrace_blender import body_baking, export_scene
+from node_trees import BLUE, ORANGE, Tree
+
+CELL = 48  # pixels; the bodies are in rows of four
+COLUMNS = 4
+
+
+class BodiesTest(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        self.camera.data.type, self.scene.covtrace.method = "ORTHO", "uniform"
+        self.count = 0
+
+    def place(self, obj, *materials, is_smooth=False):
+        """Puts an object into the next cell, seen from a corner; its faces have the materials in turn."""
+        obj.location = (self.count % COLUMNS, -(self.count // COLUMNS), 0)
+        obj.rotation_euler = (-0.9, 0.1, 0.6)
+        for m in materials:
+            obj.data.materials.append(m)
+        for number, polygon in enumerate(obj.data.polygons if obj.type == "MESH" else ()):
+            polygon.material_index, polygon.use_smooth = number % len(materials), is_smooth
+        self.count += 1
+        return obj
+
+    @staticmethod
+    def made(kind, **values):
+        getattr(bpy.ops.mesh, f"primitive_{kind}_add")(**values)
+        return bpy.context.object
+
+    def sphere(self):
+        return self.made("uv_sphere", radius=0.42, segments=24, ring_count=12)
+
+    def cube(self):
+        return self.made("cube", size=0.55)
+
+    def assert_bodies(self, names, least_correlation=0.97, samples=32):
+        """Asserts that within each body pixels vary together with Cycles', and that means agree within 3 %."""
+        rows = -(-self.count // COLUMNS)
+        self.scene.render.resolution_x, self.scene.render.resolution_y = size = (CELL * COLUMNS, CELL * rows)
+        self.camera.location, self.camera.data.ortho_scale = ((COLUMNS - 1) / 2, -(rows - 1) / 2, 5), max(COLUMNS, rows)
+        ours, theirs = (np.stack([np.reshape(render(engine, samples)[f"{name}.{c}"], size[::-1]) for c in "RGB"], axis=-1)
+                        for engine, name in (("COVTRACE", "Noisy Image"), ("CYCLES", "Combined")))
+        self.export()
+        self.assertEqual(self.warnings, [])
+        for number, name in enumerate(names):
+            with self.subTest(name):
+                y, x = (CELL * (number // COLUMNS) + 14, CELL * (number % COLUMNS) + 14)
+                a, b = (p[y:y + CELL - 28, x:x + CELL - 28] for p in (ours, theirs))
+                np.testing.assert_allclose(a.mean(axis=(0, 1)), b.mean(axis=(0, 1)), rtol=0.03)
+                self.assertGreater(b.std(axis=(0, 1)).max(), 0.03, "all of it is alike")
+                alike = np.corrcoef(a.ravel(), b.ravel())[0, 1]
+                self.assertGreater(alike, least_correlation)
+
+    @staticmethod
+    def texture(kind, coordinates=None, settings=None, output="Color", **inputs):
+        """A material that shows a texture; coordinates: an output of the node Texture Coordinate; None: nothing is linked."""
+        tree = Tree(kind)
+        links = {"Vector": (tree.node("TexCoord"), coordinates)} if coordinates else {}
+        tree.show(tree.node("Tex" + kind, settings, {**{k.replace("_", " "): v for k, v in inputs.items()}, **links}), output)
+        return tree.material
+
+    @staticmethod
+    def pattern():
+        image = bpy.data.images.new("pattern", 16, 16, float_buffer=True)
+        y, x = np.mgrid[:16, :16] / 15
+        image.pixels = np.dstack((x, y, 0.5 + 0.4 * np.sin(9 * x * y), np.ones_like(x))).ravel()
+        return image
+
+    def test_patterns_on_bodies_are_as_in_cycles(self):
+        noise = dict(Scale=4.0, Detail=2.0)
+        names = []
+
+        def add(name, obj, *materials, **options):
+            names.append(name)
+            return self.place(obj, *materials, **options)
+
+        add("noise of a sphere", self.sphere(), self.texture("Noise", **noise), is_smooth=True)
+        add("two materials", self.cube(), self.texture("Voronoi", "Object", Scale=4.0),
+            self.texture("Checker", Scale=3.0, Color1=BLUE, Color2=ORANGE))
+        twisted = add("modifiers", self.cube(), self.texture("Noise", **noise))
+        twisted.modifiers.new("round", "BEVEL").width = 0.08
+        twist = twisted.modifiers.new("twist", "SIMPLE_DEFORM")
+        twist.deform_method, twist.deform_axis, twist.angle = "TWIST", "Z", 0.8
+        bare = add("no UV map", self.made("monkey", size=0.75), self.texture("Wave", "Object", Scale=1.0, Distortion=3.0), is_smooth=True)
+        while bare.data.uv_layers:
+            bare.data.uv_layers.remove(bare.data.uv_layers[0])
+        boxed = self.texture("Image", "Object", {"projection": "BOX", "projection_blend": 0.3, "image": self.pattern()})
+        add("box", self.sphere(), boxed, is_smooth=True)
+        add("around", self.sphere(), self.texture("Image", "Generated", {"projection": "SPHERE", "image": self.pattern()}), is_smooth=True)
+        mixed = Tree()
+        image = mixed.node("TexImage", {"image": self.pattern()}, {"Vector": mixed.uv()})
+        mixed.show(mixed.node("MixRGB", {"blend_type": "MULTIPLY"}, {0: 1.0, 1: image, 2: (mixed.node("TexNoise", {}, {"Scale": 6.0}), 0)}))
+        add("with its UV map", self.cube(), mixed.material)
+        moved = Tree()
+        world = moved.node("TexNoise", {}, {"Scale": 3.0, "Vector": (moved.node("NewGeometry"), "Position")})
+        moved.show(world, "Color")
+        add("world", self.cube(), moved.material)
+        self.assert_bodies(names)
+
+    def test_heights_on_bodies_are_as_in_cycles(self):
+        self.background.inputs["Color"].default_value = (0, 0, 0, 1)
+        self.lamp("SUN", energy=3.0).rotation_euler = (0.5, 0.4, 0)
+        tree = Tree()
+        noise = tree.node("TexNoise", {}, {"Scale": 5.0, "Detail": 0.0})
+        tree.link(tree.node("Bump", {}, {"Distance": 0.03, "Height": (noise, "Fac")}), 0, tree.shader.inputs["Normal"])
+        self.place(self.sphere(), tree.material, is_smooth=True)
+        torus = self.place(self.made("torus", major_radius=0.3, minor_radius=0.13), tree.material, is_smooth=True)
+        torus.scale = (-1, 1, 1)
+        self.place(self.made("monkey", size=0.75), tree.material, is_smooth=True)
+        self.place(self.cube(), tree.material)
+        self.assert_bodies(["sphere", "mirrored torus", "monkey", "cube"], 0.985)
+
+    def test_what_is_no_body_is_told_or_left_out(self):
+        nothing = self.place(self.cube(), self.texture("Noise"))
+        nothing.data.clear_geometry()
+        broken = self.place(self.cube(), self.texture("Noise"))
+        broken.data.vertices[0].co.x = float("nan")
+        tree = Tree()
+        tree.show(tree.node("TexNoise"))
+        tree.link(tree.node("VolumeAbsorption"), 0, tree.tree.nodes["Material Output"].inputs["Volume"])
+        unused = self.place(self.cube(), self.texture("Noise"))
+        unused.data.materials.append(tree.material)
+        self.camera.location = unused.matrix_world @ unused.data.vertices[0].co  # infinitely near
+        self.export()
+        self.assertEqual(len([w for w in self.warnings if "not finite" in w]), 1, self.warnings)
+
+    def sizes(self):
+        """(width, height) of the images that an export writes."""
+        class Engine:
+            @staticmethod
+            def frame_set(frame, subframe):
+                bpy.context.scene.frame_set(frame, subframe=subframe)
+        with tempfile.TemporaryDirectory() as folder:
+            exporter = export_scene.SceneExporter(Engine(), bpy.context.evaluated_depsgraph_get(), folder)
+            self.text = pathlib.Path(exporter.write()).read_text()
+            return [struct.unpack(">II", file.read_bytes()[16:24]) for file in sorted(pathlib.Path(folder).glob("texture*.png"))]
+
+    def test_images_of_bodies_are_as_fine_as_the_picture(self):
+        self.camera.data.type = "PERSP"
+        ball = self.place(self.sphere(), self.texture("Noise", Scale=3.0))
+        twin = bpy.data.objects.new("twin", ball.data)
+        self.scene.collection.objects.link(twin)
+        self.scene.render.resolution_x, self.scene.render.resolution_y = 256, 192
+        baked = []
+        original = body_baking.BodyPlace
+        with unittest.mock.patch.object(body_baking, "BodyPlace", lambda *a: baked.append(1) or original(*a)):
+            near, = self.sizes()  # one for both, whose meshes are the same
+            self.assertEqual(len(set(re.findall(r'"string filename" "(texture\d+.png)"', self.text))), 1)
+            count = len(baked)
+            self.assertGreater(count, 0)
+            self.assertEqual(self.sizes(), [near])
+            self.assertEqual(len(baked), count, "what has not changed was baked again")
+            self.scene.render.resolution_x *= 4
+            self.scene.render.resolution_y *= 4
+            fine, = self.sizes()
+        self.assertGreater(fine[0] / near[0], 3)  # less than 4: margins do not grow
