@@ -121,6 +121,23 @@ class ShaderNodesTest(BlenderTest):
             "voronoi position": ("TexVoronoi", {"distance": "CHEBYCHEV"}, {"Scale": 3.0}, "Position"),
         }))
 
+    def test_fractals(self):
+        def musgrave(kind, **inputs):
+            def show(tree):
+                values = {"Scale": 3.0, "Detail": 2.6, "Dimension": 1.2, "Lacunarity": 2.2, **inputs, "Vector": tree.uv()}
+                node = tree.node("TexMusgrave", {"musgrave_type": kind}, values)
+                tree.show(tree.node("Math", {"operation": "MULTIPLY_ADD", "use_clamp": True}, {0: node, 1: 0.25, 2: 0.3}))
+            return show
+
+        def magic(depth):
+            return lambda tree: tree.show(tree.node("TexMagic", {"turbulence_depth": depth}, {
+                "Scale": 0.6, "Distortion": 1.2, "Vector": tree.uv()}))
+
+        self.assert_nodes({"fBM": musgrave("FBM"), "multifractal": musgrave("MULTIFRACTAL"),
+                           "hetero": musgrave("HETERO_TERRAIN", Offset=0.4), "hybrid": musgrave("HYBRID_MULTIFRACTAL", Offset=0.3, Gain=2.0),
+                           "ridged": musgrave("RIDGED_MULTIFRACTAL", Scale=1.3, Offset=1.2, Gain=1.0),
+                           **{f"magic {depth}": magic(depth) for depth in (0, 2, 10)}})
+
     def test_noise_of_one_dimension(self):
         def build(kind):
             def show(tree):

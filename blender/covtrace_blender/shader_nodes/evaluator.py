@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from . import adjustments, blending, colours, coordinates, gradients, images, light_path, maths, noise_nodes, patterns, ramps
+from . import adjustments, blending, colours, coordinates, gradients, images, light_path, maths, musgrave, noise_nodes, patterns, ramps
 from .colours import luminance
 from .unsupported import Unsupported
 
 # Values by the type of the node: function(node, output, Inputs) to a number or a vector, as the output's type is.
 NODES = {**adjustments.NODES, **blending.NODES, **colours.NODES, **coordinates.NODES, **gradients.NODES, **images.NODES,
-         **light_path.NODES, **maths.NODES, **noise_nodes.NODES, **patterns.NODES, **ramps.NODES}
+         **light_path.NODES, **maths.NODES, **musgrave.NODES, **noise_nodes.NODES, **patterns.NODES, **ramps.NODES}
 
 
 class Inputs:

@@ -8,7 +8,7 @@ from .noise import fractal, signed_noise
 from .unsupported import Unsupported
 
 
-def _points(node, inputs, dimensions):
+def points(node, inputs, dimensions):
     """(n, d) places: x, y, z, the fourth axis being W; the only one being W, too."""
     parts = []
     if dimensions > 1:
@@ -33,7 +33,7 @@ def _noise(node, output, inputs):
     if getattr(node, "noise_type", "FBM") != "FBM":
         raise Unsupported(node, f"its type {node.noise_type} has no counterpart")
     dimensions = _dimensions(node)
-    p = _points(node, inputs, dimensions) * inputs.number("Scale")[..., None]
+    p = points(node, inputs, dimensions) * inputs.number("Scale")[..., None]
     distortion = inputs.number("Distortion")
     if distortion.any():
         p = p + np.stack([signed_noise(p + _offset(i, dimensions)) * distortion for i in range(dimensions)], axis=-1)
@@ -51,7 +51,7 @@ def _noise(node, output, inputs):
 
 
 def _white_noise(node, output, inputs):
-    p = np.moveaxis(_points(node, inputs, _dimensions(node)), -1, 0)
+    p = np.moveaxis(points(node, inputs, _dimensions(node)), -1, 0)
     return hashed_number(*p) if output.type == "VALUE" else hashed_vector(*p)
 
 
@@ -64,7 +64,7 @@ def _voronoi(node, output, inputs):
     if getattr(node, "normalize", False):
         raise Unsupported(node, "normalized cells have no counterpart")
     scale = inputs.number("Scale")[..., None]
-    p = np.atleast_2d(_points(node, inputs, dimensions) * scale)
+    p = np.atleast_2d(points(node, inputs, dimensions) * scale)
     jitter = np.clip(inputs.number("Randomness"), 0, 1)
     if node.feature == "DISTANCE_TO_EDGE":
         return voronoi.distance_to_edge(p, jitter)
