@@ -2,6 +2,8 @@
 
 import io
 
+import numpy as np
+
 from .baked_images import BakedImages
 from .baking import Baker, Surface
 from .export_principled import PrincipledExporter
@@ -10,6 +12,7 @@ from .export_textures import TextureFiles
 from .export_volumes import Media, coefficients
 from .fresnel import mean_facing, mean_reflectance
 from .node_signature import all_nodes
+from .shader_nodes.colours import luminance
 from .shader_nodes.unsupported import NeedsBody, Unsupported
 from .shader_nodes.light_path import RAYS, groups_of_rays
 
@@ -115,7 +118,7 @@ class MaterialExporter(PrincipledExporter):
                 self._tell_of_tint(node)
             return self._make("interface", []), None, "", (), medium
         if node is None:
-            return self._make("diffuse", ['"rgb reflectance" [0 0 0]']), None, "", (), ""
+            return self._black(), None, "", (), ""
         return self._shader(node), self.emission, self.alpha, tuple(self.uv_maps), medium
 
     def _tell_of_tint(self, node):
@@ -149,8 +152,8 @@ class MaterialExporter(PrincipledExporter):
 
     def _shader(self, node):
         if node.type == "BSDF_TRANSPARENT":
-            self.alpha = TRANSPARENT
-            return self._make("diffuse", ['"rgb reflectance" [0 0 0]'])
+            self.alpha = self._number("alpha", Value(1 - self._passing(node)))
+            return self._black()
         known = {"BSDF_PRINCIPLED": self._principled, "BSDF_DIFFUSE": self._diffuse, "BSDF_GLOSSY": self._glossy,
                  "BSDF_GLASS": self._glass, "BSDF_REFRACTION": self._glass, "BSDF_TRANSLUCENT": self._translucent,
                  "EMISSION": self._emission, "MIX_SHADER": self._mix_shader, "ADD_SHADER": self._add_shader}
@@ -161,7 +164,32 @@ class MaterialExporter(PrincipledExporter):
 
     def _input_shader(self, socket):
         node, _ = self._linked(socket)
-        return self._shader(node) if node else self._make("diffuse", ['"rgb reflectance" [0 0 0]'])
+        return self._shader(node) if node else self._black()
+
+    def _black(self):
+        return self._make("diffuse", ['"rgb reflectance" [0 0 0]'])
+
+    def _passing(self, node):
+        """The share of light that a Transparent lets pass; its colour is told."""
+        colour = self._value(node.inputs["Color"])
+        if colour.image:
+            self.warn(f"material '{self.name}': an image as the colour of '{node.name}' is not supported; it is clear")
+            return 1.0
+        if max(colour.constant) - min(colour.constant) > 0.01:
+            self.warn(f"material '{self.name}': of the colour of '{node.name}' the brightness alone counts")
+        brightness = max(float(luminance(np.array(colour.constant))), 0)
+        return brightness if brightness < 0.9999 else 1.0  # beyond roundings
+
+    def _behind(self, transparent, socket, share):
+        """A shader of which `share` is there and a Transparent elsewhere, of which a black one takes what does not pass."""
+        passing = self._passing(transparent)
+        opacity = share.inverse().times(passing).inverse()
+        self.alpha = self._number("alpha", opacity)
+        surface = self._input_shader(socket)
+        if passing == 1:
+            return surface
+        # Images that weigh a shader are taken for masks, whose texels are 0 or 1.
+        return self._mix(self._black(), surface, share if share.image else Value(share.constant / max(opacity.constant, 1e-6)))
 
     def _diffuse(self, node):
         return self._make("diffuse", [self._colour("reflectance", self._value(node.inputs["Color"])),
@@ -183,7 +211,7 @@ class MaterialExporter(PrincipledExporter):
 
     def _emission(self, node):
         self._emit(self._value(node.inputs["Color"], only_unit_square=True), self._plain(node.inputs["Strength"]))
-        return self._make("diffuse", ['"rgb reflectance" [0 0 0]'])
+        return self._black()
 
     def _mix_shader(self, node):
         first, second = (self._linked(node.inputs[i])[0] for i in (1, 2))
@@ -196,11 +224,9 @@ class MaterialExporter(PrincipledExporter):
         if not amount.image and not 0 < amount.constant < 1:
             return self._input_shader(node.inputs[2 if amount.constant >= 1 else 1])
         if first and first.type == "BSDF_TRANSPARENT":
-            self.alpha = self._number("alpha", amount)
-            return self._input_shader(node.inputs[2])
+            return self._behind(first, node.inputs[2], amount)
         if second and second.type == "BSDF_TRANSPARENT":
-            self.alpha = self._number("alpha", amount.inverse())
-            return self._input_shader(node.inputs[1])
+            return self._behind(second, node.inputs[1], amount.inverse())
         if "EMISSION" in (n.type for n in (first, second) if n):
             self.warn(f"material '{self.name}': emission inside a mixture is not weakened by it")
         return self._mix(self._input_shader(node.inputs[1]), self._input_shader(node.inputs[2]), amount)
@@ -241,6 +267,6 @@ class MaterialExporter(PrincipledExporter):
         if len(others) == 1:
             return self._shader(others[0])
         if not others:
-            return self._make("diffuse", ['"rgb reflectance" [0 0 0]'])
+            return self._black()
         self.warn(f"material '{self.name}': a sum of two surfaces is rendered as their mean")
         return self._mix(self._shader(others[0]), self._shader(others[1]), Value(0.5))

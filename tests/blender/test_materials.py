@@ -3,7 +3,7 @@
 import math
 
 import bpy
-from addon_support import BlenderTest, material, render
+from addon_support import BlenderTest, material, mean, render
 
 
 class MaterialsTest(BlenderTest):
@@ -88,6 +88,27 @@ class MaterialsTest(BlenderTest):
             tree.links.new(glossy.outputs[0], mix.inputs[2])
             tree.links.new(mix.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
             self.assert_brightness(m, (0.03, 0.03))
+
+    def test_grey_transparents_take_light(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        for colour, share in (((0.4, 0.4, 0.4, 1), None), ((0.4, 0.4, 0.4, 1), 0.3), ((0.0, 0.0, 0.0, 1), 0.5), ((0.2, 0.6, 0.4, 1), None)):
+            m = bpy.data.materials.new("grey")
+            m.use_nodes = True
+            tree, surface = m.node_tree, m.node_tree.nodes["Material Output"].inputs["Surface"]
+            clear, matt, mix = (tree.nodes.new(f"ShaderNode{kind}") for kind in ("BsdfTransparent", "BsdfDiffuse", "MixShader"))
+            clear.inputs["Color"].default_value, matt.inputs["Color"].default_value = colour, (0.7, 0.7, 0.7, 1)
+            for socket, shader in zip(mix.inputs[1:], (clear, matt)):
+                tree.links.new(shader.outputs[0], socket)
+            mix.inputs[0].default_value = share or 0
+            tree.links.new((mix if share else clear).outputs[0], surface)
+            plane = self.plane(m)
+            with self.subTest(colour=colour, share=share):
+                ours, theirs = (sum(w * c for w, c in zip((0.2126, 0.7152, 0.0722), mean(render(engine, 64))))
+                                for engine in ("COVTRACE", "CYCLES"))
+                self.assertAlmostEqual(ours, theirs, delta=0.02)
+                self.export()
+                self.assertEqual(bool(self.warnings), colour[0] != colour[1], self.warnings)
+            bpy.data.objects.remove(plane)
 
     def test_unknown_nodes_are_told(self):
         m = material()
