@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import struct
 import unittest
 import zlib
@@ -20,6 +21,24 @@ COVARIANCE = (
     + [f"cov.{i}{j}" for i in range(5) for j in range(i, 5)]
 )
 ENVIRONMENT = 'LightSource "infinite" "rgb L" [.4 .4 .4]\n'
+
+LAMPS_OUT_OF_FOCUS = """
+LookAt 0 0 0  0 0 1  0 1 0
+Camera "perspective" "float fov" 40 "float lensradius" .12 "float focaldistance" 2
+Film "rgb" "integer xresolution" 160 "integer yresolution" 120
+WorldBegin
+LightSource "infinite" "rgb L" [.05 .05 .05]
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [4 4 4]
+    Translate -1 .5 8
+    Shape "sphere" "float radius" .6
+AttributeEnd
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [3 2 1]
+    Translate 1.4 -.6 9
+    Shape "sphere" "float radius" .7
+AttributeEnd
+"""
 
 
 class Layers(CliTest):
@@ -108,6 +127,21 @@ class Layers(CliTest):
             return sum(c for c, v in zip(counts, noise) if v > middle) / sum(counts)
 
         self.assertGreater(share_of_noisy(verified), 1.02 * share_of_noisy(tempered))
+
+    def test_outlines_of_lamps_out_of_focus_are_sharper_than_predicted(self):
+        self.write("scene.pbrt", LAMPS_OUT_OF_FOCUS)
+
+        def rendered(name, *arguments):
+            done = self.run_program("render", "scene.pbrt", "-o", name, "--quiet", *map(str, arguments))
+            self.assertEqual(done.code, DONE, done.stderr)
+
+        rendered("reference.exr", "--method", "uniform", "--spp", 256, "--seed", 99)
+        rendered("image.exr", "--method", "covariance", "--spp", 16, "--seed", 1)
+        told = self.run_program("compare", "image.exr", "reference.exr")
+        error = float(re.search(r"^relmse +(\S+)$", told.stdout, re.MULTILINE).group(1))
+        # It was 0.00077, a part of it noise of the reference, and 0.0020 through the predicted
+        # filters of emitters in view alone.
+        self.assertLess(error, 0.0013)
 
     def test_every_voxel_occludes_more_than_the_nearest_at_their_distance(self):
         widths = {}
