@@ -64,6 +64,10 @@ FilteredImage through(const Part& part, const std::vector<uint32_t>& count,
     return gather(part.mean, part.variance, count, field);
 }
 
+/// Samples per pixel beyond which emitters in view may have narrower filters: with fewer, pixels
+/// that have missed an emitter by chance ask for them, and its light is lost (docs/decisions/0128).
+constexpr double kEnoughForSharper = 4;
+
 /// Filters half as wide.
 FilterField narrowed(FilterField field) {
     for (auto& s : field.covariance) s = 0.25f * s;
@@ -153,9 +157,8 @@ FilteredImage judged_image(const Film& film, const Parts& parts, const Covarianc
         guided_gather(parts.scattered.mean, parts.scattered.variance, parts.count,
                       filters.scattered, guides_of(film, parts, filters.scattered));
     candidates.insert(candidates.begin(), through(parts.scattered, parts.count, filters.scattered));
-    // With samples where noise is, the outlines of emitters in view may have narrower filters
     std::optional<FilteredImage> sharper;
-    if (filters.has_in_view) {
+    if (filters.has_in_view && film.mean_count() > kEnoughForSharper) {
         sharper = candidates.front();
         add(parts, through(parts.in_view, parts.count, narrowed(filters.in_view)), *sharper);
     }
