@@ -20,7 +20,7 @@ class Help(CliTest):
                 result = self.run_program(*arguments)
                 self.assertEqual(result.code, DONE, result)
                 self.assertEqual(result.stderr, "")
-                self.assert_fits(result.stdout, 75 if arguments[0] == "render" else 24)
+                self.assert_fits(result.stdout, 76 if arguments[0] == "render" else 24)
 
     def test_help_names_commands_and_options(self):
         overview = self.run_program("--help").stdout
