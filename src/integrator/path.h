@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/sampler.h"
+#include "integrator/panes.h"
 #include "integrator/path_record.h"
 #include "integrator/render_scene.h"
 
@@ -64,6 +65,11 @@ PathResult trace_path(const LitScene& scene, const CausticGuide& guide, Ray ray,
                       const Sampler& sampler, int max_depth, PathRecord* record,
                       const SkyGuide* sky_guide = nullptr, const LampGuide* lamp_guide = nullptr,
                       const PathGuide* path_guide = nullptr);
+/// Traces the rest of a path that leaves a place by `ray`, whose direction has the density `pdf`:
+/// light behind panes counts with the weight that sampling it leaves to paths, all other in full.
+/// No guide leads it.
+PathResult trace_path_from(const LitScene& scene, const LitPlace& place, float pdf, Ray ray,
+                           const Sampler& sampler, int max_depth);
 /// Traces one path, led by the guides of the scene.
 inline PathResult trace_path(const RenderScene& scene, Ray ray, const Sampler& sampler,
                              int max_depth, PathRecord* record) {

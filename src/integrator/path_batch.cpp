@@ -107,4 +107,13 @@ PathResult trace_path(const LitScene& scene, const CausticGuide& guide, Ray ray,
     return path.result();
 }
 
+PathResult trace_path_from(const LitScene& scene, const LitPlace& place, float pdf, Ray ray,
+                           const Sampler& sampler, int max_depth) {
+    const CausticGuide none;
+    PathTracer path(scene, none, nullptr, nullptr, nullptr, ray, sampler, max_depth, nullptr);
+    path.leave_from(place, pdf);
+    trace_paths<1>(scene.geometry, {&path, 1}, [] { return false; });
+    return path.result();
+}
+
 }  // namespace covtrace

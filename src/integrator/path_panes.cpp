@@ -54,6 +54,12 @@ void PathTracer::leave() {
     if (samples_through_panes_) departure_ = {lit_, ray_.origin, ray_.direction, pdf_, 0, 0};
 }
 
+void PathTracer::leave_from(const LitPlace& place, float pdf) {
+    lit_ = place;
+    pdf_ = pdf;
+    leave();
+}
+
 void PathTracer::leave_through_pane(Vec3 position, float pdf) {
     if (departure_.panes++ == 0) departure_.to_pane = distance(departure_.origin, position);
     departure_.pdf *= pdf;

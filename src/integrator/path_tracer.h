@@ -40,6 +40,9 @@ class PathTracer {
         }
     }
 
+    /// Lets the path begin at a place where light is sampled, in place of the camera, with a ray
+    /// whose direction has the density `pdf`.
+    void leave_from(const LitPlace& place, float pdf);
     /// The ray to the next place where the path meets something.
     const Ray& next_ray();
     /// Where the nearest hit of that ray goes.

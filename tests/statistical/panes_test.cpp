@@ -141,5 +141,27 @@ WorldBegin
 INSTANTIATE_TEST_SUITE_P(Scenes, Panes, testing::ValuesIn(kPanes),
                          [](const auto& info) { return std::string(info.param.name); });
 
+/// The guide to caustics probes for light that is left to paths: that of the sun behind a slab is
+/// not, and is all there where it is not sampled.
+TEST(PathsFromAPlace, LeaveLightBehindPanesToSampling) {
+    RenderScene scene(read_pbrt_string(std::string("WorldBegin\n") + kRoom + SUN SLAB, "test", "."),
+                      {}, kNoTextureLimit, Guides::none);
+    const Vec3 up{0, 1, 0}, to_sun = normalize(Vec3{1, 3, -0.5f});
+    const Ray ray{{0, 1e-3f, 0}, to_sun, 0, kInfinity, RayKind::diffuse};
+    const auto light = [&](bool is_sampled) {
+        scene.samples_through_panes = is_sampled;
+        double sum = 0;
+        for (int i = 0; i < 256; ++i)
+            sum += luminance(trace_path_from(scene, {ray.origin, up}, dot(up, to_sun) / kPi, ray,
+                                             Sampler(3, i, 0, 0), 6)
+                                 .radiance);
+        return sum / 256;
+    };
+    const double whole = light(false);
+    // 4 / (pi sin^2(2 degrees)), less what two faces of glass reflect
+    EXPECT_NEAR(whole, 960, 60);
+    EXPECT_LT(light(true), 0.02 * whole);  // what is reflected twice in the slab
+}
+
 }  // namespace
 }  // namespace covtrace

@@ -285,8 +285,11 @@ class CausticGuide::Probes {
     float radiance(const CausticPhoton& at, Vec3 w) {
         Sampler sampler(kProbeKey, int(key_), int(count_++), 0);
         const Ray ray{at.position, w, at.time, kInfinity, RayKind::diffuse};
-        const float y =
-            luminance(trace_path(scene_, {}, ray, sampler, kProbeDepth, nullptr).radiance);
+        // Light behind panes is sampled, and no guide to it pays
+        const float own = cosine_hemisphere_pdf(dot(at.normal, w));
+        const float y = luminance(
+            trace_path_from(scene_, {at.position, at.normal}, own, ray, sampler, kProbeDepth)
+                .radiance);
         return std::isfinite(y) ? y : 0.0f;
     }
     double by_lamp(const CausticPhoton& at) {
