@@ -12,6 +12,7 @@
 #include "reconstruction/luminance.h"
 #include "reconstruction/outliers.h"
 #include "reconstruction/selector.h"
+#include "reconstruction/undershoot.h"
 
 namespace covtrace {
 
@@ -65,18 +66,6 @@ ColorPlanes common_brightness(std::span<const Candidate> candidates) {
     const float scale = 1 / float(6 * (candidates.size() - first));
     for (float& v : sum.values) v *= scale;
     return {sum, sum, sum};
-}
-
-/// Cuts off light below 0, to which fits may lead. Light is never negative, except beside lamps
-/// under a pixel filter with negative lobes; then the samples are negative somewhere, too.
-ColorPlanes without_undershoot(ColorPlanes color, const ColorPlanes& samples) {
-    const auto negative = [](const Plane& p) {
-        return std::any_of(p.values.begin(), p.values.end(), [](float v) { return v < 0; });
-    };
-    if (std::none_of(samples.begin(), samples.end(), negative))
-        for (Plane& channel : color)
-            for (float& v : channel.values) v = std::max(0.0f, v);
-    return color;
 }
 
 Plane mean_of(Plane a, const Plane& b) {
@@ -179,17 +168,16 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
         for (Plane& v : half.color_variance) v = box_blur(v, 1);
     // Make the candidates and the guides that tell which pixels are alike
     std::vector<Candidate> candidates = make_candidates(halves, spectrum, settings.candidates);
+    cut_undershoot(candidates, halves);
     Likeness likeness(settings.likeness);
     add_features(halves, likeness);
     // Free the features: they are large, and the candidates and guides have been made of them.
     for (HalfBuffer& half : halves) half.feature = half.feature_variance = {};
     // Select twice, as candidates that spread highlights also lift the first guess of dark pixels,
     // which hides their errors there, and as the guess tells which pixels are alike
-    const ColorPlanes first_guess = without_undershoot(common_brightness(candidates), all);
-    const ColorPlanes guess =
-        without_undershoot(mean_of(select(halves, candidates, error_weights(halves, first_guess),
-                                          settings.sigma, settings.mix)),
-                           all);
+    const ColorPlanes first_guess = common_brightness(candidates);
+    const ColorPlanes guess = mean_of(select(halves, candidates, error_weights(halves, first_guess),
+                                             settings.sigma, settings.mix));
     add_light_and_noise(halves, guess, likeness);
     // Mix the candidates, then our own mixture with the denoiser's image
     const ColorPlanes g = error_weights(halves, guess);
