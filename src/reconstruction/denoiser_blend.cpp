@@ -16,10 +16,21 @@ constexpr float kSmoothing = 4;  ///< smoothing of the light that was cut off, p
 
 }  // namespace
 
+ColorPlanes prior_blend(const ColorPlanes& own, const Denoised& denoised) {
+    ColorPlanes blend = own;
+    for (size_t k = 0; k < 3; ++k)
+        for (size_t i = 0; i < blend[k].size(); ++i)
+            blend[k][i] = kPriorShare * own[k][i] + (1 - kPriorShare) * denoised.whole[k][i];
+    return blend;
+}
+
 Plane own_share(const BlendInput& input, const Denoised& denoised, const Likeness& likeness) {
     const int w = input.g[0].width, h = input.g[0].height;
-    // The minimum of own_share is the ratio of two sums, collected here.
-    std::vector<MarginPlane> sums(2, MarginPlane(w, h));
+    // The minimum of own_share is the ratio of two sums, collected here: parts without the prior
+    // first, then the prior's and the number of pixels.
+    std::vector<MarginPlane> sums(4, MarginPlane(w, h));
+    for (int y = 0; y < h; ++y)
+        for (int x = 0; x < w; ++x) sums[3](x, y) = 1;
     for (size_t k = 0; k < 3; ++k) {
         const Plane lost = gaussian_blur(input.lost[k], kSmoothing);
         for (int y = 0; y < h; ++y)
@@ -32,9 +43,9 @@ Plane own_share(const BlendInput& input, const Denoised& denoised, const Likenes
                     square += 0.5f * sqr(step);
                     noise += 0.5f * input.variance[half][k][i];
                 }
-                const float prior = 2 * kPriorWeight * noise;
-                sums[0](x, y) += input.g[k][i] * (product + kPriorShare * prior);
-                sums[1](x, y) += input.g[k][i] * (square + prior + kLostWeight * sqr(lost[i]));
+                sums[0](x, y) += input.g[k][i] * product;
+                sums[1](x, y) += input.g[k][i] * (square + kLostWeight * sqr(lost[i]));
+                sums[2](x, y) += input.g[k][i] * 2 * kPriorWeight * noise;
             }
     }
     Plane share(w, h, kPriorShare);
@@ -42,9 +53,10 @@ Plane own_share(const BlendInput& input, const Denoised& denoised, const Likenes
         for (int x = 0; x < w; ++x) {
             Likeness::Window weights;
             likeness.weigh(x, y, weights);
-            float sum[2];
-            weighted_sums(sums, weights, x, y, sum);
-            if (sum[1] > 0) share(x, y) = std::clamp(sum[0] / sum[1], 0.0f, 1.0f);
+            std::array<float, 4> sum;
+            weighted_sums(sums, weights, x, y, sum.data());
+            const float prior = sum[2] * likeness.most() / sum[3], all = sum[1] + prior;
+            if (all > 0) share(x, y) = std::clamp((sum[0] + kPriorShare * prior) / all, 0.0f, 1.0f);
         }
     });
     return share;

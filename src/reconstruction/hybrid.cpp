@@ -184,8 +184,9 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     Selection s = select(halves, candidates, g, likeness, settings.mix);
     image.color = mean_of(s);
     if (clean) {
-        const ColorPlanes lost = cut_off(all, halves);
-        blend(own_share({samples, variance, s.half, lost, g}, *clean, likeness), *clean, s,
+        const ColorPlanes lost = cut_off(all, halves),
+                          g_blend = error_weights(halves, prior_blend(image.color, *clean));
+        blend(own_share({samples, variance, s.half, lost, g_blend}, *clean, likeness), *clean, s,
               image.color);
         candidates.push_back(clean->half);
     }

@@ -17,9 +17,11 @@ MarginPlane::MarginPlane(const Plane& plane) : MarginPlane(plane.width, plane.he
 
 Likeness::Likeness(const LikenessSettings& settings) : any_(settings.any) {
     for (int dy = -kReach; dy <= kReach; ++dy)
-        for (int dx = -kReach; dx <= kReach; ++dx)
-            gaussian_[size_t(dy + kReach) * kColumns + size_t(dx + kReach)] =
-                std::exp(-0.5f * (sqr(float(dx)) + sqr(float(dy))) / sqr(settings.sigma));
+        for (int dx = -kReach; dx <= kReach; ++dx) {
+            float& weight = gaussian_[size_t(dy + kReach) * kColumns + size_t(dx + kReach)];
+            weight = std::exp(-0.5f * (sqr(float(dx)) + sqr(float(dy))) / sqr(settings.sigma));
+            most_ += weight;
+        }
 }
 
 void Likeness::weigh(int x, int y, Window& weights) const {

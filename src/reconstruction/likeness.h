@@ -53,13 +53,16 @@ class Likeness {
 
     void weigh(int x, int y, Window& weights) const;
 
+    /// The sum of the weights of a window whose pixels are all alike.
+    float most() const { return most_; }
+
     /// The squared difference sum_k (guide_k(p) - guide_k(q))^2 of two pixels of the image.
     float difference(int px, int py, int qx, int qy) const;
 
   private:
     std::vector<MarginPlane> guides_;
     Window gaussian_{};
-    float any_;
+    float any_, most_ = 0;
 };
 
 /// Sets sums[k] to the sum of plane k's values times the weights around a pixel; beyond the image

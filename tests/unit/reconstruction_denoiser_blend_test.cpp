@@ -104,6 +104,27 @@ TEST(DenoiserBlend, RareLightIsTheDenoisers) {
     EXPECT_GT(mean_share(with(FixedDenoiser(constant(1)), halves)), 0.95);
 }
 
+TEST(DenoiserBlend, AFewPixelsThatMissedTheLightAreTheDenoisers) {
+    // Half of all samples meet the light, and 3 x 3 pixels that all missed it know no better.
+    Halves halves = noisy_halves(
+        kSize, kSize, [](int, int) { return 0.0f; }, 0, 38);
+    Rng rng(39);
+    for (HalfBuffer& half : halves)
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x) {
+                half.count(x, y) = 2;
+                const bool missed = std::abs(x - 32) <= 1 && std::abs(y - 32) <= 1;
+                const float seen = float(rng.next_float() < 0.5f) + float(rng.next_float() < 0.5f);
+                for (size_t c = 0; c < 3; ++c) {
+                    half.color[c](x, y) = missed ? 0.02f : seen;
+                    half.color_variance[c](x, y) = missed || seen != 1 ? 0.25f : 0.75f;
+                }
+            }
+    const HybridImage image = with(FixedDenoiser(constant(1)), halves);
+    EXPECT_GT(image.share.back()(32, 32), 0.6f);
+    EXPECT_GT(image.color[1](32, 32), 0.6f);
+}
+
 TEST(DenoiserBlend, FeaturesOfFewSamplesAreNoDraft) {
     const AskedDenoiser denoiser;
     Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.2f, 36);  // 8 samples in each half
