@@ -11,6 +11,7 @@
 #include "reconstruction/guides.h"
 #include "reconstruction/luminance.h"
 #include "reconstruction/outliers.h"
+#include "reconstruction/raw_share.h"
 #include "reconstruction/selector.h"
 #include "reconstruction/undershoot.h"
 
@@ -162,6 +163,7 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     // Limit rare bright paths; light_return knows the halves as they were
     const LightReturn light_return(halves, settings.noise, clean ? few : 0);
     limit_outliers(halves);
+    const Plane noise = pixel_noise(halves);
     // Smooth the variances: unsmoothed ones follow their own pixel's mean, and would let bright
     // pixels accept dark ones and not the other way round
     for (HalfBuffer& half : halves)
@@ -182,6 +184,7 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
     // Mix the candidates, then our own mixture with the denoiser's image
     const ColorPlanes g = error_weights(halves, guess);
     Selection s = select(halves, candidates, g, likeness, settings.mix);
+    if (settings.mix) lower_share_of_noisy(noise, g, candidates[0], likeness, s);
     image.color = mean_of(s);
     if (clean) {
         const ColorPlanes lost = cut_off(all, halves),
