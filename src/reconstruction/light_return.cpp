@@ -26,9 +26,11 @@ constexpr int stride(int level) {
     for (int k = 0; k < level; ++k) n *= kFactor;
     return n;
 }
-/// Factors k of the noise: that of the levels, and that of the whole image, whose samples are far
-/// more even than their spread tells: the light that it lacks is mostly real. With 0 the error is 1
-/// % larger at 4 samples per pixel.
+/// Independent places that sums over Gaussian windows at every kFactor-th place count several
+/// times: the variance of a sum of such sums is so many times that of independent ones.
+constexpr float kOverlap = 4 * kPi * sqr(kDeviation / kFactor);
+/// Factors k of the noise: that of the windows, and that of the whole image, whose samples are far
+/// more even than their spread tells: the light that it lacks is mostly real.
 constexpr float kNoise = 1, kNoiseOfAll = 0.1f;
 /// Both factors where samples are few: with more the error is a little less, but the light of
 /// tenths of the brightness is further off (docs/decisions/0117).
@@ -76,6 +78,41 @@ float interpolated(const Plane& p, int x, int y, int size) {
            v * ((1 - u) * p(x0, y1) + u * p(x1, y1));
 }
 
+/// Planes of blocks that are summed over windows, in this order: the lacking light, the image's own
+/// and the lacking luminance without its sign and squared or, of halves with noise of their own,
+/// half of what they differ by.
+enum SummedPlane : size_t { kLacking, kSeen = 3, kAbsolute = 6, kSquared, kHalfDifference = 6 };
+/// Planes that are summed with squared weights: products of the lacking luminance and the image's
+/// own over narrower windows, the square of the lacking colour, what the first one should be were
+/// it noise, and the variance that the samples tell.
+enum SquaresPlane : size_t { kLackSquared, kLackLight, kLightSquared, kColour, kExpected, kTold };
+
+Rgb rgb_at(const std::vector<Plane>& planes, size_t first, size_t i) {
+    return {planes[first][i], planes[first + 1][i], planes[first + 2][i]};
+}
+
+/// `over` / `under`, 0 without light.
+float ratio(float over, float under) {
+    return under > 0 ? over / under : 0;
+}
+
+float square_of(Rgb v) {
+    return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+}
+
+/// The part of the lacking light that is not in the proportions of the image's own colour.
+Rgb other_colour(Rgb lacking, Rgb seen) {
+    return lacking - ratio(luminance(lacking), luminance(seen)) * seen;
+}
+
+/// The sum of squares of the lacking luminance around its mean in the window.
+float scatter(const WindowSums& sums, size_t i) {
+    const float t = ratio(luminance(rgb_at(sums.linear, kLacking, i)),
+                          luminance(rgb_at(sums.linear, kSeen, i)));
+    return std::max(0.0f, sums.squares[kLackSquared][i] - 2 * t * sums.squares[kLackLight][i] +
+                              t * t * sums.squares[kLightSquared][i]);
+}
+
 /// The light that a place lacks in each channel, as multiples of its luminance. The arguments are
 /// sums over the pixels that are alike: of the lacking light, of luminance and of the variance of
 /// the lacking light.
@@ -85,29 +122,6 @@ Rgb times_lacking(Rgb lacking, float light, float variance, float noise) {
     Rgb times;
     for (int c = 0; c < 3; ++c) times[c] = within_most(certain * lacking[c] / light);
     return times;
-}
-
-/// Planes of blocks that are summed over windows, in this order: the lacking light, luminance, and
-/// what tells the noise of wider windows, one plane or two (noise_of_lack).
-enum SummedPlane : size_t { kRed, kGreen, kBlue, kLight, kNoiseFirst, kNoiseSecond };
-
-/// The variance of a window's lacking light, from level 1 on, at block i of its sums.
-///
-/// Halves of one sequence: an image has the noise of its samples, so that what it lacks over many
-/// blocks is its own loss and no noise, unless few of them have lost it: then it is as uncertain as
-/// it is large, lack^2 sum e^2 / (sum |e|)^2, sums over all blocks of the window with equal
-/// weights. Those of level - 1 overlap, and each block counts in 2 pi kDeviation^2 / kFactor^2 of
-/// them.
-///
-/// Independent halves: what they differ by in the narrower windows, squared, of which those that
-/// overlap are no more certain than one.
-float noise_of_lack(const WindowSums& sums, HalvesNoise noise, int level, size_t i, Rgb lack) {
-    constexpr float kOverlap = 2 * kPi * sqr(kDeviation / kFactor);
-    if (noise == HalvesNoise::independent) return 2 * kOverlap * sums.squares[0][i];
-    const float absolute = sums.linear[kNoiseFirst][i];
-    float times = sums.linear[kNoiseSecond][i] / sqr(absolute);  // of one block's e times is 1 then
-    for (int k = 0; k < level; ++k) times *= kOverlap;
-    return absolute > 0 ? sqr(luminance(lack)) * times : 0;
 }
 
 /// The sums of all light within some hundred pixels around every pixel.
@@ -146,6 +160,23 @@ void keep_in_place(const Plane& around, const ColorPlanes& e, ColorPlanes& color
 
 }  // namespace
 
+/// The variance of a wider window's lacking light by how few places it is from, its square where it
+/// is from one: sum e^2 / (sum |e|)^2 of that, sums over all blocks of the window with equal
+/// weights. Those of level - 1 overlap, and each block counts in kOverlap / 2 of them.
+float noise_of_few_places(const WindowSums& sums, int level, size_t i) {
+    float places = sqr(sums.linear[kAbsolute][i]);
+    for (int k = 0; k < level; ++k) places /= kOverlap / 2;
+    return ratio(sqr(luminance(rgb_at(sums.linear, kLacking, i))) * sums.linear[kSquared][i],
+                 places);
+}
+
+/// Sums over windows of one width, and their variances: of the lacking luminance and of the lacking
+/// colour.
+struct LightReturn::Level {
+    std::vector<Plane> sums;  ///< by SummedPlane
+    Plane noise, colour_noise;
+};
+
 LightReturn::LightReturn(const Halves& halves, HalvesNoise noise, float few)
     : noise_(noise),
       windows_noise_(std::lerp(kNoise, kNoiseOfFew, few)),
@@ -178,42 +209,111 @@ Plane LightReturn::block_variance() const {
     return square;
 }
 
-ColorPlanes LightReturn::lacking(const ColorPlanes& e, const Plane& light) const {
-    std::vector<Plane> guides = features_;
-    guides.push_back(block_means(light_guide(light), kFinest));
-    const Plane block_light = block_means(light, kFinest);
-    std::vector<Plane> summed{e[0], e[1], e[2], block_light};
-    if (noise_ == HalvesNoise::independent) {
+Plane LightReturn::share_that_is_real(std::span<const Plane> guides, int level, const Plane& noise,
+                                      const Plane& squared, const Plane& light_squared) const {
+    std::vector<Plane> around{noise, squared, light_squared};
+    if (level + 1 < kLevels) {
+        around = window_sums(guides, around, {}, stride(level + 1), {.sigma = kDeviation, .any = 0})
+                     .linear;
+    } else {
+        for (Plane& p : around) {
+            double sum = 0;
+            for (float v : p.values) sum += double(v);
+            std::fill(p.values.begin(), p.values.end(), float(sum));
+        }
+    }
+    Plane share = noise;
+    for (size_t i = 0; i < noise.size(); ++i) {
+        const float times = ratio(light_squared[i], around[2][i]),
+                    uncertain = windows_noise_ * std::max(noise[i], times * around[0][i]),
+                    lacking = times * std::max(0.0f, around[1][i] - windows_noise_ * around[0][i]);
+        share[i] = ratio(lacking, lacking + uncertain);
+    }
+    return share;
+}
+
+std::vector<LightReturn::Level> LightReturn::levels(const ColorPlanes& e, const ColorPlanes& color,
+                                                    std::span<const Plane> guides) const {
+    const bool independent = noise_ == HalvesNoise::independent;
+    std::vector<Plane> summed(e.begin(), e.end());
+    for (const Plane& channel : color) summed.push_back(block_means(channel, kFinest));
+    if (independent) {
         summed.push_back(block_half_difference_);
     } else {
         summed.insert(summed.end(), 2, luminance(e));
-        for (float& v : summed[kNoiseFirst].values) v = std::abs(v);
-        for (float& v : summed[kNoiseSecond].values) v *= v;
+        for (float& v : summed[kAbsolute].values) v = std::abs(v);
+        for (float& v : summed[kSquared].values) v *= v;
     }
-    ColorPlanes times;
-    times.fill(Plane(e[0].width, e[0].height));
-    std::vector<Plane> squares{block_variance()};
+    std::vector<Plane> squares(kTold + 1, block_variance());
+    const size_t n = e[0].size();
+    std::vector<Level> levels(kLevels);
     for (int level = 0; level < kLevels; ++level) {
-        // No share counts whatever is unlike: a window that counted in a wall's sums for a
-        // twentieth would outshine the wall.
-        WindowSums sums =
-            window_sums(guides, summed, squares, stride(level), {.sigma = kDeviation, .any = 0});
-        for (size_t i = 0; i < times[0].size(); ++i) {
-            const Rgb lack(sums.linear[kRed][i], sums.linear[kGreen][i], sums.linear[kBlue][i]);
-            const float variance =
-                level == 0 ? sums.squares[0][i] : noise_of_lack(sums, noise_, level, i, lack);
-            const float all = sums.linear[kLight][i];
-            const Rgb given = times_lacking(lack, all, variance, windows_noise_);
-            for (size_t c = 0; c < 3; ++c) {
-                times[c][i] += given[int(c)];
-                sums.linear[c][i] -= given[int(c)] * all;  // the wider windows lack it no more
-            }
+        for (size_t i = 0; i < n; ++i) {
+            const Rgb lack = rgb_at(summed, kLacking, i), seen = rgb_at(summed, kSeen, i);
+            const Rgb colour = other_colour(lack, seen);
+            squares[kLackSquared][i] = sqr(luminance(lack));
+            squares[kLackLight][i] = luminance(lack) * luminance(seen);
+            squares[kLightSquared][i] = sqr(luminance(seen));
+            squares[kColour][i] = square_of(colour);
+            if (independent && level > 0) squares[kTold][i] = sqr(summed[kHalfDifference][i]);
         }
-        summed = std::move(sums.linear);
-        squares.clear();
-        if (noise_ == HalvesNoise::independent) {
-            squares.push_back(summed[kNoiseFirst]);
-            for (float& v : squares[0].values) v *= v;
+        const WindowSums sums =
+            window_sums(guides, summed, squares, stride(level), {.sigma = kDeviation, .any = 0});
+        Level& of = levels[size_t(level)];
+        of.noise = of.colour_noise = Plane(e[0].width, e[0].height);
+        const float overlap = level == 0 ? 1 : kOverlap;
+        for (size_t i = 0; i < n; ++i) {
+            const float spread = scatter(sums, i);
+            // What an image keeps of its samples' noise it does not lack: the wider the windows,
+            // the less of it. It falls on as it fell from the narrower windows to these.
+            const float falls =
+                level == 0 ? 1 : std::min(1.0f, ratio(spread, sums.squares[kExpected][i]));
+            if (independent || level == 0)
+                of.noise[i] = overlap * sums.squares[kTold][i];
+            else
+                of.noise[i] =
+                    std::max(overlap * falls * spread, noise_of_few_places(sums, level, i));
+            of.colour_noise[i] = overlap * falls * sums.squares[kColour][i];
+            squares[kExpected][i] = overlap * spread;
+        }
+        of.sums = summed = sums.linear;
+    }
+    return levels;
+}
+
+LightReturn::Times LightReturn::lacking(const ColorPlanes& e, const ColorPlanes& color) const {
+    std::vector<Plane> guides = features_;
+    guides.push_back(block_means(light_guide(luminance(color)), kFinest));
+    const std::vector<Level> all = levels(e, color, guides);
+    Times times;
+    times.light = Plane(e[0].width, e[0].height);
+    times.colour.fill(times.light);
+    const Plane none = times.light;
+    for (int level = kLevels - 1; level >= 0; --level) {
+        const Level& of = all[size_t(level)];
+        // What the wider windows left
+        Plane rest = none, squared = none, light_squared = none, colour_squared = none;
+        ColorPlanes colour{none, none, none};
+        for (size_t i = 0; i < none.size(); ++i) {
+            const Rgb lack = rgb_at(of.sums, kLacking, i), seen = rgb_at(of.sums, kSeen, i);
+            const float light = luminance(seen);
+            Rgb other = other_colour(lack, seen);
+            rest[i] = luminance(lack) - times.light[i] * light;
+            for (size_t c = 0; c < 3; ++c)
+                colour[c][i] = other[int(c)] -= times.colour[c][i] * light;
+            squared[i] = sqr(rest[i]);
+            colour_squared[i] = square_of(other);
+            light_squared[i] = sqr(light);
+        }
+        const Plane share = share_that_is_real(guides, level, of.noise, squared, light_squared);
+        const Plane colour_share =
+            share_that_is_real(guides, level, of.colour_noise, colour_squared, light_squared);
+        for (size_t i = 0; i < none.size(); ++i) {
+            const float light = std::sqrt(light_squared[i]);
+            if (!(light > 0)) continue;  // also where a sum is not a number
+            times.light[i] += within_most(share[i] * rest[i] / light);
+            for (size_t c = 0; c < 3; ++c)
+                times.colour[c][i] += within_most(colour_share[i] * colour[c][i] / light);
         }
     }
     return times;
@@ -270,15 +370,18 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
         for (size_t i = 0; i < light.size(); ++i) e[c][i] -= in_place[c][i];
         e[c] = block_means(e[c], kFinest);
     }
-    const ColorPlanes times = lacking(e, light);
+    const Times times = lacking(e, color);
     parallel_for_rows(w, h, [&](int y) {
-        for (int x = 0; x < w; ++x)
+        for (int x = 0; x < w; ++x) {
+            const float brighter = within_most(interpolated(times.light, x, y, kFinest));
             for (size_t c = 0; c < 3; ++c) {
                 float& v = color[c](x, y);
                 const float given =
-                    light(x, y) * within_most(interpolated(times[c], x, y, kFinest));
+                    brighter * v +
+                    light(x, y) * within_most(interpolated(times.colour[c], x, y, kFinest));
                 v = std::max(std::min(v, 0.0f), v + given);
             }
+        }
     });
     // Give what is still lacking to the whole image
     give_to_all(difference(), in_place, color);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "reconstruction/half_buffer.h"
@@ -20,20 +21,24 @@ enum class HalvesNoise : uint8_t {
 ///     e(p) = raw(p) - color(p),
 /// whose mean over many pixels p is known better than that of any one. Around every pixel, over the
 /// pixels that are alike in features and light, color becomes
-///     color + (1 - k s^2 / L(sum w e)^2)_+ (sum w e / sum w Y) Y,
-/// L luminance, Y = L(color) and s^2 the variance of L(sum w e): as many times as bright as the
-/// samples around say, from a tenth to ten times, where they say more than their noise could (James
-/// and Stein's factor). This is done with w of deviations of 12, 48 and 192 pixels, wider windows
-/// giving what narrower ones left (k = 1), then once over the whole image, where nearly everything
-/// counts (k = 0.1), so that the image has the light of the samples. Where samples are few, light
-/// that is given wrongly costs more than light that is missing: k grows to 3 everywhere
-/// (docs/decisions/0117).
+///     (1 + c L(sum w e) / L(sum w color)) color,
+/// L luminance: as many times as bright as the samples around say, from a tenth to ten times, as
+/// far as they know. What of sum w e is not in the proportions of the image's own colour comes with
+/// a factor of its own. This is done with w of deviations of 192, 48 and 12 pixels, narrower
+/// windows giving what wider ones left, then once over the whole image. The factor is Wiener's,
+///     c = t^2 / (t^2 + k s^2),
+/// s^2 the variance of L(sum w e) and t^2 the mean of L(sum w e)^2 - k s^2 over the next wider
+/// windows around, both relative to the light; s^2 is at least its own mean there. A window alone
+/// does not know its noise: where no rare path fell its samples look certain, where a few fell it
+/// looks lit (docs/decisions/0129). The whole image has no other around it, and gets James and
+/// Stein's factor (1 - k s^2 / L(e)^2)_+ for each channel. k is 1, of the whole image 0.1, and up
+/// to 3 where samples are few (docs/decisions/0117).
 ///
-/// In the narrowest windows and in the whole image s^2 = sum w^2 V, V the variance of L(raw). Over
-/// wider ones an image keeps the noise of its samples, so that e is hardly noisy: with V an image
-/// of rare light would get a tenth of what it lacks. There s^2 tells how few places e is from, e^2
-/// where it is from one (docs/decisions/0111). For halves with noise of their own what they differ
-/// by tells s^2 everywhere (docs/decisions/0106).
+/// In the narrowest windows and in the whole image s^2 = sum w^2 V, V the variance of L(raw). Wider
+/// windows have it from how far narrower ones scatter around their mean, less by as much as those
+/// scattered less than they should have, since an image keeps noise of its samples and does not
+/// lack it; but at least from how few places e is (docs/decisions/0111). For halves with noise of
+/// their own what they differ by tells s^2 of the windows (docs/decisions/0106).
 ///
 /// Light goes to pixels that are alike, so none leaves a dark wall for a bright window beside it.
 /// Light of one place that alone would make all around it a fifteenth brighter, as a small lamp
@@ -52,9 +57,23 @@ class LightReturn {
     void give_back(const ColorPlanes& raw, ColorPlanes& color) const;
 
   private:
-    /// The light that each block lacks, as multiples of its luminance. `e` is the lacking light of
-    /// the blocks, `light` the image's luminance.
-    ColorPlanes lacking(const ColorPlanes& e, const Plane& light) const;
+    /// The light that each block lacks, as multiples of its luminance: in the image's own colour,
+    /// and what has another one.
+    struct Times {
+        Plane light;
+        ColorPlanes colour;
+    };
+    /// `e` is the lacking light of the blocks.
+    Times lacking(const ColorPlanes& e, const ColorPlanes& color) const;
+    struct Level;
+    /// The sums over windows, from the narrowest on, and their noise.
+    std::vector<Level> levels(const ColorPlanes& e, const ColorPlanes& color,
+                              std::span<const Plane> guides) const;
+    /// How much of what the windows of one level lack is real, as Wiener's filter has it, from the
+    /// noise and the squares of what they lack and of their light. A window alone cannot tell:
+    /// where no rare path fell, its samples look certain.
+    Plane share_that_is_real(std::span<const Plane> guides, int level, const Plane& noise,
+                             const Plane& squared, const Plane& light_squared) const;
     /// The variance of the mean lacking light of the blocks.
     Plane block_variance() const;
     /// Gives light to the whole image, as the last step. `e` is the lacking light, which includes

@@ -165,6 +165,24 @@ TEST(LightReturn, OnePathsLightMakesNoBlotch) {
     EXPECT_GT(*least, 1.02f);
 }
 
+TEST(LightReturn, RareLightLeavesNoHoles) {
+    // One pixel in 49 has seen the light of 49, but none in a corner, where four should have, and
+    // the image is right. The corner's samples have no variance: they know no more than others.
+    ColorPlanes raw = constant(0), color = constant(1);
+    Halves halves = halves_with(0);
+    for (size_t c = 0; c < 3; ++c)
+        for (int y = 3; y < kSize; y += 7)
+            for (int x = 3; x < kSize; x += 7)
+                if (x >= 14 || y >= 14) {
+                    raw[c](x, y) = 49;
+                    halves[0].color_variance[c](x, y) = 4 * sqr(49.0f);
+                }
+    LightReturn(halves).give_back(raw, color);
+    const auto [least, most] = std::minmax_element(color[1].values.begin(), color[1].values.end());
+    EXPECT_GT(*least, 0.8f);
+    EXPECT_LT(*most, 1.2f);
+}
+
 /// Halves without noise but for a spot of `side` x `side` pixels in the middle, which A and B saw
 /// as bright as told.
 Halves halves_with_spot(int side, float a, float b) {
