@@ -83,9 +83,9 @@ float interpolated(const Plane& p, int x, int y, int size) {
 /// half of what they differ by.
 enum SummedPlane : size_t { kLacking, kSeen = 3, kAbsolute = 6, kSquared, kHalfDifference = 6 };
 /// Planes that are summed with squared weights: products of the lacking luminance and the image's
-/// own over narrower windows, the square of the lacking colour, what the first one should be were
-/// it noise, and the variance that the samples tell.
-enum SquaresPlane : size_t { kLackSquared, kLackLight, kLightSquared, kColour, kExpected, kTold };
+/// own over narrower windows, what the first one should be were it noise, and the variance that the
+/// samples tell.
+enum SquaresPlane : size_t { kLackSquared, kLackLight, kLightSquared, kExpected, kTold };
 
 Rgb rgb_at(const std::vector<Plane>& planes, size_t first, size_t i) {
     return {planes[first][i], planes[first + 1][i], planes[first + 2][i]};
@@ -94,15 +94,6 @@ Rgb rgb_at(const std::vector<Plane>& planes, size_t first, size_t i) {
 /// `over` / `under`, 0 without light.
 float ratio(float over, float under) {
     return under > 0 ? over / under : 0;
-}
-
-float square_of(Rgb v) {
-    return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-}
-
-/// The part of the lacking light that is not in the proportions of the image's own colour.
-Rgb other_colour(Rgb lacking, Rgb seen) {
-    return lacking - ratio(luminance(lacking), luminance(seen)) * seen;
 }
 
 /// The sum of squares of the lacking luminance around its mean in the window.
@@ -158,8 +149,6 @@ void keep_in_place(const Plane& around, const ColorPlanes& e, ColorPlanes& color
     }
 }
 
-}  // namespace
-
 /// The variance of a wider window's lacking light by how few places it is from, its square where it
 /// is from one: sum e^2 / (sum |e|)^2 of that, sums over all blocks of the window with equal
 /// weights. Those of level - 1 overlap, and each block counts in kOverlap / 2 of them.
@@ -170,11 +159,12 @@ float noise_of_few_places(const WindowSums& sums, int level, size_t i) {
                  places);
 }
 
-/// Sums over windows of one width, and their variances: of the lacking luminance and of the lacking
-/// colour.
+}  // namespace
+
+/// Sums over windows of one width, and the variance of the lacking luminance.
 struct LightReturn::Level {
     std::vector<Plane> sums;  ///< by SummedPlane
-    Plane noise, colour_noise;
+    Plane noise;
 };
 
 LightReturn::LightReturn(const Halves& halves, HalvesNoise noise, float few)
@@ -250,17 +240,15 @@ std::vector<LightReturn::Level> LightReturn::levels(const ColorPlanes& e, const 
     for (int level = 0; level < kLevels; ++level) {
         for (size_t i = 0; i < n; ++i) {
             const Rgb lack = rgb_at(summed, kLacking, i), seen = rgb_at(summed, kSeen, i);
-            const Rgb colour = other_colour(lack, seen);
             squares[kLackSquared][i] = sqr(luminance(lack));
             squares[kLackLight][i] = luminance(lack) * luminance(seen);
             squares[kLightSquared][i] = sqr(luminance(seen));
-            squares[kColour][i] = square_of(colour);
             if (independent && level > 0) squares[kTold][i] = sqr(summed[kHalfDifference][i]);
         }
         const WindowSums sums =
             window_sums(guides, summed, squares, stride(level), {.sigma = kDeviation, .any = 0});
         Level& of = levels[size_t(level)];
-        of.noise = of.colour_noise = Plane(e[0].width, e[0].height);
+        of.noise = Plane(e[0].width, e[0].height);
         const float overlap = level == 0 ? 1 : kOverlap;
         for (size_t i = 0; i < n; ++i) {
             const float spread = scatter(sums, i);
@@ -273,7 +261,6 @@ std::vector<LightReturn::Level> LightReturn::levels(const ColorPlanes& e, const 
             else
                 of.noise[i] =
                     std::max(overlap * falls * spread, noise_of_few_places(sums, level, i));
-            of.colour_noise[i] = overlap * falls * sums.squares[kColour][i];
             squares[kExpected][i] = overlap * spread;
         }
         of.sums = summed = sums.linear;
@@ -281,39 +268,27 @@ std::vector<LightReturn::Level> LightReturn::levels(const ColorPlanes& e, const 
     return levels;
 }
 
-LightReturn::Times LightReturn::lacking(const ColorPlanes& e, const ColorPlanes& color) const {
+Plane LightReturn::lacking(const ColorPlanes& e, const ColorPlanes& color) const {
     std::vector<Plane> guides = features_;
     guides.push_back(block_means(light_guide(luminance(color)), kFinest));
     const std::vector<Level> all = levels(e, color, guides);
-    Times times;
-    times.light = Plane(e[0].width, e[0].height);
-    times.colour.fill(times.light);
-    const Plane none = times.light;
+    const Plane none(e[0].width, e[0].height);
+    Plane times = none;
     for (int level = kLevels - 1; level >= 0; --level) {
         const Level& of = all[size_t(level)];
         // What the wider windows left
-        Plane rest = none, squared = none, light_squared = none, colour_squared = none;
-        ColorPlanes colour{none, none, none};
+        Plane rest = none, squared = none, light_squared = none;
         for (size_t i = 0; i < none.size(); ++i) {
-            const Rgb lack = rgb_at(of.sums, kLacking, i), seen = rgb_at(of.sums, kSeen, i);
-            const float light = luminance(seen);
-            Rgb other = other_colour(lack, seen);
-            rest[i] = luminance(lack) - times.light[i] * light;
-            for (size_t c = 0; c < 3; ++c)
-                colour[c][i] = other[int(c)] -= times.colour[c][i] * light;
+            const float light = luminance(rgb_at(of.sums, kSeen, i));
+            rest[i] = luminance(rgb_at(of.sums, kLacking, i)) - times[i] * light;
             squared[i] = sqr(rest[i]);
-            colour_squared[i] = square_of(other);
             light_squared[i] = sqr(light);
         }
         const Plane share = share_that_is_real(guides, level, of.noise, squared, light_squared);
-        const Plane colour_share =
-            share_that_is_real(guides, level, of.colour_noise, colour_squared, light_squared);
         for (size_t i = 0; i < none.size(); ++i) {
             const float light = std::sqrt(light_squared[i]);
             if (!(light > 0)) continue;  // also where a sum is not a number
-            times.light[i] += within_most(share[i] * rest[i] / light);
-            for (size_t c = 0; c < 3; ++c)
-                times.colour[c][i] += within_most(colour_share[i] * colour[c][i] / light);
+            times[i] += within_most(share[i] * rest[i] / light);
         }
     }
     return times;
@@ -364,23 +339,16 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
     ColorPlanes kept = in_place;
     keep_what_both_saw(difference(), kept);
     // Give the rest back to blocks that are alike
-    const Plane light = luminance(color);
     ColorPlanes e = difference();
     for (size_t c = 0; c < 3; ++c) {
-        for (size_t i = 0; i < light.size(); ++i) e[c][i] -= in_place[c][i];
+        for (size_t i = 0; i < e[c].size(); ++i) e[c][i] -= in_place[c][i];
         e[c] = block_means(e[c], kFinest);
     }
-    const Times times = lacking(e, color);
+    const Plane times = lacking(e, color);
     parallel_for_rows(w, h, [&](int y) {
         for (int x = 0; x < w; ++x) {
-            const float brighter = within_most(interpolated(times.light, x, y, kFinest));
-            for (size_t c = 0; c < 3; ++c) {
-                float& v = color[c](x, y);
-                const float given =
-                    brighter * v +
-                    light(x, y) * within_most(interpolated(times.colour[c], x, y, kFinest));
-                v = std::max(std::min(v, 0.0f), v + given);
-            }
+            const float brighter = within_most(interpolated(times, x, y, kFinest));
+            for (Plane& channel : color) channel(x, y) += brighter * channel(x, y);
         }
     });
     // Give what is still lacking to the whole image

@@ -23,9 +23,9 @@ enum class HalvesNoise : uint8_t {
 /// pixels that are alike in features and light, color becomes
 ///     (1 + c L(sum w e) / L(sum w color)) color,
 /// L luminance: as many times as bright as the samples around say, from a tenth to ten times, as
-/// far as they know. What of sum w e is not in the proportions of the image's own colour comes with
-/// a factor of its own. This is done with w of deviations of 192, 48 and 12 pixels, narrower
-/// windows giving what wider ones left, then once over the whole image. The factor is Wiener's,
+/// far as they know, in the colour that they have: a few bright paths have colours of their own.
+/// This is done with w of deviations of 192, 48 and 12 pixels, narrower windows giving what wider
+/// ones left, then once over the whole image. The factor is Wiener's,
 ///     c = t^2 / (t^2 + k s^2),
 /// s^2 the variance of L(sum w e) and t^2 the mean of L(sum w e)^2 - k s^2 over the next wider
 /// windows around, both relative to the light; s^2 is at least its own mean there. A window alone
@@ -57,14 +57,9 @@ class LightReturn {
     void give_back(const ColorPlanes& raw, ColorPlanes& color) const;
 
   private:
-    /// The light that each block lacks, as multiples of its luminance: in the image's own colour,
-    /// and what has another one.
-    struct Times {
-        Plane light;
-        ColorPlanes colour;
-    };
-    /// `e` is the lacking light of the blocks.
-    Times lacking(const ColorPlanes& e, const ColorPlanes& color) const;
+    /// The light that each block lacks, as multiples of its own. `e` is the lacking light of the
+    /// blocks.
+    Plane lacking(const ColorPlanes& e, const ColorPlanes& color) const;
     struct Level;
     /// The sums over windows, from the narrowest on, and their noise.
     std::vector<Level> levels(const ColorPlanes& e, const ColorPlanes& color,
