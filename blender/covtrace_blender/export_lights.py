@@ -30,7 +30,7 @@ def write_lamp(out, lamp, transform, hidden, warn, moves=False):
     elif lamp.type == "SPOT":
         outer = lamp.spot_size / 2
         inner = math.acos(math.cos(outer) + (1 - math.cos(outer)) * lamp.spot_blend)
-        cone = f'"float coneangle" {math.degrees(outer):.9g} "float conedeltaangle" {math.degrees(outer - inner):.9g}'
+        cone = f'"float coneangle" {math.degrees(outer):.9g} "float conedeltaangle" {math.degrees(max(outer - inner, 0)):.9g}'
         if lamp.shadow_soft_size > 0:
             out.write("Rotate 180 1 0 0\n")  # cones of shapes lie about +z
             _write_ball(out, lamp.shadow_soft_size, colour, cone, hidden)

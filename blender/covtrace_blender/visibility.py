@@ -1,10 +1,7 @@
 """Which rays see an object, and what of that covtrace does not have."""
 
-import math
-
 from .shader_nodes.light_path import RAYS
 
-LEAST_SUN = math.radians(0.01)  # suns that are smaller shine from one direction
 _PROPERTIES = {ray: "visible_volume_scatter" if ray == "volume" else f"visible_{ray}" for ray in RAYS}
 
 
@@ -79,5 +76,5 @@ class Visibility:
 def has_extent(lamp):
     """Whether rays can find a lamp."""
     if lamp.type == "SUN":
-        return lamp.angle >= LEAST_SUN
+        return lamp.angle > 0
     return lamp.type == "AREA" or lamp.shadow_soft_size > 0

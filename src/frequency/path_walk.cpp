@@ -118,7 +118,9 @@ void PathWalk::find_visibilities() {
 void PathWalk::arrive_from_sky() {
     const float escaped = taken(record_.escaped, record_.escape_in_view);
     if (counts(escaped)) {
-        light_.add(sky_field(record_.escape_direction, record_.escape_in_view), escaped);
+        const auto seen_by =
+            record_.escape_in_view ? std::optional(kind_of_escape()) : std::nullopt;
+        light_.add(sky_field(record_.escape_direction, seen_by), escaped);
         carry_from_infinity(*light_.field, record_.escape_direction, record_.count - 1,
                             light_.weight);
     }
@@ -224,7 +226,7 @@ PathWalk::SampledLight PathWalk::sampled_light(int i, double weight) const {
     const LightSample& sample = v.light;
     const bool from_infinity = !std::isfinite(sample.distance);
     if (from_infinity && !sample.is_delta) {
-        SampledLight sky{sky_field(sample.wi, false), {}};
+        SampledLight sky{sky_field(sample.wi, {}), {}};
         carry_from_infinity(sky.field, sample.wi, i, weight);
         return sky;
     }
@@ -240,9 +242,17 @@ PathWalk::SampledLight PathWalk::sampled_light(int i, double weight) const {
     return light;
 }
 
-LightField PathWalk::sky_field(Vec3 w, bool seen_sharply) const {
+RayKind PathWalk::kind_of_escape() const {
+    for (int i = record_.count - 1; i >= 0; --i)
+        if (vertex(i).scatters)
+            return is_transmission(vertex(i).next_event.lobes.lobes[0].kind) ? RayKind::transmission
+                                                                             : RayKind::glossy;
+    return RayKind::camera;
+}
+
+LightField PathWalk::sky_field(Vec3 w, std::optional<RayKind> seen_by) const {
     if (spectra_.lights.has_even_sky()) return {{}, cov::frame_along<double>(-w)};
-    return source_field(spectra_.lights.environment_spectrum(w, seen_sharply), -w, false,
+    return source_field(spectra_.lights.environment_spectrum(w, seen_by), -w, false,
                         context_.smallest);
 }
 

@@ -65,7 +65,10 @@ class PathWalk {
     PathCovariance at_sensor();
 
     SampledLight sampled_light(int i, double weight) const;
-    LightField sky_field(Vec3 w, bool seen_sharply) const;
+    /// Light of the sky from `w`, `seen_by` rays of a kind or only lighting something.
+    LightField sky_field(Vec3 w, std::optional<RayKind> seen_by) const;
+    /// The kind of the ray by which the path left the scene, all before it being specular.
+    RayKind kind_of_escape() const;
     /// Carries light past occluders to vertex i, to the camera where i is below 0. `own` is the
     /// outline of the surface that it has left.
     void carry(LightField& field, Vec3 from, Owner owner_of_from, int i, double weight,

@@ -355,6 +355,8 @@ std::vector<DistantView> Lights::distant_views() const {
         if (!area.is_visible) continue;
         DistantView view;
         view.visible_to = area.visible_to;
+        view.cone = area.cone;
+        view.cone_axis = area.cone_axis;
         view.radiance = luminance(area.radiance * area.mean_factor);
         std::visit(
             [&](const auto& emitter) {

@@ -9,6 +9,7 @@
 #include "geometry/geometry.h"
 #include "light/environment_map.h"
 #include "light/sky_cell.h"
+#include "light/spot_cone.h"
 #include "light/tree.h"
 #include "scene/scene_description.h"
 #include "texture/texture.h"
@@ -40,6 +41,11 @@ struct DistantView {
     float intensity = 0;
     float radiance = 0;  ///< luminance, mean over the shape
     RayKinds visible_to = kEveryRay;
+    std::optional<SpotCone> cone = {};  ///< that the light stays within
+    Vec3 cone_axis;                     ///< unit
+
+    /// Share of its light that it sends in the unit direction w.
+    float share_towards(Vec3 w) const { return cone ? cone->falloff(dot(cone_axis, w)) : 1; }
 };
 
 /// Share of the light of an emissive shape that gets through the layers above it, at a place and

@@ -74,12 +74,12 @@ SourceSpectrum LightSpectra::area_spectrum(size_t i, Vec3 position, Vec3 normal,
     return s;
 }
 
-SourceSpectrum LightSpectra::environment_spectrum(Vec3 w, bool with_rims) const {
+SourceSpectrum LightSpectra::environment_spectrum(Vec3 w, std::optional<RayKind> seen_by) const {
     SourceSpectrum s = sky_spectrum(w);
-    if (!with_rims) return s;
-    for (const Environment& e : lights_->environments) {
-        const DistantDisc* disc = e.disc();
-        if (!disc) continue;
+    if (!seen_by) return s;
+    for (size_t i = 0; i < lights_->environments.size(); ++i) {
+        const DistantDisc* disc = lights_->environments[i].disc();
+        if (!disc || !contains(lights_->environment_visible_to[i], *seen_by)) continue;
         const Vec3 to_centre = disc->centre() - w;
         const float from_centre = 2 * std::asin(std::min(1.0f, length(to_centre) / 2));
         const float distance = std::abs(disc->angular_radius() - from_centre);

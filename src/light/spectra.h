@@ -27,8 +27,8 @@ class LightSpectra {
     /// Whether the infinite lights shine alike from all directions, with a spectrum that is zero.
     bool has_even_sky() const { return environments_.size() == 1 && !environments_[0].varies(); }
     /// Spectrum of all infinite lights together around the direction `w`, weighted by radiance;
-    /// with the rims of discs where `w` is seen itself.
-    SourceSpectrum environment_spectrum(Vec3 w, bool with_rims = false) const;
+    /// with the rims of the discs that rays of the kind `seen_by` meet, where `w` is seen itself.
+    SourceSpectrum environment_spectrum(Vec3 w, std::optional<RayKind> seen_by = {}) const;
 
   private:
     SourceSpectrum area_spectrum(size_t i, Vec3 position, Vec3 normal, float time,

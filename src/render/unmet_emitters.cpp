@@ -62,10 +62,10 @@ Moments widened(const Segment& s, const DistantView& emitter, const Camera& came
     const float pixel_area = 4 * half * half;
     const Vec3 beside = centre - s.origin - along * s.direction;
     if (kPi * dot(beside, beside) > pixel_area) return {};
-    const float mean = emitter.intensity / pixel_area;
-    const float covered = mean / emitter.radiance;
+    const float covered = emitter.intensity / emitter.radiance / pixel_area;
     if (!(covered < kSmallest)) return {};
-    return {s.carried * mean, s.carried * s.carried * mean * emitter.radiance};
+    const float radiance = s.carried * emitter.share_towards(-s.direction) * emitter.radiance;
+    return {covered * radiance, covered * radiance * radiance};
 }
 
 /// Emitters that may be small in view. Their distance along mirrors is not known, but it is at

@@ -36,6 +36,14 @@ class LampsTest(BlenderTest):
         area.rotation_euler = (0.5, 0, 0)
         self.assert_as_cycles(0.03)
 
+    def test_spots_without_blend_have_sharp_cones(self):
+        self.plane(material(**self.MATT))
+        for size in (35, 45, 80):  # degrees whose cosine's arc cosine is a rounding larger
+            lamp = self.lamp("SPOT", energy=300, spot_size=math.radians(size), spot_blend=0, shadow_soft_size=0,
+                             location=(0, 0, 3))
+            self.assertGreater(self.centre(), 0.1)
+            bpy.data.objects.remove(lamp)
+
     def test_lamps_shine_through_their_nodes(self):
         self.plane(material(**self.MATT))
         lamp = self.lamp("POINT", energy=400, shadow_soft_size=0).data

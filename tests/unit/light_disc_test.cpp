@@ -145,13 +145,25 @@ TEST(DistantDisc, HasTheSpectrumOfItsSizeAndItsRimWhereItIsSeen) {
     EXPECT_NEAR(inside.a11 * sqr(kPi * radius), 1, 1e-4);
     EXPECT_NEAR(inside.a22 * sqr(kPi * radius), 1, 1e-4);
     EXPECT_EQ(inside.border_distance, kInfinity);
-    const SourceSpectrum seen = s.spectra->environment_spectrum(w, true);
+    const SourceSpectrum seen = s.spectra->environment_spectrum(w, RayKind::camera);
     EXPECT_NEAR(seen.border_distance, radius - place, 1e-5f);
     const Vec3 towards =
         seen.tangent.x * seen.border_direction.x + seen.tangent.y * seen.border_direction.y;
     EXPECT_NEAR(std::abs(dot(towards, normalize(Vec3{0, 0, 1} - w * w.z))), 1, 1e-4f);
     EXPECT_EQ(s.spectra->environment_spectrum({0, 1, 0}).a11, 0);
     EXPECT_FALSE(s.spectra->has_even_sky());
+}
+
+TEST(DistantDisc, HasNoRimForRaysThatDoNotMeetIt) {
+    LightScene s;
+    DistantLight hidden = sun(10);
+    hidden.visible_to = kEveryRay & ~set_of(RayKind::camera);
+    s.add_light(hidden);
+    s.build_with_spectra();
+    EXPECT_EQ(s.spectra->environment_spectrum({0, 0, 1}, RayKind::camera).border_distance,
+              kInfinity);
+    EXPECT_NEAR(s.spectra->environment_spectrum({0, 0, 1}, RayKind::glossy).border_distance,
+                5 * kPi / 180, 1e-5f);
 }
 
 }  // namespace
