@@ -11,7 +11,9 @@
 namespace covtrace {
 
 /// A triangle of a flat shape, by the number that Tessellation gives it. A triangle that borders on
-/// another one has pieces with the very same corners there, where both are cut alike.
+/// another one has pieces with the very same corners there, where both are cut alike into a power
+/// of two: places on an edge are then exact from either side, before they become floats. (They are
+/// not where a coordinate changes by more than a million times itself within a triangle.)
 class PiercedTriangle {
   public:
     using IsOpaque = std::function<bool(const SurfacePoint& local)>;

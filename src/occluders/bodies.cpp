@@ -1,6 +1,7 @@
 #include "occluders/bodies.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -85,8 +86,9 @@ OccluderBodies::OccluderBodies(const Geometry::Impl& g, std::function<bool()> ca
     for (size_t i = 0; i < g.local.size(); ++i)
         if (has_holes(static_cast<uint32_t>(i)) && is_flat(g.local[i]))
             perforated += static_cast<double>(triangle_count(g.local[i]));
-    per_edge_ = static_cast<int>(std::min<double>(
-        std::sqrt(kPerforatedTriangles / std::max(1.0, perforated)), kMostPerEdge));
+    // With a power of two the pieces of neighbours have the same corners (PiercedTriangle).
+    per_edge_ = static_cast<int>(std::bit_floor(static_cast<unsigned>(std::min<double>(
+        std::sqrt(kPerforatedTriangles / std::max(1.0, perforated)), kMostPerEdge))));
     using Kind = OccluderBody::Kind;
     const std::vector<bool> deformed = deformed_scenes();
     std::vector<std::vector<OccluderBody>> of_scene(g.scenes.size());

@@ -33,9 +33,10 @@ class OccluderQuery {
     /// Finds the edges of all surfaces but interfaces, with instances and moving shapes where they
     /// are at a query's time. Spheres are exact; other curved shapes are fine polygons. Flat shapes
     /// have the holes that their alpha textures cut, in pieces of a 64th of a triangle's edge or,
-    /// where these would be too many, larger ones, down to a quarter; with more than 125,000
-    /// triangles that have holes, such shapes count as whole. Once `cancelled` says yes, no more
-    /// shapes are looked at, and there are none. Throws Error(limit) where memory runs out.
+    /// where these would be too many, larger ones: a 32nd, and so on down to a quarter; with more
+    /// than 125,000 triangles that have holes, such shapes count as whole. Once `cancelled` says
+    /// yes, no more shapes are looked at, and there are none. Throws Error(limit) where memory runs
+    /// out.
     explicit OccluderQuery(const Geometry& geometry, std::function<bool()> cancelled = {});
     ~OccluderQuery();
     OccluderQuery(const OccluderQuery&) = delete;

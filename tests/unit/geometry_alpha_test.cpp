@@ -257,5 +257,23 @@ TEST(GeometryAlpha, HolesHaveOutlinesAndSquaresBehindThemNone) {
     EXPECT_GT(beside(-0.98f).count, 0u);
 }
 
+TEST(GeometryAlpha, OpaqueTrianglesBesideEachOtherHaveNoOutlineBetweenThem) {
+    // Two halves of a parallelogram, with the edge between them reversed, and so many triangles
+    // without area that pieces are a 32nd or an 8th of an edge: 63 and 10 would not be too many.
+    for (const auto& [triangles, per_edge] : {std::pair{489u, 32u}, {18000u, 8u}}) {
+        TriangleMesh m;
+        m.positions = {{0.1f, 0.3f, 0.7f}, {1.4f, 0.6f, 0.9f}, {0.4f, 1.7f, 1.1f}, {1.7f, 2, 1.3f}};
+        m.triangles.assign(triangles, {0, 0, 0});
+        m.triangles[0] = {0, 1, 2};
+        m.triangles[1] = {2, 1, 3};
+        SceneDescription scene = scene_of({mesh(m)});
+        scene.shapes[0].alpha = 0;
+        scene.textures = {texture(0.5f)};
+        Geometry g(scene);
+        g.set_alpha([](TextureId, Vec2, Vec3, const VertexPlace&) { return 1.0f; });
+        EXPECT_EQ(OccluderQuery(g).edges(), 4 * per_edge);
+    }
+}
+
 }  // namespace
 }  // namespace covtrace::test
