@@ -189,12 +189,11 @@ OccluderSurface OccluderBodies::flat_surface(uint32_t shape, const Affine& world
     OccluderSurface surface{Tessellation(local, 1, 1)};
     if (!has_holes(shape) || per_edge_ < kLeastPerEdge) return surface;
     const TextureId texture = geometry.placed[shape].description.alpha;
-    surface.holes = {&local,
-                     [this, texture, world_from_local](const SurfacePoint& p) {
-                         const Vec3 at = world_from_local.point(p.position).to_float();
-                         return geometry.alpha(texture, p.uv, at, p.vertices) > kOpaque;
-                     },
-                     per_edge_};
+    const auto is_opaque = [this, texture, world_from_local](const SurfacePoint& p) {
+        const Vec3 at = world_from_local.point(p.position).to_float();
+        return geometry.alpha(texture, p.uv, at, p.vertices) > kOpaque;
+    };
+    surface.holes = {&local, is_opaque, per_edge_, sizeof is_opaque};
     return surface;
 }
 

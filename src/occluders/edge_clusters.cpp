@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <new>
 #include <span>
 
 namespace covtrace {
@@ -194,14 +195,19 @@ std::vector<FoldEdge> EdgeClusters::find(uint32_t cluster) const {
         std::span(references_).subspan(first_[cluster], first_[cluster + 1] - first_[cluster]);
     FoldEdgeFinder finder(references.size());
     for (const Reference& reference : references) add(reference, cluster, finder);
-    return finder.take();
+    return finder.edges();
 }
 
 const EdgeSet& EdgeClusters::edges(size_t item) const {
     std::atomic<const EdgeSet*>& found = found_[item];
     if (const EdgeSet* set = found.load(std::memory_order_acquire)) return *set;
     // Threads that come by at once find the same edges; all but one of them throw theirs away.
-    auto own = std::make_unique<const EdgeSet>(find(cluster_of_item_[item]));
+    std::unique_ptr<const EdgeSet> own;
+    try {
+        own = std::make_unique<const EdgeSet>(find(cluster_of_item_[item]));
+    } catch (const std::bad_alloc&) {
+        throw no_memory_for_outlines();
+    }
     const EdgeSet* first = nullptr;
     return found.compare_exchange_strong(first, own.get(), std::memory_order_acq_rel)
                ? *own.release()
@@ -215,11 +221,14 @@ size_t EdgeClusters::count() const {
 }
 
 size_t EdgeClusters::memory() const {
-    size_t bytes = hierarchy_.memory() + cluster_of_.capacity() * sizeof(uint32_t) +
-                   first_.capacity() * sizeof(size_t) + references_.capacity() * sizeof(Reference) +
+    size_t bytes = sizeof *this + surfaces_.capacity() * sizeof(OccluderSurface) +
+                   first_corner_.capacity() * sizeof(size_t) + hierarchy_.memory() +
+                   cluster_of_.capacity() * sizeof(uint32_t) + first_.capacity() * sizeof(size_t) +
+                   references_.capacity() * sizeof(Reference) +
                    found_.capacity() * sizeof found_[0] +
                    cluster_of_item_.capacity() * sizeof(uint32_t);
-    for (const OccluderSurface& surface : surfaces_) bytes += surface.triangles.memory();
+    for (const OccluderSurface& surface : surfaces_)
+        bytes += surface.triangles.memory() + (surface.holes ? surface.holes->captured : 0);
     for (const auto& set : found_)
         if (const EdgeSet* s = set.load(std::memory_order_acquire)) bytes += s->memory();
     return bytes;

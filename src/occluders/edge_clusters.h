@@ -8,12 +8,18 @@
 #include <optional>
 #include <vector>
 
+#include "core/error.h"
 #include "geometry/pierced_triangle.h"
 #include "geometry/tessellation.h"
 #include "occluders/box_hierarchy.h"
 #include "occluders/edge_set.h"
 
 namespace covtrace {
+
+/// The error where memory for outlines runs out.
+inline Error no_memory_for_outlines() {
+    return {ErrorKind::limit, "out of memory while collecting the scene's outlines"};
+}
 
 /// Triangles that occlude, or, where `holes` tells of any, the pieces of them that are left.
 struct OccluderSurface {
@@ -22,7 +28,8 @@ struct OccluderSurface {
     struct Holes {
         const LocalShape* shape = nullptr;
         PiercedTriangle::IsOpaque is_opaque;
-        int per_edge = 1;  ///< pieces of a triangle's edge
+        int per_edge = 1;     ///< pieces of a triangle's edge
+        size_t captured = 0;  ///< bytes that is_opaque keeps beside itself
     };
     std::optional<Holes> holes = {};
 };
@@ -40,7 +47,7 @@ class EdgeClusters {
     /// The hierarchy over the clusters, one an item.
     const BoxHierarchy& hierarchy() const { return hierarchy_; }
     /// The edges of a cluster, found now if they are not yet: the same ones whoever asks first.
-    /// Thread-safe. Throws std::bad_alloc.
+    /// Thread-safe. Throws Error(limit) where memory runs out.
     const EdgeSet& edges(size_t item) const;
     /// Number of all edges. Finds those of all clusters.
     size_t count() const;

@@ -122,7 +122,7 @@ bool FoldEdgeFinder::find(std::span<const Side> sides, FoldEdge& edge) const {
     return wedge.is_bent;
 }
 
-std::vector<FoldEdge> FoldEdgeFinder::take() {
+std::vector<FoldEdge> FoldEdgeFinder::edges() const {
     // Sides are sorted by the first corner of their edge.
     std::vector<uint32_t> first(corners_.size() + 1, 0);
     for (const Side& s : sides_) ++first[s.a + 1];
@@ -144,7 +144,6 @@ std::vector<FoldEdge> FoldEdgeFinder::take() {
             if (find(of_corner.subspan(i, end - i), edge)) all.push_back(edge);
         }
     }
-    *this = FoldEdgeFinder();
     return all;
 }
 

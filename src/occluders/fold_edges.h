@@ -31,9 +31,8 @@ class FoldEdgeFinder {
     using Wanted = std::array<bool, 3>;
     /// Adds a triangle; dropped where a corner is not finite or two of them are at one place.
     void add(const std::array<Vec3, 3>& corners, const Wanted& wanted = {true, true, true});
-    /// Gives the edges, in an order that depends on nothing but what was added, and forgets
-    /// everything.
-    std::vector<FoldEdge> take();
+    /// The edges, in an order that depends on nothing but what was added. Not thread-safe.
+    std::vector<FoldEdge> edges() const;
 
   private:
     /// One triangle at an edge.

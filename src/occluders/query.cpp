@@ -2,7 +2,6 @@
 
 #include <new>
 
-#include "core/error.h"
 #include "occluders/bodies.h"
 #include "occluders/outline_search.h"
 
@@ -36,7 +35,7 @@ OccluderQuery::OccluderQuery(const Geometry& geometry, std::function<bool()> can
     try {
         impl_ = std::make_unique<Impl>(geometry.impl(), std::move(cancelled));
     } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::limit, "out of memory while collecting the scene's outlines");
+        throw no_memory_for_outlines();
     }
 }
 OccluderQuery::~OccluderQuery() = default;

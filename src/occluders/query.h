@@ -57,7 +57,7 @@ class OccluderQuery {
     /// repeat a narrower one's direction and those many times wider than the narrowest. `nearest`:
     /// edges that pass closer than this to either end do not count. The edges of meshes are found
     /// where a search first comes by. Thread-safe; the same whoever asks first. Throws
-    /// std::bad_alloc.
+    /// Error(limit) where memory runs out.
     OutlineEvents operator()(const Segment& segment, const EdgeMeasure& measure,
                              float nearest) const;
 

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <new>
 #include <vector>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "geometry/placed_scene.h"
 #include "geometry_fixtures.h"
@@ -41,7 +43,7 @@ TEST(EdgeClusters, HoldEveryEdgeOnceWhicheverMeshItsFacesBelongTo) {
         finder.add({ball.positions[t[0]], ball.positions[t[1]], ball.positions[t[2]]});
     }
     std::vector<Ends> all, found;
-    for (const FoldEdge& e : finder.take()) all.push_back(ends_of(e.a, e.b));
+    for (const FoldEdge& e : finder.edges()) all.push_back(ends_of(e.a, e.b));
     const Geometry g{scene_of({mesh(even), mesh(odd)})};
     std::vector<OccluderSurface> surfaces;
     for (const LocalShape& shape : g.impl().local) surfaces.push_back({Tessellation(shape, 1, 1)});
@@ -79,6 +81,40 @@ TEST(EdgeClusters, PiecesHaveEdgesAroundThemAloneWhicheverClusterTheyAreIn) {
     EXPECT_EQ(count(0, 0.5f), 2 * 64u + 2 * 32u);
     EXPECT_EQ(count(1, 2), 3 * 64u);
     EXPECT_EQ(count(1, -1), 0u);
+}
+
+TEST(EdgeClusters, TellWhatRanOutWhereMemoryDoes) {
+    const Geometry g{scene_of({mesh(unit_triangle())})};
+    const LocalShape& local = g.impl().local[0];
+    OccluderSurface surface{Tessellation(local, 1, 1)};
+    surface.holes = {&local, [](const SurfacePoint&) -> bool { throw std::bad_alloc(); }, 4};
+    std::vector<OccluderSurface> surfaces;
+    surfaces.push_back(std::move(surface));
+    const EdgeClusters clusters(std::move(surfaces));
+    try {
+        clusters.edges(0);
+        FAIL() << "no error";
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::limit);
+        EXPECT_STREQ(e.what(), "out of memory while collecting the scene's outlines");
+    }
+}
+
+TEST(EdgeClusters, CountTheMemoryOfTheirSurfaces) {
+    const Geometry g{scene_of({mesh(unit_triangle())})};
+    const LocalShape& local = g.impl().local[0];
+    constexpr size_t kSurfaces = 1000;
+    const auto memory = [&](size_t captured) {
+        std::vector<OccluderSurface> surfaces;
+        surfaces.reserve(kSurfaces);
+        for (size_t i = 0; i < kSurfaces; ++i) {
+            surfaces.push_back({Tessellation(local, 1, 1)});
+            surfaces.back().holes = {&local, [](const SurfacePoint&) { return true; }, 4, captured};
+        }
+        return EdgeClusters(std::move(surfaces)).memory();
+    };
+    EXPECT_GT(memory(0), kSurfaces * (sizeof(OccluderSurface) + sizeof(size_t)));
+    EXPECT_EQ(memory(100) - memory(0), kSurfaces * 100);
 }
 
 TEST(EdgeClusters, AreFoundWhereASearchComesBy) {

@@ -37,7 +37,7 @@ std::vector<FoldEdge> edges_of(const TriangleMesh& m) {
     FoldEdgeFinder finder;
     for (const auto& t : m.triangles)
         finder.add({m.positions[t[0]], m.positions[t[1]], m.positions[t[2]]});
-    return finder.take();
+    return finder.edges();
 }
 
 TEST(EdgeMeasure, ReachHoldsEveryDistanceWhereAnEdgeMatters) {
