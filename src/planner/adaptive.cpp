@@ -32,10 +32,10 @@ std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSett
         density[i] = noise[i] * detail / std::sqrt(std::max(known.cost[i], 1.0f));
         if (known.emphasis.size() > 0) density[i] *= known.emphasis[i];
     }
-    return relative(std::move(density));
+    return scaled_to_mean_one(std::move(density));
 }
 
-std::vector<float> relative(std::vector<float> density) {
+std::vector<float> scaled_to_mean_one(std::vector<float> density) {
     double sum = 0;
     for (float& d : density) {
         if (!std::isfinite(d)) d = 0;
@@ -48,22 +48,38 @@ std::vector<float> relative(std::vector<float> density) {
 
 std::vector<float> density_of_noise_left(const FilteredKnowledge& known,
                                          std::span<const float> predicted) {
-    // Deviation in pixels over which noise is averaged, and the predicted density's exponent
-    // (docs/decisions/0128)
-    constexpr float kNoiseSmoothing = 1.2f, kPredicted = 0.35f;
+    // Deviations in pixels over which noise is averaged, the part of the wider average that a pixel
+    // has at least, and the predicted density's exponent (docs/decisions/0128)
+    constexpr float kNear = 1.2f, kAround = 2.5f, kPartOfAround = 0.5f, kPredicted = 0.35f;
     const Plane brightness = gaussian_blur(known.brightness, kSmoothing);
-    Plane noise(known.variance.width, known.variance.height);
+    Plane noise(known.variance.width, known.variance.height), told = noise;
     for (size_t i = 0; i < noise.size(); ++i) {
         const float relative_variance =
             known.variance[i] / (brightness[i] * brightness[i] + kOwnPlan.dark_squared);
         const float v = known.count[i] * relative_variance;
-        noise[i] = std::isfinite(v) ? v : 0.0f;
+        // One sample tells no variance, which is not the same as none.
+        if (known.count[i] < 2 || !std::isfinite(v)) continue;
+        noise[i] = v;
+        told[i] = 1;
     }
-    noise = gaussian_blur(noise, kNoiseSmoothing);
+    const Plane near = gaussian_blur(noise, kNear), told_near = gaussian_blur(told, kNear),
+                around = gaussian_blur(noise, kAround), told_around = gaussian_blur(told, kAround);
     std::vector<float> density(noise.size());
+    double sum = 0, sum_predicted = 0;
+    for (size_t i = 0; i < density.size(); ++i) {
+        if (!(told_around[i] > 0)) continue;
+        // Where light is rare, pixels that have missed it look less noisy than they are.
+        const float v = std::max(told_near[i] > 0 ? near[i] / told_near[i] : 0.0f,
+                                 kPartOfAround * around[i] / told_around[i]);
+        density[i] = std::pow(v, (1 - kPredicted) / 2) * std::pow(predicted[i], kPredicted);
+        sum += density[i];
+        sum_predicted += predicted[i];
+    }
+    // Where nothing is known the prediction stands alone, in the ratio that both have elsewhere
+    const float scale = sum > 0 && sum_predicted > 0 ? float(sum / sum_predicted) : 1.0f;
     for (size_t i = 0; i < density.size(); ++i)
-        density[i] = std::pow(noise[i], (1 - kPredicted) / 2) * std::pow(predicted[i], kPredicted);
-    return relative(std::move(density));
+        if (!(told_around[i] > 0)) density[i] = scale * predicted[i];
+    return scaled_to_mean_one(std::move(density));
 }
 
 void spread_evenly(std::span<float> density, float share) {

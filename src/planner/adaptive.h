@@ -52,12 +52,12 @@ std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSett
 
 /// Scales densities to mean 1; those that are not finite count as 0. Where all would be 0, each is
 /// 1.
-std::vector<float> relative(std::vector<float> density);
+std::vector<float> scaled_to_mean_one(std::vector<float> density);
 
 /// Knowledge of every pixel behind its filter, row by row.
 struct FilteredKnowledge {
     Plane brightness;  ///< luminance of the filtered image
-    Plane variance;    ///< variance of that luminance
+    Plane variance;    ///< variance of that luminance; not read where `count` is below 2
     Plane count;       ///< samples that the pixel has
 };
 
@@ -67,9 +67,12 @@ struct FilteredKnowledge {
 /// Where filters hardly change from pixel to pixel, the variance V_q of the filtered image is
 /// sigma_q^2 / n_q sum_p a_qp^2, so that the counts of adaptive_density are
 ///     n ~ sqrt(n_q V_q / (I^2 + eps)),
-/// whatever filters the image has, and however much of a texture they keep. The square is averaged
-/// over a few pixels. As few samples tell V with much noise of its own, the density is a weighted
-/// geometric mean of this one and the predicted one.
+/// whatever filters the image has, and however much of a texture they keep. The square is the
+/// larger of an average over a few pixels and half of one over twice as many across: where light is
+/// rare, pixels that have seen some would else get the samples of those that have not, and its mean
+/// would sink further. Pixels with fewer than two samples take no part in averages; where there is
+/// nothing else, the predicted density stands alone. As few samples tell V with much noise of its
+/// own, the density elsewhere is a weighted geometric mean of this one and the predicted one.
 std::vector<float> density_of_noise_left(const FilteredKnowledge& known,
                                          std::span<const float> predicted);
 

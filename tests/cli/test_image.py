@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import statistics
 import struct
 import unittest
 import zlib
@@ -127,6 +128,15 @@ class Layers(CliTest):
             return sum(c for c, v in zip(counts, noise) if v > middle) / sum(counts)
 
         self.assertGreater(share_of_noisy(verified), 1.02 * share_of_noisy(tempered))
+
+    def test_one_sample_is_not_taken_for_no_noise(self):
+        pixels = self.layers("--method", "covariance", "--cov-spp", 1, "--spp", 2).pixels
+
+        def mean_square_error(single):
+            return statistics.mean(e * e for e, n in zip(pixels["error.Y"], pixels["samples.Y"]) if (n == 1) == single)
+
+        # The ratio was 0.61, and 0.08 where pixels with one sample counted as free of noise.
+        self.assertGreater(mean_square_error(True), 0.3 * mean_square_error(False))
 
     def test_outlines_of_lamps_out_of_focus_are_sharper_than_predicted(self):
         self.write("scene.pbrt", LAMPS_OUT_OF_FOCUS)

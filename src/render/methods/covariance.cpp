@@ -143,7 +143,10 @@ class CovarianceRender {
         return *job_.enough;
     }
 
-    /// Whether the last plan's density was made of samples and holds still.
+    /// Whether the last plan's density was made of samples and holds still. It is made again where
+    /// `taken` is 4, 16, 64 and so on exactly: `taken` is the end of a round as planned, not the
+    /// mean of counts, every round ends at the next power of two at the latest, and powers of two
+    /// are exact. After a round that a budget ended between them the last density holds.
     bool has_verified_density() const {
         double again = kFirstVerified;
         while (again < s_.taken) again *= kVerifiedAgain;
@@ -152,7 +155,7 @@ class CovarianceRender {
 
     /// The density of the noise that the filters leave.
     std::vector<float> verified_density(const FilterSettings& settings) const {
-        if (has_verified_density()) return relative(s_.density);
+        if (has_verified_density()) return scaled_to_mean_one(s_.density);
         const FilteredImage image = covariance_image(s_, covariance_filters(s_));
         const Plane none(s_.region.width(), s_.region.height());
         FilteredKnowledge known{none, none, none};

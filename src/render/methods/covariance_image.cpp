@@ -35,8 +35,30 @@ float luminance_variance(const FilmPixel& pixel) {
     return sqr(luminance({std::sqrt(v.r), std::sqrt(v.g), std::sqrt(v.b)}));
 }
 
+/// Variances of the means of pixels' luminance. A single sample tells none, which is not the same
+/// as none: it has that of a sample around it, 0 where none is known.
+Plane luminance_variances(const Film& film) {
+    constexpr float kAround = 2;  // deviation of the Gaussian, pixels
+    Plane variance(film.bounds.width(), film.bounds.height()), of_one = variance, known = variance;
+    for (size_t i = 0; i < variance.size(); ++i) {
+        const FilmPixel& pixel = film.pixels[i];
+        if (pixel.count < 2) continue;
+        variance[i] = luminance_variance(pixel);
+        const float v = float(pixel.count) * variance[i];
+        if (!std::isfinite(v)) continue;
+        of_one[i] = v;
+        known[i] = 1;
+    }
+    of_one = gaussian_blur(of_one, kAround);
+    known = gaussian_blur(known, kAround);
+    for (size_t i = 0; i < variance.size(); ++i)
+        if (film.pixels[i].count == 1 && known[i] > 0) variance[i] = of_one[i] / known[i];
+    return variance;
+}
+
 Parts parts_of(const Film& film) {
     const size_t n = film.pixels.size();
+    const Plane variances = luminance_variances(film);
     const Part none{std::vector<Rgb>(n), std::vector<float>(n)};
     const Plane dark(film.bounds.width(), film.bounds.height());
     Parts parts{none, none, std::vector<uint32_t>(n), {dark, dark, std::vector<bool>(n)}};
@@ -45,7 +67,7 @@ Parts parts_of(const Film& film) {
         parts.in_view.mean[i] = film.in_view[i];
         parts.scattered.mean[i] = pixel.mean - film.in_view[i];
         parts.count[i] = pixel.count;
-        const float variance = luminance_variance(pixel);
+        const float variance = variances[i];
         // The film knows the variance of the sum: each part has it by the square of its light.
         const float s = sqr(luminance(parts.scattered.mean[i])),
                     e = sqr(luminance(parts.in_view.mean[i]));
