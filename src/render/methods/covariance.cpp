@@ -71,12 +71,19 @@ class CovarianceRender {
         std::vector<uint32_t> have(s_.pixels());
         for (size_t i = 0; i < have.size(); ++i) have[i] = s_.films[0].pixels[i].count;
         const double enough = enough_samples(settings, have);
-        const double target = job_.plan_round(std::min(end, enough));
+        // The density costs as much as an image: it is made where there is time for samples, and
+        // the round divides the time that is left then.
+        const auto round_target = [&] { return job_.plan_round(std::min(end, enough)); };
+        std::vector<float> density;
+        if (round_target() > s_.taken) {
+            const PhaseTimer timer(job_.monitor, job_.seconds(Phase::plan));
+            density = relative_counts(settings);
+        }
+        const double target = round_target();
         if (target >= enough) tell_factor(settings, *job_.options.density_factor);
         if (!(target > s_.taken)) return false;
         // Share the round's samples among the pixels
         const PhaseTimer timer(job_.monitor, job_.seconds(Phase::plan));
-        std::vector<float> density = relative_counts(settings);
         const int64_t total = std::llround(target * double(job_.pixels()));
         const uint32_t most = most_samples(target);
         std::vector<uint32_t> counts = job_.options.progressive
