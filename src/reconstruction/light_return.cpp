@@ -252,7 +252,7 @@ std::vector<LightReturn::Level> LightReturn::levels(const ColorPlanes& e, const 
         const float overlap = level == 0 ? 1 : kOverlap;
         for (size_t i = 0; i < n; ++i) {
             const float spread = scatter(sums, i);
-            // What an image keeps of its samples' noise it does not lack: the wider the windows,
+            // An image keeps noise of its samples, and does not lack it: the wider the windows,
             // the less of it. It falls on as it fell from the narrower windows to these.
             const float falls =
                 level == 0 ? 1 : std::min(1.0f, ratio(spread, sums.squares[kExpected][i]));
@@ -276,7 +276,7 @@ Plane LightReturn::lacking(const ColorPlanes& e, const ColorPlanes& color) const
     Plane times = none;
     for (int level = kLevels - 1; level >= 0; --level) {
         const Level& of = all[size_t(level)];
-        // What the wider windows left
+        // Find what the wider windows left
         Plane rest = none, squared = none, light_squared = none;
         for (size_t i = 0; i < none.size(); ++i) {
             const float light = luminance(rgb_at(of.sums, kSeen, i));

@@ -18,6 +18,7 @@
 #include "core/vec.h"
 #include "scene/lamp_description.h"
 #include "scene/lens_description.h"
+#include "scene/light_description.h"
 #include "scene/ray_kind.h"
 #include "scene/texture_description.h"
 
@@ -248,58 +249,6 @@ struct ObjectDescription {
 struct InstanceDescription {
     int object = -1;  ///< index into SceneDescription::objects
     AnimatedTransform instance_to_world;
-    SourceLocation where;
-};
-
-// ---- lights that are not shapes
-
-struct PointLight {
-    Rgb intensity{1};
-    std::optional<float> power;  ///< of all directions, in place of the intensity's size
-    Vec3 from;
-};
-struct SpotLight {
-    Rgb intensity{1};
-    std::optional<float> power;  ///< of all directions, in place of the intensity's size
-    Vec3 from, to{0, 0, 1};
-    float cone_angle = 30, cone_delta_angle = 5;
-};
-/// A point light whose intensity an image modulates, square and equal-area over all directions.
-struct GoniometricLight {
-    Rgb intensity{1};
-    std::optional<float> power;  ///< of all directions, in place of the intensity's size
-    std::optional<std::filesystem::path> image;
-};
-/// A slide projector at the origin that looks along +z.
-struct ProjectionLight {
-    float scale = 1;             ///< of the image's radiant intensity
-    std::optional<float> power;  ///< of all directions, in place of `scale`
-    float fov = 90;              ///< of the image's shorter side, degrees
-    std::filesystem::path image;
-};
-struct DistantLight {
-    Rgb radiance{1};          ///< irradiance on a surface that faces it
-    Vec3 direction{0, 0, 1};  ///< from the scene towards the light, light space, unit length
-    float angle = 0;          ///< degrees across the disc that it shines from, in [0, 180]
-    RayKinds visible_to = kEveryRay;  ///< rays that find a light with extent; always `any`
-};
-struct InfiniteLight {
-    Rgb radiance{1};  ///< of the uniform light; multiplies the image
-    std::optional<std::filesystem::path>
-        image;  ///< equal-area octahedral square, or lat-long 2:1 with z as the pole
-    /// Illuminance on a surface that faces +z of light space, which scales the whole light, colour
-    /// and "scale" included.
-    std::optional<float> illuminance;
-    /// Corners, in world space, of a rectangle that all of the light comes through, in the
-    /// direction (p3 - p0) x (p1 - p0) seen from what it lights; opposite ones are 0 and 2.
-    std::optional<std::array<Vec3, 4>> portal = {};
-    RayKinds visible_to = kEveryRay;  ///< rays that find the light; always `any`
-};
-struct LightDescription {
-    std::variant<PointLight, SpotLight, GoniometricLight, ProjectionLight, DistantLight,
-                 InfiniteLight>
-        value;
-    Transform light_to_world;  ///< at the start of the shutter
     SourceLocation where;
 };
 
