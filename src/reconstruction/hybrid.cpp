@@ -170,21 +170,23 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
         for (Plane& v : half.color_variance) v = box_blur(v, 1);
     // Make the candidates and the guides that tell which pixels are alike
     std::vector<Candidate> candidates = make_candidates(halves, spectrum, settings.candidates);
-    cut_undershoot(candidates, halves);
     Likeness likeness(settings.likeness);
     add_features(halves, likeness);
     // Free the features: they are large, and the candidates and guides have been made of them.
     for (HalfBuffer& half : halves) half.feature = half.feature_variance = {};
     // Select twice, as candidates that spread highlights also lift the first guess of dark pixels,
     // which hides their errors there, and as the guess tells which pixels are alike
-    const ColorPlanes first_guess = common_brightness(candidates);
-    const ColorPlanes guess = mean_of(select(halves, candidates, error_weights(halves, first_guess),
-                                             settings.sigma, settings.mix));
+    const ColorPlanes first_guess = without_undershoot(common_brightness(candidates), halves);
+    const ColorPlanes guess =
+        without_undershoot(mean_of(select(halves, candidates, error_weights(halves, first_guess),
+                                          settings.sigma, settings.mix)),
+                           halves);
     add_light_and_noise(halves, guess, likeness);
     // Mix the candidates, then our own mixture with the denoiser's image
     const ColorPlanes g = error_weights(halves, guess);
     Selection s = select(halves, candidates, g, likeness, settings.mix);
     if (settings.mix) lower_share_of_noisy(noise, g, candidates[0], likeness, s);
+    fill_undershoot(candidates, halves, s);
     image.color = mean_of(s);
     if (clean) {
         const ColorPlanes lost = cut_off(all, halves),

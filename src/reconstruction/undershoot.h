@@ -1,16 +1,21 @@
-/// Undershoot: fits that lead below the dark beside what is bright.
+/// Undershoot: fits that lead below the dark beside what is bright. Light is never negative, except
+/// beside lamps under a pixel filter with negative lobes: where samples are negative somewhere
+/// nothing is cut.
 #pragma once
 
-#include <vector>
+#include <span>
 
 #include "reconstruction/candidates.h"
+#include "reconstruction/selector.h"
 
 namespace covtrace {
 
-/// Cuts off light of the candidates below 0, to which first-order fits lead beside what is bright:
-/// mixed with the other candidates it would leave black holes in dark places. Light is never
-/// negative, except beside lamps under a pixel filter with negative lobes: where samples of the
-/// halves are negative somewhere nothing is cut.
-void cut_undershoot(std::vector<Candidate>& candidates, const Halves& halves);
+/// A guess without its light below 0.
+ColorPlanes without_undershoot(ColorPlanes guess, const Halves& halves);
+
+/// Gives the mixture of each half, where it is below 0, the light of the darkest candidate with a
+/// share that is not: a hole of 0 would be seen in dark places. Candidates stay as they are before
+/// they are mixed: what fits lack beside bright things balances what others have too much.
+void fill_undershoot(std::span<const Candidate> candidates, const Halves& halves, Selection& s);
 
 }  // namespace covtrace

@@ -10,26 +10,44 @@ namespace {
 
 using namespace test;
 
-TEST(Undershoot, LightBelowZeroIsCutOff) {
-    const Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0, 1);
-    std::vector<Candidate> candidates{{halves[0].color, halves[1].color},
-                                      {constant(-1), constant(0.7f)}};
-    cut_undershoot(candidates, halves);
-    for (size_t k = 0; k < 3; ++k) {
-        EXPECT_EQ(candidates[0][0][k].values, halves[0].color[k].values);
-        EXPECT_FLOAT_EQ(candidates[1][0][k](20, 20), 0);
-        EXPECT_FLOAT_EQ(candidates[1][1][k](20, 20), 0.7f);
+/// A mixture of equal shares of the first two of three candidates.
+Selection mixture_of(const std::vector<Candidate>& c) {
+    Selection s;
+    s.share = {Plane(kSize, kSize, 0.5f), Plane(kSize, kSize, 0.5f), Plane(kSize, kSize, 0.0f)};
+    for (size_t half = 0; half < 2; ++half) {
+        s.half[half] = c[0][half];
+        for (size_t k = 0; k < 3; ++k)
+            for (size_t i = 0; i < s.half[half][k].size(); ++i)
+                s.half[half][k][i] = 0.5f * (c[0][half][k][i] + c[1][half][k][i]);
     }
+    return s;
 }
 
-TEST(Undershoot, WhereSamplesAreNegativeCandidatesMayBe) {
+TEST(Undershoot, HolesGetTheLightOfTheDarkestCandidateWithAShare) {
+    const Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0, 1);
+    const std::vector<Candidate> candidates{{constant(0.3f), constant(0.3f)},
+                                            {constant(-1), constant(-0.1f)},
+                                            {constant(0.2f), constant(0.2f)}};
+    Selection s = mixture_of(candidates);
+    fill_undershoot(candidates, halves, s);
+    for (size_t k = 0; k < 3; ++k) {
+        EXPECT_FLOAT_EQ(s.half[0][k](20, 20), 0.3f);
+        EXPECT_FLOAT_EQ(s.half[1][k](20, 20), 0.1f) << "no hole";
+    }
+    EXPECT_FLOAT_EQ(without_undershoot(constant(-1), halves)[1](3, 4), 0);
+}
+
+TEST(Undershoot, WhereSamplesAreNegativeMixturesMayBe) {
     Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0, 1);
     halves[1].color[2](0, 63) = -0.3f;
-    std::vector<Candidate> candidates{{halves[0].color, halves[1].color},
-                                      {constant(-0.2f), constant(-0.4f)}};
-    cut_undershoot(candidates, halves);
-    EXPECT_FLOAT_EQ(candidates[1][0][1](0, 63), -0.2f);
-    EXPECT_FLOAT_EQ(candidates[1][1][1](5, 62), -0.4f);
+    const std::vector<Candidate> candidates{{constant(-0.2f), constant(0.1f)},
+                                            {constant(-0.4f), constant(-0.3f)},
+                                            {constant(0.2f), constant(0.2f)}};
+    Selection s = mixture_of(candidates);
+    fill_undershoot(candidates, halves, s);
+    EXPECT_FLOAT_EQ(s.half[0][1](0, 63), -0.3f);
+    EXPECT_FLOAT_EQ(s.half[1][1](5, 62), -0.1f);
+    EXPECT_FLOAT_EQ(without_undershoot(constant(-1), halves)[1](3, 4), -1);
 }
 
 }  // namespace
