@@ -200,8 +200,14 @@ Plane LightReturn::block_variance() const {
 }
 
 Plane LightReturn::share_that_is_real(std::span<const Plane> guides, int level, const Plane& noise,
-                                      const Plane& squared, const Plane& light_squared) const {
-    std::vector<Plane> around{noise, squared, light_squared};
+                                      const Plane& squared, const Plane& light) const {
+    // Means relative to the light count by the light: by its square they would be those of lamps
+    std::vector<Plane> around{noise, squared, light};
+    for (size_t i = 0; i < light.size(); ++i) {
+        around[0][i] = ratio(noise[i], light[i]);
+        around[1][i] = ratio(squared[i], light[i]);
+        around[2][i] = std::max(0.0f, light[i]);
+    }
     if (level + 1 < kLevels) {
         around = window_sums(guides, around, {}, stride(level + 1), {.sigma = kDeviation, .any = 0})
                      .linear;
@@ -214,7 +220,7 @@ Plane LightReturn::share_that_is_real(std::span<const Plane> guides, int level, 
     }
     Plane share = noise;
     for (size_t i = 0; i < noise.size(); ++i) {
-        const float times = ratio(light_squared[i], around[2][i]),
+        const float times = ratio(sqr(light[i]), around[2][i]),
                     uncertain = windows_noise_ * std::max(noise[i], times * around[0][i]),
                     lacking = times * std::max(0.0f, around[1][i] - windows_noise_ * around[0][i]);
         share[i] = ratio(lacking, lacking + uncertain);
@@ -277,18 +283,16 @@ Plane LightReturn::lacking(const ColorPlanes& e, const ColorPlanes& color) const
     for (int level = kLevels - 1; level >= 0; --level) {
         const Level& of = all[size_t(level)];
         // Find what the wider windows left
-        Plane rest = none, squared = none, light_squared = none;
+        Plane rest = none, squared = none, light = none;
         for (size_t i = 0; i < none.size(); ++i) {
-            const float light = luminance(rgb_at(of.sums, kSeen, i));
-            rest[i] = luminance(rgb_at(of.sums, kLacking, i)) - times[i] * light;
+            light[i] = luminance(rgb_at(of.sums, kSeen, i));
+            rest[i] = luminance(rgb_at(of.sums, kLacking, i)) - times[i] * light[i];
             squared[i] = sqr(rest[i]);
-            light_squared[i] = sqr(light);
         }
-        const Plane share = share_that_is_real(guides, level, of.noise, squared, light_squared);
+        const Plane share = share_that_is_real(guides, level, of.noise, squared, light);
         for (size_t i = 0; i < none.size(); ++i) {
-            const float light = std::sqrt(light_squared[i]);
-            if (!(light > 0)) continue;  // also where a sum is not a number
-            times[i] += within_most(share[i] * rest[i] / light);
+            const float given = share[i] * rest[i] / light[i];
+            if (light[i] > 0 && std::isfinite(given)) times[i] += within_most(given);
         }
     }
     return times;
@@ -348,7 +352,7 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
     parallel_for_rows(w, h, [&](int y) {
         for (int x = 0; x < w; ++x) {
             const float brighter = within_most(interpolated(times, x, y, kFinest));
-            for (Plane& channel : color) channel(x, y) += brighter * channel(x, y);
+            for (Plane& channel : color) channel(x, y) += brighter * std::max(0.0f, channel(x, y));
         }
     });
     // Give what is still lacking to the whole image

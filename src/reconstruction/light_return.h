@@ -68,7 +68,7 @@ class LightReturn {
     /// noise and the squares of what they lack and of their light. A window alone cannot tell:
     /// where no rare path fell, its samples look certain.
     Plane share_that_is_real(std::span<const Plane> guides, int level, const Plane& noise,
-                             const Plane& squared, const Plane& light_squared) const;
+                             const Plane& squared, const Plane& light) const;
     /// The variance of the mean lacking light of the blocks.
     Plane block_variance() const;
     /// Gives light to the whole image, as the last step. `e` is the lacking light, which includes

@@ -26,8 +26,9 @@ void lower_share_of_noisy(const Plane& noise, const ColorPlanes& g, const Candid
     std::vector<MarginPlane> sums(2, MarginPlane(w, h));  // relative noise, pixels
     for (int y = 0; y < h; ++y)
         for (int x = 0; x < w; ++x) {
-            sums[0](x, y) = noise(x, y) * (g[0](x, y) + g[1](x, y) + g[2](x, y));
-            sums[1](x, y) = 1;
+            const float weight = g[0](x, y) + g[1](x, y) + g[2](x, y);
+            sums[0](x, y) = noise(x, y) * weight;
+            sums[1](x, y) = weight > 0 ? 1.0f : 0.0f;  // holes have no samples and no noise
         }
     parallel_for_rows(w, h, [&](int y) {
         for (int x = 0; x < w; ++x) {
@@ -39,7 +40,7 @@ void lower_share_of_noisy(const Plane& noise, const ColorPlanes& g, const Candid
             std::array<float, 2> sum;
             weighted_sums(sums, weights, x, y, sum.data());
             const float own = *sums[0].at(x, y), mean = sum[0] / sum[1];
-            if (!(own > mean)) continue;
+            if (!(own > mean && mean > 0)) continue;
             const float worth = share / (share + (1 - share) * own / mean),
                         others = (1 - worth) / (1 - share);
             s.share[0][i] = worth;

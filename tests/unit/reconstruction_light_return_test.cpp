@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "reconstruction/luminance.h"
 #include "reconstruction_images.h"
@@ -114,6 +115,27 @@ TEST(LightReturn, NothingBecomesNegative) {
             }
     LightReturn(halves_with(0)).give_back(raw, color);
     EXPECT_GE(*std::min_element(color[1].values.begin(), color[1].values.end()), 0);
+}
+
+TEST(LightReturn, WhatIsNegativeStays) {
+    // Beside a lamp under a pixel filter with negative lobes; all around is half as bright as the
+    // samples.
+    ColorPlanes raw, color;
+    raw.fill(Plane(kSize, kSize, 1));
+    color.fill(Plane(kSize, kSize, 0.5f));
+    for (size_t c = 0; c < 3; ++c) raw[c](20, 20) = color[c](20, 20) = -0.05f;
+    LightReturn(halves_with(0.001f)).give_back(raw, color);
+    EXPECT_GT(mean_of_columns(color, 30, kSize), 0.9);
+    EXPECT_GE(color[1](20, 20), -0.0501f);
+}
+
+TEST(LightReturn, SumsThatAreNoNumbersGiveNothing) {
+    ColorPlanes raw, color;
+    raw.fill(Plane(kSize, kSize, 2e36f));
+    color.fill(Plane(kSize, kSize, 1e36f));
+    LightReturn(halves_with(0.001f)).give_back(raw, color);
+    for (const Plane& channel : color)
+        for (float v : channel.values) ASSERT_TRUE(std::isfinite(v));
 }
 
 TEST(LightReturn, NoiseIsNotGivenBack) {

@@ -66,6 +66,16 @@ TEST(RawShare, StaysWherePixelsAreAsNoisyAsThoseAround) {
     EXPECT_FLOAT_EQ(s.share[0](5, 7), kShare);
 }
 
+TEST(RawShare, HolesAreNoPixelsWithoutNoise) {
+    Halves halves = with_pixel(1 + std::sqrt(kNoise), 1 - std::sqrt(kNoise), 2 * kNoise);
+    for (HalfBuffer& half : halves)
+        for (size_t i = 0; i < half.count.size(); i += 2) {
+            half.count[i] = 0;
+            for (size_t c = 0; c < 3; ++c) half.color[c][i] = half.color_variance[c][i] = 0;
+        }
+    EXPECT_FLOAT_EQ(lowered(halves).share[0](kMiddle + 1, kMiddle), kShare);
+}
+
 TEST(RawShare, StaysWhereBothHalvesSeeTheSameDetail) {
     const Selection s = lowered(with_pixel(5.05f, 4.95f, 16));
     EXPECT_FLOAT_EQ(s.share[0](kMiddle, kMiddle), kShare);
