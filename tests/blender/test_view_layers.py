@@ -125,7 +125,7 @@ class ViewLayersTest(BlenderTest):
 
     def test_visibility_without_counterpart_is_told_once(self):
         for x in (-1, 1):
-            sun = self.lamp("SUN", location=(x, 0, 3))
+            sun = self.lamp("SUN", angle=0, location=(x, 0, 3))
             sun.visible_glossy, sun.data.use_shadow = False, False
             sun.data.cycles.cast_shadow = False
         catcher = self.plane(matt(0.5, 0.5, 0.5))
