@@ -87,6 +87,8 @@ class Atlas:
             outside, texel = outside[order], texel[order]
             better = outside < nearest[texel]
             nearest[texel[better]], owner[texel[better]] = outside[better], triangle[kept][order][better]
+        if not (owner >= 0).any():
+            owner[0] = 0  # nothing has an extent: a place of the first triangle stands for all
         self._collect(owner, columns, charts)
 
     def _collect(self, owner, columns, charts):

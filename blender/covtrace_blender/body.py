@@ -9,6 +9,9 @@ from .atlas import Atlas
 from .charts import face_normals
 
 
+LEAST_EXTENT = 1e-30  # determinant of an object's matrix below which it has no extent in some direction
+
+
 def texture_space(mesh):
     """(least corner, size) of the box in which Generated coordinates are 0 to 1."""
     half = np.array(mesh.texspace_size, float)
@@ -62,7 +65,7 @@ class Body:
             self._corners["UV", layer.name] = uvs
             if layer.active_render:
                 self._corners["UV", ""] = uvs
-        if matrix is not None:
+        if matrix is not None and abs(np.linalg.det(matrix[:3, :3])) > LEAST_EXTENT:
             turn = np.linalg.inv(matrix[:3, :3]).T
             self._corners["WORLD"] = self._corners["OBJECT"] @ matrix[:3, :3].T + matrix[:3, 3]
             self._corners["WORLD NORMAL"] = self._corners["NORMAL"] @ turn.T
@@ -73,6 +76,7 @@ class Body:
         """Makes the atlas; density: (n,) texels per unit at each triangle; is_mirrored: as Atlas has it."""
         self.atlas = Atlas(self._rest, self.triangles, density, most_texels, is_mirrored)
         digest = hashlib.sha256(repr((self.atlas.width, self.atlas.height, is_mirrored)).encode())
+        digest.update(self.atlas.corner_uvs.astype(np.float32).tobytes())
         for kind in sorted(self._corners, key=str):
             digest.update(repr(kind).encode() + np.ascontiguousarray(self._corners[kind], np.float32).tobytes())
         self.key = digest.hexdigest()

@@ -155,13 +155,13 @@ class SceneExporter:
             elif obj.type in SURFACES or obj.type == "CURVES":
                 # An emitter may be hidden behind its strands, and strands behind their emitter.
                 shown = (obj.name_full, obj.data.as_pointer(), instance.show_self, instance.show_particles)
+                if abs(matrix.determinant()) < 1e-30:
+                    continue
                 if shown not in exported:
                     exported[shown] = (self._export_parts(obj) if instance.show_self and self.layer.use_solid else []) + (
                         self._export_strands(obj) if instance.show_particles and self.layer.use_strand else [])
                 parts = [part for part in exported[shown] if set(part.variant.rays) - hidden]
                 if not parts:
-                    continue
-                if abs(matrix.determinant()) < 1e-30:
                     continue
                 around = self._media_around(obj, matrix) if any(part.variant.medium for part in parts) else ()
                 if instance.is_instance and not any(part.variant.emission for part in parts):

@@ -105,8 +105,8 @@ float scatter(const WindowSums& sums, size_t i) {
 }
 
 /// The light that the whole image lacks in each channel, as multiples of its luminance. The
-/// arguments are sums over it: of the lacking light, of luminance and of the variance of the lacking
-/// light.
+/// arguments are sums over it: of the lacking light, of luminance and of the variance of the
+/// lacking light.
 Rgb times_lacking(Rgb lacking, float light, float variance, float noise) {
     const float certain = 1 - noise * variance / sqr(luminance(lacking));
     if (!(light > 0) || !(certain > 0)) return Rgb(0);  // also where a sum is not a number

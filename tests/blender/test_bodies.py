@@ -132,6 +132,10 @@ class BodiesTest(BlenderTest):
         tree.link(tree.node("VolumeAbsorption"), 0, tree.tree.nodes["Material Output"].inputs["Volume"])
         unused = self.place(self.cube(), self.texture("Noise"))
         unused.data.materials.append(tree.material)
+        self.place(self.cube(), self.texture("Noise")).scale = (0, 0, 0)
+        point = self.place(self.cube(), self.texture("Voronoi"))
+        for vertex in point.data.vertices:
+            vertex.co = (0, 0, 0)
         self.camera.location = unused.matrix_world @ unused.data.vertices[0].co  # infinitely near
         self.export()
         self.assertEqual(len([w for w in self.warnings if "not finite" in w]), 1, self.warnings)

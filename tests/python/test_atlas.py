@@ -71,6 +71,13 @@ class AtlasTest(unittest.TestCase):
                 self.assert_shown(vertices, triangles, atlas, 0.3 / density)
                 self.assertLess(atlas.width * atlas.height, 3 * len(atlas.triangle))
 
+    def test_what_has_no_extent_has_one_texel(self):
+        atlas = self.atlas(np.zeros((3, 3)), np.array([[0, 1, 2]]), 64)
+        self.assertEqual(len(atlas.triangle), 1)
+        self.assertTrue(np.isfinite(atlas.interpolated(np.ones((1, 3, 3)), slice(None))).all())
+        far = self.atlas(*ball(), 2.0**-99)
+        self.assertEqual(len(far.triangle), 1)
+
     def test_u_and_v_are_as_long_and_right_handed(self):
         """Heights on smooth meshes take v's direction and length from u's."""
         vertices, triangles = ball(32, 64)

@@ -12,7 +12,10 @@ def _texture_coordinates(node, output, inputs):
     if output.identifier == "UV":
         return inputs.place.uv_of(node, "")
     if output.identifier == "Object" and other is not None:
-        to_other = np.linalg.inv(np.array(other.matrix_world, float)).astype(np.float32)
+        matrix = np.array(other.matrix_world, float)
+        if abs(np.linalg.det(matrix)) < 1e-30:
+            raise Unsupported(node, f"the object '{other.name}' has no extent")
+        to_other = np.linalg.inv(matrix).astype(np.float32)
         return inputs.place.coordinates(node, "WORLD") @ to_other[:3, :3].T + to_other[:3, 3]
     if output.identifier in ("Generated", "Object", "Normal"):
         return inputs.place.coordinates(node, output.identifier.upper())
