@@ -14,9 +14,7 @@ namespace {
 
 float light_scale(Entity& e) {
     const float scale = e.parameters.number("scale", 1);
-    if (scale < 0)
-        throw Error(ErrorKind::scene, e.parameters.where("scale", e.where),
-                    "parameter \"scale\" of a light must not be negative");
+    if (scale < 0) e.refuse("scale", "parameter \"scale\" of a light must not be negative");
     return scale;
 }
 
@@ -90,8 +88,7 @@ DistantLight distant_light(Entity& e, BuildContext& context) {
             scaled_light(light.radiance, *v, e.parameters.where("illuminance", e.where), context);
     light.angle = e.parameters.number("angle", 0);
     if (!(light.angle >= 0 && light.angle <= 180))
-        throw Error(ErrorKind::scene, e.parameters.where("angle", e.where),
-                    "parameter \"angle\" must be between 0 and 180 degrees");
+        e.refuse("angle", "parameter \"angle\" must be between 0 and 180 degrees");
     if (light.angle > 0) light.visible_to = visible_to(e);
     return light;
 }

@@ -21,17 +21,13 @@ Rgb coefficient(ParameterList& p, std::string_view name, BuildContext& context) 
 
 float not_negative(Entity& e, std::string_view name) {
     const float v = e.parameters.number(name, 1);
-    if (!(v >= 0))
-        throw Error(ErrorKind::scene, e.parameters.where(name, e.where),
-                    "parameter " + in_quotes(name) + " must not be negative");
+    if (!(v >= 0)) e.refuse(name, "parameter " + in_quotes(name) + " must not be negative");
     return v;
 }
 
 float mean_cosine(Entity& e) {
     const float g = e.parameters.number("g", 0);
-    if (!(g > -1 && g < 1))
-        throw Error(ErrorKind::scene, e.parameters.where("g", e.where),
-                    "parameter \"g\" must be between -1 and 1");
+    if (!(g > -1 && g < 1)) e.refuse("g", "parameter \"g\" must be between -1 and 1");
     return g;
 }
 

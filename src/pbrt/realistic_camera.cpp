@@ -16,14 +16,6 @@ namespace {
 
 constexpr float kMillimetre = 1e-3f;  // in scene units
 
-float positive(Entity& e, std::string_view name, float otherwise) {
-    const float v = e.parameters.number(name, otherwise);
-    if (!(v > 0))
-        throw Error(ErrorKind::scene, e.parameters.where(name, e.where),
-                    "parameter " + in_quotes(name) + " must be greater than 0");
-    return v;
-}
-
 ApertureShape aperture_shape(Entity& e, BuildContext& context) {
     using Kind = ApertureShape::Kind;
     constexpr std::array<std::pair<const char*, Kind>, 5> shapes{{{"circular", Kind::round},
@@ -62,7 +54,7 @@ float focused(Entity& e, const ParaxialLens& paraxial, float focus_distance) {
     std::ostringstream text;
     text << "the lens does not focus as near as this; expected more than "
          << paraxial.nearest_focus();
-    throw Error(ErrorKind::scene, e.parameters.where("focusdistance", e.where), text.str());
+    e.refuse("focusdistance", text.str());
 }
 
 }  // namespace
@@ -75,10 +67,10 @@ void build_realistic_camera(Entity& e, Entity& film_entity, BuildContext& contex
         throw Error(ErrorKind::scene, e.where,
                     "a realistic camera has no lens; expected \"string lensfile\"");
     const SourceLocation where = p.where("lensfile", e.where);
-    const float diameter = positive(e, "aperturediameter", 1);
-    camera.focal_distance = positive(e, "focusdistance", 10);
+    const float diameter = e.positive("aperturediameter", 1);
+    camera.focal_distance = e.positive("focusdistance", 10);
     auto lens = std::make_shared<LensDescription>();
-    lens->film_diagonal = positive(film_entity, "diagonal", 35) * kMillimetre;
+    lens->film_diagonal = film_entity.positive("diagonal", 35) * kMillimetre;
     float behind = 0;  // distance from the lens that stands for this one to the film
     if (const auto found = context.files.find_optional(file, where)) {
         lens->surfaces = read_lens(context.files.read(*found, where), file, where);

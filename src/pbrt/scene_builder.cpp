@@ -186,8 +186,7 @@ void SceneBuilder::shape(Entity entity) {
                 entity.parameters.find("displacement", {ParameterType::texture}))
             pending.displacement = *height;
         if (!(pending.edge_length > 0))
-            throw Error(ErrorKind::scene, entity.parameters.where("edgelength", entity.where),
-                        "parameter \"edgelength\" must be greater than 0");
+            entity.refuse("edgelength", "parameter \"edgelength\" must be greater than 0");
     }
     ShapeDescription& s = pending.shape;
     s.object_to_world = state_.object_to_world(entity.where);

@@ -11,31 +11,20 @@ namespace covtrace {
 
 namespace {
 
-[[noreturn]] void refuse(const Entity& e, std::string_view parameter, const std::string& text) {
-    throw Error(ErrorKind::scene, e.parameters.where(parameter, e.where), text);
-}
-
-float positive(Entity& e, std::string_view name, float otherwise) {
-    const float v = e.parameters.number(name, otherwise);
-    if (!(v > 0)) refuse(e, name, "parameter " + in_quotes(name) + " must be greater than 0");
-    return v;
-}
-
 float sweep(Entity& e) {
     const float phi = e.parameters.number("phimax", 360);
-    if (!(phi > 0)) refuse(e, "phimax", "parameter \"phimax\" must be greater than 0");
+    if (!(phi > 0)) e.refuse("phimax", "parameter \"phimax\" must be greater than 0");
     return std::min(phi, 360.0f);
 }
 
 Sphere sphere(Entity& e) {
     Sphere s;
-    s.radius = positive(e, "radius", 1);
+    s.radius = e.positive("radius", 1);
     const float z0 = e.parameters.number("zmin", -s.radius),
                 z1 = e.parameters.number("zmax", s.radius);
     s.z_min = std::clamp(std::min(z0, z1), -s.radius, s.radius);
     s.z_max = std::clamp(std::max(z0, z1), -s.radius, s.radius);
-    if (!(s.z_min < s.z_max))
-        refuse(e, "zmin", "\"zmin\" and \"zmax\" leave nothing of the sphere");
+    if (!(s.z_min < s.z_max)) e.refuse("zmin", "\"zmin\" and \"zmax\" leave nothing of the sphere");
     s.phi_max = sweep(e);
     return s;
 }
@@ -43,11 +32,10 @@ Sphere sphere(Entity& e) {
 Disk disk(Entity& e) {
     Disk d;
     d.height = e.parameters.number("height", 0);
-    d.radius = positive(e, "radius", 1);
+    d.radius = e.positive("radius", 1);
     d.inner_radius = e.parameters.number("innerradius", 0);
     if (!(d.inner_radius >= 0 && d.inner_radius < d.radius))
-        refuse(e, "innerradius",
-               "parameter \"innerradius\" must be from 0 to less than the radius");
+        e.refuse("innerradius", "parameter \"innerradius\" must be from 0 to less than the radius");
     d.phi_max = sweep(e);
     return d;
 }
@@ -70,9 +58,9 @@ std::vector<std::array<uint32_t, N>> faces(Entity& e, size_t positions, WarningL
     std::vector<std::array<uint32_t, N>> all(indices.size() / N);
     for (size_t i = 0; i < all.size() * N; ++i) {
         if (indices[i] < 0 || static_cast<size_t>(indices[i]) >= positions)
-            refuse(e, "indices",
-                   "index " + std::to_string(indices[i]) + " is out of range; there are " +
-                       std::to_string(positions) + " positions, counted from 0");
+            e.refuse("indices", "index " + std::to_string(indices[i]) +
+                                    " is out of range; there are " + std::to_string(positions) +
+                                    " positions, counted from 0");
         all[i / N][i % N] = static_cast<uint32_t>(indices[i]);
     }
     return all;
@@ -152,8 +140,7 @@ std::vector<ShapeGeometry> ShapeBuilder::subdivided_mesh(Entity& e) {
     e.parameters.ignore({"N", "uv", "scheme"});
     const int levels = e.parameters.integer("levels", 3);
     if (levels < 0 || levels > most_levels)
-        refuse(e, "levels",
-               "parameter \"levels\" must be from 0 to " + std::to_string(most_levels));
+        e.refuse("levels", "parameter \"levels\" must be from 0 to " + std::to_string(most_levels));
     if ((control.triangles.size() << (2 * levels)) > most_triangles)
         throw Error(ErrorKind::limit, e.where,
                     "the subdivision makes more than 2^26 triangles; expected fewer levels");
@@ -163,9 +150,9 @@ std::vector<ShapeGeometry> ShapeBuilder::subdivided_mesh(Entity& e) {
 }
 
 std::vector<ShapeGeometry> ShapeBuilder::cylinder(Entity& e) {
-    const float radius = positive(e, "radius", 1);
+    const float radius = e.positive("radius", 1);
     const float z0 = e.parameters.number("zmin", -1), z1 = e.parameters.number("zmax", 1);
-    if (z0 == z1) refuse(e, "zmin", "\"zmin\" and \"zmax\" leave nothing of the cylinder");
+    if (z0 == z1) e.refuse("zmin", "\"zmin\" and \"zmax\" leave nothing of the cylinder");
     context_.log.add(e.where, "shape \"cylinder\" is rendered as a mesh of 256 triangles");
     return {std::make_shared<const TriangleMesh>(
         cylinder_mesh(radius, std::min(z0, z1), std::max(z0, z1), sweep(e), 128))};
@@ -178,20 +165,19 @@ std::vector<ShapeGeometry> ShapeBuilder::curve(Entity& e) {
     c.width0 = p.number("width0", width);
     c.width1 = p.number("width1", width);
     c.degree = p.integer("degree", 3);
-    if (c.degree != 2 && c.degree != 3) refuse(e, "degree", "parameter \"degree\" must be 2 or 3");
+    if (c.degree != 2 && c.degree != 3) e.refuse("degree", "parameter \"degree\" must be 2 or 3");
     const std::string basis = p.text("basis", "bezier");
     if (basis != "bezier" && basis != "bspline")
-        refuse(e, "basis", unknown_name("curve basis", basis, {"bezier", "bspline"}));
+        e.refuse("basis", unknown_name("curve basis", basis, {"bezier", "bspline"}));
     c.is_bspline = basis == "bspline";
     const std::string type = p.text("type", "flat");
     if (type != "flat" && type != "ribbon" && type != "cylinder")
-        refuse(e, "type", unknown_name("curve type", type, {"flat", "ribbon", "cylinder"}));
+        e.refuse("type", unknown_name("curve type", type, {"flat", "ribbon", "cylinder"}));
     c.points = p.triples("P");
     const auto degree = static_cast<size_t>(c.degree);
     if (c.points.size() < degree + 1 || (!c.is_bspline && (c.points.size() - 1) % degree != 0))
-        refuse(e, "P",
-               std::to_string(c.points.size()) + " control points don't make a curve of degree " +
-                   std::to_string(degree));
+        e.refuse("P", std::to_string(c.points.size()) +
+                          " control points don't make a curve of degree " + std::to_string(degree));
     context_.log.add(e.where, "shape \"curve\" is rendered as a thin tube");
     p.ignore({"N", "splitdepth"});
     return {std::make_shared<const TriangleMesh>(curve_mesh(c))};

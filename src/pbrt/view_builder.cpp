@@ -18,23 +18,13 @@ namespace covtrace {
 
 namespace {
 
-[[noreturn]] void refuse(const Entity& e, std::string_view parameter, const std::string& text) {
-    throw Error(ErrorKind::scene, e.parameters.where(parameter, e.where), text);
-}
-
-float positive(Entity& e, std::string_view name, float otherwise) {
-    const float v = e.parameters.number(name, otherwise);
-    if (!(v > 0)) refuse(e, name, "parameter " + in_quotes(name) + " must be greater than 0");
-    return v;
-}
-
 /// Refuses `v`, which is the value of a parameter or its negative, above `most`.
 float at_most(const Entity& e, std::string_view name, float v, float most) {
     if (v <= most) return v;
     std::ostringstream limit;
     limit << "parameter " << in_quotes(name) << " is out of range; expected at most " << most
           << " in size";
-    refuse(e, name, limit.str());
+    e.refuse(name, limit.str());
 }
 
 /// Refuses `v`, which is the value of a parameter or a difference of values, outside of [least,
@@ -44,7 +34,7 @@ float within(const Entity& e, std::string_view name, float v, float least, float
     std::ostringstream limit;
     limit << "parameter " << in_quotes(name) << " is out of range; expected a size from " << least
           << " to " << most;
-    refuse(e, name, limit.str());
+    e.refuse(name, limit.str());
 }
 
 /// Least ratio of a film's sides: with it the film still has a size, and its pixels have one.
@@ -60,9 +50,8 @@ void spherical_camera(Entity& e, CameraDescription& camera) {
     if (mapping == "equirectangular")
         camera.mapping = CameraDescription::Mapping::equirectangular;
     else if (mapping != "equalarea")
-        refuse(e, "mapping",
-               unknown_name("mapping of a spherical camera", mapping,
-                            {"equalarea", "equirectangular"}));
+        e.refuse("mapping", unknown_name("mapping of a spherical camera", mapping,
+                                         {"equalarea", "equirectangular"}));
     e.parameters.ignore({"lensradius", "focaldistance", "frameaspectratio", "screenwindow"});
 }
 
@@ -75,29 +64,28 @@ void build_camera(ViewEntities& view, BuildContext& context) {
     camera.shutter_open = p.number("shutteropen", 0);
     camera.shutter_close = p.number("shutterclose", 1);
     if (!(camera.shutter_open < camera.shutter_close))
-        refuse(e, p.has("shutterclose") ? "shutterclose" : "shutteropen",
-               "the shutter never opens: expected shutteropen < shutterclose");
+        e.refuse(p.has("shutterclose") ? "shutterclose" : "shutteropen",
+                 "the shutter never opens: expected shutteropen < shutterclose");
     if (e.type == "perspective" || e.type == "orthographic") {
         camera.kind = e.type == "perspective" ? CameraDescription::Kind::perspective
                                               : CameraDescription::Kind::orthographic;
         if (e.type == "perspective") camera.fov = p.number("fov", 90);
         if (!(camera.fov > 0 && camera.fov < 180))
-            refuse(e, "fov", "parameter \"fov\" must be between 0 and 180 degrees");
+            e.refuse("fov", "parameter \"fov\" must be between 0 and 180 degrees");
         // The limit is where single precision tells no directions apart any more.
         constexpr float kNarrowest = 1e-6f;
         if (camera.fov < kNarrowest)
-            refuse(e, "fov", "parameter \"fov\" is too small; expected at least 1e-6 degrees");
+            e.refuse("fov", "parameter \"fov\" is too small; expected at least 1e-6 degrees");
         camera.lens_radius = p.number("lensradius", 0);
         if (camera.lens_radius < 0)
-            refuse(e, "lensradius", "parameter \"lensradius\" must not be negative");
-        camera.focal_distance = positive(e, "focaldistance", 1e6f);
+            e.refuse("lensradius", "parameter \"lensradius\" must not be negative");
+        camera.focal_distance = e.positive("focaldistance", 1e6f);
         if (p.has("frameaspectratio"))
-            camera.frame_aspect_ratio =
-                within(e, "frameaspectratio", positive(e, "frameaspectratio", 0), kFlattest,
-                       1 / kFlattest);
+            camera.frame_aspect_ratio = within(
+                e, "frameaspectratio", e.positive("frameaspectratio", 0), kFlattest, 1 / kFlattest);
         if (const std::vector<float> window = p.numbers("screenwindow"); !window.empty()) {
             if (window.size() != 4 || !(window[0] < window[1] && window[2] < window[3]))
-                refuse(e, "screenwindow", "parameter \"screenwindow\" expects x0 < x1 and y0 < y1");
+                e.refuse("screenwindow", "parameter \"screenwindow\" expects x0 < x1 and y0 < y1");
             for (const size_t side : {0, 2})
                 within(e, "screenwindow", window[side + 1] - window[side], kFlattest,
                        1 / kFlattest);
@@ -116,25 +104,24 @@ void build_camera(ViewEntities& view, BuildContext& context) {
 
 void set_crop(Entity& e, FilmDescription& film, WarningLog& log) {
     if (const std::vector<int> b = e.parameters.integers("pixelbounds"); !b.empty()) {
-        if (b.size() != 4)
-            refuse(e, "pixelbounds", "parameter \"pixelbounds\" expects x0 x1 y0 y1");
+        if (b.size() != 4) e.refuse("pixelbounds", "parameter \"pixelbounds\" expects x0 x1 y0 y1");
         const std::array<int, 4> inside{std::max(b[0], 0), std::min(b[1], film.width),
                                         std::max(b[2], 0), std::min(b[3], film.height)};
         if (inside[0] >= inside[1] || inside[2] >= inside[3])
-            refuse(e, "pixelbounds", "parameter \"pixelbounds\" leaves no pixel of the image");
+            e.refuse("pixelbounds", "parameter \"pixelbounds\" leaves no pixel of the image");
         if (!std::equal(inside.begin(), inside.end(), b.begin()))
             log.add(e.parameters.where("pixelbounds", e.where),
                     "\"pixelbounds\" reach beyond the image; cut to its size");
         film.pixel_bounds = inside;
     }
     if (const std::vector<float> c = e.parameters.numbers("cropwindow"); !c.empty()) {
-        if (c.size() != 4) refuse(e, "cropwindow", "parameter \"cropwindow\" expects x0 x1 y0 y1");
+        if (c.size() != 4) e.refuse("cropwindow", "parameter \"cropwindow\" expects x0 x1 y0 y1");
         const SourceLocation where = e.parameters.where("cropwindow", e.where);
         film.crop_window = {clamp01(std::min(c[0], c[1])), clamp01(std::max(c[0], c[1])),
                             clamp01(std::min(c[2], c[3])), clamp01(std::max(c[2], c[3]))};
         const auto& w = film.crop_window;
         if (!(w[0] < w[1] && w[2] < w[3]))
-            refuse(e, "cropwindow", "parameter \"cropwindow\" leaves no pixel of the image");
+            e.refuse("cropwindow", "parameter \"cropwindow\" leaves no pixel of the image");
         if (film.pixel_bounds) {
             log.add(where, "both \"pixelbounds\" and \"cropwindow\" are given; the latter counts");
             film.pixel_bounds.reset();
@@ -146,17 +133,17 @@ FilmDescription::Surfaces gbuffer_space(Entity& e) {
     const std::string space = e.parameters.text("coordinatesystem", "camera");
     if (space == "world") return FilmDescription::Surfaces::world;
     if (space == "camera") return FilmDescription::Surfaces::camera;
-    refuse(e, "coordinatesystem",
-           unknown_name("coordinate system of a gbuffer film", space, {"camera", "world"}));
+    e.refuse("coordinatesystem",
+             unknown_name("coordinate system of a gbuffer film", space, {"camera", "world"}));
 }
 
 void set_sensor(Entity& e, FilmDescription& film) {
     ParameterList& p = e.parameters;
     const float balance = p.number("whitebalance", 0);
-    if (balance < 0) refuse(e, "whitebalance", "parameter \"whitebalance\" must not be negative");
+    if (balance < 0) e.refuse("whitebalance", "parameter \"whitebalance\" must not be negative");
     if (const std::string name = p.text("sensor", "cie1931"); name != "cie1931") {
         const SensorCurves* sensor = find_sensor(name);
-        if (!sensor) refuse(e, "sensor", unknown_name("sensor", name, sensor_names()));
+        if (!sensor) e.refuse("sensor", unknown_name("sensor", name, sensor_names()));
         film.sensor = sensor_matrix(*sensor, balance > 0 ? balance : 6500);
     } else if (balance > 0) {
         film.sensor = white_balance(balance);
@@ -181,14 +168,14 @@ void build_film(ViewEntities& view, BuildContext& context) {
     const bool bad_width = film.width < 1;
     const std::string resolution = std::to_string(film.width) + "x" + std::to_string(film.height);
     if (film.width < 1 || film.height < 1)
-        refuse(e, bad_width ? "xresolution" : "yresolution",
-               "the resolution " + resolution + " has no pixels");
+        e.refuse(bad_width ? "xresolution" : "yresolution",
+                 "the resolution " + resolution + " has no pixels");
     if (film.is_too_large())
         throw Error(ErrorKind::limit, p.where("xresolution", e.where),
                     "the resolution " + resolution + " is too large; " + film.kLargest);
     film.filename = p.text("filename");
-    film.iso = positive(e, "iso", 100);
-    film.max_component_value = positive(e, "maxcomponentvalue", kInfinity);
+    film.iso = e.positive("iso", 100);
+    film.max_component_value = e.positive("maxcomponentvalue", kInfinity);
     set_crop(e, film, context.log);
     set_sensor(e, film);
     if (view.film_colour_space != ColourSpace::srgb)
@@ -222,9 +209,9 @@ void build_filter(Entity& e, BuildContext& context) {
     // than it swings.
     constexpr float kWidest = 65536, kSwings = 128;
     const float widest = is_sinc ? kSwings : kWidest;
-    filter.x_radius = at_most(e, "xradius", positive(e, "xradius", it->radius), widest);
-    filter.y_radius = at_most(e, "yradius", positive(e, "yradius", it->radius), widest);
-    if (filter.kind == Kind::gaussian) filter.sigma = positive(e, "sigma", 0.5f);
+    filter.x_radius = at_most(e, "xradius", e.positive("xradius", it->radius), widest);
+    filter.y_radius = at_most(e, "yradius", e.positive("yradius", it->radius), widest);
+    if (filter.kind == Kind::gaussian) filter.sigma = e.positive("sigma", 0.5f);
     if (filter.kind == Kind::mitchell) {
         // Beyond the limit a pixel is the difference of numbers ten times as large and more: noise
         // alone.
@@ -235,9 +222,9 @@ void build_filter(Entity& e, BuildContext& context) {
         }
     }
     if (is_sinc) {
-        filter.tau = positive(e, "tau", 3);
+        filter.tau = e.positive("tau", 3);
         if (filter.tau * kSwings < std::max(filter.x_radius, filter.y_radius))
-            refuse(e, "tau", "parameter \"tau\" is too small; expected at least the radius / 128");
+            e.refuse("tau", "parameter \"tau\" is too small; expected at least the radius / 128");
     }
     e.parameters.warn_unused(context.log, owner("filter", e));
 }
@@ -257,8 +244,8 @@ void build_sampler(Entity& e, BuildContext& context) {
     }
     constexpr int64_t most = int64_t{1} << 30;
     if (samples < 1 || samples > most)
-        refuse(e, e.type == "stratified" ? "xsamples" : "pixelsamples",
-               "expected from 1 to 2^30 samples per pixel");
+        e.refuse(e.type == "stratified" ? "xsamples" : "pixelsamples",
+                 "expected from 1 to 2^30 samples per pixel");
     context.scene.samples_per_pixel = static_cast<int>(samples);
     p.ignore({"seed", "randomization", "jitter"});
     p.warn_unused(context.log, owner("sampler", e));
@@ -268,7 +255,7 @@ void build_integrator(Entity& e, BuildContext& context) {
     ParameterList& p = e.parameters;
     context.scene.max_depth = p.integer("maxdepth", 5);
     if (context.scene.max_depth < 0)
-        refuse(e, "maxdepth", "parameter \"maxdepth\" must not be negative");
+        e.refuse("maxdepth", "parameter \"maxdepth\" must not be negative");
     const std::vector<std::string> known{
         "path", "volpath", "simplepath", "simplevolpath",    "lightpath", "bdpt",
         "mlt",  "sppm",    "randomwalk", "ambientocclusion", "function"};
@@ -294,8 +281,9 @@ void build_view(ViewEntities& view, BuildContext& context) {
     at(view.film), build_film(view, context);
     at(view.camera), build_camera(view, context);
     if (!std::isfinite(imaging_scale(context.scene)))
-        refuse(view.camera, "shutterclose",
-               "the film's iso times the shutter's time is too large for single precision");
+        view.camera.refuse(
+            "shutterclose",
+            "the film's iso times the shutter's time is too large for single precision");
     at(view.filter), build_filter(view.filter, context);
     at(view.sampler), build_sampler(view.sampler, context);
     at(view.integrator), build_integrator(view.integrator, context);

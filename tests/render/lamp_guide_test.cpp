@@ -11,6 +11,7 @@
 #include "integrator/path.h"
 #include "pbrt/read_scene.h"
 #include "tests/statistical/chi_square.h"
+#include "tests/statistical/path_moments.h"
 
 namespace covtrace {
 namespace {
@@ -56,23 +57,8 @@ Material "diffuse" "rgb reflectance" [ 0.6 0.5 0.4 ]
                             "test", ".");
 }
 
-struct Found {
-    double mean = 0, variance = 0;
-    double error(int paths) const { return std::sqrt(variance / paths); }
-};
-
-/// Light of paths to a place on the floor.
-Found found_light(const RenderScene& scene, int paths) {
-    double sum = 0, squares = 0;
-    for (int i = 0; i < paths; ++i) {
-        const Sampler sampler(3, i & 0xffff, i >> 16, 0);
-        const Ray ray = scene.camera.generate_ray({64, 90}, {}, 0);
-        const double l = trace_path(scene, ray, sampler, 5, nullptr).radiance.g;
-        sum += l / paths;
-        squares += l * l / paths;
-    }
-    return {sum, squares - sum * sum};
-}
+/// A place of the film, in pixels, that shows the floor.
+const Vec2 kSeen{64, 90};
 
 // The bound is 4.5 standard errors: false alarm 7e-6 for each.
 TEST(LampGuide, FindsTheLampOfTheRoomAndLeavesTheMean) {
@@ -82,12 +68,11 @@ TEST(LampGuide, FindsTheLampOfTheRoomAndLeavesTheMean) {
         EXPECT_LT(scene.lamp_guide.outcome().second_moment, 0.4) << behind;
         EXPECT_GT(scene.lamp_guide.outcome().bytes, 0u);
         constexpr int kPaths = 60000;
-        const Found guided = found_light(scene, kPaths);
+        const test::Moments guided = test::trace_place(scene, kSeen, kPaths);
         scene.lamp_guide = LampGuide();
-        const Found alone = found_light(scene, kPaths);
-        EXPECT_LT(guided.variance, 0.3 * alone.variance) << behind;
-        EXPECT_NEAR(guided.mean, alone.mean,
-                    4.5 * std::hypot(guided.error(kPaths), alone.error(kPaths)))
+        const test::Moments alone = test::trace_place(scene, kSeen, kPaths);
+        EXPECT_LT(guided.variance(), 0.3 * alone.variance()) << behind;
+        EXPECT_NEAR(guided.mean(), alone.mean(), 4.5 * std::hypot(guided.error(), alone.error()))
             << behind;
     }
 }
@@ -154,11 +139,11 @@ TEST(LampGuide, LeavesAllPathsAloneWhereThereAreToBeNoGuides) {
 TEST(LampGuide, IsTheSameForAnyNumberOfThreads) {
     const auto light = [](int threads) {
         const ThreadLimit limit(threads);
-        return found_light(RenderScene(scene_of(lamps_behind(12))), 500);
+        return test::trace_place(RenderScene(scene_of(lamps_behind(12))), kSeen, 500);
     };
-    const Found one = light(1), four = light(4);
-    EXPECT_EQ(one.mean, four.mean);
-    EXPECT_EQ(one.variance, four.variance);
+    const test::Moments one = light(1), four = light(4);
+    EXPECT_EQ(one.mean(), four.mean());
+    EXPECT_EQ(one.variance(), four.variance());
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "integrator/path.h"
 #include "pbrt/read_scene.h"
 #include "tests/statistical/chi_square.h"
+#include "tests/statistical/path_moments.h"
 
 namespace covtrace {
 namespace {
@@ -53,23 +54,8 @@ RenderScene rooms() {
 const PlaceTree::Place kFloor{{-0.5f, 0.5f, 0}, {0, 0, 1}};
 const Vec3 kOpening{2, 0, 1.3f}, kWall{2, -1.5f, 1.3f};
 
-struct Found {
-    double mean = 0, variance = 0;
-    double error(int paths) const { return std::sqrt(variance / paths); }
-};
-
-/// Light of paths through the middle of the image.
-Found found_light(const RenderScene& scene, int paths) {
-    double sum = 0, squares = 0;
-    for (int i = 0; i < paths; ++i) {
-        const Sampler sampler(3, i & 0xffff, i >> 16, 0);
-        const Ray ray = scene.camera.generate_ray({48, 60}, {}, 0);
-        const double l = trace_path(scene, ray, sampler, 12, nullptr).radiance.g;
-        sum += l / paths;
-        squares += l * l / paths;
-    }
-    return {sum, squares - sum * sum};
-}
+/// A place of the film, in pixels, that shows the floor.
+const Vec2 kSeen{48, 60};
 
 // The bound is 4.5 standard errors: false alarm 7e-6.
 TEST(PathGuide, FindsTheLightAndLeavesTheMean) {
@@ -77,12 +63,11 @@ TEST(PathGuide, FindsTheLightAndLeavesTheMean) {
     ASSERT_FALSE(scene.path_guide.is_empty());
     EXPECT_GT(scene.path_guide.outcome().bytes, 0u);
     constexpr int kPaths = 60000;
-    const Found guided = found_light(scene, kPaths);
+    const test::Moments guided = test::trace_place(scene, kSeen, kPaths);
     scene.path_guide = PathGuide();
-    const Found alone = found_light(scene, kPaths);
-    EXPECT_LT(guided.variance, 0.6 * alone.variance);
-    EXPECT_NEAR(guided.mean, alone.mean,
-                4.5 * std::hypot(guided.error(kPaths), alone.error(kPaths)));
+    const test::Moments alone = test::trace_place(scene, kSeen, kPaths);
+    EXPECT_LT(guided.variance(), 0.6 * alone.variance());
+    EXPECT_NEAR(guided.mean(), alone.mean(), 4.5 * std::hypot(guided.error(), alone.error()));
 }
 
 // Chi-square over cosine and azimuth, expectations by 32x32 points of each part: alpha 1e-4.

@@ -9,6 +9,7 @@
 #include "integrator/path.h"
 #include "pbrt/read_scene.h"
 #include "tests/statistical/chi_square.h"
+#include "tests/statistical/path_moments.h"
 
 namespace covtrace {
 namespace {
@@ -48,35 +49,19 @@ Material "diffuse" "rgb reflectance" [ 0.6 0.5 0.4 ]
 
 const std::string kEvenSky = R"(LightSource "infinite" "rgb L" [ 5 6 8 ])";
 
-struct Found {
-    double mean = 0, variance = 0;
-    double error(int paths) const { return std::sqrt(variance / paths); }
-};
-
-/// Light of paths to a place on the floor that the window does not show to the camera.
-Found found_light(const RenderScene& scene, int paths) {
-    double sum = 0, squares = 0;
-    for (int i = 0; i < paths; ++i) {
-        const Sampler sampler(3, i & 0xffff, i >> 16, 0);
-        const Ray ray = scene.camera.generate_ray({64, 90}, {}, 0);
-        const double l = trace_path(scene, ray, sampler, 6, nullptr).radiance.g;
-        sum += l / paths;
-        squares += l * l / paths;
-    }
-    return {sum, squares - sum * sum};
-}
+/// A place of the film, in pixels, that shows the floor, and no window.
+const Vec2 kSeen{64, 90};
 
 // The bound is 4.5 standard errors: false alarm 7e-6.
 TEST(SkyGuide, FindsTheWindowAndLeavesTheMean) {
     RenderScene scene(scene_of(kRoom, kEvenSky));
     ASSERT_FALSE(scene.sky_guide.is_empty());
     constexpr int kPaths = 60000;
-    const Found guided = found_light(scene, kPaths);
+    const test::Moments guided = test::trace_place(scene, kSeen, kPaths);
     scene.sky_guide = SkyGuide();
-    const Found alone = found_light(scene, kPaths);
-    EXPECT_LT(guided.variance, 0.35 * alone.variance);
-    EXPECT_NEAR(guided.mean, alone.mean,
-                4.5 * std::hypot(guided.error(kPaths), alone.error(kPaths)));
+    const test::Moments alone = test::trace_place(scene, kSeen, kPaths);
+    EXPECT_LT(guided.variance(), 0.35 * alone.variance());
+    EXPECT_NEAR(guided.mean(), alone.mean(), 4.5 * std::hypot(guided.error(), alone.error()));
 }
 
 // Chi-square over the blocks and one more: alpha 1e-4.
@@ -121,11 +106,11 @@ Shape "sphere" "float radius" 0.5
 TEST(SkyGuide, IsTheSameForAnyNumberOfThreads) {
     const auto light = [](int threads) {
         const ThreadLimit limit(threads);
-        return found_light(RenderScene(scene_of(kRoom, kEvenSky)), 500);
+        return test::trace_place(RenderScene(scene_of(kRoom, kEvenSky)), kSeen, 500);
     };
-    const Found one = light(1), four = light(4);
-    EXPECT_EQ(one.mean, four.mean);
-    EXPECT_EQ(one.variance, four.variance);
+    const test::Moments one = light(1), four = light(4);
+    EXPECT_EQ(one.mean(), four.mean());
+    EXPECT_EQ(one.variance(), four.variance());
 }
 
 }  // namespace

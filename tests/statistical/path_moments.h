@@ -1,6 +1,8 @@
 /// Mean and variance of the light that paths of a scene bring.
 #pragma once
 
+#include <cmath>
+
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "integrator/path.h"
@@ -13,7 +15,21 @@ struct Moments {
     double count = 0, sum = 0, squares = 0;
     double mean() const { return sum / count; }
     double variance() const { return squares / count - mean() * mean(); }
+    double error() const { return std::sqrt(variance() / count); }  ///< of the mean, standard
+    void add(double y) { count += 1, sum += y, squares += y * y; }
 };
+
+/// Traces paths from one place of the film, in pixels, with a pinhole at the shutter's opening.
+inline Moments trace_place(const RenderScene& scene, Vec2 place, int paths) {
+    Moments m;
+    for (int i = 0; i < paths; ++i) {
+        const Sampler sampler(3, i & 0xffff, i >> 16, 0);
+        const Ray ray = scene.camera.generate_ray(place, {}, 0);
+        m.add(luminance(
+            trace_path(scene, ray, sampler, scene.description.max_depth, nullptr).radiance));
+    }
+    return m;
+}
 
 /// Traces 262144 paths from all over the film; `key` tells their random numbers from others.
 inline Moments trace_many(const RenderScene& scene, uint64_t key) {
@@ -30,7 +46,7 @@ inline Moments trace_many(const RenderScene& scene, uint64_t key) {
             const Sampler sampler(key, int(chunk), int(i), 0);
             const double y = luminance(
                 trace_path(scene, ray, sampler, scene.description.max_depth, nullptr).radiance);
-            m.count += 1, m.sum += y, m.squares += y * y;
+            m.add(y);
         }
     });
     Moments all;
