@@ -42,10 +42,10 @@ FIGURES = {
 }
 ORDER = list(FIGURES)
 METHODS = {
-    "covariance": "`covariance`: the thesis' prediction; counts, occluders, lobes and judged filters are ours",
-    "covariance on demand": "`covariance --progressive`: the same, samples by the planner of `hybrid`",
+    "covariance": "`covariance`: the thesis' prediction; occluders, lobes, and counts and filters by what samples tell are ours",
+    "covariance on demand": "`covariance --progressive`: the same, up to four samples by the planner of `hybrid`",
     "hybrid": "`hybrid`: not the thesis'",
-    "covariance, predicted filters alone": "`covariance --density tempered --filter predicted`: nothing that samples judge",
+    "covariance, predicted filters alone": "`covariance --density tempered --filter predicted`: nothing that samples tell",
 }
 # CPU seconds over those of --quick: four times the pixels, four times the samples, three seeds in place of two.
 TIMES_AT_FULL_SIZE = 24

@@ -60,7 +60,8 @@ def slice_(e):
 
 def sampling(e):
     return ["drawings 5.2 to 5.5: density and replicas", "sampling", held(e),
-            f"energy beyond half the rate {found(e, 'sampling_beyond')} in 90 % of the patches", "bounds are a Gaussian's"]
+            f"energy beyond half the rate {found(e, 'sampling_beyond')} in 90 % of the patches, "
+            f"at most {e['claims']['sampling_beyond']['required'].partition('at most ')[2]} asked", "bounds are a Gaussian's"]
 
 
 def lens(e):
@@ -74,7 +75,7 @@ def motion(e):
 
 def shininess(e):
     return ["figure 5.8", "shininess", held(e), "area " + found(e, "shininess_falls_metal_global") + " from exponent 16 to 4096 (metal, global)",
-            "before the least deviation of 0.5 pixels is applied"]
+            "before filters' least deviation is applied (0.5 pixels at 16 samples, an area of 0.79 px²)"]
 
 
 def snooker(e):
@@ -100,14 +101,19 @@ def analysis_share(variant):
     return 100 * (parts["analysis"] + parts["delivered"]) / parts["total"]
 
 
+def reconstruction_share(variant):
+    return 100 * variant["breakdown"]["reconstruction"] / variant["breakdown"]["total"]
+
+
 def table(e):
     v = e["variants"]
     return [f"table 5.1: {PRINTED} times", "table", of_choices(v, ratio_of_times, PRINTED),
             f"path tracer's time over ours, equal error: thesis' choices as printed {times(ratio_of_times(v['thesis_printed']))}, "
             f"c = 1 {times(ratio_of_times(v['thesis_matched']))}, at its budget {times(ratio_of_times(v['budget_matched']))}, with our predicted filters "
             f"{times(ratio_of_times(v['thesis_predicted']))}; `covariance` {comparison(e, 'ratio of times')['covariance'].split(' ')[0]}, "
-            f"on demand {comparison(e, 'ratio of times')['covariance on demand'].split(' ')[0]}; 3.3 and 4.1 at 640x360 with 64 samples, by hand. "
-            f"Share of the analysis at its budget {analysis_share(v['budget_matched']):.1f} %, printed 10.4 %",
+            f"on demand {comparison(e, 'ratio of times')['covariance on demand'].split(' ')[0]}; with an earlier program 3.3 and 4.1 at 640x360 with 64 samples, by hand. "
+            f"Share of the analysis at its budget {analysis_share(v['budget_matched']):.1f} %, printed 10.4 %, "
+            f"of the reconstruction {reconstruction_share(v['budget_matched']):.1f} %, printed 1.1 %",
             f"blur of c = 1, not noise. `hybrid`, which has {comparison(e, 'ratio of times')['hybrid'].split(' ')[0]} there, is another method"]
 
 
