@@ -47,6 +47,7 @@ METHODS = {
     "hybrid": "`hybrid`: not the thesis'",
     "covariance, predicted filters alone": "`covariance --density tempered --filter predicted`: nothing that samples tell",
 }
+FOLDER = "out/thesis"  # of a run, in the commands of the page
 # CPU seconds over those of --quick: four times the pixels, four times the samples, three seeds in place of two.
 TIMES_AT_FULL_SIZE = 24
 MARK = re.compile(r"<!-- tables: ([\w-]+) -->\n.*?<!-- end of tables -->", re.DOTALL)
@@ -60,10 +61,17 @@ TOLERANCES = [
 ]
 
 
+def as_on_the_page(command, folder):
+    """A command with the folder of its run named as on the page, wherever that was."""
+    return re.sub(rf"(?<!\S){re.escape(folder)}(?=[/\s]|$)", FOLDER, command) if folder else command
+
+
 def digest(results):
     """The part of one results.json that the document needs, by experiment."""
     program = results["facts"]["program"]
     commit = re.search(r"\(([^()]*)\)$", program)
+    written_to = re.search(r" -o (\S+)", results["command"])
+    folder = written_to and written_to[1].rstrip("/")
     return {
         name: {
             "title": experiment["title"],
@@ -72,9 +80,9 @@ def digest(results):
             "pixels": experiment["resolution"],
             "counts": experiment["counts"],
             "commit": commit[1] if commit else program,
-            "command": re.sub(r"^\S+", "covtrace", results["command"]),  # wherever the program is
+            "command": as_on_the_page(re.sub(r"^\S+", "covtrace", results["command"]), folder),  # wherever the program is
             "seconds_cpu": round(experiment["seconds_cpu"]),
-            "claims": experiment["claims"],
+            "claims": {key: {**c, "command": as_on_the_page(c["command"], folder)} for key, c in experiment["claims"].items()},
             "captions": {pathlib.Path(f["file"]).stem: f["caption"] for f in experiment["figures"]},
             "tables": [{"caption": t["caption"], "columns": t["columns"], "rows": t["rows"]} for t in experiment["tables"]],
             "notes": experiment["notes"],
