@@ -46,9 +46,9 @@ Figure whole_way(const Timed& timed) {
             fmt::format(
                 "From the covariance to the image, {:.3g} samples a pixel: a few paths bring the "
                 "covariance of the light field over pixel, lens and shutter (1); lens and shutter "
-                "take the frequencies away that they average (2); the density follows (3), the "
-                "samples are taken (4), and each pixel gathers those that its filter reaches (5, "
-                "at two deviations) into the image (6).",
+                "take the frequencies away that they average (2); our tempered density follows "
+                "(3), the samples are taken (4), and each pixel gathers those that its filter "
+                "reaches (5, at two deviations) into the image (6).",
                 timed.result.statistics.samples_per_pixel),
             sheet.drawing,
             {timed.command}};

@@ -58,8 +58,8 @@ PageFacts facts_of(const Workshop& workshop, const std::string& command, double 
         {"seeds", text_of(workshop.settings.seeds)},
         {"seconds so far", fmt::format("{:.0f}, CPU {:.0f}", wall, workshop.cpu())},
         {"times",
-         "CPU seconds (user and system) of the render, the scene being loaded and its textures "
-         "analysed, on both sides"},
+         "CPU seconds (user and system) of the render, the scene being loaded, on both "
+         "sides; ours has the analysis of the textures in it"},
         {"errors",
          "relMSE without the worst 0.1 % of the pixels, mean over both halves of our own "
          "reference of the plain path tracer, less the noise of one half"}};

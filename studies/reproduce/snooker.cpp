@@ -87,11 +87,13 @@ Section snooker(Workshop& workshop) {
         "its global BRDF covariance, its 15 covariance paths beside the samples of the other rows, "
         "and its limit of samples.");
     s.notes.push_back(
-        "\"covariance\" is the thesis' prediction with choices of ours: counts, occluders, lobes, "
-        "and filters that the samples judge. \"Predicted filters alone\" leaves the last out: no "
-        "wider filters along surfaces, no raw pixels. On demand (--progressive): samples beyond "
-        "the first ones go where the samples so far have left noise, by the planner of hybrid; "
-        "the thesis proposes in section 5.1.3 to sample again where the limit withheld samples.");
+        "\"covariance\" is the thesis' prediction with choices of ours: occluders, lobes, counts "
+        "that beyond four samples follow the noise which the filters leave, and filters that the "
+        "samples judge. \"Predicted filters alone\" leaves the last two out: tempered counts, no "
+        "wider filters along surfaces, no raw pixels. On demand (--progressive): up to four "
+        "samples go where the samples so far have left noise, by the planner of hybrid, the others "
+        "as those of covariance; the thesis proposes in section 5.1.3 to sample again where the "
+        "limit withheld samples.");
     s.notes.push_back(filter_note(study));
     s.notes.push_back(budget_note(study));
     return s;

@@ -97,8 +97,8 @@ void add_pictures(Section& section, const SceneStudy& s, Workshop& workshop,
     inset_commands.push_back(hybrid.equal_time.uniform.first.command);
     section.figures.push_back(
         {s.name + "-insets",
-         "Insets, magnified: ours, the path tracer in the same time and at the same error, the "
-         "reference.",
+         "Insets, magnified: covariance, the path tracer in its time and at its error, hybrid, the "
+         "path tracer in hybrid's time, the reference.",
          crops(columns, marks, kPageWidth), inset_commands});
 
     Sheet maps(size, scale, 2, 2, {true, true});

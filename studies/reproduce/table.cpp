@@ -63,9 +63,9 @@ Section table(Workshop& workshop) {
     t.caption =
         "CPU seconds of the first seed, the scene being loaded; the path tracer's time and the "
         "ratio are those of the comparisons of snooker and helicopter. Analysis: what the "
-        "covariance paths cost beyond the radiance that they deliver, the occluders and the "
-        "spectra; with its paths' radiance, which the thesis counts to it: that too; radiance: all "
-        "samples, those of the covariance paths among them.";
+        "covariance paths cost beyond the radiance that they deliver, the occluders, the "
+        "spectra and the plan of the counts; with its paths' radiance, which the thesis counts to "
+        "it: that too; radiance: all samples, those of the covariance paths among them.";
     t.columns = {"scene",    "method",         "analysis", "with its paths' radiance",
                  "radiance", "reconstruction", "total",    "path tracer, same error",
                  "ratio"};

@@ -131,7 +131,7 @@ void add_share_claims(Section& section, const SceneStudy& study, const Workshop&
         };
         section.claims.push_back(
             {study.name + "_analysis_share",
-             "analysis (recording, replay, occluders; beyond the radiance "
+             "analysis (recording, replay, occluders, plan; beyond the radiance "
              "that its paths deliver) of "
              "the total",
              "10 % (2 min 36 s of 25 min, its paths' radiance included)",

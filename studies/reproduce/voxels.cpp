@@ -127,7 +127,8 @@ Figure figure_of(const Measured& m, const Image& reference, double spp) {
             fmt::format(
                 "The soft shadow of 700 leaves and a fence, {:g} samples a pixel. Top: the image, "
                 "filters at two standard deviations where every voxel of the coarsest grid "
-                "occludes and with the query of the geometry. Below: their sizes.",
+                "occludes and with the query of the geometry. Below: the sizes of the predicted "
+                "filters.",
                 spp),
             sheet.drawing, commands};
 }
@@ -191,8 +192,9 @@ Section voxels(Workshop& workshop) {
         "at least half a voxel away; of three voxels on the way one counts; and the one and a half "
         "beside "
         "either end, where the surfaces themselves are, are left out. Each of the three grows with "
-        "the voxel, so that a coarse grid knows of fewer and farther edges: its filters are wide, "
-        "and its error is that of shadows that were blurred.");
+        "the voxel, so that a coarse grid knows of fewer and farther edges: its filters are wide. "
+        "Errors are those of --method covariance, whose counts follow the noise that is left and "
+        "whose filters the samples judge, not of the predicted filters alone.");
     return s;
 }
 
