@@ -43,6 +43,16 @@ class Light(CliTest):
         for scene in (ROOM.replace("0 0 0  1 0.3 1", "0 0 9  0 0 99"), ROOM.replace('LightSource "infinite"', 'LightSource "point" "rgb I" [.1 .1 .1]')):
             self.assertEqual(self.seen(scene=scene)[1], [])
 
+    def test_a_dim_lamp_is_no_darkness(self):
+        dim = ROOM.replace('LightSource "infinite"', 'LightSource "point" "rgb I" [1e-5 1e-5 1e-5] "point3 from" [0 0 0] #')
+        for method in ("uniform", "hybrid"):
+            with self.subTest(method=method):
+                image, warnings = self.seen("--method", method, scene=dim)
+                self.assertGreater(max(image["G"]), 0)
+                self.assertLess(max(image["G"]), 1e-4)
+                self.assertEqual(warnings, [])
+                self.assertIn("100 % of the surfaces in view are black", self.seen("--method", method)[1][0])
+
     def test_a_lamp_at_the_camera_suits_the_view(self):
         image, warnings = self.seen("--light", "camera")
         for value in image["G"]:
