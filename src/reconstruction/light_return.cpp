@@ -135,18 +135,40 @@ Plane light_around(const Plane& light) {
     return around;
 }
 
-/// Adds to `color` the part of e that stays in place: things that are too bright for their
-/// surroundings.
-void keep_in_place(const Plane& around, const ColorPlanes& e, ColorPlanes& color) {
-    Plane together = luminance(e);
-    for (float& v : together.values) v = std::abs(v);
-    together = box_blur(together, kTogether);
-    for (size_t i = 0; i < around.size(); ++i) {
-        const float most = kMostOfOneThing * around[i],
-                    thing = sqr(2 * kTogether + 1.0f) * together[i];
-        if (!(thing > most)) continue;
-        for (size_t c = 0; c < 3; ++c) color[c][i] += (1 - most / thing) * e[c][i];
+/// The largest limit such that what is left of `values` below it sums up to `most`. The values are
+/// sorted, and sum up to more.
+float limit_of_sum(std::vector<float>& values, float most) {
+    std::ranges::sort(values);
+    float below = 0;
+    for (size_t i = 0; i < values.size(); ++i) {
+        const auto above = float(values.size() - i);
+        if (below + above * values[i] > most) return std::max(0.0f, most - below) / above;
+        below += values[i];
     }
+    return kInfinity;
+}
+
+/// Adds to `color` the part of e that stays in place: things that are too bright for their
+/// surroundings. The brightest pixels of a thing stay: what is around it has noise of its own.
+void keep_in_place(const Plane& around, const ColorPlanes& e, ColorPlanes& color) {
+    Plane size = luminance(e);
+    for (float& v : size.values) v = std::abs(v);
+    const Plane together = box_blur(size, kTogether);
+    std::vector<float> thing;
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) {
+            const float most = kMostOfOneThing * around(x, y);
+            if (!(sqr(2 * kTogether + 1.0f) * together(x, y) > most)) continue;
+            thing.clear();
+            for (int v = std::max(0, y - kTogether); v <= std::min(size.height - 1, y + kTogether);
+                 ++v)
+                for (int u = std::max(0, x - kTogether);
+                     u <= std::min(size.width - 1, x + kTogether); ++u)
+                    thing.push_back(size(u, v));
+            const float limit = limit_of_sum(thing, most);
+            if (!(size(x, y) > limit)) continue;
+            for (size_t c = 0; c < 3; ++c) color[c](x, y) += (1 - limit / size(x, y)) * e[c](x, y);
+        }
 }
 
 /// The variance of a wider window's lacking light by how few places it is from, its square where it

@@ -173,6 +173,24 @@ TEST(LightReturn, ASmallLampDoesNotLightTheImage) {
     }
 }
 
+TEST(LightReturn, NoiseBesideASmallLampStaysAway) {
+    // A lamp of one pixel stays in place; the noise of the fog around it does not come back.
+    ColorPlanes raw, color;
+    raw.fill(Plane(kSize, kSize, 0.2f));
+    color.fill(Plane(kSize, kSize, 0.1f));
+    constexpr int kAt = kSize / 2;
+    for (size_t c = 0; c < 3; ++c) {
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x) raw[c](x, y) = (x + y) % 4 == 0 ? 0.4f : 0.0f;
+        raw[c](kAt, kAt) = 2e5f;
+    }
+    LightReturn(halves_with(0.03f)).give_back(raw, color);
+    EXPECT_NEAR(color[1](kAt, kAt), 2e5f, 0.1f * 2e5f);
+    for (int y = kAt - 3; y <= kAt + 3; ++y)
+        for (int x = kAt - 3; x <= kAt + 3; ++x)
+            if (x != kAt || y != kAt) EXPECT_NEAR(color[1](x, y), color[1](2, 2), 0.02f) << x << y;
+}
+
 TEST(LightReturn, OnePathsLightMakesNoBlotch) {
     ColorPlanes raw = constant(1), color = constant(1);
     Halves halves = halves_with(1e-4f);
