@@ -53,6 +53,16 @@ class Light(CliTest):
                 self.assertEqual(warnings, [])
                 self.assertIn("100 % of the surfaces in view are black", self.seen("--method", method)[1][0])
 
+    def test_samples_that_missed_the_light_are_no_darkness(self):
+        # The strong lamps are behind the wall, and a single sample seldom asks the one in the room.
+        behind = "".join(f'LightSource "point" "rgb I" [99 99 99] "point3 from" [{x} 3.5 0]\n' for x in range(-4, 5))
+        rare = ROOM.replace('LightSource "infinite"', behind + 'LightSource "point" "rgb I" [9 9 9]')
+        image, warnings = self.seen("--spp", "1", "--guides", "none", scene=rare)
+        met = sum(value > 0 for value in image["G"]) / len(image["G"])
+        self.assertGreater(met, 0)
+        self.assertLess(met, 0.4)
+        self.assertEqual(warnings, [])
+
     def test_a_lamp_at_the_camera_suits_the_view(self):
         image, warnings = self.seen("--light", "camera")
         for value in image["G"]:
