@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "reconstruction/guides.h"
+#include "reconstruction/light_in_place.h"
 #include "reconstruction/luminance.h"
 #include "reconstruction/window_sums.h"
 
@@ -35,6 +37,10 @@ constexpr float kNoise = 1, kNoiseOfAll = 0.1f;
 /// Both factors where samples are few: with more the error is a little less, but the light of
 /// tenths of the brightness is further off (docs/decisions/0117).
 constexpr float kNoiseOfFew = 3;
+/// Share of its light by which the whole image may become brighter at most. More, as of lamps that
+/// are smaller than a pixel, would be seen in what has no noise, and stays in the brightest pixels;
+/// with a share as small as that of one thing the rare paths of dim rooms would stay in theirs.
+constexpr float kMostToAll = 0.15f;
 /// Factor by which a place may become brighter at most; it may become darker by the same factor.
 constexpr float kMostTimes = 10;
 
@@ -57,12 +63,6 @@ Plane block_means(const Plane& p, int size) {
         }
     return mean;
 }
-
-/// Reach within which light is one thing, pixels: a small lamp in view covers a few of them.
-constexpr int kTogether = 3;
-/// Share of all light around by which one thing may make it brighter. More would be seen as a glow
-/// over the whole image, and stays where it is.
-constexpr float kMostOfOneThing = 0.065f;
 
 /// The value of blocks at a pixel: linear between the middles of the blocks, constant beyond the
 /// outermost ones.
@@ -135,42 +135,6 @@ Plane light_around(const Plane& light) {
     return around;
 }
 
-/// The largest limit such that what is left of `values` below it sums up to `most`. The values are
-/// sorted, and sum up to more.
-float limit_of_sum(std::vector<float>& values, float most) {
-    std::ranges::sort(values);
-    float below = 0;
-    for (size_t i = 0; i < values.size(); ++i) {
-        const auto above = float(values.size() - i);
-        if (below + above * values[i] > most) return std::max(0.0f, most - below) / above;
-        below += values[i];
-    }
-    return kInfinity;
-}
-
-/// Adds to `color` the part of e that stays in place: things that are too bright for their
-/// surroundings. The brightest pixels of a thing stay: what is around it has noise of its own.
-void keep_in_place(const Plane& around, const ColorPlanes& e, ColorPlanes& color) {
-    Plane size = luminance(e);
-    for (float& v : size.values) v = std::abs(v);
-    const Plane together = box_blur(size, kTogether);
-    std::vector<float> thing;
-    for (int y = 0; y < size.height; ++y)
-        for (int x = 0; x < size.width; ++x) {
-            const float most = kMostOfOneThing * around(x, y);
-            if (!(sqr(2 * kTogether + 1.0f) * together(x, y) > most)) continue;
-            thing.clear();
-            for (int v = std::max(0, y - kTogether); v <= std::min(size.height - 1, y + kTogether);
-                 ++v)
-                for (int u = std::max(0, x - kTogether);
-                     u <= std::min(size.width - 1, x + kTogether); ++u)
-                    thing.push_back(size(u, v));
-            const float limit = limit_of_sum(thing, most);
-            if (!(size(x, y) > limit)) continue;
-            for (size_t c = 0; c < 3; ++c) color[c](x, y) += (1 - limit / size(x, y)) * e[c](x, y);
-        }
-}
-
 /// The variance of a wider window's lacking light by how few places it is from, its square where it
 /// is from one: sum e^2 / (sum |e|)^2 of that, sums over all blocks of the window with equal
 /// weights. Those of level - 1 overlap, and each block counts in kOverlap / 2 of them.
@@ -179,6 +143,12 @@ float noise_of_few_places(const WindowSums& sums, int level, size_t i) {
     for (int k = 0; k < level; ++k) places /= kOverlap / 2;
     return ratio(sqr(luminance(rgb_at(sums.linear, kLacking, i))) * sums.linear[kSquared][i],
                  places);
+}
+
+ColorPlanes minus(ColorPlanes a, const ColorPlanes& b) {
+    for (size_t c = 0; c < 3; ++c)
+        for (size_t i = 0; i < a[c].size(); ++i) a[c][i] -= b[c][i];
+    return a;
 }
 
 }  // namespace
@@ -320,18 +290,21 @@ Plane LightReturn::lacking(const ColorPlanes& e, const ColorPlanes& color) const
     return times;
 }
 
-void LightReturn::give_to_all(const ColorPlanes& e, const ColorPlanes& in_place,
-                              ColorPlanes& color) const {
+void LightReturn::give_to_all(const ColorPlanes& e, ColorPlanes& color) const {
     const Plane light = luminance(color);
     std::array<double, 3> lack{};
     double all = 0, variance = 0;
     for (size_t i = 0; i < light.size(); ++i) {
-        for (size_t c = 0; c < 3; ++c) lack[c] += double(e[c][i] - in_place[c][i]);
+        for (size_t c = 0; c < 3; ++c) lack[c] += double(e[c][i]);
         all += double(light[i]);
     }
     for (float v : block_variance().values) variance += sqr(sqr(double(kFinest))) * double(v);
-    const Rgb times = times_lacking({float(lack[0]), float(lack[1]), float(lack[2])}, float(all),
-                                    float(variance), all_noise_);
+    Rgb times = times_lacking({float(lack[0]), float(lack[1]), float(lack[2])}, float(all),
+                              float(variance), all_noise_);
+    if (const float brighter = luminance(times); brighter > kMostToAll) {
+        keep_brightest(e, (brighter - kMostToAll) * float(all), color);
+        times *= kMostToAll / brighter;
+    }
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < light.size(); ++i) {
             float& v = color[c][i];
@@ -351,25 +324,15 @@ void LightReturn::keep_what_both_saw(const ColorPlanes& e, ColorPlanes& in_place
 
 void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
     const int w = color[0].width, h = color[0].height;
-    const auto difference = [&raw, &color] {
-        ColorPlanes e = raw;
-        for (size_t c = 0; c < 3; ++c)
-            for (size_t i = 0; i < e[c].size(); ++i) e[c][i] -= color[c][i];
-        return e;
-    };
     // Find the light that stays in its pixels, and is not given to all
     ColorPlanes in_place = color;
-    keep_in_place(light_around(luminance(color)), difference(), in_place);
-    for (size_t c = 0; c < 3; ++c)
-        for (size_t i = 0; i < color[c].size(); ++i) in_place[c][i] -= color[c][i];
+    keep_in_place(light_around(luminance(color)), minus(raw, color), in_place);
+    in_place = minus(std::move(in_place), color);
     ColorPlanes kept = in_place;
-    keep_what_both_saw(difference(), kept);
+    keep_what_both_saw(minus(raw, color), kept);
     // Give the rest back to blocks that are alike
-    ColorPlanes e = difference();
-    for (size_t c = 0; c < 3; ++c) {
-        for (size_t i = 0; i < e[c].size(); ++i) e[c][i] -= in_place[c][i];
-        e[c] = block_means(e[c], kFinest);
-    }
+    ColorPlanes e = minus(minus(raw, color), in_place);
+    for (Plane& channel : e) channel = block_means(channel, kFinest);
     const Plane times = lacking(e, color);
     parallel_for_rows(w, h, [&](int y) {
         for (int x = 0; x < w; ++x) {
@@ -378,7 +341,7 @@ void LightReturn::give_back(const ColorPlanes& raw, ColorPlanes& color) const {
         }
     });
     // Give what is still lacking to the whole image
-    give_to_all(difference(), in_place, color);
+    give_to_all(minus(minus(raw, color), in_place), color);
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < color[c].size(); ++i) {
             float& v = color[c][i];

@@ -71,9 +71,8 @@ class LightReturn {
                              const Plane& squared, const Plane& light) const;
     /// The variance of the mean lacking light of the blocks.
     Plane block_variance() const;
-    /// Gives light to the whole image, as the last step. `e` is the lacking light, which includes
-    /// `in_place`, the light that stays in its pixels.
-    void give_to_all(const ColorPlanes& e, const ColorPlanes& in_place, ColorPlanes& color) const;
+    /// Gives the lacking light `e` to the whole image, as the last step.
+    void give_to_all(const ColorPlanes& e, ColorPlanes& color) const;
     /// Drops light that stays in its pixels, `in_place` of the lacking light `e`, as far as both
     /// halves did not see it.
     void keep_what_both_saw(const ColorPlanes& e, ColorPlanes& in_place) const;
