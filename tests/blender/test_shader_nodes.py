@@ -1,5 +1,6 @@
 """Each shader node that is baked, against Cycles: matt tiles in a white world, which show their colour and nothing else."""
 
+import unittest
 import unittest.mock
 
 import bpy
@@ -137,6 +138,25 @@ class ShaderNodesTest(BlenderTest):
                            "hetero": musgrave("HETERO_TERRAIN", Offset=0.4), "hybrid": musgrave("HYBRID_MULTIFRACTAL", Offset=0.3, Gain=2.0),
                            "ridged": musgrave("RIDGED_MULTIFRACTAL", Scale=1.3, Offset=1.2, Gain=1.0),
                            **{f"magic {depth}": magic(depth) for depth in (0, 2, 10)}})
+
+    @unittest.skipUnless("noise_type" in bpy.types.ShaderNodeTexNoise.bl_rna.properties, "this Blender has a node Musgrave")
+    def test_fractals_of_noise(self):
+        def noise(kind, factor=0.25, added=0.3, output=0, **inputs):
+            normalize = inputs.pop("normalize", False)
+
+            def show(tree):
+                values = {"Scale": 3.0, "Detail": 1.6, "Roughness": 0.4, "Lacunarity": 2.2, "Distortion": 0.2, **inputs, "Vector": tree.uv()}
+                node = tree.node("TexNoise", {"noise_type": kind, "normalize": normalize}, values)
+                if output:
+                    tree.show(tree.node("VectorMath", {"operation": "MULTIPLY"}, {0: (node, output), 1: (0.4, 0.4, 0.4)}))
+                else:
+                    tree.show(tree.node("Math", {"operation": "MULTIPLY_ADD", "use_clamp": True}, {0: node, 1: factor, 2: added}))
+            return show
+
+        self.assert_nodes({
+            "fBM": noise("FBM"), "normalized": noise("FBM", 1.0, 0.0, normalize=True), "multifractal": noise("MULTIFRACTAL"),
+            "hetero": noise("HETERO_TERRAIN", Offset=0.4), "hybrid": noise("HYBRID_MULTIFRACTAL", Offset=0.3, Gain=2.0),
+            "ridged": noise("RIDGED_MULTIFRACTAL", Scale=1.3, Offset=1.2, Gain=1.0), "colour": noise("MULTIFRACTAL", output=1)})
 
     def test_noise_of_one_dimension(self):
         def build(kind):

@@ -1,86 +1,19 @@
-"""The nodes Musgrave and Magic.
-
-Fractals of F. K. Musgrave ("Texturing and Modeling", 3rd edition, chapter 16), of which each octave is lacunarity^-dimension times as
-strong as the one before it; the share of the last one is what the detail has behind the point.
-"""
+"""The nodes Musgrave, of Blender up to 4.0, and Magic."""
 
 import numpy as np
 
-from .noise import signed_noise
+from .fractals import KINDS, Octaves
 from .noise_nodes import points
-from .unsupported import Unsupported
-
-
-class _Octaves:
-    """The octaves at places p: (noise, strength, share) of each."""
-
-    def __init__(self, p, detail, dimension, lacunarity):
-        self._p, self._lacunarity = p, np.maximum(lacunarity, 1e-5)
-        self._fall = self._lacunarity ** -np.maximum(dimension, 1e-5)
-        self.detail = float(np.clip(detail, 0, 15))
-
-    def __iter__(self):
-        frequency = strength = np.float32(1)
-        for octave in range(int(np.ceil(self.detail))):
-            noise = signed_noise(self._p * np.asarray(frequency)[..., None])
-            yield noise, strength, min(self.detail - octave, 1.0)
-            frequency, strength = frequency * self._lacunarity, strength * self._fall
-
-
-def _fbm(octaves, offset, gain):
-    return sum((share * strength * noise for noise, strength, share in octaves), np.float32(0))
-
-
-def _multifractal(octaves, offset, gain):
-    value = np.float32(1)
-    for noise, strength, share in octaves:
-        value = value * (share * strength * noise + 1)
-    return value
-
-
-def _hetero_terrain(octaves, offset, gain):
-    value = None
-    for noise, strength, share in octaves:
-        value = offset + noise if value is None else value + share * (noise + offset) * strength * value
-    return value
-
-
-def _hybrid_multifractal(octaves, offset, gain):
-    value, weight = np.float32(0), np.float32(1)
-    for noise, strength, share in octaves:
-        weight = np.minimum(weight, 1)
-        signal = (noise + offset) * strength
-        # Beyond a faint octave there are no further ones.
-        value = value + np.where(weight > 0.001, share * weight * signal, 0)
-        weight = np.where(weight > 0.001, weight * gain * signal, 0)
-    return value
-
-
-def _ridged_multifractal(octaves, offset, gain):
-    value, signal = np.float32(0), None
-    for noise, strength, share in octaves:
-        if share < 1:  # Blender leaves out what is no whole octave
-            break
-        weight = 1 if signal is None else np.clip(signal * gain, 0, 1)
-        signal = (offset - np.abs(noise)) ** 2 * weight
-        value = value + signal * strength
-    return value
-
-
-_KINDS = {"FBM": _fbm, "MULTIFRACTAL": _multifractal, "HETERO_TERRAIN": _hetero_terrain,
-          "HYBRID_MULTIFRACTAL": _hybrid_multifractal, "RIDGED_MULTIFRACTAL": _ridged_multifractal}
 
 
 def _musgrave(node, output, inputs):
-    detail = inputs.number("Detail")
-    if detail.ndim:
-        raise Unsupported(node, "its detail is not the same everywhere")
     dimensions = int(node.musgrave_dimensions[0])
     p = points(node, inputs, dimensions) * inputs.number("Scale")[..., None]
     # All kinds but these have their first octave whole.
     least = 0 if node.musgrave_type in ("FBM", "MULTIFRACTAL") else 1
-    octaves = _Octaves(p, max(float(detail), least), inputs.number("Dimension"), inputs.number("Lacunarity"))
-    return _KINDS[node.musgrave_type](octaves, inputs.number("Offset"), inputs.number("Gain"))
+    lacunarity = np.maximum(inputs.number("Lacunarity"), 1e-5)
+    octaves = Octaves(p, np.clip(inputs.number("Detail"), least, 15), lacunarity ** -np.maximum(inputs.number("Dimension"), 1e-5), lacunarity)
+    return KINDS[node.musgrave_type](octaves, inputs.number("Offset"), inputs.number("Gain"))
 
 
 # Steps of Magic beyond the first: which of x, y, z is set, by which function with which sign, of x, y, z with which signs.
