@@ -128,7 +128,8 @@ class BlenderTest(unittest.TestCase):
             for point in curve.keyframe_points:
                 point.interpolation = "LINEAR"
 
-    def export(self):
+    def export(self, look=lambda folder: None):
+        """The text of the exported scene; look: called with the folder that it is in while that is there."""
         class Engine:
             @staticmethod
             def frame_set(frame, subframe):
@@ -136,6 +137,7 @@ class BlenderTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             exporter = export_scene.SceneExporter(Engine(), bpy.context.evaluated_depsgraph_get(), folder)
             text = pathlib.Path(exporter.write()).read_text()
+            look(pathlib.Path(folder))
         self.warnings = exporter.warnings
         return text
 

@@ -1,15 +1,13 @@
 """Nodes that hang on the place on a body, against Cycles: each body has a cell of the picture to itself."""
 
-import pathlib
 import re
 import struct
-import tempfile
 import unittest.mock
 
 import bpy
 import numpy as np
 from addon_support import BlenderTest, render
-from covtrace_blender import body_baking, export_scene
+from covtrace_blender import body_baking
 from node_trees import BLUE, ORANGE, Tree
 
 CELL = 48  # pixels; the bodies are in rows of four
@@ -142,14 +140,10 @@ class BodiesTest(BlenderTest):
 
     def sizes(self):
         """(width, height) of the images that an export writes."""
-        class Engine:
-            @staticmethod
-            def frame_set(frame, subframe):
-                bpy.context.scene.frame_set(frame, subframe=subframe)
-        with tempfile.TemporaryDirectory() as folder:
-            exporter = export_scene.SceneExporter(Engine(), bpy.context.evaluated_depsgraph_get(), folder)
-            self.text = pathlib.Path(exporter.write()).read_text()
-            return [struct.unpack(">II", file.read_bytes()[16:24]) for file in sorted(pathlib.Path(folder).glob("texture*.png"))]
+        found = []
+        self.text = self.export(lambda folder: found.extend(
+            struct.unpack(">II", file.read_bytes()[16:24]) for file in sorted(folder.glob("texture*.png"))))
+        return found
 
     def test_images_of_bodies_are_as_fine_as_the_picture(self):
         self.camera.data.type = "PERSP"
