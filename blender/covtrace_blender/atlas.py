@@ -12,30 +12,29 @@ CANDIDATES = 1 << 20  # pairs of texel and triangle looked at at once
 
 
 class Atlas:
-    """Texels of a body. width, height; corner_uvs: (n, 3, 2), the places of its triangles' corners, v upwards: the image's longer
-    side is 1 from the top left on, so that u and v are as long and right-handed on the surface, as heights want them.
+    """Texels of a body. width, height; corner_uvs: (n, 3, 2), the places of its triangles' corners in the unit square, v upwards.
 
     Of each of k texels that show something: rows and columns (from the top), triangle, chart, and `weights`, (k, 2) of the
     triangle's second and third corner. slopes: (n, 2, 2), their change per texel to the right and down.
     """
 
-    def __init__(self, corners, triangles, density, most_texels, is_mirrored=False):
+    def __init__(self, corners, triangles, density, most_texels):
         """corners: (n, 3, 3) of triangles; triangles: (n, 3) vertices. density: (n,) texels per unit of `corners`, powers of 2,
-        of which all are lowered together where there would be more than `most_texels`. is_mirrored: the body is in the world."""
+        of which all are lowered together where there would be more than `most_texels`."""
         level = np.log2(density).round().astype(np.int64)
         charts = Charts(corners, triangles, level)
         for attempt in range(3):
-            self._lay_out(charts, density, most_texels, is_mirrored)
+            self._lay_out(charts, density, most_texels)
             self._draw(charts)
             doubled = self._doubled()
             if not doubled.any():
                 break
             charts = _cut(charts, doubled, corners, triangles, level, attempt == 1)
 
-    def _lay_out(self, charts, density, most_texels, is_mirrored):
+    def _lay_out(self, charts, density, most_texels):
         """Places the charts: `at`, (n, 3, 2) texels to the right and down from the top left."""
         count = charts.chart.max() + 1
-        flat = (charts.corners * density[:, None, None]).reshape(-1, 2) * (-1 if is_mirrored else 1, -1)
+        flat = (charts.corners * density[:, None, None]).reshape(-1, 2) * (1, -1)
         owner = np.repeat(charts.chart, 3)
         low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
         np.minimum.at(low, owner, flat)
@@ -54,7 +53,7 @@ class Atlas:
             share *= min(0.95, (most_texels / (self.width * self.height)) ** 0.5)
         self.at = (flat - low[owner]) * share + self.margin + 0.5 + corner[owner]
         self.at = self.at.reshape(-1, 3, 2)
-        self.corner_uvs = self.at / max(self.width, self.height)
+        self.corner_uvs = self.at / (self.width, self.height)
         self.corner_uvs[..., 1] = 1 - self.corner_uvs[..., 1]
 
     def _draw(self, charts):

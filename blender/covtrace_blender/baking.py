@@ -56,7 +56,7 @@ class Baker:
         Raises Unsupported of the node that cannot be evaluated.
         """
         if surface.body:
-            return bake_body(get, surface.body, only_unit_square, self.pixels_of, self.ray)
+            return bake_body(get, surface.body, self.pixels_of, self.ray)
 
         def at(uv):
             nonlocal place

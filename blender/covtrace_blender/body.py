@@ -72,10 +72,10 @@ class Body:
             faces = face_normals(self._corners["OBJECT"]) @ turn.T
             self._corners["WORLD FACE NORMAL"] = np.repeat(faces[:, None], 3, axis=1)
 
-    def lay_out(self, density, most_texels, is_mirrored):
-        """Makes the atlas; density: (n,) texels per unit at each triangle; is_mirrored: as Atlas has it."""
-        self.atlas = Atlas(self._rest, self.triangles, density, most_texels, is_mirrored)
-        digest = hashlib.sha256(repr((self.atlas.width, self.atlas.height, is_mirrored)).encode())
+    def lay_out(self, density, most_texels):
+        """Makes the atlas; density: (n,) texels per unit at each triangle."""
+        self.atlas = Atlas(self._rest, self.triangles, density, most_texels)
+        digest = hashlib.sha256(repr((self.atlas.width, self.atlas.height)).encode())
         digest.update(self.atlas.corner_uvs.astype(np.float32).tobytes())
         for kind in sorted(self._corners, key=str):
             digest.update(repr(kind).encode() + np.ascontiguousarray(self._corners[kind], np.float32).tobytes())

@@ -11,9 +11,8 @@ from .shader_nodes.place import BodyPlace
 PROBES = 256
 
 
-def bake_body(get, body, only_unit_square, pixels_of, ray):
-    """Bakes `get(evaluator)`, a number or a vector, to the atlas of `body`; only_unit_square: for what has no other layout. The rest as
-    BodyPlace has it."""
+def bake_body(get, body, pixels_of, ray):
+    """Bakes `get(evaluator)`, a number or a vector, to the atlas of `body`. The rest as BodyPlace has it."""
     atlas = body.atlas
 
     def at(texels, shift=(0.0, 0.0)):
@@ -44,11 +43,9 @@ def bake_body(get, body, only_unit_square, pixels_of, ray):
     chart = _scattered(atlas, atlas.chart[:, None] + 1)[..., 0]
     crossed = np.flatnonzero(edges.edges(_scattered(atlas, values), chart)[atlas.rows, atlas.columns])
     values[crossed] = mean_at(crossed, edges.places(len(crossed), count))
-    side = max(atlas.width, atlas.height)
-    pixels = np.ones((side, side, 4) if only_unit_square else (atlas.height, atlas.width, 4), np.float32)
-    pixels[:atlas.height, :atlas.width, :3] = filled(_scattered(atlas, values), chart > 0)
-    height, width = np.array(pixels.shape[:2]) / side
-    return Baked(image=BakedImage(pixels), layout=Layout((0, 1 - height), (width, height), "repeat"))
+    pixels = np.ones((atlas.height, atlas.width, 4), np.float32)
+    pixels[..., :3] = filled(_scattered(atlas, values), chart > 0)
+    return Baked(image=BakedImage(pixels), layout=Layout((0, 0), (1, 1), "repeat"))
 
 
 def _scattered(atlas, values):

@@ -271,8 +271,7 @@ class SceneExporter:
             mesh.calc_loop_triangles()
             chosen = np.isin(np.minimum(export_meshes.triangle_slots(mesh), max(len(materials) - 1, 0)), slots)
             found = Body(mesh, chosen, self.placements.only_matrix(obj) if hangs_on_world(material.node_tree) else None)
-            found.lay_out(self.placements.density(obj, mesh)[found.chosen], self.placements.most_texels,
-                          self.placements.is_mirrored(obj))
+            found.lay_out(self.placements.density(obj, mesh)[found.chosen], self.placements.most_texels)
             return found
 
         def surface_of(name):

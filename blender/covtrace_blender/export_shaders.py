@@ -73,9 +73,12 @@ class ShaderWriter(SocketReader):
         return [self._number("roughness", value, squared, "squared"), '"bool remaproughness" false']
 
     def _normal_map(self, node):
+        """Parameters of the map that turns the normal; maps lie as the texture coordinates do, as in Cycles."""
         source, _ = self._linked(node.inputs["Normal"])
-        if source is None:
-            return []
+        found = [] if source is None else self._map_of(source)
+        return [*found, '"bool mapsfollowuv" true'] if found else []
+
+    def _map_of(self, source):
         if source.type == "BUMP":
             return self._bump(source)
         if source.type == "NORMAL_MAP" and source.space == "TANGENT":

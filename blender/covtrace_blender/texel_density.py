@@ -37,11 +37,6 @@ class Placements:
         key = self.key(obj)
         return None if key in self._instanced or len(self._matrices.get(key, ())) != 1 else self._matrices[key][0]
 
-    def is_mirrored(self, obj):
-        """Whether a mesh stands in the world as in a mirror; of several instances the first one tells."""
-        matrices = self._matrices.get(self.key(obj))
-        return bool(matrices) and float(np.linalg.det(matrices[0][:3, :3])) < 0
-
     def density(self, obj, mesh):
         """(n,) texels per unit at each triangle of a mesh: between one and two per pixel, powers of two, so that small moves change
         nothing."""

@@ -97,7 +97,7 @@ MaterialId MaterialBuilder::add(decltype(MaterialDescription::value) model) {
     m.where = document_.place(place_);
     m.normal_map = normal_map_;
     m.normal_scale = normal_scale_;
-    m.normal_map_follows_v = true;
+    m.maps_follow_uv = true;
     m.tangent_rotation = tangent_rotation_;
     m.tangent_direction = tangent_direction_;
     m.sheen = sheen_;

@@ -70,6 +70,7 @@ MaterialId MaterialBuilder::build(Declared& d) {
                               {},
                               maps.displacement,
                               maps.normal_map};
+        m.maps_follow_uv = maps.follow_uv;
         m.sheen = sheen;
         d.id = static_cast<MaterialId>(context_.scene.materials.size());
         context_.scene.materials.push_back(std::move(m));

@@ -286,6 +286,7 @@ NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& c
         maps.normal_map = static_cast<TextureId>(context.scene.textures.size());
         context.scene.textures.push_back({{}, true, image, where});
     }
+    maps.follow_uv = p.flag("mapsfollowuv", false);
     return maps;
 }
 

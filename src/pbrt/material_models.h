@@ -12,9 +12,11 @@ class TextureBuilder;
 decltype(MaterialDescription::value) material_model(Entity& entity, TextureBuilder& textures,
                                                     BuildContext& context);
 
-/// Textures that turn a material's normals (see MaterialDescription); -1 where one isn't given.
+/// Textures that turn a material's normals, and how they lie (see MaterialDescription); -1 where
+/// one isn't given.
 struct NormalMaps {
     TextureId displacement = -1, normal_map = -1;
+    bool follow_uv = false;  ///< a parameter of ours: "mapsfollowuv"
 };
 NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& context);
 

@@ -133,9 +133,10 @@ struct MaterialDescription {
     /// Image of tangent space normals, (n + 1) / 2; it counts where there is a displacement, too.
     TextureId normal_map = -1;
     float normal_scale = 1;  ///< of the map's x and y
-    /// Whether the map's y follows increasing v, on mirrored texture coordinates too; else it
-    /// stands left of x on the surface, as in pbrt.
-    bool normal_map_follows_v = false;
+    /// Whether maps lie as (u, v) does. Else the normal map's y stands left of x also where (u, v)
+    /// is mirrored, and on meshes with normals heights are taken for those of a v that stands left
+    /// of u and is as long, as in pbrt.
+    bool maps_follow_uv = false;
     /// Angle from x = dp/du to the axis that u_roughness lies along, radians, towards a map's y.
     float tangent_rotation = 0;
     /// Image of that axis before the rotation: (x, y) = 2 (r, g) - 1, as those of a normal map.

@@ -57,11 +57,16 @@ NormalMap::NormalMap(const MaterialDescription& material, const TextureStore& te
         displacement_ = -1;
         normal_scale_ = material.clearcoat->normal_scale;
     }
-    if (material.normal_map_follows_v && dot(cross(hit.dpdu, hit.dpdv), hit.ns) < 0) y_sign_ = -1;
+    if (material.maps_follow_uv && dot(cross(hit.dpdu, hit.dpdv), hit.ns) < 0) y_sign_ = -1;
     if (hit.mesh && !hit.mesh->map_signs.empty())
         y_sign_ *= static_cast<float>(hit.mesh->map_signs[hit.primitive]);
-    if (has_vertex_normals<BilinearMesh>(shape.description)) {
-        // Patches have pbrt's shading tangents: the parameters' own, turned as the normal is.
+    const bool has_mesh_values =
+        has_vertex_normals<TriangleMesh>(shape.description) || has_tangents(shape.description);
+    const bool has_own_tangents =
+        has_mesh_values && !(material.maps_follow_uv && displacement_ >= 0);
+    if (has_vertex_normals<BilinearMesh>(shape.description) ||
+        (has_mesh_values && !has_own_tangents)) {
+        // The parameters' own, turned as the normal is; pbrt has them of patches alone.
         Vec3 flat = cross(hit.dpdu, hit.dpdv);
         if (dot(flat, hit.ns) < 0) flat = -flat;
         if (length_squared(flat) > 0 && is_finite(normalize(flat))) {
@@ -69,7 +74,7 @@ NormalMap::NormalMap(const MaterialDescription& material, const TextureStore& te
             dpdv_ = turned(hit.dpdv, normalize(flat), hit.ns);
         }
     }
-    if (has_vertex_normals<TriangleMesh>(shape.description) || has_tangents(shape.description)) {
+    if (has_own_tangents) {
         // Meshes with values at their vertices have pbrt's shading tangents: orthogonal to the
         // normal and to each other, both as long as the mesh's own tangent, or as dp/du.
         const Vec3 t = cross(hit.ns, hit.tangent);

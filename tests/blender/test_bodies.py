@@ -107,18 +107,58 @@ class BodiesTest(BlenderTest):
         add("world", self.cube(), moved.material)
         self.assert_bodies(names)
 
-    def test_heights_on_bodies_are_as_in_cycles(self):
+    def light_from_the_side(self):
         self.background.inputs["Color"].default_value = (0, 0, 0, 1)
         self.lamp("SUN", energy=3.0).rotation_euler = (0.5, 0.4, 0)
+
+    @staticmethod
+    def bumpy():
         tree = Tree()
         noise = tree.node("TexNoise", {}, {"Scale": 5.0, "Detail": 0.0})
         tree.link(tree.node("Bump", {}, {"Distance": 0.03, "Height": (noise, "Fac")}), 0, tree.shader.inputs["Normal"])
-        self.place(self.sphere(), tree.material, is_smooth=True)
-        torus = self.place(self.made("torus", major_radius=0.3, minor_radius=0.13), tree.material, is_smooth=True)
-        torus.scale = (-1, 1, 1)
-        self.place(self.made("monkey", size=0.75), tree.material, is_smooth=True)
-        self.place(self.cube(), tree.material)
-        self.assert_bodies(["sphere", "mirrored torus", "monkey", "cube"], 0.985)
+        return tree.material
+
+    def test_heights_on_bodies_are_as_in_cycles(self):
+        self.light_from_the_side()
+        material = self.bumpy()
+        self.place(self.sphere(), material, is_smooth=True)
+        self.place(self.made("torus", major_radius=0.3, minor_radius=0.13), material, is_smooth=True).scale = (-1, 1, 1)
+        self.place(self.made("monkey", size=0.75), material, is_smooth=True)
+        self.place(self.cube(), material)
+        self.place(self.sphere(), material, is_smooth=True).scale = (0.3, 1, 1)
+        twin = self.sphere()
+        self.place(twin, material, is_smooth=True)
+        things = bpy.data.collections.new("things")
+        things.objects.link(twin)
+        self.scene.collection.objects.unlink(twin)
+        for scale in ((1, 1, 1), (-1, 1, 1)):
+            self.count -= scale[0] > 0
+            empty = self.place(bpy.data.objects.new("empty", None))
+            empty.instance_type, empty.instance_collection, empty.scale = "COLLECTION", things, scale
+            things.instance_offset, empty.rotation_euler = twin.location, (0, 0, 0)
+            self.scene.collection.objects.link(empty)
+        self.assert_bodies(["sphere", "mirrored torus", "monkey", "cube", "flat", "instance", "mirrored instance"], 0.99)
+
+    def test_normal_maps_on_bodies_are_as_in_cycles(self):
+        self.light_from_the_side()
+        tree = Tree()
+        image = bpy.data.images.new("normals", 64, 64, float_buffer=True)
+        image.colorspace_settings.name = "Non-Color"
+        y, x = np.mgrid[:64, :64] * (2 * np.pi / 8)
+        image.pixels = np.dstack((0.5 + 0.15 * np.sin(x), 0.5 + 0.15 * np.cos(y), np.full_like(x, 0.96), np.ones_like(x))).ravel()
+        normals = tree.node("NormalMap", {}, {"Color": tree.node("TexImage", {"image": image}, {"Vector": tree.uv()})})
+        tree.link(normals, 0, tree.shader.inputs["Normal"])
+        on_body = tree.material.copy()
+        nodes = on_body.node_tree.nodes
+        noise = nodes.new("ShaderNodeTexNoise")
+        noise.inputs["Scale"].default_value = 2
+        on_body.node_tree.links.new(noise.outputs["Color"], nodes[tree.shader.name].inputs["Color"])
+        for material in (tree.material, on_body):
+            for scale in (1, -1):
+                self.place(self.sphere(), material, is_smooth=True).scale = (scale, 1, 1)
+            for loop in self.place(self.sphere(), material, is_smooth=True).data.uv_layers[0].data:
+                loop.uv = (-2 * loop.uv[0], loop.uv[1])
+        self.assert_bodies([f"{kind} {where}" for where in ("over a UV map", "over a body") for kind in ("plain", "mirrored", "mirrored map")])
 
     def test_what_is_no_body_is_told_or_left_out(self):
         nothing = self.place(self.cube(), self.texture("Noise"))
@@ -164,3 +204,16 @@ class BodiesTest(BlenderTest):
             self.scene.render.resolution_y *= 4
             fine, = self.sizes()
         self.assertGreater(fine[0] / near[0], 3)  # less than 4: margins do not grow
+
+    def test_images_of_long_bodies_that_shine_are_no_squares(self):
+        tree = Tree()
+        shader = tree.node("Emission", {}, {"Color": (tree.node("TexNoise", {}, {"Scale": 9.0}), "Color")})
+        tree.link(shader, 0, tree.tree.nodes["Material Output"].inputs["Surface"])
+        tube = self.made("cube", size=2)
+        for vertex in tube.data.vertices:
+            vertex.co.y *= 0.01
+            vertex.co.z *= 0.01
+        self.place(tube, tree.material)
+        self.scene.render.resolution_x, self.scene.render.resolution_y = 512, 384
+        (width, height), = self.sizes()
+        self.assertGreater(max(width, height), 3 * min(width, height))

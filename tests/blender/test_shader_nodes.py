@@ -302,6 +302,26 @@ class ShaderNodesTest(BlenderTest):
         self.assert_nodes({"bump": build(1.0, 0.08), "inverted": build(1.0, 0.06, True), "half": build(0.5, 0.12)},
                           most_of_structure=0.6)
 
+    def test_heights_follow_uv_maps(self):
+        """Of smooth meshes, too, where pbrt takes v to be as long as u and left of it."""
+        self.background.inputs["Color"].default_value = (0, 0, 0, 1)
+        bpy.ops.object.light_add(type="SUN", rotation=(0.3, 0.8, 0))
+        bpy.context.object.data.energy = 2
+
+        def waves(axis):
+            def show(tree):
+                turned = tree.node("Math", {"operation": "MULTIPLY"}, {0: tree.number(axis), 1: 6.2})
+                heights = tree.node("Math", {"operation": "SINE"}, {0: turned})
+                tree.link(tree.node("Bump", {}, {"Distance": 0.05, "Height": heights}), 0, tree.shader.inputs["Normal"])
+            return show
+
+        def change(plane):
+            plane.data.polygons[0].use_smooth = True
+            for loop in plane.data.uv_layers[0].data:
+                loop.uv = (loop.uv[1], 2 * loop.uv[0])  # mirrored and stretched
+
+        self.assert_nodes({"along u": waves(0), "along v": waves(1)}, change, mean_tolerance=0.05, most_of_structure=0.6)
+
     def test_heights_from_above(self):
         """Lit along the normal, where Cycles' term against hard terminators is 1. Slopes stay below 1, where it bends normals."""
         self.background.inputs["Color"].default_value = (0, 0, 0, 1)

@@ -115,7 +115,7 @@ TEST(GltfMaterials, ReadsChannelsOfTextures) {
     for (const MaterialId part : mixed.mix->materials) {
         EXPECT_GE(scene.materials[size_t(part)].normal_map, 0);
         EXPECT_EQ(scene.materials[size_t(part)].normal_scale, 0.5f);
-        EXPECT_TRUE(scene.materials[size_t(part)].normal_map_follows_v);
+        EXPECT_TRUE(scene.materials[size_t(part)].maps_follow_uv);
     }
 }
 

@@ -200,7 +200,7 @@ TEST(SceneMaterials, BumpAndNormalMaps) {
 Texture "bumps" "float" "checkerboard"
 Material "diffuse" "texture displacement" "bumps"
 Shape "sphere"
-Material "conductor" "string normalmap" "n.png"
+Material "conductor" "string normalmap" "n.png" "bool mapsfollowuv" true
 Shape "sphere"
 Material "diffuse" "float displacement" 2
 Shape "sphere"
@@ -212,6 +212,8 @@ Shape "sphere"
     EXPECT_TRUE(std::holds_alternative<CheckerboardTexture>(
         scene.textures.at(static_cast<size_t>(of(0).displacement)).value));
     EXPECT_EQ(of(0).normal_map, -1);
+    EXPECT_FALSE(of(0).maps_follow_uv);
+    EXPECT_TRUE(of(1).maps_follow_uv);
     EXPECT_EQ(constant_as<ImageTexture>(scene, of(1).normal_map).encoding,
               ImageTexture::Encoding::linear);
     EXPECT_EQ(of(2).displacement, -1) << "a constant height turns no normal";

@@ -126,6 +126,26 @@ TEST(NormalMap, TangentsOfAMeshHoldInPlaceOfTheParameters) {
     expect_near(m.map().frame().z, normalize(cross(Vec3{0, 2, du}, Vec3{-2, 0, dv})), 2e-3f);
 }
 
+TEST(NormalMap, MapsFollowStretchedAndMirroredCoordinates) {
+    TriangleMesh mesh = unit_square();
+    mesh.normals.assign(4, {0, 0, 1});
+    for (Vec2& uv : mesh.uvs) uv.y = 0.75f - 0.5f * uv.y;
+    const TemporaryImage heights(saddle(), 2, 2);
+    constexpr float kScale = 0.3f, x = 0.6f, y = 0.4f;
+    Mapped m(heights, true, kScale, {x, y, 0}, mesh_of(mesh));
+    const float dx = kScale * 2 * (2 * (0.75f - 0.5f * y) - 0.5f), dy = -kScale * (2 * x - 0.5f);
+    // In pbrt v is as long as u and left of it.
+    expect_near(m.map().frame().z, normalize(Vec3{-dx, 2 * dy, 1}), 2e-3f);
+    m.material.maps_follow_uv = true;
+    expect_near(m.map().frame().z, normalize(Vec3{-dx, -dy, 1}), 2e-3f);
+
+    const TemporaryImage normals({Rgb(0.5f, 0.8f, 0.9f)}, 1, 1);
+    Mapped n(normals, false, 1, {x, y, 0}, mesh_of(mesh));
+    expect_near(n.map().frame().z, {0, 0.6f, 0.8f}, 1e-3f);
+    n.material.maps_follow_uv = true;
+    expect_near(n.map().frame().z, {0, -0.6f, 0.8f}, 1e-3f);
+}
+
 TEST(NormalMap, NormalsThatLieBelowTheSurfaceAreTurned) {
     const TemporaryImage image({Rgb(0.9f, 0.5f, 0.2f)}, 1, 1);
     const Mapped m(image, false, 1, {0.5f, 0.5f, 0});
