@@ -9,6 +9,7 @@ LEAST_MARGIN = 1
 LARGEST_SIDE = 8192
 TILE = 64  # texels are in the order of squares of this side, so that those of one go at once
 CANDIDATES = 1 << 20  # pairs of texel and triangle looked at at once
+ROUNDS = 5  # of cuts through charts that lie on themselves; the last one leaves none
 
 
 class Atlas:
@@ -21,15 +22,15 @@ class Atlas:
     def __init__(self, corners, triangles, density, most_texels):
         """corners: (n, 3, 3) of triangles; triangles: (n, 3) vertices. density: (n,) texels per unit of `corners`, powers of 2,
         of which all are lowered together where there would be more than `most_texels`."""
-        level = np.log2(density).round().astype(np.int64)
-        charts = Charts(corners, triangles, level)
-        for attempt in range(3):
+        cells = np.log2(density / density.min()).round().astype(np.int64)
+        for attempt in range(ROUNDS):
+            charts = Charts(corners, triangles, cells)
             self._lay_out(charts, density, most_texels)
             self._draw(charts)
             doubled = self._doubled()
             if not doubled.any():
                 break
-            charts = _cut(charts, doubled, corners, triangles, level, attempt == 1)
+            cells = _cut(charts, doubled, corners, cells, attempt)
 
     def _lay_out(self, charts, density, most_texels):
         """Places the charts: `at`, (n, 3, 2) texels to the right and down from the top left."""
@@ -165,16 +166,20 @@ def _boxes(at, members, reach, values, width, height):
         first = last
 
 
-def _cut(charts, doubled, corners, triangles, level, is_last):
-    """Charts of which those that lie on themselves are cut: into pieces an eighth as large, in the end into their triangles."""
-    if is_last:
-        return Charts(corners, triangles, np.where(doubled, np.arange(len(doubled)) + 1 + (1 << 40), level))
+def _cut(charts, doubled, corners, cells, attempt):
+    """(n,) cells with which charts that lie on themselves are cut, earlier cuts being kept: two times into pieces an eighth as large, then
+    what is on something else into its triangles, in the end all of these charts. doubled: (n,) which triangles are on others."""
     bad = np.zeros(charts.chart.max() + 1, bool)
     bad[charts.chart[doubled]] = True
-    middles = corners.mean(axis=1)
-    low, high = np.full((len(bad), 3), np.inf), np.full((len(bad), 3), -np.inf)
-    np.minimum.at(low, charts.chart, middles)
-    np.maximum.at(high, charts.chart, middles)
-    step = np.maximum((high - low).max(axis=1) / 8, 1e-30)[charts.chart]
-    cell = np.floor((middles - low[charts.chart]) / step[:, None]).astype(np.int64) @ (1, 9, 81) + 1
-    return Charts(corners, triangles, np.where(bad[charts.chart], cell * 256, 0) + level)
+    bad = bad[charts.chart]
+    if attempt >= 2:
+        alone = doubled if attempt == 2 else bad
+        piece = np.where(alone, np.arange(1, len(alone) + 1), 0)
+    else:
+        middles = corners.mean(axis=1)
+        low, high = np.full((charts.chart.max() + 1, 3), np.inf), np.full((charts.chart.max() + 1, 3), -np.inf)
+        np.minimum.at(low, charts.chart, middles)
+        np.maximum.at(high, charts.chart, middles)
+        step = np.maximum((high - low).max(axis=1) / 8, 1e-30)[charts.chart]
+        piece = np.where(bad, np.floor((middles - low[charts.chart]) / step[:, None]).astype(np.int64) @ (1, 9, 81) + 1, 0)
+    return np.unique(cells * (piece.max() + 1) + piece, return_inverse=True)[1]

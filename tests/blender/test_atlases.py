@@ -1,0 +1,52 @@
+"""Atlases of bodies: that each place has texels of its own."""
+
+import numpy as np
+from addon_support import BlenderTest
+from covtrace_blender.atlas import Atlas
+
+SIDES, STEPS = 4, 16  # corners around a spring's wire, and along a turn
+
+
+def spring(turns, pitch, radius=1.0, wire=0.1):
+    """(positions, triangles) of a wire in `turns` around the axis z."""
+    along = np.arange(turns * STEPS + 1) * (2 * np.pi / STEPS)
+    around = np.arange(SIDES) * (2 * np.pi / SIDES)
+    out = radius + wire * np.cos(around)
+    positions = np.stack([np.cos(along)[:, None] * out, np.sin(along)[:, None] * out,
+                          (pitch / (2 * np.pi) * along)[:, None] + wire * np.sin(around)], axis=-1)
+    corner = np.arange(len(along) * SIDES).reshape(-1, SIDES)
+    a, b = corner[:-1], np.roll(corner, -1, axis=1)[:-1]
+    c, d = corner[1:], np.roll(corner, -1, axis=1)[1:]
+    triangles = np.concatenate([np.stack((a, c, d), -1).reshape(-1, 3), np.stack((a, d, b), -1).reshape(-1, 3)])
+    return positions.reshape(-1, 3), triangles
+
+
+def joined(*meshes):
+    """The corners and triangles of several (positions, triangles) as one."""
+    positions, triangles, first = [], [], 0
+    for points, corners in meshes:
+        positions.append(points)
+        triangles.append(corners + first)
+        first += len(points)
+    triangles = np.concatenate(triangles)
+    return np.concatenate(positions)[triangles], triangles
+
+
+class AtlasTest(BlenderTest):
+    def assert_places_have_texels_of_their_own(self, corners, triangles, density):
+        """Asserts that texels show the places on the triangles that lie in them."""
+        atlas = Atlas(corners, triangles, np.full(len(triangles), density), 1 << 22)
+        shares = np.random.default_rng(1).dirichlet((1, 1, 1), (len(triangles), 8))
+        places, uvs = (np.einsum("nki,nij->nkj", shares, values).reshape(-1, values.shape[-1]) for values in (corners, atlas.corner_uvs))
+        number = np.full((atlas.height, atlas.width), -1)
+        number[atlas.rows, atlas.columns] = np.arange(len(atlas.rows))
+        found = number[((1 - uvs[:, 1]) * atlas.height).astype(int), (uvs[:, 0] * atlas.width).astype(int)]
+        self.assertTrue((found >= 0).all())
+        away = np.linalg.norm(atlas.interpolated(corners, found) - places, axis=1)
+        self.assertLess(away.max() * density, 3)
+
+    def test_charts_that_lie_on_themselves_are_cut(self):
+        short, long = spring(3, 0.5), spring(40, 0.5)
+        long[0][:, 0] += 3
+        self.assert_places_have_texels_of_their_own(*joined(short), 12.0)
+        self.assert_places_have_texels_of_their_own(*joined(short, long), 12.0)
