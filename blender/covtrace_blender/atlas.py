@@ -12,25 +12,48 @@ CANDIDATES = 1 << 20  # pairs of texel and triangle looked at at once
 ROUNDS = 5  # of cuts through charts that lie on themselves; the last one leaves none
 
 
-class Atlas:
-    """Texels of a body. width, height; corner_uvs: (n, 3, 2), the places of its triangles' corners in the unit square, v upwards.
+class Texels:
+    """Of each of k texels that show something: rows and columns (from the top), triangle, and `weights`, (k, 2) of the triangle's second
+    and third corner. inside: how many triangles it is well inside of."""
 
-    Of each of k texels that show something: rows and columns (from the top), triangle, chart, and `weights`, (k, 2) of the
-    triangle's second and third corner. slopes: (n, 2, 2), their change per texel to the right and down.
-    """
+    def __init__(self, rows, columns, triangle, weights, inside):
+        self.rows, self.columns, self.triangle, self.weights, self.inside = rows, columns, triangle, weights, inside
+
+
+class Atlas:
+    """Texels of a body. width, height; corner_uvs: (n, 3, 2), the places of its triangles' corners in the unit square, v upwards. chart:
+    (n,) that of each triangle. slopes: (n, 2, 2), the change of `weights` per texel to the right and down."""
 
     def __init__(self, corners, triangles, density, most_texels):
-        """corners: (n, 3, 3) of triangles; triangles: (n, 3) vertices. density: (n,) texels per unit of `corners`, powers of 2,
+        """corners: (n, 3, 3) of triangles; triangles: (n, 3) vertices. density: (n,) texels per unit of `corners`, in steps of 2,
         of which all are lowered together where there would be more than `most_texels`."""
         cells = np.log2(density / density.min()).round().astype(np.int64)
         for attempt in range(ROUNDS):
             charts = Charts(corners, triangles, cells)
+            self.chart, self._is_border = charts.chart, charts.is_border
             self._lay_out(charts, density, most_texels)
-            self._draw(charts)
-            doubled = self._doubled()
+            self._draw()
+            doubled = np.zeros(len(triangles), bool)
+            doubled[self._texels.triangle[self._texels.inside > 1]] = True
             if not doubled.any():
                 break
             cells = _cut(charts, doubled, corners, cells, attempt)
+
+    @property
+    def texels(self):
+        if self._texels is None:
+            self._draw()
+        return self._texels
+
+    def forget_texels(self):
+        """They are found again when they are asked for."""
+        self._texels = None
+
+    def bytes_of_layout(self):
+        return sum(values.nbytes for values in (self.at, self.corner_uvs, self.slopes, self.chart, self._is_border))
+
+    def bytes_of_texels(self):
+        return 0 if self._texels is None else sum(values.nbytes for values in vars(self._texels).values())
 
     def _lay_out(self, charts, density, most_texels):
         """Places the charts: `at`, (n, 3, 2) texels to the right and down from the top left."""
@@ -57,7 +80,7 @@ class Atlas:
         self.corner_uvs = self.at / (self.width, self.height)
         self.corner_uvs[..., 1] = 1 - self.corner_uvs[..., 1]
 
-    def _draw(self, charts):
+    def _draw(self):
         """Finds what each texel shows: the triangle that it is in, or the nearest one of its chart."""
         a, b, c = np.moveaxis(self.at, 1, 0)
         first, second = b - a, c - a
@@ -68,10 +91,10 @@ class Atlas:
                                axis=1) / safe[:, None, None]
         # Weights fall to zero over the height over the opposite side.
         heights = np.abs(safe[:, None]) / np.maximum(np.linalg.norm(np.stack((c - b, second, first), axis=1), axis=2), 1e-30)
-        reach = np.where(charts.is_border, float(self.margin), 0.0)
+        reach = np.where(self._is_border, float(self.margin), 0.0)
         rows, columns = -(-self.height // TILE) * TILE, -(-self.width // TILE) * TILE
         nearest, owner = np.full(rows * columns, np.inf, np.float32), np.full(rows * columns, -1, np.int32)
-        self._inside = np.zeros(rows * columns, np.uint8)  # triangles that a texel is well inside of
+        inside = np.zeros(rows * columns, np.uint8)
         members = np.flatnonzero(~is_flat)
         starts = np.concatenate((self.at[members, 0], self.slopes[members].reshape(-1, 4), heights[members], reach[members, None]), axis=1)
         for triangle, values, row, column in _boxes(self.at, members, reach, starts, self.width, self.height):
@@ -82,36 +105,31 @@ class Atlas:
             kept = np.flatnonzero(inwards >= -np.maximum(reaches, 1e-3))
             outside = -inwards[kept].astype(np.float32)
             texel = _in_tiles(row[kept], column[kept], columns)
-            np.add.at(self._inside, texel[outside < -1e-3], 1)
+            np.add.at(inside, texel[outside < -1e-3], 1)
             order = np.argsort(-outside)  # the last one that is assigned stays
             outside, texel = outside[order], texel[order]
             better = outside < nearest[texel]
             nearest[texel[better]], owner[texel[better]] = outside[better], triangle[kept][order][better]
         if not (owner >= 0).any():
             owner[0] = 0  # nothing has an extent: a place of the first triangle stands for all
-        self._collect(owner, columns, charts)
+        self._texels = self._found(owner, inside, columns)
 
-    def _collect(self, owner, columns, charts):
+    def _found(self, owner, inside, columns):
+        """The Texels that an image of so many columns shows, of numbers of triangles in tiles."""
         texel = np.flatnonzero(owner >= 0)
-        self._inside, self.triangle = self._inside[texel], owner[texel]
         tile, place = np.divmod(texel, TILE * TILE)
         down, right = np.divmod(tile, columns // TILE)
-        self.rows, self.columns = down * TILE + place // TILE, right * TILE + place % TILE
-        self.chart = charts.chart[self.triangle]
-        away = np.column_stack((self.columns, self.rows)) + 0.5 - self.at[self.triangle, 0]
-        self.weights = np.einsum("ki,kij->kj", away, self.slopes[self.triangle])
-
-    def _doubled(self):
-        """(n,) which triangles have texels that others have, too: charts that lie on themselves."""
-        doubled = np.zeros(len(self.at), bool)
-        doubled[self.triangle[self._inside > 1]] = True
-        return doubled
+        row, column = down * TILE + place // TILE, right * TILE + place % TILE
+        triangle = owner[texel]
+        away = np.column_stack((column, row)) + 0.5 - self.at[triangle, 0]
+        weights = np.einsum("ki,kij->kj", away, self.slopes[triangle])
+        return Texels(row.astype(np.int32), column.astype(np.int32), triangle, weights, inside[texel])
 
     def interpolated(self, corners, chosen, shift=(0.0, 0.0)):
         """(m, d) float32 of (n, 3, d) values of corners, at the texels that `chosen` indexes, moved by a share of a texel to the right
         and down."""
-        triangle = self.triangle[chosen]
-        weights = self.weights[chosen]
+        triangle = self.texels.triangle[chosen]
+        weights = self.texels.weights[chosen]
         if shift[0] or shift[1]:
             slopes = self.slopes[triangle]
             weights = weights + slopes[:, 0] * shift[0] + slopes[:, 1] * shift[1]

@@ -1,32 +1,52 @@
 """Images that were baked for the last export, kept so that the next frame, or a moved object in a viewport, does not bake it again."""
 
-from . import baking
+from . import baking, body_normals
+from .baked import Baked
 from .node_signature import all_nodes, signature
 
 MOST_BYTES = 1 << 29  # kept between exports
 
 _known = {}  # {key: Baked}
+_kinds = {}  # {key without the surface: kinds of coordinates on a body that its nodes ask for}
 
 
 class BakedImages:
     """Those of one export, which remembers the last one's."""
 
     def __init__(self):
-        self._used = {}
+        self._used, self._kinds = {}, {}
 
     def of(self, socket, surface, how, bake):
         """The result of `bake()` for a socket on a Surface, or an earlier one; how: further values that it hangs on."""
         tree = socket.id_data
         if any(_may_change(node.image) for node in all_nodes(tree) if getattr(node, "image", None)):
             return bake()
-        key = (signature(tree), socket.node.name, socket.identifier, how, surface.key(), baking.SMALLEST, baking.LARGEST)
-        found = self._used.get(key) or _known.get(key) or bake()
+        nodes = (signature(tree), socket.node.name, socket.identifier, how, baking.SMALLEST, baking.LARGEST)
+        kinds = self._kinds.get(nodes, _kinds.get(nodes))
+        found = None
+        if not surface.body or kinds is not None:
+            key = (nodes, surface.key(kinds))
+            found = self._used.get(key) or _known.get(key)
+        if not found:
+            found = bake()
+            kinds, key = found.kinds, (nodes, surface.key(found.kinds))
         self._used[key] = found
+        if surface.body:
+            self._kinds[nodes] = kinds
         return found
+
+    def turned(self, image, body, uv_map, strength):
+        """The BakedImage that body_normals.turned makes, or an earlier one."""
+        key = (image.name_full, body.key(body_normals.kinds(uv_map)), uv_map, strength)
+        found = self._used.get(key) or _known.get(key) or Baked(image=body_normals.turned(image, body, uv_map, strength))
+        self._used[key] = found
+        return found.image
 
     def keep(self):
         """Ends the export."""
         _known.clear()
+        _kinds.clear()
+        _kinds.update(self._kinds)
         size = 0
         for key, baked in self._used.items():
             size += baked.image.values.nbytes if baked.image else 0

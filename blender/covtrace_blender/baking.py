@@ -35,9 +35,9 @@ class Surface:
         found.body = self.body_of()
         return found
 
-    def key(self):
-        """A text that is equal for surfaces that look alike."""
-        return self.body.key if self.body else repr(self.ranges)
+    def key(self, kinds):
+        """What is equal for surfaces that look alike to nodes that ask for these kinds of coordinates on a body."""
+        return self.body.key(kinds) if self.body else repr(self.ranges)
 
     def range(self, uv_map):
         found = self.ranges.get(uv_map, self.ranges.get("", ((0, 0), (1, 1))))
@@ -59,13 +59,11 @@ class Baker:
             return bake_body(get, surface.body, self.pixels_of, self.ray)
 
         def at(uv):
-            nonlocal place
-            place = UvPlace(np.asarray(uv, np.float32), self.pixels_of, self.ray)
-            return get(Evaluator(place))
+            return get(Evaluator(UvPlace(np.asarray(uv, np.float32), self.pixels_of, self.ray)))
 
-        place = None
         random = np.random.default_rng(0)
-        value = at(random.random((PROBES, 2)))
+        place = UvPlace(random.random((PROBES, 2)).astype(np.float32), self.pixels_of, self.ray)
+        value = get(Evaluator(place))
         if place.is_uniform:
             return Baked(constant=value)
         shape = value.shape if len(value.shape) and value.shape[0] == PROBES else (PROBES, *value.shape)

@@ -1,11 +1,9 @@
 """Coordinates and normals at the corners of a mesh's triangles, which nodes ask for."""
 
-import hashlib
-
 import numpy as np
 
 from . import export_meshes
-from .atlas import Atlas
+from .atlases import digest
 from .charts import face_normals
 
 
@@ -38,7 +36,7 @@ def _corner_normals(mesh, positions, triangles, loops):
 class Body:
     """The triangles of a mesh that one material is on, with an Atlas of them.
 
-    chosen: (n,) bool, which of the mesh's triangles these are; none: all. matrix: 4x4 from the mesh to the world; None where there
+    chosen: (n,) bool, which of the mesh's triangles these are. matrix: 4x4 from the mesh to the world; None where there
     is none that is the only one.
     """
 
@@ -49,11 +47,10 @@ class Body:
 
     def __init__(self, mesh, chosen, matrix=None):
         mesh.calc_loop_triangles()
-        chosen = chosen if chosen.any() else ~chosen
         vertices, loops = export_meshes.triangles(mesh), export_meshes.triangle_loops(mesh)
         positions, rest = export_meshes.positions(mesh), undeformed(mesh)
         low, size = texture_space(mesh)
-        self.chosen, self.triangles = chosen, vertices[chosen]
+        self.chosen, self.triangles, self._digests = chosen, vertices[chosen], {}
         loops = loops[chosen]
         self._rest = rest[self.triangles].astype(float)
         of_vertex = {"OBJECT": positions, "GENERATED": (rest - low) / size}
@@ -72,14 +69,16 @@ class Body:
             faces = face_normals(self._corners["OBJECT"]) @ turn.T
             self._corners["WORLD FACE NORMAL"] = np.repeat(faces[:, None], 3, axis=1)
 
-    def lay_out(self, density, most_texels):
-        """Makes the atlas; density: (n,) texels per unit at each triangle."""
-        self.atlas = Atlas(self._rest, self.triangles, density, most_texels)
-        digest = hashlib.sha256(repr((self.atlas.width, self.atlas.height)).encode())
-        digest.update(self.atlas.corner_uvs.astype(np.float32).tobytes())
-        for kind in sorted(self._corners, key=str):
-            digest.update(repr(kind).encode() + np.ascontiguousarray(self._corners[kind], np.float32).tobytes())
-        self.key = digest.hexdigest()
+    def lay_out(self, atlases, density, most_texels):
+        """Takes the atlas from Atlases; density: (n,) texels per unit at each triangle."""
+        self._layout, self.atlas = atlases.of(self._rest, self.triangles, density, most_texels)
+
+    def key(self, kinds):
+        """What is equal for bodies of the same atlas on which what hangs on coordinates of these kinds looks alike."""
+        for kind in kinds:
+            if kind not in self._digests:
+                self._digests[kind] = digest(self._corners[kind].astype(np.float32)) if kind in self._corners else ""
+        return self._layout, *sorted((repr(kind), self._digests[kind]) for kind in kinds)
 
     def knows(self, kind):
         return kind in self._corners

@@ -13,46 +13,51 @@ PROBES = 256
 
 def bake_body(get, body, pixels_of, ray):
     """Bakes `get(evaluator)`, a number or a vector, to the atlas of `body`. The rest as BodyPlace has it."""
-    atlas = body.atlas
-
     def at(texels, shift=(0.0, 0.0)):
-        nonlocal place
         place = BodyPlace(body, texels, shift, pixels_of, ray)
-        return get(Evaluator(place))
+        found = get(Evaluator(place))
+        kinds.update(place.kinds())
+        return found
 
-    place = None
-    count = len(atlas.triangle)
+    kinds = set()
+    texels = body.atlas.texels
+    count = len(texels.triangle)
     probe = at(np.random.default_rng(0).integers(0, max(count, 1), PROBES if count else 0))
-    if place.is_uniform or not count or probe.shape in ((), (3,)):
-        return Baked(constant=probe if count else np.zeros(probe.shape[1:]))
+    if not kinds or not count or probe.shape in ((), (3,)):
+        return Baked(constant=probe if count else np.zeros(probe.shape[1:]), kinds=kinds)
     channels = 3 if probe.ndim == 2 else 1
 
-    def values_at(texels, shift):
-        return np.broadcast_to(at(texels, shift).reshape(-1, channels), (len(texels), channels))
+    def values_at(chosen, shift):
+        return np.broadcast_to(at(chosen, shift).reshape(-1, channels), (len(chosen), channels))
 
-    def mean_at(texels, places):
-        found = np.empty((len(texels), channels), np.float32)
+    def mean_at(chosen, places):
+        found = np.empty((len(chosen), channels), np.float32)
 
         def work(first, end):
-            found[first:end] = sum(values_at(texels[first:end], shift) for shift in places) / len(places)
+            found[first:end] = sum(values_at(chosen[first:end], shift) for shift in places) / len(places)
 
-        by_parts(work, len(texels))
+        by_parts(work, len(chosen))
         return found
 
     values = mean_at(np.arange(count), [(0.0, 0.0)])
-    chart = _scattered(atlas, atlas.chart[:, None] + 1)[..., 0]
-    crossed = np.flatnonzero(edges.edges(_scattered(atlas, values), chart)[atlas.rows, atlas.columns])
+    chart = scattered(body.atlas, body.atlas.chart[texels.triangle, None] + 1)[..., 0]
+    crossed = np.flatnonzero(edges.edges(scattered(body.atlas, values), chart)[texels.rows, texels.columns])
     values[crossed] = mean_at(crossed, edges.places(len(crossed), count))
-    pixels = np.ones((atlas.height, atlas.width, 4), np.float32)
-    pixels[..., :3] = filled(_scattered(atlas, values), chart > 0)
-    return Baked(image=BakedImage(pixels), layout=Layout((0, 0), (1, 1), "repeat"))
+    return Baked(image=body_image(body.atlas, values), layout=Layout((0, 0), (1, 1), "repeat"), kinds=kinds)
 
 
-def _scattered(atlas, values):
+def scattered(atlas, values):
     """(h, w, d) of (k, d) values of texels, zero elsewhere."""
     image = np.zeros((atlas.height, atlas.width, values.shape[1]), values.dtype)
-    image[atlas.rows, atlas.columns] = values
+    image[atlas.texels.rows, atlas.texels.columns] = values
     return image
+
+
+def body_image(atlas, values):
+    """A BakedImage of (k, 1 or 3) values of texels, with what is near in between."""
+    pixels = np.ones((atlas.height, atlas.width, 4), np.float32)
+    pixels[..., :3] = filled(scattered(atlas, values), scattered(atlas, np.ones((len(values), 1), bool))[..., 0])
+    return BakedImage(pixels)
 
 
 def filled(image, known):

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from .baked import BakedImage
-from .body_baking import filled
+from .body_baking import body_image
 
 
 def _tangents(positions, uvs):
@@ -21,22 +20,22 @@ def _frame(normals, tangents, signs):
     return np.stack((x, np.cross(normals, x) * signs[:, None], normals), axis=1)
 
 
+def kinds(uv_map):
+    """The kinds of coordinates of a body that turned normals hang on."""
+    return "NORMAL", "OBJECT", uv_map
+
+
 def turned(image, body, uv_map, strength):
     """A BakedImage of the normals that `image`, a BakedImage over the atlas of `body`, tells in the frame of the UV map `uv_map`, in that of the
     atlas. strength: Blender's, which blends from the flat normal."""
-    atlas = body.atlas
-    all_texels = np.arange(len(atlas.triangle))
+    atlas, texels = body.atlas, body.atlas.texels
     flat = np.array([0, 0, 1])
-    local = flat + (2 * image.values[atlas.rows, atlas.columns, :3] - 1 - flat) * strength
-    normals = body.values("NORMAL", all_texels, (0, 0))
+    local = flat + (2 * image.values[texels.rows, texels.columns, :3] - 1 - flat) * strength
+    normals = body.values("NORMAL", np.arange(len(texels.triangle)), (0, 0))
     positions = body.corners("OBJECT")
-    of_map, of_atlas = (_frame(normals, *(part[atlas.triangle] for part in _tangents(positions, uvs)))
+    of_map, of_atlas = (_frame(normals, *(part[texels.triangle] for part in _tangents(positions, uvs)))
                         for uvs in (body.corners(uv_map), atlas.corner_uvs))
-    world = np.einsum("ki,kij->kj", local, of_map)
-    found = np.einsum("kij,kj->ki", of_atlas, world)
+    whole = np.einsum("ki,kij->kj", local, of_map)
+    found = np.einsum("kij,kj->ki", of_atlas, whole)
     found /= np.maximum(np.linalg.norm(found, axis=1, keepdims=True), 1e-30)
-    values, known = np.ones_like(image.values), np.zeros(image.values.shape[:2], bool)
-    known[atlas.rows, atlas.columns] = True
-    values[atlas.rows, atlas.columns, :3] = 0.5 * found + 0.5
-    values[..., :3] = filled(values[..., :3], known)
-    return BakedImage(values)
+    return body_image(atlas, 0.5 * found + 0.5)

@@ -49,6 +49,14 @@ def triangle_slots(mesh):
     return _triangles(mesh, "material_index", 1)
 
 
+def triangles_of(mesh, materials, material):
+    """(n,) which triangles have one of the `materials` of an object's slots; all where none has it."""
+    mesh.calc_loop_triangles()
+    slots = [k for k in range(max(1, len(materials))) if not materials or materials[k] == material]
+    found = np.isin(np.minimum(triangle_slots(mesh), max(len(materials) - 1, 0)), slots)
+    return found if found.any() else ~found
+
+
 def smooth_triangles(mesh):
     """(n,) whether the face of each has smooth shading."""
     smooth_polygons = np.empty(len(mesh.polygons), dtype=bool)

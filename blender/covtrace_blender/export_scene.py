@@ -8,6 +8,7 @@ import numpy as np
 from mathutils import Vector
 
 from . import export_lights, export_meshes, export_motion, export_strands, export_world, ply
+from .atlases import Atlases
 from .baking import Surface
 from .body import Body
 from .export_camera import SceneCamera
@@ -75,13 +76,14 @@ class SceneExporter:
     def _write_content(self, out, moving):
         self.out = out
         out.write('WorldBegin\nMediumInterface "" ""\n')
-        self.materials = MaterialExporter(out, self.folder, self.warn)
+        self.materials, self.atlases = MaterialExporter(out, self.folder, self.warn), Atlases()
         self._write_world()
         self._look_at_instances()
         self.visibility = Visibility(self.depsgraph.view_layer)
         self.volumes = self._find_volumes()
         self._write_objects(moving)
         self.materials.baked.keep()
+        self.atlases.keep()
 
     def _write_world(self):
         time = self.frame if self.shutter is None else self.frame + self.shutter[0]
@@ -267,11 +269,9 @@ class SceneExporter:
         material = materials[min(slot, len(materials) - 1)] if materials else None
 
         def body():
-            slots = [k for k in range(max(1, len(materials))) if not materials or materials[k] == material]
-            mesh.calc_loop_triangles()
-            chosen = np.isin(np.minimum(export_meshes.triangle_slots(mesh), max(len(materials) - 1, 0)), slots)
-            found = Body(mesh, chosen, self.placements.only_matrix(obj) if hangs_on_world(material.node_tree) else None)
-            found.lay_out(self.placements.density(obj, mesh)[found.chosen], self.placements.most_texels)
+            matrix = self.placements.only_matrix(obj) if hangs_on_world(material.node_tree) else None
+            found = Body(mesh, export_meshes.triangles_of(mesh, materials, material), matrix)
+            found.lay_out(self.atlases, self.placements.density(obj, mesh)[found.chosen], self.placements.most_texels)
             return found
 
         def surface_of(name):

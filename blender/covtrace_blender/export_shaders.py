@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from . import body_normals
 from .export_sockets import SocketReader, Value
 from .shader_nodes.unsupported import Unsupported
 
@@ -106,7 +105,7 @@ class ShaderWriter(SocketReader):
         if not body.knows(uv_map):
             self.warn(f"material '{self.name}': a normal map without a UV map is left out")
             return []
-        found = body_normals.turned(image, body, uv_map, strength)
+        found = self.baked.turned(image, body, uv_map, strength)
         return [f'"string normalmap" "{self.files.write(found, "normals", lambda pixels: pixels[..., :3])}"']
 
     def _bump(self, node):

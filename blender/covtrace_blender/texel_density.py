@@ -11,6 +11,7 @@ MOST_TEXELS, MOST_TEXELS_OF_PREVIEWS = 1 << 22, 1 << 19
 ACROSS = 512  # texels along a body's diagonal where no camera tells
 NEAREST = 8  # instances that are looked at triangle by triangle
 MOST_RATIO = 64  # between the densities of one mesh
+ALIKE = 2  # ratio between densities up to which a mesh has one for all
 LEAST_DISTANCE = 0.1  # of a camera to a triangle, in the triangle's radius
 
 
@@ -38,8 +39,8 @@ class Placements:
         return None if key in self._instanced or len(self._matrices.get(key, ())) != 1 else self._matrices[key][0]
 
     def density(self, obj, mesh):
-        """(n,) texels per unit at each triangle of a mesh: between one and two per pixel, powers of two, so that small moves change
-        nothing."""
+        """(n,) texels per unit at each triangle of a mesh: between one and two per pixel, powers of two, and the same on all of a
+        mesh whose parts need hardly different ones, so that small moves change nothing."""
         corners = export_meshes.positions(mesh)[export_meshes.triangles(mesh)].astype(float)
         middles = corners.mean(axis=1)
         radii = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
@@ -55,6 +56,8 @@ class Placements:
         for number in order[:NEAREST]:
             wanted = np.maximum(wanted, self._seen(matrices[number], middles, radii, 1e-3 * size))
         wanted = np.clip(wanted, max(wanted.max() / MOST_RATIO, 1e-30), None)
+        if wanted.max() < ALIKE * wanted.min():
+            wanted[:] = wanted.max()
         return 2.0 ** np.ceil(np.log2(wanted))
 
     def _seen(self, matrix, middles, radii, least):

@@ -1,8 +1,13 @@
-"""Atlases of bodies: that each place has texels of its own."""
+"""Atlases of bodies: that each place has texels of its own, and which of them are kept for the next frame."""
 
+import unittest.mock
+
+import bpy
 import numpy as np
-from addon_support import BlenderTest
+from addon_support import BlenderTest, render
+from covtrace_blender import atlases, body_baking
 from covtrace_blender.atlas import Atlas
+from node_trees import Tree
 
 SIDES, STEPS = 4, 16  # corners around a spring's wire, and along a turn
 
@@ -39,7 +44,7 @@ class AtlasTest(BlenderTest):
         shares = np.random.default_rng(1).dirichlet((1, 1, 1), (len(triangles), 8))
         places, uvs = (np.einsum("nki,nij->nkj", shares, values).reshape(-1, values.shape[-1]) for values in (corners, atlas.corner_uvs))
         number = np.full((atlas.height, atlas.width), -1)
-        number[atlas.rows, atlas.columns] = np.arange(len(atlas.rows))
+        number[atlas.texels.rows, atlas.texels.columns] = np.arange(len(atlas.texels.rows))
         found = number[((1 - uvs[:, 1]) * atlas.height).astype(int), (uvs[:, 0] * atlas.width).astype(int)]
         self.assertTrue((found >= 0).all())
         away = np.linalg.norm(atlas.interpolated(corners, found) - places, axis=1)
@@ -50,3 +55,35 @@ class AtlasTest(BlenderTest):
         long[0][:, 0] += 3
         self.assert_places_have_texels_of_their_own(*joined(short), 12.0)
         self.assert_places_have_texels_of_their_own(*joined(short, long), 12.0)
+
+
+class KeptAtlasesTest(BlenderTest):
+    def patterned(self, output):
+        """A material of noise on an output of the node Texture Coordinate."""
+        tree = Tree()
+        tree.show(tree.node("TexNoise", {}, {"Scale": 3.0, "Vector": (tree.node("TexCoord"), output)}), "Color")
+        return tree.material
+
+    def work(self, frame):
+        """(atlases that are laid out to render a frame, times that nodes are evaluated on bodies)."""
+        self.scene.frame_set(frame)
+        with unittest.mock.patch.object(atlases, "Atlas", side_effect=Atlas) as laid_out, \
+                unittest.mock.patch.object(body_baking, "BodyPlace", side_effect=body_baking.BodyPlace) as evaluated:
+            render("COVTRACE", 1)
+        return laid_out.call_count, evaluated.call_count
+
+    def test_what_deforms_is_baked_anew_where_its_coordinates_change(self):
+        bpy.ops.mesh.primitive_grid_add(x_subdivisions=12, y_subdivisions=4, size=2)
+        arm = bpy.context.object
+        arm.data.materials.append(self.patterned("Generated"))
+        self.bend(arm, 0.3, 2)
+        laid_out, evaluated = self.work(0)
+        self.assertEqual(laid_out, 1)
+        self.assertGreater(evaluated, 0)
+        self.assertEqual(self.work(1), (0, 0))
+        arm.data.materials[0] = self.patterned("Object")
+        for frame in (1, 2):
+            laid_out, evaluated = self.work(frame)
+            self.assertEqual(laid_out, 0)
+            self.assertGreater(evaluated, 0)
+        self.assertEqual(self.work(2), (0, 0))

@@ -55,6 +55,10 @@ class BodyPlace(_Place):
     def is_uniform(self):
         return not self._known
 
+    def kinds(self):
+        """Those of coordinates that nodes have asked for."""
+        return list(self._known)
+
     def uv_of(self, node, name):
         kind = ("UV", name)
         if not self._body.knows(kind):
