@@ -2,21 +2,18 @@
 
 import io
 
-import numpy as np
-
 from .baked_images import BakedImages
 from .baking import Baker, Surface
 from .export_principled import PrincipledExporter
 from .export_sockets import Value
 from .export_textures import TextureFiles
 from .export_volumes import Media, coefficients
-from .fresnel import mean_facing, mean_reflectance
 from .node_signature import all_nodes
-from .shader_nodes.colours import luminance
 from .shader_nodes.unsupported import NeedsBody, Unsupported
 from .shader_nodes.light_path import RAYS, groups_of_rays
 
 TRANSPARENT = '"float alpha" 0'
+ROUNDING = 1e-6  # of opacities
 
 
 class Variant:
@@ -105,7 +102,7 @@ class MaterialExporter(PrincipledExporter):
 
     def _export(self, material):
         """(pbrt name, Emission or None, alpha parameter text, names of the UV maps, medium), to rays of the baker's kind."""
-        self.emission, self.alpha, self.uv_maps = None, "", []
+        self.emission, self.uv_maps = None, []
         output = material.node_tree.get_output_node("CYCLES")
         if output and output.inputs["Displacement"].is_linked:
             self.warn(f"material '{self.name}': Displacement is not supported and left out")
@@ -119,7 +116,9 @@ class MaterialExporter(PrincipledExporter):
             return self._make("interface", []), None, "", (), medium
         if node is None:
             return self._black(), None, "", (), ""
-        return self._shader(node), self.emission, self.alpha, tuple(self.uv_maps), medium
+        shader, opacity = self._shader(node), self._opacity(node)
+        alpha = self._number("alpha", opacity) if opacity.image or opacity.constant < 1 - ROUNDING else ""
+        return shader, self.emission, alpha, tuple(self.uv_maps), medium
 
     def _tell_of_tint(self, node):
         """Warns where a Transparent colours what passes: an interface has no colour."""
@@ -151,10 +150,7 @@ class MaterialExporter(PrincipledExporter):
         return self.media.add(found)
 
     def _shader(self, node):
-        if node.type == "BSDF_TRANSPARENT":
-            self.alpha = self._number("alpha", Value(1 - self._passing(node)))
-            return self._black()
-        known = {"BSDF_PRINCIPLED": self._principled, "BSDF_DIFFUSE": self._diffuse, "BSDF_GLOSSY": self._glossy,
+        known = {"BSDF_TRANSPARENT": lambda node: self._black(), "BSDF_PRINCIPLED": self._principled, "BSDF_DIFFUSE": self._diffuse, "BSDF_GLOSSY": self._glossy,
                  "BSDF_GLASS": self._glass, "BSDF_REFRACTION": self._glass, "BSDF_TRANSLUCENT": self._translucent,
                  "EMISSION": self._emission, "MIX_SHADER": self._mix_shader, "ADD_SHADER": self._add_shader}
         if node.type in known:
@@ -168,28 +164,6 @@ class MaterialExporter(PrincipledExporter):
 
     def _black(self):
         return self._make("diffuse", ['"rgb reflectance" [0 0 0]'])
-
-    def _passing(self, node):
-        """The share of light that a Transparent lets pass; its colour is told."""
-        colour = self._value(node.inputs["Color"])
-        if colour.image:
-            self.warn(f"material '{self.name}': an image as the colour of '{node.name}' is not supported; it is clear")
-            return 1.0
-        if max(colour.constant) - min(colour.constant) > 0.01:
-            self.warn(f"material '{self.name}': of the colour of '{node.name}' the brightness alone counts")
-        brightness = max(float(luminance(np.array(colour.constant))), 0)
-        return brightness if brightness < 0.9999 else 1.0  # beyond roundings
-
-    def _behind(self, transparent, socket, share):
-        """A shader of which `share` is there and a Transparent elsewhere, of which a black one takes what does not pass."""
-        passing = self._passing(transparent)
-        opacity = share.inverse().times(passing).inverse()
-        self.alpha = self._number("alpha", opacity)
-        surface = self._input_shader(socket)
-        if passing == 1:
-            return surface
-        # Images that weigh a shader are taken for masks, whose texels are 0 or 1.
-        return self._mix(self._black(), surface, share if share.image else Value(share.constant / max(opacity.constant, 1e-6)))
 
     def _diffuse(self, node):
         return self._make("diffuse", [self._colour("reflectance", self._value(node.inputs["Color"])),
@@ -220,28 +194,17 @@ class MaterialExporter(PrincipledExporter):
             whole = self._angular_mix(first, second, *angular)
             if whole:
                 return whole
-        amount = Value(angular[1]) if angular else self._value(node.inputs[0], True)
+        amount = self._mix_share(node)
         if not amount.image and not 0 < amount.constant < 1:
             return self._input_shader(node.inputs[2 if amount.constant >= 1 else 1])
-        if first and first.type == "BSDF_TRANSPARENT":
-            return self._behind(first, node.inputs[2], amount)
-        if second and second.type == "BSDF_TRANSPARENT":
-            return self._behind(second, node.inputs[1], amount.inverse())
+        opacities = [self._opacity(shader) for shader in (first, second)]
+        for opacity, other in zip(opacities, (2, 1)):
+            if not opacity.image and opacity.constant == 0:
+                return self._input_shader(node.inputs[other])
         if "EMISSION" in (n.type for n in (first, second) if n):
             self.warn(f"material '{self.name}': emission inside a mixture is not weakened by it")
-        return self._mix(self._input_shader(node.inputs[1]), self._input_shader(node.inputs[2]), amount)
-
-    def _angular_share(self, socket):
-        """(index of refraction or None, mean over all directions) of a share that the angle of sight decides; None for
-        others."""
-        node, output = self._linked(socket)
-        if node is None or node.type not in ("FRESNEL", "LAYER_WEIGHT"):
-            return None
-        if node.type == "LAYER_WEIGHT" and output.identifier == "Facing":
-            return None, mean_facing(self._plain(node.inputs["Blend"]))
-        eta = max(self._plain(node.inputs["IOR"]) if node.type == "FRESNEL" else
-                  1 / max(1 - self._plain(node.inputs["Blend"]), 1e-5), 1.0001)
-        return eta, mean_reflectance(eta)
+        return self._mix(self._input_shader(node.inputs[1]), self._input_shader(node.inputs[2]),
+                         self._share_of_opaque(node, amount, *opacities))
 
     def _angular_mix(self, first, second, eta, share):
         """Mixture of two shaders by the angle of sight."""
@@ -259,11 +222,10 @@ class MaterialExporter(PrincipledExporter):
         return None
 
     def _add_shader(self, node):
-        nodes = [self._linked(node.inputs[i])[0] for i in (0, 1)]
-        emitters = [n for n in nodes if n and n.type == "EMISSION"]
-        others = [n for n in nodes if n and n.type != "EMISSION"]
-        for emitter in emitters:
-            self._emission(emitter)
+        for emitter in (self._linked(node.inputs[i])[0] for i in (0, 1)):
+            if emitter and emitter.type == "EMISSION":
+                self._emission(emitter)
+        others = self._surfaces(node)
         if len(others) == 1:
             return self._shader(others[0])
         if not others:

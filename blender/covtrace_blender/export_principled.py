@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
-from .export_shaders import ShaderWriter, squared
+from .export_shaders import squared
 from .export_sockets import Value
+from .opacity import OpacityReader
 
 
 def eta_of_reflectance(reflectance):
@@ -42,7 +43,7 @@ LEFT_OUT = ((("Subsurface Weight", "Subsurface"), 0), (("Sheen",), 0), (("Anisot
             (("Coat Normal", "Clearcoat Normal"), 0), (("Diffuse Roughness",), 0), (("Thin Film Thickness",), 0))
 
 
-class PrincipledExporter(ShaderWriter):
+class PrincipledExporter(OpacityReader):
     """Writes the materials that a node Principled stands for."""
 
     def _tell_left_out(self, inputs):
@@ -144,9 +145,6 @@ class PrincipledExporter(ShaderWriter):
         normal = self._normal_map(node) + self._sheen(get)
         self._tell_left_out(get)
         self._emit(self._value(either(get, "Emission Color", "Emission"), only_unit_square=True), self._plain(get["Emission Strength"]))
-        alpha = self._value(get["Alpha"], True)
-        if alpha.image or alpha.constant < 1:
-            self.alpha = self._number("alpha", alpha)
 
         def is_constant(value, number):
             return not value.image and value.constant == number

@@ -16,19 +16,16 @@ class Value:
 
     def inverse(self, whole=1.0):
         """whole - this."""
-        if self.image:
-            return Value(image=self.image, mapping=self.mapping, channel=self.channel, scale=-self.scale,
-                         offset=whole - self.offset, filter=self.filter, wrap=self.wrap)
-        if hasattr(self.constant, "__len__"):
+        if not self.image and hasattr(self.constant, "__len__"):
             return Value(tuple(whole - c for c in self.constant))
-        return Value(whole - self.constant)
+        return self.times(-1, whole)
 
-    def times(self, factor):
-        """This number `factor` times."""
+    def times(self, factor, further=0.0):
+        """This number `factor` times, and a further one."""
         if self.image:
             return Value(image=self.image, mapping=self.mapping, channel=self.channel, scale=factor * self.scale,
-                         offset=factor * self.offset, filter=self.filter, wrap=self.wrap)
-        return Value(factor * self.constant)
+                         offset=factor * self.offset + further, filter=self.filter, wrap=self.wrap)
+        return Value(factor * self.constant + further)
 
     def is_plainly_placed(self):
         return self.mapping == PLAIN_MAPPING and self.filter == "bilinear" and self.wrap == "repeat"
@@ -95,8 +92,12 @@ class SocketReader:
         def get(nodes):
             return nodes.number(socket) if is_number else nodes.vector(socket)
 
-        baked = self.baked.of(socket, self.surface, (is_number, only_unit_square, self.baker.ray),
-                              lambda: self.baker.bake(get, self.surface, only_unit_square))
+        return self._baked_function(get, socket, (is_number, only_unit_square), only_unit_square)
+
+    def _baked_function(self, get, socket, how, only_unit_square=False):
+        """Value of what a function of an Evaluator gives. It hangs on the tree of the socket, and is told from others of that socket by
+        `how`. Raises Unsupported."""
+        baked = self.baked.of(socket, self.surface, (*how, self.baker.ray), lambda: self.baker.bake(get, self.surface, only_unit_square))
         if baked.is_cut:
             self.warn(f"material '{self.name}': a texture that can only lie on the unit square repeats beyond it")
         for name in baked.uv_maps:

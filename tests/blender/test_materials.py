@@ -110,6 +110,49 @@ class MaterialsTest(BlenderTest):
                 self.assertEqual(bool(self.warnings), colour[0] != colour[1], self.warnings)
             bpy.data.objects.remove(plane)
 
+    def test_what_is_transparent_in_mixtures_of_mixtures(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        masks = []
+        for name, value in (("half", 0.5), ("less", 0.3)):
+            masks.append(bpy.data.images.new(name, 2, 2, float_buffer=True))
+            masks[-1].colorspace_settings.name = "Non-Color"
+            masks[-1].pixels = [value, value, value, 1] * 4
+
+        def surface(tree, kind, *parts):
+            """A shader's node: a grey Transparent, a matt one, a Principled by its alpha, or a Mix (share, first, second)."""
+            node = tree.nodes.new({"mix": "ShaderNodeMixShader", "clear": "ShaderNodeBsdfTransparent", "matt": "ShaderNodeBsdfDiffuse",
+                                   "principled": "ShaderNodeBsdfPrincipled"}[kind])
+            if kind == "mix":
+                for socket, part in zip(node.inputs[1:], parts[1:]):
+                    tree.links.new(surface(tree, *part).outputs[0], socket)
+            if kind == "principled":
+                node.inputs["Base Color"].default_value, node.inputs["Specular"].default_value = (0, 0, 0, 1), 0
+            socket = node.inputs[{"mix": 0, "principled": "Alpha"}.get(kind, "Color")]
+            if isinstance(parts[0], float):
+                socket.default_value = (parts[0],) * 3 + (1,) if kind in ("clear", "matt") else parts[0]
+            else:
+                texture = tree.nodes.new("ShaderNodeTexImage")
+                texture.image = parts[0]
+                tree.links.new(texture.outputs["Color"], socket)
+            return node
+
+        clear, matt, dark = ("clear", 1.0), ("matt", 0.6), ("matt", 0.1)
+        for tree in (("mix", 0.5, clear, ("mix", 0.5, clear, matt)), ("mix", 0.6, ("clear", 0.4), ("mix", 0.3, dark, clear)),
+                     ("mix", 0.7, ("mix", 0.2, clear, matt), dark), ("mix", masks[0], ("clear", 0.5), matt),
+                     ("mix", masks[0], clear, ("mix", masks[1], matt, clear)), ("mix", masks[1], ("mix", masks[0], clear, matt), dark),
+                     ("mix", 0.5, clear, ("principled", masks[1])), ("mix", masks[0], dark, ("mix", 0.5, clear, matt))):
+            m = bpy.data.materials.new("mixed")
+            m.use_nodes = True
+            node = surface(m.node_tree, *tree)
+            m.node_tree.links.new(node.outputs[0], m.node_tree.nodes["Material Output"].inputs["Surface"])
+            plane = self.plane(m)
+            with self.subTest(tree=tree):
+                ours, theirs = mean(render("COVTRACE", 64))[0], mean(render("CYCLES", 64))[0]
+                self.assertAlmostEqual(ours, theirs, delta=0.02)
+                self.export()
+                self.assertEqual(self.warnings, [])
+            bpy.data.objects.remove(plane)
+
     def test_unknown_nodes_are_told(self):
         m = material()
         path = m.node_tree.nodes.new("ShaderNodeLightPath")

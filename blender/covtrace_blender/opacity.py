@@ -1,0 +1,122 @@
+"""How much of a tree of shaders stops light: Transparents and alphas let the rest pass."""
+
+import numpy as np
+
+from .export_shaders import ShaderWriter
+from .export_sockets import Value
+from .fresnel import mean_facing, mean_reflectance
+from .shader_nodes.colours import luminance
+from .shader_nodes.unsupported import Unsupported
+
+
+def _blended(share, first, second):
+    """first * (1 - share) + second * share of Values of one number; None where images would be multiplied."""
+    if not first.image and not second.image and first.constant == second.constant:
+        return first
+    if share.image:
+        if first.image or second.image:
+            return None
+        return share.times(second.constant - first.constant, first.constant)
+    if first.image and second.image:
+        return None
+    if second.image:
+        return second.times(share.constant, first.constant * (1 - share.constant))
+    return first.times(1 - share.constant, second.constant * share.constant)
+
+
+class OpacityReader(ShaderWriter):
+    """Reads the opacity of shaders, and what weighs two of them where the rest lets light pass."""
+
+    def _passing(self, node):
+        """The share of light that a Transparent lets pass; its colour is told."""
+        colour = self._value(node.inputs["Color"])
+        if colour.image:
+            self.warn(f"material '{self.name}': an image as the colour of '{node.name}' is not supported; it is clear")
+            return 1.0
+        if max(colour.constant) - min(colour.constant) > 0.01:
+            self.warn(f"material '{self.name}': of the colour of '{node.name}' the brightness alone counts")
+        brightness = max(float(luminance(np.array(colour.constant))), 0)
+        return brightness if brightness < 0.9999 else 1.0  # beyond roundings
+
+    def _opacity(self, node):
+        """The opacity of a shader's node as the Value of a number; None as a node is black."""
+        if node is None:
+            return Value(1.0)
+        if node.type == "BSDF_TRANSPARENT":
+            return Value(1 - self._passing(node))
+        if node.type == "BSDF_PRINCIPLED":
+            return self._value(node.inputs["Alpha"], True)
+        if node.type == "MIX_SHADER":
+            first, second = (self._opacity(self._linked(node.inputs[i])[0]) for i in (1, 2))
+            found = _blended(self._mix_share(node), first, second)
+            return found or self._baked_share(node, "opacity", lambda nodes: self._opacity_at(nodes, node), Value(1.0))
+        if node.type == "ADD_SHADER":
+            parts = [self._opacity(other) for other in self._surfaces(node)]
+            # A sum of two is rendered as their mean.
+            if not parts:
+                return Value(1.0)
+            found = _blended(Value(0.5), parts[0], parts[-1])
+            return found or self._baked_share(node, "opacity", lambda nodes: self._opacity_at(nodes, node), Value(1.0))
+        return Value(1.0)
+
+    def _opacity_at(self, nodes, node):
+        """The same at the places of an Evaluator."""
+        if node is not None and node.type == "MIX_SHADER":
+            share, first, second = self._mixed_at(nodes, node)
+            return first * (1 - share) + second * share
+        if node is not None and node.type == "ADD_SHADER":
+            return np.float32(1) * np.mean([self._opacity_at(nodes, other) for other in self._surfaces(node)] or 1, axis=0)
+        if node is not None and node.type == "BSDF_PRINCIPLED":
+            return np.clip(nodes.number(node.inputs["Alpha"]), 0, 1)
+        return np.float32(self._opacity(node).constant)
+
+    def _mixed_at(self, nodes, node):
+        """The share of the second shader of a Mix, and both opacities."""
+        angular = self._angular_share(node.inputs[0])
+        share = np.float32(angular[1]) if angular else np.clip(nodes.number(node.inputs[0]), 0, 1)
+        return (share, *(self._opacity_at(nodes, self._linked(node.inputs[i])[0]) for i in (1, 2)))
+
+    def _share_of_opaque(self, node, share, first, second):
+        """Of what stops light in a Mix, the share of its second shader. share: that in all; first, second: both opacities."""
+        if not first.image and not second.image:
+            if first.constant == second.constant or not share.image and share.constant in (0, 1):
+                return share
+            if not share.image:
+                return Value(share.constant * second.constant / max(_blended(share, first, second).constant, 1e-6))
+        def get(nodes):
+            share, first, second = self._mixed_at(nodes, node)
+            return share * second / np.maximum(first * (1 - share) + second * share, np.float32(1e-6))
+
+        return self._baked_share(node, "share of opaque", get, share)
+
+    def _baked_share(self, node, how, get, otherwise):
+        """Value of what a function of an Evaluator gives of a shader's node; `otherwise` where nodes cannot be evaluated, which is told."""
+        try:
+            return self._baked_function(get, node.outputs[0], (how,))
+        except Unsupported as problem:
+            self._ask_for_body(problem)
+            self.warn(f"material '{self.name}': node '{problem.node.name}' at '{node.name}' is not supported ({problem.reason})")
+            return otherwise
+
+    def _mix_share(self, node):
+        """The share of the second shader of a Mix; where the angle of sight decides, the mean over all directions."""
+        angular = self._angular_share(node.inputs[0])
+        share = Value(angular[1]) if angular else self._value(node.inputs[0], True)
+        return share if share.image else Value(min(max(share.constant, 0.0), 1.0))
+
+    def _angular_share(self, socket):
+        """(index of refraction or None, mean over all directions) of a share that the angle of sight decides; None for
+        others."""
+        node, output = self._linked(socket)
+        if node is None or node.type not in ("FRESNEL", "LAYER_WEIGHT"):
+            return None
+        if node.type == "LAYER_WEIGHT" and output.identifier == "Facing":
+            return None, mean_facing(self._plain(node.inputs["Blend"]))
+        eta = max(self._plain(node.inputs["IOR"]) if node.type == "FRESNEL" else
+                  1 / max(1 - self._plain(node.inputs["Blend"]), 1e-5), 1.0001)
+        return eta, mean_reflectance(eta)
+
+    def _surfaces(self, node):
+        """The shaders of an Add but for those that shine alone."""
+        nodes = [self._linked(node.inputs[i])[0] for i in (0, 1)]
+        return [other for other in nodes if other and other.type != "EMISSION"]
