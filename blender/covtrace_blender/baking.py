@@ -21,13 +21,14 @@ class Surface:
     """The meshes that a material is on, as far as baking has to know them.
 
     ranges: {UV map: ((u, v) smallest, (u, v) largest)}, "" being the one that is active for rendering. body_of: makes the
-    Body, with its atlas, for what hangs on the place on it; None where there is none.
+    Body, with its atlas, for what hangs on the place on it; None where there is none. active_uv_map: the name of the one that
+    is active for rendering.
     """
 
     body = None
 
-    def __init__(self, ranges=None, body_of=None):
-        self.ranges, self.body_of = ranges or {}, body_of
+    def __init__(self, ranges=None, body_of=None, active_uv_map=None):
+        self.ranges, self.body_of, self.active_uv_map = ranges or {}, body_of, active_uv_map
 
     def on_body(self):
         """The same, on which all is baked to the body's atlas."""

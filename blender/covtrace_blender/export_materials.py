@@ -118,7 +118,15 @@ class MaterialExporter(PrincipledExporter):
             return self._black(), None, "", (), ""
         shader, opacity = self._shader(node), self._opacity(node)
         alpha = self._number("alpha", opacity) if opacity.image or opacity.constant < 1 - ROUNDING else ""
+        self._ask_for_body_of_uv_maps(node)
         return shader, self.emission, alpha, tuple(self.uv_maps), medium
+
+    def _ask_for_body_of_uv_maps(self, node):
+        """Raises NeedsBody where images lie on several UV maps, of which a mesh has one here."""
+        if len(self.uv_maps) > 1:
+            self.hangs_on_object = True  # by the name of the UV map that is active for rendering
+            if self.surface.body_of and not self.surface.body and len({name or self.surface.active_uv_map for name in self.uv_maps}) > 1:
+                raise NeedsBody(node, "several UV maps meet")
 
     def _tell_of_tint(self, node):
         """Warns where a Transparent colours what passes: an interface has no colour."""

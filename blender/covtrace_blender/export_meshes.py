@@ -23,12 +23,17 @@ def _join(corners):
     return corners[first], inverse
 
 
+def active_uv_map(mesh):
+    """The name of the UV map that is active for rendering; None where there is none."""
+    return next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
+
+
 def uv_map(mesh, names):
     """(the UV map that a material reads of a mesh, whether it is all that it wants).
 
     names: as the material's nodes have them; "" is the one that is active for rendering. A mesh has one here: the first.
     """
-    active = next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
+    active = active_uv_map(mesh)
     wanted = [name or active for name in names] or [active]
     chosen = wanted[0] if wanted[0] and wanted[0] in mesh.uv_layers else active
     return chosen, all(name == chosen for name in wanted)

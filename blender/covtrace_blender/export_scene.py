@@ -275,7 +275,8 @@ class SceneExporter:
             return found
 
         def surface_of(name):
-            return Surface(self.uv_ranges.of(name), body if mesh and Body.is_of(mesh) else None)
+            has_body = mesh and Body.is_of(mesh)
+            return Surface(self.uv_ranges.of(name), body if has_body else None, export_meshes.active_uv_map(mesh) if has_body else None)
 
         return self.materials.variants(material, (*Placements.key(obj), mesh is None), surface_of)
 

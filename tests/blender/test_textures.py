@@ -1,7 +1,10 @@
 """The places of images on surfaces, their wrapping and their light, against Cycles."""
 
+import unittest.mock
+
 import bpy
 from addon_support import BlenderTest, material, mean, render
+from covtrace_blender import body_baking
 
 
 class TexturesTest(BlenderTest):
@@ -56,6 +59,34 @@ class TexturesTest(BlenderTest):
                 self.export()
                 self.assertEqual(self.warnings, [])
             bpy.data.objects.remove(plane)
+
+    def test_inputs_lie_on_uv_maps_of_their_own(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        m = bpy.data.materials.new("two")
+        m.use_nodes = True
+        tree = m.node_tree
+        mix = tree.nodes.new("ShaderNodeMixShader")
+        for number, (name, channels) in enumerate((("", (0, 0.5)), ("other", (0.5, 0)))):
+            image = bpy.data.images.new("ramp", 32, 32, float_buffer=True)
+            image.pixels = [v for y in range(32) for x in range(32) for v in (*(c * x / 31 for c in channels), y / 31, 1)]
+            texture, matt, uv_map = (tree.nodes.new(f"ShaderNode{kind}") for kind in ("TexImage", "BsdfDiffuse", "UVMap"))
+            texture.image, uv_map.uv_map = image, name
+            tree.links.new(uv_map.outputs[0], texture.inputs["Vector"])
+            tree.links.new(texture.outputs["Color"], matt.inputs["Color"])
+            tree.links.new(matt.outputs[0], mix.inputs[1 + number])
+        tree.links.new(mix.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        plane = self.plane(m, size=3)
+        for loop in plane.data.uv_layers.new(name="other").data:
+            loop.uv = (1 - loop.uv[1], loop.uv[0])
+        self.assert_quarters_as_cycles()
+        self.export()
+        self.assertEqual(self.warnings, [])
+        # Where both names are of one map, the images are used as they are.
+        plane.data.uv_layers["other"].active_render = True
+        self.assert_quarters_as_cycles()
+        with unittest.mock.patch.object(body_baking, "BodyPlace", side_effect=AssertionError):
+            self.export()
+        self.assertEqual(self.warnings, [])
 
     def test_images_whose_files_are_missing_are_magenta_as_in_cycles(self):
         image = bpy.data.images.new("lost", 4, 4)
