@@ -6,7 +6,7 @@ import numpy as np
 
 from .atlas import Atlas
 
-MOST_BYTES = 1 << 28  # kept between exports; texels, which are quickly found again, go first
+MOST_BYTES = 1 << 28  # kept during an export, and between two; texels, which are quickly found again, go first
 
 _known = {}  # {key: Atlas}
 
@@ -28,6 +28,9 @@ class Atlases:
     def of(self, corners, triangles, density, most_texels):
         """(key, Atlas) as Atlas has them; the key is equal for equal ones."""
         key = digest(corners, triangles, density, np.array(most_texels))
+        if sum(atlas.bytes_of_texels() for atlas in self._used.values()) > MOST_BYTES:
+            for atlas in self._used.values():
+                atlas.forget_texels()
         found = self._used.get(key) or _known.get(key) or Atlas(corners, triangles, density, most_texels)
         self._used[key] = found
         return key, found

@@ -8,10 +8,12 @@ _numbers = itertools.count(1)  # of names, which are unique among all exports
 
 
 class BakedImage:
-    """Pixels that no image of Blender has: (h, w, 4) float32 from the top."""
+    """Pixels that no image of Blender has: `values`, (h, w, 3) float32 from the top, of which numbers take a third of the memory."""
 
     def __init__(self, values):
-        self.name_full, self.values = f"baked {next(_numbers)}", values
+        """values: (h, w, 1 or 3)."""
+        self.name_full, self.bytes = f"baked {next(_numbers)}", values.nbytes
+        self.values = np.broadcast_to(values, (*values.shape[:2], 3))
 
 
 class Layout:

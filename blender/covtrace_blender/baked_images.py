@@ -49,7 +49,7 @@ class BakedImages:
         _kinds.update(self._kinds)
         size = 0
         for key, baked in self._used.items():
-            size += baked.image.values.nbytes if baked.image else 0
+            size += baked.image.bytes if baked.image else 0
             if size <= MOST_BYTES:
                 _known[key] = baked
 

@@ -85,7 +85,7 @@ class Baker:
 
     @staticmethod
     def _pixels(values_at, layout, size, is_colour):
-        """(h, w, 4) float32 from the top, alpha 1."""
+        """(h, w, 1 or 3) float32 from the top."""
         width, height = size
         channels = 3 if is_colour else 1
         texel = layout.extent / size
@@ -106,9 +106,7 @@ class Baker:
         values = mean_at(columns, rows, [(0, 0)]).reshape(height, width, channels)
         rows, columns = np.nonzero(edges.edges(values))
         values[rows, columns] = mean_at(columns, rows, edges.places(len(rows), width * height))
-        pixels = np.ones((height, width, 4), np.float32)
-        pixels[..., :3] = values
-        return pixels
+        return values
 
 
 def _repeats(values_at, uv, period):

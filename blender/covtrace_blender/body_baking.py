@@ -55,9 +55,7 @@ def scattered(atlas, values):
 
 def body_image(atlas, values):
     """A BakedImage of (k, 1 or 3) values of texels, with what is near in between."""
-    pixels = np.ones((atlas.height, atlas.width, 4), np.float32)
-    pixels[..., :3] = filled(scattered(atlas, values), scattered(atlas, np.ones((len(values), 1), bool))[..., 0])
-    return BakedImage(pixels)
+    return BakedImage(filled(scattered(atlas, values.astype(np.float32)), scattered(atlas, np.ones((len(values), 1), bool))[..., 0]))
 
 
 def filled(image, known):

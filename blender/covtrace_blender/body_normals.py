@@ -30,7 +30,7 @@ def turned(image, body, uv_map, strength):
     atlas. strength: Blender's, which blends from the flat normal."""
     atlas, texels = body.atlas, body.atlas.texels
     flat = np.array([0, 0, 1])
-    local = flat + (2 * image.values[texels.rows, texels.columns, :3] - 1 - flat) * strength
+    local = flat + (2 * image.values[texels.rows, texels.columns] - 1 - flat) * strength
     normals = body.values("NORMAL", np.arange(len(texels.triangle)), (0, 0))
     positions = body.corners("OBJECT")
     of_map, of_atlas = (_frame(normals, *(part[texels.triangle] for part in _tangents(positions, uvs)))

@@ -10,7 +10,8 @@ from mathutils import Vector
 from . import export_lights, export_meshes, export_motion, export_strands, export_world, ply
 from .atlases import Atlases
 from .baking import Surface
-from .body import Body
+from .body import Body, undeformed
+from .body_demand import MOST_TEXELS, MOST_TEXELS_OF_PREVIEWS, BodyDemand, share_of_density
 from .export_camera import SceneCamera
 from .export_materials import MaterialExporter
 from .export_shaders import numbers
@@ -79,6 +80,7 @@ class SceneExporter:
         self.materials, self.atlases = MaterialExporter(out, self.folder, self.warn), Atlases()
         self._write_world()
         self._look_at_instances()
+        self._look_at_bodies()
         self.visibility = Visibility(self.depsgraph.view_layer)
         self.volumes = self._find_volumes()
         self._write_objects(moving)
@@ -279,6 +281,31 @@ class SceneExporter:
             return Surface(self.uv_ranges.of(name), body if has_body else None, export_meshes.active_uv_map(mesh) if has_body else None)
 
         return self.materials.variants(material, (*Placements.key(obj), mesh is None), surface_of)
+
+    def _look_at_bodies(self):
+        """Makes all atlases coarser where they would be too large together."""
+        demand, seen = BodyDemand(self.materials.files.source), set()
+        for _, instance in self._instances():
+            obj = instance.object
+            if obj.type not in SURFACES or Placements.key(obj) in seen:
+                continue
+            seen.add(Placements.key(obj))
+            materials = self._materials(obj)
+            active = export_meshes.active_uv_map(obj.data) if obj.type == "MESH" else None
+            images = {material: count for material in set(materials) if material and (count := demand.images(material, active))}
+            mesh = obj.to_mesh() if images else None
+            if mesh is None:
+                continue
+            for material, count in images.items() if Body.is_of(mesh) else ():
+                chosen = export_meshes.triangles_of(mesh, materials, material)
+                corners = undeformed(mesh)[export_meshes.triangles(mesh)[chosen]]
+                demand.add(material, count, corners, self.placements.density(obj, mesh)[chosen])
+            obj.to_mesh_clear()
+        most = MOST_TEXELS_OF_PREVIEWS if self.is_preview else MOST_TEXELS
+        self.placements.share = share_of_density(demand.texels, most)
+        if self.placements.share < 1:
+            self.warn(f"the patterns on all objects would have about {demand.texels / 1e6:.0f} million texels, of which there are at most "
+                      f"{most / 1e6:.0f}; all are {1 / self.placements.share:.1f} times as coarse")
 
     def _look_at_instances(self):
         self.uv_ranges = UvRanges()

@@ -31,7 +31,7 @@ class Value:
         return self.mapping == PLAIN_MAPPING and self.filter == "bilinear" and self.wrap == "repeat"
 
     def apply(self, pixels):
-        """(h, w, 4) to (h, w, 3), or to (h, w) where one number is wanted."""
+        """(h, w, 3 or 4) to (h, w, 3), or to (h, w) where one number is wanted."""
         if self.channel == "grey":
             values = pixels[..., :3] @ np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
         elif self.channel is not None:

@@ -79,7 +79,7 @@ class TextureFiles:
         self.cache = {}
 
     def source(self, image):
-        """Pixels of an image of Blender's, or of a baked one."""
+        """Pixels of an image of Blender's, (h, w, 4), or of a baked one, (h, w, 3)."""
         if isinstance(image, BakedImage):
             return image.values
         if image.name_full not in self.cache:
@@ -87,7 +87,7 @@ class TextureFiles:
         return self.cache[image.name_full]
 
     def write(self, image, key, treat):
-        """The file's name, relative to the scene; treat: (h, w, 4) to what is written."""
+        """The file's name, relative to the scene; treat: pixels to what is written."""
         full_key = (image.name_full, key)
         if full_key not in self.files:
             name = f"texture{len(self.files)}.png"

@@ -16,11 +16,12 @@ LEAST_DISTANCE = 0.1  # of a camera to a triangle, in the triangle's radius
 
 
 class Placements:
-    """Where the instances of each mesh stand, as `camera`, a SceneCamera or None, sees them."""
+    """Where the instances of each mesh stand, as `camera`, a SceneCamera or None, sees them. share: of the density that bodies get."""
 
     def __init__(self, camera):
-        self.camera, self._matrices, self._instanced = camera, {}, set()
+        self.camera, self._matrices, self._instanced, self._known = camera, {}, set(), {}
         self.most_texels = MOST_TEXELS if camera else MOST_TEXELS_OF_PREVIEWS
+        self.share = 1.0
 
     @staticmethod
     def key(obj):
@@ -39,8 +40,14 @@ class Placements:
         return None if key in self._instanced or len(self._matrices.get(key, ())) != 1 else self._matrices[key][0]
 
     def density(self, obj, mesh):
-        """(n,) texels per unit at each triangle of a mesh: between one and two per pixel, powers of two, and the same on all of a
-        mesh whose parts need hardly different ones, so that small moves change nothing."""
+        """(n,) texels per unit at each triangle of a mesh: between one and two per pixel, or their share of that, in steps of two, and the
+        same on all of a mesh whose parts need hardly different ones, so that small moves change nothing."""
+        key = self.key(obj)
+        if key not in self._known:
+            self._known[key] = self._wanted(obj, mesh)
+        return self.share * self._known[key]
+
+    def _wanted(self, obj, mesh):
         corners = export_meshes.positions(mesh)[export_meshes.triangles(mesh)].astype(float)
         middles = corners.mean(axis=1)
         radii = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)

@@ -1,11 +1,12 @@
-"""Atlases of bodies: that each place has texels of its own, and which of them are kept for the next frame."""
+"""Atlases of bodies: that each place has texels of its own, and which of them an export keeps."""
 
+import struct
 import unittest.mock
 
 import bpy
 import numpy as np
 from addon_support import BlenderTest, render
-from covtrace_blender import atlases, body_baking
+from covtrace_blender import atlases, body_baking, export_scene
 from covtrace_blender.atlas import Atlas
 from node_trees import Tree
 
@@ -87,3 +88,22 @@ class KeptAtlasesTest(BlenderTest):
             self.assertEqual(laid_out, 0)
             self.assertGreater(evaluated, 0)
         self.assertEqual(self.work(2), (0, 0))
+
+    def test_all_atlases_together_have_a_bound(self):
+        self.scene.render.resolution_x, self.scene.render.resolution_y, self.camera.data.lens = 256, 192, 20
+        for number in range(6):
+            bpy.ops.mesh.primitive_cube_add(size=0.8 - 0.02 * number, location=(number % 3 - 1, number // 3 - 0.5, 3.5))
+            bpy.context.object.data.materials.append(self.patterned("Generated"))
+
+        def texels():
+            found = []
+            self.export(lambda folder: found.extend(struct.unpack(">II", file.read_bytes()[16:24]) for file in folder.glob("texture*.png")))
+            self.assertEqual(len(found), 6)
+            return sum(width * height for width, height in found)
+
+        whole = texels()
+        self.assertEqual(self.warnings, [])
+        with unittest.mock.patch.object(export_scene, "MOST_TEXELS", whole // 5):
+            self.assertLess(texels(), whole // 3)
+        told, = self.warnings
+        self.assertIn("as coarse", told)
