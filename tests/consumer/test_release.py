@@ -82,8 +82,8 @@ class Made(unittest.TestCase):
 @unittest.skipUnless(run(PYTHON, "-c", "import pip, wheel").returncode == 0, "needs Debian's python3-pip and python3-wheel")
 class Wheel(Made):
     def test_is_installed_and_renders_with_its_own_libraries(self):
-        self.run_command(SOURCE / "packaging/wheel", BUILD, self.folder)
-        [wheel] = self.folder.glob("*.whl")
+        self.run_command(SOURCE / "packaging/wheel", BUILD, self.folder / "new/dist")
+        [wheel] = (self.folder / "new/dist").glob("*.whl")
         self.assertRegex(wheel.name, rf"\Acovtrace-{re.escape(VERSION)}-(cp3\d+)-\1-manylinux_2_\d+_x86_64\.whl\Z")
         target = self.folder / "site-packages"
         self.run_command(PYTHON, "-m", "pip", "install", "--quiet", "--no-index", "--no-deps", "--target", target, wheel)
@@ -117,8 +117,8 @@ print(*sorted(m.name for m in pkgutil.walk_packages(package.__path__, "covtrace_
 
 class Extension(Made):
     def test_is_one_folder_that_blender_knows_as_an_extension_and_as_an_add_on(self):
-        self.run_command(sys.executable, SOURCE / "packaging/blender-extension", self.folder)
-        [archive] = self.folder.glob("*.zip")
+        self.run_command(sys.executable, SOURCE / "packaging/blender-extension", self.folder / "new/dist")
+        [archive] = (self.folder / "new/dist").glob("*.zip")
         self.assertEqual(archive.name, f"covtrace_blender-{VERSION}.zip")
         with zipfile.ZipFile(archive) as files:
             names = set(files.namelist())
