@@ -82,6 +82,15 @@ bool has_marks(const tinygltf::Primitive& primitive) {
     return primitive.mode >= 0 && primitive.mode < TINYGLTF_MODE_TRIANGLES;
 }
 
+std::string told_of_marks(const tinygltf::Primitive& primitive) {
+    const std::string shape = primitive.mode == TINYGLTF_MODE_POINTS
+                                  ? "points are shown as tetrahedra"
+                                  : "lines are shown as rods";
+    const bool is_lit = primitive.attributes.contains("NORMAL");
+    return shape + " of a thousandth of the scene's diagonal" +
+           (is_lit ? "" : ", unlit, as they have no normals");
+}
+
 std::vector<float> mark_radii(const Document& document, const PlacedNodes& placed) {
     const auto mesh_of = [&](const PlacedNode& n) {
         const int mesh = document.model.nodes[static_cast<size_t>(n.node)].mesh;

@@ -1,6 +1,7 @@
 /// Private to this folder: points and lines as solids of about a pixel's width.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "gltf/document.h"
@@ -11,6 +12,9 @@ namespace covtrace::gltf {
 
 /// Whether a primitive is made of points or lines; its mode must be one of the format's.
 bool has_marks(const tinygltf::Primitive& primitive);
+
+/// The warning of a primitive of points or lines: how it is shown, and whether light falls on it.
+std::string told_of_marks(const tinygltf::Primitive& primitive);
 
 /// The radius of points and lines of each mesh, in its own units: half a thousandth of the diagonal
 /// of a box around all that is placed, about half a pixel where the view holds all of it. Where

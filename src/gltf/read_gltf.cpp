@@ -137,6 +137,7 @@ class SceneAssembler {
         warn_of_left_out(document_, primitive.extensions, place, log_);
         // By the specification points and lines without normals are not lit.
         const bool is_unlit = has_marks(primitive) && !primitive.attributes.contains("NORMAL");
+        if (has_marks(primitive)) log_.add(document_.place(place), told_of_marks(primitive));
         const int material = material_of(document_, primitive, variant_, place);
         const auto surface_of = [&](bool unlit) -> const Surface& {
             return materials_.surface(material, geometry_.colours(mesh, index), unlit, place);

@@ -47,7 +47,13 @@ TEST(GltfMarks, PointsAreTetrahedraOfAThousandthOfTheDiagonal) {
     EXPECT_EQ(mesh.triangles.size(), 4u * 4);
     EXPECT_NEAR(volume(mesh) / (4 * 8 * std::sqrt(3.0) / 27 * std::pow(double(radius), 3)), 1,
                 0.02);
-    EXPECT_EQ(scene.warnings.size(), 2u) << all_warnings(scene);  // no camera, no lights
+    EXPECT_EQ(scene.warnings.size(), 3u) << all_warnings(scene);  // no camera, no lights
+    EXPECT_NE(
+        all_warnings(scene).find("meshes[0].primitives[0]: points are shown as tetrahedra of a "
+                                 "thousandth of the scene's diagonal, unlit, as they have no "
+                                 "normals"),
+        std::string::npos)
+        << all_warnings(scene);
     // The node's scale changes nothing of their share of the whole.
     const auto large = marks.of(0, json::object(), 100);
     EXPECT_NEAR(distance(mesh_of(large.shapes.at(0)).positions[0], {0, 0, 0}), radius, 1e-5f);
@@ -65,7 +71,8 @@ TEST(GltfMarks, LinesAreRodsOfEveryMode) {
     // A line from a point to itself is none.
     EXPECT_EQ(mesh_of(scene.shapes.at(0)).triangles.size(), 8u);
     EXPECT_NEAR(volume(mesh_of(scene.shapes[0])) / (area * 5), 1, 1e-3);
-    EXPECT_EQ(scene.warnings.size(), 2u) << all_warnings(scene);  // no camera, no lights
+    EXPECT_EQ(scene.warnings.size(), 3u) << all_warnings(scene);  // no camera, no lights
+    EXPECT_NE(all_warnings(scene).find("lines are shown as rods"), std::string::npos);
 }
 
 TEST(GltfMarks, AreUnlitWithoutNormalsAndKeepTheirColours) {
@@ -84,6 +91,7 @@ TEST(GltfMarks, AreUnlitWithoutNormalsAndKeepTheirColours) {
     const auto lit = marks.of(0, {{"material", 0}, {"attributes", {{"NORMAL", up}}}});
     EXPECT_NO_THROW(model_of<ConductorMaterial>(lit, lit.shapes.at(0).material));
     EXPECT_EQ(mesh_of(lit.shapes[0]).normals.at(15), (Vec3{0, 0, 1}));
+    EXPECT_EQ(all_warnings(lit).find("unlit"), std::string::npos) << all_warnings(lit);
 }
 
 TEST(GltfMarks, MoveWithTheirMorphTargets) {
