@@ -20,6 +20,9 @@ except ModuleNotFoundError as missing:
     import pathlib as _pathlib
     import sys as _sys
 
+    if missing.name and not missing.name.startswith("covtrace"):
+        raise ImportError(f"covtrace: {missing}; {_sys.executable} needs it: pip install {missing.name}, or on Debian "
+                          f"/usr/bin/python3 and its package python3-{missing.name}") from missing
     _built = ", ".join(p.name for p in _pathlib.Path(__file__).parent.glob("_covtrace.*.so"))
     raise ImportError(f"covtrace: {missing}; this is {_sys.executable}, the package was built for "
                       f"another Python ({_built}), on Debian /usr/bin/python3") from missing
