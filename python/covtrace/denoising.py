@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Sequence
 from typing import Any, Literal, Union
 
@@ -11,8 +10,9 @@ import numpy
 
 from . import _covtrace
 from .arguments import path_of, refuse
-from .errors import SceneWarning, UsageError
+from .errors import UsageError
 from .image import Array, Image
+from .scene_warnings import warn
 
 Picture = Union[Image, Array, str, "os.PathLike[str]"]
 #: A layer's name, one array for all images, or one for each.
@@ -96,5 +96,5 @@ def denoise(color: Picture | Sequence[Picture], albedo: Feature = None, normal: 
              for i, (p, added) in enumerate(zip(pictures, additions))]
     planes, error, texts = _covtrace.denoise(given, options)
     for text in texts:
-        warnings.warn(text, SceneWarning, stacklevel=2)
+        warn(text)
     return Image(planes, statistics={"error": error})

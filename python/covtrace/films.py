@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Iterable
 from typing import Any, Literal
 
 from . import _covtrace
 from .arguments import layers_of, path_of, paths_of
-from .errors import SceneWarning, UsageError
+from .errors import UsageError
 from .image import Image
+from .scene_warnings import warn
 
 
 def merge(films: Iterable[str | os.PathLike[str]], *, film: str | os.PathLike[str] | None = None,
@@ -43,5 +43,5 @@ def merge(films: Iterable[str | os.PathLike[str]], *, film: str | os.PathLike[st
         else path_of("denoiser_library", denoiser_library)}
     planes, complete, statistics, texts = _covtrace.merge(files, options)
     for text in texts:
-        warnings.warn(text, SceneWarning, stacklevel=2)
+        warn(text)
     return Image(planes, complete, statistics)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import tempfile
-import warnings
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, Protocol
 
@@ -13,10 +12,11 @@ from . import _covtrace
 from .arguments import (camera_of, cancel_of, environment_of, films_of, function_of, is_camera_choice, lamps_of, layers_of, path_of, resolution_of,
                         seconds_of, shutter_of)
 from .builder import SceneBuilder
-from .errors import SceneWarning, UsageError
+from .errors import UsageError
 from .image import Image
 from .progress import Progress
 from .scene import Scene
+from .scene_warnings import warn
 
 _UNITS = {"": 1, "k": 1 << 10, "m": 1 << 20, "g": 1 << 30, "t": 1 << 40}
 
@@ -172,5 +172,5 @@ def _with_images(preview: Callable[[Image], Any] | None) -> Callable[[_covtrace.
 def _render(scene: Scene, options: dict[str, Any]) -> Image:
     planes, complete, statistics, texts = _covtrace.render(scene._description, options)
     for text in texts:
-        warnings.warn(scene._named(text), SceneWarning, stacklevel=3)
+        warn(scene._named(text))
     return Image(planes, complete, statistics)

@@ -14,6 +14,7 @@ from .image import Image
 from .progress import Progress
 from .rendering import render
 from .scene import Scene
+from .scene_warnings import Place, place_of_caller, place_of_thread
 
 
 class RunningRender:
@@ -37,11 +38,12 @@ class RunningRender:
         self._future: Future[Image] = Future()
         self._future.set_running_or_notify_cancel()
         self._observers = {name: options.pop(name, None) for name in ("progress", "preview")}
-        thread = threading.Thread(target=self._run, args=(scene, options), daemon=True,
-                                  name="covtrace render")
+        thread = threading.Thread(target=self._run, args=(scene, options, place_of_caller()),
+                                  daemon=True, name="covtrace render")
         thread.start()
 
-    def _run(self, scene: Any, options: dict[str, Any]) -> None:
+    def _run(self, scene: Any, options: dict[str, Any], begun_at: Place) -> None:
+        place_of_thread(begun_at)
         try:
             image = render(scene, progress=self._note_progress, preview=self._note_image,
                            cancel=self._cancel, **options)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Callable, Iterable, Mapping
 
 from . import _covtrace
 from .arguments import choice_of, path_of, paths_of, shutter_of, text_of
 from .builder_calls import BuilderCalls
-from .errors import SceneWarning
 from .scene_parts import AreaLight, Camera, Instance, Light, Material, Parts, Shape
+from .scene_warnings import warn
 
 
 def _read(file: str, search_paths: Iterable[str | os.PathLike[str]],
@@ -56,7 +55,7 @@ class Scene:
         """The scene that a SceneBuilder wrote; its warnings name the builder's calls."""
         scene = cls.__new__(cls)
         scene._is_placed, scene._shutter, scene._named = False, None, calls.named
-        scene._take(_read(file, search_paths, None, choices), stacklevel=4)
+        scene._take(_read(file, search_paths, None, choices))
         return scene
 
     @classmethod
@@ -70,11 +69,11 @@ class Scene:
             paths_of("search_paths", search_paths)))
         return scene
 
-    def _take(self, description: _covtrace.SceneDescription, stacklevel: int = 3) -> None:
+    def _take(self, description: _covtrace.SceneDescription) -> None:
         self._description = description
         # Stand-ins for a camera or lights are warned of when they are used: options may replace them.
         for text in description.told:
-            warnings.warn(self._named(text), SceneWarning, stacklevel=stacklevel)
+            warn(self._named(text))
 
     @property
     def name(self) -> str:

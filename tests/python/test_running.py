@@ -1,8 +1,11 @@
 """covtrace.start: renders beside the program that started them, and images between rounds."""
 
 import asyncio
+import pathlib
+import tempfile
 import threading
 import unittest
+import warnings
 
 import numpy
 
@@ -81,6 +84,26 @@ class Running(unittest.TestCase):
 
         with self.assertRaises(ZeroDivisionError):
             covtrace.start(self.scene(), **LONG, preview=failing).result(timeout=60)
+
+    def test_warnings_are_of_the_line_that_began_it(self):
+        replaced = scenes.LIT.replace("WorldBegin", 'Integrator "sppm"\nWorldBegin', 1)
+        options = {"method": "uniform", "spp": 1, "resolution": (8, 6)}
+        built = covtrace.SceneBuilder()  # shapes without lights
+        built.camera(eye=(0, 0, 4), target=(0, 0, 0), fov=40, resolution=(8, 6))
+        built.mesh(numpy.eye(3), [[0, 1, 2]])
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "scene.pbrt")
+            file.write_text(replaced)
+            begin = {"start": lambda: covtrace.start(file, **options).result(60), "render": lambda: covtrace.render(file, **options),
+                     "of a builder": lambda: covtrace.start(built, **options).result(60)}
+            for name, function in begin.items():
+                with self.subTest(name), warnings.catch_warnings(record=True) as told:
+                    warnings.simplefilter("always")
+                    function()
+                    self.assertTrue(told)
+                    for warning in told:
+                        self.assertIs(warning.category, covtrace.SceneWarning)
+                        self.assertEqual((warning.filename, warning.lineno), (function.__code__.co_filename, function.__code__.co_firstlineno))
 
     def test_done_callbacks(self):
         called = threading.Event()
