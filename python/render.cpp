@@ -29,6 +29,7 @@
 #include "render/scene_file.h"
 #include "render/session.h"
 #include "scene/defaults.h"
+#include "scene/extent.h"
 #include "scene/summary.h"
 
 namespace covtrace::python {
@@ -116,6 +117,14 @@ std::vector<std::string> texts_of(const Warnings& warnings) {
     std::vector<std::string> texts;
     for (const Warning& w : warnings) texts.push_back(text_of(w));
     return texts;
+}
+
+/// Corners of the box around all shapes: ((x, y, z), (x, y, z)), None where there are none.
+py::object extent_of(const SceneDescription& scene) {
+    const Bounds3 box = bounds(scene);
+    if (box.empty()) return py::none();
+    return py::make_tuple(py::make_tuple(box.lo.x, box.lo.y, box.lo.z),
+                          py::make_tuple(box.hi.x, box.hi.y, box.hi.z));
 }
 
 std::string darkness_text(double dark) {
@@ -349,6 +358,7 @@ void bind_render(py::module_& module) {
                                [](const SceneDescription& s) { return texts_of(s.warnings); })
         .def_property_readonly(
             "warnings", [](const SceneDescription& s) { return texts_of(completed(s).warnings); })
+        .def("extent", &extent_of)
         .def("summary", [](const SceneDescription& s) { return summarize(completed(s)); });
     module.def("is_gltf", &is_gltf);
     module.def("render", &render_scene);

@@ -5,6 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping
 
+import numpy
+from numpy.typing import NDArray
+
 from . import _covtrace
 from .arguments import choice_of, path_of, paths_of, shutter_of, text_of
 from .builder_calls import BuilderCalls
@@ -131,6 +134,13 @@ class Scene:
     @property
     def instances(self) -> Parts:
         return Parts("instance", lambda i: Instance(self._description, i), self._description.parts()["instances"])
+
+    @property
+    def extent(self) -> NDArray[numpy.float64] | None:
+        """Two opposite corners of the box around all shapes and instances as they stand when the shutter
+        opens, [lowest, highest], in world space; None where there are none."""
+        found = self._description.extent()
+        return None if found is None else numpy.array(found)
 
     def summary(self) -> str:
         """Several lines for people, as `covtrace info`."""

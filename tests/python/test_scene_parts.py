@@ -56,6 +56,13 @@ class Parts(unittest.TestCase):
     def setUp(self):
         self.scene = scene()
 
+    def test_the_extent_follows_the_shapes(self):
+        # The floor's corners, the ball of radius 1 at x = 0.25 and the lamp of 0.5 at y = 3.
+        numpy.testing.assert_allclose(self.scene.extent, [[-4, -1, -4], [4, 3.5, 4]], atol=1e-6)
+        self.scene.shapes[1].place(moved(9, 0, 0))
+        numpy.testing.assert_allclose(self.scene.extent, [[-4, -1, -4], [10, 3.5, 4]], atol=1e-6)
+        self.assertIsNone(covtrace.Scene.from_string("WorldBegin").extent)
+
     def render(self, which):
         return covtrace.render(which, spp=4, seed=1)
 
