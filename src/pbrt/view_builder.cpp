@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <sstream>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "colour/sensor_matrix.h"
 #include "colour/white_balance.h"
@@ -55,6 +58,23 @@ void spherical_camera(Entity& e, CameraDescription& camera) {
     e.parameters.ignore({"lensradius", "focaldistance", "frameaspectratio", "screenwindow"});
 }
 
+/// The window of a perspective or orthographic camera, as x0, x1, y0, y1; none where it has none.
+std::optional<std::array<float, 4>> screen_window(Entity& e, WarningLog& log) {
+    const std::vector<float> window = e.parameters.numbers("screenwindow");
+    if (window.empty()) return std::nullopt;
+    if (window.size() != 4) {
+        log.add(e.parameters.where("screenwindow", e.where),
+                "parameter \"screenwindow\" has " + std::to_string(window.size()) +
+                    " values in the place of 4 (x0 x1 y0 y1) and is ignored, as in pbrt");
+        return std::nullopt;
+    }
+    if (!(window[0] < window[1] && window[2] < window[3]))
+        e.refuse("screenwindow", "parameter \"screenwindow\" expects x0 < x1 and y0 < y1");
+    for (const size_t side : {0, 2})
+        within(e, "screenwindow", window[side + 1] - window[side], kFlattest, 1 / kFlattest);
+    return std::array{window[0], window[1], window[2], window[3]};
+}
+
 void build_camera(ViewEntities& view, BuildContext& context) {
     Entity& e = view.camera;
     ParameterList& p = e.parameters;
@@ -83,14 +103,7 @@ void build_camera(ViewEntities& view, BuildContext& context) {
         if (p.has("frameaspectratio"))
             camera.frame_aspect_ratio = within(
                 e, "frameaspectratio", e.positive("frameaspectratio", 0), kFlattest, 1 / kFlattest);
-        if (const std::vector<float> window = p.numbers("screenwindow"); !window.empty()) {
-            if (window.size() != 4 || !(window[0] < window[1] && window[2] < window[3]))
-                e.refuse("screenwindow", "parameter \"screenwindow\" expects x0 < x1 and y0 < y1");
-            for (const size_t side : {0, 2})
-                within(e, "screenwindow", window[side + 1] - window[side], kFlattest,
-                       1 / kFlattest);
-            camera.screen_window = {window[0], window[1], window[2], window[3]};
-        }
+        camera.screen_window = screen_window(e, context.log);
     } else if (e.type == "realistic") {
         build_realistic_camera(e, view.film, context);
     } else if (e.type == "spherical") {

@@ -225,6 +225,14 @@ TEST(SceneView, WhiteBalanceMakesDaylightWhite) {
         EXPECT_NEAR(row[0] * candle.r + row[1] * candle.g + row[2] * candle.b, 1, 5e-3f);
 }
 
+TEST(SceneView, WindowsOfOtherThanFourValuesAreIgnoredAsInPbrt) {
+    const auto scene = read_options("Camera \"orthographic\" \"float screenwindow\" [ -.1 .1 ]\n");
+    EXPECT_EQ(scene.camera.screen_window, std::nullopt);
+    EXPECT_NE(warnings_of(scene).find("1: parameter \"screenwindow\" has 2 values"),
+              std::string::npos)
+        << warnings_of(scene);
+}
+
 TEST(SceneView, ErrorsNameThePlace) {
     struct Case {
         const char* text;
@@ -237,7 +245,7 @@ TEST(SceneView, ErrorsNameThePlace) {
          "test.pbrt:1:22: parameter \"fov\" must be between"},
         {"Camera \"perspective\" \"float focaldistance\" 0", "must be greater than 0"},
         {"Camera \"perspective\" \"float lensradius\" -1", "must not be negative"},
-        {"Camera \"perspective\" \"float screenwindow\" [ 1 2 3 ]", "expects x0 < x1"},
+        {"Camera \"perspective\" \"float screenwindow\" [ 1 2 3 3 ]", "expects x0 < x1"},
         {"Camera \"pinhole\"", "pbrt-v3"},
         {"Camera \"fisheye\"",
          "test.pbrt:1:1: unknown camera \"fisheye\"; expected one of perspective"},
