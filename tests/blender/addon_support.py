@@ -23,6 +23,24 @@ WIDTH, HEIGHT = 32, 24
 MOST_SECONDS = 180
 
 
+def write_layers(scene):
+    """Images are OpenEXR files of one part with all layers."""
+    settings = scene.render.image_settings
+    if hasattr(settings, "media_type"):  # from Blender 5.0 on
+        settings.media_type = "MULTI_LAYER_IMAGE"
+        settings.use_exr_interleave = True  # one part, as before
+    settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
+    settings.exr_codec = "ZIP"
+
+
+def curves_of(animated):
+    """The curves of what an object, or other data, is animated by."""
+    action = animated.animation_data.action
+    if hasattr(action, "fcurves"):  # to Blender 4.5
+        return action.fcurves
+    return [curve for layer in action.layers for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves]
+
+
 def render(engine_name, samples):
     """The render as channels by name, without the view layer's name."""
     scene = bpy.context.scene
@@ -32,12 +50,7 @@ def render(engine_name, samples):
         scene.cycles.samples = samples
         scene.cycles.use_denoising = False
         scene.cycles.use_adaptive_sampling = False
-    settings = scene.render.image_settings
-    if hasattr(settings, "media_type"):  # from Blender 5.0 on
-        settings.media_type = "MULTI_LAYER_IMAGE"
-        settings.use_exr_interleave = True  # one part, as before
-    settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
-    settings.exr_codec = "ZIP"
+    write_layers(scene)
     with tempfile.TemporaryDirectory() as folder:
         scene.render.filepath = os.path.join(folder, "image.exr")
         bpy.ops.render.render(write_still=True)
@@ -51,11 +64,22 @@ def mean(image, x0=0, y0=0, x1=WIDTH, y1=HEIGHT):
             ((x1 - x0) * (y1 - y0)) for c in "RGB"]
 
 
+# Names of Principled's sockets from Blender 4.0 on, by those of 3.4.
+SINCE_4 = {"Specular": "Specular IOR Level", "Emission": "Emission Color", "Transmission": "Transmission Weight",
+           "Clearcoat": "Coat Weight", "Clearcoat Roughness": "Coat Roughness", "Sheen": "Sheen Weight",
+           "Subsurface": "Subsurface Weight"}
+
+
+def socket(principled, name):
+    """An input by its name in Blender 3.4."""
+    return principled.inputs[SINCE_4.get(name, name) if bpy.app.version >= (4, 0, 0) else name]
+
+
 def material(name="material", **inputs):
     m = bpy.data.materials.new(name)
     m.use_nodes = True
     for key, value in inputs.items():
-        m.node_tree.nodes["Principled BSDF"].inputs[key.replace("_", " ")].default_value = value
+        socket(m.node_tree.nodes["Principled BSDF"], key.replace("_", " ")).default_value = value
     return m
 
 
@@ -124,7 +148,7 @@ class BlenderTest(unittest.TestCase):
         for frame, angle in ((0, -turn), (2, turn)):
             bone.rotation_quaternion = (math.cos(angle / 2), 0, 0, math.sin(angle / 2))
             bone.keyframe_insert("rotation_quaternion", frame=frame)
-        for curve in rig.animation_data.action.fcurves:
+        for curve in curves_of(rig):
             for point in curve.keyframe_points:
                 point.interpolation = "LINEAR"
 

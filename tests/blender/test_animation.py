@@ -5,14 +5,16 @@ import signal
 import subprocess
 import tempfile
 import time
+import unittest
 
 import bpy
 import numpy as np
-from addon_support import SOURCE, BlenderTest
+from addon_support import SOURCE, BlenderTest, curves_of
 
 REGISTER = f"import sys; sys.path.insert(0, {str(SOURCE / 'blender')!r}); import covtrace_blender; covtrace_blender.register()"
 
 
+@unittest.skipUnless(bpy.app.binary_path, "the module bpy has no command line")
 class AnimationTest(BlenderTest):
     def setUp(self):
         super().setUp()
@@ -23,7 +25,7 @@ class AnimationTest(BlenderTest):
         for frame, x in ((0, -1.5), (4, 1.5)):
             plane.location.x = x
             plane.keyframe_insert("location", frame=frame)
-        for curve in plane.animation_data.action.fcurves:
+        for curve in curves_of(plane):
             for key in curve.keyframe_points:
                 key.interpolation = "LINEAR"
         self.scene.render.use_motion_blur, self.scene.render.motion_blur_shutter = True, 1.0

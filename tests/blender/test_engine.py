@@ -92,6 +92,7 @@ class EngineTest(BlenderTest):
         finally:
             engine.layers.read = read
 
+    @unittest.skipUnless(bpy.app.binary_path, "the module bpy has no command line")
     def test_a_failed_command_line_render_has_an_exit_code(self):
         self.plane(material(**self.MATT))
         with tempfile.TemporaryDirectory() as folder:

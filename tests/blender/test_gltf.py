@@ -6,7 +6,7 @@ import subprocess
 import tempfile
 
 import bpy
-from addon_support import HEIGHT, WIDTH, BlenderTest, exr, material, mean, render
+from addon_support import HEIGHT, WIDTH, BlenderTest, curves_of, exr, material, mean, render
 
 FRAMES_PER_SECOND = 24
 
@@ -46,7 +46,7 @@ class GltfTest(BlenderTest):
         for frame, value in zip((0, 2), thick):
             key.value = value
             key.keyframe_insert("value", frame=frame)
-        for curve in arm.data.shape_keys.animation_data.action.fcurves:
+        for curve in curves_of(arm.data.shape_keys):
             for point in curve.keyframe_points:
                 point.interpolation = "LINEAR"
         self.scene.frame_start, self.scene.frame_end = 0, 2

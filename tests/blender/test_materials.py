@@ -3,7 +3,7 @@
 import math
 
 import bpy
-from addon_support import BlenderTest, material, mean, render
+from addon_support import BlenderTest, material, mean, render, socket
 
 
 class MaterialsTest(BlenderTest):
@@ -172,7 +172,7 @@ class MaterialsTest(BlenderTest):
         mirrored = tree.nodes.new("ShaderNodeTexNoise")
         tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Reflection"], mirrored.inputs["Vector"])
         tree.links.new(mirrored.outputs["Fac"], principled.inputs["Roughness"])
-        tree.links.new(image.outputs["Color"], principled.inputs["Specular"])
+        tree.links.new(image.outputs["Color"], socket(principled, "Specular"))
         tree.links.new(noise.outputs["Fac"], principled.inputs["Emission Strength"])
         tree.links.new(noise.outputs["Color"], output.inputs["Displacement"])
         tree.links.new(noise.outputs["Fac"], output.inputs["Volume"])

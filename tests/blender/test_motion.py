@@ -3,7 +3,7 @@
 import math
 
 import bpy
-from addon_support import BlenderTest, material, mean, render
+from addon_support import BlenderTest, curves_of, material, mean, render
 
 
 class MotionTest(BlenderTest):
@@ -12,7 +12,7 @@ class MotionTest(BlenderTest):
         for frame, x in ((0, -1), (2, 1)):
             plane.location.x = x
             plane.keyframe_insert("location", frame=frame)
-        for curve in plane.animation_data.action.fcurves:
+        for curve in curves_of(plane):
             for key in curve.keyframe_points:
                 key.interpolation = "LINEAR"
         self.scene.frame_set(1)
@@ -34,7 +34,7 @@ class MotionTest(BlenderTest):
         for frame, value in ((0, 0.0), (2, 1.0)):
             key.value = value
             key.keyframe_insert("value", frame=frame)
-        for curve in mesh_object.data.shape_keys.animation_data.action.fcurves:
+        for curve in curves_of(mesh_object.data.shape_keys):
             for point in curve.keyframe_points:
                 point.interpolation = "LINEAR"
         self.scene.frame_set(1)
@@ -77,7 +77,9 @@ class MotionTest(BlenderTest):
         self.bend(arm, math.radians(20), 0.6)
         self.scene.frame_set(1)
         self.scene.render.use_motion_blur, self.scene.render.motion_blur_shutter = True, 2.0
-        self.scene.cycles.motion_blur_position = "CENTER"
+        # Cycles' own to Blender 4.5, the scene's since.
+        settings = self.scene.cycles if hasattr(self.scene.cycles, "motion_blur_position") else self.scene.render
+        settings.motion_blur_position = "CENTER"
         arm.cycles.motion_steps = 5  # Cycles' own are straight between its steps
         ours, theirs = render("COVTRACE", 256), render("CYCLES", 256)
         for x in range(0, 32, 4):
@@ -99,7 +101,7 @@ class MotionTest(BlenderTest):
                 for frame, x in ((0, -2), (2, 2)):
                     lamp.location.x = x
                     lamp.keyframe_insert("location", frame=frame)
-                for curve in lamp.animation_data.action.fcurves:
+                for curve in curves_of(lamp):
                     for key in curve.keyframe_points:
                         key.interpolation = "LINEAR"
                 self.scene.frame_set(1)

@@ -63,8 +63,12 @@ class ObjectsTest(BlenderTest):
         bpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3, size=2.4)
         grid = bpy.context.object
         group = bpy.data.node_groups.new("scatter", "GeometryNodeTree")
-        group.inputs.new("NodeSocketGeometry", "Geometry")
-        group.outputs.new("NodeSocketGeometry", "Geometry")
+        if hasattr(group, "interface"):  # from Blender 4.0 on
+            for way in ("INPUT", "OUTPUT"):
+                group.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+        else:
+            group.inputs.new("NodeSocketGeometry", "Geometry")
+            group.outputs.new("NodeSocketGeometry", "Geometry")
         nodes = group.nodes
         begin, end = nodes.new("NodeGroupInput"), nodes.new("NodeGroupOutput")
         scatter, cone = nodes.new("GeometryNodeInstanceOnPoints"), nodes.new("GeometryNodeMeshCone")

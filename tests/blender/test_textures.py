@@ -3,7 +3,7 @@
 import unittest.mock
 
 import bpy
-from addon_support import BlenderTest, material, mean, render
+from addon_support import BlenderTest, material, mean, render, socket
 from covtrace_blender import body_baking
 
 
@@ -27,7 +27,7 @@ class TexturesTest(BlenderTest):
         texture, principled = tree.nodes.new("ShaderNodeTexImage"), tree.nodes["Principled BSDF"]
         texture.image, texture.interpolation, texture.extension = image, "Closest", extension
         # The roughness at which Cycles' diffuse base is within 1 % of Lambert's (decision 0051).
-        principled.inputs["Specular"].default_value, principled.inputs["Roughness"].default_value = 0, 0.3
+        socket(principled, "Specular").default_value, principled.inputs["Roughness"].default_value = 0, 0.3
         tree.links.new(texture.outputs["Color"], principled.inputs["Base Color"])
         if uv_map is not None:
             node = tree.nodes.new("ShaderNodeUVMap")
@@ -133,7 +133,7 @@ class TexturesTest(BlenderTest):
         m = material(Base_Color=(0, 0, 0, 1), Specular=0.0, Emission_Strength=1.5)
         texture = m.node_tree.nodes.new("ShaderNodeTexImage")
         texture.image = image
-        m.node_tree.links.new(texture.outputs["Color"], m.node_tree.nodes["Principled BSDF"].inputs["Emission"])
+        m.node_tree.links.new(texture.outputs["Color"], socket(m.node_tree.nodes["Principled BSDF"], "Emission"))
         self.plane(m, size=20)
         ours, theirs = mean(render("COVTRACE", 64)), mean(render("CYCLES", 64))
         for a, b in zip(ours, theirs):

@@ -4,9 +4,8 @@ import os
 import tempfile
 
 import bpy
-import exr
 import numpy as np
-from addon_support import HEIGHT, WIDTH, BlenderTest, material
+from addon_support import HEIGHT, WIDTH, BlenderTest, exr, material, write_layers
 
 
 def render_layers(engine, samples=64):
@@ -14,8 +13,7 @@ def render_layers(engine, samples=64):
     scene = bpy.context.scene
     scene.render.engine, scene.covtrace.samples = engine, samples
     scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.use_adaptive_sampling = samples, False, False
-    settings = scene.render.image_settings
-    settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "ZIP"
+    write_layers(scene)
     with tempfile.TemporaryDirectory() as folder:
         scene.render.filepath = os.path.join(folder, "image.exr")
         bpy.ops.render.render(write_still=True)
@@ -127,7 +125,8 @@ class ViewLayersTest(BlenderTest):
         for x in (-1, 1):
             sun = self.lamp("SUN", angle=0, location=(x, 0, 3))
             sun.visible_glossy, sun.data.use_shadow = False, False
-            sun.data.cycles.cast_shadow = False
+            if hasattr(sun.data.cycles, "cast_shadow"):  # to Blender 4.5
+                sun.data.cycles.cast_shadow = False
         catcher = self.plane(matt(0.5, 0.5, 0.5))
         catcher.is_shadow_catcher = True
         self.collection("holes", self.cube(0, (1, 1, 1)))
