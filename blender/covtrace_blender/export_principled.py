@@ -162,5 +162,6 @@ class PrincipledExporter(OpacityReader):
                                        transmission)
                 parts.append(coated)
         if not is_constant(metallic, 0):
+            self._tell_single_scattering(node, roughness)
             parts.append(self._metal_under_coat(get, base, roughness, normal))
         return parts[0] if len(parts) == 1 else self._mix(parts[0], parts[1], metallic)

@@ -15,6 +15,10 @@ def squared(roughness):
     return np.maximum(roughness, 0) ** 2
 
 
+# Up to this roughness a white metal sends back 98 % of the light from above, and 95 % from the side.
+ROUGH_METAL = 0.3
+
+
 class Emission:
     def __init__(self, radiance, texture=None):
         self.radiance, self.texture = radiance, texture
@@ -124,6 +128,12 @@ class ShaderWriter(SocketReader):
         scale = max(self._plain(node.inputs["Strength"]), 0) * self._plain(node.inputs["Distance"]) * (-1 if node.invert else 1)
         file = self.files.write_heights(height.image, scale)
         return [f'"texture displacement" "{self._declare("float", height, file)}"']
+
+    def _tell_single_scattering(self, node, roughness):
+        """Warns of a metal that Cycles gives the light which bounces between its facets, too (decision 0051)."""
+        if getattr(node, "distribution", "") == "MULTI_GGX" and (roughness.image or round(roughness.constant, 3) > ROUGH_METAL):
+            self.warn("metals of Multiscatter GGX reflect light once here: of roughness 0.5 they are a tenth darker than in Cycles, "
+                      "of 0.9 more than half")
 
     def _metal(self, colour, roughness, normal):
         return self._make("conductor", [self._colour("reflectance", colour), *self._roughness(roughness), *normal])

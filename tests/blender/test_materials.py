@@ -161,6 +161,21 @@ class MaterialsTest(BlenderTest):
         self.export()
         self.assertTrue(any("'material': node 'Light Path' at 'Base Color'" in w for w in self.warnings), self.warnings)
 
+    def test_rough_metals_of_multiscatter_ggx_are_told(self):
+        m = material(Base_Color=(1, 1, 1, 1), Metallic=1.0)
+        principled = m.node_tree.nodes["Principled BSDF"]
+        self.plane(m)
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        self.camera.data.lens = 200
+        for distribution, roughness, is_told, share in (
+                ("GGX", 0.9, False, 0.42), ("MULTI_GGX", 0.2, False, 0.99), ("MULTI_GGX", 0.5, True, 0.915), ("MULTI_GGX", 0.9, True, 0.42)):
+            with self.subTest(distribution, roughness=roughness):
+                principled.distribution, principled.inputs["Roughness"].default_value = distribution, roughness
+                self.export()
+                self.assertEqual(any("Multiscatter GGX" in w for w in self.warnings), is_told, self.warnings)
+                self.assertAlmostEqual(mean(render("COVTRACE", 32))[0], share, delta=0.02)
+                self.assertAlmostEqual(mean(render("CYCLES", 32))[0], 1 if distribution == "MULTI_GGX" else share, delta=0.02)
+
     def test_what_is_left_out_is_told(self):
         """Each of the shaders changes the picture in Cycles and not here."""
         m = material()
