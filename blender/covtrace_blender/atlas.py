@@ -13,8 +13,8 @@ ROUNDS = 5  # of cuts through charts that lie on themselves; the last one leaves
 
 
 class Texels:
-    """Of each of k texels that show something: rows and columns (from the top), triangle, and `weights`, (k, 2) of the triangle's second
-    and third corner. inside: how many triangles it is well inside of."""
+    """The k texels that show something: rows and columns (from the top), triangle, and `weights`, (k, 2) of the triangle's second and
+    third corner. inside: how many triangles it is well inside of."""
 
     def __init__(self, rows, columns, triangle, weights, inside):
         self.rows, self.columns, self.triangle, self.weights, self.inside = rows, columns, triangle, weights, inside

@@ -37,7 +37,7 @@ class Surface:
         return found
 
     def key(self, kinds):
-        """What is equal for surfaces that look alike to nodes that ask for these kinds of coordinates on a body."""
+        """A key that is equal for surfaces that look alike to nodes that ask for these kinds of coordinates on a body."""
         return self.body.key(kinds) if self.body else repr(self.ranges)
 
     def range(self, uv_map):

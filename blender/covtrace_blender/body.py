@@ -74,7 +74,7 @@ class Body:
         self._layout, self.atlas = atlases.of(self._rest, self.triangles, density, most_texels)
 
     def key(self, kinds):
-        """What is equal for bodies of the same atlas on which what hangs on coordinates of these kinds looks alike."""
+        """A key that is equal for bodies of the same atlas on which what hangs on coordinates of these kinds looks alike."""
         for kind in kinds:
             if kind not in self._digests:
                 self._digests[kind] = digest(self._corners[kind].astype(np.float32)) if kind in self._corners else ""

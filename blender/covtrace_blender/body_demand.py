@@ -48,7 +48,7 @@ class _Counter:
 
 
 class _NoFiles:
-    """What writes no images."""
+    """A writer of images that writes none."""
 
     def __init__(self, source):
         self.source = source
@@ -60,7 +60,7 @@ class _NoFiles:
 
 
 class _NotKept:
-    """What bakes anew, in place of BakedImages."""
+    """A stand-in for BakedImages that bakes anew."""
 
     @staticmethod
     def of(socket, surface, how, bake):
@@ -118,6 +118,6 @@ def texels_wanted(corners, density):
 
 
 def share_of_density(wanted, most):
-    """What densities are lowered to, so that `wanted` texels become `most` or fewer: a power of the root of 2, so that small moves change
+    """The factor by which densities are lowered, so that `wanted` texels become `most` or fewer: a power of the root of 2, so that small moves change
     nothing."""
     return 1.0 if wanted <= most else 2.0 ** (np.floor(np.log2(most / wanted)) / 2)

@@ -77,7 +77,7 @@ class OpacityReader(ShaderWriter):
         return (share, *(self._opacity_at(nodes, self._linked(node.inputs[i])[0]) for i in (1, 2)))
 
     def _share_of_opaque(self, node, share, first, second):
-        """Of what stops light in a Mix, the share of its second shader. share: that in all; first, second: both opacities."""
+        """The share of a Mix's second shader in what stops light. share: that in all; first, second: both opacities."""
         if not first.image and not second.image:
             if first.constant == second.constant or not share.image and share.constant in (0, 1):
                 return share

@@ -303,7 +303,7 @@ class ShaderNodesTest(BlenderTest):
                           most_of_structure=0.6)
 
     def test_heights_follow_uv_maps(self):
-        """Of smooth meshes, too, where pbrt takes v to be as long as u and left of it."""
+        """Smooth meshes are among them, where pbrt takes v to be as long as u and left of it."""
         self.background.inputs["Color"].default_value = (0, 0, 0, 1)
         bpy.ops.object.light_add(type="SUN", rotation=(0.3, 0.8, 0))
         bpy.context.object.data.energy = 2

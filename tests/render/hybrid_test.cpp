@@ -139,7 +139,7 @@ TEST(Hybrid, OneSamplePerPixelLeavesALampItsSize) {
 }
 
 TEST(Hybrid, LampsSmallerThanAPixelDoNotLightTheSky) {
-    // Of few samples, the filters lose the light of most lamps, which is more than that of all
+    // With few samples the filters lose the light of most lamps, which is more than that of all
     // else. The sky, which has no noise, was a quarter too bright.
     std::string lamps;
     for (int i = 0; i < 80; ++i)
