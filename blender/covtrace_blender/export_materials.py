@@ -158,8 +158,8 @@ class MaterialExporter(PrincipledExporter):
         return self.media.add(found)
 
     def _shader(self, node):
-        known = {"BSDF_TRANSPARENT": lambda node: self._black(), "BSDF_PRINCIPLED": self._principled, "BSDF_DIFFUSE": self._diffuse, "BSDF_GLOSSY": self._glossy,
-                 "BSDF_GLASS": self._glass, "BSDF_REFRACTION": self._glass, "BSDF_TRANSLUCENT": self._translucent,
+        known = {"BSDF_TRANSPARENT": lambda node: self._black(), "BSDF_PRINCIPLED": self._principled,
+                 "BSDF_DIFFUSE": self._diffuse, "BSDF_GLOSSY": self._glossy, "BSDF_GLASS": self._glass, "BSDF_REFRACTION": self._glass, "BSDF_TRANSLUCENT": self._translucent,
                  "EMISSION": self._emission, "MIX_SHADER": self._mix_shader, "ADD_SHADER": self._add_shader}
         if node.type in known:
             return known[node.type](node)
@@ -232,10 +232,12 @@ class MaterialExporter(PrincipledExporter):
         return None
 
     def _add_shader(self, node):
+        others, opacity = self._surfaces(node), self._opacity(node)
         for emitter in (self._linked(node.inputs[i])[0] for i in (0, 1)):
             if emitter and emitter.type == "EMISSION":
                 self._emission(emitter)
-        others = self._surfaces(node)
+                if opacity.image or opacity.constant < 1 - ROUNDING:
+                    self.warn(f"material '{self.name}': the light of '{emitter.name}' is lost where what it is added to lets light pass")
         if len(others) == 1:
             return self._shader(others[0])
         if not others:

@@ -192,6 +192,13 @@ class MaterialsTest(BlenderTest):
         tree.links.new(noise.outputs["Color"], output.inputs["Displacement"])
         tree.links.new(noise.outputs["Fac"], output.inputs["Volume"])
         self.plane(m)
+        glow = bpy.data.materials.new("glow")
+        glow.use_nodes = True
+        added, light, clear = (glow.node_tree.nodes.new(f"ShaderNode{kind}") for kind in ("AddShader", "Emission", "BsdfTransparent"))
+        for shader, part in zip((light, clear), added.inputs):
+            glow.node_tree.links.new(shader.outputs[0], part)
+        glow.node_tree.links.new(added.outputs[0], glow.node_tree.nodes["Material Output"].inputs["Surface"])
+        self.plane(glow)
         lamp = self.lamp("SPOT", energy=10)
         lamp.data.use_nodes = True
         falloff = lamp.data.node_tree.nodes.new("ShaderNodeLightFalloff")
@@ -204,5 +211,6 @@ class MaterialsTest(BlenderTest):
         self.export()
         for text in ("'Texture Coordinate' at 'Roughness'", "reflection coordinates", "an image at 'Specular'", "an image at 'Emission Strength'",
                      "Displacement is not", "volume is not", "linked to 'Strength' of its shader",
+                     "is lost where what it is added to",
                      "moves while the shutter is open"):
             self.assertTrue(any(text in w for w in self.warnings), f"{text}: {self.warnings}")
