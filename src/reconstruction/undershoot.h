@@ -1,6 +1,6 @@
 /// Undershoot: fits that lead below the dark beside what is bright. Light is never negative, except
-/// beside lamps under a pixel filter with negative lobes: where samples are negative somewhere
-/// nothing is cut.
+/// beside lamps under a pixel filter with negative lobes: within the reach of a fit around negative
+/// samples nothing is cut.
 #pragma once
 
 #include <span>

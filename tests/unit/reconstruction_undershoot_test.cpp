@@ -47,7 +47,11 @@ TEST(Undershoot, WhereSamplesAreNegativeMixturesMayBe) {
     fill_undershoot(candidates, halves, s);
     EXPECT_FLOAT_EQ(s.half[0][1](0, 63), -0.3f);
     EXPECT_FLOAT_EQ(s.half[1][1](5, 62), -0.1f);
-    EXPECT_FLOAT_EQ(without_undershoot(constant(-1), halves)[1](3, 4), -1);
+    EXPECT_FLOAT_EQ(without_undershoot(constant(-1), halves)[1](3, 60), -1);
+    // Further away than a fit reaches holes are filled
+    EXPECT_FLOAT_EQ(s.half[0][1](10, 63), 0);
+    EXPECT_FLOAT_EQ(s.half[1][1](0, 53), 0.1f);
+    EXPECT_FLOAT_EQ(without_undershoot(constant(-1), halves)[1](3, 4), 0);
 }
 
 }  // namespace
