@@ -7,10 +7,6 @@
 
 namespace covtrace {
 
-/// The share of all samples that plans of halves leave to be given out evenly, as light that the
-/// samples have not seen yet must not be starved (docs/decisions/0093).
-constexpr float kLeastEvenShare = 0.15f;
-
 /// Keeps of two densities of the same pixels, made from different samples, what both agree on.
 ///
 /// The loss by counts that are not the best ones is, to second order, the squared difference of the

@@ -14,6 +14,7 @@
 #include "core/rng.h"
 #include "planner/agreement.h"
 #include "planner/density.h"
+#include "planner/even_share.h"
 
 namespace covtrace {
 namespace {

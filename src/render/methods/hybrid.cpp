@@ -7,6 +7,7 @@
 
 #include "planner/agreement.h"
 #include "planner/error_goal.h"
+#include "planner/even_share.h"
 #include "reconstruction/hybrid.h"
 #include "reconstruction/luminance.h"
 #include "render/develop.h"
@@ -172,12 +173,17 @@ class HybridRender {
                                    reporter(Phase::radiance, k)));
     }
 
-    /// The density for one half, as the planner makes it of `film`, the samples of the other half.
-    Plane density_from(const Film& film) const {
+    /// Knowledge from the samples of one half.
+    SampleKnowledge knowledge_of(const Film& film) const {
         SampleKnowledge known = knowledge_from(film, prediction_->spectrum);
         for (size_t i = 0; i < size(); ++i)
             known.variance[i] =
                 std::max(known.variance[i], unmet_.variance(i, 2.0 * film.pixels[i].count));
+        return known;
+    }
+
+    /// The density for one half, as the planner makes it of what the other half knows.
+    Plane density_from(const SampleKnowledge& known) const {
         Plane density(job_.region.width(), job_.region.height());
         density.values = adaptive_density(known, kHalvesPlan);
         return density;
@@ -187,9 +193,11 @@ class HybridRender {
         const PhaseTimer timer(job_.monitor, job_.seconds(Phase::plan));
         const double most = std::clamp(0.5 * job_.most_samples(target), 1.0, 4e9);
         // Each half's density comes from the other half's samples
-        std::array<Plane, 2> density{density_from(s_.films[1]), density_from(s_.films[0])};
+        const std::array known{knowledge_of(s_.films[1]), knowledge_of(s_.films[0])};
+        std::array density{density_from(known[0]), density_from(known[1])};
         keep_what_agrees(density);
-        for (Plane& d : density) spread_evenly(d.values, kLeastEvenShare);
+        const float share = even_share(known, s_.taken);
+        for (Plane& d : density) spread_evenly(d.values, share);
         const std::vector<float> even(size(), 1.0f);
         // Share the samples of both halves among the pixels
         std::vector<std::vector<uint32_t>> counts;
