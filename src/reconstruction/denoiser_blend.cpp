@@ -10,7 +10,7 @@ namespace covtrace {
 
 namespace {
 
-// The constants p, r and c of own_share (docs/decisions/0085).
+// The constants p_0, r and c of own_share (docs/decisions/0085).
 constexpr float kPriorShare = 0.2f, kPriorWeight = 0.1f, kLostWeight = 100;
 constexpr float kSmoothing = 4;  ///< smoothing of the light that was cut off, pixels
 
@@ -26,11 +26,11 @@ ColorPlanes prior_blend(const ColorPlanes& own, const Denoised& denoised) {
 
 Plane own_share(const BlendInput& input, const Denoised& denoised, const Likeness& likeness) {
     const int w = input.g[0].width, h = input.g[0].height;
-    // The minimum of own_share is the ratio of two sums, collected here: parts without the prior
-    // first, then the prior's and the number of pixels.
-    std::vector<MarginPlane> sums(4, MarginPlane(w, h));
+    // The minimum of own_share is the ratio of two sums. Their parts are collected here.
+    enum Part : size_t { kProduct, kSquare, kLost, kPrior, kPixels, kParts };
+    std::vector<MarginPlane> sums(kParts, MarginPlane(w, h));
     for (int y = 0; y < h; ++y)
-        for (int x = 0; x < w; ++x) sums[3](x, y) = 1;
+        for (int x = 0; x < w; ++x) sums[kPixels](x, y) = 1;
     for (size_t k = 0; k < 3; ++k) {
         const Plane lost = gaussian_blur(input.lost[k], kSmoothing);
         for (int y = 0; y < h; ++y)
@@ -43,9 +43,11 @@ Plane own_share(const BlendInput& input, const Denoised& denoised, const Likenes
                     square += 0.5f * sqr(step);
                     noise += 0.5f * input.variance[half][k][i];
                 }
-                sums[0](x, y) += input.g[k][i] * product;
-                sums[1](x, y) += input.g[k][i] * (square + kLostWeight * sqr(lost[i]));
-                sums[2](x, y) += input.g[k][i] * 2 * kPriorWeight * noise;
+                const float g = input.g[k][i];
+                sums[kProduct](x, y) += g * product;
+                sums[kSquare](x, y) += g * square;
+                sums[kLost](x, y) += g * kLostWeight * sqr(lost[i]);
+                sums[kPrior](x, y) += g * 2 * kPriorWeight * noise;
             }
     }
     Plane share(w, h, kPriorShare);
@@ -53,10 +55,14 @@ Plane own_share(const BlendInput& input, const Denoised& denoised, const Likenes
         for (int x = 0; x < w; ++x) {
             Likeness::Window weights;
             likeness.weigh(x, y, weights);
-            std::array<float, 4> sum;
+            std::array<float, kParts> sum;
             weighted_sums(sums, weights, x, y, sum.data());
-            const float prior = sum[2] * likeness.most() / sum[3], all = sum[1] + prior;
-            if (all > 0) share(x, y) = std::clamp((sum[0] + kPriorShare * prior) / all, 0.0f, 1.0f);
+            const float alike = sum[kPixels],
+                        prior = sum[kPrior] * likeness.most(x, y, w, h) / alike,
+                        prior_share = kPriorShare / (1 + sum[kLost] / alike),
+                        all = sum[kSquare] + sum[kLost] + prior;
+            if (all > 0)
+                share(x, y) = std::clamp((sum[kProduct] + prior_share * prior) / all, 0.0f, 1.0f);
         }
     });
     return share;

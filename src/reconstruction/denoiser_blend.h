@@ -37,8 +37,10 @@ ColorPlanes prior_blend(const ColorPlanes& own, const Denoised& denoised);
 /// term decides. n / m is the number of pixels around over that of the pixels that are alike: the
 /// fewer pixels judge, the less they tell, and the prior counts as if all of them were alike
 /// (docs/decisions/0130). The third term is for rare light: light that was cut off as outliers is
-/// missing in our own mixture, and the few samples that could tell so are too noisy to. The
-/// constants r, p and c are those of docs/decisions/0085.
+/// missing in our own mixture, and the few samples that could tell so are too noisy to. Where they
+/// are noisier still the prior outweighs it, so that p itself sinks with what was cut off:
+///     p = p_0 / (1 + l / m)
+/// (docs/decisions/0131). The constants r, p_0 and c are those of docs/decisions/0085.
 Plane own_share(const BlendInput& input, const Denoised& denoised, const Likeness& likeness);
 
 }  // namespace covtrace

@@ -24,6 +24,15 @@ Likeness::Likeness(const LikenessSettings& settings) : any_(settings.any) {
         }
 }
 
+float Likeness::most(int x, int y, int w, int h) const {
+    if (x >= kReach && y >= kReach && x + kReach < w && y + kReach < h) return most_;
+    float sum = 0;
+    for (int qy = std::max(0, y - kReach); qy <= std::min(h - 1, y + kReach); ++qy)
+        for (int qx = std::max(0, x - kReach); qx <= std::min(w - 1, x + kReach); ++qx)
+            sum += gaussian_[size_t(qy - y + kReach) * kColumns + size_t(qx - x + kReach)];
+    return sum;
+}
+
 void Likeness::weigh(int x, int y, Window& weights) const {
     for (size_t row = 0; row < kRows; ++row)
         for (size_t column = 0; column < kColumns; column += kLanes) {

@@ -53,8 +53,9 @@ class Likeness {
 
     void weigh(int x, int y, Window& weights) const;
 
-    /// The sum of the weights of a window whose pixels are all alike.
-    float most() const { return most_; }
+    /// The sum of the weights of a window whose pixels are all alike, in an image of w x h pixels:
+    /// what is beyond its edges has no weight.
+    float most(int x, int y, int w, int h) const;
 
     /// The squared difference sum_k (guide_k(p) - guide_k(q))^2 of two pixels of the image.
     float difference(int px, int py, int qx, int qy) const;

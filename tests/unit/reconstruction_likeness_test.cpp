@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "reconstruction/guides.h"
 #include "reconstruction/selector.h"
@@ -46,6 +47,15 @@ float expected(const Plane& plane, const Plane& guide, const LikenessSettings& s
                    (any + (1 - any) * std::exp(-0.5 * unlike * unlike)) * double(plane(u, v));
         }
     return float(sum);
+}
+
+TEST(Likeness, MostIsTheSumOfPixelsOfTheImageAlone) {
+    const Likeness likeness({});  // without guides all pixels are alike
+    const Plane ones(kWidth, kHeight, 1);
+    for (const auto& [x, y] : {std::pair{0, 0}, {3, 15}, {20, 15}, {39, 29}}) {
+        const float sum = sum_around(ones, likeness, x, y);
+        EXPECT_NEAR(likeness.most(x, y, kWidth, kHeight), sum, 1e-4f * sum);
+    }
 }
 
 TEST(Likeness, WeighsAsDefinedUpToTheImagesBorder) {

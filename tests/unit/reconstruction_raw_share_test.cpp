@@ -51,7 +51,8 @@ TEST(RawShare, IsThatOfWienersFilterWhereOnePixelIsNoisy) {
     const Halves halves = with_pixel(5, 1, 16);
     const Selection s = lowered(halves);
     // The pixel itself is in the mean over the window
-    const float mean = kNoise + (4 - kNoise) / Likeness({}).most(),
+    const float mean =
+                    kNoise + (4 - kNoise) / Likeness({}).most(kSize / 2, kSize / 2, kSize, kSize),
                 expected = kShare / (kShare + (1 - kShare) * 4 / mean);
     EXPECT_NEAR(s.share[0](kMiddle, kMiddle), expected, 0.01f * expected);
     EXPECT_FLOAT_EQ(s.share[0](kMiddle, kMiddle) + s.share[1](kMiddle, kMiddle), 1);
