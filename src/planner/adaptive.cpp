@@ -8,7 +8,7 @@ namespace covtrace {
 
 namespace {
 
-/// Deviation in pixels of the Gaussian over which brightness and noise are averaged.
+/// Deviation in pixels of the Gaussian over which brightness, noise and cost are averaged.
 constexpr float kSmoothing = 1.5f;
 
 }  // namespace
@@ -16,7 +16,8 @@ constexpr float kSmoothing = 1.5f;
 std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSettings& settings) {
     // Deviation of the narrowest filter, pixels: spectra beyond it ask for nothing more.
     constexpr float kNarrowest = 0.35f, kSharpness = 2;
-    const Plane brightness = gaussian_blur(known.brightness, kSmoothing);
+    const Plane brightness = gaussian_blur(known.brightness, kSmoothing),
+                cost = gaussian_blur(known.cost, kSmoothing);
     Plane noise(known.variance.width, known.variance.height);
     for (size_t i = 0; i < noise.size(); ++i)
         noise[i] = known.variance[i] / (brightness[i] * brightness[i] + settings.dark_squared);
@@ -29,7 +30,7 @@ std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSett
                                                        settings.widest_filter);
         const float detail =
             std::pow(std::max(covariance::det(usable), 0.0f), settings.spectrum_power);
-        density[i] = noise[i] * detail / std::sqrt(std::max(known.cost[i], 1.0f));
+        density[i] = noise[i] * detail / std::sqrt(std::max(cost[i], 1.0f));
         if (known.emphasis.size() > 0) density[i] *= known.emphasis[i];
     }
     return scaled_to_mean_one(std::move(density));

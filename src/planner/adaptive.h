@@ -43,11 +43,11 @@ constexpr PlanSettings kHalvesPlan{false, 0.1f, 2, 0.2f};
 ///     n_q ~ sigma_q sqrt(A_q / c_q),   A_q = sum_p g_p a_pq^2.
 /// For the predicted Gaussian, whose squares sum to 1 / (4 pi sqrt|C|) ~ sqrt|S_2D|,
 ///     n ~ sigma |S_2D|^(1/4) / (sqrt(I^2 + eps) sqrt(c)).
-/// Few samples know little of sigma / I: its square is averaged over a few pixels. Where light is
-/// rare, a pixel that has seen some gets more samples and sees more: counts that follow their own
-/// samples, or, through several rounds, those of another half that followed them, make the image
-/// too dark, the more so the fewer pixels the average is over (docs/decisions/0093). For own
-/// samples sigma / I itself is averaged.
+/// Few samples know little of sigma / I and of c: the square of the one and the other are averaged
+/// over a few pixels. Where light is rare, a pixel that has seen some gets more samples and sees
+/// more: counts that follow their own samples, or, through several rounds, those of another half
+/// that followed them, make the image too dark, the more so the fewer pixels the average is over
+/// (docs/decisions/0093). For own samples sigma / I itself is averaged.
 std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSettings& settings);
 
 /// Scales densities to mean 1; those that are not finite count as 0. Where all would be 0, each is

@@ -139,6 +139,17 @@ TEST(AdaptiveDensity, FollowsTheInverseRootOfTheCost) {
     EXPECT_NEAR(c.ratio(), 0.5, 0.01);
 }
 
+TEST(AdaptiveDensity, FollowsTheCostOfMorePixelsThanOne) {
+    // The rays of a few samples tell little. Alone, those of this pixel would leave it a quarter.
+    Case c;
+    const size_t middle = size_t(kSize) * kSize / 2 + kSize / 4;
+    c.known.cost[middle] = 64;
+    c.known.spectrum = c.spectrum;
+    const std::vector<float> d = adaptive_density(c.known, kHalvesPlan);
+    EXPECT_LT(d[middle], d[middle + 12]);
+    EXPECT_GT(d[middle], 0.6f * d[middle + 12]);
+}
+
 TEST(AdaptiveDensity, FollowsTheRootOfTheFilterSize) {
     // The detail is twice as fine in both axes: det times 16, to the power 1/4.
     Case c;
