@@ -122,8 +122,9 @@ LightField past_outlines(const OutlineEvents& found, const LightField& light, do
 }  // namespace
 
 double sharpest_window(const PathVertex& vertex) {
-    return std::max(vertex.direct > 0 ? sharpest_window(vertex.direct_event.lobes) : 0,
-                    vertex.scatters ? sharpest_window(vertex.next_event.lobes) : 0);
+    return std::max({vertex.direct > 0 ? sharpest_window(vertex.direct_event.lobes) : 0,
+                     vertex.mirrored > 0 ? sharpest_window(vertex.mirrored_event.lobes) : 0,
+                     vertex.scatters ? sharpest_window(vertex.next_event.lobes) : 0});
 }
 Visibility first_visibility(const SensorGeometry& camera, double distance, double window) {
     return {camera.orthographic ? kWidestFeature / camera.pixels_per_x

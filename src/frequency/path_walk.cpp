@@ -92,7 +92,8 @@ double PathWalk::total() const {
         double(taken(record_.escaped, record_.escape_in_view)) + taken(record_.escape_glow, false);
     for (int i = 0; i < record_.count; ++i) {
         const PathVertex& v = vertex(i);
-        sum += double(taken(v.emitted, v.in_view)) + taken(v.direct, false) + taken(v.glow, false);
+        sum += double(taken(v.emitted, v.in_view)) + taken(v.direct, false) +
+               taken(v.mirrored, false) + taken(v.glow, false);
     }
     return sum;
 }
@@ -109,10 +110,20 @@ void PathWalk::find_visibilities() {
         ways_[i] = d;
         distances_[i] = travelled;
         previous = v.hit.position;
-        if (!context_.occluders) continue;
-        visible_[i] = i == 0 ? first_visibility(camera_, d, sharpest_window(v))
-                             : next_visibility(camera_, visible_[i - 1], d, sharpest_window(v));
+        if (context_.occluders)
+            visible_[i] = i == 0 ? first_visibility(camera_, d, sharpest_window(v))
+                                 : next_visibility(camera_, visible_[i - 1], d, sharpest_window(v));
+        if (v.mirrored > 0) find_visibility_of_mirror(i);
     }
+}
+
+void PathWalk::find_visibility_of_mirror(size_t i) {
+    const auto m = size_t(mirror(int(i)));
+    const PathVertex& place = vertex(int(m));
+    ways_[m] = distance(place.hit.position, record_.vertices[i].hit.position);
+    distances_[m] = distances_[i] + ways_[m];
+    if (context_.occluders)
+        visible_[m] = next_visibility(camera_, visible_[i], ways_[m], sharpest_window(place));
 }
 
 void PathWalk::arrive_from_sky() {
@@ -129,7 +140,9 @@ void PathWalk::arrive_from_sky() {
 
 std::optional<OwnOutline> PathWalk::scatter_at(int i) {
     if (!counts(light_.weight)) light_.clear();
-    if (!(light_.weight > 0) && !counts(taken(vertex(i).direct, false))) return std::nullopt;
+    if (!(light_.weight > 0) && !counts(taken(vertex(i).direct, false)) &&
+        !counts(taken(vertex(i).mirrored, false)))
+        return std::nullopt;
     if (vertex(i).medium < 0) return scatter_on_surface(i);
     scatter_in_medium(i);
     return std::nullopt;
@@ -140,10 +153,14 @@ void PathWalk::scatter_all(int i, const Scatter& scatter) {
     const PathVertex& v = vertex(i);
     if (light_.weight > 0)
         scatter(*light_.field, light_.emitter, v.next_event.lobes, light_.weight);
-    const double direct = taken(v.direct, false);
-    if (!counts(direct)) return;
-    const SampledLight sampled = sampled_light(i, direct);
-    scatter(sampled.field, sampled.emitter, v.direct_event.lobes, direct);
+    if (const double direct = taken(v.direct, false); counts(direct)) {
+        const SampledLight sampled = sampled_light(i, direct);
+        scatter(sampled.field, sampled.emitter, v.direct_event.lobes, direct);
+    }
+    if (const double mirrored = taken(v.mirrored, false); counts(mirrored)) {
+        const SampledLight sampled = mirrored_light(i, mirrored);
+        scatter(sampled.field, sampled.emitter, v.mirrored_event.lobes, mirrored);
+    }
 }
 
 std::optional<OwnOutline> PathWalk::scatter_on_surface(int i) {
@@ -240,6 +257,22 @@ PathWalk::SampledLight PathWalk::sampled_light(int i, double weight) const {
     else
         light.field.sigma = cov::travel(light.field.sigma, double(sample.distance));
     return light;
+}
+
+PathWalk::SampledLight PathWalk::mirrored_light(int i, double weight) const {
+    const int m = mirror(i);
+    const PathVertex& place = vertex(m);
+    const SampledLight light = sampled_light(m, weight);
+    const ScatterPoint point(scene_, spectra_.textures, place, half_pixel(m));
+    ScatterSum sum(point);
+    sum.add(light.field, light.emitter, place.direct_event.lobes, weight, context_.rule);
+    const double way = ways_[size_t(m)];
+    SampledLight reflected{sum.leaving(), emitter_at(place, way)};
+    if (context_.occluders)
+        carry(reflected.field, place.hit.position, owner(m), i, weight);
+    else
+        reflected.field.sigma = cov::travel(reflected.field.sigma, way);
+    return reflected;
 }
 
 RayKind PathWalk::kind_of_escape() const {

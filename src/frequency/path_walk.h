@@ -47,6 +47,8 @@ class PathWalk {
     double total() const;
     /// Fills in the distance of every vertex from the camera, and the camera's view of it.
     void find_visibilities();
+    /// Does so for the mirror by which light is sampled at vertex i.
+    void find_visibility_of_mirror(size_t i);
     void arrive_from_sky();
     /// Scatters at vertex i the light that arrives there and the light sampled there. Returns the
     /// outline of the surface that light leaves, where it has one and occluders are asked for.
@@ -54,7 +56,7 @@ class PathWalk {
     std::optional<OwnOutline> scatter_on_surface(int i);
     void scatter_in_medium(int i);
     /// Calls scatter(field, emitter, lobes, weight) for the light that arrives at vertex i and for
-    /// the light sampled there.
+    /// the lights sampled there, straight and by a mirror.
     template <class Scatter>
     void scatter_all(int i, const Scatter& scatter);
     /// Adds the emission of vertex i itself. Sets `own` where scattering did not.
@@ -65,6 +67,8 @@ class PathWalk {
     PathCovariance at_sensor();
 
     SampledLight sampled_light(int i, double weight) const;
+    /// Light sampled at vertex i by a flat mirror, once the mirror has sent it there.
+    SampledLight mirrored_light(int i, double weight) const;
     /// Light of the sky from `w`, `seen_by` rays of a kind or only lighting something.
     LightField sky_field(Vec3 w, std::optional<RayKind> seen_by) const;
     /// The kind of the ray by which the path left the scene, all before it being specular.
@@ -83,7 +87,13 @@ class PathWalk {
     LightField to_camera(const LightField& field, const OccluderQuery::Segment& segment,
                          double share, const OwnOutline* own) const;
 
-    const PathVertex& vertex(int i) const { return record_.vertices[size_t(i)]; }
+    /// Number of the place on the mirror by which light is sampled at vertex i: such places have
+    /// the numbers beyond those of the path's own vertices.
+    static int mirror(int i) { return PathRecord::kCapacity + i; }
+    const PathVertex& vertex(int i) const {
+        return i < PathRecord::kCapacity ? record_.vertices[size_t(i)]
+                                         : record_.mirrors[size_t(i - PathRecord::kCapacity)];
+    }
     Vec3 position(int i) const;
     Owner owner(int i) const;
     /// Half a pixel's extent at vertex i, scene units: it grows with the distance travelled.
@@ -100,9 +110,10 @@ class PathWalk {
     double least_;
     double total_;
     SensorGeometry camera_;
+    static constexpr int kPlaces = 2 * PathRecord::kCapacity;
     // To the previous vertex; to the camera, over all vertices between.
-    std::array<float, PathRecord::kCapacity> ways_, distances_;
-    std::array<Visibility, PathRecord::kCapacity> visible_;  // filled where there are occluders
+    std::array<float, kPlaces> ways_, distances_;
+    std::array<Visibility, kPlaces> visible_;  // filled where there are occluders
     ArrivingLight light_;
 };
 

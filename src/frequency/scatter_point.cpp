@@ -37,6 +37,7 @@ unsigned kinds_of_lobes(const PathVertex& vertex) {
         for (size_t i = 0; i < size_t(shares.count); ++i) kinds |= bit(shares.lobes[i].kind);
     };
     if (vertex.direct > 0) collect(vertex.direct_event.lobes);
+    if (vertex.mirrored > 0) collect(vertex.mirrored_event.lobes);
     if (vertex.scatters) collect(vertex.next_event.lobes);
     return kinds;
 }

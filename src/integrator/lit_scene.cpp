@@ -71,6 +71,8 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
     shadows_differ = geometry.shadows_differ();
     kinds_differ = shadows_differ || geometry.kinds_differ() || lights.kinds_differ();
     samples_through_panes = geometry.has_panes() && !kinds_differ;
+    if (!kinds_differ) mirrors = FlatMirrors(description, geometry);
+    samples_by_mirrors = !mirrors.is_empty();
     unbounded_distance = 2 * radius_of_media(description, geometry.bounds());
 }
 

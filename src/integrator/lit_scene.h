@@ -7,6 +7,7 @@
 #include "camera/camera.h"
 #include "camera/pixel_filter.h"
 #include "geometry/geometry.h"
+#include "integrator/flat_mirrors.h"
 #include "light/lights.h"
 #include "scene/scene_description.h"
 #include "shading/material.h"
@@ -42,6 +43,9 @@ struct LitScene {
     bool shadows_differ = false;  ///< Geometry::shadows_differ
     /// Whether light is sampled through panes: where there are any, and all rays meet the same.
     bool samples_through_panes = false;
+    FlatMirrors mirrors;  ///< none where rays of different kinds meet different shapes
+    /// Whether light is sampled by those mirrors.
+    bool samples_by_mirrors = false;
     /// Length of a ray's way through a medium without an end, in scene units: twice the radius of
     /// the scene's bounds, as far away as pbrt-v4 puts its infinite lights; for a camera in the
     /// medium, the radius of a sphere that holds camera and lights as well.

@@ -153,7 +153,10 @@ bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, M
         if (may_learn) vertex->guided_normal = normal;
     }
     // Sample direct illumination, then the direction in which the path goes on
-    if (finds_lights) add_direct(surface, u_choice.x, u_light, u_roulette.y, vertex);
+    if (finds_lights) {
+        add_direct(surface, u_choice.x, u_light, u_roulette.y, vertex);
+        if (samples_by_mirrors_ && depth_ < max_depth_) add_mirrored_light(surface, vertex);
+    }
     const bool goes_on =
         scatter(surface, u_choice.y, u_scatter, u_roulette.y, vertex) && survives(u_roulette.x);
     if (vertex && goes_on) vertex->carried_on = luminance(beta_);
@@ -194,7 +197,7 @@ PathVertex* PathTracer::begin_vertex(const SurfaceHit& hit, MediumId medium, Vec
     v->medium = medium;
     v->wo = wo;
     v->material = -1;
-    v->emitted = v->direct = 0;
+    v->emitted = v->direct = v->mirrored = 0;
     v->scatters = false;
     v->seen_sharply = sharp_so_far_;
     v->glow = glow_;

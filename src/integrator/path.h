@@ -55,6 +55,9 @@ struct PathResult {
     /// rays of `rays.shadow` that it cost.
     float saved_by_panes = 0;
     uint64_t rays_through_panes = 0;
+    /// The same of sampling light by flat mirrors, and the number of samples.
+    float saved_by_mirrors = 0;
+    uint64_t rays_by_mirrors = 0, samples_by_mirrors = 0;
 };
 
 /// Traces one path and returns an unbiased estimate of the radiance along `ray`, whatever the
@@ -66,8 +69,8 @@ PathResult trace_path(const LitScene& scene, const CausticGuide& guide, Ray ray,
                       const SkyGuide* sky_guide = nullptr, const LampGuide* lamp_guide = nullptr,
                       const PathGuide* path_guide = nullptr);
 /// Traces the rest of a path that leaves a place by `ray`, whose direction has the density `pdf`:
-/// light behind panes counts with the weight that sampling it leaves to paths, all other in full.
-/// No guide leads it.
+/// light behind panes, and by flat mirrors, counts with the weight that sampling it leaves to
+/// paths, all other in full. No guide leads it.
 PathResult trace_path_from(const LitScene& scene, const LitPlace& place, float pdf, Ray ray,
                            const Sampler& sampler, int max_depth);
 /// Traces one path, led by the guides of the scene.

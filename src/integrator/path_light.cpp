@@ -19,6 +19,7 @@ void PathTracer::escape() {
     if (specular_) {
         sky.radiance = scene_.lights.environment(ray_.origin, ray_.direction, ray_.kind);
         if (came_through_panes() && !is_black(sky.radiance)) weight = weight_through_panes();
+        if (came_by_mirror() && !is_black(sky.radiance)) weight = weight_by_mirror(nullptr);
     } else {
         sky =
             scene_.lights.sky(lit_.position, lit_.normal, ray_.direction, lit_.sky_cell, ray_.kind);
@@ -46,6 +47,8 @@ void PathTracer::add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex
         if (p > 0 && is_shadowed(distance(ray_begin_, hit.position))) weight = 0;
     } else if (came_through_panes()) {
         weight = weight_through_panes();
+    } else if (came_by_mirror()) {
+        weight = weight_by_mirror(&hit);
     }
     const Rgb contribution = beta_ * light * weight;
     result_.radiance += contribution;

@@ -60,7 +60,7 @@ bool PathTracer::scatter_in_medium(float distance) {
     ray_.origin = ray_begin_ = place.position;
     ray_.direction = wi;
     ray_.kind = RayKind::volume;
-    leave();
+    leave(0);
     return survives(u_roulette.x);
 }
 

@@ -50,19 +50,33 @@ float density_through_panes(const LitScene& scene, const LitPlace& place, Ray ra
     return density;
 }
 
-void PathTracer::leave() {
-    if (samples_through_panes_) departure_ = {lit_, ray_.origin, ray_.direction, pdf_, 0, 0};
+void PathTracer::leave(float mirror_share) {
+    if (samples_through_panes_ || samples_by_mirrors_)
+        departure_ = {lit_, ray_.origin, ray_.direction, pdf_, 0, 0, -1, mirror_share};
 }
 
 void PathTracer::leave_from(const LitPlace& place, float pdf) {
     lit_ = place;
     pdf_ = pdf;
-    leave();
+    leave(1);
 }
 
-void PathTracer::leave_through_pane(Vec3 position, float pdf) {
-    if (departure_.panes++ == 0) departure_.to_pane = distance(departure_.origin, position);
-    departure_.pdf *= pdf;
+void PathTracer::leave_specular(const SurfaceHit& hit, const PlacedShape& shape,
+                                const BsdfSample& s) {
+    if (departure_.panes < 0) return;
+    departure_.pdf *= s.pdf;
+    const bool met_mirror = came_by_mirror();
+    if (is_transmission(s.lobe)) {
+        if (!samples_through_panes_ || met_mirror || !shape.is_pane)
+            departure_.panes = departure_.mirror = -1;
+        else if (departure_.panes++ == 0)
+            departure_.to_pane = distance(departure_.origin, hit.position);
+        return;
+    }
+    const bool may_be_mirror =
+        samples_by_mirrors_ && !met_mirror && departure_.panes == 0 && departure_.mirror_share > 0;
+    departure_.mirror = may_be_mirror ? scene_.mirrors.at(hit) : -1;
+    if (!came_by_mirror()) departure_.panes = -1;
 }
 
 float PathTracer::weight_through_panes() {

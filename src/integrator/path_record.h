@@ -46,6 +46,11 @@ struct PathVertex {
     LightSample light;          ///< the light sampled here, where `direct` is above 0
     ScatterEvent direct_event;  ///< scattering of the sampled light
 
+    /// Luminance that reaches the sensor by the light that is sampled here by a flat mirror; 0
+    /// where there is none. See PathRecord::mirrors.
+    float mirrored = 0;
+    ScatterEvent mirrored_event;  ///< scattering of that light
+
     /// Whether the path goes on from here; false at its last vertex.
     bool scatters = false;
     ScatterEvent next_event;  ///< scattering of the light from further along the path
@@ -66,6 +71,9 @@ struct PathRecord {
     /// radiance.
     static constexpr int kCapacity = 24;
     std::array<PathVertex, kCapacity> vertices;
+    /// For each vertex with `mirrored` light the place on the mirror, as a vertex where that light
+    /// is sampled.
+    std::array<PathVertex, kCapacity> mirrors;
     int count = 0;
     Ray camera_ray;
     float escaped = 0;            ///< luminance from the infinite lights where the path left

@@ -164,12 +164,10 @@ bool PathTracer::scatter(const Surface& surface, float u_lobe, Vec2 u, float u_k
     ray_.origin = ray_begin_ = Geometry::offset_origin(hit, wi);
     ray_.direction = wi;
     ray_.t_max = kInfinity;
-    if (!specular_)
-        leave();
-    else if (departure_.panes >= 0 && surface.shape.is_pane && is_transmission(s->lobe))
-        leave_through_pane(hit.position, s->pdf);
+    if (specular_)
+        leave_specular(hit, surface.shape, *s);
     else
-        departure_.panes = -1;
+        leave(mirror_share_);
     return true;
 }
 

@@ -14,8 +14,9 @@ namespace covtrace {
 
 /// A path in the making. The estimate is  sum over vertices of  beta * (emission + direct light),
 /// beta = product of  f |cos| / pdf  and of the weights of media so far. Lamps of some extent and
-/// skies are found by two strategies whose weights add to one, behind panes, too; point lights by
-/// sampling alone, and light behind other specular lobes, and the glow of media, by the path alone.
+/// skies are found by two strategies whose weights add to one, behind panes and by flat mirrors,
+/// too; point lights by sampling alone, and light behind other specular lobes, and the glow of
+/// media, by the path alone.
 class PathTracer {
   public:
     PathTracer(const LitScene& scene, const CausticGuide& guide, const SkyGuide* sky_guide,
@@ -31,7 +32,8 @@ class PathTracer {
           max_depth_(max_depth),
           record_(record),
           draws_ahead_(scene.lights.draws_ahead() && (!sky_guide || sky_guide->is_empty())),
-          samples_through_panes_(scene.samples_through_panes) {
+          samples_through_panes_(scene.samples_through_panes),
+          samples_by_mirrors_(scene.samples_by_mirrors) {
         camera_origin_ = ray.origin;
         medium_ = scene.description.camera.medium;
         if (record_) {
@@ -70,6 +72,7 @@ class PathTracer {
     /// interfaces.
     static constexpr uint32_t kMediumPairs = 1u << 20;
     static constexpr uint32_t kWavelengthPair = (1u << 20) - 1;  ///< of the path's wavelength
+    static constexpr uint32_t kMirrorPairs = 1u << 19;  ///< first of two per bounce, for mirrors
 
     /// A place on a surface with all that scattering there depends on.
     struct Surface {
@@ -95,13 +98,15 @@ class PathTracer {
     };
 
     /// The last place where light was sampled, while the path has since met panes alone and gone
-    /// through them.
+    /// through them, or a flat mirror alone.
     struct Departure {
         LitPlace place;
         Vec3 origin, direction;  ///< of the ray that left it
-        float pdf = 0;           ///< density of its direction, and of going through the panes
+        float pdf = 0;  ///< density of its direction, and of what the path did at panes or mirror
         float to_pane = 0;       ///< distance of the first pane
         int panes = 0;           ///< that the path went through; -1: it met something else
+        int mirror = -1;         ///< that the path met; -1: none
+        float mirror_share = 0;  ///< probability that light was sampled there by a mirror
     };
 
     /// A kind of ray, and a factor on what is scattered that leaves the part of that kind alone.
@@ -161,14 +166,28 @@ class PathTracer {
     /// Whether the path has come through panes, and met nothing else, from a place where light was
     /// sampled.
     bool came_through_panes() const { return departure_.panes > 0; }
+    /// Whether it has come by a flat mirror alone.
+    bool came_by_mirror() const { return departure_.mirror >= 0; }
     /// Adds the light that is found where the direction of a sampled light leads through panes.
     void follow_through_panes(const SampledLight& light);
-    /// Notes that the path leaves the last vertex along its ray, or a pane that it goes through
-    /// with the probability `pdf`.
-    void leave();
-    void leave_through_pane(Vec3 position, float pdf);
+    /// Notes that the path leaves the last vertex along its ray, where it has sampled light by a
+    /// mirror with a probability.
+    void leave(float mirror_share);
+    /// Notes that it leaves a surface by a specular lobe.
+    void leave_specular(const SurfaceHit& hit, const PlacedShape& shape, const BsdfSample& s);
     /// Weight of light that the path has found through panes.
     float weight_through_panes();
+
+    // ---- path_mirrors.cpp
+    /// Samples a light as a flat mirror shows it, and adds it.
+    void add_mirrored_light(const Surface& surface, PathVertex* vertex);
+    /// Finds the flat mirror that a ray meets first, of all that does not let it pass; `medium` and
+    /// `passes`, the light that media let through, are those up to there. Returns false where it
+    /// meets anything else.
+    bool find_mirror(int mirror, Ray ray, SurfaceHit& hit, MediumId& medium, Rgb& passes);
+    /// Weight of light that the path has found by a flat mirror: on a surface, or in the sky where
+    /// `hit` is null.
+    float weight_by_mirror(const SurfaceHit* hit) const;
 
     // ---- path_scatter.cpp: where the path goes on
     /// Density of sample_direction to return a direction by other than specular lobes, given the
@@ -230,11 +249,12 @@ class PathTracer {
     Vec3 camera_origin_;  // start of the path
     GuideMixture guide_;  // guide to caustics at the current vertex
     const PathGuideCell* cell_ = nullptr;  // where light comes from there; null: not known
-    Departure departure_{{}, {}, {}, 0, 0, -1};
+    Departure departure_{{}, {}, {}, 0, 0, -1, -1, 0};
+    float mirror_share_ = 0;  // probability of sampling light by a mirror at the current vertex
     // Light draw of the vertex to come, begun before that vertex is known.
     Lights::Draw light_draw_;
     const bool draws_ahead_;  // not where most samples follow the guide to the sky
-    const bool samples_through_panes_;
+    const bool samples_through_panes_, samples_by_mirrors_;
     LitPlace lit_;    // the last vertex
     Vec3 ray_begin_;  // where its ray began
 };

@@ -4,7 +4,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "integrator/guides/pane_trial.h"
+#include "integrator/guides/specular_light_trial.h"
 #include "integrator/guides/training_places.h"
 #include "integrator/path.h"
 
@@ -23,7 +23,7 @@ bool are_paths_too_long(const LitScene& scene) {
         const TrainingPath path = training_path(scene, kKey, i);
         const PathResult found = trace_path(scene, no_guide, path.ray, path.sampler,
                                             scene.description.max_depth, nullptr);
-        rays += found.rays.total() - found.rays_through_panes;
+        rays += found.rays.total() - found.rays_through_panes - found.rays_by_mirrors;
     }
     return rays > kPaths * kMostRays;
 }
@@ -33,7 +33,11 @@ bool are_paths_too_long(const LitScene& scene) {
 RenderScene::RenderScene(SceneDescription scene_description, const std::string& isa,
                          size_t texture_bytes, Guides which)
     : LitScene(std::move(scene_description), isa, texture_bytes), guides(which) {
-    panes_.state = samples_through_panes ? GuideState::guides : GuideState::unused;
+    const auto untried = [](bool samples) {
+        return samples ? GuideState::guides : GuideState::unused;
+    };
+    specular_.panes.state = untried(samples_through_panes);
+    specular_.mirrors.state = untried(samples_by_mirrors);
     if (guides == Guides::none || are_paths_too_long(*this)) return;
     const auto time = [this](const char* name, const auto& work) {
         const auto start = std::chrono::steady_clock::now();
@@ -45,8 +49,10 @@ RenderScene::RenderScene(SceneDescription scene_description, const std::string& 
         using Guide = std::decay_t<decltype(learnt)>;
         time(name, [&] { learnt = Guide(static_cast<const LitScene&>(*this), others...); });
     };
-    time("panes", [this] { panes_ = try_panes(*this); });
-    samples_through_panes = panes_.state == GuideState::guides;
+    time(samples_through_panes ? "panes" : "mirrors",
+         [this] { specular_ = try_specular_light(*this); });
+    samples_through_panes = specular_.panes.state == GuideState::guides;
+    samples_by_mirrors = specular_.mirrors.state == GuideState::guides;
     learn(sky_guide, "sky");
     learn(lamp_guide, "lamps");
     learn(guide, "caustics", sky_guide, lamp_guide);
@@ -54,11 +60,10 @@ RenderScene::RenderScene(SceneDescription scene_description, const std::string& 
 }
 
 std::map<std::string, GuideOutcome> RenderScene::guide_outcomes() const {
-    std::map<std::string, GuideOutcome> outcomes{{"caustics", guide.outcome()},
-                                                 {"sky", sky_guide.outcome()},
-                                                 {"lamps", lamp_guide.outcome()},
-                                                 {"paths", path_guide.outcome()},
-                                                 {"panes", panes_}};
+    std::map<std::string, GuideOutcome> outcomes{
+        {"caustics", guide.outcome()},   {"sky", sky_guide.outcome()},
+        {"lamps", lamp_guide.outcome()}, {"paths", path_guide.outcome()},
+        {"panes", specular_.panes},      {"mirrors", specular_.mirrors}};
     for (const auto& [name, seconds] : learning_seconds_) outcomes[name].seconds = seconds;
     return outcomes;
 }

@@ -9,6 +9,7 @@
 #include "integrator/guides/lamp_guide.h"
 #include "integrator/guides/path_guide.h"
 #include "integrator/guides/sky_guide.h"
+#include "integrator/guides/specular_light_trial.h"
 #include "integrator/lit_scene.h"
 
 namespace covtrace {
@@ -23,8 +24,8 @@ struct RenderScene : LitScene {
     /// Bytes held, by use: what LitScene lists, and "guide".
     std::map<std::string, size_t> memory() const;
 
-    /// The outcome of each guide: "caustics", "sky", "lamps", "paths", and
-    /// "panes": whether light is sampled through them.
+    /// The outcome of each guide: "caustics", "sky", "lamps", "paths", and "panes" and "mirrors":
+    /// whether light is sampled through them, or by them.
     std::map<std::string, GuideOutcome> guide_outcomes() const;
 
     Guides guides;  ///< which guides may lead paths
@@ -34,7 +35,7 @@ struct RenderScene : LitScene {
     PathGuide path_guide;
 
   private:
-    GuideOutcome panes_;
+    SpecularLightOutcomes specular_;
     std::map<std::string, double> learning_seconds_;  ///< by guide
 };
 

@@ -15,7 +15,7 @@ using namespace test;
 constexpr float kLampRadius = 0.05f, kLampRadiance = 500;
 
 // The scene: a lamp at (0, 1, 0) over a floor that the camera sees near the origin, a mirror at x =
-// 1.
+// 1. It is an instance, so that light is not sampled by it (flat_mirrors.h).
 const std::string kMirrorScene = R"(
 Integrator "path" "integer maxdepth" 4
 Film "rgb" "integer xresolution" 48 "integer yresolution" 48
@@ -32,8 +32,11 @@ Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
 Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ]
   "point3 P" [ -1 0 -1  -1 0 1  1 0 1  1 0 -1 ]
 Material "conductor" "rgb reflectance" [ 0.9 0.9 0.9 ] "float roughness" 0
+ObjectBegin "mirror"
 Shape "trianglemesh" "integer indices" [ 0 1 2 0 2 3 ]
   "point3 P" [ 1 0 -1  1 0 1  1 2 1  1 2 -1 ]
+ObjectEnd
+ObjectInstance "mirror"
 )";
 
 /// Irradiance of the floor at the origin: a sphere of radius r at distance d gives pi L (r / d)^2

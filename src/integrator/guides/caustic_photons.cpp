@@ -9,6 +9,7 @@
 #include "core/warp.h"
 #include "integrator/guides/caustic_photons.h"
 #include "integrator/lit_scene.h"
+#include "integrator/mirrored_light.h"
 #include "integrator/panes.h"
 #include "integrator/power_heuristic.h"
 #include "integrator/visibility.h"
@@ -121,7 +122,7 @@ class Pilot {
         Frame frame = shading_frame(hit);
         Vec3 towards_light = light->wi;
         auto source = uint64_t(light->light);
-        float through_panes = scene_.samples_through_panes ? 1 : 0;  // probability; 0: other ways
+        SampledWay way{.through_panes = scene_.samples_through_panes ? 1.0f : 0.0f};
         for (int i = 0; i < kChainVertices; ++i) {
             const float u_lobe = rng_.next_float();
             const auto s = sample(bsdf, frame.to_local(towards_light), u_lobe, rng_.next_2d());
@@ -130,7 +131,15 @@ class Pilot {
             const bool is_reflected = (frame.to_local(towards_light).z > 0) == (s->wi.z > 0);
             source = hash_combine(source, hit.shape, hit.instance, is_reflected);
             const bool is_pane = scene_.geometry.shapes()[hit.shape].is_pane;
-            through_panes *= is_pane && is_transmission(s->lobe) ? s->pdf : 0;
+            way.through_panes *= is_pane && is_transmission(s->lobe) ? s->pdf : 0;
+            const bool may_be_sampled =
+                i == 0 && is_reflected && is_specular(s->lobe) && scene_.samples_by_mirrors;
+            way.mirror = may_be_sampled ? scene_.mirrors.at(hit) : -1;
+            if (way.mirror >= 0) {
+                way.from_mirror = {Geometry::offset_origin(hit, towards_light), towards_light, time,
+                                   kInfinity, RayKind::any};
+                way.reflected = s->pdf;
+            }
             follow(ray, hit, normalize(frame.to_world(s->wi)));
             const std::optional<float> distance = next_surface(ray, hit, bsdf);
             if (!distance) return;
@@ -138,7 +147,7 @@ class Pilot {
             towards_light = -ray.direction;
             if (has_diffuse_lobe(bsdf)) {
                 const float y = luminance(weight);
-                if (std::isfinite(y) && y > 0 && !is_sampled(hit, towards_light, through_panes))
+                if (std::isfinite(y) && y > 0 && !is_sampled(hit, towards_light, way))
                     photons_.push_back({Geometry::offset_origin(hit, towards_light),
                                         face_forward(hit.ns, towards_light), hit.time,
                                         towards_light, travelled, y, source});
@@ -148,16 +157,35 @@ class Pilot {
         }
     }
 
-    /// Whether a photon that came through panes with a probability is to be left out: such light
-    /// is sampled, and it is kept with the weight that is left to paths.
-    bool is_sampled(const SurfaceHit& hit, Vec3 towards_light, float probability) {
-        if (!(probability > 0)) return false;
+    /// The way of a photon, where light is sampled by the same ones.
+    struct SampledWay {
+        float through_panes = 0;  ///< probability of having gone through panes alone; 0: other ways
+        int mirror = -1;          ///< flat mirror that alone it met; -1: other ways
+        Ray from_mirror;          ///< from there back to the light
+        float reflected = 0;      ///< probability of having been reflected there
+    };
+
+    /// Whether a photon is to be left out, as such light is sampled: it is kept with the weight
+    /// that is left to paths.
+    bool is_sampled(const SurfaceHit& hit, Vec3 towards_light, const SampledWay& way) {
         const Vec3 normal = face_forward(hit.ns, towards_light);
-        const Ray ray{Geometry::offset_origin(hit, towards_light), towards_light, hit.time,
-                      kInfinity, RayKind::any};
-        uint64_t rays = 0;
-        const float sampled = density_through_panes(scene_, {hit.position, normal}, ray, 0, rays);
-        const float own = cosine_hemisphere_pdf(dot(normal, towards_light)) * probability;
+        const LitPlace place{hit.position, normal};
+        float sampled = 0, own = cosine_hemisphere_pdf(dot(normal, towards_light));
+        if (way.through_panes > 0) {
+            const Ray ray{Geometry::offset_origin(hit, towards_light), towards_light, hit.time,
+                          kInfinity, RayKind::any};
+            uint64_t rays = 0;
+            sampled = density_through_panes(scene_, place, ray, 0, rays);
+            own *= way.through_panes;
+        } else if (way.mirror >= 0) {
+            SurfaceHit lamp;
+            const bool found = scene_.geometry.intersect(way.from_mirror, lamp);
+            sampled = density_by_mirror(scene_, way.mirror, place, way.from_mirror.direction,
+                                        found ? &lamp : nullptr);
+            own *= way.reflected;
+        } else {
+            return false;
+        }
         return rng_.next_float() < power_heuristic(sampled, own);
     }
 

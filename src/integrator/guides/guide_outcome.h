@@ -19,7 +19,7 @@ inline constexpr auto kEnumNames<Guides> = enum_names<Guides>({{Guides::automati
 
 enum class GuideState {
     unused,   ///< switched off, nothing of its kind in the scene, or paths too long to learn from;
-              ///< panes, which need no lesson, for want of any alone
+              ///< panes and mirrors, which need no lesson, for want of any alone
     gave_up,  ///< a trial told that it would not pay
     guides    ///< it leads paths
 };

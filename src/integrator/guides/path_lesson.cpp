@@ -37,7 +37,7 @@ void add(PathLesson& lesson, const PathRecord& record, uint32_t path) {
     behind[size_t(record.count)] = record.escaped;
     for (int k = record.count - 1; k >= 0; --k) {
         const PathVertex& v = record.vertices[size_t(k)];
-        behind[size_t(k)] = behind[size_t(k) + 1] + v.emitted + v.direct;
+        behind[size_t(k)] = behind[size_t(k) + 1] + v.emitted + v.direct + v.mirrored;
     }
     if (!std::isfinite(behind[0])) return;
     int32_t open = -1;  // the bounce whose end is not known yet
@@ -61,7 +61,7 @@ void add(PathLesson& lesson, const PathRecord& record, uint32_t path) {
             open = -1;
         }
         lesson.places.push_back({v.hit.position, face_forward(v.shading.z, v.wo)});
-        lesson.direct.push_back(v.direct / v.carried);
+        lesson.direct.push_back((v.direct + v.mirrored) / v.carried);
         lesson.light.push_back((behind[size_t(k)] - v.emitted) / v.carried);
         if (!(v.carried_on > 0) || !v.scatters || v.next_event.lobes.count == 0) continue;
         open = static_cast<int32_t>(lesson.bounces.size());
