@@ -37,7 +37,7 @@ class Body:
     """The triangles of a mesh that one material is on, with an Atlas of them.
 
     chosen: (n,) bool, which of the mesh's triangles these are. matrix: 4x4 from the mesh to the world; None where there
-    is none that is the only one.
+    is none that is the only one. rest: (n, 3, 3) corners of the triangles before all deformation.
     """
 
     @staticmethod
@@ -52,7 +52,7 @@ class Body:
         low, size = texture_space(mesh)
         self.chosen, self.triangles, self._digests = chosen, vertices[chosen], {}
         loops = loops[chosen]
-        self._rest = rest[self.triangles].astype(float)
+        self.rest = rest[self.triangles].astype(float)
         of_vertex = {"OBJECT": positions, "GENERATED": (rest - low) / size}
         self._corners = {kind: values[self.triangles] for kind, values in of_vertex.items()}
         self._corners["NORMAL"] = _corner_normals(mesh, positions, vertices, export_meshes.triangle_loops(mesh))[chosen]
@@ -71,14 +71,18 @@ class Body:
 
     def lay_out(self, atlases, density, most_texels):
         """Takes the atlas from Atlases; density: (n,) texels per unit at each triangle."""
-        self._layout, self.atlas = atlases.of(self._rest, self.triangles, density, most_texels)
+        self._layout, self.atlas = atlases.of(self.rest, self.triangles, density, most_texels)
 
     def key(self, kinds):
         """A key that is equal for bodies of the same atlas on which what hangs on coordinates of these kinds looks alike."""
+        return self._layout, self.looks(kinds)
+
+    def looks(self, kinds):
+        """A key that is equal for bodies whose triangles have the same coordinates of these kinds."""
         for kind in kinds:
             if kind not in self._digests:
                 self._digests[kind] = digest(self._corners[kind].astype(np.float32)) if kind in self._corners else ""
-        return self._layout, *sorted((repr(kind), self._digests[kind]) for kind in kinds)
+        return tuple(sorted((repr(kind), self._digests[kind]) for kind in kinds))
 
     def knows(self, kind):
         return kind in self._corners

@@ -4,6 +4,7 @@ import io
 
 import numpy as np
 
+from . import body_normals
 from .atlas import MARGIN
 from .atlases import digest
 from .baked import Baked, BakedImage, Layout
@@ -17,6 +18,7 @@ from .shader_nodes.unsupported import NeedsBody
 # In the images of all atlases of a picture together, and of a viewport; each takes 4 or 12 bytes while the scene is exported.
 MOST_TEXELS, MOST_TEXELS_OF_PREVIEWS = 1 << 26, 1 << 23
 PROBES = 64
+MOST_STEPS = 40  # of the root of 2 that densities are lowered by
 
 
 class _AnyBody:
@@ -32,10 +34,21 @@ class _AnyBody:
 
 
 class _Counter:
-    """Looks at nodes as a Baker does, at few places, and counts the images that it would bake."""
+    """Looks at nodes as a Baker does, at few places, and knows the images that BakedImages would have. kinds: of coordinates on a body
+    that these hang on."""
 
     def __init__(self, pixels_of):
-        self._pixels_of, self.ray, self.images = pixels_of, None, 0
+        self._pixels_of, self.ray, self._known, self.kinds = pixels_of, None, {}, set()
+
+    def images(self):
+        return sum(found.image is not None for found in self._known.values())
+
+    def of(self, socket, surface, how, bake):
+        return self._once((socket.node.name, socket.identifier, how), bake)
+
+    def turned(self, image, body, uv_map, strength):
+        self.kinds.update(body_normals.kinds(uv_map))
+        return self._once((image.name_full, uv_map, strength), self._image).image
 
     def bake(self, get, surface, only_unit_square=False):
         place = BodyPlace(_AnyBody, np.arange(PROBES), (0.0, 0.0), self._pixels_of, self.ray) if surface.body else \
@@ -43,8 +56,19 @@ class _Counter:
         value = get(Evaluator(place))
         if place.is_uniform:
             return Baked(constant=value)
-        self.images += 1
-        return Baked(image=BakedImage(np.zeros((1, 1, 3), np.float32)), layout=Layout((0, 0), (1, 1), "repeat"))
+        if surface.body:
+            self.kinds.update(place.kinds())
+            return self._image()
+        return self._image(place.uv_maps)
+
+    def _once(self, key, make):
+        if key not in self._known:
+            self._known[key] = make()
+        return self._known[key]
+
+    @staticmethod
+    def _image(uv_maps=()):
+        return Baked(image=BakedImage(np.zeros((1, 1, 3), np.float32)), layout=Layout((0, 0), (1, 1), "repeat"), uv_maps=uv_maps)
 
 
 class _NoFiles:
@@ -59,65 +83,61 @@ class _NoFiles:
     write_emission = write_heights = write
 
 
-class _NotKept:
-    """A stand-in for BakedImages that bakes anew."""
-
-    @staticmethod
-    def of(socket, surface, how, bake):
-        return bake()
-
-    @staticmethod
-    def turned(image, body, uv_map, strength):
-        return image
-
-
 class _Probe(MaterialExporter):
     """Exports a material to nowhere. source: as TextureFiles has it."""
 
     def __init__(self, source):
         super().__init__(io.StringIO(), None, lambda text: None)
-        self.files, self.baker, self.baked = _NoFiles(source), _Counter(source), _NotKept()
+        self.files = _NoFiles(source)
 
     def images_on_body(self, material, active_uv_map):
-        """How many it makes; 0 where a UV map is enough."""
+        """(how many it makes, kinds of coordinates that these hang on); (0, ()) where a UV map is enough."""
         self.surface = Surface(body_of=lambda: _AnyBody, active_uv_map=active_uv_map)
         try:
-            self._variants(material)
-            return 0
+            self._look_at(material)
+            return 0, ()
         except NeedsBody:
-            self.surface, self.baker.images = self.surface.on_body(), 0
-            self._variants(material)
-            return self.baker.images
+            self.surface = self.surface.on_body()
+            return self._look_at(material)
+
+    def _look_at(self, material):
+        self.baker = self.baked = _Counter(self.files.source)
+        self._variants(material)
+        return self.baked.images(), self.baked.kinds
 
 
 class BodyDemand:
-    """The texels of the images over all bodies that are added. source: as TextureFiles has it."""
+    """The texels of the images over all bodies that are added. source: as TextureFiles has it. most_of_one: as Atlas has most_texels."""
 
-    def __init__(self, source):
-        self._source, self._known, self._added, self.texels = source, {}, set(), 0
+    def __init__(self, source, most_of_one):
+        self._source, self._most_of_one, self._known, self._added = source, most_of_one, {}, {}
 
     def images(self, material, active_uv_map):
-        """How many images a material makes over an object's body."""
+        """How many images a material makes over an object's body, and the kinds of coordinates that these hang on."""
         key = material.name_full, active_uv_map
         if key not in self._known:
             self._known[key] = _Probe(self._source).images_on_body(material, active_uv_map)
         return self._known[key]
 
-    def add(self, material, images, corners, density):
-        """Adds a body, unless one like it, which has the same images, is there."""
-        key = material.name_full, digest(corners, density)
-        if key not in self._added:
-            self._added.add(key)
-            self.texels += images * texels_wanted(corners, density)
+    def add(self, material, images, kinds, body, density):
+        """Adds a Body, unless one like it, which has the same images, is there."""
+        key = material.name_full, digest(body.rest, density), body.looks(kinds)
+        self._added[key] = images, texels_wanted(body.rest, density)
+
+    def texels(self, share=1.0):
+        """About how many all images have, with a share of the densities."""
+        images, wanted = np.array(list(self._added.values())).reshape(-1, 2).T
+        margins = len(WAYS) * (2 * MARGIN + 1) ** 2
+        return float((images * np.minimum(wanted * share**2 + margins, self._most_of_one)).sum())
+
+    def share_of_density(self, most):
+        """The factor by which densities are lowered, so that there are `most` texels or fewer: a power of the root of 2, so that small moves
+        change nothing."""
+        shares = (2.0 ** (-step / 2) for step in range(MOST_STEPS))
+        return next((share for share in shares if self.texels(share) <= most), 2.0 ** (-MOST_STEPS / 2))
 
 
 def texels_wanted(corners, density):
-    """About how many texels an atlas has of (n, 3, 3) corners of triangles with (n,) texels per unit."""
+    """About how many texels without margins an atlas has of (n, 3, 3) corners of triangles with (n,) texels per unit."""
     areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    return 1.3 * float((areas * density**2).sum()) + len(WAYS) * (2 * MARGIN + 1) ** 2
-
-
-def share_of_density(wanted, most):
-    """The factor by which densities are lowered, so that `wanted` texels become `most` or fewer: a power of the root of 2, so that small moves change
-    nothing."""
-    return 1.0 if wanted <= most else 2.0 ** (np.floor(np.log2(most / wanted)) / 2)
+    return 1.3 * float((areas * density**2).sum())

@@ -55,11 +55,10 @@ def triangle_slots(mesh):
 
 
 def triangles_of(mesh, materials, material):
-    """(n,) which triangles have one of the `materials` of an object's slots; all where none has it."""
+    """(n,) which triangles have one of the `materials` of an object's slots."""
     mesh.calc_loop_triangles()
     slots = [k for k in range(max(1, len(materials))) if not materials or materials[k] == material]
-    found = np.isin(np.minimum(triangle_slots(mesh), max(len(materials) - 1, 0)), slots)
-    return found if found.any() else ~found
+    return np.isin(np.minimum(triangle_slots(mesh), max(len(materials) - 1, 0)), slots)
 
 
 def smooth_triangles(mesh):

@@ -10,8 +10,8 @@ from mathutils import Vector
 from . import export_lights, export_meshes, export_motion, export_strands, export_world, ply
 from .atlases import Atlases
 from .baking import Surface
-from .body import Body, undeformed
-from .body_demand import MOST_TEXELS, MOST_TEXELS_OF_PREVIEWS, BodyDemand, share_of_density
+from .body import Body
+from .body_demand import MOST_TEXELS, MOST_TEXELS_OF_PREVIEWS, BodyDemand
 from .export_camera import SceneCamera
 from .export_materials import MaterialExporter
 from .export_shaders import numbers
@@ -77,7 +77,7 @@ class SceneExporter:
     def _write_content(self, out, moving):
         self.out = out
         out.write('WorldBegin\nMediumInterface "" ""\n')
-        self.materials, self.atlases = MaterialExporter(out, self.folder, self.warn), Atlases()
+        self.materials, self.atlases, self.bodies = MaterialExporter(out, self.folder, self.warn), Atlases(), {}
         self._write_world()
         self._look_at_instances()
         self._look_at_bodies()
@@ -271,8 +271,7 @@ class SceneExporter:
         material = materials[min(slot, len(materials) - 1)] if materials else None
 
         def body():
-            matrix = self.placements.only_matrix(obj) if hangs_on_world(material.node_tree) else None
-            found = Body(mesh, export_meshes.triangles_of(mesh, materials, material), matrix)
+            found = self._body(obj, mesh, material)
             found.lay_out(self.atlases, self.placements.density(obj, mesh)[found.chosen], self.placements.most_texels)
             return found
 
@@ -282,29 +281,37 @@ class SceneExporter:
 
         return self.materials.variants(material, (*Placements.key(obj), mesh is None), surface_of)
 
+    def _body(self, obj, mesh, material):
+        """The Body of what has a material on an object, of all of it where nothing has; made once, without its atlas."""
+        key = (*Placements.key(obj), material.name_full)
+        if key not in self.bodies:
+            matrix = self.placements.only_matrix(obj) if hangs_on_world(material.node_tree) else None
+            chosen = export_meshes.triangles_of(mesh, self._materials(obj), material)
+            self.bodies[key] = Body(mesh, chosen if chosen.any() else ~chosen, matrix)
+        return self.bodies[key]
+
     def _look_at_bodies(self):
         """Makes all atlases coarser where they would be too large together."""
-        demand, seen = BodyDemand(self.materials.files.source), set()
+        demand, seen = BodyDemand(self.materials.files.source, self.placements.most_texels), set()
         for _, instance in self._instances():
             obj = instance.object
-            if obj.type not in SURFACES or Placements.key(obj) in seen:
+            if obj.type not in SURFACES or not instance.show_self or Placements.key(obj) in seen:
                 continue
             seen.add(Placements.key(obj))
-            materials = self._materials(obj)
             active = export_meshes.active_uv_map(obj.data) if obj.type == "MESH" else None
-            images = {material: count for material in set(materials) if material and (count := demand.images(material, active))}
-            mesh = obj.to_mesh() if images else None
+            images = {material: demand.images(material, active) for material in set(self._materials(obj)) if material}
+            mesh = obj.to_mesh() if any(count for count, _ in images.values()) else None
             if mesh is None:
                 continue
-            for material, count in images.items() if Body.is_of(mesh) else ():
-                chosen = export_meshes.triangles_of(mesh, materials, material)
-                corners = undeformed(mesh)[export_meshes.triangles(mesh)[chosen]]
-                demand.add(material, count, corners, self.placements.density(obj, mesh)[chosen])
+            for material, (count, kinds) in images.items() if Body.is_of(mesh) else ():
+                if count and export_meshes.triangles_of(mesh, self._materials(obj), material).any():
+                    body = self._body(obj, mesh, material)
+                    demand.add(material, count, kinds, body, self.placements.density(obj, mesh)[body.chosen])
             obj.to_mesh_clear()
         most = MOST_TEXELS_OF_PREVIEWS if self.is_preview else MOST_TEXELS
-        self.placements.share = share_of_density(demand.texels, most)
+        self.placements.share = demand.share_of_density(most)
         if self.placements.share < 1:
-            self.warn(f"the patterns on all objects would have about {demand.texels / 1e6:.0f} million texels, of which there are at most "
+            self.warn(f"the patterns on all objects would have about {demand.texels() / 1e6:.0f} million texels, of which there are at most "
                       f"{most / 1e6:.0f}; all are {1 / self.placements.share:.1f} times as coarse")
 
     def _look_at_instances(self):

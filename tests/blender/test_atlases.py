@@ -6,7 +6,7 @@ import unittest.mock
 import bpy
 import numpy as np
 from addon_support import BlenderTest, render
-from covtrace_blender import atlases, body_baking, export_scene
+from covtrace_blender import atlases, body_baking, body_normals, export_scene
 from covtrace_blender.atlas import Atlas
 from node_trees import Tree
 
@@ -89,21 +89,86 @@ class KeptAtlasesTest(BlenderTest):
             self.assertGreater(evaluated, 0)
         self.assertEqual(self.work(2), (0, 0))
 
-    def test_all_atlases_together_have_a_bound(self):
+    def texels(self):
+        """The number of them in each of the images that an export writes."""
+        found = []
+        self.export(lambda folder: found.extend(struct.unpack(">II", file.read_bytes()[16:24]) for file in folder.glob("texture*.png")))
+        return [width * height for width, height in found]
+
+    def look_near(self):
         self.scene.render.resolution_x, self.scene.render.resolution_y, self.camera.data.lens = 256, 192, 20
+
+    def assert_a_bound_makes_coarser(self, images):
+        whole = self.texels()
+        self.assertEqual(len(whole), images)
+        self.assertEqual(self.warnings, [])
+        with unittest.mock.patch.object(export_scene, "MOST_TEXELS", sum(whole) // 5):
+            self.assertLess(sum(self.texels()), sum(whole) // 3)
+        told, = self.warnings
+        self.assertIn("as coarse", told)
+
+    def test_all_atlases_together_have_a_bound(self):
+        self.look_near()
         for number in range(6):
             bpy.ops.mesh.primitive_cube_add(size=0.8 - 0.02 * number, location=(number % 3 - 1, number // 3 - 0.5, 3.5))
             bpy.context.object.data.materials.append(self.patterned("Generated"))
+        self.assert_a_bound_makes_coarser(6)
 
-        def texels():
-            found = []
-            self.export(lambda folder: found.extend(struct.unpack(">II", file.read_bytes()[16:24]) for file in folder.glob("texture*.png")))
-            self.assertEqual(len(found), 6)
-            return sum(width * height for width, height in found)
+    def test_the_bound_counts_places_in_the_world_of_each_object_of_a_mesh(self):
+        self.look_near()
+        tree = Tree()
+        tree.show(tree.node("TexNoise", {}, {"Scale": 4.0, "Vector": (tree.node("NewGeometry"), "Position")}), "Color")
+        bpy.ops.mesh.primitive_cube_add(size=0.8, location=(0, 0, 3.5))
+        first = bpy.context.object
+        first.data.materials.append(tree.material)
+        for number in range(5):
+            twin = first.copy()
+            twin.location.x += 1e-4 * (number + 1)
+            self.scene.collection.objects.link(twin)
+        self.assert_a_bound_makes_coarser(6)
 
-        whole = texels()
-        self.assertEqual(self.warnings, [])
-        with unittest.mock.patch.object(export_scene, "MOST_TEXELS", whole // 5):
-            self.assertLess(texels(), whole // 3)
-        told, = self.warnings
-        self.assertIn("as coarse", told)
+    def test_a_floor_makes_nothing_else_coarser(self):
+        self.look_near()
+        bpy.ops.mesh.primitive_cube_add(size=0.8, location=(0, 0, 3.5))
+        bpy.context.object.data.materials.append(self.patterned("Generated"))
+        bpy.context.object.data.materials.append(self.patterned("Object"))  # on no face
+        cube, = self.texels()
+        self.plane(self.patterned("Generated"), size=1000)  # for which there would be thousands of millions
+        with unittest.mock.patch.object(export_scene, "MOST_TEXELS", cube * 3 // 2 + (1 << 22)):
+            self.assertIn(cube, self.texels())
+            self.assertEqual(self.warnings, [])
+
+    def test_the_bound_counts_each_image_once(self):
+        def noise(tree, scale, vector=None):
+            return tree.node("TexNoise", {}, {"Scale": scale, "Detail": 0.0, **({"Vector": (vector, 0)} if vector else {})})
+
+        def mask(tree):
+            mix = tree.node("MixShader", {}, {0: noise(tree, 2.1), 1: tree.node("BsdfTransparent"), 2: tree.shader})
+            tree.link(mix, 0, tree.tree.nodes["Material Output"].inputs["Surface"])
+
+        def uv_maps(tree):
+            first, second = (tree.node("UVMap", {"uv_map": name}) for name in ("UVMap", "other"))
+            tree.show(noise(tree, 2.2, first), "Color")
+            tree.link(noise(tree, 2.3, second), 0, tree.shader.inputs["Roughness"])
+            glossy = tree.node("BsdfGlossy", {}, {"Roughness": noise(tree, 2.4, second)})
+            mix = tree.node("MixShader", {}, {0: 0.5, 1: tree.shader, 2: glossy})
+            tree.link(mix, 0, tree.tree.nodes["Material Output"].inputs["Surface"])
+
+        def normals(tree):
+            tree.show(noise(tree, 2.5), "Color")
+            tree.link(tree.node("NormalMap", {}, {"Color": (noise(tree, 2.6), "Color")}), 0, tree.shader.inputs["Normal"])
+
+        make = body_baking.body_image
+        for build, images in ((mask, 1), (uv_maps, 2), (normals, 3)):
+            with self.subTest(build.__name__):
+                tree = Tree()
+                build(tree)
+                plane = self.plane(tree.material, size=2)
+                plane.data.uv_layers.new(name="other")
+                with unittest.mock.patch.object(body_baking, "body_image", side_effect=make) as baked, \
+                        unittest.mock.patch.object(body_normals, "body_image", side_effect=make) as turned, \
+                        unittest.mock.patch.object(export_scene.BodyDemand, "add") as added:
+                    self.export()
+                bpy.data.objects.remove(plane)
+                self.assertEqual(baked.call_count + turned.call_count, images)
+                self.assertEqual([call.args[1] for call in added.call_args_list], [images])
