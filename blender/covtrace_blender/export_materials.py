@@ -198,7 +198,7 @@ class MaterialExporter(PrincipledExporter):
         return self._black()
 
     def _mix_shader(self, node):
-        first, second = (self._linked(node.inputs[i])[0] for i in (1, 2))
+        first, second = self._parts(node)
         angular = self._angular_share(node.inputs[0])
         if angular:
             whole = self._angular_mix(first, second, *angular)
@@ -232,7 +232,7 @@ class MaterialExporter(PrincipledExporter):
         return None
 
     def _add_shader(self, node):
-        others, opacity = self._surfaces(node), self._opacity(node)
+        others, opacity = self._parts(node), self._opacity(node)
         for emitter in (self._linked(node.inputs[i])[0] for i in (0, 1)):
             if emitter and emitter.type == "EMISSION":
                 self._emission(emitter)
@@ -243,4 +243,5 @@ class MaterialExporter(PrincipledExporter):
         if not others:
             return self._black()
         self.warn(f"material '{self.name}': a sum of two surfaces is rendered as their mean")
-        return self._mix(self._shader(others[0]), self._shader(others[1]), Value(0.5))
+        share = self._share_of_opaque(node, self._mix_share(node), *(self._opacity(other) for other in others))
+        return self._mix(self._shader(others[0]), self._shader(others[1]), share)

@@ -8,6 +8,8 @@ from .fresnel import mean_facing, mean_reflectance
 from .shader_nodes.colours import luminance
 from .shader_nodes.unsupported import Unsupported
 
+MEAN = 0.5  # the share of each of two surfaces in a sum, which is rendered as their mean
+
 
 def _blended(share, first, second):
     """first * (1 - share) + second * share of Values of one number; None where images would be multiplied."""
@@ -46,43 +48,43 @@ class OpacityReader(ShaderWriter):
             return Value(1 - self._passing(node))
         if node.type == "BSDF_PRINCIPLED":
             return self._value(node.inputs["Alpha"], True)
-        if node.type == "MIX_SHADER":
-            first, second = (self._opacity(self._linked(node.inputs[i])[0]) for i in (1, 2))
-            found = _blended(self._mix_share(node), first, second)
-            return found or self._baked_share(node, "opacity", lambda nodes: self._opacity_at(nodes, node), Value(1.0))
-        if node.type == "ADD_SHADER":
-            parts = [self._opacity(other) for other in self._surfaces(node)]
-            # A sum of two is rendered as their mean.
-            if not parts:
-                return Value(1.0)
-            found = _blended(Value(0.5), parts[0], parts[-1])
-            return found or self._baked_share(node, "opacity", lambda nodes: self._opacity_at(nodes, node), Value(1.0))
-        return Value(1.0)
+        if node.type not in ("MIX_SHADER", "ADD_SHADER"):
+            return Value(1.0)
+        parts = [self._opacity(part) for part in self._parts(node)]
+        if len(parts) < 2:
+            return parts[0] if parts else Value(1.0)
+        found = _blended(self._mix_share(node), *parts)
+        return found or self._baked_share(node, "opacity", lambda nodes: self._opacity_at(nodes, node), Value(1.0))
 
     def _opacity_at(self, nodes, node):
         """The same at the places of an Evaluator."""
-        if node is not None and node.type == "MIX_SHADER":
+        if node is not None and node.type in ("MIX_SHADER", "ADD_SHADER"):
+            parts = self._parts(node)
+            if len(parts) < 2:
+                return self._opacity_at(nodes, parts[0] if parts else None)
             share, first, second = self._mixed_at(nodes, node)
             return first * (1 - share) + second * share
-        if node is not None and node.type == "ADD_SHADER":
-            return np.float32(1) * np.mean([self._opacity_at(nodes, other) for other in self._surfaces(node)] or 1, axis=0)
         if node is not None and node.type == "BSDF_PRINCIPLED":
             return np.clip(nodes.number(node.inputs["Alpha"]), 0, 1)
         return np.float32(self._opacity(node).constant)
 
     def _mixed_at(self, nodes, node):
-        """The share of the second shader of a Mix, and both opacities."""
-        angular = self._angular_share(node.inputs[0])
-        share = np.float32(angular[1]) if angular else np.clip(nodes.number(node.inputs[0]), 0, 1)
-        return (share, *(self._opacity_at(nodes, self._linked(node.inputs[i])[0]) for i in (1, 2)))
+        """The share of the second part of a Mix or an Add, and both opacities."""
+        if node.type == "ADD_SHADER":
+            share = np.float32(MEAN)
+        else:
+            angular = self._angular_share(node.inputs[0])
+            share = np.float32(angular[1]) if angular else np.clip(nodes.number(node.inputs[0]), 0, 1)
+        return (share, *(self._opacity_at(nodes, part) for part in self._parts(node)))
 
     def _share_of_opaque(self, node, share, first, second):
-        """The share of a Mix's second shader in what stops light. share: that in all; first, second: both opacities."""
+        """The share of the second part of a Mix or an Add in what stops light. share: that in all; first, second: both opacities."""
         if not first.image and not second.image:
             if first.constant == second.constant or not share.image and share.constant in (0, 1):
                 return share
             if not share.image:
                 return Value(share.constant * second.constant / max(_blended(share, first, second).constant, 1e-6))
+
         def get(nodes):
             share, first, second = self._mixed_at(nodes, node)
             return share * second / np.maximum(first * (1 - share) + second * share, np.float32(1e-6))
@@ -99,7 +101,9 @@ class OpacityReader(ShaderWriter):
             return otherwise
 
     def _mix_share(self, node):
-        """The share of the second shader of a Mix; where the angle of sight decides, the mean over all directions."""
+        """The share of the second part of a Mix, where the angle of sight decides the mean over all directions; of an Add, too."""
+        if node.type == "ADD_SHADER":
+            return Value(MEAN)
         angular = self._angular_share(node.inputs[0])
         share = Value(angular[1]) if angular else self._value(node.inputs[0], True)
         return share if share.image else Value(min(max(share.constant, 0.0), 1.0))
@@ -116,7 +120,9 @@ class OpacityReader(ShaderWriter):
                   1 / max(1 - self._plain(node.inputs["Blend"]), 1e-5), 1.0001)
         return eta, mean_reflectance(eta)
 
-    def _surfaces(self, node):
-        """The shaders of an Add but for those that shine alone."""
+    def _parts(self, node):
+        """The shaders of a Mix, None being black, and those of an Add but for those that shine alone."""
+        if node.type == "MIX_SHADER":
+            return [self._linked(node.inputs[i])[0] for i in (1, 2)]
         nodes = [self._linked(node.inputs[i])[0] for i in (0, 1)]
         return [other for other in nodes if other and other.type != "EMISSION"]

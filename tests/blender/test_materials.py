@@ -1,9 +1,11 @@
 """Materials of the add-on against Cycles, and the messages about those that it lacks."""
 
 import math
+import unittest.mock
 
 import bpy
 from addon_support import BlenderTest, material, mean, render, socket
+from covtrace_blender import baking
 
 
 class MaterialsTest(BlenderTest):
@@ -152,6 +154,44 @@ class MaterialsTest(BlenderTest):
                 self.export()
                 self.assertEqual(self.warnings, [])
             bpy.data.objects.remove(plane)
+
+    def test_opacities_of_sums(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        mask = bpy.data.images.new("mask", 2, 2, float_buffer=True)
+        mask.colorspace_settings.name = "Non-Color"
+        mask.pixels = [0.3, 0.3, 0.3, 1] * 4
+        m = bpy.data.materials.new("sum")
+        m.use_nodes = True
+        tree = m.node_tree
+        principled = tree.nodes["Principled BSDF"]
+        principled.inputs["Base Color"].default_value, socket(principled, "Specular").default_value = (0, 0, 0, 1), 0
+        texture, emission, added, mixed, matt, dark = (tree.nodes.new(f"ShaderNode{kind}") for kind in (
+            "TexImage", "Emission", "AddShader", "MixShader", "BsdfDiffuse", "BsdfDiffuse"))
+        texture.image, emission.inputs["Strength"].default_value = mask, 0
+        for shader in (matt, dark):
+            shader.inputs["Color"].default_value = (0, 0, 0, 1)
+        tree.links.new(texture.outputs["Color"], principled.inputs["Alpha"])
+        tree.links.new(principled.outputs[0], added.inputs[0])
+        tree.links.new(emission.outputs[0], added.inputs[1])
+        tree.links.new(added.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        self.plane(m)
+        with self.subTest("with an Emission"):
+            self.assertAlmostEqual(mean(render("COVTRACE", 64))[0], 0.7, delta=0.02)
+            with unittest.mock.patch.object(baking, "UvPlace", side_effect=AssertionError):
+                self.export()  # with the image as it is in its file
+        tree.links.new(matt.outputs[0], added.inputs[1])
+        tree.links.new(texture.outputs["Color"], mixed.inputs[0])
+        tree.links.new(added.outputs[0], mixed.inputs[1])
+        tree.links.new(dark.outputs[0], mixed.inputs[2])
+        tree.links.new(mixed.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        with self.subTest("of two, of which one is opaque, in a mixture"):
+            # The sum is their mean: 0.5 * (0.3 + 1), of which 0.7 are there beside what is opaque.
+            self.assertAlmostEqual(mean(render("COVTRACE", 64))[0], 0.7 * 0.35, delta=0.02)
+        matt.inputs["Color"].default_value = (0.6, 0.6, 0.6, 1)
+        tree.links.new(tree.nodes.new("ShaderNodeBsdfTransparent").outputs[0], added.inputs[0])
+        tree.links.new(added.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        with self.subTest("of what lets light pass and what does not"):
+            self.assertAlmostEqual(mean(render("COVTRACE", 64))[0], 0.5 + 0.5 * 0.6, delta=0.02)
 
     def test_unknown_nodes_are_told(self):
         m = material()
