@@ -23,27 +23,34 @@ class Atlases:
     """Those of one export, which remembers the last one's."""
 
     def __init__(self):
-        self._used = {}
+        self._used, self._last, self._bytes = {}, None, {}
 
     def of(self, corners, triangles, density, most_texels):
-        """(key, Atlas) as Atlas has them; the key is equal for equal ones."""
+        """(key, Atlas) as Atlas has them; the key is equal for equal ones. The texels of the last one are asked for until the next one is."""
+        self._bound_texels()
         key = digest(corners, triangles, density, np.array(most_texels))
-        if sum(atlas.bytes_of_texels() for atlas in self._used.values()) > MOST_BYTES:
-            for atlas in self._used.values():
-                atlas.forget_texels()
         found = self._used.get(key) or _known.get(key) or Atlas(corners, triangles, density, most_texels)
-        self._used[key] = found
+        self._used[key], self._last = found, key
         return key, found
+
+    def _bound_texels(self):
+        if self._last:
+            self._bytes[self._last] = self._used[self._last].bytes_of_texels()
+        if sum(self._bytes.values()) > MOST_BYTES:
+            for key in self._bytes:
+                self._used[key].forget_texels()
+            self._bytes.clear()
 
     def keep(self):
         """Ends the export."""
-        _known.clear()
-        size = 0
+        kept, size = {}, 0
         for key, atlas in self._used.items():
             size += atlas.bytes_of_layout()
             if size <= MOST_BYTES:
-                _known[key] = atlas
-        for atlas in _known.values():
+                kept[key] = atlas
+        for atlas in kept.values():
             size += atlas.bytes_of_texels()
             if size > MOST_BYTES:
                 atlas.forget_texels()
+        _known.clear()
+        _known.update(kept)

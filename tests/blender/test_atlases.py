@@ -89,6 +89,24 @@ class KeptAtlasesTest(BlenderTest):
             self.assertGreater(evaluated, 0)
         self.assertEqual(self.work(2), (0, 0))
 
+    def test_texels_are_let_go_and_found_again(self):
+        corners, triangles = joined(spring(2, 0.5))
+        with unittest.mock.patch.object(Atlas, "bytes_of_texels", autospec=True, side_effect=Atlas.bytes_of_texels) as looked_at, \
+                unittest.mock.patch.object(atlases, "_known", {}), unittest.mock.patch.object(atlases, "MOST_BYTES", 1 << 17):
+            first, second = [], []
+            for found in (first, second):
+                export = atlases.Atlases()
+                for number in range(20):
+                    found.append(export.of(corners, triangles, np.full(len(triangles), 8.0 + number), 1 << 16)[1])
+                    self.assertGreater(len(found[-1].texels.rows), 0)
+                    held = sum(atlas.bytes_of_texels() for atlas in found)
+                    self.assertLess(held, (1 << 17) + 2 * found[-1].bytes_of_texels())
+                looked_at.reset_mock()
+                export.of(corners, triangles, np.full(len(triangles), 1.0), 1 << 16)
+                self.assertLess(looked_at.call_count, 3)  # not all of them, each time
+                export.keep()
+            self.assertGreater(sum(atlas in first for atlas in second), 0)
+
     def texels(self):
         """The number of them in each of the images that an export writes."""
         found = []
