@@ -14,23 +14,25 @@ class BakedImages:
     """Those of one export, which remembers the last one's."""
 
     def __init__(self):
-        self._used, self._kinds = {}, {}
+        self._used, self._kinds, self._of_changing = {}, {}, set()
 
     def of(self, socket, surface, how, bake):
-        """The result of `bake()` for a socket on a Surface, or an earlier one; how: further values that it hangs on."""
+        """The result of `bake()` for a socket on a Surface, or an earlier one, of this export where images may change; how: further
+        values that it hangs on."""
         tree = socket.id_data
-        if any(_may_change(node.image) for node in all_nodes(tree) if getattr(node, "image", None)):
-            return bake()
+        is_changing = any(_may_change(node.image) for node in all_nodes(tree) if getattr(node, "image", None))
         nodes = (signature(tree), socket.node.name, socket.identifier, how, baking.SMALLEST, baking.LARGEST)
         kinds = self._kinds.get(nodes, _kinds.get(nodes))
         found = None
         if not surface.body or kinds is not None:
             key = (nodes, surface.key(kinds))
-            found = self._used.get(key) or _known.get(key)
+            found = self._used.get(key) or (None if is_changing else _known.get(key))
         if not found:
             found = bake()
             kinds, key = found.kinds, (nodes, surface.key(found.kinds))
         self._used[key] = found
+        if is_changing:
+            self._of_changing.add(key)
         if surface.body:
             self._kinds[nodes] = kinds
         return found
@@ -49,6 +51,8 @@ class BakedImages:
         _kinds.update(self._kinds)
         size = 0
         for key, baked in self._used.items():
+            if key in self._of_changing:
+                continue
             size += baked.image.bytes if baked.image else 0
             if size <= MOST_BYTES:
                 _known[key] = baked

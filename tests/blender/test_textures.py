@@ -5,6 +5,7 @@ import unittest.mock
 import bpy
 from addon_support import BlenderTest, material, mean, render, socket
 from covtrace_blender import body_baking
+from covtrace_blender.baking import Baker
 
 
 class TexturesTest(BlenderTest):
@@ -87,6 +88,25 @@ class TexturesTest(BlenderTest):
         with unittest.mock.patch.object(body_baking, "BodyPlace", side_effect=AssertionError):
             self.export()
         self.assertEqual(self.warnings, [])
+
+    def test_what_paints_may_change_is_baked_once_an_export(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        image = bpy.data.images.new("painted", 2, 2, float_buffer=True)
+        image.colorspace_settings.name = "Non-Color"
+        m = bpy.data.materials.new("mask")
+        m.use_nodes = True
+        tree = m.node_tree
+        texture, half, mix, clear = (tree.nodes.new(f"ShaderNode{kind}") for kind in ("TexImage", "Math", "MixShader", "BsdfTransparent"))
+        texture.image, half.operation, half.inputs[1].default_value = image, "MULTIPLY", 0.5
+        for start, end in ((texture.outputs["Color"], half.inputs[0]), (half.outputs[0], mix.inputs[0]), (clear.outputs[0], mix.inputs[1]),
+                           (mix.outputs[0], tree.nodes["Material Output"].inputs["Surface"])):
+            tree.links.new(start, end)
+        self.plane(m)
+        for value in (0.2, 0.8):  # of which half is opaque and black
+            image.pixels = [value, value, value, 1] * 4
+            with unittest.mock.patch.object(Baker, "bake", autospec=True, side_effect=Baker.bake) as bake:
+                self.assertAlmostEqual(mean(render("COVTRACE", 16))[0], 1 - 0.5 * value, delta=0.02)
+            self.assertEqual(bake.call_count, 1)
 
     def test_images_whose_files_are_missing_are_magenta_as_in_cycles(self):
         image = bpy.data.images.new("lost", 4, 4)
