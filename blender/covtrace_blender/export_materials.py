@@ -211,10 +211,15 @@ class MaterialExporter(PrincipledExporter):
         for opacity, other in zip(opacities, (2, 1)):
             if not opacity.image and opacity.constant == 0:
                 return self._input_shader(node.inputs[other])
-        if "EMISSION" in (n.type for n in (first, second) if n):
+        if self._shines(first) or self._shines(second):
             self.warn(f"material '{self.name}': emission inside a mixture is not weakened by it")
         return self._mix(self._input_shader(node.inputs[1]), self._input_shader(node.inputs[2]),
                          self._share_of_opaque(node, amount, *opacities))
+
+    def _shines(self, node):
+        """Whether an Emission is in a tree of shaders."""
+        sockets = {"MIX_SHADER": (1, 2), "ADD_SHADER": (0, 1)}.get(node.type, ()) if node else ()
+        return bool(node) and (node.type == "EMISSION" or any(self._shines(self._linked(node.inputs[i])[0]) for i in sockets))
 
     def _angular_mix(self, first, second, eta, share):
         """Mixture of two shaders by the angle of sight."""

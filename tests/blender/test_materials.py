@@ -193,6 +193,20 @@ class MaterialsTest(BlenderTest):
         with self.subTest("of what lets light pass and what does not"):
             self.assertAlmostEqual(mean(render("COVTRACE", 64))[0], 0.5 + 0.5 * 0.6, delta=0.02)
 
+    def test_light_of_mixtures_that_is_not_weakened_is_told(self):
+        m = bpy.data.materials.new("light")
+        m.use_nodes = True
+        tree = m.node_tree
+        clear, shining, matt, inner, outer = (tree.nodes.new(f"ShaderNode{kind}") for kind in (
+            "BsdfTransparent", "Emission", "BsdfDiffuse", "MixShader", "MixShader"))
+        for start, end in ((clear, inner.inputs[1]), (shining, inner.inputs[2]), (inner, outer.inputs[1]), (matt, outer.inputs[2])):
+            tree.links.new(start.outputs[0], end)
+        self.plane(m)
+        for shader, told in ((inner, []), (outer, ["material 'light': emission inside a mixture is not weakened by it"])):
+            tree.links.new(shader.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+            self.export()
+            self.assertEqual(self.warnings, told)
+
     def test_unknown_nodes_are_told(self):
         m = material()
         path = m.node_tree.nodes.new("ShaderNodeLightPath")
