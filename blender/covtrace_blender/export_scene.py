@@ -57,7 +57,7 @@ class SceneExporter:
         try:
             content = io.StringIO()
             self._write_content(content, moving)
-            around = self.materials.media.sum(self.volumes.media_at(self.camera.matrix().translation, rays=("camera",)))
+            around = self.media.sum(self.volumes.media_at(self.camera.matrix().translation, rays=("camera",)))
             with open(path, "w", encoding="utf-8") as out:
                 out.write(f'MediumInterface "" "{around}"\n' if around else "")
                 out.write(self.camera.text(self.shutter, moving.get("camera")))
@@ -86,6 +86,8 @@ class SceneExporter:
         self._write_objects(moving)
         self.materials.baked.keep()
         self.atlases.keep()
+        self.media = self.materials.media
+        del self.materials, self.atlases, self.bodies  # their images are no use while what is written is rendered
 
     def _write_world(self):
         time = self.frame if self.shutter is None else self.frame + self.shutter[0]

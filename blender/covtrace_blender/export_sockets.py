@@ -112,7 +112,10 @@ class SocketReader:
         if isinstance(problem, NeedsBody):
             self.hangs_on_object = True
             if self.surface.body_of:
-                raise problem
+                try:
+                    raise problem
+                finally:
+                    del problem  # else its traceback and it would hold on to each other, and to all that is known here
 
     def _plain(self, socket):
         """A number where there can be no image; what is linked and no constant is told."""

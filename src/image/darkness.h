@@ -5,10 +5,10 @@
 
 namespace covtrace {
 
-/// The share of the surfaces in view that no sample found light on, by the layer "raw" or without
-/// it the first layer, and that the first layer has darker than the first step of eight bits above
-/// black would be on them. 0 where there is no layer "albedo" or nothing in view, and surfaces that
-/// are black themselves don't count.
+/// The share of the surfaces in view in whose block of 16 x 16 pixels no sample found light, by the
+/// layer "raw" or without it the first layer, and that the first layer has darker than the first
+/// step of eight bits above black would be on them. 0 where there is no layer "albedo" or nothing
+/// in view, and surfaces that are black themselves don't count.
 double dark_share(const Image& image);
 
 /// From this share on an image is told to be dark.

@@ -2,6 +2,7 @@
 
 import struct
 import unittest.mock
+import weakref
 
 import bpy
 import numpy as np
@@ -88,6 +89,18 @@ class KeptAtlasesTest(BlenderTest):
             self.assertEqual(laid_out, 0)
             self.assertGreater(evaluated, 0)
         self.assertEqual(self.work(2), (0, 0))
+
+    def test_bodies_are_let_go_before_they_are_rendered(self):
+        bpy.ops.mesh.primitive_cube_add()
+        bpy.context.object.data.materials.append(self.patterned("Object"))
+        made, lay_out = [], export_scene.Body.lay_out
+
+        def noted(body, *arguments):
+            made.append(weakref.ref(body))
+            lay_out(body, *arguments)
+
+        with unittest.mock.patch.object(export_scene.Body, "lay_out", noted):
+            self.export(lambda folder: self.assertEqual([body() for body in made], [None]))
 
     def test_texels_are_let_go_and_found_again(self):
         corners, triangles = joined(spring(2, 0.5))
