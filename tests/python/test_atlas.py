@@ -50,14 +50,14 @@ class AtlasTest(unittest.TestCase):
         """Asserts that at random places the interpolated texels around show that place, to within a texel's part."""
         corners = vertices[triangles]
         image = np.full((atlas.height, atlas.width, 3), np.nan)
-        image[atlas.rows, atlas.columns] = atlas.interpolated(corners, slice(None))
+        image[atlas.texels.rows, atlas.texels.columns] = atlas.interpolated(corners, slice(None))
         random = np.random.default_rng(1)
         area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
         chosen = random.choice(len(corners), 5000, p=area / area.sum())
         weights = random.dirichlet((1, 1, 1), 5000)[..., None]
         place = (corners[chosen] * weights).sum(axis=1)
-        uv = (atlas.corner_uvs[chosen] * weights).sum(axis=1) * max(atlas.width, atlas.height)
-        x, y = uv[:, 0] - 0.5, max(atlas.width, atlas.height) - uv[:, 1] - 0.5
+        uv = (atlas.corner_uvs[chosen] * weights).sum(axis=1)
+        x, y = uv[:, 0] * atlas.width - 0.5, (1 - uv[:, 1]) * atlas.height - 0.5
         column, row = np.floor(x).astype(int), np.floor(y).astype(int)
         s, t = (x - column)[:, None], (y - row)[:, None]
         shown = ((image[row, column] * (1 - s) + image[row, column + 1] * s) * (1 - t) +
@@ -69,21 +69,21 @@ class AtlasTest(unittest.TestCase):
             with self.subTest(name):
                 atlas = self.atlas(vertices, triangles, density)
                 self.assert_shown(vertices, triangles, atlas, 0.3 / density)
-                self.assertLess(atlas.width * atlas.height, 3 * len(atlas.triangle))
+                self.assertLess(atlas.width * atlas.height, 3 * len(atlas.texels.triangle))
 
     def test_what_has_no_extent_has_one_texel(self):
         atlas = self.atlas(np.zeros((3, 3)), np.array([[0, 1, 2]]), 64)
-        self.assertEqual(len(atlas.triangle), 1)
+        self.assertEqual(len(atlas.texels.triangle), 1)
         self.assertTrue(np.isfinite(atlas.interpolated(np.ones((1, 3, 3)), slice(None))).all())
         far = self.atlas(*ball(), 2.0**-99)
-        self.assertEqual(len(far.triangle), 1)
+        self.assertEqual(len(far.texels.triangle), 1)
 
-    def test_u_and_v_are_as_long_and_right_handed(self):
-        """Heights on smooth meshes take v's direction and length from u's."""
+    def test_texels_are_nearly_square_and_right_handed(self):
         vertices, triangles = ball(32, 64)
         corners = vertices[triangles]
         kept = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) > 1e-9
-        corners, uvs = corners[kept], self.atlas(vertices, triangles, 64).corner_uvs[kept]
+        atlas = self.atlas(vertices, triangles, 64)
+        corners, uvs = corners[kept], atlas.corner_uvs[kept] * (atlas.width, atlas.height)
         sides = np.stack((corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
         u, v = np.moveaxis(np.linalg.solve(np.stack((uvs[:, 1] - uvs[:, 0], uvs[:, 2] - uvs[:, 0]), axis=1), sides), 1, 0)
         normals = charts.face_normals(corners)
@@ -96,7 +96,8 @@ class AtlasTest(unittest.TestCase):
         upper = vertices[triangles].mean(axis=1)[:, 2] > 0
         atlas = self.atlas(vertices, triangles, np.where(upper, 64, 16))
         self.assert_shown(vertices, triangles, atlas, 0.3 / 16)
-        spread = np.linalg.norm(atlas.corner_uvs[:, 1] - atlas.corner_uvs[:, 2], axis=1)
+        side = (atlas.corner_uvs[:, 1] - atlas.corner_uvs[:, 2]) * (atlas.width, atlas.height)
+        spread = np.linalg.norm(side, axis=1)
         self.assertAlmostEqual(np.median(spread[upper]) / np.median(spread[~upper]), 4, delta=0.1)
         small = self.atlas(vertices, triangles, 4096, 1 << 16)
         self.assertLessEqual(small.width * small.height, 1 << 16)

@@ -171,7 +171,7 @@ class BakingTest(unittest.TestCase):
 
     def test_what_needs_it_gets_a_finer_image(self):
         stripes = maths("GREATER_THAN", (maths("SINE", (maths("MULTIPLY", coordinate(0), 900.0), 0)), 0), 0.0)
-        self.assertEqual(self.bake(stripes).image.values.shape, (2048, 2048, 4))
+        self.assertEqual(self.bake(stripes).image.values.shape, (2048, 2048, 3))
 
     def test_ranges_beyond_the_unit_square(self):
         ranges = ((-1.0, 0.0), (3.0, 2.0))
