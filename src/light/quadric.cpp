@@ -196,6 +196,10 @@ float EmissiveQuadric::pdf(int, Vec3 p, const SurfaceHit& hit) const {
     const Pose at_time = pose(hit.time);
     float distance_squared = 0;
     if (seen_as_cone(at_time, p, distance_squared)) {
+        // Samples lie on the nearer side. The inner face of the other one is hit by rays that the
+        // sphere lets pass, and by mirrors inside, which show it to places whose image is outside.
+        const Vec3 outward = hit.position - at_time.object_to_world.point({});
+        if (dot(outward, hit.position - p) > 0) return 0;
         const float r = radius_ * at_time.scale;
         return cone_pdf(one_minus_cos_cone(r * r, distance_squared));
     }

@@ -48,6 +48,19 @@ TEST(Emission, TwoSidedShapesShineBothWays) {
     EXPECT_TRUE(lit(s, {0, 0, 1}) && lit(s, {0, 0, -1}));
 }
 
+/// Samples for places outside of a sphere lie on its nearer side: paths that come to the inner face
+/// of the other one, as the sphere lets them pass, must count in full.
+TEST(Emission, TheFarSideOfASphereIsNotSampledFromOutside) {
+    LightScene s;
+    s.add(shape_of(whole_sphere(1)), Rgb(3), true);
+    s.build();
+    const Vec3 inside{0.1f, 0.2f, 0}, towards{0, 0.3f, 4}, outside{0, 0.3f, -4};
+    const SurfaceHit far_side = hit_of(s, inside, towards), near_side = hit_of(s, outside, inside);
+    EXPECT_EQ(s.lights->pdf(outside, {}, normalize(far_side.position - outside), far_side), 0);
+    EXPECT_GT(s.lights->pdf(outside, {}, normalize(near_side.position - outside), near_side), 0);
+    EXPECT_GT(s.lights->pdf(inside, {}, normalize(far_side.position - inside), far_side), 0);
+}
+
 TEST(Emission, OrientationMirroringAndVertexNormalsAgreeWithHits) {
     const auto reversed = [](ShapeDescription d) {
         d.reverse_orientation = true;
