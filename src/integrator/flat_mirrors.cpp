@@ -16,10 +16,10 @@ namespace covtrace {
 namespace {
 
 /// Largest sine between a mirror's normal and that of a part of it, and largest distance of a
-/// corner from its plane over the scene's extent: images of lamps stay in place to far less than
-/// their size.
+/// corner from its plane over the mirror's own size: images of lamps stay in place to far less than
+/// their size, however large the scene around them is.
 constexpr float kMostTilt = 1e-5f, kMostDistance = 1e-5f;
-/// Steps of normals and of distances over the scene's extent by which parts are sorted.
+/// Steps of normals and of distances over the extent of all parts by which parts are sorted.
 constexpr float kSortStep = 1e-3f;
 /// Least area of a mirror over that of the largest, both times brightness.
 constexpr float kLeastArea = 0.02f;
@@ -48,6 +48,20 @@ Vec3 one_of_two(Vec3 n) {
     const float x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
     const float largest = x >= y && x >= z ? n.x : y >= z ? n.y : n.z;
     return largest < 0 ? -n : n;
+}
+
+float size_of(const Part& part) {
+    const auto& p = part.all_corners;
+    return length(p[1] - p[0]) + length(p[2] - p[0]);
+}
+
+/// Whether a part lies in the plane of another one, the largest of a mirror.
+bool lies_in_plane_of(const Part& first, const Part& part) {
+    if (!(length(cross(part.normal, first.normal)) < kMostTilt)) return false;
+    return std::all_of(part.corners().begin(), part.corners().end(), [&](Vec3 corner) {
+        const Vec3 way = corner - first.corners()[0];
+        return std::abs(dot(way, first.normal)) <= kMostDistance * (size_of(first) + length(way));
+    });
 }
 
 class PartFinder {
@@ -119,11 +133,10 @@ class PartFinder {
                 const Vec3 own = normalize(shape.object_to_world.start().normal(normals[corner]));
                 if (!(length(cross(own, part.normal)) < kMostTilt)) return;
             }
-        const float size = length(p[1] - p[0]) + length(p[2] - p[0]);
         for (size_t i = 0; n == 4 && i < n; ++i) {
             const Vec3 a = p[i], b = p[(i + 1) % n], c = p[(i + 2) % n];
             if (!(dot(cross(b - a, c - b), sum) > 0) ||
-                std::abs(dot(a - p[0], part.normal)) > kMostTilt * size)
+                std::abs(dot(a - p[0], part.normal)) > kMostTilt * size_of(part))
                 return;
         }
         parts_.push_back(part);
@@ -211,7 +224,9 @@ FlatMirrors::FlatMirrors(const SceneDescription& scene, const Geometry& geometry
     if (parts.empty()) return;
     keep_largest(parts);
     // Sort parts by their planes
-    const Bounds3 bounds = geometry.bounds();
+    Bounds3 bounds;
+    for (const Part& part : parts)
+        for (Vec3 corner : part.corners()) bounds.extend(corner);
     const float extent = bounds.radius();
     std::map<std::array<int, 4>, std::vector<const Part*>> planes;
     for (const Part& part : parts) {
@@ -230,13 +245,7 @@ FlatMirrors::FlatMirrors(const SceneDescription& scene, const Geometry& geometry
         std::stable_sort(all.begin(), all.end(),
                          [](const Part* a, const Part* b) { return a->area > b->area; });
         const Part& first = *all.front();
-        std::erase_if(all, [&](const Part* part) {
-            return !(length(cross(part->normal, first.normal)) < kMostTilt) ||
-                   std::any_of(part->corners().begin(), part->corners().end(), [&](Vec3 corner) {
-                       return std::abs(dot(corner - first.corners()[0], first.normal)) >
-                              kMostDistance * extent;
-                   });
-        });
+        std::erase_if(all, [&](const Part* part) { return !lies_in_plane_of(first, *part); });
         found.push_back({rectangle_around(all), all});
     }
     // Keep the largest

@@ -46,6 +46,18 @@ Shape "trianglemesh" "point3 P" [ 0 0 2  0 1 2  0 1 3 ] "normal N" [ 1 0 0  1 0 
     EXPECT_EQ(scene.mirrors.at(hit), 1);
 }
 
+/// However far away other bodies are: images would be off by twice the step between the planes.
+TEST(FlatMirrors, PlanesBesideEachOtherAreTwo) {
+    for (const char* far_away :
+         {"", "Material \"diffuse\"\nTranslate 0 0 20000\nShape \"sphere\""}) {
+        const LitScene scene = scene_with(std::string(kMetal) + R"(
+Shape "trianglemesh" "point3 P" [ 0 0 0  1 0 0  1 1 0  0 1 0 ] "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ 1 0 0.05  2 0 0.05  2 1 0.05  1 1 0.05 ] "integer indices" [ 0 1 2 0 2 3 ]
+)" + far_away);
+        EXPECT_EQ(scene.mirrors.size(), 2u) << far_away;
+    }
+}
+
 TEST(FlatMirrors, NoneIsBentRoughMovedOrShining) {
     const char* const kTriangle = R"(Shape "trianglemesh" "point3 P" [ 0 0 0  1 0 0  1 1 0 ]
 )";
