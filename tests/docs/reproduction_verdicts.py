@@ -111,10 +111,10 @@ def table(e):
             f"path tracer's time over ours, equal error: thesis' choices as printed {times(ratio_of_times(v['thesis_printed']))}, "
             f"c = 1 {times(ratio_of_times(v['thesis_matched']))}, at its budget {times(ratio_of_times(v['budget_matched']))}, with our predicted filters "
             f"{times(ratio_of_times(v['thesis_predicted']))}; `covariance` {comparison(e, 'ratio of times')['covariance'].split(' ')[0]}, "
-            f"on demand {comparison(e, 'ratio of times')['covariance on demand'].split(' ')[0]}; with an earlier program 3.3 and 4.1 at 640x360 with 64 samples, by hand. "
+            f"on demand {comparison(e, 'ratio of times')['covariance on demand'].split(' ')[0]}; 6.1 and 6.0 at 640x360 with 64 samples, by hand. "
             f"Share of the analysis at its budget {analysis_share(v['budget_matched']):.1f} %, printed 10.4 %, "
             f"of the reconstruction {reconstruction_share(v['budget_matched']):.1f} %, printed 1.1 %",
-            f"blur of c = 1, not noise. `hybrid`, which has {comparison(e, 'ratio of times')['hybrid'].split(' ')[0]} there, is another method"]
+            f"blur of c = 1, not noise. `hybrid`, which has {comparison(e, 'ratio of times')['hybrid'].split(' ')[0]} there (12.2 at 640x360), is another method"]
 
 
 def voxels(e):
