@@ -2,27 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "../render/fixtures.h"
 #include "path_moments.h"
+#include "sampled_light.h"
 
 namespace covtrace {
 namespace {
 
-using test::Moments, test::trace_many;
-
-struct MirrorScene {
-    const char* name;
-    const char* world;
-    int max_depth = 5;
-    /// Bound on the variance of a path over that without sampling by mirrors; the estimates have
-    /// heavy tails.
-    double most_noise = 1.3;
-};
-void PrintTo(const MirrorScene& s, std::ostream* out) {
-    *out << s.name;
-}
+using test::Moments, test::SampledLightScene, test::expect_same_light, test::trace_many;
 
 /// A floor, looked at from above.
 const char* const kFloor = R"(
@@ -51,7 +41,7 @@ Shape "trianglemesh" "point3 P" [ -1 1.8 -1.5  2 1.8 -1.5  2 1.8 0.2  -1 1.8 0.2
     R"(LightSource "infinite" "rgb L" [ 1 1.2 1.5 ]
 )"
 
-const MirrorScene kMirrors[] = {
+const SampledLightScene kMirrors[] = {
     {"mirror", LAMP MIRROR, 5, 0.4},
     {"at_the_last_bounce", LAMP MIRROR, 2, 0.4},
     {"beyond_the_last_bounce", LAMP MIRROR, 1},
@@ -116,12 +106,12 @@ Shape "trianglemesh" "point3 P" [ -3 0.2 2  3 0.2 2  3 4 2  -3 4 2 ] "integer in
 )"},
 };
 
-class Mirrors : public testing::TestWithParam<MirrorScene> {};
+class Mirrors : public testing::TestWithParam<SampledLightScene> {};
 
 /// Fifteen scenes, with guides and without, at 4.5 standard errors: false alarms with a
 /// probability of 2.0e-4 together, were the means normal; 262144 paths make them nearly so.
 TEST_P(Mirrors, SampledLightLeavesTheImageAsItIs) {
-    const MirrorScene& p = GetParam();
+    const SampledLightScene& p = GetParam();
     const std::string text = "Integrator \"volpath\" \"integer maxdepth\" " +
                              std::to_string(p.max_depth) + R"(
 Film "rgb" "integer xresolution" 8 "integer yresolution" 8
@@ -134,14 +124,10 @@ WorldBegin
         RenderScene scene(read_pbrt_string(text, "test", "."), {}, kNoTextureLimit, guides);
         const bool has_mirrors = !scene.mirrors.is_empty();
         EXPECT_EQ(has_mirrors, std::string(p.name) != "a_mirror_that_moves");
-        scene.samples_by_mirrors = false;
-        const Moments by_paths = trace_many(scene, 5);
-        scene.samples_by_mirrors = has_mirrors;
-        const Moments sampled = trace_many(scene, 6);
-        const double error = std::sqrt((by_paths.variance() + sampled.variance()) / sampled.count);
-        EXPECT_NEAR(by_paths.mean(), sampled.mean(), 4.5 * error + 1e-6 * by_paths.mean());
-        if (guides == Guides::none)
-            EXPECT_LE(sampled.variance(), p.most_noise * by_paths.variance());
+        expect_same_light(
+            scene, &RenderScene::samples_by_mirrors,
+            guides == Guides::none ? p.most_noise : std::numeric_limits<double>::max(),
+            has_mirrors);
     }
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, Mirrors, testing::ValuesIn(kMirrors),

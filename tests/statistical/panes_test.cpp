@@ -1,28 +1,17 @@
 // Light that is sampled through panes: the same image as by paths alone, with less noise.
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <limits>
 #include <string>
 
 #include "../render/fixtures.h"
 #include "path_moments.h"
+#include "sampled_light.h"
 
 namespace covtrace {
 namespace {
 
-using test::Moments, test::trace_many;
-
-struct PaneScene {
-    const char* name;
-    const char* world;
-    int max_depth = 6;
-    /// Bound on the variance of a path over that without sampling through panes; the estimates have
-    /// heavy tails.
-    double most_noise = 1.3;
-};
-void PrintTo(const PaneScene& s, std::ostream* out) {
-    *out << s.name;
-}
+using test::SampledLightScene, test::expect_same_light;
 
 /// A floor, looked at from above, and a wall beside it.
 const char* const kRoom = R"(
@@ -47,7 +36,7 @@ AttributeEnd
     R"(LightSource "distant" "point3 from" [ 1 3 -0.5 ] "point3 to" [ 0 0 0 ] "rgb L" [ 4 4 3 ] "float angle" 4
 )"
 
-const PaneScene kPanes[] = {
+const SampledLightScene kPanes[] = {
     {"slab", LAMP SLAB, 6, 0.2},
     {"slab_at_the_last_bounce", LAMP SLAB, 3, 0.2},
     {"slab_beyond_the_last_bounce", LAMP SLAB, 2},
@@ -112,12 +101,12 @@ MediumInterface "ink" ""
 )" SLAB "AttributeEnd\n" LAMP},
 };
 
-class Panes : public testing::TestWithParam<PaneScene> {};
+class Panes : public testing::TestWithParam<SampledLightScene> {};
 
 /// Twelve scenes, with guides and without, at 4.5 standard errors: false alarms with a probability
 /// of 1.6e-4 together, were the means normal; 262144 paths make them nearly so.
 TEST_P(Panes, SampledLightLeavesTheImageAsItIs) {
-    const PaneScene& p = GetParam();
+    const SampledLightScene& p = GetParam();
     const std::string text = "Integrator \"volpath\" \"integer maxdepth\" " +
                              std::to_string(p.max_depth) + R"(
 Film "rgb" "integer xresolution" 8 "integer yresolution" 8
@@ -128,14 +117,9 @@ WorldBegin
     for (const Guides guides : {Guides::none, Guides::automatic}) {
         SCOPED_TRACE(name_of(guides));
         RenderScene scene(read_pbrt_string(text, "test", "."), {}, kNoTextureLimit, guides);
-        scene.samples_through_panes = false;
-        const Moments by_paths = trace_many(scene, 5);
-        scene.samples_through_panes = true;
-        const Moments sampled = trace_many(scene, 6);
-        const double error = std::sqrt((by_paths.variance() + sampled.variance()) / sampled.count);
-        EXPECT_NEAR(by_paths.mean(), sampled.mean(), 4.5 * error + 1e-6 * by_paths.mean());
-        if (guides == Guides::none)
-            EXPECT_LE(sampled.variance(), p.most_noise * by_paths.variance());
+        expect_same_light(
+            scene, &RenderScene::samples_through_panes,
+            guides == Guides::none ? p.most_noise : std::numeric_limits<double>::max());
     }
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, Panes, testing::ValuesIn(kPanes),
