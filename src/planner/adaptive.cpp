@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/display_exposure.h"
+#include "core/vec.h"
+
 namespace covtrace {
 
 namespace {
@@ -13,14 +16,19 @@ constexpr float kSmoothing = 1.5f;
 
 }  // namespace
 
+float dark_squared(const PlanSettings& settings, const Plane& brightness) {
+    return settings.dark_squared / sqr(display_exposure(brightness));
+}
+
 std::vector<float> adaptive_density(const SampleKnowledge& known, const PlanSettings& settings) {
     // Deviation of the narrowest filter, pixels: spectra beyond it ask for nothing more.
     constexpr float kNarrowest = 0.35f, kSharpness = 2;
     const Plane brightness = gaussian_blur(known.brightness, kSmoothing),
                 cost = gaussian_blur(known.cost, kSmoothing);
+    const float dark = dark_squared(settings, known.brightness);
     Plane noise(known.variance.width, known.variance.height);
     for (size_t i = 0; i < noise.size(); ++i)
-        noise[i] = known.variance[i] / (brightness[i] * brightness[i] + settings.dark_squared);
+        noise[i] = known.variance[i] / (brightness[i] * brightness[i] + dark);
     if (!settings.own) noise = gaussian_blur(noise, kSmoothing);
     for (float& v : noise.values) v = std::sqrt(v);
     if (settings.own) noise = gaussian_blur(noise, kSmoothing);
@@ -53,10 +61,10 @@ std::vector<float> density_of_noise_left(const FilteredKnowledge& known,
     // has at least, and the predicted density's exponent (docs/decisions/0128)
     constexpr float kNear = 1.2f, kAround = 2.5f, kPartOfAround = 0.5f, kPredicted = 0.35f;
     const Plane brightness = gaussian_blur(known.brightness, kSmoothing);
+    const float dark = dark_squared(kOwnPlan, known.brightness);
     Plane noise(known.variance.width, known.variance.height), told = noise;
     for (size_t i = 0; i < noise.size(); ++i) {
-        const float relative_variance =
-            known.variance[i] / (brightness[i] * brightness[i] + kOwnPlan.dark_squared);
+        const float relative_variance = known.variance[i] / (brightness[i] * brightness[i] + dark);
         const float v = known.count[i] * relative_variance;
         // One sample tells no variance, which is not the same as none.
         if (known.count[i] < 2 || !std::isfinite(v)) continue;

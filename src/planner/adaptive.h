@@ -24,7 +24,7 @@ struct SampleKnowledge {
 struct PlanSettings {
     /// Whether the counts are for the very sequence of samples that is known, not for another one.
     bool own;
-    float dark_squared;    ///< eps of adaptive_density
+    float dark_squared;    ///< eps of adaptive_density, where the image is exposed for a display
     float widest_filter;   ///< deviation of the widest filter that smooths the samples, pixels
     float spectrum_power;  ///< exponent of |S_2D|
 };
@@ -34,6 +34,10 @@ constexpr PlanSettings kOwnPlan{true, 0.01f, 15, 0.25f};
 /// Settings for two halves that plan for each other, and regressions, which leave no less noise
 /// than a Gaussian of some 2 pixels does: as found by a sweep (docs/decisions/0093).
 constexpr PlanSettings kHalvesPlan{false, 0.1f, 2, 0.2f};
+
+/// The eps for an image of this brightness: smaller where all of it is dim
+/// (core/display_exposure.h).
+float dark_squared(const PlanSettings& settings, const Plane& brightness);
 
 /// Makes relative densities with mean 1; where all would be 0, each is 1.
 ///

@@ -19,10 +19,11 @@ constexpr double kPowerOfNoise = 3;
 double share_of_noise(const SampleKnowledge& known, double samples) {
     const Plane variance = gaussian_blur(known.variance, kAround),
                 brightness = gaussian_blur(known.brightness, kAround);
+    const double dark = double(dark_squared(kOwnPlan, known.brightness));
     double sum = 0;
     for (size_t i = 0; i < variance.size(); ++i) {
         const double noise = double(variance[i]) / samples,
-                     all = noise + sqr(double(brightness[i])) + double(kOwnPlan.dark_squared);
+                     all = noise + sqr(double(brightness[i])) + dark;
         // Pixels too bright for squares have no share that could be told
         if (std::isfinite(all)) sum += noise / all;
     }

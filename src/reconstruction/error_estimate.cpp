@@ -63,17 +63,13 @@ std::optional<Plane> known_by_both(const Halves& halves) {
     return any ? std::optional(known) : std::nullopt;
 }
 
-/// The squared error relative to the brightness I: over I^2 + 0.01.
-float relative(float square, float brightness) {
-    return square / (sqr(brightness) + kDarkSquared);
-}
-
 }  // namespace
 
 ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> candidates,
                              const Selection& selection, const ColorPlanes& image,
                              const ColorPlanes& raw, const ColorPlanes& brightness,
-                             const ColorPlanes* difference_of_sights, const ErrorFactors& factors) {
+                             const ColorPlanes* difference_of_sights, const ErrorFactors& factors,
+                             float dark_squared) {
     const int w = image[0].width, h = image[0].height;
     const Plane bright = luminance(brightness);
     const float noise =
@@ -107,8 +103,8 @@ ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> ca
                             factors.cut * sqr(all[k] - 0.5f * (a[k] + b[k])) +
                             factors.sights * sqr(sights[k]) / 4;
             for (size_t k = 0; k < 3; ++k)
-                error.color[i] += relative(square[k], brightness[k][i]) / 3;
-            error.luminance[i] = relative(square[3], bright[i]);
+                error.color[i] += square[k] / (sqr(brightness[k][i]) + dark_squared) / 3;
+            error.luminance[i] = square[3] / (sqr(bright[i]) + dark_squared);
         }
     });
     bilateral_blur(std::array{&error.color, &error.luminance}, known, log_brightness(bright),

@@ -28,7 +28,7 @@ struct ErrorEstimate {
 /// Estimates the error of `image`, the mean of the mixed halves with the light that was added to
 /// keep that of the samples. `difference_of_sights` is the denoiser's, whose share is the last one;
 /// null: none. `raw`: the mean of the halves before rare bright paths were limited; `brightness`:
-/// I.
+/// I; `dark_squared`: 0.01, in the units of the image.
 ///
 /// The halves' own measure of a pixel is no estimate: raw pixels are ten times as noisy as the
 /// image, and the halves that judge have chosen shares and weights before (docs/decisions/0095).
@@ -45,6 +45,7 @@ struct ErrorEstimate {
 ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> candidates,
                              const Selection& selection, const ColorPlanes& image,
                              const ColorPlanes& raw, const ColorPlanes& brightness,
-                             const ColorPlanes* difference_of_sights, const ErrorFactors& factors);
+                             const ColorPlanes* difference_of_sights, const ErrorFactors& factors,
+                             float dark_squared);
 
 }  // namespace covtrace

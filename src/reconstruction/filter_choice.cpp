@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/display_exposure.h"
+#include "core/vec.h"
 #include "reconstruction/luminance.h"
 
 namespace covtrace {
@@ -36,8 +38,9 @@ struct RelativeNoise {
 RelativeNoise relative_noise(const RawLuminance& raw, const Plane& brightness) {
     const Plane none(raw.value.width, raw.value.height);
     RelativeNoise n{none, none, none, none};
+    const float dark = kDarkSquared / sqr(display_exposure(brightness));
     for (size_t i = 0; i < n.relative.size(); ++i) {
-        const float relative = 1 / (sqr(brightness[i]) + kDarkSquared);
+        const float relative = 1 / (sqr(brightness[i]) + dark);
         const float variance = relative * raw.variance[i];
         // Light beyond what squares can hold says nothing, and must not spread.
         if (!raw.known[i] || !std::isfinite(variance) || !std::isfinite(sqr(raw.value[i])))

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/display_exposure.h"
 #include "core/error.h"
 #include "core/vec.h"
 #include "reconstruction/denoiser_blend.h"
@@ -140,14 +141,22 @@ std::optional<Denoised> denoised(const Denoiser* denoiser, const Halves& halves,
     }
 }
 
-}  // namespace
+/// Multiplies the light of both halves.
+void expose(Halves& halves, float factor) {
+    for (HalfBuffer& half : halves)
+        for (size_t k = 0; k < 3; ++k) {
+            for (float& v : half.color[k].values) v *= factor;
+            for (float& v : half.color_variance[k].values) v *= sqr(factor);
+        }
+}
 
-HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> spectrum,
-                        const HybridSettings& settings) {
-    // Fill holes, then denoise what the samples give
-    for (HalfBuffer& half : halves) fill_holes(half);
-    replace_empty_half(halves);
+/// `reconstruct` for halves without holes that have been multiplied by `exposure`, of which
+/// `relative_error` knows. The rest of the image is in the units of the halves.
+HybridImage reconstruct_exposed(Halves halves, std::span<const covariance::Sym2<float>> spectrum,
+                                const HybridSettings& settings, float exposure) {
+    // Denoise what the samples give
     const ColorPlanes all = mean_of(halves);
+    const float dark_squared = kDarkSquared * sqr(exposure);
     HybridImage image;
     // Noisy features are smoothed in about a third of the time as a draft, and the image errs 0.7 %
     // more at 16 samples (docs/decisions/0085), but 2 % at 4, and 8 % behind a lens (0117)
@@ -203,14 +212,30 @@ HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> 
             image.color[k][i] = std::max(std::min(0.0f, all[k][i]), image.color[k][i]);
     // Give light back, and estimate the error of what is delivered
     light_return.give_back(all, image.color);
-    ErrorEstimate error = estimate_error(halves, candidates, s, image.color, all, guess,
-                                         clean ? &clean->difference : nullptr,
-                                         clean ? settings.error_denoised : settings.error);
+    ErrorEstimate error = estimate_error(
+        halves, candidates, s, image.color, all, guess, clean ? &clean->difference : nullptr,
+        clean ? settings.error_denoised : settings.error, dark_squared);
     image.share = std::move(s.share);
     image.relative_error = std::move(error.color);
     image.variance = std::move(error.luminance);
     const Plane bright = luminance(image.color);
-    for (size_t i = 0; i < bright.size(); ++i) image.variance[i] *= sqr(bright[i]) + kDarkSquared;
+    for (size_t i = 0; i < bright.size(); ++i) image.variance[i] *= sqr(bright[i]) + dark_squared;
+    return image;
+}
+
+}  // namespace
+
+HybridImage reconstruct(Halves halves, std::span<const covariance::Sym2<float>> spectrum,
+                        const HybridSettings& settings) {
+    for (HalfBuffer& half : halves) fill_holes(half);
+    replace_empty_half(halves);
+    // Bring dim images to where the constants are meant
+    const float exposure = display_exposure(luminance(mean_of(halves)));
+    expose(halves, exposure);
+    HybridImage image = reconstruct_exposed(std::move(halves), spectrum, settings, exposure);
+    for (Plane& channel : image.color)
+        for (float& v : channel.values) v /= exposure;
+    for (float& v : image.variance.values) v /= sqr(exposure);
     return image;
 }
 

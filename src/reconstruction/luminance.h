@@ -6,7 +6,8 @@
 
 namespace covtrace {
 
-/// The eps of relMSE: the errors of pixels darker than a tenth count as they are.
+/// The eps of relMSE: the errors of pixels darker than a tenth count as they are. It is meant for
+/// images that are exposed for a display; others are brought there (core/display_exposure.h).
 constexpr float kDarkSquared = 0.01f;
 
 inline Plane luminance(const ColorPlanes& color) {

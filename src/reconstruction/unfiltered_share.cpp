@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/display_exposure.h"
 #include "core/vec.h"
 #include "reconstruction/luminance.h"
 
@@ -36,8 +37,9 @@ struct Squares {
 Squares squares_of(const RawLuminance& raw, const FilteredLuminance& filtered) {
     const Plane none(raw.value.width, raw.value.height);
     Squares s{none, none, none, none};
+    const float dark = kDarkSquared / sqr(display_exposure(filtered.value));
     for (size_t i = 0; i < none.size(); ++i) {
-        const float relative = 1 / (sqr(filtered.value[i]) + kDarkSquared);
+        const float relative = 1 / (sqr(filtered.value[i]) + dark);
         const float d = relative * sqr(filtered.value[i] - raw.value[i]),
                     r = relative * raw.variance[i], g = relative * filtered.variance[i];
         // Light beyond what squares can hold says nothing, and must not spread.

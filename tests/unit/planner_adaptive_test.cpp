@@ -133,6 +133,16 @@ TEST(AdaptiveDensity, FollowsTheInverseBrightness) {
     EXPECT_NEAR(c.ratio(kHalvesPlan), std::sqrt(1.1 / 16.1), 0.01);
 }
 
+TEST(AdaptiveDensity, IsTheSameForADimImage) {
+    constexpr float kDim = 0x1p-12f;
+    Case c;
+    c.known.brightness = Plane(kSize, kSize, kDim);
+    c.known.variance = Plane(kSize, kSize, kDim * kDim);
+    c.right([&](size_t i) { c.known.brightness[i] = 4 * kDim; });
+    // Times 256 the halves are 1/16 and 1/4; an eps in these units would make the ratio 1.
+    EXPECT_NEAR(c.ratio(), std::sqrt((1 / 256. + 0.01) / (1 / 16. + 0.01)), 0.01);
+}
+
 TEST(AdaptiveDensity, FollowsTheInverseRootOfTheCost) {
     Case c;
     c.right([&](size_t i) { c.known.cost[i] = 16; });

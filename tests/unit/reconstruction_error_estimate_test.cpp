@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "reconstruction/hybrid.h"
+#include "reconstruction/luminance.h"
 #include "reconstruction_images.h"
 
 namespace covtrace {
@@ -59,8 +60,9 @@ TEST(ErrorEstimate, CountsNoiseSpreadAndLightThatWasMoved) {
     const Selection s{{constant(1.1f), constant(0.9f)},
                       {Plane(kSize, kSize, 0.5f), Plane(kSize, kSize, 0.5f)}};
     const ErrorFactors factors{1, 16, 2, 3, 5};
-    const ErrorEstimate error = estimate_error(halves, candidates, s, constant(1.05f),
-                                               constant(1.3f), constant(1), nullptr, factors);
+    const ErrorEstimate error =
+        estimate_error(halves, candidates, s, constant(1.05f), constant(1.3f), constant(1), nullptr,
+                       factors, kDarkSquared);
     // The terms are N = 0.1^2 with 8 samples, S = 0.2^2, E = 0.05^2, C = 0.3^2.
     const float expected = (3 * 0.01f + 2 * 0.04f + 3 * 0.0025f + 5 * 0.09f) / 1.01f;
     for (size_t i = 0; i < error.color.size(); ++i) {
@@ -79,7 +81,7 @@ TEST(ErrorEstimate, TellsLuminanceApartFromColours) {
     const Selection s{{a, constant(1)}, {Plane(kSize, kSize, 1)}};
     const ErrorEstimate error =
         estimate_error(halves, std::vector<Candidate>{{a, constant(1)}}, s, mean_of_both(s.half),
-                       constant(1), constant(1), nullptr, {});
+                       constant(1), constant(1), nullptr, {}, kDarkSquared);
     EXPECT_GT(error.color[100], 0.01f);
     EXPECT_LT(error.luminance[100], 1e-6f);
 }
@@ -117,9 +119,9 @@ TEST(ErrorEstimate, OfADarkPixelIsNotThatOfALightBesideIt) {
                 s.half[1][c](x, y) = x < kSize / 2 ? 0.95f * bright : 1.05f * bright;
                 for (HalfBuffer& half : halves) half.color[c](x, y) = bright;
             }
-    const ErrorEstimate error =
-        estimate_error(halves, std::vector<Candidate>{{s.half[0], s.half[1]}}, s,
-                       mean_of_both(s.half), guess, guess, nullptr, ErrorFactors{1, 0, 0, 0, 0});
+    const ErrorEstimate error = estimate_error(
+        halves, std::vector<Candidate>{{s.half[0], s.half[1]}}, s, mean_of_both(s.half), guess,
+        guess, nullptr, ErrorFactors{1, 0, 0, 0, 0}, kDarkSquared);
     for (int y = 0; y < kSize; ++y) {
         ASSERT_NEAR(error.luminance(kSize / 2 - 1, y), 0.0025f / 1.01f, 1e-6f);
         ASSERT_EQ(error.luminance(kSize / 2, y), 0);

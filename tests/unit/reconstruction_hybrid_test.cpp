@@ -178,6 +178,27 @@ TEST(Hybrid, IsNeverWorseThanThePixelsAndBecomesThem) {
     }
 }
 
+/// Halves of hard squares of 0.2 and 1, as noisy as they are bright, times `factor`.
+Halves dim_halves(float factor) {
+    const auto truth = [&](int x, int y) { return factor * checks(x / 4, y / 4); };
+    return noisy_halves(kSize, kSize, truth, 0.2f * factor, 10);
+}
+
+TEST(Hybrid, DimImagesAreReconstructedAsInOtherUnits) {
+    const float factor = 0x1p-10f;
+    const HybridImage dim = reconstruct(dim_halves(factor), kSpectrum),
+                      dimmer = reconstruct(dim_halves(factor / 4), kSpectrum);
+    for (size_t i = 0; i < dim.variance.size(); ++i) {
+        for (size_t c = 0; c < 3; ++c) ASSERT_EQ(dimmer.color[c][i], dim.color[c][i] / 4);
+        ASSERT_NEAR(dimmer.variance[i], dim.variance[i] / 16, 1e-4f * dim.variance[i]);
+        // The error is told over I^2 + 0.01 in the image's own units, where I^2 is next to nothing.
+        ASSERT_NEAR(dimmer.relative_error[i], dim.relative_error[i] / 16,
+                    1e-3f * dim.relative_error[i]);
+    }
+    const auto truth = [&](int x, int y) { return factor * checks(x / 4, y / 4); };
+    EXPECT_LT(mean_squared_error(dim.color, truth), 0.25 * sqr(0.2 * double(factor)) / 2);
+}
+
 TEST(Hybrid, HolesAreFilled) {
     Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.1f, 8);
     Rng rng(9);

@@ -1,0 +1,74 @@
+// Dim images are brought to the brightness of displays, images in usual units stay as they are.
+#include "core/display_exposure.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace covtrace {
+namespace {
+
+constexpr int kSize = 80;
+
+/// The exposure of an image of this brightness everywhere.
+float of_constant(float brightness) {
+    return display_exposure(Plane(kSize, kSize, brightness));
+}
+
+TEST(DisplayExposure, LeavesImagesInUsualUnitsAsTheyAre) {
+    for (const float brightness : {0.1f, 0.4f, 1.0f, 1e4f}) EXPECT_EQ(of_constant(brightness), 1);
+    EXPECT_EQ(of_constant(0), 1);
+}
+
+TEST(DisplayExposure, BringsDimImagesToTheSameBrightness) {
+    for (float brightness = 0.025f; brightness > 1e-6f; brightness *= 0.7f) {
+        const float factor = of_constant(brightness);
+        EXPECT_GT(factor * brightness, 0.2f * 0.999f) << brightness;
+        EXPECT_LE(factor * brightness, 0.4f * 1.001f) << brightness;
+        EXPECT_EQ(of_constant(brightness / 2), 2 * factor) << brightness;
+    }
+}
+
+TEST(DisplayExposure, IsAPowerOfTwoThatGrowsSteadily) {
+    float before = 1;
+    for (float brightness = 0.2f; brightness > 1e-12f; brightness *= 0.97f) {
+        const float factor = of_constant(brightness);
+        EXPECT_EQ(std::exp2(std::round(std::log2(factor))), factor);
+        EXPECT_GE(factor, before);
+        EXPECT_LE(factor, 2 * before);
+        before = factor;
+    }
+    EXPECT_EQ(before, 0x1p20f);
+}
+
+TEST(DisplayExposure, GoesByTheBrightestTenthOfWhatHasLight) {
+    // Half of the image is black, a twentieth of the rest is a window.
+    Plane image(kSize, kSize);
+    for (int y = 0; y < kSize / 2; ++y)
+        for (int x = 0; x < kSize; ++x) image(x, y) = x < kSize / 20 ? 1e4f : 1e-3f;
+    EXPECT_EQ(display_exposure(image), of_constant(1e-3f));
+    for (int y = 0; y < kSize / 2; ++y)
+        for (int x = 0; x < kSize / 4; ++x) image(x, y) = 0.4f;
+    EXPECT_EQ(display_exposure(image), 1);
+}
+
+TEST(DisplayExposure, KnowsRareLight) {
+    // One pixel of 64 has met a path, which carries the light of all of them.
+    Plane image(kSize, kSize);
+    for (int y = 3; y < kSize; y += 8)
+        for (int x = 3; x < kSize; x += 8) image(x, y) = 64 * 0.2f;
+    EXPECT_EQ(display_exposure(image), 1);
+}
+
+TEST(DisplayExposure, LeavesOutWhatIsNoNumber) {
+    Plane image(kSize, kSize, 1e-3f);
+    for (int x = 0; x < kSize; ++x) {
+        image(x, x) = std::numeric_limits<float>::infinity();
+        image(x, kSize - 1 - x) = std::numeric_limits<float>::quiet_NaN();
+    }
+    EXPECT_EQ(display_exposure(image), of_constant(1e-3f));
+}
+
+}  // namespace
+}  // namespace covtrace
