@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
+#include "core/error.h"
 #include "image/color_encoding.h"
 
 namespace covtrace {
@@ -58,26 +61,55 @@ Rgb agx(Rgb linear) {
     return times(kOutset, {curve(inset.r), curve(inset.g), curve(inset.b)});
 }
 
+/// NaN is 0.
 uint8_t to_8bit(float encoded) {
-    return uint8_t(255.0f * std::clamp(encoded, 0.0f, 1.0f) + 0.5f);
+    return uint8_t(255.0f * (encoded > 0 ? std::min(encoded, 1.0f) : 0.0f) + 0.5f);
+}
+
+std::array<uint8_t, 3> to_8bit(Rgb encoded) {
+    return {to_8bit(encoded.r), to_8bit(encoded.g), to_8bit(encoded.b)};
+}
+
+void refuse_without_config(std::string_view option, const std::string& value) {
+    if (!value.empty())
+        throw Error(ErrorKind::usage, OptionName{option},
+                    "'" + value + "' is of an OpenColorIO config, and none is given");
 }
 
 }  // namespace
+
+DisplayOptions display_options(float exposure, const std::string& view, OcioChoice ocio) {
+    DisplayOptions options{exposure};
+    if (!ocio.config.empty()) {
+        ocio.view = view;
+        options.ocio = std::make_shared<OcioView>(ocio);
+        return options;
+    }
+    refuse_without_config("ocio_display", ocio.display);
+    refuse_without_config("ocio_look", ocio.look);
+    refuse_without_config("ocio_source", ocio.source);
+    if (view.empty()) return options;
+    const auto named = value_named<ViewTransform>(view);
+    if (!named)
+        throw Error(ErrorKind::usage, OptionName{"view"},
+                    "'" + view + "' is none of " + listed_names<ViewTransform>("|"));
+    options.view = *named;
+    return options;
+}
 
 std::array<uint8_t, 3> display_8bit(Rgb linear, const DisplayOptions& options) {
     const float gain = std::exp2(options.exposure);
     const auto exposed = [gain](float v) { return v > 0 ? std::min(v * gain, kBrightest) : 0.0f; };
     const Rgb c{exposed(linear.r), exposed(linear.g), exposed(linear.b)};
+    if (options.ocio) return to_8bit(options.ocio->shown(c));
     switch (options.view) {
         case ViewTransform::srgb:
             break;
         case ViewTransform::filmic:
             return {srgb_encode_8bit(filmic(c.r)), srgb_encode_8bit(filmic(c.g)),
                     srgb_encode_8bit(filmic(c.b))};
-        case ViewTransform::agx: {
-            const Rgb encoded = agx(c);
-            return {to_8bit(encoded.r), to_8bit(encoded.g), to_8bit(encoded.b)};
-        }
+        case ViewTransform::agx:
+            return to_8bit(agx(c));
     }
     return {srgb_encode_8bit(c.r), srgb_encode_8bit(c.g), srgb_encode_8bit(c.b)};
 }

@@ -1,13 +1,16 @@
-/// From linear colours to 8-bit display values: exposure, a view transform, the sRGB curve.
+/// From linear colours to 8-bit display values: exposure, a view transform, the display's curve.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <string>
 
 #include "core/enum_names.h"
 #include "core/vec.h"
 #include "image/image.h"
+#include "image/ocio_view.h"
 
 namespace covtrace {
 
@@ -27,9 +30,16 @@ inline constexpr auto kEnumNames<ViewTransform> =
 struct DisplayOptions {
     float exposure = 0;  ///< stops by which the picture is brightened
     ViewTransform view = ViewTransform::srgb;
+    std::shared_ptr<const OcioView> ocio = nullptr;  ///< where there is one, in place of `view`
 };
 
-/// Display values (sRGB) of a linear Rec.709 colour. Negative values and NaN count as 0.
+/// The options by the names that users give. `view`: one of ViewTransform, or where `ocio.config`
+/// is given a view of that config; empty for the default. Throws Error(usage) for a name that is
+/// not known, and otherwise as OcioView.
+DisplayOptions display_options(float exposure, const std::string& view, OcioChoice ocio);
+
+/// Display values of a linear Rec.709 colour, sRGB but where a config says otherwise. Negative
+/// values and NaN count as 0.
 std::array<uint8_t, 3> display_8bit(Rgb linear, const DisplayOptions& options);
 
 /// Writes a picture of the root channels R, G, B, or Y. Written beside and renamed. Throws as

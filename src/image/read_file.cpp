@@ -22,13 +22,7 @@ namespace {
 }
 
 std::string first_bytes(const std::filesystem::path& file, const SourceLocation& where) {
-    std::error_code error;
-    const auto status = std::filesystem::status(file, error);
-    if (error) throw_unopenable(file, where, error.value());
-    if (std::filesystem::is_directory(status)) throw_unopenable(file, where, EISDIR);
-    // Pipes and devices are refused: they would block or never end.
-    if (!std::filesystem::is_regular_file(status))
-        throw_unreadable(file, where, "it is not a regular file");
+    require_file(file, where);
     errno = 0;
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw_unopenable(file, where, errno ? errno : EIO);
@@ -66,6 +60,16 @@ ImageFormat format_of(std::string_view bytes, const std::filesystem::path& file,
 }
 
 }  // namespace
+
+void require_file(const std::filesystem::path& file, const SourceLocation& where) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (error) throw_unopenable(file, where, error.value());
+    if (std::filesystem::is_directory(status)) throw_unopenable(file, where, EISDIR);
+    // Pipes and devices are refused: they would block or never end.
+    if (!std::filesystem::is_regular_file(status))
+        throw_unreadable(file, where, "it is not a regular file");
+}
 
 ImageFormat detect_image_format(const std::filesystem::path& file, const SourceLocation& where) {
     return format_of(first_bytes(file, where), file, where);
@@ -136,19 +140,23 @@ PlainImage decode_plain(std::string_view bytes, const std::filesystem::path& nam
     return with_name(name, where, [&] { return decode(all, format); });
 }
 
-void throw_unreadable(const std::filesystem::path& file, const SourceLocation& where,
-                      const std::string& reason, ErrorKind kind) {
-    constexpr size_t kLongestReason = 300;
+std::string one_line(const std::string& text) {
+    constexpr size_t kLongest = 300;
     std::string line;
     // Unprintable bytes are replaced: names in a damaged file may hold any, a terminal and JSON may
     // not.
-    for (const char c : reason.substr(0, kLongestReason))
+    for (const char c : text.substr(0, kLongest))
         if (c >= 0x20 && c <= 0x7e)
             line += c;
         else if (!line.empty() && line.back() != ' ')
             line += ' ';
     line.erase(line.find_last_not_of(" .") + 1);
-    throw Error(kind, where, "cannot read '" + file.string() + "': " + line);
+    return line;
+}
+
+void throw_unreadable(const std::filesystem::path& file, const SourceLocation& where,
+                      const std::string& reason, ErrorKind kind) {
+    throw Error(kind, where, "cannot read '" + file.string() + "': " + one_line(reason));
 }
 
 std::string in_words(const std::filesystem::path& file, int64_t width, int64_t height) {

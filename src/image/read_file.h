@@ -17,6 +17,9 @@ namespace covtrace {
 /// Kinds of files by their first bytes; Targa has no signature and goes by the file's name.
 enum class ImageFormat { exr, png, jpeg, targa, hdr, pnm, qoi, webp };
 
+/// Throws where the file is not there, or is a folder, a pipe or a device.
+void require_file(const std::filesystem::path& file, const SourceLocation& where);
+
 /// Opens the file and looks at its first bytes.
 ImageFormat detect_image_format(const std::filesystem::path& file, const SourceLocation& where);
 
@@ -35,6 +38,9 @@ using ChannelChoice = std::function<std::vector<std::string>(const std::vector<s
 /// have a name and no values.
 Image read_exr(const std::filesystem::path& file, const SourceLocation& where,
                const ChannelChoice& choose = {});
+
+/// A library's message on one line of ASCII, without its full stop, cut where it is long.
+std::string one_line(const std::string& text);
 
 /// Throws "cannot read 'file': reason", the reason on one line of ASCII. Error(limit) for limits.
 [[noreturn]] void throw_unreadable(const std::filesystem::path& file, const SourceLocation& where,

@@ -48,40 +48,54 @@ void on_write(png_structp png, png_bytep bytes, size_t count) {
 
 void on_flush(png_structp) {}
 
-bool encode(PngWriter& writer, const uint8_t* rgb, int width, int height) {
+/// Whether a file says that its colours are sRGB. Without a word most programs take them for that,
+/// too, others for those of the display.
+enum class Colours { srgb, untold };
+
+bool encode(PngWriter& writer, const uint8_t* rgb, int width, int height, Colours colours) {
     if (setjmp(png_jmpbuf(writer.png))) return false;
     png_set_write_fn(writer.png, &writer, on_write, on_flush);
     png_set_IHDR(writer.png, writer.info, png_uint_32(width), png_uint_32(height), 8,
                  PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                  PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB_gAMA_and_cHRM(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    if (colours == Colours::srgb)
+        png_set_sRGB_gAMA_and_cHRM(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(writer.png, writer.info);
     for (int y = 0; y < height; ++y) png_write_row(writer.png, rgb + size_t(y) * size_t(width) * 3);
     png_write_end(writer.png, writer.info);
     return true;
 }
 
-}  // namespace
-
-std::string encode_png_rgb8(std::span<const uint8_t> rgb, int width, int height) {
+std::string encoded(std::span<const uint8_t> rgb, int width, int height, Colours colours) {
     if (width <= 0 || height <= 0 || rgb.size() != size_t(width) * size_t(height) * 3)
         throw Error(ErrorKind::internal, "PNG: the pixels do not match the image's size");
     PngWriter writer;
     writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning);
     writer.info = writer.png ? png_create_info_struct(writer.png) : nullptr;
     if (!writer.info) throw std::bad_alloc();
-    if (!encode(writer, rgb.data(), width, height))
+    if (!encode(writer, rgb.data(), width, height, colours))
         throw Error(ErrorKind::io, "cannot encode a PNG: " + writer.error);
     return std::move(writer.encoded);
 }
 
-void write_png_rgb8(std::span<const uint8_t> rgb, int width, int height,
-                    const std::filesystem::path& file) {
+void write(std::span<const uint8_t> rgb, int width, int height, const std::filesystem::path& file,
+           Colours colours) {
     // The target is opened first: if it cannot be written there is no reason to compress.
     OutputFile output(file);
-    const std::string encoded = encode_png_rgb8(rgb, width, height);
-    output.write(encoded.data(), encoded.size());
+    const std::string bytes = encoded(rgb, width, height, colours);
+    output.write(bytes.data(), bytes.size());
     output.commit();
+}
+
+}  // namespace
+
+std::string encode_png_rgb8(std::span<const uint8_t> rgb, int width, int height) {
+    return encoded(rgb, width, height, Colours::srgb);
+}
+
+void write_png_rgb8(std::span<const uint8_t> rgb, int width, int height,
+                    const std::filesystem::path& file) {
+    write(rgb, width, height, file, Colours::srgb);
 }
 
 void write_png(const Image& image, const std::filesystem::path& file,
@@ -93,7 +107,8 @@ void write_png(const Image& image, const std::filesystem::path& file,
         const auto shown = display_8bit({value(0, i), value(1, i), value(2, i)}, options);
         std::copy(shown.begin(), shown.end(), rgb.begin() + std::ptrdiff_t(i * 3));
     }
-    write_png_rgb8(rgb, image.width(), image.height(), file);
+    // A config's display may be another one than sRGB, and the library does not tell which.
+    write(rgb, image.width(), image.height(), file, options.ocio ? Colours::untold : Colours::srgb);
 }
 
 void write_png(const Image& image, const std::filesystem::path& file) {

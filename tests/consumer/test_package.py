@@ -74,7 +74,7 @@ class Package(unittest.TestCase):
             self.assertIn("covtrace_mpi.so", self.run_command("dpkg-deb", "--contents", other))
         self.assertRegex(package.name, r"^covtrace_\d+\.\d+\.\d+_\w+\.deb$")
         fields = self.run_command("dpkg-deb", "--field", package)
-        for library in ("libembree3", "libtbb", "libopenexr", "libdraco", "libmeshoptimizer", "libwebp", "libc6"):
+        for library in ("libembree3", "libtbb", "libopencolorio", "libopenexr", "libdraco", "libmeshoptimizer", "libwebp", "libc6"):
             self.assertIn(library, fields)
         self.assertNotIn("libopenmpi", fields)
         self.assertRegex(" ".join(fields.split()), "covtrace renders scenes .* It needs .*processor")

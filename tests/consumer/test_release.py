@@ -96,9 +96,9 @@ class Wheel(Made):
         for line in outside:  # what every Linux with that C library has
             self.assertRegex(line.split()[0], r"\A(lib(c|m|z|stdc\+\+|gcc_s|dl|pthread|rt)\.so\.\d+|/lib64/ld-linux.*)\Z")
         bundled = {re.sub(r"-[0-9a-f]{8}\.so.*", "", f.name) for f in (target / "covtrace.libs").iterdir()}
-        self.assertLessEqual({"libembree3", "libtbb", "libOpenEXR-3_1", "libdraco", "libmeshoptimizer", "libwebp"}, bundled)
+        self.assertLessEqual({"libembree3", "libtbb", "libOpenColorIO", "libOpenEXR-3_1", "libdraco", "libmeshoptimizer", "libwebp", "libexpat"}, bundled)
         licences = target / f"covtrace-{VERSION}.dist-info/licenses"
-        self.assertLessEqual({"libembree3-3", "libtbb12", "libopenexr-3-1-30", "libdraco7", "libmeshoptimizer2d", "libwebp7"}, {d.name for d in licences.iterdir()})
+        self.assertLessEqual({"libembree3-3", "libtbb12", "libopencolorio2.1", "libopenexr-3-1-30", "libdraco7", "libmeshoptimizer2d", "libwebp7", "libexpat1"}, {d.name for d in licences.iterdir()})
 
 
 # Enough of Blender for modules that are loaded and not used: anything, and classes to inherit from.
