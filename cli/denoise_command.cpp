@@ -28,17 +28,19 @@ struct DenoiseArguments {
     std::string output, png;
     LayerNaming layers;
     std::optional<float> samples;
-    DisplayOptions display;
+    DisplayArguments display;
     DenoiserArguments denoiser;
     int threads = 0;
     bool quiet = false;
 };
 
-int denoise_images(const DenoiseArguments& a) {
+int denoise_images(DenoiseArguments a) {
     const ThreadLimit threads(a.threads);
     require_picture_name("--png", a.png);
+    resolve(a.display);
     std::vector<std::filesystem::path> inputs(a.images.begin(), a.images.end());
     if (!a.denoiser.library.empty()) inputs.emplace_back(a.denoiser.library);
+    if (!a.display.ocio.config.empty()) inputs.push_back(a.display.ocio.config);
     require_distinct({{"--output", a.output}, {"--png", a.png}}, inputs);
     std::vector<NamedImage> images;
     for (const std::string& file : a.images) {
@@ -49,13 +51,14 @@ int denoise_images(const DenoiseArguments& a) {
     const DenoisedImage result = denoise(images, {a.layers, a.samples, denoiser.denoiser.get()});
     if (!a.quiet) {
         warn_of_unusable(denoiser);
+        warn_of_config(a.display.options);
         warn_of_failed_denoiser(result.image);
-        warn_of_no_picture(a.display, a.output, a.png);
+        warn_of_no_picture(a.display.options, a.output, a.png);
         print_warnings(result.warnings);
     }
     warn_of_replaced(result.image);
-    write_image(result.image, a.output, threads.threads(), a.display);
-    if (!a.png.empty()) write_png(result.image, a.png, a.display);
+    write_image(result.image, a.output, threads.threads(), a.display.options);
+    if (!a.png.empty()) write_png(result.image, a.png, a.display.options);
     if (!a.quiet)
         say("estimated error {:.3g}, {}\n", result.error,
             result.image.metadata.contains("covtrace:denoiser") ? denoiser.denoiser->name()

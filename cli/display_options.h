@@ -9,8 +9,21 @@
 
 namespace covtrace::cli {
 
-/// Adds --exposure and --view; `options` must outlive the parser.
-void add_display_options(CLI::App* command, DisplayOptions& options);
+struct DisplayArguments {
+    float exposure = 0;
+    std::string view;
+    OcioChoice ocio;
+    DisplayOptions options;  ///< what the others come to, once they are resolved
+};
+
+/// Adds --exposure, --view and --ocio-…; `arguments` must outlive the parser.
+void add_display_options(CLI::App* command, DisplayArguments& arguments);
+
+/// Reads the config, before the work whose result it is to show. Throws as display_options.
+void resolve(DisplayArguments& arguments);
+
+/// Warns of what in the config is not understood.
+void warn_of_config(const DisplayOptions& options);
 
 /// Warns where they are given and no PNG is written, which they are for.
 void warn_of_no_picture(const DisplayOptions& options, const std::filesystem::path& image,

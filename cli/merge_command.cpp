@@ -29,21 +29,23 @@ struct MergeArguments {
     std::vector<std::string> films;
     std::string output, film, png;
     LayerSelection layers{true, {}};
-    DisplayOptions display;
+    DisplayArguments display;
     DenoiserArguments denoiser;
     bool quiet = false;
 };
 
-int merge_films(const MergeArguments& a) {
+int merge_films(MergeArguments a) {
     const ThreadLimit threads(0);
     if (a.output.empty() && a.film.empty() && a.png.empty())
         throw Error(ErrorKind::usage, "merge: expected --output OUT.exr or --film FILE");
     require_image_name("--output", a.output, a.layers);
     require_picture_name("--png", a.png);
+    resolve(a.display);
     std::vector<NamedOutput> outputs{{"--output", a.output}, {"--png", a.png}};
     add_film(outputs, "--film", a.film);
     std::vector<std::filesystem::path> inputs(a.films.begin(), a.films.end());
     if (!a.denoiser.library.empty()) inputs.emplace_back(a.denoiser.library);
+    if (!a.display.ocio.config.empty()) inputs.push_back(a.display.ocio.config);
     require_distinct(outputs, inputs);
     for (const std::string& file : {a.output, a.png, a.film})
         if (!file.empty()) remove_leftovers(file);
@@ -58,6 +60,7 @@ int merge_films(const MergeArguments& a) {
         Image image = develop(state, denoiser.denoiser.get());
         if (!a.quiet) {
             warn_of_unusable(denoiser);
+            warn_of_config(a.display.options);
             const bool insists = a.denoiser.choice == DenoiserChoice::oidn;
             RenderOptions of_films;
             of_films.method = state.method;
@@ -65,12 +68,12 @@ int merge_films(const MergeArguments& a) {
                 say("warning: {}\n", text);
             warn_of_failed_denoiser(image);
             warn_of_absent_layers(image, a.layers);
-            warn_of_no_picture(a.display, a.output, a.png);
+            warn_of_no_picture(a.display.options, a.output, a.png);
         }
         warn_of_replaced(image);
         keep_layers(image, a.layers);
-        if (!a.output.empty()) write_image(image, a.output, threads.threads(), a.display);
-        if (!a.png.empty()) write_png(image, a.png, a.display);
+        if (!a.output.empty()) write_image(image, a.output, threads.threads(), a.display.options);
+        if (!a.png.empty()) write_png(image, a.png, a.display.options);
     }
     if (!a.quiet)
         say("{}{:.4g} samples per pixel, {}\n",

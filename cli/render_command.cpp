@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/display_options.h"
 #include "cli/failure.h"
 #include "cli/interrupts.h"
 #include "cli/memory_limit.h"
@@ -70,6 +69,7 @@ void parse_texts(RenderArguments& a) {
     request_layers(a.layers, a.options);
     request_layers(a.tev_layers, a.options);
     check(a.film);
+    resolve(a.display);
     if (a.tev.empty() && (a.tev_layers.all || !a.tev_layers.names.empty()))
         throw Error(ErrorKind::usage, "--tev-layers: expected --tev HOST:PORT");
     if (a.film.shard && !(a.output.empty() && a.png.empty() && a.tev.empty()))
@@ -85,14 +85,14 @@ void deliver(RenderResult& result, const RenderArguments& a, LayerNames names,
              const fs::path& output, const Monitor& monitor, const std::string& command,
              int threads) {
     if (!a.quiet) warn_of_absent_layers(result.image, a.layers);
-    if (!a.quiet) warn_of_no_picture(a.display, output, a.png);
+    if (!a.quiet) warn_of_no_picture(a.display.options, output, a.png);
     keep_layers(result.image, a.layers);
     if (!a.reproducible) describe_making(result.image, monitor, command);
     const bool has_layers = written_format(output) == WrittenFormat::exr;
     if (has_layers) rename_layers(result.image, names);
-    write_image(result.image, output, threads, a.display);
+    write_image(result.image, output, threads, a.display.options);
     if (has_layers) restore_layer_names(result.image);
-    if (!a.png.empty()) write_png(result.image, a.png, a.display);
+    if (!a.png.empty()) write_png(result.image, a.png, a.display.options);
 }
 
 /// The names that the layers get: pbrt's where the scene's film is its "gbuffer".
@@ -184,6 +184,7 @@ void tell_outcome(const RenderResult& result, const RenderArguments& a, const fs
 void tell_warnings(const RenderArguments& a, const fs::path& output, const FoundDenoiser& denoiser,
                    const RenderScene& scene) {
     warn_of_unusable(denoiser);
+    warn_of_config(a.display.options);
     warn_of_idle(a, output);
     print_warnings(scene.description.warnings);
     print_warnings(scene.materials.warnings());

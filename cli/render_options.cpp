@@ -1,6 +1,5 @@
 #include "cli/render_options.h"
 
-#include "cli/display_options.h"
 #include "cli/options.h"
 #include "cli/override_options.h"
 

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "cli/denoiser_options.h"
+#include "cli/display_options.h"
 #include "cli/film_options.h"
 #include "cli/layer_options.h"
 #include "cli/progress_line.h"
 #include "cli/values.h"
 #include "geometry/instruction_set.h"
-#include "image/display.h"
 #include "image/layer_names.h"
 #include "render/options.h"
 #include "render/overrides.h"
@@ -35,7 +35,7 @@ struct RenderArguments {
     DenoiserArguments denoiser;
     std::optional<DebugPixel> debug_pixel;
     LayerSelection layers{true, {}}, tev_layers;
-    DisplayOptions display;
+    DisplayArguments display;
     std::optional<LayerNames> layer_names;  ///< none: the scene decides
     size_t texture_bytes = kNoTextureLimit, max_memory = kNoMemoryLimit;
     std::vector<std::string> search_paths;

@@ -18,6 +18,7 @@
 #include "options.h"
 #include "planes.h"
 #include "python_lock.h"
+#include "warning_texts.h"
 
 namespace covtrace::python {
 
@@ -150,11 +151,16 @@ void bind_image(py::module_& module) {
                     })
         .def("write",
              [](const Planes& p, const std::filesystem::path& file, float exposure,
-                const std::string& view) {
+                const std::string& view, const std::filesystem::path& ocio_config,
+                const std::string& ocio_display, const std::string& ocio_look,
+                const std::string& ocio_source) {
                  require(std::isfinite(exposure), "exposure must be a finite number of stops");
-                 const DisplayOptions display{exposure, choice<ViewTransform>("view", view)};
                  const Unlocked unlocked;
+                 const DisplayOptions display = display_options(
+                     exposure, view, {ocio_config, ocio_display, {}, ocio_look, ocio_source});
                  write_image(p.image(), file, ThreadLimit(0).threads(), display);
+                 return display.ocio ? texts_of(display.ocio->warnings())
+                                     : std::vector<std::string>();
              })
         .def("channels", &channel_views)
         .def("layers", &layer_views)

@@ -31,6 +31,7 @@
 #include "scene/defaults.h"
 #include "scene/extent.h"
 #include "scene/summary.h"
+#include "warning_texts.h"
 
 namespace covtrace::python {
 
@@ -107,17 +108,6 @@ struct Rendered {
     std::map<std::string, GuideOutcome> guides;
     double building = 0;  ///< seconds from the description to what is rendered
 };
-
-std::string text_of(const Warning& w) {
-    const std::string where = w.where.to_string();
-    return where.empty() ? w.text : where + ": " + w.text;
-}
-
-std::vector<std::string> texts_of(const Warnings& warnings) {
-    std::vector<std::string> texts;
-    for (const Warning& w : warnings) texts.push_back(text_of(w));
-    return texts;
-}
 
 /// Corners of the box around all shapes: ((x, y, z), (x, y, z)), None where there are none.
 py::object extent_of(const SceneDescription& scene) {

@@ -7,13 +7,14 @@ import tempfile
 from collections.abc import ItemsView, Iterator, KeysView, Mapping, ValuesView
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any
 
 import numpy
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from . import _covtrace
-from .arguments import refuse, text_of
+from .arguments import path_of, refuse, text_of
+from .scene_warnings import warn
 
 Array = NDArray[numpy.float32]
 
@@ -164,16 +165,26 @@ class Image:
         return self._planes.display_window
 
     def write(self, file: str | os.PathLike[str], *, exposure: float = 0,
-              view: Literal["srgb", "filmic", "agx"] = "srgb") -> None:
+              view: str | None = None, ocio_config: str | os.PathLike[str] | None = None,
+              ocio_display: str | None = None, ocio_look: str | None = None,
+              ocio_source: str | None = None) -> None:
         """Writes the format that the name says: all layers (.exr, or no ending), the sRGB picture
         (.png), or the linear colour (.pfm, .hdr); beside and renamed. The picture alone is
-        brightened by `exposure` stops and shown by `view`, as by the options of `covtrace render`.
-        `UsageError`, a `ValueError`, for other endings."""
+        brightened by `exposure` stops and shown by `view`: "srgb" (default), "filmic", "agx", or
+        one of the OpenColorIO config `ocio_config`, for one of its displays, with a look in place
+        of the view's own, from one of its colour spaces: all as by the options of `covtrace
+        render`. `UsageError`, a `ValueError`, for other endings and names that the config does not
+        have; `SceneError` for a config that cannot be read."""
         try:
             stops = float(exposure)
         except (TypeError, ValueError, OverflowError):
             refuse("exposure", exposure, "a number of stops")
-        self._planes.write(os.fspath(file), stops, text_of("view", view))
+        names = {"view": view, "ocio_display": ocio_display, "ocio_look": ocio_look, "ocio_source": ocio_source}
+        texts = {name: "" if value is None else text_of(name, value) for name, value in names.items()}
+        config = "" if ocio_config is None else path_of("ocio_config", ocio_config)
+        for text in self._planes.write(os.fspath(file), stops, texts["view"], config, texts["ocio_display"],
+                                       texts["ocio_look"], texts["ocio_source"]):
+            warn(text)
 
     def describe(self) -> str:
         """Several lines for people: windows, channels with their ranges, metadata."""

@@ -20,7 +20,7 @@ class Help(CliTest):
                 result = self.run_program(*arguments)
                 self.assertEqual(result.code, DONE, result)
                 self.assertEqual(result.stderr, "")
-                self.assert_fits(result.stdout, 76 if arguments[0] == "render" else 24)
+                self.assert_fits(result.stdout, 80 if arguments[0] == "render" else 24)
 
     def test_help_names_commands_and_options(self):
         overview = self.run_program("--help").stdout
@@ -29,7 +29,7 @@ class Help(CliTest):
         options = self.run_program("render", "--help").stdout
         for option in (
             "--output --preset --method --spp --time --guides --cov-spp --density --k --max-spp --filter --resolution --crop --max-depth --seed "
-            "--threads --isa --shutter --focus --fstop --camera --environment --environment-rotation --environment-scale --png --exposure --view --layers --layer-names --tev --tev-layers --progress --texture-memory --stats --reproducible "
+            "--threads --isa --shutter --focus --fstop --camera --environment --environment-rotation --environment-scale --png --exposure --view --ocio-config --ocio-display --ocio-look --ocio-source --layers --layer-names --tev --tev-layers --progress --texture-memory --stats --reproducible "
             "--film --checkpoint --every --resume --shard --max-memory --debug-pixel"
         ).split():
             self.assertIn(option, options)

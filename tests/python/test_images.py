@@ -12,6 +12,33 @@ import covtrace
 import scenes
 
 
+OCIO_CONFIG = """\
+ocio_profile_version: 2
+roles:
+  default: linear
+  scene_linear: linear
+displays:
+  Screen:
+    - !<View> {name: Swapped, colorspace: swapped}
+    - !<View> {name: Root, colorspace: root}
+looks:
+  - !<Look>
+    name: half
+    process_space: linear
+    transform: !<CDLTransform>
+      slope: [0.5, 0.5, 0.5]
+colorspaces:
+  - !<ColorSpace>
+    name: linear
+  - !<ColorSpace>
+    name: root
+    from_scene_reference: !<ExponentTransform> {value: [2, 2, 2, 1], direction: inverse}
+  - !<ColorSpace>
+    name: swapped
+    from_scene_reference: !<MatrixTransform> {matrix: [0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}
+"""
+
+
 class Images(unittest.TestCase):
     def test_pictures_have_exposure_and_view(self):
         image = covtrace.Image.from_arrays(numpy.full((2, 2, 3), 0.25))
@@ -28,6 +55,42 @@ class Images(unittest.TestCase):
         for wrong in ({"view": "raw"}, {"view": 3}, {"exposure": "x"}, {"exposure": None}, {"exposure": float("nan")}):
             with self.subTest(wrong), self.assertRaises(covtrace.UsageError):
                 shown(**wrong)
+
+    def test_pictures_by_an_opencolorio_config(self):
+        image = covtrace.Image.from_arrays(numpy.full((2, 2, 3), (0.4, 0.2, 0.1)))
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            config = folder / "config.ocio"
+            config.write_text(OCIO_CONFIG)
+
+            def shown(**arguments):
+                image.write(folder / "a.png", **{"ocio_config": config, **arguments})
+                return covtrace.Image.read(folder / "a.png").rgb[0, 0]
+
+            def decoded(values):
+                """Display values as the reader decodes them, as sRGB."""
+                values = numpy.array(values)
+                return numpy.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+
+            numpy.testing.assert_allclose(shown(), decoded((0.2, 0.4, 0.1)), atol=0.003)
+            numpy.testing.assert_allclose(shown(exposure=1), decoded((0.4, 0.8, 0.2)), atol=0.004)
+            numpy.testing.assert_allclose(shown(view="Root"), decoded(numpy.sqrt((0.4, 0.2, 0.1))), atol=0.005)
+            numpy.testing.assert_allclose(shown(view="Root", ocio_display="Screen", ocio_look="half"),
+                                          decoded(numpy.sqrt((0.2, 0.1, 0.05))), atol=0.005)
+            numpy.testing.assert_allclose(shown(ocio_source="swapped"), decoded((0.4, 0.2, 0.1)), atol=0.003)
+            for wrong, names in (({"view": "agx"}, "'Swapped', 'Root'"), ({"ocio_display": "Wall"}, "'Screen'"), ({"ocio_look": "cold"}, "'half'"),
+                                 ({"ocio_source": "log"}, "'linear', 'root', 'swapped'"), ({"ocio_config": None, "ocio_look": "half"}, "ocio_look"),
+                                 ({"ocio_config": 3}, "ocio_config"), ({"view": 3}, "view")):
+                with self.subTest(wrong), self.assertRaisesRegex(covtrace.UsageError, names):
+                    shown(**wrong)
+            with self.assertRaisesRegex(covtrace.SceneError, "cannot open"):
+                shown(ocio_config=folder / "none.ocio")
+            config.write_text(OCIO_CONFIG.replace("slope", "tilt"))
+            with self.assertWarnsRegex(covtrace.SceneWarning, "config.ocio:14: .*unknown key 'tilt'"):
+                shown()
+            config.write_text("hello")
+            with self.assertRaisesRegex(covtrace.SceneError, "config.ocio:1:1: "):
+                shown()
 
     def image(self):
         rng = numpy.random.default_rng(2)
