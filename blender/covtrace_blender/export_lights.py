@@ -55,10 +55,27 @@ def _shader_colour(lamp, warn):
     if not lamp.use_nodes or not lamp.node_tree:
         return (1, 1, 1)
     output = lamp.node_tree.get_output_node("CYCLES")
-    shader = output.inputs["Surface"].links[0].from_node if output and output.inputs["Surface"].is_linked else None
+    return _emitted(output.inputs["Surface"], lamp, warn) if output else (0, 0, 0)
+
+
+def _emitted(socket, lamp, warn):
+    """Colour that the tree of shaders at a socket emits: of each Emission the share that mixtures leave it."""
+    shader = socket.links[0].from_node if socket.is_linked else None
+    while shader is not None and shader.type == "REROUTE":
+        socket = shader.inputs[0]
+        shader = socket.links[0].from_node if socket.is_linked else None
     if shader is None:
         return (0, 0, 0)
+    if shader.type in ("MIX_SHADER", "ADD_SHADER"):
+        first, second = (_emitted(part, lamp, warn) for part in shader.inputs[-2:])
+        if shader.type == "ADD_SHADER":
+            return tuple(a + b for a, b in zip(first, second))
+        _tell_linked(shader.inputs[0], lamp, warn)
+        share = min(max(shader.inputs[0].default_value, 0), 1)
+        return tuple((1 - share) * a + share * b for a, b in zip(first, second))
     if shader.type != "EMISSION":
+        if shader.type.startswith("BSDF_"):
+            return (0, 0, 0)
         warn(f"lamp '{lamp.name}': its shader '{shader.name}' is not supported; its own colour and power are used")
         return (1, 1, 1)
     colour = tuple(shader.inputs["Color"].default_value)[:3]
@@ -66,11 +83,16 @@ def _shader_colour(lamp, warn):
         temperature = blackbody_temperature(socket)
         if temperature is not None:
             colour = blackbody(temperature)
-        elif socket.is_linked:
-            warn(f"lamp '{lamp.name}': what is linked to '{socket.name}' of its shader is not supported; "
-                 "the socket's own value is used")
+        else:
+            _tell_linked(socket, lamp, warn)
     strength = shader.inputs["Strength"].default_value
     return tuple(c * strength for c in colour)
+
+
+def _tell_linked(socket, lamp, warn):
+    if socket.is_linked:
+        warn(f"lamp '{lamp.name}': what is linked to '{socket.name}' of its shader is not supported; "
+             "the socket's own value is used")
 
 
 def _write_area(out, lamp, colour, hidden):

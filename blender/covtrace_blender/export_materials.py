@@ -102,7 +102,7 @@ class MaterialExporter(PrincipledExporter):
 
     def _export(self, material):
         """(pbrt name, Emission or None, alpha parameter text, names of the UV maps, medium), to rays of the baker's kind."""
-        self.emission, self.uv_maps = None, []
+        self.uv_maps = []
         output = material.node_tree.get_output_node("CYCLES")
         if output and output.inputs["Displacement"].is_linked:
             self.warn(f"material '{self.name}': Displacement is not supported and left out")
@@ -116,10 +116,10 @@ class MaterialExporter(PrincipledExporter):
             return self._make("interface", []), None, "", (), medium
         if node is None:
             return self._black(), None, "", (), ""
-        shader, opacity = self._shader(node), self._opacity(node)
+        shader, emission, opacity = self._shader(node), self._emission_of(node), self._opacity(node)
         alpha = self._number("alpha", opacity) if opacity.image or opacity.constant < 1 - ROUNDING else ""
         self._ask_for_body_of_uv_maps(node)
-        return shader, self.emission, alpha, tuple(self.uv_maps), medium
+        return shader, emission, alpha, tuple(self.uv_maps), medium
 
     def _ask_for_body_of_uv_maps(self, node):
         """Raises NeedsBody where images lie on several UV maps, of which a mesh has one here."""
@@ -160,7 +160,7 @@ class MaterialExporter(PrincipledExporter):
     def _shader(self, node):
         known = {"BSDF_TRANSPARENT": lambda node: self._black(), "BSDF_PRINCIPLED": self._principled,
                  "BSDF_DIFFUSE": self._diffuse, "BSDF_GLOSSY": self._glossy, "BSDF_GLASS": self._glass, "BSDF_REFRACTION": self._glass, "BSDF_TRANSLUCENT": self._translucent,
-                 "EMISSION": self._emission, "MIX_SHADER": self._mix_shader, "ADD_SHADER": self._add_shader}
+                 "EMISSION": lambda node: self._black(), "MIX_SHADER": self._mix_shader, "ADD_SHADER": self._add_shader}
         if node.type in known:
             return known[node.type](node)
         self.warn(f"material '{self.name}': shader '{node.name}' is not supported; grey takes its place")
@@ -193,10 +193,6 @@ class MaterialExporter(PrincipledExporter):
         return self._make("diffusetransmission", ['"rgb reflectance" [0 0 0]',
                                                   self._colour("transmittance", self._value(node.inputs["Color"]))])
 
-    def _emission(self, node):
-        self._emit(self._value(node.inputs["Color"], only_unit_square=True), self._plain(node.inputs["Strength"]))
-        return self._black()
-
     def _mix_shader(self, node):
         first, second = self._parts(node)
         angular = self._angular_share(node.inputs[0])
@@ -211,15 +207,8 @@ class MaterialExporter(PrincipledExporter):
         for opacity, other in zip(opacities, (2, 1)):
             if not opacity.image and opacity.constant == 0:
                 return self._input_shader(node.inputs[other])
-        if self._shines(first) or self._shines(second):
-            self.warn(f"material '{self.name}': emission inside a mixture is not weakened by it")
         return self._mix(self._input_shader(node.inputs[1]), self._input_shader(node.inputs[2]),
                          self._share_of_opaque(node, amount, *opacities))
-
-    def _shines(self, node):
-        """Whether an Emission is in a tree of shaders."""
-        sockets = {"MIX_SHADER": (1, 2), "ADD_SHADER": (0, 1)}.get(node.type, ()) if node else ()
-        return bool(node) and (node.type == "EMISSION" or any(self._shines(self._linked(node.inputs[i])[0]) for i in sockets))
 
     def _angular_mix(self, first, second, eta, share):
         """Mixture of two shaders by the angle of sight."""
@@ -239,10 +228,8 @@ class MaterialExporter(PrincipledExporter):
     def _add_shader(self, node):
         others, opacity = self._parts(node), self._opacity(node)
         for emitter in (self._linked(node.inputs[i])[0] for i in (0, 1)):
-            if emitter and emitter.type == "EMISSION":
-                self._emission(emitter)
-                if opacity.image or opacity.constant < 1 - ROUNDING:
-                    self.warn(f"material '{self.name}': the light of '{emitter.name}' is lost where what it is added to lets light pass")
+            if emitter and emitter.type == "EMISSION" and (opacity.image or opacity.constant < 1 - ROUNDING):
+                self.warn(f"material '{self.name}': the light of '{emitter.name}' is lost where what it is added to lets light pass")
         if len(others) == 1:
             return self._shader(others[0])
         if not others:

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
+from .emission import EmissionReader, either
 from .export_shaders import squared
 from .export_sockets import Value
-from .opacity import OpacityReader
 
 
 def eta_of_reflectance(reflectance):
@@ -32,18 +32,13 @@ def covered_reflectance(reflectance, eta):
     return square / (4 + square)
 
 
-def either(inputs, *names):
-    """The socket by the first of its names that this Blender has: version 4.0 renamed some."""
-    return next((inputs[name] for name in names if name in inputs), None)
-
-
 # Features of Principled that are left out: names of the socket, and the value at which it changes
 # nothing.
 LEFT_OUT = ((("Subsurface Weight", "Subsurface"), 0), (("Sheen",), 0), (("Anisotropic",), 0),
             (("Coat Normal", "Clearcoat Normal"), 0), (("Diffuse Roughness",), 0), (("Thin Film Thickness",), 0))
 
 
-class PrincipledExporter(OpacityReader):
+class PrincipledExporter(EmissionReader):
     """Writes the materials that a node Principled stands for."""
 
     def _tell_left_out(self, inputs):
@@ -144,7 +139,6 @@ class PrincipledExporter(OpacityReader):
         transmission = self._value(either(get, "Transmission Weight", "Transmission"), True)
         normal = self._normal_map(node) + self._sheen(get)
         self._tell_left_out(get)
-        self._emit(self._value(either(get, "Emission Color", "Emission"), only_unit_square=True), self._plain(get["Emission Strength"]))
 
         def is_constant(value, number):
             return not value.image and value.constant == number

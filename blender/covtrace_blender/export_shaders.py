@@ -19,11 +19,6 @@ def squared(roughness):
 ROUGH_METAL = 0.3
 
 
-class Emission:
-    def __init__(self, radiance, texture=None):
-        self.radiance, self.texture = radiance, texture
-
-
 class ShaderWriter(SocketReader):
     """Writes textures and materials into `out`, counted by `count`, and their images to `files`."""
 
@@ -141,12 +136,3 @@ class ShaderWriter(SocketReader):
     def _clear(self, colour, roughness, eta, normal):
         return self._make("dielectric", [f'"float eta" {max(eta, 1.0001):.9g}',
                                          self._colour("transmittance", colour), *self._roughness(roughness), *normal])
-
-    def _emit(self, colour, strength):
-        if colour.image:
-            if not colour.is_plainly_placed():
-                self.warn(f"material '{self.name}': an image that shines is used as it lies, unscaled and interpolated")
-            name = self.files.write_emission(colour.image, colour.key(), colour.apply)
-            self.emission = Emission((strength,) * 3, name)
-        elif max(colour.constant) * strength > 0:
-            self.emission = Emission(tuple(c * strength for c in colour.constant))

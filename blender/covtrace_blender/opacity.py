@@ -85,11 +85,12 @@ class OpacityReader(ShaderWriter):
             if not share.image:
                 return Value(share.constant * second.constant / max(_blended(share, first, second).constant, 1e-6))
 
-        def get(nodes):
-            share, first, second = self._mixed_at(nodes, node)
-            return share * second / np.maximum(first * (1 - share) + second * share, np.float32(1e-6))
+        return self._baked_share(node, "share of opaque", lambda nodes: self._opaque_share_at(nodes, node), share)
 
-        return self._baked_share(node, "share of opaque", get, share)
+    def _opaque_share_at(self, nodes, node):
+        """The same at the places of an Evaluator."""
+        share, first, second = self._mixed_at(nodes, node)
+        return share * second / np.maximum(first * (1 - share) + second * share, np.float32(1e-6))
 
     def _baked_share(self, node, how, get, otherwise):
         """Value of what a function of an Evaluator gives of a shader's node; `otherwise` where nodes cannot be evaluated, which is told."""

@@ -193,20 +193,6 @@ class MaterialsTest(BlenderTest):
         with self.subTest("of what lets light pass and what does not"):
             self.assertAlmostEqual(mean(render("COVTRACE", 64))[0], 0.5 + 0.5 * 0.6, delta=0.02)
 
-    def test_light_of_mixtures_that_is_not_weakened_is_told(self):
-        m = bpy.data.materials.new("light")
-        m.use_nodes = True
-        tree = m.node_tree
-        clear, shining, matt, inner, outer = (tree.nodes.new(f"ShaderNode{kind}") for kind in (
-            "BsdfTransparent", "Emission", "BsdfDiffuse", "MixShader", "MixShader"))
-        for start, end in ((clear, inner.inputs[1]), (shining, inner.inputs[2]), (inner, outer.inputs[1]), (matt, outer.inputs[2])):
-            tree.links.new(start.outputs[0], end)
-        self.plane(m)
-        for shader, told in ((inner, []), (outer, ["material 'light': emission inside a mixture is not weakened by it"])):
-            tree.links.new(shader.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
-            self.export()
-            self.assertEqual(self.warnings, told)
-
     def test_unknown_nodes_are_told(self):
         m = material()
         path = m.node_tree.nodes.new("ShaderNodeLightPath")
@@ -242,7 +228,6 @@ class MaterialsTest(BlenderTest):
         tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Reflection"], mirrored.inputs["Vector"])
         tree.links.new(mirrored.outputs["Fac"], principled.inputs["Roughness"])
         tree.links.new(image.outputs["Color"], socket(principled, "Specular"))
-        tree.links.new(noise.outputs["Fac"], principled.inputs["Emission Strength"])
         tree.links.new(noise.outputs["Color"], output.inputs["Displacement"])
         tree.links.new(noise.outputs["Fac"], output.inputs["Volume"])
         self.plane(m)
@@ -263,7 +248,7 @@ class MaterialsTest(BlenderTest):
         self.scene.render.use_motion_blur = True
         self.scene.frame_set(1)
         self.export()
-        for text in ("'Texture Coordinate' at 'Roughness'", "reflection coordinates", "an image at 'Specular'", "an image at 'Emission Strength'",
+        for text in ("'Texture Coordinate' at 'Roughness'", "reflection coordinates", "an image at 'Specular'",
                      "Displacement is not", "volume is not", "linked to 'Strength' of its shader",
                      "is lost where what it is added to",
                      "moves while the shutter is open"):
