@@ -207,8 +207,7 @@ class SceneExporter:
     def _export_parts(self, obj):
         """The Parts of an evaluated object, its files and materials written."""
         if obj.type == "CURVES":
-            tubes = export_strands.hair_curves(obj.data)
-            return [] if tubes is None else self._tubes_parts(obj, 0, *tubes)
+            return self._strands_parts(obj, 0, export_strands.hair_curves(obj.data))
         mesh = obj.to_mesh()
         if mesh is None:
             return []
@@ -247,14 +246,16 @@ class SceneExporter:
     def _export_strands(self, obj):
         """The same of its hair."""
         is_render = self.depsgraph.mode == "RENDER"
-        return [part for tubes in export_strands.particle_systems(obj, is_render) for part in self._tubes_parts(obj, *tubes)]
+        return [part for slot, points, radii in export_strands.particle_systems(obj, is_render)
+                for part in self._strands_parts(obj, slot, [(points, radii)])]
 
-    def _tubes_parts(self, obj, slot, positions, normals, triangles):
+    def _strands_parts(self, obj, slot, strands):
         variants = self._variants(obj, slot, None)
         wants_uvs = bool(self._uv_maps(variants))
         if wants_uvs:
             self.warn(f"object '{obj.name}': strands have no texture coordinates; their images are looked up at one place")
-        return self._parts(variants, positions, normals, np.zeros((len(positions), 2)) if wants_uvs else None, triangles)
+        return [part for positions, normals, triangles in export_strands.meshes(strands, lambda *s: self.placements.across(obj, *s))
+                for part in self._parts(variants, positions, normals, np.zeros((len(positions), 2)) if wants_uvs else None, triangles)]
 
     def _materials(self, obj):
         if self.layer.material_override is not None:
@@ -321,7 +322,7 @@ class SceneExporter:
         self.placements = Placements(None if self.is_preview else self.camera)
         for _, instance in self._instances():
             obj = instance.object
-            if obj.type in SURFACES:
+            if obj.type in SURFACES or obj.type == "CURVES":
                 self.placements.add(instance)
             if obj.type == "MESH":
                 self.uv_ranges.add(obj.data, {m.name_full for m in self._materials(obj) if m})

@@ -1,4 +1,4 @@
-"""How many texels bodies need: as many as the picture has pixels where they are nearest to the camera."""
+"""How many pixels the picture has for things where they are nearest to the camera: bodies need as many texels."""
 
 import math
 
@@ -53,19 +53,35 @@ class Placements:
         radii = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
         low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
         size = max(float(np.linalg.norm(high - low)), 1e-30)
-        matrices = self._matrices.get(self.key(obj), []) if self.camera else []
-        if not matrices:
+        wanted = self._pixels(obj, middles, radii, (low + high) / 2, size)
+        if wanted is None:
             return np.full(len(corners), 2.0 ** math.ceil(math.log2(ACROSS / size)))
-        # The whole mesh at its nearest place of each instance; for those that come nearest, each triangle at its own.
-        of_whole = np.array([self._seen(m, (low + high)[None] / 2, np.array([size / 2]), size)[0] for m in matrices])
-        order = np.argsort(-of_whole)
-        wanted = np.full(len(corners), of_whole[order[NEAREST]] if len(order) > NEAREST else 0.0)
-        for number in order[:NEAREST]:
-            wanted = np.maximum(wanted, self._seen(matrices[number], middles, radii, 1e-3 * size))
         wanted = np.clip(wanted, max(wanted.max() / MOST_RATIO, 1e-30), None)
         if wanted.max() < ALIKE * wanted.min():
             wanted[:] = wanted.max()
         return 2.0 ** np.ceil(np.log2(wanted))
+
+    def across(self, obj, points, radii):
+        """(n,) pixels across which strands of an object are seen at most: points (n, m, 3), radii (n, m); 0 where no camera tells."""
+        low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
+        middles = points.mean(axis=1)
+        reach = np.linalg.norm(points - middles[:, None], axis=2).max(axis=1)
+        pixels = self._pixels(obj, middles, reach, (low + high) / 2, max(float(np.linalg.norm(high - low)), 1e-30))
+        return np.zeros(len(points)) if pixels is None else 2 * radii.max(axis=1) * pixels
+
+    def _pixels(self, obj, middles, radii, middle, size):
+        """(n,) pixels per unit around places in an object, as `_seen` has them, in the instance that shows most; None where no camera
+        tells. middle, size: of the whole object."""
+        matrices = self._matrices.get(self.key(obj), []) if self.camera else []
+        if not matrices:
+            return None
+        # The whole at its nearest place of each instance; for those that come nearest, each place on its own.
+        of_whole = np.array([self._seen(m, middle[None], np.array([size / 2]), size)[0] for m in matrices])
+        order = np.argsort(-of_whole)
+        found = np.full(len(middles), of_whole[order[NEAREST]] if len(order) > NEAREST else 0.0)
+        for number in order[:NEAREST]:
+            found = np.maximum(found, self._seen(matrices[number], middles, radii, 1e-3 * size))
+        return found
 
     def _seen(self, matrix, middles, radii, least):
         """(n,) pixels per unit of the mesh around (n, 3) places in it, as far as `radii`, which count as no smaller than `least`."""
