@@ -20,16 +20,43 @@ namespace covtrace {
 
 namespace {
 
-/// The mean of both halves' samples; where one half has no samples, the colour of the other.
-ColorPlanes mean_of(const Halves& halves) {
-    ColorPlanes mean = halves[0].color;
+/// The mean of three planes of both halves; where one half has no samples, what the other has.
+ColorPlanes mean_of(const Halves& halves, std::span<const Plane, 3> of_a,
+                    std::span<const Plane, 3> of_b) {
     const Plane &a = halves[0].count, &b = halves[1].count;
+    ColorPlanes mean{of_a[0], of_a[1], of_a[2]};
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < mean[c].size(); ++i) {
             const float share = (a[i] > 0) == (b[i] > 0) ? 0.5f : (a[i] > 0 ? 1.0f : 0.0f);
-            mean[c][i] = share * mean[c][i] + (1 - share) * halves[1].color[c][i];
+            mean[c][i] = share * mean[c][i] + (1 - share) * of_b[c][i];
         }
     return mean;
+}
+
+/// The mean of both halves' samples.
+ColorPlanes mean_of(const Halves& halves) {
+    return mean_of(halves, halves[0].color, halves[1].color);
+}
+
+/// The mean of both halves' features from `first` on.
+ColorPlanes mean_of_features(const Halves& halves, size_t first) {
+    const auto three = [&](size_t half) {
+        return std::span<const Plane, 3>(&halves[half].feature[first], 3);
+    };
+    return mean_of(halves, three(0), three(1));
+}
+
+/// 1 where both halves have samples, and can judge each other, 0 where one of them has, averaged
+/// over a few pixels around.
+Plane judged_pixels(const Halves& halves) {
+    constexpr float kAround = 4;  // deviation, pixels
+    Plane judged = halves[0].count;
+    bool all = true;
+    for (size_t i = 0; i < judged.size(); ++i) {
+        judged[i] = judged[i] > 0 && halves[1].count[i] > 0 ? 1.0f : 0.0f;
+        all = all && judged[i] > 0;
+    }
+    return all ? judged : gaussian_blur(judged, kAround);
 }
 
 /// Gives a half without any samples the pixels of the other one: an empty half, as a render that
@@ -115,10 +142,8 @@ std::optional<Denoised> denoised(const Denoiser* denoiser, const Halves& halves,
     if (!denoiser) return std::nullopt;
     NoisyFeatures features;
     features.draft = draft_features;
-    for (size_t k = 0; k < 3; ++k) {
-        features.albedo[k] = mean_of(halves[0].feature[k], halves[1].feature[k]);
-        features.normal[k] = mean_of(halves[0].feature[3 + k], halves[1].feature[3 + k]);
-    }
+    features.albedo = mean_of_features(halves, 0);
+    features.normal = mean_of_features(halves, 3);
     try {
         std::vector<ColorPlanes> images =
             denoiser->denoise(features, {{.color = halves[0].color, .draft = true},
@@ -200,8 +225,10 @@ HybridImage reconstruct_exposed(Halves halves, std::span<const covariance::Sym2<
     if (clean) {
         const ColorPlanes lost = cut_off(all, halves),
                           g_blend = error_weights(halves, prior_blend(image.color, *clean));
-        blend(own_share({samples, variance, s.half, lost, g_blend}, *clean, likeness), *clean, s,
-              image.color);
+        Plane own = own_share({samples, variance, s.half, lost, g_blend}, *clean, likeness);
+        const Plane judged = judged_pixels(halves);
+        for (size_t i = 0; i < own.size(); ++i) own[i] *= judged[i];
+        blend(own, *clean, s, image.color);
         candidates.push_back(clean->half);
     }
 

@@ -34,16 +34,16 @@ class FailingDenoiser : public FixedDenoiser {
     }
 };
 
-/// A denoiser that remembers whether the features of its last images were a draft.
+/// A denoiser that remembers the features of its last images.
 class AskedDenoiser : public FixedDenoiser {
   public:
     AskedDenoiser() : FixedDenoiser(constant(1)) {}
     std::vector<ColorPlanes> denoise(const NoisyFeatures& features,
                                      std::vector<NoisyImage> images) const override {
-        is_draft = features.draft;
+        seen = features;
         return FixedDenoiser::denoise(features, std::move(images));
     }
-    mutable bool is_draft = false;
+    mutable NoisyFeatures seen;
 };
 
 ColorPlanes grey(const auto& truth) {
@@ -129,20 +129,41 @@ TEST(DenoiserBlend, AFewPixelsThatMissedTheLightAreTheDenoisers) {
     EXPECT_GT(image.color[1](32, 32), 0.6f);
 }
 
+TEST(DenoiserBlend, OneSamplePerPixelIsTheDenoisers) {
+    // Every pixel has a sample of one half, which sees either of two surfaces.
+    Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.2f, 40);
+    ColorPlanes surface = constant(0);
+    Rng rng(41);
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            const size_t half = size_t(x + y) % 2;
+            halves[1 - half].count(x, y) = 0;
+            for (size_t c = 0; c < 3; ++c)
+                halves[half].feature[c](x, y) = surface[c](x, y) =
+                    rng.next_float() < 0.5f ? 1.0f : 0.0f;
+        }
+    const AskedDenoiser denoiser;
+    const HybridImage image = with(denoiser, halves);
+    // Its features are those of the sample, not half of them those of the holes' surroundings, and
+    // no half can judge it by the other one.
+    for (size_t c = 0; c < 3; ++c) EXPECT_EQ(denoiser.seen.albedo[c].values, surface[c].values);
+    for (const float share : image.share.back().values) ASSERT_EQ(share, 1);
+}
+
 TEST(DenoiserBlend, FeaturesOfFewSamplesAreNoDraft) {
     const AskedDenoiser denoiser;
     Halves halves = noisy_halves(kSize, kSize, smooth_truth, 0.2f, 36);  // 8 samples in each half
     with(denoiser, halves);
-    EXPECT_TRUE(denoiser.is_draft);
+    EXPECT_TRUE(denoiser.seen.draft);
     halves[0].count = Plane(kSize, kSize, 7);
     with(denoiser, halves);
-    EXPECT_FALSE(denoiser.is_draft);
+    EXPECT_FALSE(denoiser.seen.draft);
     // The samples of other renderers are not counted
     HybridSettings settings;
     settings.denoiser = &denoiser;
     settings.noise = HalvesNoise::independent;
     reconstruct(halves, kSpectrum, settings);
-    EXPECT_TRUE(denoiser.is_draft);
+    EXPECT_TRUE(denoiser.seen.draft);
 }
 
 TEST(DenoiserBlend, FewSamplesKeepLessOfRareLight) {
