@@ -39,7 +39,7 @@ namespace covtrace {
 /// thickness).
 class CoatTable {
   public:
-    /// Fills the tables by quadrature; takes about 20 ms. `eta`: coat over outside, > 0.
+    /// Fills the tables by quadrature; takes about 40 ms. `eta`: coat over outside, > 0.
     CoatTable(float eta, float thickness);
     float eta() const { return eta_; }
     float thickness() const { return thickness_; }
@@ -48,6 +48,10 @@ class CoatTable {
     static constexpr int kNodes = 48;  ///< over sqrt(cos) in [0, 1]
     /// Coordinate of a roughness alpha among the rows; alphas above 1 are looked up at 1.
     static float row_of(float alpha) { return std::sqrt(clamp01(alpha)) * (kRows - 1); }
+    /// The same for the mean roughness of an anisotropic border.
+    static float row_of(float alpha_x, float alpha_y) {
+        return row_of(std::sqrt(0.5f * (sqr(alpha_x) + sqr(alpha_y))));
+    }
 
     /// Shares of the light that arrives from outside.
     struct Shares {
