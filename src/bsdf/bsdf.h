@@ -68,9 +68,15 @@ struct LobeShares {
 struct DiffuseBsdf {
     Rgb reflectance;
 };
+class CoatTable;  // shares of light that a rough border reflects and transmits
 struct ConductorBsdf {
     Rgb eta, k;                      ///< relative to the outside
     float alpha_x = 0, alpha_y = 0;  ///< 0, 0: a perfect mirror
+    /// Table of a border that reflects everything, where light that meets several microfacets comes
+    /// back; none: it is lost. See multiple_scattering.h.
+    const CoatTable* white = nullptr;
+    float table_row = 0;  ///< of `white`, for the mean roughness
+    Rgb regained = {};    ///< share of the light lost by a first reflection that comes back later
 };
 struct Dispersion;  // scene/dispersion.h
 struct DielectricBsdf {
@@ -79,8 +85,11 @@ struct DielectricBsdf {
     Rgb transmittance{1};  ///< of light that crosses the border
     /// How `eta` depends on the wavelength, for paths to look up; none: not at all.
     const Dispersion* dispersion = nullptr;
+    /// Tables of the border as it is met from outside and from inside, where light that meets
+    /// several microfacets comes back; none: it is lost. See multiple_scattering.h.
+    const CoatTable *from_outside = nullptr, *from_inside = nullptr;
+    float table_row = 0;  ///< of both, for the mean roughness
 };
-class CoatTable;  // hemispherical transmission of a rough dielectric coat
 /// A coat's reflectance in place of its index' Fresnel reflectance F: w (r + (1 - r) x), with r the
 /// reflectance at the normal, w the weight, and x = (F - F0) / (1 - F0), which grows from 0 at the
 /// normal to 1 at grazing angles. It is exact in x, so that Schlick's (1 - cos)^5, which glTF's

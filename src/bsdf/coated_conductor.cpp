@@ -9,12 +9,13 @@
 ///
 /// g: all that happens between first and last meeting of the metal. There is no closed form. As in
 /// pbrt, `eval` is one walk's estimate, with random numbers that are a hash of both directions, so
-/// that a pair always gets the same value, and reciprocal: the pair is put into one order first.
-/// Unlike pbrt's, the hash has the place on the surface, too: where parallel light meets a plane in
-/// an orthographic view all samples have the same directions, and would all have one walk's error.
-/// At each reflection by the metal both directions through the coat are connected: wi's refracted
-/// one, and the one in which the metal reflects, by multiple importance sampling (Veach 1997,
-/// "Robust Monte Carlo methods for light transport simulation", chapter 9).
+/// that a pair always gets the same value, and reciprocal: the pair is put into one order first,
+/// but for metals that are not reciprocal themselves (multiple_scattering.h). Unlike pbrt's, the
+/// hash has the place on the surface, too: where parallel light meets a plane in an orthographic
+/// view all samples have the same directions, and would all have one walk's error. At each
+/// reflection by the metal both directions through the coat are connected: wi's refracted one, and
+/// the one in which the metal reflects, by multiple importance sampling (Veach 1997, "Robust Monte
+/// Carlo methods for light transport simulation", chapter 9).
 ///
 /// A smooth coat over a smooth metal is a mirror: the series is summed.
 #include <array>
@@ -156,7 +157,7 @@ Rgb eval_base(const CoatedConductorBsdf& b, Vec3 wo, Vec3 wi) {
     if (is_specular(b) || std::min(wo.z, wi.z) < kGrazing) return {};
     const float cos_i = wi.z;
     uint64_t hash_o = bits_of(wo), hash_i = bits_of(wi);
-    if (hash_o > hash_i) {
+    if (hash_o > hash_i && !b.metal.white) {
         std::swap(wo, wi);
         std::swap(hash_o, hash_i);
     }

@@ -3,6 +3,7 @@
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
 #include "bsdf/models.h"
+#include "bsdf/multiple_scattering.h"
 
 namespace covtrace {
 namespace {
@@ -22,9 +23,9 @@ BsdfValue eval_and_pdf(const ConductorBsdf& b, Vec3 wo, Vec3 wi) {
     wi = to_upper_side(wi);
     const Ggx ggx{b.alpha_x, b.alpha_y};
     const Vec3 m = normalize(wo + wi);
-    return {
-        fresnel_conductor(dot(wo, m), b.eta, b.k) * (0.25f * ggx.d(m) * ggx.g2_over_cos_o(wo, wi)),
-        ggx.reflection_pdf(wo, m)};
+    return {gain(b, wo.z) * fresnel_conductor(dot(wo, m), b.eta, b.k) *
+                (0.25f * ggx.d(m) * ggx.g2_over_cos_o(wo, wi)),
+            ggx.reflection_pdf(wo, m)};
 }
 
 Rgb eval(const ConductorBsdf& b, Vec3 wo, Vec3 wi) {
@@ -50,7 +51,7 @@ std::optional<BsdfSample> sample(const ConductorBsdf& b, Vec3 wo, float, Vec2 u)
     const Vec3 wi = normalize(m * (2 * cos_m) - wo);
     if (!(wi.z > 0)) return {};
     return BsdfSample{below ? mirror_z(wi) : wi,
-                      fresnel_conductor(cos_m, b.eta, b.k) * ggx.g2_over_g1(wo, wi),
+                      gain(b, wo.z) * fresnel_conductor(cos_m, b.eta, b.k) * ggx.g2_over_g1(wo, wi),
                       ggx.reflection_pdf(wo, m), LobeKind::glossy_reflection};
 }
 

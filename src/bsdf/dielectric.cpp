@@ -7,6 +7,7 @@
 #include "bsdf/fresnel.h"
 #include "bsdf/ggx.h"
 #include "bsdf/models.h"
+#include "bsdf/multiple_scattering.h"
 
 namespace covtrace {
 namespace {
@@ -49,7 +50,8 @@ Rgb eval(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
     const std::optional<Microfacet> f = connect(b, wo, wi);
     if (!f) return {};
     const Ggx ggx{b.alpha_x, b.alpha_y};
-    const float d_g = ggx.d(f->m) * ggx.g2_over_cos_o(f->wo, f->reflects ? f->wi : mirror_z(f->wi));
+    const float d_g =
+        gain(b, wo) * ggx.d(f->m) * ggx.g2_over_cos_o(f->wo, f->reflects ? f->wi : mirror_z(f->wi));
     if (f->reflects) return Rgb(0.25f * f->fresnel * d_g);
     // Refraction is equation 21 of Walter et al. 2007, with |eta wi + wo|^2 for the denominator and
     // its 1 / eta^2 for radiance.
@@ -68,6 +70,7 @@ float pdf(const DielectricBsdf& b, Vec3 wo, Vec3 wi) {
 
 std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe, Vec2 u) {
     const bool below = wo.z < 0;
+    const float scale = is_specular(b) ? 1 : gain(b, wo);
     if (below) wo = mirror_z(wo);
     const float eta = below ? 1 / b.eta : b.eta;
 
@@ -90,7 +93,7 @@ std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe,
     if (u_lobe < f.reflectance) {
         const Vec3 wi = normalize(m * (2 * cos_o) - wo);
         if (!(wi.z > 0)) return {};
-        return BsdfSample{below ? mirror_z(wi) : wi, Rgb(ggx.g2_over_g1(wo, wi)),
+        return BsdfSample{below ? mirror_z(wi) : wi, Rgb(scale * ggx.g2_over_g1(wo, wi)),
                           f.reflectance * ggx.reflection_pdf(wo, m), LobeKind::glossy_reflection};
     }
     const Vec3 wi = normalize(m * (cos_o / eta - f.cos_t) - wo / eta);
@@ -101,8 +104,8 @@ std::optional<BsdfSample> sample(const DielectricBsdf& b, Vec3 wo, float u_lobe,
         (1 - f.reflectance) * ggx.visible_normal_pdf(wo, m) * sqr(eta) * f.cos_t / half_length2;
     if (!(density > 0) || !std::isfinite(density)) return {};
     return BsdfSample{below ? mirror_z(wi) : wi,
-                      b.transmittance * (ggx.g2_over_g1(wo, mirror_z(wi)) / sqr(eta)), density,
-                      LobeKind::glossy_transmission, eta};
+                      b.transmittance * (scale * ggx.g2_over_g1(wo, mirror_z(wi)) / sqr(eta)),
+                      density, LobeKind::glossy_transmission, eta};
 }
 
 LobeShares lobe_shares(const DielectricBsdf& b, Vec3 wo, Vec3 wi, Rgb value) {

@@ -5,10 +5,11 @@
 /// With s(w) = sqrt(w.z^2 + alpha_x^2 w.x^2 + alpha_y^2 w.y^2), Smith's Lambda is (s / w.z - 1) /
 /// 2, so masking needs no tangents and stays finite at grazing angles.
 ///
-/// Light that would meet a second microfacet is lost, as in pbrt. Of uniform light from all
-/// directions a GGX mirror that absorbs nothing keeps 0.97 for alpha = 0.1, 0.84 for 0.3, 0.69 for
-/// 0.5 and 0.40 for 1; a border of index 1.5 keeps 0.99, 0.96, 0.92, 0.79 from outside and 0.96,
-/// 0.82, 0.69, 0.48 from inside (lower bounds, checked in tests/statistical/bsdf_furnace_test.cpp).
+/// Light that would meet a second microfacet is lost, as in pbrt, but where a material gets it back
+/// (multiple_scattering.h). Of uniform light from all directions a GGX mirror that absorbs nothing
+/// keeps 0.97 for alpha = 0.1, 0.84 for 0.3, 0.69 for 0.5 and 0.40 for 1; a border of index 1.5
+/// keeps 0.99, 0.96, 0.92, 0.79 from outside and 0.96, 0.82, 0.69, 0.48 from inside (lower bounds,
+/// checked in tests/statistical/bsdf_furnace_test.cpp).
 ///
 /// Source: Walter et al. 2007, "Microfacet models for refraction through rough surfaces"
 /// (distribution, half vectors); Heitz 2014, "Understanding the masking-shadowing function in

@@ -55,8 +55,9 @@ V turned_to(const Frame& frame, const V& v) {
 ///
 /// `wo`, `wi`: unit, local, away from the surface, of either's own type (a direction that is
 /// constant need not carry derivatives). A glossy lobe is zero for pairs that it does not connect;
-/// for a diffuse lobe callers see to it that wi is on the lobe's side. Of a sheen the factor that
-/// keeps its albedo below 1 is left out.
+/// for a diffuse lobe callers see to it that wi is on the lobe's side. Left out are of a sheen the
+/// factor that keeps its albedo below 1, and the gain of multiple scattering, which hangs on wo
+/// alone and varies far slower than the lobe.
 template <typename O, typename I>
 auto lobe_function(const LobeShare& lobe, O wo, I wi) {
     using std::abs;

@@ -71,6 +71,8 @@ Spectrum scaled(Spectrum s, float factor) {
 ConductorMaterial Builder::conductor(const std::string& prefix, float outside) {
     ConductorMaterial m;
     roughness(m, prefix);
+    // The parameter is ours, not pbrt's: Blender's "Multiscatter GGX".
+    m.multiple_scattering = p.flag(prefix + "multiplescattering", false);
     m.reflectance = textures.reflectance_or_none(p, "reflectance");
     const auto types = {ParameterType::texture, ParameterType::rgb, ParameterType::spectrum,
                         ParameterType::blackbody};
@@ -118,8 +120,10 @@ DielectricMaterial Builder::dielectric() {
     RefractiveIndex index = refractive_index(p, "eta", 1.5f, context);
     m.eta = index.eta;
     m.dispersion = std::move(index.dispersion);
-    // The parameter is ours, not pbrt's: the colour of glass, as exporters of other models need it.
+    // The parameters are ours, not pbrt's: the colour of glass, as exporters of other models need
+    // it, and Blender's "Multiscatter GGX".
     m.transmittance = textures.reflectance_or_none(p, "transmittance");
+    m.multiple_scattering = p.flag("multiplescattering", false);
     return m;
 }
 

@@ -38,6 +38,8 @@ struct ConductorMaterial {
     TextureId reflectance = -1;  ///< in place of eta and k
     TextureId u_roughness = -1, v_roughness = -1;
     bool remap_roughness = true;
+    /// Whether light that meets several microfacets comes back, too; else it is lost, as in pbrt.
+    bool multiple_scattering = false;
 };
 struct Dispersion;  // dispersion.h
 struct DielectricMaterial {
@@ -45,7 +47,8 @@ struct DielectricMaterial {
     std::shared_ptr<const Dispersion> dispersion = {};  ///< none: all wavelengths have `eta`
     TextureId u_roughness = -1, v_roughness = -1;
     bool remap_roughness = true;
-    TextureId transmittance = -1;  ///< multiplies light at each crossing of the border; none: 1
+    bool multiple_scattering = false;  ///< as that of a metal
+    TextureId transmittance = -1;      ///< multiplies light at each crossing of the border; none: 1
 };
 /// A diffuse base under a dielectric coat, a thin gap between them.
 struct CoatedDiffuseMaterial {

@@ -3,6 +3,7 @@
 #include <bit>
 #include <utility>
 
+#include "bsdf/multiple_scattering.h"
 #include "core/hash.h"
 #include "shading/material_inputs.h"
 #include "shading/material_layers.h"
@@ -74,7 +75,8 @@ Bsdf make(const DiffuseMaterial&, const Values& v, const Tables&) {
     return DiffuseBsdf{v.reflectance()};
 }
 
-Bsdf make(const ConductorMaterial& m, const Values& v, const Tables&) {
+/// A metal whose light is reflected once.
+ConductorBsdf metal(const ConductorMaterial& m, const Values& v) {
     const Vec2 alpha = v.alphas(m);
     if (m.reflectance < 0)
         return ConductorBsdf{v.spectrum(m.eta, 1), v.spectrum(m.k, 1), alpha.x, alpha.y};
@@ -85,10 +87,18 @@ Bsdf make(const ConductorMaterial& m, const Values& v, const Tables&) {
     return ConductorBsdf{Rgb(1), 2 * sqrt(r) / sqrt(Rgb(1) - r), alpha.x, alpha.y};
 }
 
-Bsdf make(const DielectricMaterial& m, const Values& v, const Tables&) {
+Bsdf make(const ConductorMaterial& m, const Values& v, const Tables& tables) {
+    const ConductorBsdf b = metal(m, v);
+    return m.multiple_scattering ? with_multiple_scattering(b, *tables.white) : b;
+}
+
+Bsdf make(const DielectricMaterial& m, const Values& v, const Tables& tables) {
     const Vec2 alpha = v.alphas(m);
-    return DielectricBsdf{refractive_index(m.eta), alpha.x, alpha.y,
-                          m.transmittance < 0 ? Rgb(1) : v.transmittance(), m.dispersion.get()};
+    const DielectricBsdf b{refractive_index(m.eta), alpha.x, alpha.y,
+                           m.transmittance < 0 ? Rgb(1) : v.transmittance(), m.dispersion.get()};
+    return m.multiple_scattering
+               ? with_multiple_scattering(b, *tables.from_outside, *tables.from_inside)
+               : b;
 }
 
 Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const Tables& tables) {
@@ -96,8 +106,8 @@ Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const Tables& tables)
     if (m.reflects_through_coat) {
         Rgb reflectance = v.reflectance();
         CoatTint tint;
-        if (tables.white_coat) {
-            tint = v.tint(m, tables.white_coat);
+        if (tables.white) {
+            tint = v.tint(m, tables.white);
             if (m.coat_dims_base) reflectance *= 1 - max_component(tint.normal_reflectance);
         }
         return make_coated_total(*tables.coat, reflectance, alpha.x, alpha.y, tint);
@@ -112,13 +122,14 @@ Bsdf make(const DiffuseTransmissionMaterial&, const Values& v, const Tables&) {
     return DiffuseTransmissionBsdf{v.reflectance(), v.transmittance()};
 }
 
-Bsdf make(const CoatedConductorMaterial& m, const Values& v, const Tables&) {
+Bsdf make(const CoatedConductorMaterial& m, const Values& v, const Tables& tables) {
     const Vec2 coat = v.alphas(m);
     CoatedConductorBsdf b;
     b.coat = {refractive_index(m.eta), coat.x, coat.y};
-    b.metal = std::get<ConductorBsdf>(make(m.conductor, v, {}));
+    b.metal = metal(m.conductor, v);
     b.metal.eta *= 1 / b.coat.eta;
     b.metal.k *= 1 / b.coat.eta;
+    if (m.conductor.multiple_scattering) b.metal = with_multiple_scattering(b.metal, *tables.white);
     b.thickness = std::max(0.0f, v.number(m.thickness, kDefaultThickness));
     // The number of bounces is half of pbrt's depth, whose walk meets the metal at every second of
     // its steps.
@@ -184,6 +195,44 @@ Vec2 ggx_alphas(float u_roughness, float v_roughness, bool remap) {
     return {std::max(kSmallest, a.x), std::max(kSmallest, a.y)};
 }
 
+void MaterialStore::prepare(const CoatedDiffuseMaterial& m, Material& material,
+                            const TextureStore& textures) {
+    float thickness = 0;
+    if (!m.reflects_through_coat)
+        thickness = m.thickness < 0 ? kDefaultThickness
+                                    : std::max(0.0f, textures.eval_float(m.thickness, kMiddle));
+    const SourceLocation& where = material.description.where;
+    material.tables.coat = &coats_.get(refractive_index(m.eta), thickness);
+    if (m.normal_reflectance >= 0 || m.coat_weight >= 0)
+        material.tables.white = &coats_.get(kWhiteIndex, 0);
+    warn_of_gap(m.albedo, "coateddiffuse", where, textures, warnings_);
+    if (m.thickness >= 0 && !textures.is_constant(m.thickness))
+        warnings_.push_back({where,
+                             "coateddiffuse: \"thickness\" can't be textured; its value at (u, v) "
+                             "= (0.5, 0.5) is used everywhere"});
+}
+
+void MaterialStore::prepare(const CoatedConductorMaterial& m, Material& material,
+                            const TextureStore& textures) {
+    warn_of_gap(m.albedo, "coatedconductor", material.description.where, textures, warnings_);
+    prepare(m.conductor, material, textures);
+}
+
+void MaterialStore::prepare(const ConductorMaterial& m, Material& material, const TextureStore&) {
+    if (m.multiple_scattering) material.tables.white = &coats_.get(kWhiteIndex, 0);
+}
+
+void MaterialStore::prepare(const DielectricMaterial& m, Material& material, const TextureStore&) {
+    if (!m.multiple_scattering) return;
+    const float eta = refractive_index(m.eta);
+    material.tables.from_outside = &coats_.get(eta, 0);
+    material.tables.from_inside = &coats_.get(1 / eta, 0);
+}
+
+void MaterialStore::prepare(const MeasuredMaterial& m, Material& material, const TextureStore&) {
+    material.tables.measured = &measured_.try_emplace(m.brdf.get(), *m.brdf).first->second;
+}
+
 MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& textures,
                              const IlluminantAdaptation& adaptation) {
     materials_.reserve(scene.materials.size());
@@ -207,33 +256,15 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
         for (MaterialColour* c : {&material.colours.reflectance, &material.colours.transmittance})
             c->fixed = adaptation(c->fixed);
         const Values at_middle{textures, kMiddle, material.colours, adaptation_, powers_};
-        if (const auto* m = std::get_if<CoatedDiffuseMaterial>(&description.value)) {
-            const float thickness =
-                m->reflects_through_coat
-                    ? 0
-                    : std::max(0.0f, at_middle.number(m->thickness, kDefaultThickness));
-            material.tables.coat = &coats_.get(refractive_index(m->eta), thickness);
-            if (m->normal_reflectance >= 0 || m->coat_weight >= 0)
-                material.tables.white_coat = &coats_.get(kWhiteIndex, 0);
-            warn_of_gap(m->albedo, "coateddiffuse", description.where, textures, warnings_);
-            if (m->thickness >= 0 && !textures.is_constant(m->thickness))
-                warnings_.push_back({description.where,
-                                     "coateddiffuse: \"thickness\" can't be textured; its value at "
-                                     "(u, v) = (0.5, 0.5) is used everywhere"});
-        } else if (const auto* c = std::get_if<CoatedConductorMaterial>(&description.value)) {
-            warn_of_gap(c->albedo, "coatedconductor", description.where, textures, warnings_);
-        } else if (const auto* b = std::get_if<MeasuredMaterial>(&description.value)) {
-            material.tables.measured =
-                &measured_.try_emplace(b->brdf.get(), *b->brdf).first->second;
+        std::visit([&](const auto& m) { prepare(m, material, textures); }, description.value);
+        if (description.sheen) {
+            if (!sheen_) sheen_ = std::make_unique<const SheenTable>();
+            material.tables.sheen = sheen_.get();
         }
         material.has_layers = covtrace::has_layers(description);
         if (description.mix)
             for (MaterialId part : description.mix->materials)
                 material.has_layers = material.has_layers || has_layers(part);
-        if (description.sheen) {
-            if (!sheen_) sheen_ = std::make_unique<const SheenTable>();
-            material.tables.sheen = sheen_.get();
-        }
         std::visit(
             [&](const auto& m) {
                 material.is_constant = is_constant(description, textures);

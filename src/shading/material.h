@@ -40,8 +40,9 @@ struct MaterialColours {
 
 /// The tables of a material; none where it needs none.
 struct MaterialTables {
-    const CoatTable* coat = nullptr;        ///< of a diffuse material's coat
-    const CoatTable* white_coat = nullptr;  ///< CoatTint::white
+    const CoatTable* coat = nullptr;   ///< of a diffuse material's coat
+    const CoatTable* white = nullptr;  ///< CoatTint::white, ConductorBsdf::white
+    const CoatTable *from_outside = nullptr, *from_inside = nullptr;  ///< DielectricBsdf's
     const MeasuredBrdf* measured = nullptr;
     const SheenTable* sheen = nullptr;
 };
@@ -107,6 +108,16 @@ class MaterialStore {
         /// Where no texture varies; the latter in scenes that regularize.
         Bsdf constant, constant_regularized;
     };
+    /// Makes the tables of a material's model, and warns of what is not rendered as it says.
+    void prepare(const CoatedDiffuseMaterial& m, Material& material, const TextureStore& textures);
+    void prepare(const CoatedConductorMaterial& m, Material& material,
+                 const TextureStore& textures);
+    void prepare(const ConductorMaterial& m, Material& material, const TextureStore&);
+    void prepare(const DielectricMaterial& m, Material& material, const TextureStore&);
+    void prepare(const MeasuredMaterial& m, Material& material, const TextureStore&);
+    template <typename Other>
+    void prepare(const Other&, Material&, const TextureStore&) {}
+
     std::vector<Material> materials_;
     AdaptationTable adaptation_;     ///< for textures that vary
     ReflectancePowersTable powers_;  ///< for textures that vary below a coat

@@ -11,6 +11,7 @@
 
 #include "bsdf/bsdf.h"
 #include "bsdf/fresnel.h"
+#include "bsdf/multiple_scattering.h"
 #include "chi_square.h"
 #include "core/rng.h"
 #include "core/warp.h"
@@ -28,19 +29,24 @@ std::ostream& operator<<(std::ostream& out, const Case& c) {
 }
 
 std::vector<Case> all_cases() {
+    static const CoatTable white(kWhiteIndex, 0);
     struct Roughness {
         const char* name;
         float coat, metal;
+        bool multiple_scattering = false;
     };
     std::vector<Case> cases;
     for (const Roughness& r : {Roughness{"smooth_on_rough", 0, 0.3f},
                                {"rough_on_smooth", 0.3f, 0},
                                {"both_rough", 0.3f, 0.5f},
-                               {"fine_on_rough", 0.1f, 0.6f}})
+                               {"fine_on_rough", 0.1f, 0.6f},
+                               {"smooth_on_bouncing", 0, 0.8f, true},
+                               {"fine_on_bouncing", 0.1f, 0.8f, true}})
         for (const float cos_o : {0.95f, 0.5f, 0.15f}) {
             CoatedConductorBsdf b;
             b.coat = {1.5f, r.coat, r.coat};
             b.metal = {Rgb(0.13f, 0.6f, 0.73f), Rgb(2.6f, 1.63f, 1.43f), r.metal, r.metal};
+            if (r.multiple_scattering) b.metal = with_multiple_scattering(b.metal, white);
             b.thickness = 0.05f;
             cases.push_back(
                 {std::string(r.name) + "_at_" + std::to_string(int(100 * cos_o)), b, cos_o});

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "bsdf/coat_table.h"
+#include "bsdf/multiple_scattering.h"
 #include "bsdf/sheen.h"
 #include "chi_square.h"
 #include "core/rng.h"
@@ -50,6 +51,8 @@ std::vector<Case> all_cases() {
         {"transmitting", DiffuseTransmissionBsdf{{0.5f, 0.3f, 0.1f}, {0.1f, 0.2f, 0.2f}}, 0, 1},
         {"varnish", make_coated_diffuse(coat, reflectance_powers(tan), 0, 0, 5), 0, 1},
         {"conductor_brushed", ConductorBsdf{eta, k, 0.1f, 0.4f}, 0.4f, 1},
+        {"conductor_bouncing", with_multiple_scattering(ConductorBsdf{eta, k, 0.5f, 0.5f}, white),
+         0.5f, 1},
         {"dielectric_brushed", DielectricBsdf{1.5f, 0.3f, 0.1f}, 0.3f, 1.5f},
         {"dielectric_thin", DielectricBsdf{1 / 1.33f, 0.2f, 0.2f}, 0.2f, 1 / 1.33f},
         {"coated_brushed", make_coated_diffuse(coat, reflectance_powers(tan), 0.1f, 0.3f, 5), 0.3f,

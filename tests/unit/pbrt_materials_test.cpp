@@ -277,6 +277,14 @@ TEST(SceneMaterials, SubsurfaceTakesTheNameThenCoefficientsThenReflectance) {
                          "expected both or none"));
 }
 
+TEST(SceneMaterials, MultipleScatteringIsAParameterOfOurs) {
+    const std::string on = " \"bool multiplescattering\" true";
+    EXPECT_FALSE(model_of<ConductorMaterial>("\"conductor\"").multiple_scattering);
+    EXPECT_TRUE(model_of<ConductorMaterial>("\"conductor\"" + on).multiple_scattering);
+    EXPECT_TRUE(model_of<DielectricMaterial>("\"dielectric\"" + on).multiple_scattering);
+    EXPECT_TRUE(contains(warnings_of(material_of("\"diffuse\"" + on).scene), "multiplescattering"));
+}
+
 TEST(SceneMaterials, MixesKeepBothParts) {
     const std::string two =
         "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n"

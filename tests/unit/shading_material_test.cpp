@@ -121,6 +121,37 @@ TEST_F(MaterialTest, ConductorTakesIndexOrReflectance) {
     EXPECT_NEAR(fresnel_conductor(1, w.eta, w.k).g, 0.9999f, 1e-5f);
 }
 
+TEST_F(MaterialTest, MultipleScatteringIsForEveryRoughnessOfATexture) {
+    ConductorMaterial white;
+    white.reflectance = constant(1.0f);
+    white.u_roughness = white.v_roughness = checks(constant(0.25f), constant(1.0f));
+    DielectricMaterial glass;
+    glass.u_roughness = glass.v_roughness = white.u_roughness;
+    CoatedConductorMaterial coated;
+    coated.conductor = white;
+    ConductorMaterial once = white;
+    white.multiple_scattering = glass.multiple_scattering = coated.conductor.multiple_scattering =
+        true;
+    const MaterialId all_id = add(white), glass_id = add(glass), coated_id = add(coated),
+                     once_id = add(once);
+    build();
+    for (const Vec2 uv : {Vec2{0.5f, 0.5f}, Vec2{1.5f, 0.5f}}) {
+        const auto metal = bsdf_at<ConductorBsdf>(all_id, uv);
+        EXPECT_EQ(metal.table_row, CoatTable::row_of(metal.alpha_x));
+        EXPECT_NEAR(metal.regained.g, 1, 1e-3f);
+        EXPECT_FALSE(bsdf_at<ConductorBsdf>(once_id, uv).white);
+        const auto border = bsdf_at<DielectricBsdf>(glass_id, uv);
+        EXPECT_EQ(border.table_row, CoatTable::row_of(border.alpha_x));
+        EXPECT_FLOAT_EQ(border.from_outside->eta(), 1.5f);
+        EXPECT_FLOAT_EQ(border.from_inside->eta(), 1 / 1.5f);
+        // A coat's index changes what the metal reflects; the coat itself is a plain border.
+        const auto below = bsdf_at<CoatedConductorBsdf>(coated_id, uv);
+        EXPECT_GT(below.metal.regained.g, 0.9f);
+        EXPECT_LT(below.metal.regained.g, metal.regained.g);
+        EXPECT_FALSE(below.coat.from_outside);
+    }
+}
+
 TEST_F(MaterialTest, DielectricWithTexturedRoughness) {
     DielectricMaterial glass;
     glass.eta = 1.33f;
