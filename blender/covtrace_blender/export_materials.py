@@ -181,13 +181,11 @@ class MaterialExporter(PrincipledExporter):
         return Value(0.0) if getattr(node, "distribution", "") == "SHARP" else self._value(node.inputs["Roughness"], True)
 
     def _glossy(self, node):
-        roughness = self._rough(node)
-        self._tell_single_scattering(node, roughness)
-        return self._metal(self._value(node.inputs["Color"]), roughness, self._normal_map(node))
+        return self._metal(self._value(node.inputs["Color"]), self._rough(node), self._scattering(node) + self._normal_map(node))
 
     def _glass(self, node):
         return self._clear(self._value(node.inputs["Color"]), self._value(node.inputs["Roughness"], True),
-                           self._plain(node.inputs["IOR"]), self._normal_map(node))
+                           self._plain(node.inputs["IOR"]), self._scattering(node) + self._normal_map(node))
 
     def _translucent(self, node):
         return self._make("diffusetransmission", ['"rgb reflectance" [0 0 0]',

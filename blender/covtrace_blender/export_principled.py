@@ -119,8 +119,9 @@ class PrincipledExporter(EmissionReader):
             return layers(roughness)
         return self._mix(layers(roughness), layers(coat_roughness), Value(coat / (coat + specular)))
 
-    def _metal_under_coat(self, inputs, base, roughness, normal):
-        metal = self._metal(base, roughness, normal)
+    def _metal_under_coat(self, node, base, roughness, normal):
+        inputs = node.inputs
+        metal = self._metal(base, roughness, self._scattering(node) + normal)
         weight, coat_roughness, eta = self._coat(inputs)
         if not weight.image and weight.constant <= 0:
             return metal
@@ -129,7 +130,7 @@ class PrincipledExporter(EmissionReader):
             self._colour("reflectance", base, lambda r: covered_reflectance(r * through, eta), ("under", eta, *through)),
             self._number("conductor.roughness", roughness, squared, "squared"),
             self._number("interface.roughness", coat_roughness, squared, "squared"), f'"float interface.eta" {eta:.9g}',
-            '"float thickness" 0', '"bool remaproughness" false', *normal])
+            '"float thickness" 0', '"bool remaproughness" false', *self._scattering(node, "conductor."), *normal])
         return self._mix(metal, coated, weight)
 
     def _principled(self, node):
@@ -143,19 +144,20 @@ class PrincipledExporter(EmissionReader):
         def is_constant(value, number):
             return not value.image and value.constant == number
 
+        def glass():
+            return self._clear(base, roughness, self._plain(get["IOR"]), self._scattering(node) + normal)
+
         parts = []
         if not is_constant(metallic, 1):
             if is_constant(transmission, 1):
                 if not is_constant(self._coat(get)[0], 0):
                     self.warn(f"material '{self.name}': a coat over glass is not supported and left out")
-                parts.append(self._clear(base, roughness, self._plain(get["IOR"]), normal))
+                parts.append(glass())
             else:
                 coated = self._under_coat(get, base, roughness, normal)
                 if not is_constant(transmission, 0):
-                    coated = self._mix(coated, self._clear(base, roughness, self._plain(get["IOR"]), normal),
-                                       transmission)
+                    coated = self._mix(coated, glass(), transmission)
                 parts.append(coated)
         if not is_constant(metallic, 0):
-            self._tell_single_scattering(node, roughness)
-            parts.append(self._metal_under_coat(get, base, roughness, normal))
+            parts.append(self._metal_under_coat(node, base, roughness, normal))
         return parts[0] if len(parts) == 1 else self._mix(parts[0], parts[1], metallic)

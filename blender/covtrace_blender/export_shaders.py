@@ -15,8 +15,6 @@ def squared(roughness):
     return np.maximum(roughness, 0) ** 2
 
 
-# Up to this roughness a white metal sends back 98 % of the light from above, and 95 % from the side.
-ROUGH_METAL = 0.3
 
 
 class ShaderWriter(SocketReader):
@@ -124,15 +122,13 @@ class ShaderWriter(SocketReader):
         file = self.files.write_heights(height.image, scale)
         return [f'"texture displacement" "{self._declare("float", height, file)}"']
 
-    def _tell_single_scattering(self, node, roughness):
-        """Warns of a metal that Cycles gives the light which bounces between its facets, too (decision 0051)."""
-        if getattr(node, "distribution", "") == "MULTI_GGX" and (roughness.image or round(roughness.constant, 3) > ROUGH_METAL):
-            self.warn("metals of Multiscatter GGX reflect light once here: of roughness 0.5 they are a tenth darker than in Cycles, "
-                      "of 0.9 more than half")
+    def _scattering(self, node, prefix=""):
+        """Parameters of metal and glass whose facets pass light on to each other, where a node's distribution says so."""
+        return [f'"bool {prefix}multiplescattering" true'] if node.distribution == "MULTI_GGX" else []
 
-    def _metal(self, colour, roughness, normal):
-        return self._make("conductor", [self._colour("reflectance", colour), *self._roughness(roughness), *normal])
+    def _metal(self, colour, roughness, rest):
+        return self._make("conductor", [self._colour("reflectance", colour), *self._roughness(roughness), *rest])
 
-    def _clear(self, colour, roughness, eta, normal):
+    def _clear(self, colour, roughness, eta, rest):
         return self._make("dielectric", [f'"float eta" {max(eta, 1.0001):.9g}',
-                                         self._colour("transmittance", colour), *self._roughness(roughness), *normal])
+                                         self._colour("transmittance", colour), *self._roughness(roughness), *rest])

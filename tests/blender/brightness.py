@@ -1,5 +1,6 @@
 """How much light surfaces send back, by covtrace and by Cycles: a plane in a white surrounding, seen from above and at 1.2
-radian from its normal. The table of docs/decisions/0051.
+radian from its normal, and the middle of a ball of glass. The tables of docs/decisions/0051 and, from Blender 4.0 on, of
+docs/results/blender.md.
 
     COVTRACE=build/release/covtrace blender --background --factory-startup -noaudio --python tests/blender/brightness.py
 """
@@ -17,26 +18,53 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import addon_support
 
 SAMPLES = 64
-WHITE, GREY, BLACK = (1, 1, 1, 1), (0.5, 0.5, 0.5, 1), (0, 0, 0, 1)
+WHITE, GREY, BLACK, GOLD = (1, 1, 1, 1), (0.5, 0.5, 0.5, 1), (0, 0, 0, 1), (1, 0.6, 0.2, 1)
+MOST_BOUNCES = 64
 
 
-def share(engine, tilt, test):
-    test.camera.location = (0, -5 * math.sin(tilt), 5 * math.cos(tilt))
-    test.camera.rotation_euler = (tilt, 0, 0)
-    return addon_support.mean(addon_support.render(engine, SAMPLES))[0]
+def white_surrounding(lens):
+    test = addon_support.BlenderTest()
+    test.setUp()
+    test.camera.data.lens = lens
+    test.background.inputs["Color"].default_value = WHITE
+    return test
 
 
-def row(name, **inputs):
-    cells = []
+def cells(channel=0):
+    ours, theirs = (addon_support.mean(addon_support.render(engine, SAMPLES))[channel] for engine in ("COVTRACE", "CYCLES"))
+    return f"{ours:.3f} | {theirs:.3f} | {ours / theirs:.3f}"
+
+
+def row(name, channel=0, **inputs):
+    found = []
     for tilt in (0, 1.2):
-        test = addon_support.BlenderTest()
-        test.setUp()
-        test.camera.data.lens = 200
-        test.background.inputs["Color"].default_value = WHITE
+        test = white_surrounding(200)
         test.plane(addon_support.material(**inputs))
-        ours, theirs = (share(engine, tilt, test) for engine in ("COVTRACE", "CYCLES"))
-        cells.append(f"{ours:.3f} | {theirs:.3f} | {ours / theirs:.3f}")
-    return f"| {name} | {' | '.join(cells)} |"
+        test.camera.location = (0, -5 * math.sin(tilt), 5 * math.cos(tilt))
+        test.camera.rotation_euler = (tilt, 0, 0)
+        found.append(cells(channel))
+    return f"| {name} | {' | '.join(found)} |"
+
+
+def glass_row(roughness):
+    test = white_surrounding(100)
+    scene = test.scene
+    scene.covtrace.max_depth = scene.cycles.max_bounces = MOST_BOUNCES
+    scene.cycles.transmission_bounces = scene.cycles.glossy_bounces = MOST_BOUNCES
+    scene.cycles.blur_glossy = 0  # which loses light in glass
+    bpy.ops.mesh.primitive_uv_sphere_add(radius=1, segments=64, ring_count=32)
+    bpy.ops.object.shade_smooth()
+    bpy.context.object.data.materials.append(addon_support.material(Base_Color=WHITE, Transmission=1.0, Roughness=roughness, IOR=1.5))
+    return f"| glass, roughness {roughness} | {cells()} |"
+
+
+def multiscatter_rows():
+    """Rows of Multiscatter GGX, Principled's default since 4.0: metals, of gold the blue, and glass."""
+    for name, colour, channel in (("white", WHITE, 0), ("grey", GREY, 0), ("gold, blue", GOLD, 2)):
+        for roughness in (0.2, 0.5, 0.9):
+            yield row(f"{name}, roughness {roughness}", channel, Base_Color=colour, Metallic=1.0, Roughness=roughness)
+    for roughness in (0.2, 0.5, 0.9):
+        yield glass_row(roughness)
 
 
 def main():
@@ -53,6 +81,8 @@ def main():
     print("| Principled | above: ours | Cycles | ratio | 1.2 radian: ours | Cycles | ratio |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     print("\n".join(rows))
+    if bpy.app.version >= (4, 0, 0):
+        print("\n".join(multiscatter_rows()))
 
 
 main()

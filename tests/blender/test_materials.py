@@ -8,6 +8,17 @@ from addon_support import BlenderTest, material, mean, render, socket
 from covtrace_blender import baking
 
 
+def shader(kind, **inputs):
+    """A material of one shader."""
+    m = bpy.data.materials.new(kind)
+    m.use_nodes = True
+    node = m.node_tree.nodes.new(kind)
+    for key, value in inputs.items():
+        node.inputs[key].default_value = value
+    m.node_tree.links.new(node.outputs["BSDF"], m.node_tree.nodes["Material Output"].inputs["Surface"])
+    return m
+
+
 class MaterialsTest(BlenderTest):
     def test_world_and_materials_as_cycles_has_them(self):
         self.background.inputs["Color"].default_value = (0.8, 0.9, 1, 1)
@@ -27,15 +38,6 @@ class MaterialsTest(BlenderTest):
         side."""
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)
         self.camera.data.lens = 200
-
-        def shader(kind, **inputs):
-            m = bpy.data.materials.new(kind)
-            m.use_nodes = True
-            node = m.node_tree.nodes.new(kind)
-            for key, value in inputs.items():
-                node.inputs[key].default_value = value
-            m.node_tree.links.new(node.outputs["BSDF"], m.node_tree.nodes["Material Output"].inputs["Surface"])
-            return m
 
         grey, white = (0.5, 0.6, 0.7, 1), (1, 1, 1, 1)
         # Seen from the side they differ as decision 0051 says: grey metals in Fresnel's term, rough
@@ -201,20 +203,57 @@ class MaterialsTest(BlenderTest):
         self.export()
         self.assertTrue(any("'material': node 'Light Path' at 'Base Color'" in w for w in self.warnings), self.warnings)
 
-    def test_rough_metals_of_multiscatter_ggx_are_told(self):
-        m = material(Base_Color=(1, 1, 1, 1), Metallic=1.0)
-        principled = m.node_tree.nodes["Principled BSDF"]
-        self.plane(m)
+    def set_distribution(self, m, distribution):
+        for node in m.node_tree.nodes:
+            if hasattr(node, "distribution"):
+                node.distribution = distribution
+
+    def assert_share(self, m, distribution, share, tolerance=0.02):
+        """Asserts which share of a white surrounding's light the middle of the picture shows, here and in Cycles, and that
+        nothing is told."""
+        self.set_distribution(m, distribution)
+        self.export()
+        self.assertEqual(self.warnings, [])
+        for engine in ("COVTRACE", "CYCLES"):
+            self.assertAlmostEqual(mean(render(engine, 64))[0], share, delta=tolerance, msg=engine)
+
+    def test_multiscatter_ggx_keeps_energy(self):
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)
         self.camera.data.lens = 200
-        for distribution, roughness, is_told, share in (
-                ("GGX", 0.9, False, 0.42), ("MULTI_GGX", 0.2, False, 0.99), ("MULTI_GGX", 0.5, True, 0.915), ("MULTI_GGX", 0.9, True, 0.42)):
-            with self.subTest(distribution, roughness=roughness):
-                principled.distribution, principled.inputs["Roughness"].default_value = distribution, roughness
-                self.export()
-                self.assertEqual(any("Multiscatter GGX" in w for w in self.warnings), is_told, self.warnings)
-                self.assertAlmostEqual(mean(render("COVTRACE", 32))[0], share, delta=0.02)
-                self.assertAlmostEqual(mean(render("CYCLES", 32))[0], 1 if distribution == "MULTI_GGX" else share, delta=0.02)
+        white = (1, 1, 1, 1)
+        for name, roughness, once in (("Principled", 0.2, 0.99), ("Principled", 0.5, 0.915), ("Principled", 0.9, 0.42), ("Glossy", 0.9, 0.42)):
+            m = (material(Base_Color=white, Metallic=1.0, Roughness=roughness) if name == "Principled" else
+                 shader("ShaderNodeBsdfGlossy", Color=white, Roughness=roughness))
+            plane = self.plane(m)
+            for distribution, share in (("GGX", once), ("MULTI_GGX", 1)):
+                with self.subTest(name, distribution=distribution, roughness=roughness):
+                    self.assert_share(m, distribution, share)
+            bpy.data.objects.remove(plane)
+
+    def test_multiscatter_ggx_of_glass_keeps_energy(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        self.camera.data.lens = 100
+        cycles, white = self.scene.cycles, (1, 1, 1, 1)
+        self.scene.covtrace.max_depth = cycles.max_bounces = cycles.transmission_bounces = cycles.glossy_bounces = 64
+        cycles.blur_glossy = 0  # which loses light in glass
+        for m in (shader("ShaderNodeBsdfGlass", Color=white, Roughness=0.7, IOR=1.5),
+                  material(Base_Color=white, Transmission=1.0, Roughness=0.7, IOR=1.5)):
+            bpy.ops.mesh.primitive_uv_sphere_add(radius=1, segments=64, ring_count=32)
+            bpy.ops.object.shade_smooth()
+            ball = bpy.context.object
+            ball.data.materials.append(m)
+            with self.subTest(m.name):
+                self.assert_share(m, "MULTI_GGX", 1)
+            self.set_distribution(m, "GGX")
+            self.assertLess(mean(render("COVTRACE", 64))[0], 0.9)
+            bpy.data.objects.remove(ball)
+
+    def test_multiscatter_ggx_below_a_coat(self):
+        m = material(Metallic=1.0, Clearcoat=1.0)
+        self.plane(m)
+        for distribution, is_there in (("GGX", False), ("MULTI_GGX", True)):
+            self.set_distribution(m, distribution)
+            self.assertEqual('"bool conductor.multiplescattering" true' in self.export(), is_there)
 
     def test_what_is_left_out_is_told(self):
         """Each of the shaders changes the picture in Cycles and not here."""
