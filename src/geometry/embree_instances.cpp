@@ -19,11 +19,6 @@ constexpr double kInterpolationError = 5e-6;  ///< part of the extent, at the te
 /// per key and instance; straight lines cost it nothing, but are off by the square of the angle
 /// between keys.
 constexpr unsigned kFewSteps = 8;
-/// Largest error of straight lines between keys, as a part of the extent. Chords of an angle a
-/// between keys miss the circle by a^2 / 8 of its radius: 128 of them do it for a turn of 60
-/// degrees.
-constexpr double kStraightError = 1e-5;
-
 GeometryHandle new_instance(const EmbreeDevice& device, RTCScene scene) {
     GeometryHandle instance(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
     device.check();
@@ -135,8 +130,8 @@ GeometryHandle new_moving_instance(const EmbreeDevice& device, RTCScene scene, c
     if (refine(turning, Between::turning, least, few, kInterpolationError) < kInterpolationError)
         return turning;
     GeometryHandle straight = new_instance(device, scene);
-    const double left = refine(straight, Between::straight, least, kMostSteps, kStraightError);
-    if (left < kStraightError) return straight;
+    const double left = refine(straight, Between::straight, least, kMostSteps, kPlacementError);
+    if (left < kPlacementError) return straight;
     return refine(turning, Between::turning, least, kMostSteps, kInterpolationError) < left
                ? std::move(turning)
                : std::move(straight);

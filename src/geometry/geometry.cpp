@@ -8,6 +8,7 @@
 
 #include "core/hash.h"
 #include "geometry/embree_shapes.h"
+#include "geometry/leave_surface.h"
 #include "geometry/placed_scene.h"
 
 namespace covtrace {
@@ -25,15 +26,6 @@ float ray_hash(const Ray& ray) {
     return to_unit_float(static_cast<uint32_t>(h >> 32));
 }
 
-/// The next float above or below a finite one: std::nextafter without the call.
-float next_float(float v, bool above) {
-    if (v == 0)
-        return above ? std::numeric_limits<float>::denorm_min()
-                     : -std::numeric_limits<float>::denorm_min();
-    const auto bits = std::bit_cast<uint32_t>(v);
-    return std::bit_cast<float>((v > 0) == above ? bits + 1 : bits - 1);
-}
-
 void set_ray(RTCRay& out, const Ray& ray, const ShutterClock& clock, unsigned mask) {
     out.org_x = ray.origin.x, out.org_y = ray.origin.y, out.org_z = ray.origin.z;
     out.dir_x = ray.direction.x, out.dir_y = ray.direction.y, out.dir_z = ray.direction.z;
@@ -43,15 +35,6 @@ void set_ray(RTCRay& out, const Ray& ray, const ShutterClock& clock, unsigned ma
     out.mask = mask;
     out.id = 0;
     out.flags = 0;
-}
-
-/// Bound on where float arithmetic may put a ray that Embree carries into an instance and back:
-/// each coordinate suffers a few roundings of sums as large as these.
-double instance_error(const Affine& world_from_local, const Affine& local_from_world,
-                      Vec3d position) {
-    const Vec3d local =
-        local_from_world.absolute(abs(position) + abs(world_from_local.translation));
-    return 6 * kHalfUlp * length(world_from_local.absolute(local));
 }
 
 /// Moves `point` from the local space of an instance to the world.
@@ -88,6 +71,7 @@ void fill_hit(const SurfacePoint& point, SurfaceHit& hit) {
 /// the ray goes on behind all other hits.
 template <typename Find, typename Stops>
 bool first_that_stops(Ray ray, SurfaceHit& hit, const Find& find, const Stops& stops) {
+    const Vec3 end = end_of(ray);
     float passed = 0;
     for (int layer = 0; layer < kMostLayers; ++layer) {
         if (!find(ray, hit)) return false;
@@ -95,9 +79,7 @@ bool first_that_stops(Ray ray, SurfaceHit& hit, const Find& find, const Stops& s
             hit.t += passed;
             return true;
         }
-        passed += hit.t;
-        ray.t_max -= hit.t;
-        ray.origin = Geometry::offset_origin(hit, ray.direction);
+        passed += go_on_behind(hit, end, ray);
         if (!(ray.t_max > 0)) return false;
     }
     return false;
@@ -221,13 +203,7 @@ bool Geometry::Impl::meets_any(const Ray& ray, unsigned mask) const {
 }
 
 Vec3 Geometry::offset_origin(const SurfaceHit& hit, Vec3 direction) {
-    const Vec3 n = dot(direction, hit.ng) < 0 ? -hit.ng : hit.ng;
-    Vec3 origin;
-    for (int i = 0; i < 3; ++i) {
-        const float moved = hit.position[i] + n[i] * hit.position_error;
-        origin[i] = n[i] == 0 ? moved : next_float(moved, n[i] > 0);
-    }
-    return origin;
+    return off_surface(hit.position, hit.ng, hit.position_error, direction);
 }
 
 const std::vector<PlacedShape>& Geometry::shapes() const {

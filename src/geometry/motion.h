@@ -40,6 +40,11 @@ inline float ShutterClock::parameter(float time) const {
     return (static_cast<float>(i) + f) / static_cast<float>(segments());
 }
 
+/// Largest distance between where Embree and a motion place a point, but for roundings, as a part
+/// of the extent of the shape. Straight lines between Embree's keys are such: chords of an angle a
+/// miss the circle by a^2 / 8 of its radius, and the most keys do it for a turn of 60 degrees.
+inline constexpr double kPlacementError = 1e-5;
+
 /// The map `outer` after `inner`, over time; null stands for the identity. Does not own the
 /// transforms.
 struct Motion {

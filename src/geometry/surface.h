@@ -10,13 +10,11 @@
 #include "geometry/affine.h"
 #include "geometry/bilinear_patch.h"
 #include "geometry/opposite_triangles.h"
+#include "geometry/rounding.h"
 #include "geometry/vertex_place.h"
 #include "scene/scene_description.h"
 
 namespace covtrace {
-
-/// Half a unit in the last place of single precision, relative: the error of one rounding.
-inline constexpr double kHalfUlp = 5.9604644775390625e-8;
 
 struct TriangleShape {
     std::shared_ptr<const TriangleMesh> mesh;

@@ -24,7 +24,7 @@ void PathTracer::escape() {
         sky =
             scene_.lights.sky(lit_.position, lit_.normal, ray_.direction, lit_.sky_cell, ray_.kind);
         weight = power_heuristic(pdf_, sky.pdf);
-        if (sky.pdf > 0 && is_shadowed(kInfinity)) weight = 0;
+        if (sky.pdf > 0 && is_shadowed(nullptr)) weight = 0;
     }
     const Rgb contribution = beta_ * sky.radiance * weight;
     result_.radiance += contribution;
@@ -44,7 +44,7 @@ void PathTracer::add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex
         const float p =
             scene_.lights.pdf(lit_.position, lit_.normal, ray_.direction, hit, lit_.lamp_factors);
         weight = power_heuristic(pdf_, p);
-        if (p > 0 && is_shadowed(distance(ray_begin_, hit.position))) weight = 0;
+        if (p > 0 && is_shadowed(&hit)) weight = 0;
     } else if (came_through_panes()) {
         weight = weight_through_panes();
     } else if (came_by_mirror()) {
@@ -56,11 +56,11 @@ void PathTracer::add_emission(const SurfaceHit& hit, Vec3 wo, PathVertex* vertex
     if (vertex) vertex->emitted = luminance(contribution);
 }
 
-bool PathTracer::is_shadowed(float distance) {
+bool PathTracer::is_shadowed(const SurfaceHit* hit) {
     if (!scene_.shadows_differ) return false;
     Ray shadow = ray_;
     shadow.origin = ray_begin_;
-    shadow.t_max = distance * (1 - 1e-4f);
+    if (hit && !(aim(shadow, Geometry::offset_origin(*hit, -ray_.direction)) > 0)) return false;
     ++result_.rays.shadow;
     return scene_.geometry.occluded(shadow);
 }
@@ -94,15 +94,8 @@ bool PathTracer::keep_light(LightSample light, const BsdfValue& value, Ray shado
     if (scene_.lights.kinds_differ() && !light.is_delta && !std::isfinite(light.distance))
         light.radiance = scene_.lights.environment(shadow.origin, light.wi, shadow.kind);
     if (is_black(light.radiance) || !(light.pdf > 0)) return false;
-    shadow.direction = light.wi;
-    if (std::isfinite(light.distance)) {
-        // Aim at the light from the moved origin and stop just short of it
-        const Vec3 to_light = light.position - shadow.origin;
-        const float d = length(to_light);
-        if (!(d > 0)) return false;
-        shadow.direction = to_light / d;
-        shadow.t_max = d * (1 - 1e-4f);
-    }
+    // Aim at the light from the moved origin
+    if (!(aim(shadow, light) > 0)) return false;
     sampled_light_ = {shadow,
                       light.distance,
                       medium,

@@ -95,22 +95,15 @@ void PathTracer::add_mirrored_light(const Surface& surface, PathVertex* vertex) 
     carried *= reflected->weight * reflected->pdf;
     // Look at the light from there
     Ray shadow;
-    shadow.direction = light->wi;
     shadow.origin = Geometry::offset_origin(hit, light->wi);
     shadow.time = ray.time;
     shadow.kind = RayKind::glossy;
     medium = medium_beyond(shape, hit, light->wi, medium);
-    float distance = kInfinity;
-    Rgb radiance = light->radiance;
-    if (std::isfinite(light->distance)) {
-        const Vec3 to_light = light->position - shadow.origin;
-        distance = length(to_light);
-        if (!(distance > 0)) return;
-        shadow.direction = to_light / distance;
-        shadow.t_max = distance * (1 - 1e-4f);
-    } else {
-        radiance = scene_.lights.environment(shadow.origin, light->wi, shadow.kind);
-    }
+    const float distance = aim(shadow, *light);
+    if (!(distance > 0)) return;
+    const Rgb radiance = std::isfinite(distance)
+                             ? light->radiance
+                             : scene_.lights.environment(shadow.origin, light->wi, shadow.kind);
     ++result_.rays.shadow;
     ++result_.rays_by_mirrors;
     if (scene_.geometry.occluded(shadow)) return;

@@ -159,8 +159,8 @@ class PathTracer {
     bool keep_light(LightSample light, const BsdfValue& value, Ray shadow, MediumId medium,
                     PathVertex* vertex);
     /// Whether shadow rays alone meet something between the last vertex and light that the path
-    /// has found `distance` away: that light counts where it can be sampled (docs/decisions/0112).
-    bool is_shadowed(float distance);
+    /// has found at a hit, or in the sky: it counts where it can be sampled (docs/decisions/0112).
+    bool is_shadowed(const SurfaceHit* hit);
 
     // ---- path_panes.cpp
     /// Whether the path has come through panes, and met nothing else, from a place where light was

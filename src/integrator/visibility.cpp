@@ -2,7 +2,32 @@
 
 #include <cmath>
 
+#include "geometry/leave_surface.h"
+
 namespace covtrace {
+
+namespace {
+
+/// Share of the way to a light that rays leave out at its end, for the roundings of their lengths.
+constexpr float kLeftOut = 1e-4f;
+
+}  // namespace
+
+float aim(Ray& ray, Vec3 target) {
+    const Vec3 way = target - ray.origin;
+    const float distance = length(way);
+    if (!(distance > 0)) return 0;
+    ray.direction = way / distance;
+    ray.t_max = distance * (1 - kLeftOut);
+    return distance;
+}
+
+float aim(Ray& ray, const LightSample& light) {
+    if (std::isfinite(light.distance)) return aim(ray, light.position);
+    ray.direction = light.wi;
+    ray.t_max = kInfinity;
+    return kInfinity;
+}
 
 MediumId medium_beyond(const PlacedShape& shape, const SurfaceHit& hit, Vec3 w, MediumId current) {
     const ShapeDescription& d = shape.description;
@@ -20,6 +45,7 @@ Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, 
     if (!scene.has_interfaces) return transmittance(scene, medium, distance);
     // Walk through the rest of the way: it holds only what lets light pass, and mixes that are
     // interfaces in places
+    const Vec3 end = end_of(ray);
     Rgb passes(1);
     SurfaceHit hit;
     ray.kind = RayKind::shadow;
@@ -35,14 +61,13 @@ Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, 
         }
         passes *= transmittance(scene, medium, hit.t);
         medium = medium_beyond(shape, hit, ray.direction, medium);
-        ray.origin = Geometry::offset_origin(hit, ray.direction);
-        ray.t_max -= hit.t;
-        distance -= hit.t;
+        distance -= go_on_behind(hit, end, ray);
     }
     return passes * transmittance(scene, medium, std::max(distance, 0.0f));
 }
 
 bool is_met(const LitScene& scene, Ray ray, uint64_t& rays) {
+    const Vec3 end = end_of(ray);
     SurfaceHit hit;
     for (int i = 0; i < kMostInterfaces; ++i) {
         ++rays;
@@ -51,8 +76,7 @@ bool is_met(const LitScene& scene, Ray ray, uint64_t& rays) {
         if (!shape.lets_light_pass && !scene.materials.lets_light_pass(scene.materials.at(
                                           shape.description.material, hit, scene.textures)))
             return true;
-        ray.origin = Geometry::offset_origin(hit, ray.direction);
-        ray.t_max -= hit.t;
+        go_on_behind(hit, end, ray);
     }
     return true;
 }

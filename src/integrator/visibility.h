@@ -20,6 +20,13 @@ MediumId medium_beyond(const PlacedShape& shape, const SurfaceHit& hit, Vec3 w, 
 /// `unbounded_distance`.
 Rgb transmittance(const LitScene& scene, MediumId medium, float distance);
 
+/// Aims a ray at a point from where it starts, to end just short of it; the point is to be clear of
+/// its surface. Returns the distance; 0: there is no way to go.
+float aim(Ray& ray, Vec3 target);
+/// Aims a ray at a sampled light from where it starts. Returns the distance, infinite for light
+/// without a place; 0: there is no way to go.
+float aim(Ray& ray, const LightSample& light);
+
 /// Share of light per channel that comes along `ray` from `distance` away (infinite for lights
 /// without a place), `medium` being around the ray's origin. `ray.t_max` ends just short of the
 /// light, and Geometry::occluded has found nothing before it; interfaces let light pass into the

@@ -2,10 +2,13 @@
 /// the room that it takes over the shutter.
 #pragma once
 
+#include <cmath>
 #include <variant>
 #include <vector>
 
 #include "core/transform.h"
+#include "geometry/motion.h"
+#include "geometry/rounding.h"
 #include "light/tree.h"
 
 namespace covtrace {
@@ -15,10 +18,23 @@ using Emitter = std::variant<class EmissiveMesh, class EmissiveQuadric>;
 
 struct EmitterPoint {
     Vec3 position, normal;  ///< world; the unit normal is on the shape's outside
+    float error = 0;        ///< bound on the distance of `position` from the surface that rays meet
     Vec3 wi;                ///< unit, from the shading point
     float pdf = 0;          ///< per solid angle
     Vec2 place;             ///< barycentric coordinates in the light, of meshes only
 };
+
+/// Bound on the distance between a point of a moving shape and where Embree has it; `extent`: of
+/// the shape in its own space.
+inline float motion_error(const Transform& object_to_world, Vec3 position, float extent) {
+    const Affine map = Affine::from_matrix(object_to_world.matrix());
+    const double scale = std::sqrt(dot(map.row[0], map.row[0]) + dot(map.row[1], map.row[1]) +
+                                   dot(map.row[2], map.row[2]));
+    return static_cast<float>(kPlacementError * scale * double(extent) +
+                              instance_error(map,
+                                             Affine::from_matrix(object_to_world.inverse_matrix()),
+                                             Vec3d(position)));
+}
 
 /// The transform at times so close that the motion between them stays in a box around the shape at
 /// all of these times, padded by half a step. A single transform where nothing moves.

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "geometry/leave_surface.h"
 #include "light/lights_impl.h"
 #include "light/weight.h"
 
@@ -196,7 +197,7 @@ std::optional<LightSample> Lights::Impl::sample_area(int light, float probabilit
     }
     s.pdf = probability * point->pdf;
     s.light = light;
-    s.position = point->position;
+    s.position = off_surface(point->position, point->normal, point->error, -point->wi);
     s.normal = point->normal;
     s.visible_to = area.visible_to;
     if (!area.is_visible) {

@@ -27,7 +27,7 @@ struct LightSample {
     float pdf = 0;
     bool is_delta = false;
     int light = -1;  ///< id for LightSpectra::source_spectrum
-    Vec3 position;   ///< of the sampled point where the distance is finite
+    Vec3 position;   ///< where rays from the shading point end, clear of the light's own surface
     Vec3 normal;     ///< of area lights: unit, on the emitting outside
     /// Scattered rays that find the light. Others do not carry it, whether they hit the light or
     /// it is sampled for them.

@@ -14,6 +14,10 @@ namespace {
 /// nearly a hemisphere, 2 pi, where the point all but lies in the triangle.
 constexpr float kSmallestSolidAngle = 3e-4f, kLargestSolidAngle = 6.2f;
 
+/// Twist of a patch, relative to its diagonals, that is left out as the roundings of a
+/// parallelogram.
+constexpr float kRoundedTwist = 1e-5f;
+
 bool by_solid_angle(float solid_angle) {
     return solid_angle >= kSmallestSolidAngle && solid_angle <= kLargestSolidAngle;
 }
@@ -56,6 +60,7 @@ EmissiveMesh::EmissiveMesh(const PlacedShape& shape)
                         dot(n, placed.normal(mesh.normals[i2]))};
         }
         e.normal = normalize(cross(e.p1 - e.p0, e.p2 - e.p0));
+        for (const Vec3 corner : {e.p0, e.p1, e.p2}) box_.extend(corner);
         elements_.push_back(e);
     };
     if (const auto* triangles =
@@ -72,7 +77,7 @@ EmissiveMesh::EmissiveMesh(const PlacedShape& shape)
         Vec3 twist = corner(0) - corner(1) - corner(2) + corner(3);
         const float size = std::max(distance(corner(0), corner(3)), distance(corner(1), corner(2)));
         // A patch with no more twist than rounding leaves is a parallelogram, which is flat.
-        if (length(twist) <= 1e-5f * size) twist = {};
+        if (length(twist) <= kRoundedTwist * size) twist = {};
         add(mesh, k[0], k[1], k[2], twist);
         add(mesh, k[3], k[2], k[1], twist);
     }
@@ -129,7 +134,17 @@ std::optional<EmitterPoint> EmissiveMesh::sample(int light, Vec3 p, float time, 
     const float facing = e.facing.x * (1 - b.x - b.y) + e.facing.y * b.x + e.facing.z * b.y;
     const Vec3 normal = e.is_flat() ? e.normal : normalize(cross(e.d1(b), e.d2(b)));
     s.normal = facing < 0 ? -normal : normal;
+    s.error = error(e, s, time);
     return s;
+}
+
+float EmissiveMesh::error(const Element& e, const EmitterPoint& at, float time) const {
+    const float size =
+        std::sqrt(std::max(length_squared(e.p1 - e.p0), length_squared(e.p2 - e.p0)));
+    float error = sum_error(at.position, at.normal, size);
+    if (is_patches_ && e.is_flat()) error += kRoundedTwist * size;
+    if (motion_) error += motion_error(motion_->at(time), at.position, 2 * box_.radius());
+    return error;
 }
 
 float EmissiveMesh::pdf(int light, Vec3 p, const SurfaceHit& hit) const {

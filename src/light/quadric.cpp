@@ -32,10 +32,15 @@ EmissiveQuadric::Pose EmissiveQuadric::make_pose(const Transform& object_to_worl
     const Vec3 z = object_to_world.vector({0, 0, 1});
     pose.determinant = std::abs(dot(cross(x, y), z));
     const float lx = length(x), ly = length(y), lz = length(z);
-    const float longest = std::max(lx, std::max(ly, lz)), limit = 1e-4f * longest;
-    const bool equal = std::abs(lx - ly) < limit && std::abs(ly - lz) < limit;
+    pose.longest = std::max(lx, std::max(ly, lz));
+    const float uneven =
+        std::max(std::abs(lx - ly), std::max(std::abs(ly - lz), std::abs(lz - lx)));
     const float skew = std::max(abs_dot(x, y), std::max(abs_dot(y, z), abs_dot(z, x)));
-    if (equal && skew < limit * longest) pose.scale = lx;
+    const float limit = 1e-4f * pose.longest;
+    if (uneven < limit && skew < limit * pose.longest) {
+        pose.scale = lx;
+        pose.deviation = uneven + 2 * skew / pose.longest;
+    }
     return pose;
 }
 
@@ -170,9 +175,16 @@ std::optional<EmitterPoint> EmissiveQuadric::sample_cone(const Pose& pose, Vec3 
     EmitterPoint s;
     s.position = center + outward * r;
     s.normal = outward * orientation_;
+    s.error = error(pose, s);
     s.wi = normalize(frame.to_world(w));
     s.pdf = cone_pdf(rim);
     return s;
+}
+
+float EmissiveQuadric::error(const Pose& pose, const EmitterPoint& at) const {
+    const float still = sum_error(at.position, at.normal, radius_ * pose.longest);
+    return still + radius_ * pose.deviation +
+           (motion_ ? motion_error(pose.object_to_world, at.position, 2 * radius_) : 0.0f);
 }
 
 std::optional<EmitterPoint> EmissiveQuadric::sample(int, Vec3 p, float time, Vec2 u) const {
@@ -184,6 +196,7 @@ std::optional<EmitterPoint> EmissiveQuadric::sample(int, Vec3 p, float time, Vec
     EmitterPoint s;
     s.position = at_time.object_to_world.point(at.position);
     s.normal = normalize(at_time.object_to_world.normal(at.normal)) * orientation_;
+    s.error = error(at_time, s);
     const Vec3 to_point = s.position - p;
     if (!(length_squared(to_point) > 0)) return std::nullopt;
     s.wi = normalize(to_point);

@@ -45,6 +45,8 @@ class EmissiveQuadric {
     struct Pose {
         Transform object_to_world;
         float scale = 0;        // factor of a similarity; 0 for any other transform
+        float longest = 1;      // factor on the axis that it makes longest
+        float deviation = 0;    // from a similarity: of the factors from `scale`
         float determinant = 1;  // of the linear part, absolute value
     };
     struct ObjectPoint {
@@ -59,6 +61,8 @@ class EmissiveQuadric {
     std::optional<EmitterPoint> sample_cone(const Pose& pose, Vec3 p, float distance_squared,
                                             Vec2 u) const;
     float area_pdf(const Pose& pose, Vec3 p, Vec3 position, Vec3 normal) const;
+    /// Bound on the distance between a sampled point and the surface that rays meet.
+    float error(const Pose& pose, const EmitterPoint& at) const;
 
     bool is_sphere_ = true;
     float radius_ = 1, phi_max_ = 2 * kPi;

@@ -297,8 +297,8 @@ class CausticGuide::Probes {
         const auto light =
             scene_.lights.sample(at.position, at.normal, at.time, u_select, rng_.next_2d());
         if (!light || !(light->pdf > 0)) return 0;
-        const Ray shadow{at.position, light->wi, at.time, light->distance * (1 - 1e-3f),
-                         RayKind::shadow};
+        Ray shadow{at.position, light->wi, at.time, kInfinity, RayKind::shadow};
+        if (!(aim(shadow, *light) > 0)) return 0;
         // The part of the light that the cosine finds as well is counted with the other paths.
         const float cosine = std::max(0.0f, dot(at.normal, light->wi));
         const float density = light->pdf + (light->is_delta ? 0.0f : cosine * kInvPi);

@@ -45,11 +45,7 @@ class TrialPlace {
         Ray ray;
         ray.origin = Geometry::offset_origin(hit, light.wi);
         ray.time = hit.time;
-        const Vec3 to_light = light.position - ray.origin;
-        const float distance = length(to_light);
-        if (!(distance > 0)) return;
-        ray.direction = to_light / distance;
-        ray.t_max = distance * (1 - 1e-4f);
+        if (!(aim(ray, light) > 0)) return;
         // Light without extent is not sampled through panes
         if (light.is_delta ? scene_.geometry.occluded(ray) : is_hidden(scene_, ray)) return;
         t.light = light.light;
