@@ -1,16 +1,38 @@
 #include "pbrt/round_meshes.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "core/frame.h"
+#include "core/hash.h"
 
 namespace covtrace {
 
 namespace {
 
-constexpr size_t kSidesOfTube = 5;
 constexpr size_t kStepsPerSegment = 5;
+/// Normals that are smooth over flat sides lose light, as some of what they scatter goes into the
+/// tube. Prisms that are turned at random about their curves send, in their mean, exactly as much
+/// light to each direction as round tubes do: hair, whose sides nobody sees, consists of them.
+constexpr size_t kSidesOfPrism = 5, kSidesOfRoundTube = 24;
+constexpr float kSlender = 30;  // lengths of a curve by its width from which on it is like hair
+
+bool is_slender(const CurveDescription& curve) {
+    float length = 0;
+    for (size_t i = 1; i < curve.points.size(); ++i)
+        length += distance(curve.points[i - 1], curve.points[i]);
+    return length >= kSlender * std::max(curve.width0, curve.width1);
+}
+
+/// An angle that differs from curve to curve.
+float turn_of(const CurveDescription& curve) {
+    uint64_t h = 0;
+    for (const Vec3& p : curve.points)
+        for (const float c : {p.x, p.y, p.z}) h = hash_combine(h, std::bit_cast<uint32_t>(c));
+    return 2 * kPi * to_unit_float(static_cast<uint32_t>(h >> 32));
+}
 
 /// Triangles of a grid of vertices, row after row: two for each cell.
 std::vector<std::array<uint32_t, 3>> grid_triangles(size_t rows, size_t columns) {
@@ -73,9 +95,13 @@ TriangleMesh curve_mesh(const CurveDescription& curve) {
     const size_t segments =
         curve.is_bspline ? curve.points.size() - degree : (curve.points.size() - 1) / degree;
     const size_t rings = segments * kStepsPerSegment + 1;
+    const bool is_prism = is_slender(curve);
+    const size_t sides = is_prism ? kSidesOfPrism : kSidesOfRoundTube;
+    const float turn = turn_of(curve);
     // The widening makes a tube of flat sides as wide, in the mean over all directions, as a round
     // one.
-    const float widening = kPi / (kSidesOfTube * std::sin(kPi / kSidesOfTube));
+    const auto corners = static_cast<float>(sides);
+    const float widening = kPi / (corners * std::sin(kPi / corners));
     TriangleMesh m;
     Vec3 tangent{0, 0, 1}, side;
     for (size_t r = 0; r < rings; ++r) {
@@ -89,15 +115,15 @@ TriangleMesh curve_mesh(const CurveDescription& curve) {
         const Vec3 other = cross(tangent, side);
         const float u = static_cast<float>(r) / static_cast<float>(rings - 1);
         const float radius = 0.5f * widening * ((1 - u) * curve.width0 + u * curve.width1);
-        for (size_t i = 0; i <= kSidesOfTube; ++i) {
-            const float v = static_cast<float>(i) / kSidesOfTube, angle = 2 * kPi * v;
+        for (size_t i = 0; i <= sides; ++i) {
+            const float v = static_cast<float>(i) / corners, angle = 2 * kPi * v + turn;
             const Vec3 n = std::cos(angle) * side + std::sin(angle) * other;
-            m.normals.push_back(n);
+            if (!is_prism) m.normals.push_back(n);
             m.positions.push_back(at.position + radius * n);
             m.uvs.push_back({u, v});
         }
     }
-    m.triangles = grid_triangles(rings, kSidesOfTube + 1);
+    m.triangles = grid_triangles(rings, sides + 1);
     return m;
 }
 

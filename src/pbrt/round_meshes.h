@@ -18,7 +18,8 @@ struct CurveDescription {
     bool is_bspline = false;
     float width0 = 1, width1 = 1;  ///< diameters at both ends
 };
-/// An open tube along the curve with smooth normals; u runs along it, v around it.
+/// An open tube along the curve; u runs along it, v around it. Slender ones have flat sides, turned
+/// by a hash of the curve, all others smooth normals.
 TriangleMesh curve_mesh(const CurveDescription& curve);
 
 }  // namespace covtrace
