@@ -96,7 +96,12 @@ bool PathTracer::keep_light(LightSample light, const BsdfValue& value, Ray shado
     if (is_black(light.radiance) || !(light.pdf > 0)) return false;
     // Aim at the light from the moved origin
     if (!(aim(shadow, light) > 0)) return false;
+    // Find the way to the point itself from differences of near points, which are exact
+    Vec3 to_point = shadow.direction;
+    if (samples_through_panes_ && std::isfinite(light.distance))
+        to_point = normalize(light.wi * light.distance - (shadow.origin - lit_.position));
     sampled_light_ = {shadow,
+                      to_point,
                       light.distance,
                       medium,
                       beta_ * value.f,

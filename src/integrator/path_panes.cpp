@@ -99,7 +99,9 @@ void PathTracer::add_light_through_panes(bool blocked) {
 
 void PathTracer::follow_through_panes(const SampledLight& light) {
     Ray ray = light.ray;
+    ray.direction = light.to_point;
     ray.t_max = kInfinity;
+    const Ray straight = ray;
     MediumId medium = light.medium;
     Rgb carried = light.scattered;
     float path_pdf = light.path_pdf;
@@ -110,7 +112,7 @@ void PathTracer::follow_through_panes(const SampledLight& light) {
         if (panes == 0 || is_black(radiance)) return;
         if (pdf < 0)
             pdf =
-                density_through_panes(scene_, light.place, light.ray, to_pane, result_.rays.shadow);
+                density_through_panes(scene_, light.place, straight, to_pane, result_.rays.shadow);
         if (!(pdf > 0)) return;
         const Rgb found = carried * radiance;
         const Rgb contribution = found * (power_heuristic(pdf, path_pdf) / pdf);

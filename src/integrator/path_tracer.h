@@ -86,6 +86,9 @@ class PathTracer {
     /// Light sampled at a vertex, as it is if nothing is in its way.
     struct SampledLight {
         Ray ray;  ///< towards the light, up to just before it
+        /// Unit direction from there to the sampled point itself, which rays through panes are to
+        /// meet: the other ray ends beside it, where it may miss a lamp's rim.
+        Vec3 to_point;
         float distance = kInfinity;
         MediumId medium = -1;  ///< around the origin of the ray
         Rgb scattered;         ///< what the path scatters of light from there
