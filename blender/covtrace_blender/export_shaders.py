@@ -15,8 +15,6 @@ def squared(roughness):
     return np.maximum(roughness, 0) ** 2
 
 
-
-
 class ShaderWriter(SocketReader):
     """Writes textures and materials into `out`, counted by `count`, and their images to `files`."""
 
