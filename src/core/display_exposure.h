@@ -11,7 +11,8 @@ namespace covtrace {
 /// among the means of 8x8 pixels that have light: 1 where that is 0.1 or more, so that images in
 /// usual units stay as they are; below a fortieth the image is brought to between 0.2 and 0.4, so
 /// that it does not matter in which units a room by moonlight is given; in between the factor grows
-/// with the square. Powers of two change no bit but the exponents.
+/// with the square. Powers of two change no bit but the exponents. It is at most 2^20, and makes no
+/// pixel brighter than 1e15.
 /// `luminance`: any noise, as the means of blocks keep the light of rare samples; pixels that are
 /// not finite, and blocks without light, are left out.
 float display_exposure(const Plane& luminance);

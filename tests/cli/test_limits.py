@@ -130,6 +130,23 @@ class NotFinite(FilmTest):
             self.assertIn(f"{spp} samples per pixel", self.assert_sound("c.film"))
         self.assertGreater(max(image.pixels["error.Y"]), 1e38)
 
+    def test_a_lamp_of_such_light_in_a_dim_room(self):
+        """The room is brought to a display's brightness, and the lamp does not spoil it."""
+        dim = BRIGHT_LAMP.replace("[10 10 10]", "[1e-5 1e-5 1e-5]")
+        for scale in ("1e17", "1e33"):
+            with self.subTest(scale=scale):
+                self.write("lamp.pbrt", dim.replace("1e25", scale))
+                self.run_render("lamp", "hybrid", "--spp", "8", "--resolution", "72x48")
+                pixels = exr.read(self.folder / "out.exr").pixels
+                own, raw = (sorted(pixels[name]) for name in ("G", "raw.G"))
+                for part in (0.25, 0.5, 0.75):
+                    self.assertAlmostEqual(own[int(part * len(own))] / raw[int(part * len(raw))], 1, delta=0.2)
+                self.assertGreater(max(own), 1e15)
+                error = sorted(pixels["error.Y"])
+                self.assertLess(error[len(error) // 2], 1e-6)
+                if scale == "1e17":
+                    self.assertLess(error[-1], 1e38)
+
     def test_finite_samples(self):
         """The mean of a pixel's samples is the pixel."""
         self.run_render("plain", "uniform", "--spp", "2")

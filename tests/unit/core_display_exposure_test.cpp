@@ -61,6 +61,19 @@ TEST(DisplayExposure, KnowsRareLight) {
     EXPECT_EQ(display_exposure(image), 1);
 }
 
+TEST(DisplayExposure, KeepsTheSquaresOfLampsFinite) {
+    for (const float lamp : {1e9f, 1e12f, 1e14f, 1e17f, 3e38f, -1e14f}) {
+        Plane image(kSize, kSize, 1e-7f);
+        image(20, 30) = lamp;
+        const float factor = display_exposure(image);
+        EXPECT_EQ(std::exp2(std::round(std::log2(factor))), factor) << lamp;
+        EXPECT_GE(factor, 1) << lamp;
+        if (factor > 1) EXPECT_LE(std::abs(lamp) * factor, 1e15f) << lamp;
+        if (lamp == 1e9f) EXPECT_EQ(factor, 0x1p19f);
+        if (lamp > 1e15f) EXPECT_EQ(factor, 1) << lamp;
+    }
+}
+
 TEST(DisplayExposure, LeavesOutWhatIsNoNumber) {
     Plane image(kSize, kSize, 1e-3f);
     for (int x = 0; x < kSize; ++x) {
