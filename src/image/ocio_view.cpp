@@ -112,14 +112,22 @@ struct Names {
 
     /// Text such as "+warm, -soft | plain" that the library takes for looks.
     const std::string& look() const {
-        static const std::regex kName(R"([^,:|\s+-]([^,:|]*[^,:|\s])?)");
+        constexpr std::string_view kSpace = " \t\r\n";
         const std::string& all = choice.look;
-        for (std::sregex_iterator m(all.begin(), all.end(), kName), end; m != end; ++m)
-            if (!config->getLook(m->str().c_str()))
-                refuse("ocio_look", "'" + m->str() + "' is no look of " + file() + "; " +
+        for (size_t begin = 0; begin < all.size();) {
+            const size_t end = std::min(all.find_first_of(",:|", begin), all.size());
+            std::string_view name = std::string_view(all).substr(begin, end - begin);
+            begin = end + 1;
+            name.remove_prefix(std::min(name.find_first_not_of(kSpace), name.size()));
+            name = name.substr(0, name.find_last_not_of(kSpace) + 1);
+            if (name.starts_with('+') || name.starts_with('-')) name.remove_prefix(1);
+            const std::string text(name);
+            if (text.empty() || !config->getLook(text.c_str()))
+                refuse("ocio_look", "'" + text + "' is no look of " + file() + "; " +
                                         listed(config->getNumLooks(), [&](int i) {
                                             return config->getLookNameByIndex(i);
                                         }));
+        }
         return all;
     }
 
@@ -210,12 +218,14 @@ OcioView::OcioView(const OcioChoice& choice) {
     const std::filesystem::path& file = choice.config;
     require_file(file, {});
     const WarningsTaken taken(file, warnings_);
+    ocio::ConstConfigRcPtr config;
     try {
-        const ocio::ConstConfigRcPtr config = ocio::Config::CreateFromFile(file.c_str());
+        config = ocio::Config::CreateFromFile(file.c_str());
         const auto processor = config->getProcessor(transform_of({choice, config}));
         processor_.reset(new Processor{processor->getDefaultCPUProcessor()});
     } catch (const ocio::Exception& e) {
-        throw_unreadable(file, place_in(file, e.what()), without_preamble(e.what()));
+        // Once the config is read, lines are those of other files that it names.
+        throw_unreadable(file, place_in(file, config ? "" : e.what()), without_preamble(e.what()));
     }
 }
 

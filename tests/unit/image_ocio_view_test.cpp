@@ -194,6 +194,13 @@ TEST_F(OcioViews, FilesThatAreNoConfigs) {
                       "\nactive_views: [Warm]\n")
                   .find("none.spi1d"),
               std::string::npos);
+    std::ofstream(folder_ / "bad.spi1d")
+        << "Version 1\nFrom 0 1\nLength 2\nComponents 1\n{\n0\nx\n}\n";
+    const std::string of_table = message(
+        with(kConfig, "!<ExponentTransform> {value: [2.4, 2.4, 2.4, 1], direction: inverse}",
+             "!<FileTransform> {src: ../bad.spi1d}"));
+    EXPECT_TRUE(of_table.starts_with(name + ": cannot read '" + name + "': ")) << of_table;
+    EXPECT_NE(of_table.find("bad.spi1d"), std::string::npos) << of_table;
     EXPECT_NE(message("ocio_profile_version: 2\nroles: {default: a, scene_linear: a}\n"
                       "colorspaces: [!<ColorSpace> {name: a}]\n")
                   .find("no display"),
@@ -219,6 +226,11 @@ TEST_F(OcioViews, NamesThatTheConfigDoesNotHave) {
     c.look = "warm, cold";
     expect_refused(c, "ocio_look",
                    "'cold' is no look of '" + file().string() + "'; it has 'warm', 'dim - half'");
+    for (const std::string& look : {std::string(" "), std::string("-"), std::string("warm, , warm"),
+                                    std::string("- warm"), std::string(1000000, 'a')}) {
+        c.look = look;
+        expect_refused(c, "ocio_look", "it has 'warm', 'dim - half'");
+    }
     c = choice();
     c.source = "log";
     expect_refused(c, "ocio_source", "; it has 'linear', 'untouched', 'crossed', 'dark'");
