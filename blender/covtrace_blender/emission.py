@@ -80,13 +80,23 @@ class EmissionReader(OpacityReader):
             return [Light(*self._light_sockets(node), share, steps)]
         parts = self._parts(node)
         opacities = [self._opacity(part) for part in parts]
-        second = self._share_of_opaque(node, self._mix_share(node), *opacities)
+        mixed = self._mix_share(node)
+        second = self._share_of_opaque(node, mixed, *opacities)
         found = []
         for part, opacity, is_second in zip(parts, opacities, (False, True)):
+            if not opacity.image and opacity.constant <= 0:
+                self._tell_lost(part, mixed, is_second)
+                continue
             own = None if second.image else second.constant if is_second else 1 - second.constant
-            if own != 0 and (opacity.image or opacity.constant > 0):
+            if own != 0:
                 found += self._lights(part, None if own is None or share is None else own * share, (*steps, (node, is_second)))
         return found
+
+    def _tell_lost(self, part, mixed, is_second):
+        """Tells of the light in a part of a mixture that lets all light pass. mixed: the Value of the second part's share."""
+        has_part = mixed.image or mixed.constant != (0 if is_second else 1)
+        if has_part and part.type == "ADD_SHADER" and self._shines(part):
+            self.warn(f"material '{self.name}': the light of '{part.name}' is lost where what it is added to lets light pass")
 
     def _light_at(self, nodes, lights):
         """The sum of [(Light, colour, strength)] at the places of an Evaluator: (3,) or (n, 3)."""

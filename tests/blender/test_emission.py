@@ -77,6 +77,18 @@ class EmissionTest(BlenderTest):
         self.export()
         self.assertTrue(any("alone is there, and not weakened" in w for w in self.warnings), self.warnings)
 
+    def test_light_that_is_added_to_what_lets_light_pass_is_told(self):
+        glow, mask = ("add", ("light", 2.0), ("clear",)), self.image("mask", (0.2, 0.9, 0.4, 0.7))
+        for tree in (glow, ("mix", 0.5, glow, ("matt",)), ("mix", mask, glow, ("matt",)), ("mix", 0.5, ("clear",), ("mix", 0.5, ("clear",), glow))):
+            plane = self.plane(self.material_of(tree))
+            with self.subTest(tree=tree):
+                self.export()
+                self.assertTrue(any("is lost where what it is added to" in w for w in self.warnings), self.warnings)
+            bpy.data.objects.remove(plane)
+        self.plane(self.material_of(("mix", 1.0, glow, ("matt",))))
+        self.export()
+        self.assertEqual(self.warnings, [])
+
     def test_lamps_shine_through_mixtures_as_in_cycles(self):
         lamp = self.lamp("POINT", energy=400, shadow_soft_size=0).data
         lamp.use_nodes = True
