@@ -180,6 +180,9 @@ class Image:
         except (TypeError, ValueError, OverflowError):
             refuse("exposure", exposure, "a number of stops")
         names = {"view": view, "ocio_display": ocio_display, "ocio_look": ocio_look, "ocio_source": ocio_source}
+        for name, value in names.items():
+            if value in ("", b""):  # as of a variable that is not set
+                refuse(name, value, "a name")
         texts = {name: "" if value is None else text_of(name, value) for name, value in names.items()}
         config = "" if ocio_config is None else path_of("ocio_config", ocio_config)
         for text in self._planes.write(os.fspath(file), stops, texts["view"], config, texts["ocio_display"],

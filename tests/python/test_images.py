@@ -80,7 +80,8 @@ class Images(unittest.TestCase):
             numpy.testing.assert_allclose(shown(ocio_source="swapped"), decoded((0.4, 0.2, 0.1)), atol=0.003)
             for wrong, names in (({"view": "agx"}, "'Swapped', 'Root'"), ({"ocio_display": "Wall"}, "'Screen'"), ({"ocio_look": "cold"}, "'half'"),
                                  ({"ocio_source": "log"}, "'linear', 'root', 'swapped'"), ({"ocio_config": None, "ocio_look": "half"}, "ocio_look"),
-                                 ({"ocio_config": 3}, "ocio_config"), ({"view": 3}, "view")):
+                                 ({"ocio_config": 3}, "ocio_config"), ({"view": 3}, "view"), ({"view": ""}, "view"), ({"ocio_look": ""}, "ocio_look"),
+                                 ({"ocio_config": ""}, "ocio_config"), ({"ocio_config": None, "view": ""}, "view")):
                 with self.subTest(wrong), self.assertRaisesRegex(covtrace.UsageError, names):
                     shown(**wrong)
             with self.assertRaisesRegex(covtrace.SceneError, "cannot open"):
