@@ -48,8 +48,6 @@ METHODS = {
     "covariance, predicted filters alone": "`covariance --density tempered --filter predicted`: nothing that samples tell",
 }
 FOLDER = "out/thesis"  # of a run, in the commands of the page
-# CPU seconds over those of --quick: four times the pixels, four times the samples, three seeds in place of two.
-TIMES_AT_FULL_SIZE = 24
 MARK = re.compile(r"<!-- tables: ([\w-]+) -->\n.*?<!-- end of tables -->", re.DOTALL)
 # How far the same claim may be from the published one: what depends on CPU seconds, on a busy machine, an angle that is
 # 0 but for rounding (in degrees), and what depends on the samples, which other processors round differently. Relative,
@@ -129,12 +127,10 @@ def held(claims):
 
 def runs(experiments):
     return table(
-        ["experiment", "pixels", "samples and seeds", "CPU seconds", "full size, at most about", "claims that hold"],
+        ["experiment", "pixels", "samples and seeds", "CPU seconds", "claims that hold"],
         [
             [
-                f"`{name}`", "x".join(map(str, e["pixels"])), e["counts"], str(e["seconds_cpu"]),
-                f"{max(1, round(e['seconds_cpu'] * TIMES_AT_FULL_SIZE / 60))} CPU min" if e["size"] == "quick" and e["seconds_cpu"] else "",
-                held(e["claims"]),
+                f"`{name}`", "x".join(map(str, e["pixels"])), e["counts"], str(e["seconds_cpu"]), held(e["claims"]),
             ]
             for name, e in experiments
         ],
@@ -172,7 +168,8 @@ def experiments(all_of_them):
     parts = []
     for name, e in all_of_them:
         parts.append(f"### {e['title']}\n")
-        parts.append(paragraph(f"{e['thesis']} Here: `covtrace reproduce {name} --{e['size']} -o DIR`, {size_of(e).split(', ')[1]} pixels, {e['counts']}."))
+        size = "" if e["size"] == "full" else f" --{e['size']}"
+        parts.append(paragraph(f"{e['thesis']} Here: `covtrace reproduce {name}{size} -o DIR`, {size_of(e).split(', ')[1]} pixels, {e['counts']}."))
         for file in FIGURES[name]:
             stem = pathlib.Path(file).stem
             parts.append(f"![{e['title'].partition(': ')[2]}](../images/reproduction/{file})\n")
