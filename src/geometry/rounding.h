@@ -17,11 +17,12 @@ inline double instance_error(const Affine& world_from_local, const Affine& local
     return 6 * kHalfUlp * length(world_from_local.absolute(local));
 }
 
-/// Bound on the distance to its surface of a point that float arithmetic makes of an origin and
-/// vectors as long as `size`; `normal` is the surface's, of unit length.
+/// Bound on the distance to its surface of a point that float arithmetic makes of an origin and at
+/// most three vectors as long as `size`: each sum is rounded once. `normal` is the surface's, of
+/// unit length.
 inline float sum_error(Vec3 position, Vec3 normal, float size) {
     const double coordinates = dot(abs(Vec3d(normal)), abs(Vec3d(position)));
-    return static_cast<float>(kHalfUlp * (6 * coordinates + 16 * double(size)));
+    return static_cast<float>(kHalfUlp * (3 * coordinates + 16 * double(size)));
 }
 
 }  // namespace covtrace
