@@ -45,6 +45,7 @@ EmissiveMesh::EmissiveMesh(const PlacedShape& shape)
     const Transform placed = motion_ ? Transform() : start;
     const bool reverse = shape.description.reverse_orientation;
     const float winding = reverse != placed.swaps_handedness() ? -1.0f : 1.0f;
+    Bounds3 box;
     const auto add = [&](const auto& mesh, uint32_t i0, uint32_t i1, uint32_t i2, Vec3 twist) {
         Element e;
         e.p0 = placed.point(mesh.positions[i0]);
@@ -60,13 +61,15 @@ EmissiveMesh::EmissiveMesh(const PlacedShape& shape)
                         dot(n, placed.normal(mesh.normals[i2]))};
         }
         e.normal = normalize(cross(e.p1 - e.p0, e.p2 - e.p0));
-        for (const Vec3 corner : {e.p0, e.p1, e.p2}) box_.extend(corner);
+        // The fourth corner of a patch is in its other half.
+        for (const Vec3 corner : {e.p0, e.p1, e.p2}) box.extend(corner);
         elements_.push_back(e);
     };
     if (const auto* triangles =
             std::get_if<std::shared_ptr<const TriangleMesh>>(&shape.description.geometry)) {
         elements_.reserve((*triangles)->triangles.size());
         for (const auto& t : (*triangles)->triangles) add(**triangles, t[0], t[1], t[2], {});
+        motion_error_ = motion_error(shape.description.object_to_world, box);
         return;
     }
     is_patches_ = true;
@@ -81,6 +84,7 @@ EmissiveMesh::EmissiveMesh(const PlacedShape& shape)
         add(mesh, k[0], k[1], k[2], twist);
         add(mesh, k[3], k[2], k[1], twist);
     }
+    motion_error_ = motion_error(shape.description.object_to_world, box);
 }
 
 int EmissiveMesh::light_of(const SurfaceHit& hit) const {
@@ -134,17 +138,15 @@ std::optional<EmitterPoint> EmissiveMesh::sample(int light, Vec3 p, float time, 
     const float facing = e.facing.x * (1 - b.x - b.y) + e.facing.y * b.x + e.facing.z * b.y;
     const Vec3 normal = e.is_flat() ? e.normal : normalize(cross(e.d1(b), e.d2(b)));
     s.normal = facing < 0 ? -normal : normal;
-    s.error = error(e, s, time);
+    s.error = error(e, s);
     return s;
 }
 
-float EmissiveMesh::error(const Element& e, const EmitterPoint& at, float time) const {
+float EmissiveMesh::error(const Element& e, const EmitterPoint& at) const {
     const float size =
         std::sqrt(std::max(length_squared(e.p1 - e.p0), length_squared(e.p2 - e.p0)));
-    float error = sum_error(at.position, at.normal, size);
-    if (is_patches_ && e.is_flat()) error += kRoundedTwist * size;
-    if (motion_) error += motion_error(motion_->at(time), at.position, 2 * box_.radius());
-    return error;
+    const float twist = is_patches_ && e.is_flat() ? kRoundedTwist * size : 0.0f;
+    return sum_error(at.position, at.normal, size) + twist + motion_error_;
 }
 
 float EmissiveMesh::pdf(int light, Vec3 p, const SurfaceHit& hit) const {

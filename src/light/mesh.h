@@ -60,7 +60,7 @@ class EmissiveMesh {
     /// The element of a light in world space.
     Element at(int light, float time) const;
     /// Bound on the distance between a sampled point of an element and the surface that rays meet.
-    float error(const Element& e, const EmitterPoint& at, float time) const;
+    float error(const Element& e, const EmitterPoint& at) const;
     static Element moved(Element e, const Transform& t);
     /// Density per solid angle, seen from p, of the point `position` = e.point(b) where b is drawn
     /// uniformly; 0 where it is not finite.
@@ -70,7 +70,7 @@ class EmissiveMesh {
     std::vector<Element> elements_;
     bool is_patches_ = false;
     const AnimatedTransform* motion_ = nullptr;  // null where nothing moves
-    Bounds3 box_;                                // of the elements, in the same space
+    float motion_error_ = 0;
 };
 
 }  // namespace covtrace

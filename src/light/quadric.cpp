@@ -62,6 +62,8 @@ EmissiveQuadric::EmissiveQuadric(const PlacedShape& shape)
         z_min_ = z_max_ = d.height;
         inner_radius_ = std::clamp(d.inner_radius, 0.0f, radius_);
     }
+    motion_error_ = motion_error(shape.description.object_to_world,
+                                 {{-radius_, -radius_, z_min_}, {radius_, radius_, z_max_}});
 }
 
 bool EmissiveQuadric::is_whole_sphere() const {
@@ -182,9 +184,8 @@ std::optional<EmitterPoint> EmissiveQuadric::sample_cone(const Pose& pose, Vec3 
 }
 
 float EmissiveQuadric::error(const Pose& pose, const EmitterPoint& at) const {
-    const float still = sum_error(at.position, at.normal, radius_ * pose.longest);
-    return still + radius_ * pose.deviation +
-           (motion_ ? motion_error(pose.object_to_world, at.position, 2 * radius_) : 0.0f);
+    return sum_error(at.position, at.normal, radius_ * pose.longest) + radius_ * pose.deviation +
+           motion_error_;
 }
 
 std::optional<EmitterPoint> EmissiveQuadric::sample(int, Vec3 p, float time, Vec2 u) const {

@@ -71,6 +71,7 @@ class EmissiveQuadric {
     float orientation_ = 1;         // -1 where the outside is opposite to the quadric's own normal
     Pose start_;
     const AnimatedTransform* motion_ = nullptr;  // null where nothing moves
+    float motion_error_ = 0;
 };
 
 }  // namespace covtrace
