@@ -21,7 +21,8 @@
 /// gain varies within a radian or so, far slower than any lobe that it multiplies.
 ///
 /// Anisotropic borders have the E of the isotropic one of their mean square roughness: a white
-/// metal of alphas 0.1 and 0.5 gives back 0.87 to 1.05 of the light, by direction.
+/// metal of alphas 0.1 and 0.5 gives back 0.87 to 1.05 of the light, by direction, one of 0.01 and 1
+/// 0.55 to 1.10 (docs/decisions/0135). Alphas above 1 have the gain of 1, which is too low.
 #pragma once
 
 #include "bsdf/coat_table.h"
