@@ -17,7 +17,7 @@ constexpr size_t kStepsPerSegment = 5;
 /// tube. Prisms that are turned at random about their curves send, in their mean, exactly as much
 /// light to each direction as round tubes do: hair, whose sides nobody sees, consists of them.
 constexpr size_t kSidesOfPrism = 5, kSidesOfRoundTube = 24;
-constexpr float kSlender = 30;  // lengths of a curve by its width from which on it is like hair
+constexpr float kSlender = 20;  // lengths of a curve by its width from which on it is like hair
 
 bool is_slender(const CurveDescription& curve) {
     float length = 0;
