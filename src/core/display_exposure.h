@@ -8,8 +8,8 @@ namespace covtrace {
 /// Returns a power of two, at least 1, by which an image is multiplied before constants are applied
 /// to it that are meant for images as displays show them, where 1 is white and errors in pixels
 /// below a tenth count as they are. It depends on the brightness that a tenth of the image exceeds,
-/// among the means of 8x8 pixels that have light: 1 where that is 0.1 or more, so that images in
-/// usual units stay as they are; below a fortieth the image is brought to between 0.2 and 0.4, so
+/// among the means of 8x8 pixels that have light: 1 where that is 0.1 or more, as of most images in
+/// usual units; below a fortieth the image is brought to between 0.2 and 0.4, so
 /// that it does not matter in which units a room by moonlight is given; in between the factor grows
 /// with the square. Powers of two change no bit but the exponents. It is at most 2^20, and makes no
 /// pixel brighter than 1e15.
