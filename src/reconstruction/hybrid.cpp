@@ -20,30 +20,38 @@ namespace covtrace {
 
 namespace {
 
+/// Weights of the two halves of a pixel in a mean.
+enum class CountBy : uint8_t {
+    halves,   ///< equally: the samples of one half have planned how many the other one has
+    samples,  ///< as many samples as they have: right where no samples have been planned by others
+};
+
 /// The mean of three planes of both halves; where one half has no samples, what the other has.
 ColorPlanes mean_of(const Halves& halves, std::span<const Plane, 3> of_a,
-                    std::span<const Plane, 3> of_b) {
+                    std::span<const Plane, 3> of_b, CountBy by) {
     const Plane &a = halves[0].count, &b = halves[1].count;
     ColorPlanes mean{of_a[0], of_a[1], of_a[2]};
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < mean[c].size(); ++i) {
-            const float share = (a[i] > 0) == (b[i] > 0) ? 0.5f : (a[i] > 0 ? 1.0f : 0.0f);
+            const bool both = a[i] > 0 && b[i] > 0, none = !(a[i] > 0 || b[i] > 0);
+            const float share =
+                none || (both && by == CountBy::halves) ? 0.5f : a[i] / (a[i] + b[i]);
             mean[c][i] = share * mean[c][i] + (1 - share) * of_b[c][i];
         }
     return mean;
 }
 
 /// The mean of both halves' samples.
-ColorPlanes mean_of(const Halves& halves) {
-    return mean_of(halves, halves[0].color, halves[1].color);
+ColorPlanes mean_of(const Halves& halves, CountBy by = CountBy::halves) {
+    return mean_of(halves, halves[0].color, halves[1].color, by);
 }
 
 /// The mean of both halves' features from `first` on.
-ColorPlanes mean_of_features(const Halves& halves, size_t first) {
+ColorPlanes mean_of_features(const Halves& halves, size_t first, CountBy by) {
     const auto three = [&](size_t half) {
         return std::span<const Plane, 3>(&halves[half].feature[first], 3);
     };
-    return mean_of(halves, three(0), three(1));
+    return mean_of(halves, three(0), three(1), by);
 }
 
 /// 1 where both halves have samples, and can judge each other, 0 where one of them has, averaged
@@ -70,17 +78,17 @@ void replace_empty_half(Halves& halves) {
         }
 }
 
-/// How few samples the halves have: 1 up to 4 per pixel of both together, 0 from 16 on, in between
-/// linear in the variance of a pixel. Halves with noise of their own, as of other renderers, never
-/// count as few.
+/// How few samples the halves have: 0 from 16 per pixel of both together on, below that linear in
+/// the variance of a pixel, 1 with 4 samples and 5 with a single one or less. Halves with noise of
+/// their own, as of other renderers, never count as few.
 float fewness(const Halves& halves, HalvesNoise noise) {
     constexpr double kFew = 4, kEnough = 16;
     if (noise != HalvesNoise::of_one_sequence) return 0;
     double samples = 0;
     for (const HalfBuffer& half : halves)
         for (float count : half.count.values) samples += double(count);
-    const double mean = samples / double(halves[0].count.size());
-    return float(std::clamp((kEnough / mean - 1) / (kEnough / kFew - 1), 0.0, 1.0));
+    const double mean = std::max(1.0, samples / double(halves[0].count.size()));
+    return float(std::max(0.0, (kEnough / mean - 1) / (kEnough / kFew - 1)));
 }
 
 /// Brightness that errors are measured against, as a first guess: the mean over all candidates but
@@ -134,16 +142,20 @@ void blend(const Plane& own, const Denoised& clean, Selection& s, ColorPlanes& i
     }
 }
 
-/// Denoises both halves and, upright and turned, all samples. Returns nothing without a denoiser,
-/// or where it fails, and then `failure` says why.
-std::optional<Denoised> denoised(const Denoiser* denoiser, const Halves& halves,
-                                 const ColorPlanes& all, bool draft_features,
+/// Denoises both halves and, upright and turned, all samples, `few` as `fewness` tells. Returns
+/// nothing without a denoiser, or where it fails, and then `failure` says why.
+std::optional<Denoised> denoised(const Denoiser* denoiser, const Halves& halves, float few,
                                  std::string& failure) {
     if (!denoiser) return std::nullopt;
+    // No samples have planned others up to 4 per pixel
+    const CountBy by = few >= 1 ? CountBy::samples : CountBy::halves;
+    const ColorPlanes all = mean_of(halves, by);
     NoisyFeatures features;
-    features.draft = draft_features;
-    features.albedo = mean_of_features(halves, 0);
-    features.normal = mean_of_features(halves, 3);
+    // Noisy features are smoothed in about a third of the time as a draft, and the image errs 0.7 %
+    // more at 16 samples (docs/decisions/0085), but 2 % at 4, and 8 % behind a lens (0117)
+    features.draft = few == 0;
+    features.albedo = mean_of_features(halves, 0, by);
+    features.normal = mean_of_features(halves, 3, by);
     try {
         std::vector<ColorPlanes> images =
             denoiser->denoise(features, {{.color = halves[0].color, .draft = true},
@@ -183,11 +195,9 @@ HybridImage reconstruct_exposed(Halves halves, std::span<const covariance::Sym2<
     const ColorPlanes all = mean_of(halves);
     const float dark_squared = kDarkSquared * sqr(exposure);
     HybridImage image;
-    // Noisy features are smoothed in about a third of the time as a draft, and the image errs 0.7 %
-    // more at 16 samples (docs/decisions/0085), but 2 % at 4, and 8 % behind a lens (0117)
     const float few = fewness(halves, settings.noise);
     const std::optional<Denoised> clean =
-        denoised(settings.denoiser, halves, all, few == 0, image.denoiser_failure);
+        denoised(settings.denoiser, halves, few, image.denoiser_failure);
     std::array<ColorPlanes, 2> samples, variance;  // the halves before anything is cut off
     if (clean)
         for (size_t k = 0; k < 2; ++k) {

@@ -34,7 +34,7 @@ constexpr float kOverlap = 4 * kPi * sqr(kDeviation / kFactor);
 /// Factors k of the noise: that of the windows, and that of the whole image, whose samples are far
 /// more even than their spread tells: the light that it lacks is mostly real.
 constexpr float kNoise = 1, kNoiseOfAll = 0.1f;
-/// Both factors where samples are few: with more the error is a little less, but the light of
+/// Both factors with 4 samples per pixel: with more the error is a little less, but the light of
 /// tenths of the brightness is further off (docs/decisions/0117).
 constexpr float kNoiseOfFew = 3;
 /// Share of its light by which the whole image may become brighter at most. More, as of lamps that

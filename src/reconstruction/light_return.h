@@ -31,8 +31,9 @@ enum class HalvesNoise : uint8_t {
 /// windows around, both relative to the light; s^2 is at least its own mean there. A window alone
 /// does not know its noise: where no rare path fell its samples look certain, where a few fell it
 /// looks lit (docs/decisions/0129). The whole image has no other around it, and gets James and
-/// Stein's factor (1 - k s^2 / L(e)^2)_+ for each channel. k is 1, of the whole image 0.1, and up
-/// to 3 where samples are few (docs/decisions/0117).
+/// Stein's factor (1 - k s^2 / L(e)^2)_+ for each channel. k is 1, of the whole image 0.1, 3
+/// with 4 samples per pixel, in between and beyond in proportion to 1 / n of n samples
+/// (docs/decisions/0117).
 ///
 /// In the narrowest windows and in the whole image s^2 = sum w^2 V, V the variance of L(raw). Wider
 /// windows have it from how far narrower ones scatter around their mean, less by as much as those
@@ -48,7 +49,8 @@ enum class HalvesNoise : uint8_t {
 class LightReturn {
   public:
     /// Keeps features and variances of the halves, with their holes filled, before outliers are
-    /// limited. `few` tells how few samples they have, from 0 to 1.
+    /// limited. `few` tells how few samples they have: 0 where they are enough, 1 with a quarter of
+    /// that, and so on in proportion to the variance of a pixel.
     explicit LightReturn(const Halves& halves, HalvesNoise noise = HalvesNoise::of_one_sequence,
                          float few = 0);
 

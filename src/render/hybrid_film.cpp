@@ -14,9 +14,10 @@ uint64_t hybrid_seed(uint64_t seed) {
 }
 
 uint32_t place_in_sequence(uint32_t half, uint32_t index) {
-    // Blocks have 2 samples at first, then as many as came before.
-    const uint32_t size = std::max(2u, std::bit_floor(index));
-    const uint32_t within = index < 2 ? index : index - size, begin = index < 2 ? 0 : 2 * size;
+    // Blocks have kFirstBlock samples at first, then as many as came before.
+    const bool first = index < kFirstBlock;
+    const uint32_t size = std::max(kFirstBlock, std::bit_floor(index));
+    const uint32_t within = first ? index : index - size, begin = first ? 0 : 2 * size;
     return half == 0 ? begin + within : begin + 2 * size - 1 - within;
 }
 
@@ -122,17 +123,32 @@ void fill(HalfBuffer& out, const Film& film) {
     });
 }
 
+/// Whether some pixel of a half has more than `count` samples.
+bool has_more_than(uint32_t count, const Film& half) {
+    return std::any_of(half.pixels.begin(), half.pixels.end(),
+                       [count](const FilmPixel& p) { return p.count > count; });
+}
+
+/// Halves of the pixels of one, each with every second one of them.
+Halves dealt(HalfBuffer whole) {
+    Halves halves{whole, std::move(whole)};
+    for (int k = 0; k < 2; ++k) {
+        Plane& count = halves[size_t(k)].count;
+        for (int y = 0; y < count.height; ++y)
+            for (int x = (y + 1 - k) % 2; x < count.width; x += 2) count(x, y) = 0;
+    }
+    return halves;
+}
+
 }  // namespace
 
 Halves halves_of(std::span<const Film> film) {
     const int w = film[0].bounds.width(), h = film[0].bounds.height();
     Halves halves{HalfBuffer(w, h), HalfBuffer(w, h)};
     parallel_for(2, [&](int64_t k) { fill(halves[size_t(k)], film[size_t(k)]); });
-    const auto repeated = [](const Film& half) {
-        return std::any_of(half.pixels.begin(), half.pixels.end(),
-                           [](const FilmPixel& p) { return p.count > 1; });
-    };
-    if (!repeated(film[0]) || !repeated(film[1])) {
+    const bool first_alone = !has_more_than(0, film[1]);
+    if (first_alone) halves = dealt(std::move(halves[0]));
+    if (!has_more_than(1, film[0]) || !(first_alone || has_more_than(1, film[1]))) {
         // A black hole would count as a difference.
         for (HalfBuffer& half : halves) fill_holes(half);
         set_variance_from_difference(halves);

@@ -24,8 +24,12 @@ uint64_t hybrid_seed(uint64_t seed);
 /// apart at other counts, too.
 uint32_t place_in_sequence(uint32_t half, uint32_t index);
 
-/// The halves as the reconstruction reads them. Where no pixel of a half has two samples, the
-/// variances come from the difference of the halves.
+/// Samples of a half's first block in the sequence of a pixel.
+inline constexpr uint32_t kFirstBlock = 2;
+
+/// The halves as the reconstruction reads them. Where the second one has no samples, as with one or
+/// two per pixel, both get the first one's pixels in turn, like a checkerboard. Where no pixel of a
+/// half has two samples, the variances come from the difference of the halves.
 Halves halves_of(std::span<const Film> halves);
 
 }  // namespace covtrace

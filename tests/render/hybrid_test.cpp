@@ -2,6 +2,7 @@
 // budgets.
 #include <gtest/gtest.h>
 
+#include "render/hybrid_film.h"
 #include "tests/render/fixtures.h"
 
 namespace covtrace {
@@ -68,6 +69,17 @@ TEST(Hybrid, IsNeverWorseThanThePathTracer) {
             plain += squared_error(render_text(kInside, uniform(spp, seed)).image, 0.8f);
         }
         EXPECT_LT(ours, plain) << spp << " samples per pixel";
+    }
+}
+
+TEST(Hybrid, OneSampleAndTwoAreThePathTracers) {
+    // Before the planner begins the points of all pixels together are the most even ones: at one
+    // sample and at two those of `uniform`, not of one block of the sequence here, another there.
+    for (const double spp : {1.0, 2.0, 4.0}) {
+        const Image ours = render_text(kInside, hybrid(spp, 3)).image,
+                    plain = render_text(kInside, uniform(spp, hybrid_seed(3))).image;
+        for (size_t i = 0; i < plain.pixel_count(); ++i)
+            ASSERT_NEAR(ours.rgb(i, "raw.").g, plain.rgb(i).g, 1e-5) << spp << " samples";
     }
 }
 

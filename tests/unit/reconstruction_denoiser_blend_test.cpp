@@ -166,9 +166,23 @@ TEST(DenoiserBlend, FeaturesOfFewSamplesAreNoDraft) {
     EXPECT_TRUE(denoiser.seen.draft);
 }
 
+TEST(DenoiserBlend, BelowThePilotItIsToldOfSamplesByTheirNumber) {
+    // Two samples of 0 in one half, one of 1 in the other; with more, one half has planned the
+    // other's number, and the halves count alike.
+    const AskedDenoiser denoiser;
+    Halves halves{HalfBuffer(kSize, kSize), HalfBuffer(kSize, kSize)};
+    for (const float times : {1.0f, 4.0f}) {
+        halves[0].count = Plane(kSize, kSize, 2 * times);
+        halves[1].count = Plane(kSize, kSize, 1 * times);
+        for (size_t c = 0; c < 3; ++c) halves[1].feature[c] = Plane(kSize, kSize, 1);
+        with(denoiser, halves);
+        EXPECT_FLOAT_EQ(denoiser.seen.albedo[0][0], times == 1 ? 1.0f / 3 : 0.5f);
+    }
+}
+
 TEST(DenoiserBlend, FewSamplesKeepLessOfRareLight) {
     // The denoiser leaves out what four pixels alone have seen, as a network does. Of 16 samples
-    // nearly all of that light comes back, of 4 a fourth.
+    // nearly all of that light comes back, of 4 a fourth, of 2 nothing.
     constexpr float kLight = 60;
     const auto light_of = [&](float samples_of_half) {
         Halves halves = noisy_halves(
@@ -189,6 +203,7 @@ TEST(DenoiserBlend, FewSamplesKeepLessOfRareLight) {
     constexpr double kAll = 4 * kLight / (kSize * kSize);
     EXPECT_GT(light_of(8), 0.9 * kAll);
     EXPECT_LT(light_of(2), 0.5 * kAll);
+    EXPECT_LT(light_of(1), 0.05 * kAll);
 }
 
 TEST(DenoiserBlend, OneThatFailsIsLeftOut) {

@@ -100,6 +100,8 @@ TEST(LightReturn, FewSamplesGiveLessOfWhatFewPlacesHave) {
     EXPECT_GT(given(1), 0.1 * kLacking);
     EXPECT_LT(given(1), 0.3 * kLacking);
     EXPECT_GT(given(0.3f), given(0.6f));
+    // Beyond 4 times the noise the sum tells nothing
+    EXPECT_LT(given(2), 0.02 * kLacking);
 }
 
 TEST(LightReturn, NothingBecomesNegative) {

@@ -12,24 +12,49 @@
 namespace covtrace {
 namespace {
 
-TEST(HybridFilm, OneSamplePerPixelOfWhatIsEvenHasNoNoise) {
-    // The films are as with --spp 1: every pixel is known to one of the halves, in turn.
-    constexpr int kSize = 24;
-    std::vector<Film> films(2, Film({0, 0, kSize, kSize}, film_parts(Method::hybrid)));
+constexpr int kSize = 24;
+
+/// Films of both halves without samples.
+std::vector<Film> empty_films() {
+    return std::vector<Film>(2, Film({0, 0, kSize, kSize}, film_parts(Method::hybrid)));
+}
+
+FilmSample grey_sample(float radiance) {
     FilmSample sample;
-    sample.radiance = sample.features.albedo = Rgb(0.8f, 0.5f, 0.2f);
+    sample.radiance = sample.features.albedo = Rgb(radiance);
     sample.features.normal = {0, 0.6f, 0.8f};
     sample.hit = true;
     sample.depth = sample.features.depth = 7;
-    for (int y = 0; y < kSize; ++y)
-        for (int x = 0; x < kSize; ++x)
-            films[size_t(x + y) % 2].add(size_t(y) * kSize + size_t(x), sample);
+    return sample;
+}
+
+TEST(HybridFilm, OneSamplePerPixelOfWhatIsEvenHasNoNoise) {
+    // The films are as with --spp 1: the first half knows all pixels.
+    std::vector<Film> films = empty_films();
+    for (size_t i = 0; i < size_t(kSize * kSize); ++i) films[0].add(i, grey_sample(0.8f));
     for (const HalfBuffer& half : halves_of(films)) {
         for (const Plane& variance : half.color_variance)
             for (float v : variance.values) ASSERT_NEAR(v, 0, 1e-9);
         for (const Plane& variance : half.feature_variance)
             for (float v : variance.values) ASSERT_NEAR(v, 0, 1e-9);
     }
+}
+
+TEST(HybridFilm, PixelsOfTheFirstHalfAloneAreDealtToBoth) {
+    // Each pixel has samples of 0 and of 1, as with --spp 2.
+    std::vector<Film> films = empty_films();
+    for (size_t i = 0; i < size_t(kSize * kSize); ++i)
+        for (const float radiance : {0.0f, 1.0f}) films[0].add(i, grey_sample(radiance));
+    const Halves halves = halves_of(films);
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            const size_t owner = size_t(x + y) % 2;
+            EXPECT_EQ(halves[owner].count(x, y), 2);
+            EXPECT_EQ(halves[1 - owner].count(x, y), 0);
+            EXPECT_EQ(halves[owner].color[0](x, y), 0.5f);
+            // The samples of a pixel tell its noise, not what it differs by from its neighbours
+            EXPECT_NEAR(halves[owner].color_variance[0](x, y), 0.25f, 1e-5);
+        }
 }
 
 TEST(HybridSeed, IsTheOneThatMeasurementsTakeForTheSameSamples) {

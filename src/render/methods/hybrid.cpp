@@ -71,9 +71,11 @@ class HybridRender {
         return std::min({kPilot, most, job_.target_spp.value_or(kPilot)});
     }
 
-    /// Counts of half k that give every pixel `spp` samples of both halves together. Odd samples go
-    /// to the halves in turn, along rows and from row to row: like a checkerboard where all pixels
-    /// have one.
+    /// Counts of half k that give every pixel `spp` samples of both halves together. The first
+    /// kFirstBlock samples of a pixel are the first half's, as they are in the sequence: at one
+    /// sample and at two all pixels together have its most even points then. Beyond both halves'
+    /// first blocks odd samples go to the halves in turn, along rows and from row to row: like a
+    /// checkerboard where all pixels have one.
     std::vector<uint32_t> share_between_halves(size_t k, double spp) const {
         std::vector<uint32_t> counts = job_.even_counts(spp);
         const size_t w = size_t(job_.region.width());
@@ -81,6 +83,11 @@ class HybridRender {
         for (size_t begin = 0; begin < counts.size(); begin += w) {
             size_t turn = rows;
             for (size_t i = begin; i < begin + w; ++i) {
+                if (counts[i] <= 2 * kFirstBlock) {
+                    const uint32_t first = std::min(counts[i], kFirstBlock);
+                    counts[i] = k == 0 ? first : counts[i] - first;
+                    continue;
+                }
                 const bool odd = counts[i] % 2 == 1;
                 counts[i] = counts[i] / 2 + (odd && turn % 2 == k ? 1 : 0);
                 turn += odd ? 1 : 0;
@@ -90,17 +97,9 @@ class HybridRender {
         return counts;
     }
 
-    /// Covariance paths of half k. They are samples, too: the odd one goes to the half for which
-    /// the pilot plans more.
+    /// Covariance paths of half k. They are samples, too.
     std::vector<uint32_t> paths_of(size_t k) const {
-        std::vector<uint32_t> counts = share_between_halves(k, s_.covariance_spp);
-        const std::vector<uint32_t> both = job_.even_counts(s_.covariance_spp),
-                                    own = share_between_halves(k, pilot()),
-                                    other = share_between_halves(1 - k, pilot());
-        for (size_t i = 0; i < counts.size(); ++i)
-            if (both[i] % 2 == 1 && own[i] != other[i])
-                counts[i] = both[i] / 2 + (own[i] > other[i] ? 1 : 0);
-        return counts;
+        return share_between_halves(k, s_.covariance_spp);
     }
 
     bool plan() {
@@ -109,7 +108,7 @@ class HybridRender {
                 std::vector<uint32_t> first = paths_of(0);
                 for (uint32_t& c : first) c = std::min(c, 1u);
                 s_.plan = {std::move(first), std::vector<uint32_t>(size(), 0)};
-                s_.target = std::min(1.0, 0.5 * s_.covariance_spp);
+                s_.target = std::min(1.0, s_.covariance_spp);
                 return true;
             }
             case Stage::pilot:
