@@ -1,4 +1,4 @@
-/// The factor that brings a dim image to the brightness at which people look at it.
+/// Factors that bring an image to the brightness at which people look at it.
 #pragma once
 
 #include "core/plane.h"
@@ -16,5 +16,15 @@ namespace covtrace {
 /// `luminance`: any noise, as the means of blocks keep the light of rare samples; pixels that are
 /// not finite, and blocks without light, are left out.
 float display_exposure(const Plane& luminance);
+
+/// Brightness in units of a display's white beyond which nothing is light: squares of what is
+/// below, and of its noise, stay within single precision.
+constexpr float kBrightestShown = 1e15f;
+
+/// Returns the power of two, without bounds, for an image that may be in any units. For dim images
+/// it is that of `display_exposure`; bright ones are brought down: 1 up to a brightness of 16,
+/// from 640 on to between 0.2 and 0.4, in between falling with the square.
+/// `luminance`: as above. The factor is a normal number.
+float exposure_of_unknown_units(const Plane& luminance);
 
 }  // namespace covtrace

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/display_exposure.h"
 #include "core/error.h"
 #include "foreign/image_halves.h"
 #include "foreign/noise_correlation.h"
@@ -17,10 +18,6 @@
 namespace covtrace {
 
 namespace {
-
-/// Median luminances between which an image is taken as it is. Dark is what is below 0.1 for the
-/// reconstruction and for the measures of `compare`, as renders have it whose exposure is for eyes.
-constexpr float kDarkest = 1 / 16.0f, kBrightest = 16;
 
 /// Correlation of neighbours' noise from which on pixels share samples. Of images with noise of
 /// their own it is within 0.03 of 0, of 128x96 pixels.
@@ -76,37 +73,23 @@ void require_variance(const NamedImage& named, const SampledImage& s) {
                     named.name + " has the variance of one sample; expected the samples per pixel");
 }
 
-float median_luminance(const Halves& halves) {
-    std::vector<float> bright;
-    for (size_t i = 0; i < halves[0].count.size(); ++i) {
-        Rgb c;
-        for (size_t k = 0; k < 3; ++k)
-            c[int(k)] = 0.5f * (halves[0].color[k][i] + halves[1].color[k][i]);
-        bright.push_back(luminance(c));
-    }
-    const auto middle = bright.begin() + std::ptrdiff_t(bright.size() / 2);
-    std::nth_element(bright.begin(), middle, bright.end());
-    if (*middle > 0) return *middle;
-    double sum = 0;
-    for (float v : bright) sum += double(v);
-    const double mean = sum / double(bright.size());
-    return mean > 0 ? float(mean) : 1.0f;
-}
-
-/// A power of two that brings the image's brightness near 1 where it is far from it, else 1.
-float exposure_of(const Halves& halves) {
-    const float median = median_luminance(halves);
-    if (median >= kDarkest && median <= kBrightest) return 1;
-    return std::exp2(-std::round(std::log2(median)));
-}
-
-void scale_by(float scale, Halves& halves) {
-    for (HalfBuffer& half : halves)
-        for (size_t k = 0; k < 3; ++k)
-            for (size_t i = 0; i < half.count.size(); ++i) {
-                half.color[k][i] *= scale;
-                half.color_variance[k][i] *= scale * scale;
+/// The exposure of the images' mean, the same for all of them.
+float exposure_of(std::span<const SampledImage> images) {
+    Plane mean(images[0].image.width(), images[0].image.height());
+    for (size_t i = 0; i < mean.size(); ++i) {
+        double sum = 0;
+        int known = 0;
+        for (const SampledImage& s : images) {
+            Rgb c;
+            for (size_t k = 0; k < 3; ++k) c[int(k)] = s.layers.color[k]->values[i];
+            if (const float y = luminance(c); std::isfinite(y)) {
+                sum += double(y);
+                ++known;
             }
+        }
+        mean[i] = known > 0 ? float(sum / known) : 0.0f;
+    }
+    return exposure_of_unknown_units(mean);
 }
 
 void add(Image& image, std::string name, std::vector<float> values) {
@@ -146,9 +129,12 @@ double samples_per_pixel(const Halves& halves) {
     return count / double(halves[0].count.size());
 }
 
-void add_channels(ColorPlanes planes, const std::string& layer, float scale, Image& image) {
+/// Adds the layer in the units of the images: divided by the exposure, of variances twice.
+void add_channels(ColorPlanes planes, const std::string& layer, float exposure, Image& image,
+                  int power = 1) {
     for (size_t k = 0; k < 3; ++k) {
-        for (float& v : planes[k].values) v *= scale;
+        for (float& v : planes[k].values)
+            for (int times = 0; times < power; ++times) v /= exposure;
         add(image, layer + "RGB"[k], std::move(planes[k].values));
     }
 }
@@ -180,15 +166,17 @@ void warn_of_missing_features(const FoundLayers& layers, DenoisedImage& result) 
              "no layer is known as " + missing + ": edges and textures keep more noise without"});
 }
 
-/// Halves of one image or of two, which are checked.
-ImageHalves halves_of(std::span<const NamedImage> images, std::span<const SampledImage> samples) {
+/// Halves of one image or of two, which are checked and exposed.
+ImageHalves halves_of(std::span<const NamedImage> images, std::span<SampledImage> samples) {
     if (images.size() == 1) {
         require_variance(images[0], samples[0]);
-        return halves_of_one(samples[0]);
+    } else {
+        require_same_window(images[0], images[1]);
+        require_other_noise(images[0], samples[0].layers, images[1], samples[1].layers);
     }
-    require_same_window(images[0], images[1]);
-    require_other_noise(images[0], samples[0].layers, images[1], samples[1].layers);
-    return halves_of_two(samples[0], samples[1]);
+    const float exposure = exposure_of(samples);
+    for (SampledImage& s : samples) s.exposure = exposure;
+    return images.size() == 1 ? halves_of_one(samples[0]) : halves_of_two(samples[0], samples[1]);
 }
 
 }  // namespace
@@ -207,7 +195,7 @@ DenoisedImage denoise(std::span<const NamedImage> images, const DenoiseOptions& 
     if (lost > 0)
         result.warnings.push_back({{},
                                    std::to_string(lost) + " pixel" + (lost == 1 ? " is" : "s are") +
-                                       " not finite: lost samples"});
+                                       " not finite, or beyond all light: lost samples"});
     Image& image = result.image;
     image.data = images[0].image.data;
     image.display = images[0].image.display;
@@ -216,8 +204,10 @@ DenoisedImage denoise(std::span<const NamedImage> images, const DenoiseOptions& 
 
     ColorPlanes raw = mean_of(halves[0].color, halves[1].color),
                 variance = mean_of(halves[0].color_variance, halves[1].color_variance);
-    const float scale = exposure_of(halves);
-    scale_by(scale, halves);
+    // The mean of both halves has half the variance of each
+    for (Plane& channel : variance)
+        for (float& v : channel.values) v *= 0.5f;
+    const float exposure = samples[0].exposure;
     HybridSettings settings;
     settings.denoiser = options.denoiser;
     settings.noise = HalvesNoise::independent;
@@ -231,12 +221,11 @@ DenoisedImage denoise(std::span<const NamedImage> images, const DenoiseOptions& 
         image.metadata["covtrace:denoiser"] = options.denoiser->name();
 
     result.error = relative_error(mixed);
-    add_channels(std::move(mixed.color), "", 1 / scale, image);
+    add_channels(std::move(mixed.color), "", exposure, image);
     add_alpha(images, image);
-    add_channels(std::move(raw), "raw.", 1, image);
-    // The mean of both halves has half the variance of each
-    add_channels(std::move(variance), "variance.", 0.5f, image);
-    for (float& v : mixed.variance.values) v = std::sqrt(v) / scale;
+    add_channels(std::move(raw), "raw.", exposure, image);
+    add_channels(std::move(variance), "variance.", exposure, image, 2);
+    for (float& v : mixed.variance.values) v = std::sqrt(v) / exposure;
     add(image, "error.Y", std::move(mixed.variance.values));
     replace_nonfinite(image);
     return result;

@@ -36,8 +36,8 @@ struct DenoisedImage {
 
 /// Reconstructs one picture from two renders of it with noise of their own, or from one whose
 /// variance is known (ImageHalves). There is no prediction: the candidates are the raw pixels,
-/// regressions in plain windows, and the denoiser's. Images whose brightness is far from 1 are
-/// scaled meanwhile.
+/// regressions in plain windows, and the denoiser's. Images whose brightness is far from that of
+/// displays are brought there meanwhile (core/display_exposure.h): the units do not matter.
 ///
 /// Throws Error(usage), which names the image: layers that are missing, sizes that differ, two
 /// images with the same pixels, no pixel that is finite, one image without variance, no image or

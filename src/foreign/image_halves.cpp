@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/display_exposure.h"
 #include "core/hash.h"
 #include "core/vec.h"
 
@@ -22,6 +23,18 @@ bool is_finite(const LayerChannels& channels, size_t i) {
 
 bool is_finite(const std::optional<LayerChannels>& channels, size_t i) {
     return !channels || is_finite(*channels, i);
+}
+
+/// Whether light can be reckoned with: infinite and undefined values cannot.
+bool is_light(const Rgb& exposed) {
+    return std::abs(exposed.r) <= kBrightestShown && std::abs(exposed.g) <= kBrightestShown &&
+           std::abs(exposed.b) <= kBrightestShown;
+}
+
+Rgb exposed_color(const SampledImage& s, size_t i) {
+    Rgb c;
+    for (size_t k = 0; k < 3; ++k) c[int(k)] = s.exposure * s.layers.color[k]->values[i];
+    return c;
 }
 
 /// The logarithm of the distance, as the reconstruction has it: 0 where nothing is seen.
@@ -49,13 +62,13 @@ HalfBuffer half_of(const SampledImage& s) {
     const FoundLayers& layers = s.layers;
     HalfBuffer half(s.image.width(), s.image.height());
     for (size_t i = 0; i < half.count.size(); ++i) {
-        if (!is_finite(layers.color, i) || !is_finite(layers.albedo, i) ||
-            !is_finite(layers.normal, i))
+        const Rgb color = exposed_color(s, i);
+        if (!is_light(color) || !is_finite(layers.albedo, i) || !is_finite(layers.normal, i))
             continue;
         const float samples = samples_of(s, i);
         half.count[i] = std::isfinite(samples) ? std::max(0.0f, samples) : 0.0f;
         for (size_t k = 0; k < 3; ++k) {
-            half.color[k][i] = layers.color[k]->values[i];
+            half.color[k][i] = color[int(k)];
             if (layers.albedo) half.feature[k][i] = (*layers.albedo)[k]->values[i];
             if (layers.normal) half.feature[3 + k][i] = (*layers.normal)[k]->values[i];
         }
@@ -70,13 +83,15 @@ HalfBuffer half_of(const SampledImage& s) {
 /// seem to be without noise.
 ColorPlanes variance_of(const SampledImage& s, const Plane& count) {
     constexpr int kReach = 3;
+    const float most = sqr(kBrightestShown);
     ColorPlanes variance;
     for (size_t k = 0; k < 3; ++k) {
         Plane v(count.width, count.height);
         for (size_t i = 0; i < v.size(); ++i) {
             const float value = (*s.layers.variance)[k]->values[i];
             const float samples = s.layers.is_variance_of_one ? std::max(1.0f, count[i]) : 1.0f;
-            v[i] = std::isfinite(value) ? std::max(0.0f, value) / samples : 0.0f;
+            const float exposed = std::min(value / samples * s.exposure * s.exposure, most);
+            v[i] = count[i] > 0 && std::isfinite(value) ? std::max(0.0f, exposed) : 0.0f;
         }
         const Plane around = box_blur(v, kReach);
         for (size_t i = 0; i < v.size(); ++i) {

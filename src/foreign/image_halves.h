@@ -13,18 +13,21 @@ struct SampledImage {
     const Image& image;
     FoundLayers layers;
     std::optional<float> samples;  ///< samples per pixel; empty: those of its layer, or not known
+    float exposure = 1;            ///< by which the halves' light is multiplied; a power of two
 };
 
 struct ImageHalves {
     Halves halves;
-    int lost =
-        0;  ///< pixels without finite values in any image; in the halves they have no samples
+    /// Pixels without finite values in any image, or brighter than kBrightestShown
+    /// (core/display_exposure.h) when exposed; in the halves they have no samples.
+    int lost = 0;
     bool are_samples_known = false;  ///< whether the counts are those of the images
 };
 
 /// Makes halves of two renders of one picture with noise of their own. Variances are those of the
 /// images where both have them, else those that the difference suggests. Pixels whose colour,
-/// albedo or normal is not finite count as lost samples. Both images have the same size.
+/// albedo or normal is not finite count as lost samples. Both images have the same size and
+/// exposure.
 ImageHalves halves_of_two(const SampledImage& a, const SampledImage& b);
 
 /// Makes halves of one image whose variance V is known: image + sqrt(V) z and image - sqrt(V) z, z

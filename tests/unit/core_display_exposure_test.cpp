@@ -1,4 +1,5 @@
-// Dim images are brought to the brightness of displays, images in usual units stay as they are.
+// Dim images are brought to the brightness of displays, images in usual units stay as they are; of
+// unknown units bright ones are, too.
 #include "core/display_exposure.h"
 
 #include <gtest/gtest.h>
@@ -72,6 +73,32 @@ TEST(DisplayExposure, KeepsTheSquaresOfLampsFinite) {
         if (lamp == 1e9f) EXPECT_EQ(factor, 0x1p19f);
         if (lamp > 1e15f) EXPECT_EQ(factor, 1) << lamp;
     }
+}
+
+TEST(DisplayExposure, OfUnknownUnitsIsTheSameForDimImages) {
+    for (float brightness = 10; brightness > 1e-6f; brightness *= 0.9f)
+        EXPECT_EQ(exposure_of_unknown_units(Plane(kSize, kSize, brightness)),
+                  of_constant(brightness));
+    EXPECT_EQ(exposure_of_unknown_units(Plane(kSize, kSize, 0)), 1);
+}
+
+TEST(DisplayExposure, OfUnknownUnitsHasNoBounds) {
+    float before = 1;
+    for (float brightness = 15; brightness < 1e37f; brightness *= 1.1f) {
+        const float factor = exposure_of_unknown_units(Plane(kSize, kSize, brightness));
+        EXPECT_EQ(std::exp2(std::round(std::log2(factor))), factor);
+        EXPECT_LE(factor, before);
+        EXPECT_GE(factor, before / 4);
+        EXPECT_GT(factor * brightness, 0.2f * 0.999f) << brightness;
+        if (brightness > 640) EXPECT_LE(factor * brightness, 0.4f * 1.001f) << brightness;
+        before = factor;
+    }
+    Plane dim(kSize, kSize, 1e-30f);
+    dim(20, 30) = 1e33f;
+    const float factor = exposure_of_unknown_units(dim);
+    EXPECT_GT(factor * 1e-30f, 0.2f * 0.999f);
+    EXPECT_LE(factor * 1e-30f, 0.4f * 1.001f);
+    EXPECT_EQ(exposure_of_unknown_units(Plane(kSize, kSize, 1e-44f)), 0x1p127f);
 }
 
 TEST(DisplayExposure, LeavesOutWhatIsNoNumber) {

@@ -90,12 +90,48 @@ TEST(Denoise, RawAndVarianceAreOfTheImagesThemselves) {
 
 TEST(Denoise, BrightnessDoesNotMatter) {
     const double at_one = relative_error(denoise(two()).image);
-    for (float scale : {1e-5f, 3e4f}) {
-        const DenoisedImage d = denoise(two({.scale = scale}));
-        EXPECT_LT(relative_error(d.image, scale), 1.15 * at_one);
-        EXPECT_GT(d.error, at_one / 1.6);
-        EXPECT_LT(d.error, at_one * 1.6);
+    for (float scale : {1e-30f, 1e-6f, 3e4f, 1e6f, 1e30f}) {
+        // A picture's variance is far beyond single precision where it is of 1e30 or 1e-30.
+        std::vector<NamedImage> images = two({.scale = scale});
+        for (NamedImage& named : images) remove_channels(named.image, "variance");
+        const DenoisedImage d = denoise(images);
+        EXPECT_LT(relative_error(d.image, scale), 1.15 * at_one) << scale;
+        EXPECT_GT(d.error, at_one / 1.6) << scale;
+        EXPECT_LT(d.error, at_one * 1.6) << scale;
+        for (const Channel& c : d.image.channels)
+            for (float v : c.values) ASSERT_TRUE(std::isfinite(v)) << scale << c.name;
     }
+}
+
+TEST(Denoise, UnitsChangeNoBitButTheExponents) {
+    for (float scale : {1e-6f, 1e6f}) {
+        const float other = 0x1p-9f * scale;
+        const Image a = denoise(two({.scale = scale})).image,
+                    b = denoise(two({.scale = scale < 1 ? other : scale * 0x1p9f})).image;
+        const float ratio = scale < 1 ? 0x1p-9f : 0x1p9f;
+        for (const char* name : {"R", "G", "B", "raw.R", "error.Y"})
+            for (size_t i = 0; i < a.pixel_count(); ++i)
+                ASSERT_EQ(b.find(name)->values[i], ratio * a.find(name)->values[i]) << name;
+    }
+}
+
+TEST(Denoise, PixelsBeyondAllLightAreLost) {
+    for (float scale : {1e-6f, 1.0f, 1e6f})
+        for (float beyond : {1e33f, -1e33f, 3e38f}) {
+            std::vector<NamedImage> images = two({.scale = scale});
+            images[0].image.channels[1].values[20 * kWidth + 30] = beyond;
+            images[0].image.channels[4].values[20 * kWidth + 30] = 3e38f;  // its variance
+            const DenoisedImage d = denoise(images);
+            for (const Channel& c : d.image.channels)
+                for (float v : c.values)
+                    ASSERT_LT(std::abs(v), 1e3f * scale * std::max(1.0f, scale)) << c.name;
+            EXPECT_LT(relative_error(d.image, scale), 0.08) << scale;
+            ASSERT_EQ(d.warnings.size(), 1u);
+            EXPECT_NE(d.warnings[0].text.find("1 pixel is not finite, or beyond all light"),
+                      std::string::npos);
+            images.pop_back();
+            EXPECT_LT(relative_error(denoise(images).image, scale), 0.13) << scale;
+        }
 }
 
 TEST(Denoise, LostPixelsAreFilled) {
@@ -109,7 +145,7 @@ TEST(Denoise, LostPixelsAreFilled) {
         for (float v : c.values) ASSERT_TRUE(std::isfinite(v)) << c.name;
     EXPECT_LT(relative_error(d.image), 0.08);
     ASSERT_EQ(d.warnings.size(), 1u);
-    EXPECT_EQ(d.warnings[0].text, "3 pixels are not finite: lost samples");
+    EXPECT_EQ(d.warnings[0].text, "3 pixels are not finite, or beyond all light: lost samples");
 }
 
 TEST(Denoise, KeepsWindowsAlphaAndCamera) {
