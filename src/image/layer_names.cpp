@@ -89,14 +89,16 @@ void restore_layer_names(Image& image) {
         for (Channel& c : image.channels) c.name = translate(c.name, kPbrt, true).value_or(c.name);
         return;
     }
-    constexpr std::string_view kCombined = ".Combined.R";
-    for (const Channel& first : image.channels) {
-        if (!first.name.ends_with(kCombined)) continue;
-        const std::string layer = first.name.substr(0, first.name.size() - kCombined.size() + 1);
-        for (Channel& c : image.channels)
-            if (c.name.starts_with(layer)) c.name = name_from_blender(c.name.substr(layer.size()));
-        return;
-    }
+    // A file's first part, mostly Combined, has no layer's name: that is found by another pass
+    for (const std::string_view known : {".Combined.R", ".Denoising Albedo.R"})
+        for (const Channel& first : image.channels) {
+            if (!first.name.ends_with(known)) continue;
+            const std::string layer = first.name.substr(0, first.name.size() - known.size() + 1);
+            for (Channel& c : image.channels)
+                if (c.name.starts_with(layer))
+                    c.name = name_from_blender(c.name.substr(layer.size()));
+            return;
+        }
 }
 
 }  // namespace covtrace

@@ -27,8 +27,8 @@ inline constexpr auto kEnumNames<LayerNames> =
 /// Renames the channels of an image that has our own names.
 void rename_layers(Image& image, LayerNames names);
 
-/// Restores our own names, for images in either convention, which is recognised by "Albedo.R" or by
-/// "….Combined.R"; other images stay as they are.
+/// Restores our own names, for images in either convention, which is recognised by "Albedo.R", by
+/// "….Combined.R" or by "….Denoising Albedo.R"; other images stay as they are.
 void restore_layer_names(Image& image);
 
 }  // namespace covtrace

@@ -9,6 +9,7 @@ import numpy
 
 import covtrace
 
+RENDERS = pathlib.Path(__file__).parents[1] / "foreign"
 HEIGHT, WIDTH = 40, 56
 Y, X = numpy.indices((HEIGHT, WIDTH))
 FLAT = numpy.where((X // 7 + Y // 7) % 2, 0.8, 0.2)
@@ -66,6 +67,25 @@ class Denoise(unittest.TestCase):
         image = denoised(noisy(3), ALBEDO, NORMAL, DEPTH, VARIANCE, samples=16)
         self.assertLess(error(image), 0.16)  # of 0.38
         self.assertLess(abs(numpy.log(image.statistics["error"] / error(image))), numpy.log(1.7))
+
+    def test_files_of_mitsuba_and_cycles(self):
+        for name, reference in (("mitsuba", "mitsuba"), ("cycles", "cycles"), ("cycles-denoised", "cycles")):
+            with self.subTest(name), warnings.catch_warnings():
+                warnings.simplefilter("error")  # all layers are found
+                image = denoised([RENDERS / f"{name}-1.exr", RENDERS / f"{name}-2.exr"])
+                truth = covtrace.Image.read(RENDERS / f"{reference}-reference.exr")
+                left = covtrace.compare(image, truth).relmse
+                self.assertLess(left, 0.65 * covtrace.compare(image["raw"], truth).relmse)  # it leaves 0.51 to 0.58
+                self.assertLess(abs(numpy.log(image.statistics["error"] / numpy.sqrt(left))), numpy.log(1.5))
+                self.assertGreater(image["error"].min(), 0)
+
+    def test_units_do_not_matter(self):
+        expected = error(denoised([noisy(1), noisy(2)], ALBEDO, NORMAL, DEPTH))
+        for scale in (1e-30, 1e-6, 1e6, 1e30):
+            with self.subTest(scale):
+                image = denoised([noisy(1) * scale, noisy(2) * scale], ALBEDO, NORMAL, DEPTH)
+                left = numpy.sqrt((((image.rgb / scale - TRUTH) ** 2) / (TRUTH ** 2 + 0.01)).mean())
+                self.assertLess(left, 1.1 * expected)
 
     def test_what_is_refused(self):
         a, b = noisy(1), noisy(2)

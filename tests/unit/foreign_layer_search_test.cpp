@@ -126,6 +126,19 @@ TEST(LayerSearch, KnowsCycles) {
     EXPECT_EQ(find_layers(image, {}, "a").samples_unit, 128);
 }
 
+TEST(LayerSearch, KnowsCyclesInParts) {
+    // Each pass is a part of the file that is named by it; the reader leaves out the first's name.
+    const Names names =
+        found_in(image_with({"R", "G", "B", "A", "ViewLayer.Denoising Albedo.R",
+                             "ViewLayer.Denoising Albedo.G", "ViewLayer.Denoising Albedo.B",
+                             "ViewLayer.Denoising Normal.X", "ViewLayer.Denoising Normal.Y",
+                             "ViewLayer.Denoising Normal.Z", "ViewLayer.Denoising Depth.Z"}));
+    EXPECT_EQ(names.color, "R G B");
+    EXPECT_EQ(names.albedo, "albedo.R albedo.G albedo.B");
+    EXPECT_EQ(names.normal, "N.X N.Y N.Z");
+    EXPECT_EQ(names.depth, "Denoising Depth.Z");
+}
+
 TEST(LayerSearch, TakesOurNoisyPixelsAndWhatMirrorsShow) {
     const Names names = found_in(
         image_with({"R", "G", "B", "raw.R", "raw.G", "raw.B", "N.X", "N.Y", "N.Z", "featureN.X",
