@@ -56,6 +56,12 @@ struct Affine {
         r.translation = {a.m[0][3], a.m[1][3], a.m[2][3]};
         return r;
     }
+    Matrix4 matrix() const {
+        Matrix4 a;
+        for (size_t i = 0; i < 3; ++i) a.m[i] = {row[i].x, row[i].y, row[i].z, 0};
+        a.m[0][3] = translation.x, a.m[1][3] = translation.y, a.m[2][3] = translation.z;
+        return a;
+    }
     Vec3d vector(Vec3d v) const { return {dot(row[0], v), dot(row[1], v), dot(row[2], v)}; }
     Vec3d point(Vec3d p) const { return vector(p) + translation; }
     /// The vector v under the transpose of the linear part: covectors pulled back, or normals under
@@ -82,6 +88,8 @@ struct Affine {
         r.translation = r.vector(translation) * -1.0;
         return r;
     }
+    /// The same map as a Transform, with its inverse; the linear part must be regular.
+    Transform to_transform() const { return {matrix(), inverse().matrix()}; }
     /// Bound on the components of L v: |L| |v| with absolute values throughout.
     Vec3d absolute(Vec3d v) const {
         return {dot(abs(row[0]), v), dot(abs(row[1]), v), dot(abs(row[2]), v)};

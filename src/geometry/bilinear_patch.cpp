@@ -1,9 +1,26 @@
 #include "geometry/bilinear_patch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "geometry/rounding.h"
+
 namespace covtrace {
+
+namespace {
+
+double largest(Vec3d v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+}  // namespace
+
+bool is_parallelogram(const BilinearPatch& p) {
+    const double coordinate =
+        std::max({largest(p.p00), largest(p.p10), largest(p.p01), largest(p.p11)});
+    return largest(p.twist()) <= 8 * kHalfUlp * coordinate;
+}
 
 bool intersect_patch(const BilinearPatch& patch, Vec3d origin, Vec3d direction, double t_min,
                      double t_max, PatchHit& hit) {

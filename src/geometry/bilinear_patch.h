@@ -17,6 +17,10 @@ struct BilinearPatch {
     Vec3d twist() const { return p00 - p10 - p01 + p11; }
 };
 
+/// Whether a patch that was given in single precision has no more twist than its roundings leave:
+/// where all of a mesh's have not, rays meet the two triangles of each.
+bool is_parallelogram(const BilinearPatch& patch);
+
 struct PatchHit {
     double t = 0, u = 0, v = 0;
 };

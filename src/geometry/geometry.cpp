@@ -43,8 +43,9 @@ void place(SurfacePoint& point, const Affine& world_from_local, const Affine& lo
     point.error *= std::sqrt(std::max(
         {dot(map.row[0], map.row[0]), dot(map.row[1], map.row[1]), dot(map.row[2], map.row[2])}));
     point.position = map.point(point.position);
-    point.error += instance_error(map, local_from_world, point.position);
     point.ng = normalize(map.normal(point.ng));
+    point.error += kMostInstanceRoundings * instance_rounding(map, local_from_world, point.ng,
+                                                              point.position, point.position);
     point.ns = normalize(map.normal(point.ns));
     if (dot(point.ng, point.ns) < 0) point.ns = point.ns * -1.0;
     point.dpdu = map.vector(point.dpdu);
@@ -203,7 +204,7 @@ bool Geometry::Impl::meets_any(const Ray& ray, unsigned mask) const {
 }
 
 Vec3 Geometry::offset_origin(const SurfaceHit& hit, Vec3 direction) {
-    return off_surface(hit.position, hit.ng, hit.position_error, direction);
+    return off_surface(Vec3d(hit.position), hit.ng, double(hit.position_error), direction);
 }
 
 const std::vector<PlacedShape>& Geometry::shapes() const {
@@ -223,12 +224,22 @@ WorldTriangle Geometry::world_triangle(uint32_t shape, uint32_t triangle, float 
         w = triangle % 2 == 0 ? WorldTriangle{p[i[0]], p[i[1]], p[i[2]]}
                               : WorldTriangle{p[i[3]], p[i[2]], p[i[1]]};
     }
-    if (!Motion{nullptr, &impl_->placed[shape].description.object_to_world}.moves(
-            impl_->clock.open(), impl_->clock.close()))
-        return w;
+    if (!moves(shape)) return w;
     const float clamped = std::clamp(time, impl_->clock.open(), impl_->clock.close());
     const Transform map = impl_->placed[shape].description.object_to_world.at(clamped);
     return {map.point(w.p0), map.point(w.p1), map.point(w.p2)};
+}
+
+bool Geometry::moves(uint32_t shape) const {
+    return Motion{nullptr, &impl_->placed[shape].description.object_to_world}.moves(
+        impl_->clock.open(), impl_->clock.close());
+}
+
+Affine Geometry::world_from_object(uint32_t shape, float time) const {
+    const int instance = impl_->instance_of_shape[shape];
+    if (instance >= 0)
+        return impl_->world_from_local(impl_->instances[static_cast<size_t>(instance)], time);
+    return Affine::from_matrix(impl_->placed[shape].description.object_to_world.matrix_at(time));
 }
 
 const std::string& Geometry::isa() const {
@@ -259,7 +270,8 @@ size_t Geometry::embree_memory() const {
 size_t Geometry::memory() const {
     size_t bytes = impl_->placed.capacity() * sizeof(PlacedShape) +
                    impl_->local.capacity() * sizeof(LocalShape) +
-                   impl_->instances.capacity() * sizeof(EmbreeInstance);
+                   impl_->instances.capacity() * sizeof(EmbreeInstance) +
+                   impl_->instance_of_shape.capacity() * sizeof(int);
     for (const LocalShape& shape : impl_->local) {
         if (const auto* mesh = std::get_if<TriangleShape>(&shape))
             bytes += mesh->positions.capacity() * sizeof(Vec3);

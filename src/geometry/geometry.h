@@ -13,6 +13,8 @@
 
 namespace covtrace {
 
+struct Affine;
+
 /// A shape as it stands in the scene.
 struct PlacedShape {
     /// The shape, whose object_to_world places it over time. Objects of instances keep their
@@ -99,6 +101,11 @@ class Geometry {
     /// Corners of a mesh's triangle (or of half a patch: halves 2i and 2i+1 of patch i), at `time`.
     /// Not for instanced shapes.
     WorldTriangle world_triangle(uint32_t shape, uint32_t triangle, float time) const;
+    /// Whether a shape moves while the shutter is open. Not for instanced shapes.
+    bool moves(uint32_t shape) const;
+    /// The map from a shape's own space to the world at `time`, as rays find it: for what moves, it
+    /// has the roundings of Embree's way from pose to pose. Not for instanced shapes.
+    Affine world_from_object(uint32_t shape, float time) const;
     /// The instruction set that rays are traced with: as asked for, or what Embree chose ("sse2" to
     /// "avx512").
     const std::string& isa() const;

@@ -260,6 +260,7 @@ struct Geometry::Impl::Builder {
                 make_local_shape(shape.description, moves(t) ? Transform{} : t.at(g.clock.open())));
         }
         g.top = new_scene();
+        g.instance_of_shape.assign(g.placed.size(), -1);
 
         for (const InstanceDescription& instance : scene.instances)
             g.instance_motions.push_back(instance.instance_to_world);
@@ -279,6 +280,7 @@ struct Geometry::Impl::Builder {
         for (uint32_t i = 0; i < count; ++i) {
             const AnimatedTransform& motion = g.placed[i].description.object_to_world;
             if (is_left_out(scene, g.placed[i].description) || !moves(motion)) continue;
+            g.instance_of_shape[i] = static_cast<int>(g.instances.size());
             instantiate(single_shape_scene(i), {nullptr, &motion}, g.placed[i].description.where);
         }
         for (uint32_t i = 0; i < count; ++i)

@@ -11,10 +11,6 @@ double largest(Vec3d v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-double largest_coordinate(const BilinearPatch& p) {
-    return std::max({largest(p.p00), largest(p.p10), largest(p.p01), largest(p.p11)});
-}
-
 /// Value and derivatives, by (u, v), of a quantity that is given at the four corners.
 template <class T>
 struct Bilinear {
@@ -63,10 +59,8 @@ PatchShape make_patch_shape(const std::shared_ptr<const BilinearMesh>& mesh,
         for (Vec3d& row : shape.normal_map.row) row = row * -1.0;
     shape.flip = reverse != local_from_object.swaps_handedness();
     shape.parallelograms = true;
-    for (uint32_t i = 0; i < mesh->patches.size() && shape.parallelograms; ++i) {
-        const BilinearPatch p = shape.patch(i);
-        shape.parallelograms = largest(p.twist()) <= 8 * kHalfUlp * largest_coordinate(p);
-    }
+    for (uint32_t i = 0; i < mesh->patches.size() && shape.parallelograms; ++i)
+        shape.parallelograms = is_parallelogram(shape.patch(i));
     return shape;
 }
 

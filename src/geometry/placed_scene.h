@@ -63,6 +63,7 @@ struct Geometry::Impl {
     std::vector<AnimatedTransform> instance_motions;
     std::vector<ShapeScene> scenes;  ///< one for each object and each moving shape
     std::vector<EmbreeInstance> instances;
+    std::vector<int> instance_of_shape;  ///< of a shape that moves by itself; -1: it has none
     ShapeScene top;
     Bounds3 bounds;
     /// Largest coordinate of a ray's origin that Embree can follow into every instance.

@@ -2,6 +2,7 @@
 /// sky where it leaves the scene.
 #include <cmath>
 
+#include "geometry/leave_surface.h"
 #include "integrator/path_tracer.h"
 
 namespace covtrace {
@@ -60,7 +61,7 @@ bool PathTracer::is_shadowed(const SurfaceHit* hit) {
     if (!scene_.shadows_differ) return false;
     Ray shadow = ray_;
     shadow.origin = ray_begin_;
-    if (hit && !(aim(shadow, Geometry::offset_origin(*hit, -ray_.direction)) > 0)) return false;
+    if (hit && !(aim(shadow, end_before(*hit, shadow.origin)) > 0)) return false;
     ++result_.rays.shadow;
     return scene_.geometry.occluded(shadow);
 }

@@ -13,11 +13,11 @@
 namespace covtrace {
 namespace {
 
-Emitter make_emitter(const PlacedShape& shape) {
-    const auto& geometry = shape.description.geometry;
-    if (std::holds_alternative<Sphere>(geometry) || std::holds_alternative<Disk>(geometry))
-        return EmissiveQuadric(shape);
-    return EmissiveMesh(shape);
+Emitter make_emitter(const Geometry& geometry, uint32_t shape) {
+    const auto& form = geometry.shapes()[shape].description.geometry;
+    if (std::holds_alternative<Sphere>(form) || std::holds_alternative<Disk>(form))
+        return EmissiveQuadric(geometry, shape);
+    return EmissiveMesh(geometry, shape);
 }
 
 double total_area(const Emitter& emitter) {
@@ -78,7 +78,7 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
     std::map<LightKey, double> areas;
     for (size_t i = 0; i < shapes.size(); ++i) {
         if (shapes[i].description.area_light < 0 || shapes[i].is_instanced) continue;
-        emitters[i] = make_emitter(shapes[i]);
+        emitters[i] = make_emitter(*geometry, static_cast<uint32_t>(i));
         areas[light_key(shapes, i)] += total_area(*emitters[i]);
     }
     for (size_t i = 0; i < shapes.size(); ++i) {
@@ -197,7 +197,7 @@ std::optional<LightSample> Lights::Impl::sample_area(int light, float probabilit
     }
     s.pdf = probability * point->pdf;
     s.light = light;
-    s.position = off_surface(point->position, point->normal, point->error, -point->wi);
+    s.position = off_surface(point->unrounded, point->normal, point->error, -point->wi);
     s.normal = point->normal;
     s.visible_to = area.visible_to;
     if (!area.is_visible) {

@@ -1,8 +1,10 @@
 #include "light/mesh.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/warp.h"
+#include "geometry/bilinear_patch.h"
 #include "light/spherical_triangle.h"
 
 namespace covtrace {
@@ -16,7 +18,7 @@ constexpr float kSmallestSolidAngle = 3e-4f, kLargestSolidAngle = 6.2f;
 
 /// Twist of a patch, relative to its diagonals, that is left out as the roundings of a
 /// parallelogram.
-constexpr float kRoundedTwist = 1e-5f;
+constexpr double kRoundedTwist = 1e-5;
 
 bool by_solid_angle(float solid_angle) {
     return solid_angle >= kSmallestSolidAngle && solid_angle <= kLargestSolidAngle;
@@ -37,17 +39,20 @@ Vec2 barycentric(const WorldTriangle& t, Vec3 p, Vec3 w) {
 
 }  // namespace
 
-EmissiveMesh::EmissiveMesh(const PlacedShape& shape)
-    : mesh_(shape.description.geometry),
-      motion_(shape.description.object_to_world.is_animated() ? &shape.description.object_to_world
-                                                              : nullptr) {
-    const Transform start = shape.description.object_to_world.start();
-    const Transform placed = motion_ ? Transform() : start;
-    const bool reverse = shape.description.reverse_orientation;
+EmissiveMesh::EmissiveMesh(const Geometry& geometry, uint32_t shape)
+    : mesh_(geometry.shapes()[shape].description.geometry), geometry_(&geometry), shape_(shape) {
+    const ShapeDescription& description = geometry.shapes()[shape].description;
+    if (description.object_to_world.is_animated()) {
+        motion_ = &description.object_to_world;
+        moves_ = geometry.moves(shape);
+    }
+    const Transform placed = motion_ ? Transform() : description.object_to_world.start();
+    const bool reverse = description.reverse_orientation;
     const float winding = reverse != placed.swaps_handedness() ? -1.0f : 1.0f;
-    Bounds3 box;
-    const auto add = [&](const auto& mesh, uint32_t i0, uint32_t i1, uint32_t i2, Vec3 twist) {
+    const auto add = [&](const auto& mesh, uint32_t i0, uint32_t i1, uint32_t i2, Vec3 twist,
+                         Vec3 left_out) {
         Element e;
+        e.left_out = left_out;
         e.p0 = placed.point(mesh.positions[i0]);
         e.p1 = placed.point(mesh.positions[i1]);
         e.p2 = placed.point(mesh.positions[i2]);
@@ -61,30 +66,37 @@ EmissiveMesh::EmissiveMesh(const PlacedShape& shape)
                         dot(n, placed.normal(mesh.normals[i2]))};
         }
         e.normal = normalize(cross(e.p1 - e.p0, e.p2 - e.p0));
-        // The fourth corner of a patch is in its other half.
-        for (const Vec3 corner : {e.p0, e.p1, e.p2}) box.extend(corner);
         elements_.push_back(e);
     };
     if (const auto* triangles =
-            std::get_if<std::shared_ptr<const TriangleMesh>>(&shape.description.geometry)) {
+            std::get_if<std::shared_ptr<const TriangleMesh>>(&description.geometry)) {
         elements_.reserve((*triangles)->triangles.size());
-        for (const auto& t : (*triangles)->triangles) add(**triangles, t[0], t[1], t[2], {});
-        motion_error_ = motion_error(shape.description.object_to_world, box);
+        for (const auto& t : (*triangles)->triangles) add(**triangles, t[0], t[1], t[2], {}, {});
         return;
     }
     is_patches_ = true;
-    const auto& mesh = *std::get<std::shared_ptr<const BilinearMesh>>(shape.description.geometry);
+    const auto& mesh = *std::get<std::shared_ptr<const BilinearMesh>>(description.geometry);
     elements_.reserve(2 * mesh.patches.size());
+    const auto patch = [&](const std::array<uint32_t, 4>& k) {
+        const auto corner = [&](size_t i) { return Vec3d(placed.point(mesh.positions[k[i]])); };
+        return BilinearPatch{corner(0), corner(1), corner(2), corner(3)};
+    };
+    const bool are_parallelograms =
+        std::all_of(mesh.patches.begin(), mesh.patches.end(),
+                    [&](const auto& k) { return is_parallelogram(patch(k)); });
     for (const auto& k : mesh.patches) {
-        const auto corner = [&](size_t i) { return placed.point(mesh.positions[k[i]]); };
-        Vec3 twist = corner(0) - corner(1) - corner(2) + corner(3);
-        const float size = std::max(distance(corner(0), corner(3)), distance(corner(1), corner(2)));
+        const BilinearPatch p = patch(k);
+        Vec3 twist = p.twist().to_float();
+        const double size = std::max(length(p.p11 - p.p00), length(p.p10 - p.p01));
+        Vec3 left_out;
         // A patch with no more twist than rounding leaves is a parallelogram, which is flat.
-        if (length(twist) <= kRoundedTwist * size) twist = {};
-        add(mesh, k[0], k[1], k[2], twist);
-        add(mesh, k[3], k[2], k[1], twist);
+        if (are_parallelograms || double(length(twist)) <= kRoundedTwist * size) {
+            left_out = twist;
+            twist = {};
+        }
+        add(mesh, k[0], k[1], k[2], twist, left_out);
+        add(mesh, k[3], k[2], k[1], twist, left_out);
     }
-    motion_error_ = motion_error(shape.description.object_to_world, box);
 }
 
 int EmissiveMesh::light_of(const SurfaceHit& hit) const {
@@ -93,17 +105,19 @@ int EmissiveMesh::light_of(const SurfaceHit& hit) const {
     return static_cast<int>(2 * hit.primitive + (second ? 1 : 0));
 }
 
-EmissiveMesh::Element EmissiveMesh::moved(Element e, const Transform& t) {
-    const float mirrored = t.swaps_handedness() ? -1.0f : 1.0f;
-    Element m{t.point(e.p0),     t.point(e.p1),      t.point(e.p2), {},
-              t.vector(e.twist), e.facing * mirrored};
-    m.normal = normalize(cross(m.p1 - m.p0, m.p2 - m.p0));
-    return m;
+EmissiveMesh::Element EmissiveMesh::moved(Element e, const Affine& map) {
+    const auto point = [&](Vec3 p) { return map.point(Vec3d(p)).to_float(); };
+    e.p0 = point(e.p0), e.p1 = point(e.p1), e.p2 = point(e.p2);
+    e.twist = map.vector(Vec3d(e.twist)).to_float();
+    e.left_out = map.vector(Vec3d(e.left_out)).to_float();
+    if (map.determinant() < 0) e.facing = -e.facing;
+    e.normal = normalize(cross(e.p1 - e.p0, e.p2 - e.p0));
+    return e;
 }
 
 EmissiveMesh::Element EmissiveMesh::at(int light, float time) const {
     const Element& e = elements_[static_cast<size_t>(light)];
-    return motion_ ? moved(e, motion_->at(time)) : e;
+    return motion_ ? moved(e, geometry_->world_from_object(shape_, time)) : e;
 }
 
 float EmissiveMesh::area_pdf(const Element& e, Vec3 p, Vec3 position, Vec2 b) {
@@ -117,7 +131,10 @@ float EmissiveMesh::area_pdf(const Element& e, Vec3 p, Vec3 position, Vec2 b) {
 }
 
 std::optional<EmitterPoint> EmissiveMesh::sample(int light, Vec3 p, float time, Vec2 u) const {
-    const Element e = at(light, time);
+    const Element& own = elements_[static_cast<size_t>(light)];
+    std::optional<Affine> map;
+    if (motion_) map = geometry_->world_from_object(shape_, time);
+    const Element e = map ? moved(own, *map) : own;
     EmitterPoint s;
     Vec2 b;
     float solid_angle = 0;
@@ -138,15 +155,24 @@ std::optional<EmitterPoint> EmissiveMesh::sample(int light, Vec3 p, float time, 
     const float facing = e.facing.x * (1 - b.x - b.y) + e.facing.y * b.x + e.facing.z * b.y;
     const Vec3 normal = e.is_flat() ? e.normal : normalize(cross(e.d1(b), e.d2(b)));
     s.normal = facing < 0 ? -normal : normal;
-    s.error = error(e, s);
+    find_place(own, e, map, p, b, s);
     return s;
 }
 
-float EmissiveMesh::error(const Element& e, const EmitterPoint& at) const {
+void EmissiveMesh::find_place(const Element& own, const Element& e,
+                              const std::optional<Affine>& map, Vec3 p, Vec2 b,
+                              EmitterPoint& point) const {
     const float size =
         std::sqrt(std::max(length_squared(e.p1 - e.p0), length_squared(e.p2 - e.p0)));
-    const float twist = is_patches_ && e.is_flat() ? kRoundedTwist * size : 0.0f;
-    return sum_error(at.position, at.normal, size) + twist + motion_error_;
+    point.unrounded = e.unrounded_point(b);
+    point.error = meeting_error(double(size), double(distance(p, point.position))) +
+                  double(abs_dot(e.left_out, point.normal) * b.x * b.y);
+    if (!moves_) return;
+    // Rays meet what moves in its own space, where its corners have not been rounded again
+    point.unrounded = map->point(own.unrounded_point(b));
+    point.error +=
+        kUsualInstanceRoundings *
+        instance_rounding(*map, map->inverse(), Vec3d(point.normal), Vec3d(p), point.unrounded);
 }
 
 float EmissiveMesh::pdf(int light, Vec3 p, const SurfaceHit& hit) const {
@@ -190,7 +216,7 @@ std::array<Vec3, 3> EmissiveMesh::start_corners(int light) const {
 
 float EmissiveMesh::area(int light) const {
     Element e = elements_[static_cast<size_t>(light)];
-    if (motion_) e = moved(e, motion_->start());
+    if (motion_) e = moved(e, Affine::from_matrix(motion_->start().matrix()));
     if (e.is_flat()) return 0.5f * length(cross(e.p1 - e.p0, e.p2 - e.p0));
     // The area is summed by the midpoint rule over small squares of (b1, b2); those on the diagonal
     // b1 + b2 = 1 are half inside and count half.
@@ -213,7 +239,7 @@ LightBounds EmissiveMesh::bounds(int light) const {
         std::min(element.facing.x, std::min(element.facing.y, element.facing.z)) < 0 &&
         std::max(element.facing.x, std::max(element.facing.y, element.facing.z)) > 0;
     for (const Transform& t : motion_ ? poses_over_time(*motion_) : std::vector<Transform>(1)) {
-        const Element e = motion_ ? moved(element, t) : element;
+        const Element e = motion_ ? moved(element, Affine::from_matrix(t.matrix())) : element;
         // The fourth corner of the whole patch bounds its half, too.
         motion_box.add({e.p0, e.p1, e.p2, e.is_flat() ? e.p0 : e.point({1, 1})});
         const float side = e.facing.x + e.facing.y + e.facing.z < 0 ? -1.0f : 1.0f;

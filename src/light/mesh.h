@@ -13,8 +13,8 @@ namespace covtrace {
 
 class EmissiveMesh {
   public:
-    /// Makes emitters of a shape's mesh; the shape must outlive them where it moves.
-    explicit EmissiveMesh(const PlacedShape& shape);
+    /// Makes emitters of a shape's mesh; `geometry` must outlive them.
+    EmissiveMesh(const Geometry& geometry, uint32_t shape);
 
     int light_count() const { return static_cast<int>(elements_.size()); }
     /// The light of this mesh that a hit of its shape lies on.
@@ -49,6 +49,7 @@ class EmissiveMesh {
         // One value per corner; interpolated at a point, the sign tells whether d1 x d2 points to
         // the outside there.
         Vec3 facing;
+        Vec3 left_out;  // of flat elements: a twist that is roundings alone
         bool is_flat() const { return twist == Vec3{}; }
         /// Derivatives of the point by b1 and b2.
         Vec3 d1(Vec2 b) const { return p1 - p0 + twist * b.y; }
@@ -56,12 +57,19 @@ class EmissiveMesh {
         Vec3 point(Vec2 b) const {
             return p0 + (p1 - p0) * b.x + (p2 - p0) * b.y + twist * (b.x * b.y);
         }
+        Vec3d unrounded_point(Vec2 b) const {
+            const Vec3d p(p0);
+            return p + (Vec3d(p1) - p) * double(b.x) + (Vec3d(p2) - p) * double(b.y) +
+                   Vec3d(twist) * (double(b.x) * double(b.y));
+        }
     };
     /// The element of a light in world space.
     Element at(int light, float time) const;
-    /// Bound on the distance between a sampled point of an element and the surface that rays meet.
-    float error(const Element& e, const EmitterPoint& at) const;
-    static Element moved(Element e, const Transform& t);
+    static Element moved(Element e, const Affine& map);
+    /// Sets the unrounded place of a point that is sampled for p, and its error. `own`: the element
+    /// as it is kept; `e`: in world space; `map`: from one to the other, where it moves.
+    void find_place(const Element& own, const Element& e, const std::optional<Affine>& map, Vec3 p,
+                    Vec2 b, EmitterPoint& point) const;
     /// Density per solid angle, seen from p, of the point `position` = e.point(b) where b is drawn
     /// uniformly; 0 where it is not finite.
     static float area_pdf(const Element& e, Vec3 p, Vec3 position, Vec2 b);
@@ -69,8 +77,10 @@ class EmissiveMesh {
     decltype(ShapeDescription::geometry) mesh_;
     std::vector<Element> elements_;
     bool is_patches_ = false;
+    const Geometry* geometry_;
+    uint32_t shape_;
     const AnimatedTransform* motion_ = nullptr;  // null where nothing moves
-    float motion_error_ = 0;
+    bool moves_ = false;                         // whether it moves while the shutter is open
 };
 
 }  // namespace covtrace

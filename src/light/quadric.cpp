@@ -37,33 +37,32 @@ EmissiveQuadric::Pose EmissiveQuadric::make_pose(const Transform& object_to_worl
         std::max(std::abs(lx - ly), std::max(std::abs(ly - lz), std::abs(lz - lx)));
     const float skew = std::max(abs_dot(x, y), std::max(abs_dot(y, z), abs_dot(z, x)));
     const float limit = 1e-4f * pose.longest;
-    if (uneven < limit && skew < limit * pose.longest) {
-        pose.scale = lx;
-        pose.deviation = uneven + 2 * skew / pose.longest;
-    }
+    if (uneven < limit && skew < limit * pose.longest) pose.scale = lx;
     return pose;
 }
 
-EmissiveQuadric::EmissiveQuadric(const PlacedShape& shape)
-    : orientation_(shape.description.reverse_orientation ? -1.0f : 1.0f),
-      start_(make_pose(shape.description.object_to_world.start())),
-      motion_(shape.description.object_to_world.is_animated() ? &shape.description.object_to_world
-                                                              : nullptr) {
-    if (const auto* s = std::get_if<Sphere>(&shape.description.geometry)) {
+EmissiveQuadric::EmissiveQuadric(const Geometry& geometry, uint32_t shape)
+    : geometry_(&geometry), shape_(shape) {
+    const ShapeDescription& description = geometry.shapes()[shape].description;
+    orientation_ = description.reverse_orientation ? -1.0f : 1.0f;
+    start_ = make_pose(description.object_to_world.start());
+    if (description.object_to_world.is_animated()) {
+        motion_ = &description.object_to_world;
+        moves_ = geometry.moves(shape);
+    }
+    if (const auto* s = std::get_if<Sphere>(&description.geometry)) {
         radius_ = s->radius;
         phi_max_ = radians(std::clamp(s->phi_max, 0.0f, 360.0f));
         z_min_ = std::clamp(std::min(s->z_min, s->z_max), -radius_, radius_);
         z_max_ = std::clamp(std::max(s->z_min, s->z_max), -radius_, radius_);
     } else {
-        const Disk& d = std::get<Disk>(shape.description.geometry);
+        const Disk& d = std::get<Disk>(description.geometry);
         is_sphere_ = false;
         radius_ = d.radius;
         phi_max_ = radians(std::clamp(d.phi_max, 0.0f, 360.0f));
         z_min_ = z_max_ = d.height;
         inner_radius_ = std::clamp(d.inner_radius, 0.0f, radius_);
     }
-    motion_error_ = motion_error(shape.description.object_to_world,
-                                 {{-radius_, -radius_, z_min_}, {radius_, radius_, z_max_}});
 }
 
 bool EmissiveQuadric::is_whole_sphere() const {
@@ -177,15 +176,24 @@ std::optional<EmitterPoint> EmissiveQuadric::sample_cone(const Pose& pose, Vec3 
     EmitterPoint s;
     s.position = center + outward * r;
     s.normal = outward * orientation_;
-    s.error = error(pose, s);
+    const Affine to_object = Affine::from_matrix(pose.object_to_world.inverse_matrix());
+    find_place(pose, p, to_object.vector(Vec3d(outward)), s);
     s.wi = normalize(frame.to_world(w));
     s.pdf = cone_pdf(rim);
     return s;
 }
 
-float EmissiveQuadric::error(const Pose& pose, const EmitterPoint& at) const {
-    return sum_error(at.position, at.normal, radius_ * pose.longest) + radius_ * pose.deviation +
-           motion_error_;
+void EmissiveQuadric::find_place(const Pose& pose, Vec3 p, Vec3d object,
+                                 EmitterPoint& point) const {
+    const Affine map = Affine::from_matrix(pose.object_to_world.matrix());
+    if (is_sphere_) object = normalize(object) * double(radius_);
+    point.unrounded = map.point(object);
+    point.error =
+        meeting_error(double(radius_ * pose.longest), double(distance(p, point.position)));
+    if (!moves_) return;
+    const Affine inverse = Affine::from_matrix(pose.object_to_world.inverse_matrix());
+    point.error += kUsualInstanceRoundings *
+                   instance_rounding(map, inverse, Vec3d(point.normal), Vec3d(p), point.unrounded);
 }
 
 std::optional<EmitterPoint> EmissiveQuadric::sample(int, Vec3 p, float time, Vec2 u) const {
@@ -197,7 +205,7 @@ std::optional<EmitterPoint> EmissiveQuadric::sample(int, Vec3 p, float time, Vec
     EmitterPoint s;
     s.position = at_time.object_to_world.point(at.position);
     s.normal = normalize(at_time.object_to_world.normal(at.normal)) * orientation_;
-    s.error = error(at_time, s);
+    find_place(at_time, p, Vec3d(at.position), s);
     const Vec3 to_point = s.position - p;
     if (!(length_squared(to_point) > 0)) return std::nullopt;
     s.wi = normalize(to_point);

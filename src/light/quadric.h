@@ -12,8 +12,8 @@ namespace covtrace {
 
 class EmissiveQuadric {
   public:
-    /// Makes the emitter of a sphere or a disk, which must outlive it where it moves.
-    explicit EmissiveQuadric(const PlacedShape& shape);
+    /// Makes the emitter of a sphere or a disk; `geometry` must outlive it.
+    EmissiveQuadric(const Geometry& geometry, uint32_t shape);
 
     int light_count() const { return 1; }
     int light_of(const SurfaceHit&) const { return 0; }
@@ -46,14 +46,16 @@ class EmissiveQuadric {
         Transform object_to_world;
         float scale = 0;        // factor of a similarity; 0 for any other transform
         float longest = 1;      // factor on the axis that it makes longest
-        float deviation = 0;    // from a similarity: of the factors from `scale`
         float determinant = 1;  // of the linear part, absolute value
     };
     struct ObjectPoint {
         Vec3 position, normal;
     };
     static Pose make_pose(const Transform& object_to_world);
-    Pose pose(float time) const { return motion_ ? make_pose(motion_->at(time)) : start_; }
+    Pose pose(float time) const {
+        return motion_ ? make_pose(geometry_->world_from_object(shape_, time).to_transform())
+                       : start_;
+    }
     ObjectPoint point(Vec2 u) const;  // a point of the surface, uniform by area in object space
     float object_area() const;
     bool is_whole_sphere() const;
@@ -61,8 +63,9 @@ class EmissiveQuadric {
     std::optional<EmitterPoint> sample_cone(const Pose& pose, Vec3 p, float distance_squared,
                                             Vec2 u) const;
     float area_pdf(const Pose& pose, Vec3 p, Vec3 position, Vec3 normal) const;
-    /// Bound on the distance between a sampled point and the surface that rays meet.
-    float error(const Pose& pose, const EmitterPoint& at) const;
+    /// Sets the unrounded place of a point that is sampled for p, and its error. `object`: the
+    /// point in object space, which need not lie in the surface but for its height over a disk.
+    void find_place(const Pose& pose, Vec3 p, Vec3d object, EmitterPoint& point) const;
 
     bool is_sphere_ = true;
     float radius_ = 1, phi_max_ = 2 * kPi;
@@ -70,8 +73,10 @@ class EmissiveQuadric {
     float inner_radius_ = 0;        // of disks
     float orientation_ = 1;         // -1 where the outside is opposite to the quadric's own normal
     Pose start_;
+    const Geometry* geometry_;
+    uint32_t shape_;
     const AnimatedTransform* motion_ = nullptr;  // null where nothing moves
-    float motion_error_ = 0;
+    bool moves_ = false;                         // whether it moves while the shutter is open
 };
 
 }  // namespace covtrace
