@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <span>
 #include <tuple>
@@ -235,7 +236,8 @@ FlatMirrors::FlatMirrors(const SceneDescription& scene, const Geometry& geometry
         planes[{step(part.normal.x), step(part.normal.y), step(part.normal.z), step(height)}]
             .push_back(&part);
     }
-    // Take those that lie in the plane of the largest of each
+    // Take what lies in one plane: first those in the plane of the largest, then those of the rest,
+    // as parallel planes beside each other share a step
     struct Found {
         FlatMirror mirror;
         std::vector<const Part*> parts;
@@ -244,9 +246,15 @@ FlatMirrors::FlatMirrors(const SceneDescription& scene, const Geometry& geometry
     for (auto& [key, all] : planes) {
         std::stable_sort(all.begin(), all.end(),
                          [](const Part* a, const Part* b) { return a->area > b->area; });
-        const Part& first = *all.front();
-        std::erase_if(all, [&](const Part* part) { return !lies_in_plane_of(first, *part); });
-        found.push_back({rectangle_around(all), all});
+        for (size_t planes_of_step = 0; planes_of_step < kMost && !all.empty(); ++planes_of_step) {
+            const Part& first = *all.front();
+            const auto rest = std::stable_partition(
+                std::next(all.begin()), all.end(),
+                [&](const Part* part) { return lies_in_plane_of(first, *part); });
+            const std::vector<const Part*> plane(all.begin(), rest);
+            found.push_back({rectangle_around(plane), plane});
+            all.erase(all.begin(), rest);
+        }
     }
     // Keep the largest
     const auto size = [](const Found& f) { return f.mirror.area() * f.mirror.brightness; };

@@ -58,6 +58,24 @@ Shape "trianglemesh" "point3 P" [ 1 0 0.05  2 0 0.05  2 1 0.05  1 1 0.05 ] "inte
     }
 }
 
+/// However far away other mirrors are, which the steps by which planes are sorted hang on: both
+/// planes are in one step then.
+TEST(FlatMirrors, ParallelPlanesInOneStepAreTwo) {
+    const LitScene scene = scene_with(std::string(kMetal) + R"(
+Shape "trianglemesh" "point3 P" [ 0 0 0  1 0 0  1 1 0  0 1 0 ] "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ 1 0 0.05  2 0 0.05  2 1 0.05  1 1 0.05 ] "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ 0 0 900  0.1 0 900  0 0.1 900 ]
+)");
+    ASSERT_EQ(scene.mirrors.size(), 2u);
+    for (const float x : {0.3f, 1.3f}) {
+        SurfaceHit hit;
+        ASSERT_TRUE(scene.geometry.intersect({{x, 0.6f, 1}, {0, 0, -1}}, hit));
+        const int mirror = scene.mirrors.at(hit);
+        ASSERT_GE(mirror, 0) << x;
+        EXPECT_EQ(scene.mirrors[mirror].center.z, hit.position.z);
+    }
+}
+
 TEST(FlatMirrors, NoneIsBentRoughMovedOrShining) {
     const char* const kTriangle = R"(Shape "trianglemesh" "point3 P" [ 0 0 0  1 0 0  1 1 0 ]
 )";
