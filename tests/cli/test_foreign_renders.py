@@ -74,7 +74,6 @@ class ForeignRenders(CliTest):
         self.assertEqual((image.data_window, image.display_window), ((4, 6, 44, 26), (0, 0, 48, 32)))
 
     def test_passes_in_parts_of_their_own(self):
-        whole, _ = self.denoised(RENDERS / "cycles-1.exr", RENDERS / "cycles-2.exr")
         passes = {"Combined": "RGBA", "Denoising Albedo": "RGB", "Denoising Normal": "XYZ", "Denoising Depth": "Z"}
         for k in (1, 2):
             command = ["oiiotool"]
@@ -83,7 +82,7 @@ class ForeignRenders(CliTest):
                 command += [RENDERS / f"cycles-{k}.exr", "--ch", channels, "--attrib", "oiio:subimagename", f"ViewLayer.{name}"]
             command += ["--siappend"] * (len(passes) - 1) + ["-o", f"{k}.exr"]
             subprocess.run(command, cwd=self.folder, check=True)
-        self.assertEqual(self.denoised("1.exr", "2.exr")[0].pixels, whole.pixels)
+        self.assert_cleaner("1.exr", "2.exr", "cycles")
 
 
 if __name__ == "__main__":
