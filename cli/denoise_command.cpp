@@ -40,7 +40,7 @@ int denoise_images(DenoiseArguments a) {
     resolve(a.display);
     std::vector<std::filesystem::path> inputs(a.images.begin(), a.images.end());
     if (!a.denoiser.library.empty()) inputs.emplace_back(a.denoiser.library);
-    if (!a.display.ocio.config.empty()) inputs.push_back(a.display.ocio.config);
+    add_inputs(a.display.options, inputs);
     require_distinct({{"--output", a.output}, {"--png", a.png}}, inputs);
     std::vector<NamedImage> images;
     for (const std::string& file : a.images) {

@@ -31,6 +31,10 @@ void resolve(DisplayArguments& a) {
     a.options = display_options(a.exposure, a.view, a.ocio);
 }
 
+void add_inputs(const DisplayOptions& o, std::vector<std::filesystem::path>& inputs) {
+    if (o.ocio) inputs.insert(inputs.end(), o.ocio->files().begin(), o.ocio->files().end());
+}
+
 void warn_of_config(const DisplayOptions& o) {
     if (o.ocio) print_warnings(o.ocio->warnings());
 }

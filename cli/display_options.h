@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "image/display.h"
 
@@ -21,6 +22,9 @@ void add_display_options(CLI::App* command, DisplayArguments& arguments);
 
 /// Reads the config, before the work whose result it is to show. Throws as display_options.
 void resolve(DisplayArguments& arguments);
+
+/// Adds the files that were read for the picture, which no output may replace.
+void add_inputs(const DisplayOptions& options, std::vector<std::filesystem::path>& inputs);
 
 /// Warns of what in the config is not understood.
 void warn_of_config(const DisplayOptions& options);

@@ -45,7 +45,7 @@ int merge_films(MergeArguments a) {
     add_film(outputs, "--film", a.film);
     std::vector<std::filesystem::path> inputs(a.films.begin(), a.films.end());
     if (!a.denoiser.library.empty()) inputs.emplace_back(a.denoiser.library);
-    if (!a.display.ocio.config.empty()) inputs.push_back(a.display.ocio.config);
+    add_inputs(a.display.options, inputs);
     require_distinct(outputs, inputs);
     for (const std::string& file : {a.output, a.png, a.film})
         if (!file.empty()) remove_leftovers(file);

@@ -69,7 +69,7 @@ void check_outputs(const RenderArguments& a, const fs::path& image, const SceneD
     std::vector<fs::path> inputs = scene.files;
     inputs.push_back(a.scene);
     if (!a.denoiser.library.empty()) inputs.push_back(a.denoiser.library);
-    if (!a.display.ocio.config.empty()) inputs.push_back(a.display.ocio.config);
+    add_inputs(a.display.options, inputs);
     std::vector<NamedOutput> outputs{{"--output", image}, {"--png", a.png}, {"--stats", a.stats}};
     add_film(outputs, "--checkpoint", a.film.checkpoint);
     // The final film may have the checkpoint's name.

@@ -7,7 +7,6 @@
 #include <mutex>
 #include <regex>
 #include <string_view>
-#include <vector>
 
 #include "core/colour_space.h"
 #include "image/read_file.h"
@@ -223,6 +222,9 @@ OcioView::OcioView(const OcioChoice& choice) {
         config = ocio::Config::CreateFromFile(file.c_str());
         const auto processor = config->getProcessor(transform_of({choice, config}));
         processor_.reset(new Processor{processor->getDefaultCPUProcessor()});
+        files_.push_back(file);
+        const auto used = processor->getProcessorMetadata();
+        for (int i = 0; i < used->getNumFiles(); ++i) files_.emplace_back(used->getFile(i));
     } catch (const ocio::Exception& e) {
         // Once the config is read, lines are those of other files that it names.
         throw_unreadable(file, place_in(file, config ? "" : e.what()), without_preamble(e.what()));

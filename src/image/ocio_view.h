@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "core/vec.h"
@@ -40,10 +41,13 @@ class OcioView {
     Rgb shown(Rgb linear) const;
     /// Parts of the config that the library did not understand.
     const Warnings& warnings() const { return warnings_; }
+    /// The files that were read: the config, and its tables for this display and view.
+    const std::vector<std::filesystem::path>& files() const { return files_; }
 
   private:
     struct Processor;
     Warnings warnings_;
+    std::vector<std::filesystem::path> files_;
     std::unique_ptr<const Processor> processor_;
 };
 

@@ -141,11 +141,15 @@ PlainImage decode_plain(std::string_view bytes, const std::filesystem::path& nam
 }
 
 std::string one_line(const std::string& text) {
-    constexpr size_t kLongest = 300;
+    constexpr size_t kLongest = 1000, kEnd = kLongest / 4;
     std::string line;
+    const std::string shortened =
+        text.size() <= kLongest
+            ? text
+            : text.substr(0, kLongest - kEnd) + " ... " + text.substr(text.size() - kEnd);
     // Unprintable bytes are replaced: names in a damaged file may hold any, a terminal and JSON may
     // not.
-    for (const char c : text.substr(0, kLongest))
+    for (const char c : shortened)
         if (c >= 0x20 && c <= 0x7e)
             line += c;
         else if (!line.empty() && line.back() != ' ')

@@ -39,7 +39,8 @@ using ChannelChoice = std::function<std::vector<std::string>(const std::vector<s
 Image read_exr(const std::filesystem::path& file, const SourceLocation& where,
                const ChannelChoice& choose = {});
 
-/// A library's message on one line of ASCII, without its full stop, cut where it is long.
+/// A library's message on one line of ASCII, without its full stop. Of more than 1000 bytes it has
+/// the beginning and the end, with ' ... ' between: what is wrong may stand in either.
 std::string one_line(const std::string& text);
 
 /// Throws "cannot read 'file': reason", the reason on one line of ASCII. Error(limit) for limits.

@@ -1,6 +1,7 @@
 """--ocio-config: a PNG shown by an OpenColorIO config; the image itself stays as it is."""
 
 import os
+import pathlib
 import shutil
 import subprocess
 import unittest
@@ -10,36 +11,7 @@ import exr
 from support import DONE, SCENE, TINY, USAGE, CliTest, place_of, warnings_of
 from test_display import SKY, first_pixel
 
-CONFIG = """\
-ocio_profile_version: 2
-roles:
-  default: linear
-  scene_linear: linear
-displays:
-  Screen:
-    - !<View> {name: Crossed, colorspace: crossed}
-    - !<View> {name: Warm, colorspace: crossed, looks: warm}
-    - !<View> {name: Straight, colorspace: linear}
-  Projector:
-    - !<View> {name: Dark, colorspace: dark}
-looks:
-  - !<Look>
-    name: warm
-    process_space: linear
-    transform: !<CDLTransform> {slope: [1.5, 1, 0.5]}
-colorspaces:
-  - !<ColorSpace>
-    name: linear
-  - !<ColorSpace>
-    name: crossed
-    from_scene_reference: !<GroupTransform>
-      children:
-        - !<MatrixTransform> {matrix: [0.75, 0.25, 0, 0, 0.125, 0.75, 0.125, 0, 0, 0.5, 0.5, 0, 0, 0, 0, 1]}
-        - !<ExponentTransform> {value: [2.4, 2.4, 2.4, 1], direction: inverse}
-  - !<ColorSpace>
-    name: dark
-    from_scene_reference: !<MatrixTransform> {matrix: [0.25, 0, 0, 0, 0, 0.25, 0, 0, 0, 0, 0.25, 0, 0, 0, 0, 1]}
-"""
+CONFIG = (pathlib.Path(__file__).parents[1] / "ocio" / "config.ocio").read_text()
 
 
 def crossed(r, g, b):
@@ -64,7 +36,7 @@ class OpenColorIO(CliTest):
     def test_display_view_and_look(self):
         self.assert_shown(self.picture(), crossed(0.4, 0.2, 0.1))
         self.assert_shown(self.picture("--view", "Crossed", "--exposure", "-1"), crossed(0.2, 0.1, 0.05))
-        self.assert_shown(self.picture("--view", "Straight"), (102, 51, 25.5))
+        self.assert_shown(self.picture("--view", "Untouched"), (102, 51, 25.5))
         self.assert_shown(self.picture("--ocio-display", "Projector"), (25.5, 12.75, 6.375))
         self.assert_shown(self.picture("--ocio-look", "warm"), crossed(0.6, 0.2, 0.05))
         self.assert_shown(self.picture("--ocio-source", "dark", colour=".1 .05 .025"), crossed(0.4, 0.2, 0.1))
@@ -132,9 +104,9 @@ class OpenColorIO(CliTest):
 
     def test_unknown_names(self):
         self.fails(USAGE, "covtrace: --ocio-display: 'Wall' is no display", "it has 'Screen', 'Projector'", arguments=("--ocio-display", "Wall"))
-        self.fails(USAGE, "covtrace: --view: 'agx' is no view of the display 'Screen'", "it has 'Crossed', 'Warm', 'Straight'", arguments=("--view", "agx"))
-        self.fails(USAGE, "covtrace: --ocio-look: 'cold' is no look", "it has 'warm'", arguments=("--ocio-look", "cold"))
-        self.fails(USAGE, "covtrace: --ocio-source: 'log' is no colour space", "it has 'linear', 'crossed', 'dark'", arguments=("--ocio-source", "log"))
+        self.fails(USAGE, "covtrace: --view: 'agx' is no view of the display 'Screen'", "it has 'Crossed', 'Warm', 'Untouched'", arguments=("--view", "agx"))
+        self.fails(USAGE, "covtrace: --ocio-look: 'cold' is no look", "it has 'warm', 'dim - half'", arguments=("--ocio-look", "cold"))
+        self.fails(USAGE, "covtrace: --ocio-source: 'log' is no colour space", "it has 'linear', 'untouched', 'crossed', 'dark'", arguments=("--ocio-source", "log"))
 
     def test_names_without_a_config(self):
         for option in ("--ocio-display", "--ocio-look", "--ocio-source"):
@@ -144,6 +116,21 @@ class OpenColorIO(CliTest):
     def test_the_config_is_not_lost(self):
         self.fails(USAGE, "--stats", arguments=("--stats", "config.ocio"))
         self.assertEqual((self.folder / "config.ocio").read_text(), CONFIG)
+
+    def test_its_tables_are_not_lost(self):
+        (self.folder / "luts").mkdir()
+        table = self.write("luts/curve.spi1d", "Version 1\nFrom 0 1\nLength 2\nComponents 1\n{\n0\n0.5\n}\n")
+        self.write("config.ocio", CONFIG.replace("!<ExponentTransform> {value: [2.4, 2.4, 2.4, 1], direction: inverse}",
+                                                 "!<FileTransform> {src: curve.spi1d}"))
+        self.rendered("--film", "a.film", output="a.exr")
+        self.rendered("--seed", "2", output="b.exr")
+        before = table.read_text()
+        for command in (("render", "scene.pbrt", "-o", "c.exr", "--stats", "luts/curve.spi1d"),
+                        ("merge", "a.film", "--film", "luts/curve.spi1d"),
+                        ("denoise", "a.exr", "b.exr", "-o", "luts/curve.spi1d", "--denoiser", "none")):
+            result = self.run_program(*command, "--png", "p.png", "--ocio-config", "config.ocio")
+            self.assert_fails(result, USAGE, "'luts/curve.spi1d' would take the place of", "which is read")
+            self.assertEqual(table.read_text(), before)
 
     def test_what_is_not_understood_is_told(self):
         text = self.write("odd.ocio", CONFIG.replace("slope: [1.5, 1, 0.5]", "tilt: 2")).read_text()

@@ -12,31 +12,7 @@ import covtrace
 import scenes
 
 
-OCIO_CONFIG = """\
-ocio_profile_version: 2
-roles:
-  default: linear
-  scene_linear: linear
-displays:
-  Screen:
-    - !<View> {name: Swapped, colorspace: swapped}
-    - !<View> {name: Root, colorspace: root}
-looks:
-  - !<Look>
-    name: half
-    process_space: linear
-    transform: !<CDLTransform>
-      slope: [0.5, 0.5, 0.5]
-colorspaces:
-  - !<ColorSpace>
-    name: linear
-  - !<ColorSpace>
-    name: root
-    from_scene_reference: !<ExponentTransform> {value: [2, 2, 2, 1], direction: inverse}
-  - !<ColorSpace>
-    name: swapped
-    from_scene_reference: !<MatrixTransform> {matrix: [0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}
-"""
+OCIO_CONFIG = (pathlib.Path(__file__).parents[1] / "ocio" / "config.ocio").read_text()
 
 
 class Images(unittest.TestCase):
@@ -72,22 +48,25 @@ class Images(unittest.TestCase):
                 values = numpy.array(values)
                 return numpy.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
 
-            numpy.testing.assert_allclose(shown(), decoded((0.2, 0.4, 0.1)), atol=0.003)
-            numpy.testing.assert_allclose(shown(exposure=1), decoded((0.4, 0.8, 0.2)), atol=0.004)
-            numpy.testing.assert_allclose(shown(view="Root"), decoded(numpy.sqrt((0.4, 0.2, 0.1))), atol=0.005)
-            numpy.testing.assert_allclose(shown(view="Root", ocio_display="Screen", ocio_look="half"),
-                                          decoded(numpy.sqrt((0.2, 0.1, 0.05))), atol=0.005)
-            numpy.testing.assert_allclose(shown(ocio_source="swapped"), decoded((0.4, 0.2, 0.1)), atol=0.003)
-            for wrong, names in (({"view": "agx"}, "'Swapped', 'Root'"), ({"ocio_display": "Wall"}, "'Screen'"), ({"ocio_look": "cold"}, "'half'"),
-                                 ({"ocio_source": "log"}, "'linear', 'root', 'swapped'"), ({"ocio_config": None, "ocio_look": "half"}, "ocio_look"),
-                                 ({"ocio_config": 3}, "ocio_config"), ({"view": 3}, "view"), ({"view": ""}, "view"), ({"ocio_look": ""}, "ocio_look"),
+            def crossed(r, g, b):
+                return decoded(numpy.power((0.75 * r + 0.25 * g, 0.125 * r + 0.75 * g + 0.125 * b, 0.5 * g + 0.5 * b), 1 / 2.4))
+
+            numpy.testing.assert_allclose(shown(), crossed(0.4, 0.2, 0.1), atol=0.006)
+            numpy.testing.assert_allclose(shown(exposure=1), crossed(0.8, 0.4, 0.2), atol=0.006)
+            numpy.testing.assert_allclose(shown(view="Untouched"), decoded((0.4, 0.2, 0.1)), atol=0.004)
+            numpy.testing.assert_allclose(shown(view="Warm", ocio_display="Screen", ocio_look="dim - half"), crossed(0.2, 0.1, 0.05), atol=0.006)
+            numpy.testing.assert_allclose(shown(ocio_source="dark", exposure=-2), crossed(0.4, 0.2, 0.1), atol=0.006)
+            for wrong, names in (({"view": "agx"}, "'Crossed', 'Warm', 'Untouched'"), ({"ocio_display": "Wall"}, "'Screen', 'Projector'"),
+                                 ({"ocio_look": "cold"}, "'warm', 'dim - half'"), ({"ocio_source": "log"}, "'linear', 'untouched', 'crossed', 'dark'"),
+                                 ({"ocio_config": None, "ocio_look": "warm"}, "ocio_look"), ({"ocio_config": 3}, "ocio_config"),
+                                 ({"view": 3}, "view"), ({"view": ""}, "view"), ({"ocio_look": ""}, "ocio_look"),
                                  ({"ocio_config": ""}, "ocio_config"), ({"ocio_config": None, "view": ""}, "view")):
                 with self.subTest(wrong), self.assertRaisesRegex(covtrace.UsageError, names):
                     shown(**wrong)
             with self.assertRaisesRegex(covtrace.SceneError, "cannot open"):
                 shown(ocio_config=folder / "none.ocio")
-            config.write_text(OCIO_CONFIG.replace("slope", "tilt"))
-            with self.assertWarnsRegex(covtrace.SceneWarning, "config.ocio:14: .*unknown key 'tilt'"):
+            config.write_text(OCIO_CONFIG.replace("slope: [1.5", "tilt: [1.5"))
+            with self.assertWarnsRegex(covtrace.SceneWarning, "config.ocio:17: .*unknown key 'tilt'"):
                 shown()
             config.write_text("hello")
             with self.assertRaisesRegex(covtrace.SceneError, "config.ocio:1:1: "):

@@ -14,44 +14,15 @@
 namespace covtrace::test {
 namespace {
 
+std::string text_of(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
 /// Two displays; the first has a matrix and an exponent in its view "Crossed", and a look.
-const std::string kConfig = R"(ocio_profile_version: 2
-search_path: luts
-roles:
-  default: linear
-  scene_linear: linear
-displays:
-  Screen:
-    - !<View> {name: Crossed, colorspace: crossed}
-    - !<View> {name: Warm, colorspace: crossed, looks: warm}
-    - !<View> {name: Untouched, colorspace: untouched}
-  Projector:
-    - !<View> {name: Dark, colorspace: dark}
-looks:
-  - !<Look>
-    name: warm
-    process_space: linear
-    transform: !<CDLTransform> {slope: [1.5, 1, 0.5]}
-  - !<Look>
-    name: dim - half
-    process_space: linear
-    transform: !<CDLTransform> {slope: [0.5, 0.5, 0.5]}
-colorspaces:
-  - !<ColorSpace>
-    name: linear
-  - !<ColorSpace>
-    name: untouched
-    isdata: true
-  - !<ColorSpace>
-    name: crossed
-    from_scene_reference: !<GroupTransform>
-      children:
-        - !<MatrixTransform> {matrix: [0.75, 0.25, 0, 0, 0.125, 0.75, 0.125, 0, 0, 0.5, 0.5, 0, 0, 0, 0, 1]}
-        - !<ExponentTransform> {value: [2.4, 2.4, 2.4, 1], direction: inverse}
-  - !<ColorSpace>
-    name: dark
-    from_scene_reference: !<MatrixTransform> {matrix: [0.25, 0, 0, 0, 0, 0.25, 0, 0, 0, 0, 0.25, 0, 0, 0, 0, 1]}
-)";
+const std::string kConfig = text_of(COVTRACE_OCIO_CONFIG);
 
 /// The view "Crossed", computed here.
 Rgb crossed(Rgb c) {
@@ -205,6 +176,31 @@ TEST_F(OcioViews, FilesThatAreNoConfigs) {
                       "colorspaces: [!<ColorSpace> {name: a}]\n")
                   .find("no display"),
               std::string::npos);
+}
+
+TEST_F(OcioViews, LongMessagesTellThatTheyAreCut) {
+    const std::string name(3000, 'g');
+    const Error e =
+        error_of(choice(with(kConfig, "colorspace: crossed}", "colorspace: " + name + "}")));
+    const std::string text = e.what();
+    EXPECT_NE(text.find("ggg ... g"), std::string::npos) << text;
+    EXPECT_LT(text.size(), 1300u);
+    EXPECT_FALSE(text.ends_with("g")) << text;  // what follows the name is told
+}
+
+TEST_F(OcioViews, KnowTheFilesThatWereRead) {
+    std::filesystem::create_directories(folder_ / "luts");
+    for (const char* name : {"used", "other"})
+        std::ofstream(folder_ / "luts" / (std::string(name) + ".spi1d"))
+            << "Version 1\nFrom 0 1\nLength 2\nComponents 1\n{\n0\n0.5\n}\n";
+    const OcioChoice c = choice(
+        with(with(kConfig, "!<ExponentTransform> {value: [2.4, 2.4, 2.4, 1], direction: inverse}",
+                  "!<FileTransform> {src: used.spi1d}"),
+             "!<CDLTransform> {slope: [1.5, 1, 0.5]}", "!<FileTransform> {src: other.spi1d}"));
+    const OcioView view(c);
+    ASSERT_EQ(view.files().size(), 2u);
+    EXPECT_EQ(view.files()[0], file());
+    EXPECT_TRUE(std::filesystem::equivalent(view.files()[1], folder_ / "luts" / "used.spi1d"));
 }
 
 TEST_F(OcioViews, NamesThatTheConfigDoesNotHave) {
