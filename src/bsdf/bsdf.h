@@ -10,6 +10,7 @@
 #include <optional>
 #include <variant>
 
+#include "bsdf/schlick_metal.h"
 #include "core/vec.h"
 
 namespace covtrace {
@@ -58,6 +59,10 @@ struct LobeShare {
     /// Normal that a round lobe (alpha_x = alpha_y) faces, unit, local; that of a clear coat may
     /// not be the frame's.
     Vec3 normal{0, 0, 1};
+    /// Border of a metal that has no index; none: `border_eta` tells.
+    std::optional<SchlickMetal<float>> border_metal = {};
+    /// Whether a Fresnel factor belongs to the lobe.
+    bool has_border() const { return border_eta > 0 || border_metal; }
 };
 struct LobeShares {
     static constexpr size_t kMost = 4;
@@ -77,6 +82,8 @@ struct ConductorBsdf {
     const CoatTable* white = nullptr;
     float table_row = 0;  ///< of `white`, for the mean roughness
     Rgb regained = {};    ///< share of the light lost by a first reflection that comes back later
+    /// Reflectance in place of that of `eta` and `k`, which count only where there is none.
+    std::optional<SchlickMetal<Rgb>> schlick = {};
 };
 struct Dispersion;  // scene/dispersion.h
 struct DielectricBsdf {
@@ -112,6 +119,9 @@ struct CoatedDiffuseBsdf {
     /// Whether all light that the coat doesn't reflect enters; see make_coated_total.
     bool is_total = false;
     CoatTint tint;  ///< where it is total
+    /// ConductorBsdf::white of a rough border, where it is total and has no tint; see
+    /// make_coated_total.
+    const CoatTable* white = nullptr;
 };
 struct DiffuseTransmissionBsdf {
     Rgb reflectance, transmittance;
@@ -150,6 +160,10 @@ struct ClearcoatLobe {
     float weight = 0;      ///< in [0, 1]; 0: there is no coat
     float alpha = 0;       ///< GGX; 0: smooth
     Vec3 normal{0, 0, 1};  ///< unit, local, on the outside
+    /// Table, without a gap, of the coat's border, whose index tells its reflectance; none: that of
+    /// KHR_materials_clearcoat.
+    const CoatTable* border = nullptr;
+    Rgb tint{1};  ///< share of light that crosses a full coat along its normal, down and back
 };
 /// A surface under a sheen, under a clear coat.
 struct LayeredBsdf {

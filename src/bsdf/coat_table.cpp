@@ -147,10 +147,40 @@ CoatTable::CoatTable(float eta, float thickness) : eta_(eta), thickness_(thickne
     }
 }
 
+CoatTable::CoatTable(float eta, const CoatTable& white) : CoatTable(eta, 0) {
+    gives_back_ = true;
+    const float once = mean_reflection_[0];  // a smooth border's
+    for (int row = 0; row < kRows; ++row) {
+        const float kept = white.mean_reflection_[row];
+        regained_[row] = once * kept / (1 - once * (1 - kept));
+        for (int i = 0; i < kNodes + 2; ++i) {
+            const float w = white.shares_[row][i].reflection;
+            Shares& s = shares_[row][i];
+            s.reflection *= 1 + regained_[row] * (1 - w) / w;
+            s.transmission = 1 - s.reflection;
+        }
+    }
+    for (int row = 1; row < kRows; ++row) {
+        mean_reflection_[row] = cosine_weighted_mean(0.5f, [&](float cos_theta) {
+            return shares(static_cast<float>(row), cos_theta).reflection;
+        });
+        mean_transmission_[row] = 1 - mean_reflection_[row];
+    }
+}
+
 const CoatTable& CoatTables::get(float eta, float thickness) {
     for (const auto& table : tables_)
-        if (table->eta() == eta && table->thickness() == thickness) return *table;
+        if (table->eta() == eta && table->thickness() == thickness && !table->gives_back())
+            return *table;
     tables_.push_back(std::make_unique<const CoatTable>(eta, thickness));
+    return *tables_.back();
+}
+
+const CoatTable& CoatTables::get_bouncing(float eta) {
+    for (const auto& table : tables_)
+        if (table->eta() == eta && table->gives_back()) return *table;
+    const CoatTable& white = get(kWhiteIndex, 0);
+    tables_.push_back(std::make_unique<const CoatTable>(eta, white));
     return *tables_.back();
 }
 
@@ -180,10 +210,11 @@ CoatedDiffuseBsdf make_coated_diffuse(const CoatTable& table, const ReflectanceP
 }
 
 CoatedDiffuseBsdf make_coated_total(const CoatTable& table, Rgb reflectance, float alpha_x,
-                                    float alpha_y, const CoatTint& tint) {
+                                    float alpha_y, const CoatTint& tint, const CoatTable* white) {
     CoatedDiffuseBsdf b = coat_alone(table, alpha_x, alpha_y);
     b.reflectance = reflectance;
     b.is_total = true;
+    b.white = white;
     b.tint = tint;
     const float coat = table.mean_reflection(b.table_row);
     b.mean_transmission =

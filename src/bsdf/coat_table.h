@@ -41,6 +41,10 @@ class CoatTable {
   public:
     /// Fills the tables by quadrature; takes about 40 ms. `eta`: coat over outside, > 0.
     CoatTable(float eta, float thickness);
+    /// The table of a border without a gap that gives back the light that meets several of its
+    /// facets (multiple_scattering.h): `reflection` holds it, and `transmission` is all else.
+    /// `white`: table of kWhiteIndex without a gap.
+    CoatTable(float eta, const CoatTable& white);
     float eta() const { return eta_; }
     float thickness() const { return thickness_; }
 
@@ -66,6 +70,11 @@ class CoatTable {
     float mean_reflection(float row) const { return lookup(mean_reflection_, row); }
     /// Cosine-weighted mean of T over the hemisphere.
     float mean_transmission(float row) const { return lookup(mean_transmission_, row); }
+    /// Whether the table is of the second kind.
+    bool gives_back() const { return gives_back_; }
+    /// Share of the light lost by a first reflection that comes back later; 0 but for the second
+    /// kind of table.
+    float regained(float row) const { return lookup(regained_, row); }
 
   private:
     using PerRow = std::array<float, kRows>;
@@ -75,8 +84,9 @@ class CoatTable {
     static float lookup(const PerRow& values, float row);
 
     float eta_, thickness_;
+    bool gives_back_ = false;
     PerAngle shares_;
-    PerRow internal_reflectance_, mean_transmission_, mean_reflection_;
+    PerRow internal_reflectance_, mean_transmission_, mean_reflection_, regained_{};
 };
 
 /// Makes glTF's and Blender's diffuse under specular: of the light that the coat doesn't reflect (1
@@ -91,8 +101,13 @@ class CoatTable {
 /// for a rough one it keeps the light that single scattering loses. The table's thickness doesn't
 /// count. Of a coat with a tint, E is the albedo in the channel that reflects most, so that the
 /// base keeps the hue of `reflectance`, as KHR_materials_specular has it.
+///
+/// With `white`, table of kWhiteIndex without a gap, f_coat has the gain of multiple_scattering.h
+/// for wo, which is the border's only part that is not reciprocal; `table` is then of the second
+/// kind, and there is no tint.
 CoatedDiffuseBsdf make_coated_total(const CoatTable& table, Rgb reflectance, float alpha_x,
-                                    float alpha_y, const CoatTint& tint = {});
+                                    float alpha_y, const CoatTint& tint = {},
+                                    const CoatTable* white = nullptr);
 
 /// Share that a tinted coat reflects of the light from one direction, or from any mean of them.
 /// `fresnel`: that of its border of index `eta` without tint; `white`: that of a white border.
@@ -111,6 +126,8 @@ class CoatTables {
   public:
     /// Makes the table where it does not exist yet; the reference lives as long as this object.
     const CoatTable& get(float eta, float thickness);
+    /// The same of the second kind of table.
+    const CoatTable& get_bouncing(float eta);
 
   private:
     std::vector<std::unique_ptr<const CoatTable>> tables_;

@@ -172,7 +172,7 @@ Rgb smooth_reflectance(const CoatedConductorBsdf& b, Vec3 wo) {
     const DielectricFresnel f = fresnel_dielectric(wo.z, b.coat.eta);
     if (f.cos_t == 0) return Rgb(1);
     const float twice = sqr(std::exp(-b.thickness / f.cos_t));
-    const Rgb once = twice * fresnel_conductor(f.cos_t, b.metal.eta, b.metal.k);
+    const Rgb once = twice * reflectance(b.metal, f.cos_t);
     const Rgb ratio = f.reflectance * once;
     Rgb sum, power(1);
     for (int bounce = 0; bounce < b.bounces; ++bounce) {

@@ -57,6 +57,13 @@ CoatTable::Shares shares(const CoatedDiffuseBsdf& b, Vec3 w) {
     return {(1 - f.reflectance) * kept, f.reflectance};
 }
 
+/// Factor on what the coat reflects of light along w, for the light that meets several facets.
+float gain(const CoatedDiffuseBsdf& b, Vec3 w) {
+    if (!b.white || is_smooth(b)) return 1;
+    const float row = table_row(b, w), kept = b.white->shares(row, w.z).reflection;
+    return 1 + b.table->regained(row) * (1 - kept) / kept;
+}
+
 /// Quantities of wo's side that a pair's value and density share.
 struct Outgoing {
     Vec3 wo;
@@ -65,8 +72,10 @@ struct Outgoing {
     /// is reflected.
     float choose_coat;
     float stretched = 0;  ///< Ggx::stretched_length of wo, where the coat is rough
+    float gain;           ///< on what the coat reflects
 
-    Outgoing(const CoatedDiffuseBsdf& b, Vec3 direction) : wo(to_upper_side(direction)) {
+    Outgoing(const CoatedDiffuseBsdf& b, Vec3 direction)
+        : wo(to_upper_side(direction)), gain(covtrace::gain(b, wo)) {
         const auto [t, coat] = shares(b, wo);
         transmission = t;
         const float base = max_component(b.base) * (kPi * t * b.mean_transmission);
@@ -99,7 +108,7 @@ BsdfValue value_and_density(const CoatedDiffuseBsdf& b, const Outgoing& out, Vec
     const float base_pdf = (1 - out.choose_coat) * cosine_hemisphere_pdf(wi.z);
     if (is_smooth(b)) return {base, base_pdf};
     const CoatValue coat = eval_coat(b, out.wo, out.stretched, wi);
-    return {coat.value + base,
+    return {out.gain * coat.value + base,
             out.choose_coat * coat.d / (2 * (out.wo.z + out.stretched)) + base_pdf};
 }
 
@@ -152,7 +161,7 @@ LobeShares lobe_shares(const CoatedDiffuseBsdf& b, Vec3 wo, Vec3 wi, Rgb value) 
     if (is_smooth(b)) return found;
     wo = to_upper_side(wo);
     const float stretched = Ggx{b.alpha_x, b.alpha_y}.stretched_length(wo);
-    const Rgb coat = eval_coat(b, wo, stretched, to_upper_side(wi)).value;
+    const Rgb coat = gain(b, wo) * eval_coat(b, wo, stretched, to_upper_side(wi)).value;
     for (int c = 0; c < 3; ++c) found.lobes[0].value[c] = std::max(0.0f, value[c] - coat[c]);
     found.lobes[1] = {LobeKind::glossy_reflection, coat, b.alpha_x, b.alpha_y, 1, b.eta};
     found.count = 2;

@@ -1,14 +1,20 @@
 /// A surface under a sheen, under a clear coat: glTF's KHR_materials_sheen and
-/// KHR_materials_clearcoat. With B the surface below, c the sheen's colour, E its albedo, and F
-/// Schlick's reflectance of a border of index 1.5 for the clear coat's own normal,
+/// KHR_materials_clearcoat, and the coat of Blender's Principled. With B the surface below, c the
+/// sheen's colour, E its albedo, w the coat's weight, and R what a full coat reflects of light
+/// along wo, by its own normal,
 ///
-///    f(wo, wi) = w F(wo) f_coat(wo, wi) + (1 - w F(wo)) (c f_sheen(wo, wi) + s B(wo, wi))
+///    f(wo, wi) = w f_coat(wo, wi) + (1 - w R(wo)) t(wo) (c f_sheen(wo, wi) + s B(wo, wi))
 ///    s = 1 - max(c) max(E(wo), E(wi))
 ///
-/// f_coat is GGX without a Fresnel factor. Both layers conserve energy: neither takes less from
-/// what is below than it reflects itself.
+/// glTF's coat has R = F(wo), Schlick's reflectance of a border of index 1.5, and f_coat = F(wo)
+/// times GGX without a Fresnel factor. A coat that has a border of its own, as Blender's, has GGX
+/// with Fresnel's reflectance for f_coat, and that lobe's albedo for R. Its tint k is that of light
+/// along the normal; light along wo takes the longer way, t = 1 - w + w k^(1 / cos), by the cosine
+/// inside the coat. All layers conserve energy: none takes less from what is below than it reflects
+/// itself.
 #include <cmath>
 
+#include "bsdf/coat_table.h"
 #include "bsdf/ggx.h"
 #include "bsdf/models.h"
 #include "bsdf/sheen.h"
@@ -24,11 +30,31 @@ Vec3 to_upper_side(Vec3 w) {
     return {w.x, w.y, std::abs(w.z)};
 }
 
-/// Reflectance of the coat's border, by Schlick's formula as the extension has it.
-float coat_reflectance(float cosine) {
+/// Share of light with the given cosine that a full coat reflects.
+float coat_reflectance(const ClearcoatLobe& coat, float cosine) {
+    if (coat.border) {
+        if (coat.alpha == 0) return fresnel_dielectric(cosine, coat.border->eta()).reflectance;
+        return coat.border->shares(CoatTable::row_of(coat.alpha), cosine).reflection;
+    }
+    // Schlick's formula, as the extension has it
     constexpr float kNormal = 0.04f;
     const float m = 1 - clamp01(cosine);
     return kNormal + (1 - kNormal) * (m * m) * (m * m) * m;
+}
+
+/// Share of the light below a coat that gets out with the given cosine: what it neither reflects
+/// nor absorbs.
+Rgb coat_transmission(const ClearcoatLobe& coat, float cosine) {
+    if (!(coat.weight > 0)) return Rgb(1);
+    const float passed = 1 - coat.weight * coat_reflectance(coat, cosine);
+    if (coat.tint == Rgb(1)) return Rgb(passed);
+    constexpr float kIndex = 1.5f;  // where the coat tells none
+    const float eta = coat.border ? coat.border->eta() : kIndex;
+    const float way = 1 / safe_sqrt(1 - (1 - sqr(cosine)) / sqr(eta));
+    Rgb t;
+    for (int c = 0; c < 3; ++c)
+        t[c] = passed * (1 - coat.weight + coat.weight * std::pow(coat.tint[c], way));
+    return t;
 }
 
 /// Whether w is inside of a body, whose border has its layers on the outside.
@@ -54,7 +80,8 @@ struct Outgoing {
     Vec3 wo;              ///< on the upper side
     Frame coat;           ///< about the coat's normal
     Vec3 wo_coat;         ///< in that frame
-    float reflected = 0;  ///< share that the coat reflects: w F(wo)
+    float reflected = 0;  ///< share that the coat reflects: w R(wo)
+    Rgb below{1};         ///< share that what is below gets out through the coat
     float sheen = 0;      ///< albedo of the sheen in its strongest channel: max(c) E(wo)
     /// Probabilities of sampling the coat and the sheen; the base has the rest.
     float choose_coat = 0, choose_sheen = 0;
@@ -66,16 +93,19 @@ struct Outgoing {
         if (b.coat.weight > 0) {
             coat = Frame::from_z(b.coat.normal);
             wo_coat = coat.to_local(wo);
-            if (wo_coat.z > 0) reflected = b.coat.weight * coat_reflectance(wo_coat.z);
+            if (wo_coat.z > 0) {
+                reflected = b.coat.weight * coat_reflectance(b.coat, wo_coat.z);
+                below = coat_transmission(b.coat, wo_coat.z);
+            }
         }
         if (has_sheen(b)) sheen = strongest_sheen(b.sheen, wo.z);
-        const float below = 1 - reflected;
-        const float rest = below * (1 - sheen) * largest_albedo(b, direction);
-        const float all = reflected + below * sheen + rest;
+        const float passed = max_component(below);
+        const float rest = passed * (1 - sheen) * largest_albedo(b, direction);
+        const float all = reflected + passed * sheen + rest;
         is_black = !(all > 0);
         if (is_black) return;
         choose_coat = reflected / all;
-        choose_sheen = below * sheen / all;
+        choose_sheen = passed * sheen / all;
     }
     float choose_base() const { return 1 - choose_coat - choose_sheen; }
 
@@ -86,10 +116,10 @@ struct Outgoing {
 };
 
 /// Factor on what the base does with a pair.
-float base_scale(const LayeredBsdf& b, const Outgoing& out, Vec3 wi) {
-    if (!(out.sheen > 0)) return 1 - out.reflected;
+Rgb base_scale(const LayeredBsdf& b, const Outgoing& out, Vec3 wi) {
+    if (!(out.sheen > 0)) return out.below;
     const float in = strongest_sheen(b.sheen, std::abs(wi.z));
-    return (1 - out.reflected) * (1 - std::max(out.sheen, in));
+    return out.below * (1 - std::max(out.sheen, in));
 }
 
 /// The layers' parts of a pair above the surface, wi on the upper side, and the density with which
@@ -104,8 +134,7 @@ LayerValues layers(const LayeredBsdf& b, const Outgoing& out, Vec3 wi) {
         const SheenTable& table = *b.sheen.table;
         const float excess = std::max(
             {1.0f, table.albedo(b.sheen.alpha, out.wo.z), table.albedo(b.sheen.alpha, wi.z)});
-        v.sheen = b.sheen.colour *
-                  ((1 - out.reflected) * sheen_value(b.sheen.alpha, out.wo, wi) / excess);
+        v.sheen = b.sheen.colour * out.below * (sheen_value(b.sheen.alpha, out.wo, wi) / excess);
         v.pdf = out.choose_sheen * kUniformHemispherePdf;
     }
     if (!(out.reflected > 0) || b.coat.alpha == 0) return v;
@@ -113,7 +142,12 @@ LayerValues layers(const LayeredBsdf& b, const Outgoing& out, Vec3 wi) {
     if (!(wi_coat.z > 0)) return v;
     const Ggx ggx{b.coat.alpha, b.coat.alpha};
     const Vec3 m = normalize(out.wo_coat + wi_coat);
-    v.coat = Rgb(out.reflected * 0.25f * ggx.d(m) * ggx.g2_over_cos_o(out.wo_coat, wi_coat));
+    const float border =
+        b.coat.border
+            ? b.coat.weight *
+                  fresnel_dielectric(dot(out.wo_coat, m), b.coat.border->eta()).reflectance
+            : out.reflected;
+    v.coat = Rgb(border * 0.25f * ggx.d(m) * ggx.g2_over_cos_o(out.wo_coat, wi_coat));
     v.pdf += out.choose_coat * ggx.reflection_pdf(out.wo_coat, m);
     return v;
 }
@@ -140,8 +174,8 @@ std::optional<Vec3> sample_coat(const LayeredBsdf& b, const Outgoing& out, Vec2 
 
 }  // namespace
 
-float layer_transmission(const SheenLobe& sheen, const ClearcoatLobe& coat, float cosine) {
-    const float below = 1 - coat.weight * coat_reflectance(cosine);
+Rgb layer_transmission(const SheenLobe& sheen, const ClearcoatLobe& coat, float cosine) {
+    const Rgb below = coat_transmission(coat, cosine);
     return max_component(sheen.colour) > 0 ? below * (1 - strongest_sheen(sheen, cosine)) : below;
 }
 
@@ -183,7 +217,7 @@ std::optional<BsdfSample> sample(const LayeredBsdf& b, Vec3 wo, float u_lobe, Ve
         if (!below) return {};
         s = *below;
         if (is_specular(s.lobe)) {
-            s.weight *= base_scale(b, out, s.wi) / share;
+            s.weight *= base_scale(b, out, s.wi) * (1 / share);
             s.pdf *= share;
             return s;
         }
@@ -199,12 +233,13 @@ LobeShares lobe_shares(const LayeredBsdf& b, Vec3 wo, Vec3 wi, Rgb value) {
     const Outgoing out(b, wo);
     if (out.is_black) return {};
     const LayerValues above = same_side(wo, wi) ? layers(b, out, to_upper_side(wi)) : LayerValues{};
-    const float scale = base_scale(b, out, wi);
+    const Rgb scale = base_scale(b, out, wi);
     LobeShares found;
-    if (scale > 0) {
+    if (!is_black(scale)) {
         Rgb below;
         for (int c = 0; c < 3; ++c)
-            below[c] = std::max(0.0f, value[c] - above.sheen[c] - above.coat[c]) / scale;
+            if (scale[c] > 0)
+                below[c] = std::max(0.0f, value[c] - above.sheen[c] - above.coat[c]) / scale[c];
         found = covtrace::lobe_shares(out.base, wo, wi, below);
         for (int i = 0; i < found.count; ++i) found.lobes[static_cast<size_t>(i)].value *= scale;
     }
@@ -212,7 +247,8 @@ LobeShares lobe_shares(const LayeredBsdf& b, Vec3 wo, Vec3 wi, Rgb value) {
         if (!is_black(lobe.value)) found.lobes[static_cast<size_t>(found.count++)] = lobe;
     };
     add({LobeKind::sheen_reflection, above.sheen, b.sheen.alpha, b.sheen.alpha});
-    add({LobeKind::glossy_reflection, above.coat, b.coat.alpha, b.coat.alpha, 1, 0, 0,
+    add({LobeKind::glossy_reflection, above.coat, b.coat.alpha, b.coat.alpha, 1,
+         b.coat.border ? b.coat.border->eta() : 0, 0,
          wo.z < 0 ? mirror_z(b.coat.normal) : b.coat.normal});
     return found;
 }
@@ -225,9 +261,9 @@ bool is_specular(const LayeredBsdf& b) {
 Rgb albedo(const LayeredBsdf& b, Vec3 wo) {
     const Outgoing out(b, wo);
     const Rgb base = albedo(out.base, wo);
-    if (!(out.sheen > 0)) return Rgb(out.reflected) + (1 - out.reflected) * base;
+    if (!(out.sheen > 0)) return Rgb(out.reflected) + out.below * base;
     const Rgb sheen = b.sheen.colour * Outgoing::sheen_albedo(b, out.wo.z);
-    return Rgb(out.reflected) + (1 - out.reflected) * (sheen + (1 - out.sheen) * base);
+    return Rgb(out.reflected) + out.below * (sheen + (1 - out.sheen) * base);
 }
 
 }  // namespace covtrace

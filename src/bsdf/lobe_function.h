@@ -24,15 +24,16 @@ auto function_of(const F& f, double x) {
     return f(x);
 }
 
-/// Fresnel reflectance of the border that a lobe belongs to (`LobeShare::border_eta`), for `cos_i`
-/// > 0; 1 without a border.
+/// Fresnel reflectance of the border that a lobe belongs to (`LobeShare::border_eta`, or
+/// `border_metal`), for `cos_i` > 0; 1 without a border.
 template <typename S>
 S border_reflectance(const LobeShare& lobe, const S& cos_i) {
-    if (!(lobe.border_eta > 0)) return S(1.0f);
+    if (!lobe.has_border()) return S(1.0f);
     return function_of(
         [&lobe](const auto& c) {
             using std::sqrt;
             using C = std::decay_t<decltype(c)>;
+            if (lobe.border_metal) return C(schlick_reflectance(c, *lobe.border_metal));
             if (lobe.border_k > 0)
                 return C(conductor_reflectance(c, lobe.border_eta, lobe.border_k));
             const C cos2_t = 1 - (1 - c * c) / (lobe.border_eta * lobe.border_eta);

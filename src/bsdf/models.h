@@ -6,6 +6,7 @@
 #pragma once
 
 #include "bsdf/bsdf.h"
+#include "bsdf/fresnel.h"
 
 namespace covtrace {
 
@@ -20,6 +21,11 @@ BsdfValue eval_and_pdf(const ConductorBsdf& b, Vec3 wo, Vec3 wi);
 std::optional<BsdfSample> sample(const ConductorBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
 LobeShares lobe_shares(const ConductorBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
 Rgb albedo(const ConductorBsdf& b, Vec3 wo);
+/// Reflectance of a metal's facets for light with the cosine `cos_i` >= 0 to their normal.
+inline Rgb reflectance(const ConductorBsdf& b, float cos_i) {
+    return b.schlick ? schlick_reflectance(cos_i, *b.schlick)
+                     : fresnel_conductor(cos_i, b.eta, b.k);
+}
 
 /// Value of a dielectric. Refraction carries the factor 1 / eta^2 by which radiance changes (eta:
 /// index on wi's side over that on wo's side), since paths start at the camera.
@@ -54,8 +60,8 @@ std::optional<BsdfSample> sample(const ThinDielectricBsdf& b, Vec3 wo, float u_l
 std::optional<BsdfSample> sample(const InterfaceBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
 std::optional<BsdfSample> sample(const UnlitBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
 
-/// Value of a layered surface, which is not reciprocal: the clear coat dims what is below by its
-/// Fresnel reflectance for wo alone, as KHR_materials_clearcoat has it.
+/// Value of a layered surface, which is not reciprocal: the clear coat dims what is below by what
+/// it reflects for wo alone, as KHR_materials_clearcoat and Blender have it.
 Rgb eval(const LayeredBsdf& b, Vec3 wo, Vec3 wi);
 float pdf(const LayeredBsdf& b, Vec3 wo, Vec3 wi);
 BsdfValue eval_and_pdf(const LayeredBsdf& b, Vec3 wo, Vec3 wi);
@@ -66,8 +72,8 @@ Rgb albedo(const LayeredBsdf& b, Vec3 wo);
 
 /// Share of the light of a surface that gets out through a sheen and a clear coat above it, in a
 /// direction with the given cosine > 0 to their normal: what neither of them reflects of light that
-/// comes from there.
-float layer_transmission(const SheenLobe& sheen, const ClearcoatLobe& coat, float cosine);
+/// comes from there, and what the coat does not absorb.
+Rgb layer_transmission(const SheenLobe& sheen, const ClearcoatLobe& coat, float cosine);
 
 /// The surface below the layers.
 Bsdf base_of(const LayeredBsdf& layered);

@@ -73,7 +73,7 @@ std::optional<Jet> log_reflection(const LobeShare& lobe, LocalAxes wo, Vec wi) {
     add_log(sum, -1, masking(wo, wide, wi.z, std::sqrt(dot(wi, wide * wi))));
     sum.uu += 1;
     sum.vv += 1;
-    if (!(lobe.border_eta > 0)) return sum;
+    if (!lobe.has_border()) return sum;
     // Add Fresnel's factor of x = cos(wo, h), x^2 = (1 + c) / 2 with c = wo.wi
     const double x = std::sqrt(0.5 * (1 + c)), x1 = 0.25 / x, x2 = -x1 * x1 / x;
     const auto r = reflectance_at(lobe, x);

@@ -53,7 +53,7 @@ struct LogFresnel {
     bool reflects = true;
 
     LogFresnel(const LobeShare& lobe, double c) {
-        if (!(lobe.border_eta > 0)) return;
+        if (!lobe.has_border()) return;
         const double x = std::sqrt(0.5 * (1 + c)), x1 = 0.25 / x, x2 = -x1 * x1 / x;
         const auto r = reflectance_at(lobe, x);
         reflects = r.value > 0;

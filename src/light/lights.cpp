@@ -233,7 +233,7 @@ std::optional<LightSample> Lights::Impl::sample_point(int light, float probabili
 }
 
 Rgb Lights::Impl::radiance_at(const AreaLight& area, const TexturePoint& at, Vec3 n, Vec3 w) const {
-    float share = area.layers < 0 ? 1 : emission_share(area.layers, at, std::abs(dot(n, w)));
+    Rgb share = area.layers < 0 ? Rgb(1) : emission_share(area.layers, at, std::abs(dot(n, w)));
     if (area.cone) share *= area.cone->falloff(dot(area.cone_axis, w));
     const Rgb radiance = share * area.radiance;
     return area.image < 0 ? radiance : radiance * textures->eval(area.image, at);

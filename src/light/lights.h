@@ -50,7 +50,7 @@ struct DistantView {
 
 /// Share of the light of an emissive shape that gets through the layers above it, at a place and
 /// for a cosine between the direction that it leaves in and the normal, above 0.
-using EmissionShare = std::function<float(MaterialId, const TexturePoint&, float cosine)>;
+using EmissionShare = std::function<Rgb(MaterialId, const TexturePoint&, float cosine)>;
 
 class Lights {
   public:

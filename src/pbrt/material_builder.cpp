@@ -62,7 +62,7 @@ MaterialId MaterialBuilder::build(Declared& d) {
     if (d.entity.type == "mix") {
         d.id = build_mix(d);
     } else {
-        const std::optional<SheenLayer> sheen = sheen_layer(d.entity, textures_);
+        const MaterialLayers layers = material_layers(d.entity, textures_, context_);
         const NormalMaps maps = normal_maps(d.entity, textures_, context_);
         MaterialDescription m{d.name,
                               material_model(d.entity, textures_, context_),
@@ -71,7 +71,8 @@ MaterialId MaterialBuilder::build(Declared& d) {
                               maps.displacement,
                               maps.normal_map};
         m.maps_follow_uv = maps.follow_uv;
-        m.sheen = sheen;
+        m.sheen = layers.sheen;
+        m.clearcoat = layers.clearcoat;
         d.id = static_cast<MaterialId>(context_.scene.materials.size());
         context_.scene.materials.push_back(std::move(m));
     }

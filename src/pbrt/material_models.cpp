@@ -46,6 +46,8 @@ struct Builder {
     /// A metal's model. `outside`: index of the material that covers the metal; the colours of eta
     /// and k are made for the metal's reflectance against it.
     ConductorMaterial conductor(const std::string& prefix, float outside);
+    /// Sets a metal's `edge`.
+    void metal_edge(ConductorMaterial& m);
     DielectricMaterial dielectric();
     CoatedDiffuseMaterial coated_diffuse();
     CoatedConductorMaterial coated_conductor();
@@ -68,12 +70,30 @@ Spectrum scaled(Spectrum s, float factor) {
     return s;
 }
 
+void Builder::metal_edge(ConductorMaterial& m) {
+    // The parameters are ours, not pbrt's: Blender's metals, and its Glossy.
+    const std::string edge = p.text("edge", "index");
+    if (edge == "schlick") {
+        m.edge = ConductorMaterial::Edge::schlick;
+        m.edge_tint = textures.reflectance_or_none(p, "edgetint");
+    } else if (edge == "none") {
+        m.edge = ConductorMaterial::Edge::none;
+    } else if (edge != "index") {
+        throw Error(ErrorKind::scene, p.where("edge", e.where),
+                    unknown_name("edge", edge, {"index", "schlick", "none"}));
+    }
+    if (m.edge != ConductorMaterial::Edge::of_index && m.reflectance < 0)
+        throw Error(ErrorKind::scene, p.where("edge", e.where),
+                    "a conductor has an \"edge\" but no \"reflectance\"; expected both");
+}
+
 ConductorMaterial Builder::conductor(const std::string& prefix, float outside) {
     ConductorMaterial m;
     roughness(m, prefix);
     // The parameter is ours, not pbrt's: Blender's "Multiscatter GGX".
     m.multiple_scattering = p.flag(prefix + "multiplescattering", false);
     m.reflectance = textures.reflectance_or_none(p, "reflectance");
+    if (prefix.empty()) metal_edge(m);
     const auto types = {ParameterType::texture, ParameterType::rgb, ParameterType::spectrum,
                         ParameterType::blackbody};
     const Parameter* eta = p.find(prefix + "eta", types);
@@ -139,6 +159,9 @@ CoatedDiffuseMaterial Builder::coated_diffuse() {
     m.samples = p.integer("nsamples", 1);
     // The parameter is ours, not pbrt's: diffuse under specular as glTF and Blender have it.
     m.reflects_through_coat = p.flag("reflectsthroughcoat", false);
+    if (!m.reflects_through_coat) return m;
+    m.normal_reflectance = textures.reflectance_or_none(p, "normalreflectance");
+    if (m.normal_reflectance < 0) m.multiple_scattering = p.flag("multiplescattering", false);
     return m;
 }
 
@@ -294,12 +317,23 @@ NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& c
     return maps;
 }
 
-std::optional<SheenLayer> sheen_layer(Entity& entity, TextureBuilder& textures) {
-    constexpr float kRoughness = 0.25f;  // that of Blender's Principled, squared
-    if (is_interface(entity.type)) return std::nullopt;
-    const TextureId colour = textures.reflectance_or_none(entity.parameters, "sheen");
-    if (colour < 0) return std::nullopt;
-    return SheenLayer{colour, textures.grey(entity.parameters, "sheenroughness", kRoughness)};
+MaterialLayers material_layers(Entity& entity, TextureBuilder& textures, BuildContext& context) {
+    constexpr float kSheenRoughness = 0.25f;  // that of Blender's Principled, squared
+    constexpr float kCoatIndex = 1.5f;        // that of Blender's Principled
+    MaterialLayers layers;
+    if (is_interface(entity.type)) return layers;
+    ParameterList& p = entity.parameters;
+    if (const TextureId colour = textures.reflectance_or_none(p, "sheen"); colour >= 0)
+        layers.sheen = SheenLayer{colour, textures.grey(p, "sheenroughness", kSheenRoughness)};
+    if (const TextureId weight = textures.grey_or_none(p, "coat"); weight >= 0) {
+        ClearcoatLayer coat;
+        coat.weight = weight;
+        coat.alpha = textures.grey(p, "coatroughness", 0);
+        coat.eta = constant_index(p, "coateta", kCoatIndex, context);
+        coat.tint = textures.reflectance_or_none(p, "coattint");
+        layers.clearcoat = coat;
+    }
+    return layers;
 }
 
 Model material_model(Entity& entity, TextureBuilder& textures, BuildContext& context) {

@@ -20,8 +20,20 @@ struct NormalMaps {
 };
 NormalMaps normal_maps(Entity& entity, TextureBuilder& textures, BuildContext& context);
 
-/// The fibres over a surface, which have parameters of ours: "sheen", a colour, and
-/// "sheenroughness", the width of their distribution. None without the colour, and over interfaces.
-std::optional<SheenLayer> sheen_layer(Entity& entity, TextureBuilder& textures);
+/// Layers over a material, by parameters of ours that every type of material has but "mix" and
+/// interfaces.
+struct MaterialLayers {
+    std::optional<SheenLayer> sheen;
+    std::optional<ClearcoatLayer> clearcoat;
+};
+
+/// The layers that a material's parameters ask for:
+///
+/// - fibres, of "sheen", a colour, and "sheenroughness", the width of their distribution;
+/// - a clear coat, of "coat", its weight, "coatroughness", its GGX alpha, "coateta", its index, and
+///   "coattint", the share of light that crosses it along its normal twice.
+///
+/// Errors: Error(scene) for an index that is not above 0.
+MaterialLayers material_layers(Entity& entity, TextureBuilder& textures, BuildContext& context);
 
 }  // namespace covtrace

@@ -36,6 +36,13 @@ struct DiffuseMaterial {
 struct ConductorMaterial {
     TextureId eta = -1, k = -1;  ///< relative to vacuum; both or neither
     TextureId reflectance = -1;  ///< in place of eta and k
+    /// How `reflectance`, which is that at the normal, goes on towards grazing angles: as that of
+    /// the metal of index 1 that has it, by Schlick's formula with a dip, or the same at all
+    /// angles.
+    enum class Edge { of_index, schlick, none };
+    Edge edge = Edge::of_index;
+    /// Reflectance at 82 degrees over that without a dip, of Edge::schlick; none: 1.
+    TextureId edge_tint = -1;
     TextureId u_roughness = -1, v_roughness = -1;
     bool remap_roughness = true;
     /// Whether light that meets several microfacets comes back, too; else it is lost, as in pbrt.
@@ -63,6 +70,9 @@ struct CoatedDiffuseMaterial {
     /// diffuse under specular, as in glTF. Then `thickness`, `g`, `albedo`, `max_depth` and
     /// `samples` don't count.
     bool reflects_through_coat = false;
+    /// As that of a metal, of the coat; with `reflects_through_coat` only, and with neither of
+    /// `normal_reflectance` and `coat_weight`.
+    bool multiple_scattering = false;
     /// Reflectance of the coat at the normal, in place of that of `eta`, which then only says how
     /// it grows to 1 at grazing angles; with `reflects_through_coat` only.
     TextureId normal_reflectance = -1;
@@ -104,7 +114,8 @@ struct UnlitMaterial {
     TextureId colour = -1;   ///< radiance; none: 1
     bool two_sided = false;  ///< whether it is there for rays that meet its back, too
 };
-/// A layer of GGX over a surface, both sides of which have it: glTF's KHR_materials_clearcoat.
+/// A layer of GGX over a surface, both sides of which have it: glTF's KHR_materials_clearcoat, or
+/// the coat of Blender's Principled.
 struct ClearcoatLayer {
     TextureId weight = -1;  ///< share of the surface that has the layer; none: 1
     TextureId alpha = -1;   ///< width of GGX; none: 0
@@ -112,6 +123,9 @@ struct ClearcoatLayer {
     /// it the layer has the surface's unmapped normal.
     TextureId normal_map = -1;
     float normal_scale = 1;  ///< of the map's x and y
+    /// Index of a coat whose reflectance follows it; 0: that of the extension.
+    float eta = 0;
+    TextureId tint = -1;  ///< of light that crosses a full coat along the normal twice; none: 1
 };
 /// A layer of upright fibres over a surface, both sides of which have it: KHR_materials_sheen.
 struct SheenLayer {

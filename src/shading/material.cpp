@@ -48,10 +48,8 @@ struct Values {
         return id < 0 ? fallback : textures.eval_float(id, at);
     }
     CoatTint tint(const CoatedDiffuseMaterial& m, const CoatTable* white) const {
-        // NaN becomes 0, so that a broken texel can't spread.
-        const auto share = [](float v) { return v > 0 ? std::min(v, 1.0f) : 0; };
-        const Rgb r = spectrum(m.normal_reflectance, sqr((m.eta - 1) / (m.eta + 1)));
-        return {{share(r.r), share(r.g), share(r.b)}, share(number(m.coat_weight, 1)), white};
+        return {share(spectrum(m.normal_reflectance, sqr((m.eta - 1) / (m.eta + 1)))),
+                share(number(m.coat_weight, 1)), white};
     }
     template <typename M>
     Vec2 alphas(const M& m) const {
@@ -80,9 +78,16 @@ ConductorBsdf metal(const ConductorMaterial& m, const Values& v) {
     const Vec2 alpha = v.alphas(m);
     if (m.reflectance < 0)
         return ConductorBsdf{v.spectrum(m.eta, 1), v.spectrum(m.k, 1), alpha.x, alpha.y};
+    Rgb r = v.reflectance();
+    if (m.edge != ConductorMaterial::Edge::of_index) {
+        ConductorBsdf b{Rgb(1), Rgb(0), alpha.x, alpha.y};
+        b.schlick = m.edge == ConductorMaterial::Edge::schlick
+                        ? metal_of_edge(r, share(v.spectrum(m.edge_tint, 1)))
+                        : SchlickMetal<Rgb>{r, r, Rgb(0)};
+        return b;
+    }
     // The metal has eta = 1 and the k that reflects r at normal incidence.
     constexpr float kMost = 0.9999f;
-    Rgb r = v.reflectance();
     r = {std::min(r.r, kMost), std::min(r.g, kMost), std::min(r.b, kMost)};
     return ConductorBsdf{Rgb(1), 2 * sqrt(r) / sqrt(Rgb(1) - r), alpha.x, alpha.y};
 }
@@ -105,6 +110,8 @@ Bsdf make(const CoatedDiffuseMaterial& m, const Values& v, const Tables& tables)
     const Vec2 alpha = v.alphas(m);
     if (m.reflects_through_coat) {
         Rgb reflectance = v.reflectance();
+        if (m.multiple_scattering)
+            return make_coated_total(*tables.coat, reflectance, alpha.x, alpha.y, {}, tables.white);
         CoatTint tint;
         if (tables.white) {
             tint = v.tint(m, tables.white);
@@ -202,8 +209,9 @@ void MaterialStore::prepare(const CoatedDiffuseMaterial& m, Material& material,
         thickness = m.thickness < 0 ? kDefaultThickness
                                     : std::max(0.0f, textures.eval_float(m.thickness, kMiddle));
     const SourceLocation& where = material.description.where;
-    material.tables.coat = &coats_.get(refractive_index(m.eta), thickness);
-    if (m.normal_reflectance >= 0 || m.coat_weight >= 0)
+    material.tables.coat = m.multiple_scattering ? &coats_.get_bouncing(refractive_index(m.eta))
+                                                 : &coats_.get(refractive_index(m.eta), thickness);
+    if (m.normal_reflectance >= 0 || m.coat_weight >= 0 || m.multiple_scattering)
         material.tables.white = &coats_.get(kWhiteIndex, 0);
     warn_of_gap(m.albedo, "coateddiffuse", where, textures, warnings_);
     if (m.thickness >= 0 && !textures.is_constant(m.thickness))
@@ -261,6 +269,8 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
             if (!sheen_) sheen_ = std::make_unique<const SheenTable>();
             material.tables.sheen = sheen_.get();
         }
+        if (description.clearcoat && description.clearcoat->eta > 0)
+            material.tables.clearcoat = &coats_.get(description.clearcoat->eta, 0);
         material.has_layers = covtrace::has_layers(description);
         if (description.mix)
             for (MaterialId part : description.mix->materials)
@@ -271,7 +281,7 @@ MaterialStore::MaterialStore(const SceneDescription& scene, const TextureStore& 
                 if (!material.is_constant) return;
                 const auto made = [&](const Values& v) {
                     Bsdf bsdf = make(m, v, material.tables);
-                    put_under_layers(bsdf, description, textures, v.at, material.tables.sheen);
+                    put_under_layers(bsdf, description, textures, v.at, material.tables);
                     return bsdf;
                 };
                 material.constant = made(at_middle);
@@ -297,7 +307,7 @@ Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStor
         const Values values{textures, at, material.colours, adaptation_, powers_, lobes};
         found = std::visit([&](const auto& m) { return make(m, values, material.tables); },
                            material.description.value);
-        put_under_layers(found, material.description, textures, at, material.tables.sheen);
+        put_under_layers(found, material.description, textures, at, material.tables);
     }
     if (auto* coated = std::get_if<CoatedConductorBsdf>(&found))
         coated->place = static_cast<uint32_t>(hash_of_position(hit, 0) >> 32);
@@ -336,16 +346,16 @@ bool MaterialStore::lets_light_pass(MaterialId id) const {
            std::holds_alternative<UnlitMaterial>(model);
 }
 
-float MaterialStore::emission_share(MaterialId id, const TexturePoint& at, float cosine,
-                                    const TextureStore& textures) const {
-    if (!has_layers(id)) return 1;
+Rgb MaterialStore::emission_share(MaterialId id, const TexturePoint& at, float cosine,
+                                  const TextureStore& textures) const {
+    if (!has_layers(id)) return Rgb(1);
     if (const auto& mix = description(id).mix) {
         const float amount = clamp01(textures.eval_float(mix->amount, at));
         return (1 - amount) * emission_share(mix->materials[0], at, cosine, textures) +
                amount * emission_share(mix->materials[1], at, cosine, textures);
     }
     return covtrace::emission_share(description(id), textures, at,
-                                    materials_[static_cast<size_t>(id)].tables.sheen, cosine);
+                                    materials_[static_cast<size_t>(id)].tables, cosine);
 }
 
 bool MaterialStore::turns_clearcoat(MaterialId id) const {

@@ -45,6 +45,7 @@ struct MaterialTables {
     const CoatTable *from_outside = nullptr, *from_inside = nullptr;  ///< DielectricBsdf's
     const MeasuredBrdf* measured = nullptr;
     const SheenTable* sheen = nullptr;
+    const CoatTable* clearcoat = nullptr;  ///< ClearcoatLobe::border
 };
 
 /// The textures that modulate the light that a material's lobes reflect and transmit; -1 where
@@ -85,8 +86,8 @@ class MaterialStore {
     }
     /// Share of the light of an emitting surface that gets through its layers, in a direction with
     /// the given cosine > 0 to the normal; of a mix, the mean over its parts.
-    float emission_share(MaterialId id, const TexturePoint& at, float cosine,
-                         const TextureStore& textures) const;
+    Rgb emission_share(MaterialId id, const TexturePoint& at, float cosine,
+                       const TextureStore& textures) const;
     /// Whether the clear coat's normal may be another than that of the frame.
     bool turns_clearcoat(MaterialId id) const;
     /// Whether a bump or normal map turns the normals, or the material the tangents; see

@@ -20,7 +20,7 @@ bool is_constant(const TextureStore& t, const DiffuseMaterial& m) {
     return all_constant(t, {m.reflectance});
 }
 bool is_constant(const TextureStore& t, const ConductorMaterial& m) {
-    return all_constant(t, {m.eta, m.k, m.reflectance, m.u_roughness, m.v_roughness});
+    return all_constant(t, {m.eta, m.k, m.reflectance, m.edge_tint, m.u_roughness, m.v_roughness});
 }
 bool is_constant(const TextureStore& t, const DielectricMaterial& m) {
     return all_constant(t, {m.u_roughness, m.v_roughness, m.transmittance});
@@ -50,7 +50,8 @@ bool is_constant(const TextureStore& t, const UnlitMaterial& m) {
 }
 bool are_layers_constant(const TextureStore& t, const MaterialDescription& m) {
     return (!m.sheen || all_constant(t, {m.sheen->colour, m.sheen->alpha})) &&
-           (!m.clearcoat || all_constant(t, {m.clearcoat->weight, m.clearcoat->alpha}));
+           (!m.clearcoat ||
+            all_constant(t, {m.clearcoat->weight, m.clearcoat->alpha, m.clearcoat->tint}));
 }
 
 /// The colours of a model as the file gives them; `fixed` where it gives none.

@@ -1,6 +1,8 @@
 /// Inputs of a material's BSDF: whether any of them varies, and its colours.
 #pragma once
 
+#include <algorithm>
+
 #include "scene/scene_description.h"
 #include "shading/material.h"
 #include "texture/texture.h"
@@ -8,6 +10,14 @@
 namespace covtrace {
 
 constexpr float kDefaultReflectance = 0.5f;  ///< where the scene gives none
+
+/// A number as a share in [0, 1]. NaN becomes 0, so that a broken texel can't spread.
+inline float share(float v) {
+    return v > 0 ? std::min(v, 1.0f) : 0;
+}
+inline Rgb share(Rgb c) {
+    return {share(c.r), share(c.g), share(c.b)};
+}
 
 /// Whether no texture of the material's model and layers varies.
 bool is_constant(const MaterialDescription& m, const TextureStore& textures);

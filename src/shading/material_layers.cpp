@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "bsdf/models.h"
+#include "shading/material_inputs.h"
 
 namespace covtrace {
 
@@ -20,17 +21,18 @@ struct LayerTextures {
 };
 
 SheenLobe make_sheen(const SheenLayer& layer, const LayerTextures& v, const SheenTable* table) {
-    const Rgb colour = v.colour(layer.colour);
-    // NaN becomes 0, so that a broken texel can't spread.
-    const auto share = [](float c) { return c > 0 ? std::min(c, 1.0f) : 0; };
-    return {{share(colour.r), share(colour.g), share(colour.b)},
-            std::clamp(v.number(layer.alpha, 0), SheenTable::kLeastAlpha, 1.0f),
-            table};
+    return {share(v.colour(layer.colour)),
+            std::clamp(v.number(layer.alpha, 0), SheenTable::kLeastAlpha, 1.0f), table};
 }
 
-ClearcoatLobe make_coat(const ClearcoatLayer& layer, const LayerTextures& v) {
+ClearcoatLobe make_coat(const ClearcoatLayer& layer, const LayerTextures& v,
+                        const CoatTable* border) {
     const float alpha = v.number(layer.alpha, 0);
-    return {clamp01(v.number(layer.weight, 1)), ggx_alphas(alpha, alpha, false).x};
+    return {clamp01(v.number(layer.weight, 1)),
+            ggx_alphas(alpha, alpha, false).x,
+            {0, 0, 1},
+            border,
+            share(v.colour(layer.tint))};
 }
 
 }  // namespace
@@ -45,7 +47,7 @@ bool has_layers(const MaterialDescription& m) {
 }
 
 void put_under_layers(Bsdf& bsdf, const MaterialDescription& m, const TextureStore& textures,
-                      const TexturePoint& at, const SheenTable* table) {
+                      const TexturePoint& at, const MaterialTables& tables) {
     if (!has_layers(m)) return;
     LayeredBsdf layered;
     std::visit(
@@ -55,17 +57,17 @@ void put_under_layers(Bsdf& bsdf, const MaterialDescription& m, const TextureSto
         },
         bsdf);
     const LayerTextures values{textures, at};
-    if (m.sheen) layered.sheen = make_sheen(*m.sheen, values, table);
-    if (m.clearcoat) layered.coat = make_coat(*m.clearcoat, values);
+    if (m.sheen) layered.sheen = make_sheen(*m.sheen, values, tables.sheen);
+    if (m.clearcoat) layered.coat = make_coat(*m.clearcoat, values, tables.clearcoat);
     bsdf = layered;
 }
 
-float emission_share(const MaterialDescription& m, const TextureStore& textures,
-                     const TexturePoint& at, const SheenTable* table, float cosine) {
+Rgb emission_share(const MaterialDescription& m, const TextureStore& textures,
+                   const TexturePoint& at, const MaterialTables& tables, float cosine) {
     const LayerTextures values{textures, at};
-    return layer_transmission(m.sheen ? make_sheen(*m.sheen, values, table) : SheenLobe{},
-                              m.clearcoat ? make_coat(*m.clearcoat, values) : ClearcoatLobe{},
-                              cosine);
+    return layer_transmission(
+        m.sheen ? make_sheen(*m.sheen, values, tables.sheen) : SheenLobe{},
+        m.clearcoat ? make_coat(*m.clearcoat, values, tables.clearcoat) : ClearcoatLobe{}, cosine);
 }
 
 }  // namespace covtrace

@@ -13,11 +13,11 @@ bool has_layers(const MaterialDescription& material);
 
 /// Puts a surface under the material's layers, where it has any and may be under some.
 void put_under_layers(Bsdf& bsdf, const MaterialDescription& material, const TextureStore& textures,
-                      const TexturePoint& at, const SheenTable* table);
+                      const TexturePoint& at, const MaterialTables& tables);
 
 /// Share of the light of an emitting surface that gets through the layers above it; see
 /// layer_transmission.
-float emission_share(const MaterialDescription& material, const TextureStore& textures,
-                     const TexturePoint& at, const SheenTable* table, float cosine);
+Rgb emission_share(const MaterialDescription& material, const TextureStore& textures,
+                   const TexturePoint& at, const MaterialTables& tables, float cosine);
 
 }  // namespace covtrace

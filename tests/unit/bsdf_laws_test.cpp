@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bsdf/coat_table.h"
+#include "bsdf/models.h"
 #include "bsdf/multiple_scattering.h"
 #include "bsdf/sheen.h"
 #include "core/rng.h"
@@ -39,9 +40,21 @@ ConductorBsdf bouncing_copper(float alpha_x, float alpha_y) {
         {Rgb(0.2f, 0.92f, 1.1f), Rgb(3.9f, 2.45f, 2.14f), alpha_x, alpha_y}, white());
 }
 
+/// A metal that is known by its colours.
+ConductorBsdf schlick_metal(float alpha_x, float alpha_y) {
+    ConductorBsdf b{Rgb(1), Rgb(0), alpha_x, alpha_y};
+    b.schlick = metal_of_edge({0.9f, 0.5f, 0}, {0.6f, 1, 0});
+    return b;
+}
+
 DielectricBsdf bouncing_glass(float alpha) {
     static const CoatTable outside(1.5f, 0), inside(1 / 1.5f, 0);
     return with_multiple_scattering({1.5f, alpha, alpha, Rgb(0.95f)}, outside, inside);
+}
+
+CoatedDiffuseBsdf bouncing_satin(float alpha_x, float alpha_y) {
+    static const CoatTable table(1.5f, white());
+    return make_coated_total(table, {0.7f, 0.5f, 0}, alpha_x, alpha_y, {}, &white());
 }
 
 CoatedConductorBsdf coated_metal(float coat_x, float coat_y, float metal_x, float metal_y) {
@@ -62,6 +75,12 @@ ClearcoatLobe clear(float alpha, Vec3 normal = {0, 0, 1}) {
     return {0.8f, alpha, normalize(normal)};
 }
 
+/// A tinted clear coat with a border of its own.
+ClearcoatLobe lacquer(float alpha, Vec3 normal = {0, 0, 1}) {
+    static const CoatTable border(1.5f, 0);
+    return {0.8f, alpha, normalize(normal), &border, {0.9f, 0.4f, 0}};
+}
+
 std::vector<Case> all_cases() {
     const Rgb copper_eta(0.2f, 0.92f, 1.1f), copper_k(3.9f, 2.45f, 2.14f), tan(0.7f, 0.5f, 0.2f);
     return {
@@ -75,6 +94,10 @@ std::vector<Case> all_cases() {
         {"copper_roughest", ConductorBsdf{copper_eta, copper_k, 1, 1}},
         {"copper_brushed", ConductorBsdf{copper_eta, copper_k, 0.05f, 0.4f}},
         {"copper_thread", ConductorBsdf{copper_eta, copper_k, 1e-4f, 0.5f}},
+        {"tinted_mirror", schlick_metal(0, 0)},
+        {"tinted_metal", schlick_metal(0.2f, 0.2f)},
+        {"tinted_metal_brushed", schlick_metal(0.05f, 0.4f)},
+        {"tinted_metal_bouncing", with_multiple_scattering(schlick_metal(0.6f, 0.6f), white())},
         {"copper_bouncing", bouncing_copper(0.6f, 0.6f)},
         {"copper_bouncing_brushed", bouncing_copper(0.2f, 0.4f)},
         {"frosted_bouncing", bouncing_glass(0.4f)},
@@ -93,6 +116,8 @@ std::vector<Case> all_cases() {
         {"tinted_varnish", make_coated_total(coat(), tan, 0, 0, tint())},
         {"tinted_satin", make_coated_total(coat(), tan, 0.1f, 0.1f, tint())},
         {"tinted_brushed", make_coated_total(coat(), tan, 0.1f, 0.5f, tint())},
+        {"satin_bouncing", bouncing_satin(0.4f, 0.4f)},
+        {"satin_bouncing_brushed", bouncing_satin(0.1f, 0.5f)},
         {"lacquer_on_mirror", coated_metal(0, 0, 0, 0)},
         {"lacquer_on_copper", coated_metal(0, 0, 0.2f, 0.2f)},
         {"frost_on_mirror", coated_metal(0.2f, 0.2f, 0, 0)},
@@ -108,6 +133,11 @@ std::vector<Case> all_cases() {
         {"clear_on_copper",
          LayeredBsdf{ConductorBsdf{copper_eta, copper_k, 0.3f, 0.3f}, {}, clear(0.04f)}},
         {"clear_on_bouncing_copper", LayeredBsdf{bouncing_copper(0.5f, 0.5f), {}, clear(0.04f)}},
+        {"lacquer_over_tan", LayeredBsdf{DiffuseBsdf{tan}, {}, lacquer(0)}},
+        {"lacquer_over_copper", LayeredBsdf{bouncing_copper(0.5f, 0.5f), {}, lacquer(0.2f)}},
+        {"lacquer_over_frost", LayeredBsdf{DielectricBsdf{1.5f, 0.2f, 0.2f}, {}, lacquer(0.1f)}},
+        {"tilted_lacquer_on_velvet", LayeredBsdf{make_coated_total(coat(), tan, 0.2f, 0.2f),
+                                                 sheen(0.2f), lacquer(0.5f, {0.2f, 0.1f, 1})}},
         {"clear_on_tan", LayeredBsdf{DiffuseBsdf{tan}, {}, clear(0)}},
         {"tilted_clear_on_tan", LayeredBsdf{DiffuseBsdf{tan}, {}, clear(0.2f, {0.4f, -0.3f, 1})}},
         {"tilted_clear_on_velvet", LayeredBsdf{make_coated_total(coat(), tan, 0.2f, 0.2f),
@@ -134,6 +164,8 @@ void expect_near(Rgb a, Rgb b, float relative, const char* what) {
 
 /// The index on the side of w.
 float index_at(const Bsdf& bsdf, Vec3 w) {
+    if (const auto* layered = std::get_if<LayeredBsdf>(&bsdf))
+        return index_at(base_of(*layered), w);
     const auto* dielectric = std::get_if<DielectricBsdf>(&bsdf);
     return dielectric && w.z < 0 ? dielectric->eta : 1;
 }
@@ -142,7 +174,8 @@ float index_at(const Bsdf& bsdf, Vec3 w) {
 bool has_gain(const Bsdf& bsdf) {
     const auto* metal = std::get_if<ConductorBsdf>(&bsdf);
     const auto* glass = std::get_if<DielectricBsdf>(&bsdf);
-    return (metal && metal->white) || (glass && glass->from_outside);
+    const auto* coated = std::get_if<CoatedDiffuseBsdf>(&bsdf);
+    return (metal && metal->white) || (glass && glass->from_outside) || (coated && coated->white);
 }
 
 TEST_P(BsdfLaws, Reciprocity) {
@@ -301,7 +334,7 @@ TEST(BsdfSpecular, ModelsWithoutOtherLobesNeverEvaluate) {
     }
     // The models are mirror, glass, no_border, lacquer_on_mirror, pane, interface, unlit and
     // clear_on_mirror.
-    EXPECT_EQ(models, 8);
+    EXPECT_EQ(models, 9);
 }
 
 }  // namespace

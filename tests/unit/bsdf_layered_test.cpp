@@ -2,6 +2,7 @@
 /// held against Khronos's formulas in tests/cli/test_gltf_layers.py.
 #include <gtest/gtest.h>
 
+#include "bsdf/coat_table.h"
 #include "bsdf/models.h"
 #include "bsdf/sheen.h"
 #include "core/frame.h"
@@ -78,6 +79,32 @@ TEST(LayeredBsdf, ClearcoatTakesWhatItReflects) {
             const float all = integrated(rough, wo).g;
             EXPECT_LE(all, 1.003f);
             EXPECT_GE(all, 1 - 0.2f * reflected);
+        }
+}
+
+TEST(LayeredBsdf, CoatsWithABorderLeaveWhatTheyReflectAndTint) {
+    static const CoatTable border(1.6f, 0);
+    const Rgb tint(0.8f, 0.4f, 1);
+    constexpr float kWeight = 0.7f;
+    for (const float alpha : {0.0f, 0.1f, 0.5f, 1.0f})
+        for (const float c : {0.1f, 0.5f, 1.0f}) {
+            const Vec3 wo = at_cos(c);
+            // White below keeps all light that is not tinted.
+            const Bsdf clear = LayeredBsdf{DiffuseBsdf{Rgb(1)}, {}, {1, alpha, {0, 0, 1}, &border}};
+            const float mirrored =
+                alpha == 0 ? fresnel_dielectric(c, border.eta()).reflectance : 0.0f;
+            EXPECT_NEAR(integrated(clear, wo).g + mirrored, 1, 0.006f) << alpha << " " << c;
+            // Black below shows the coat alone, and both together the tint of what gets through.
+            const ClearcoatLobe tinted{kWeight, alpha, {0, 0, 1}, &border, tint};
+            const Rgb coat = integrated(LayeredBsdf{DiffuseBsdf{}, {}, tinted}, wo);
+            const Rgb all = integrated(LayeredBsdf{DiffuseBsdf{Rgb(0.5f)}, {}, tinted}, wo);
+            const float passed = 1 - kWeight * mirrored - coat.g;
+            const float way = 1 / std::sqrt(1 - (1 - c * c) / (1.6f * 1.6f));
+            for (int i = 0; i < 3; ++i)
+                EXPECT_NEAR(all[i] - coat[i],
+                            0.5f * passed * (1 - kWeight + kWeight * std::pow(tint[i], way)),
+                            0.006f)
+                    << alpha << " " << c << " " << i;
         }
 }
 

@@ -30,7 +30,11 @@ struct Model {
 /// function is exact.
 std::vector<Model> models() {
     static const SheenTable fibres;
-    return {{"velvet", LayeredBsdf{DiffuseBsdf{}, {Rgb(1), 0.2f, &fibres}, {}}},
+    ConductorBsdf tinted{Rgb(1), Rgb(0), 0.3f, 0.3f};
+    tinted.schlick = metal_of_edge(Rgb(0.6f), Rgb(0.3f));
+    return {{"metal by its colours", tinted},
+            {"lacquer", LayeredBsdf{DiffuseBsdf{}, {}, {1, 0.3f, {0, 0, 1}, &coat_table()}}},
+            {"velvet", LayeredBsdf{DiffuseBsdf{}, {Rgb(1), 0.2f, &fibres}, {}}},
             {"diffuse", DiffuseBsdf{Rgb(0.5f)}},
             {"diffuse transmission", DiffuseTransmissionBsdf{Rgb(0.5f), Rgb(0.3f)}},
             {"conductor", ConductorBsdf{Rgb(0.2f), Rgb(3.0f), 0.2f, 0.2f}},

@@ -19,14 +19,15 @@ Vec unit(Vec3 v) {
     return cov::normalized_or<double>(v, {0, 0, 1});
 }
 
-/// Lobes with borders of none, glass from both sides, and metal.
+/// Lobes with borders of none, glass from both sides, and metal, by its index and by its colours.
 LobeShare lobe_of(int i, Rng& rng) {
     LobeShare lobe;
     lobe.kind = LobeKind::glossy_reflection;
     lobe.alpha_x = lobe.alpha_y = 0.02f + rng.next_float();
-    const float indices[] = {0, 1.5f, 0.7f, 0.3f};
-    lobe.border_eta = indices[i % 4];
-    lobe.border_k = i % 4 == 3 ? 3.5f : 0.0f;
+    const float indices[] = {0, 1.5f, 0.7f, 0.3f, 0};
+    lobe.border_eta = indices[i % 5];
+    lobe.border_k = i % 5 == 3 ? 3.5f : 0.0f;
+    if (i % 5 == 4) lobe.border_metal = SchlickMetal<float>{0.7f, 1, 3};
     return lobe;
 }
 

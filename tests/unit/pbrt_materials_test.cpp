@@ -4,20 +4,6 @@
 namespace covtrace::test {
 namespace {
 
-struct Made {
-    SceneDescription scene;
-    MaterialDescription material;
-};
-Made material_of(const std::string& text) {
-    Made m{read_world("Material " + text + "\nShape \"sphere\""), {}};
-    m.material = m.scene.materials.at(static_cast<size_t>(m.scene.shapes.at(0).material));
-    return m;
-}
-template <typename Model>
-Model model_of(const std::string& text) {
-    return std::get<Model>(material_of(text).material.value);
-}
-
 TEST(SceneMaterials, TheDefaultIsDiffuseGrey) {
     const auto scene = read_world("Shape \"sphere\"");
     const auto& m = std::get<DiffuseMaterial>(
@@ -277,14 +263,6 @@ TEST(SceneMaterials, SubsurfaceTakesTheNameThenCoefficientsThenReflectance) {
                          "expected both or none"));
 }
 
-TEST(SceneMaterials, MultipleScatteringIsAParameterOfOurs) {
-    const std::string on = " \"bool multiplescattering\" true";
-    EXPECT_FALSE(model_of<ConductorMaterial>("\"conductor\"").multiple_scattering);
-    EXPECT_TRUE(model_of<ConductorMaterial>("\"conductor\"" + on).multiple_scattering);
-    EXPECT_TRUE(model_of<DielectricMaterial>("\"dielectric\"" + on).multiple_scattering);
-    EXPECT_TRUE(contains(warnings_of(material_of("\"diffuse\"" + on).scene), "multiplescattering"));
-}
-
 TEST(SceneMaterials, MixesKeepBothParts) {
     const std::string two =
         "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n"
@@ -373,6 +351,11 @@ TEST(SceneMaterials, ErrorsNameThePlace) {
          "test.pbrt:3:1: material \"a\" is already defined at test.pbrt:2:1"},
         {"Material \"conductor\" \"rgb reflectance\" [1 1 1] \"rgb k\" [1 1 1]",
          "both \"reflectance\" and"},
+        {"Material \"conductor\" \"rgb reflectance\" [1 1 1] \"string edge\" \"shlick\"",
+         "test.pbrt:2:48: unknown edge \"shlick\"; expected one of index, schlick, none"},
+        {"Material \"conductor\" \"string edge\" \"none\"",
+         "test.pbrt:2:22: a conductor has an \"edge\" but no \"reflectance\"; expected both"},
+        {"Material \"diffuse\" \"float coat\" 1 \"float coateta\" 0", "must be greater than 0"},
         {"Material \"dielectric\" \"float eta\" 0", "must be greater than 0"},
         {"Material \"dielectric\" \"spectrum eta\" \"stdillum-A\"", "is a light"},
         {"Material \"mix\" \"string materials\" [ \"a\" ]", "names of two materials"},

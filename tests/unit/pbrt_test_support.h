@@ -101,4 +101,19 @@ inline void expect_near(Vec3 a, Vec3 b, float tolerance) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance) << "axis " << c;
 }
 
+/// A scene with one material, and that material.
+struct Made {
+    SceneDescription scene;
+    MaterialDescription material;
+};
+inline Made material_of(const std::string& text) {
+    Made m{read_world("Material " + text + "\nShape \"sphere\""), {}};
+    m.material = m.scene.materials.at(static_cast<size_t>(m.scene.shapes.at(0).material));
+    return m;
+}
+template <typename Model>
+Model model_of(const std::string& text) {
+    return std::get<Model>(material_of(text).material.value);
+}
+
 }  // namespace covtrace::test

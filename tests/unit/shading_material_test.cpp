@@ -121,6 +121,29 @@ TEST_F(MaterialTest, ConductorTakesIndexOrReflectance) {
     EXPECT_NEAR(fresnel_conductor(1, w.eta, w.k).g, 0.9999f, 1e-5f);
 }
 
+TEST_F(MaterialTest, MetalsHaveTheEdgesOfTheirColours) {
+    ConductorMaterial even;
+    even.reflectance = constant({0.9f, 0.5f, 0.0f});
+    even.edge = ConductorMaterial::Edge::none;
+    ConductorMaterial tinted = even;
+    tinted.edge = ConductorMaterial::Edge::schlick;
+    tinted.edge_tint = checks(constant(1.0f), constant({0.5f, NAN, 2.0f}));
+    const MaterialId even_id = add(even), tinted_id = add(tinted);
+    build();
+    const auto same = bsdf_at<ConductorBsdf>(even_id);
+    ASSERT_TRUE(same.schlick);
+    EXPECT_EQ(same.schlick->grazing, Rgb(0.9f, 0.5f, 0));
+    EXPECT_EQ(same.schlick->dip, Rgb(0));
+    for (const Vec2 uv : {Vec2{0.5f, 0.5f}, Vec2{1.5f, 0.5f}}) {
+        const auto metal = bsdf_at<ConductorBsdf>(tinted_id, uv);
+        ASSERT_TRUE(metal.schlick);
+        const bool is_first = uv.x < 1;
+        const auto expected = metal_of_edge({0.9f, 0.5f, 0}, is_first ? Rgb(1) : Rgb(0.5f, 0, 1));
+        EXPECT_EQ(metal.schlick->grazing, Rgb(1));
+        EXPECT_EQ(metal.schlick->dip, expected.dip);
+    }
+}
+
 TEST_F(MaterialTest, MultipleScatteringIsForEveryRoughnessOfATexture) {
     ConductorMaterial white;
     white.reflectance = constant(1.0f);
