@@ -2,9 +2,12 @@
 
 import io
 
+import numpy as np
+
+from . import fibres
 from .baked_images import BakedImages
 from .baking import Baker, Surface
-from .export_principled import PrincipledExporter
+from .export_principled import WHITE, PrincipledExporter
 from .export_sockets import Value
 from .export_textures import TextureFiles
 from .export_volumes import Media, coefficients
@@ -159,7 +162,8 @@ class MaterialExporter(PrincipledExporter):
 
     def _shader(self, node):
         known = {"BSDF_TRANSPARENT": lambda node: self._black(), "BSDF_PRINCIPLED": self._principled,
-                 "BSDF_DIFFUSE": self._diffuse, "BSDF_GLOSSY": self._glossy, "BSDF_GLASS": self._glass, "BSDF_REFRACTION": self._glass, "BSDF_TRANSLUCENT": self._translucent,
+                 "BSDF_DIFFUSE": self._diffuse, "BSDF_GLOSSY": self._glossy, "BSDF_METALLIC": self._metallic,
+                 "BSDF_HAIR_PRINCIPLED": self._hair, "BSDF_GLASS": self._glass, "BSDF_REFRACTION": self._glass, "BSDF_TRANSLUCENT": self._translucent,
                  "EMISSION": lambda node: self._black(), "MIX_SHADER": self._mix_shader, "ADD_SHADER": self._add_shader}
         if node.type in known:
             return known[node.type](node)
@@ -181,11 +185,42 @@ class MaterialExporter(PrincipledExporter):
         return Value(0.0) if getattr(node, "distribution", "") == "SHARP" else self._value(node.inputs["Roughness"], True)
 
     def _glossy(self, node):
-        return self._metal(self._value(node.inputs["Color"]), self._rough(node), self._scattering(node) + self._normal_map(node))
+        return self._metal(self._value(node.inputs["Color"]), self._rough(node), None, self._scattering(node) + self._normal_map(node))
+
+    def _metallic(self, node):
+        get, rest = node.inputs, self._scattering(node) + self._normal_map(node)
+        if node.fresnel_type == "F82":
+            return self._metal(self._value(get["Base Color"]), self._rough(node), self._value(get["Edge Tint"]), rest)
+        return self._make("conductor", [
+            self._index("eta", self._value(get["IOR"])), self._index("k", self._value(get["Extinction"])),
+            *self._roughness(self._rough(node)), *rest])
 
     def _glass(self, node):
         return self._clear(self._value(node.inputs["Color"]), self._value(node.inputs["Roughness"], True),
                            self._plain(node.inputs["IOR"]), self._scattering(node) + self._normal_map(node))
+
+    def _hair(self, node):
+        """Principled Hair as the matt wall of a tube, as bright as its strands."""
+        get, wall = node.inputs, fibres.Wall(self._plain(node.inputs["IOR"]))
+        self.warn(f"material '{self.name}': '{node.name}' is as bright as strands are, but without their highlights")
+        radial = self._plain(get["Roughness" if getattr(node, "model", "CHIANG") == "HUANG" else "Radial Roughness"])
+
+        def absorption_of(colour):
+            return fibres.absorption_of_colour(colour, radial)
+
+        if node.parametrization == "COLOR":
+            colour, absorption, key = self._value(get["Color"]), absorption_of, (radial, wall.eta)
+        else:
+            if node.parametrization == "MELANIN":
+                found = fibres.absorption_of_pigments(self._plain(get["Melanin"]), self._plain(get["Melanin Redness"]))
+                tint = self._value(get["Tint"])
+                found = found + absorption_of(np.array(WHITE.constant if tint.image else tint.constant))
+            else:
+                found = np.maximum(get["Absorption Coefficient"].default_value, 0)
+            colour, absorption, key = WHITE, lambda _: found, ""
+        return self._make("diffusetransmission", [
+            self._colour("reflectance", colour, lambda c: wall.reflectance(absorption(c)), ("sent back", key)),
+            self._colour("transmittance", colour, lambda c: wall.transmittance(absorption(c)), ("let pass", key))])
 
     def _translucent(self, node):
         return self._make("diffusetransmission", ['"rgb reflectance" [0 0 0]',

@@ -41,6 +41,15 @@ class ShaderWriter(SocketReader):
         rgb = treat(np.clip(np.array(value.constant, dtype=float), 0, 1))
         return f'"rgb {parameter}" [{numbers(rgb)}]'
 
+    def _index(self, parameter, value):
+        """Numbers of any size per channel, as textures, which are taken as they are; colours would become spectra."""
+        if value.image:
+            return self._colour(parameter, value)
+        name = f"texture {self.count}"
+        self.count += 1
+        self.out.write(f'Texture "{name}" "spectrum" "constant" "rgb value" [{numbers(np.maximum(value.constant, 0))}]\n')
+        return f'"texture {parameter}" "{name}"'
+
     def _number(self, parameter, value, treat=lambda v: v, key=""):
         if value.image:
             return f'"texture {parameter}" "{self._texture("float", value, treat, key)}"'
@@ -124,9 +133,13 @@ class ShaderWriter(SocketReader):
         """Parameters of metal and glass whose facets pass light on to each other, where a node's distribution says so."""
         return [f'"bool {prefix}multiplescattering" true'] if node.distribution == "MULTI_GGX" else []
 
-    def _metal(self, colour, roughness, rest):
-        return self._make("conductor", [self._colour("reflectance", colour), *self._roughness(roughness), *rest])
+    def _metal(self, colour, roughness, edge, rest):
+        """edge: the Value of the tint at 82 degrees, whose reflectance else goes to 1 at grazing angles by Schlick's formula;
+        None: it is the same at all angles."""
+        shape = ['"string edge" "none"'] if edge is None else ['"string edge" "schlick"', self._colour("edgetint", edge)]
+        return self._make("conductor", [self._colour("reflectance", colour), *shape, *self._roughness(roughness), *rest])
 
-    def _clear(self, colour, roughness, eta, rest):
+    def _clear(self, colour, roughness, eta, rest, *treat):
+        """treat: what makes of the colour the share that one crossing lets pass, as of _colour."""
         return self._make("dielectric", [f'"float eta" {max(eta, 1.0001):.9g}',
-                                         self._colour("transmittance", colour), *self._roughness(roughness), *rest])
+                                         self._colour("transmittance", colour, *treat), *self._roughness(roughness), *rest])

@@ -1,15 +1,20 @@
-"""Means over all directions of what the angle of sight decides, each direction counting by its cosine."""
+"""Fresnel's reflectance, and means over all directions of what the angle of sight decides, each direction counting by its cosine."""
 
 import numpy as np
 
 
-def mean_reflectance(eta):
-    """Mean reflectance of a smooth border of this index of refraction, at least 1, by Fresnel's equations."""
-    cosine = (np.arange(1000) + 0.5) / 1000
+def reflectance(cosine, eta):
+    """Reflectance of a smooth border of this index of refraction, at least 1, by Fresnel's equations; cosine: outside, an array."""
     inside = np.sqrt(1 - (1 - cosine**2) / eta**2)
     across = ((cosine - eta * inside) / (cosine + eta * inside)) ** 2
     along = ((eta * cosine - inside) / (eta * cosine + inside)) ** 2
-    return float(np.mean((across + along) * cosine))
+    return (across + along) / 2
+
+
+def mean_reflectance(eta):
+    """Its mean."""
+    cosine = (np.arange(1000) + 0.5) / 1000
+    return float(np.mean(2 * reflectance(cosine, eta) * cosine))
 
 
 def mean_facing(blend):

@@ -1,42 +1,76 @@
-"""Parts of Principled that Blender has since 4.0, against Cycles."""
+"""Parts of Principled that Blender has since 4.0, and the node Metallic BSDF of 4.3, against Cycles."""
 
-import math
 import unittest
 
 import bpy
-from addon_support import BlenderTest, material, mean, render
+from addon_support import BlenderTest, material
 
 GREY, METAL, TINT = (0.5, 0.5, 0.5, 1), (0.9, 0.9, 0.9, 1), (0.9, 0.5, 0.2, 1)
+BLACK, EDGE = (0, 0, 0, 1), (0.4, 0.8, 1, 1)
 
 
 @unittest.skipIf(bpy.app.version < (4, 0), "Blender before 4.0")
 class PrincipledTest(BlenderTest):
     def assert_brightness(self, tolerance, **inputs):
-        """Asserts that a plane in a white surrounding is as bright as in Cycles, seen from above and at 0.8 radian, and that
-        nothing is left out."""
-        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
-        self.camera.data.lens = 200
-        plane = self.plane(material(**inputs))
-        for tilt in (0, 0.8):
-            self.camera.location = (0, -5 * math.sin(tilt), 5 * math.cos(tilt))
-            self.camera.rotation_euler = (tilt, 0, 0)
-            ours, theirs = mean(render("COVTRACE", 64)), mean(render("CYCLES", 64))
-            for a, b in zip(ours, theirs):
-                self.assertAlmostEqual(a, b, delta=tolerance, msg=f"{inputs} at {tilt}: {ours} against {theirs}")
-        self.export()
-        self.assertEqual(self.warnings, [])
-        bpy.data.objects.remove(plane)
+        self.assert_as_bright(material(**inputs), tolerance, inputs)
+
+    def test_coats_are_those_of_cycles(self):
+        for roughness in (0.1, 0.9):
+            coat = dict(Roughness=roughness, Coat_Weight=1.0, Coat_Roughness=0.2)
+            for base in (dict(Base_Color=METAL, Metallic=1.0), dict(Base_Color=GREY), dict(Base_Color=GREY, Metallic=0.5)):
+                self.assert_brightness(0.012, **base, **coat)
+        self.assert_brightness(0.012, Base_Color=METAL, Metallic=1.0, Roughness=0.5, Coat_Weight=0.7, Coat_Roughness=0.9, Coat_IOR=2.0)
 
     def test_coats_are_tinted(self):
-        coat = dict(Base_Color=GREY, Roughness=0.5, Coat_Tint=TINT)
-        self.assert_brightness(0.035, Coat_Weight=1.0, **coat)
-        self.assert_brightness(0.02, Coat_Weight=0.5, **coat)
-        # Coated metals come out darker whatever the tint.
-        self.assert_brightness(0.1, Base_Color=METAL, Metallic=1.0, Roughness=0.3, Coat_Weight=1.0, Coat_Tint=TINT)
+        for base in (dict(Base_Color=GREY, Roughness=0.5), dict(Base_Color=METAL, Metallic=1.0, Roughness=0.3)):
+            for weight in (0.5, 1.0):
+                self.assert_brightness(0.012, Coat_Weight=weight, Coat_Tint=TINT, **base)
+
+    def test_metals_have_the_edges_of_cycles(self):
+        for roughness in (0.1, 0.5, 0.9):
+            self.assert_brightness(0.012, Base_Color=TINT, Metallic=1.0, Roughness=roughness)
+        self.assert_brightness(0.012, Base_Color=TINT, Metallic=1.0, Roughness=0.3, Specular_Tint=EDGE)
+
+    def test_specular_of_dielectrics(self):
+        for roughness in (0.3, 0.9):
+            self.assert_brightness(0.002, Base_Color=BLACK, Roughness=roughness)
+        self.assert_brightness(0.006, Base_Color=BLACK, Roughness=0.3, IOR=2.0, Specular_Tint=TINT)
+
+    def test_glass_has_its_colour_after_two_crossings(self):
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        self.camera.data.lens = 200
+        bpy.ops.mesh.primitive_uv_sphere_add(radius=1, segments=64, ring_count=32)
+        bpy.ops.object.shade_smooth()
+        bpy.context.object.data.materials.append(material(Base_Color=TINT, Transmission=1.0, Roughness=0.0))
+        self.assert_as_cycles(0.03)
 
     def test_sheens(self):
         # Cycles' fibres are another model: rougher ones are brighter there.
         for roughness in (0.5, 0.6):
             sheen = dict(Roughness=1.0, Specular_IOR_Level=0.0, Sheen_Weight=1.0, Sheen_Roughness=roughness, Sheen_Tint=TINT)
-            self.assert_brightness(0.04, Base_Color=(0, 0, 0, 1), **sheen)
-            self.assert_brightness(0.06, Base_Color=GREY, **sheen)
+            self.assert_as_bright(material(Base_Color=BLACK, **sheen), 0.04, sheen, (0, 0.8))
+            self.assert_as_bright(material(Base_Color=GREY, **sheen), 0.06, sheen, (0, 0.8))
+
+
+@unittest.skipIf(bpy.app.version < (4, 3), "Blender before 4.3")
+class MetallicTest(BlenderTest):
+    def assert_brightness(self, kind, distribution="MULTI_GGX", **inputs):
+        """Asserts it of a Metallic BSDF; kind: how that tells its reflectance."""
+        m = bpy.data.materials.new("metallic")
+        m.use_nodes = True
+        tree = m.node_tree
+        node = tree.nodes.new("ShaderNodeBsdfMetallic")
+        node.fresnel_type, node.distribution = kind, distribution
+        for name, value in inputs.items():
+            node.inputs[name.replace("_", " ")].default_value = value
+        tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        self.assert_as_bright(m, 0.012, inputs)
+
+    def test_colours_at_the_normal_and_at_the_edge(self):
+        for roughness in (0.0, 0.3, 0.9):
+            self.assert_brightness("F82", Base_Color=TINT, Edge_Tint=EDGE, Roughness=roughness)
+        self.assert_brightness("F82", "GGX", Base_Color=TINT, Edge_Tint=EDGE, Roughness=0.5)
+
+    def test_indices_of_refraction(self):
+        for roughness in (0.0, 0.3, 0.9):
+            self.assert_brightness("PHYSICAL_CONDUCTOR", IOR=(0.2, 0.92, 1.1), Extinction=(3.9, 2.45, 2.14), Roughness=roughness)
