@@ -184,10 +184,18 @@ class MaterialExporter(PrincipledExporter):
     def _rough(self, node):
         return Value(0.0) if getattr(node, "distribution", "") == "SHARP" else self._value(node.inputs["Roughness"], True)
 
+    def _tell_left_out_of_metal(self, node):
+        """Warns of what changes a node Glossy or Metallic and is left out."""
+        for name in ("Anisotropy", "Thin Film Thickness"):
+            if name in node.inputs and (node.inputs[name].is_linked or node.inputs[name].default_value != 0):
+                self.warn(f"material '{self.name}': {name} of '{node.name}' is not supported and left out")
+
     def _glossy(self, node):
+        self._tell_left_out_of_metal(node)
         return self._metal(self._value(node.inputs["Color"]), self._rough(node), None, self._scattering(node) + self._normal_map(node))
 
     def _metallic(self, node):
+        self._tell_left_out_of_metal(node)
         get, rest = node.inputs, self._scattering(node) + self._normal_map(node)
         if node.fresnel_type == "F82":
             return self._metal(self._value(get["Base Color"]), self._rough(node), self._value(get["Edge Tint"]), rest)

@@ -30,6 +30,6 @@ class HairTest(BlenderTest):
             with self.subTest(kind):
                 ours, theirs = (mean(render(engine, 64), 8, 6, 24, 18) for engine in ("COVTRACE", "CYCLES"))
                 for a, b in zip(ours, theirs):
-                    self.assertAlmostEqual(a, b, delta=0.04, msg=f"{ours} against {theirs}")
+                    self.assertAlmostEqual(a, b, delta=0.05, msg=f"{ours} against {theirs}")
         self.export()
         self.assertTrue(any("without their highlights" in w for w in self.warnings), self.warnings)

@@ -54,8 +54,8 @@ class PrincipledTest(BlenderTest):
 
 @unittest.skipIf(bpy.app.version < (4, 3), "Blender before 4.3")
 class MetallicTest(BlenderTest):
-    def assert_brightness(self, kind, distribution="MULTI_GGX", **inputs):
-        """Asserts it of a Metallic BSDF; kind: how that tells its reflectance."""
+    def metal(self, kind, distribution="MULTI_GGX", **inputs):
+        """A material of a Metallic BSDF; kind: how that tells its reflectance."""
         m = bpy.data.materials.new("metallic")
         m.use_nodes = True
         tree = m.node_tree
@@ -64,7 +64,15 @@ class MetallicTest(BlenderTest):
         for name, value in inputs.items():
             node.inputs[name.replace("_", " ")].default_value = value
         tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
-        self.assert_as_bright(m, 0.012, inputs)
+        return m
+
+    def assert_brightness(self, *kind, **inputs):
+        self.assert_as_bright(self.metal(*kind, **inputs), 0.012, inputs)
+
+    def test_what_is_left_out_is_told(self):
+        self.plane(self.metal("F82", Anisotropy=0.5))
+        self.export()
+        self.assertTrue(any("Anisotropy of 'Metallic BSDF'" in w for w in self.warnings), self.warnings)
 
     def test_colours_at_the_normal_and_at_the_edge(self):
         for roughness in (0.0, 0.3, 0.9):
