@@ -1,4 +1,5 @@
 /// A path's way through a medium, which absorbs, glows, and may scatter before the next surface.
+#include <algorithm>
 #include <cmath>
 
 #include "integrator/path_tracer.h"
@@ -19,10 +20,25 @@ MediumEvent PathTracer::cross_medium(float length) {
     if (depth_ < max_depth_ && medium.scatters()) {
         sampler_.set_dimension(kMediumPairs + static_cast<uint32_t>(passed_interfaces_) +
                                static_cast<uint32_t>(depth_) * (kMostInterfaces + 1));
-        event = sample_event(medium, length, beta_, sampler_.next_2d());
+        Vec2 u = sampler_.next_2d();
+        const std::optional<LightBeside> light = light_beside(length, u.x);
+        event = sample_event(medium, length, beta_, u, light);
     }
     beta_ *= event.weight;
     return event;
+}
+
+std::optional<LightBeside> PathTracer::light_beside(float length, float& u) const {
+    if (!(length > 0 && std::isfinite(length))) return std::nullopt;
+    const auto light = scene_.lights.choose_beside(ray_.origin, ray_.direction, length, u);
+    if (!light) return std::nullopt;
+    const Vec3 to_light = light->ball.center - ray_.origin;
+    const float along = dot(to_light, ray_.direction);
+    // Within a lamp, and where the ray meets a point, the angle tells nothing
+    constexpr float kNearest = 1e-6f;  // of the length
+    const float away = std::max({covtrace::length(to_light - along * ray_.direction),
+                                 light->ball.radius, kNearest * std::max(length, std::abs(along))});
+    return LightBeside{along, away, light->share};
 }
 
 bool PathTracer::scatter_in_medium(float distance) {

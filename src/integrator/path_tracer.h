@@ -215,6 +215,8 @@ class PathTracer {
     // ---- path_medium.cpp
     /// Adds the emission of the medium on the way and decides whether the ray gets through.
     MediumEvent cross_medium(float length);
+    /// A light beside the next `length` of the ray, chosen by `u`, which can be used again.
+    std::optional<LightBeside> light_beside(float length, float& u) const;
     bool scatter_in_medium(float distance);
 
     const LitScene& scene_;

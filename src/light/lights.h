@@ -116,6 +116,14 @@ class Lights {
     };
     /// Chooses a finite light as LightTree::explore does, then a point on it.
     void try_finite(Vec3 p, Vec3 n, float time, float u_select, Vec2 u, Trial& trial) const;
+    /// A finite light beside a ray.
+    struct Beside {
+        LightTree::Ball ball;  ///< around the light
+        /// Share of finite lights among those that would be sampled where the ray comes nearest.
+        float share = 0;
+    };
+    /// Chooses a finite light for a piece of a ray as LightTree::choose_beside does.
+    std::optional<Beside> choose_beside(Vec3 origin, Vec3 direction, float length, float& u) const;
     /// Number of the tree's factors that are worth learning; 0 where there is no choice among
     /// finite lights.
     size_t factor_count() const;

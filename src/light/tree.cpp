@@ -74,6 +74,21 @@ LightTree::Lanes LightTree::Node::importance(Vec3 p, Vec3 n) const {
     return result;
 }
 
+LightTree::Lanes LightTree::Node::importance_beside(Vec3 origin, Vec3 direction,
+                                                    float length) const {
+    Lanes result{};
+    for (size_t i = 0; i < kWidth; ++i) {
+        if (!(intensity[i] > 0)) continue;
+        const Vec3 to_center = center(i) - origin;
+        const float along = dot(to_center, direction);
+        const float away = std::sqrt(
+            std::max({length_squared(to_center - along * direction), radius_squared[i], 1e-20f}));
+        const float angle = std::atan((length - along) / away) + std::atan(along / away);
+        result[i] = intensity[i] * angle / away;
+    }
+    return result;
+}
+
 float LightTree::irradiance(Vec3 p, Vec3 n) const {
     // The root's children are summed: where the lights are scattered, this is a much better
     // estimate than one bound of all of them.
@@ -115,6 +130,20 @@ std::optional<LightTree::Choice> LightTree::sample(Vec3 p, Vec3 n, float u, Fact
     }
     if (!(probability > 0)) return std::nullopt;
     return Choice{static_cast<int>(link & ~kLeaf), probability};
+}
+
+std::optional<LightTree::Ball> LightTree::choose_beside(Vec3 origin, Vec3 direction, float length,
+                                                        float& u) const {
+    if (nodes_.empty()) return std::nullopt;
+    for (uint32_t link = 0;;) {
+        const Node& node = nodes_[link];
+        const Lanes w = node.importance_beside(origin, direction, length);
+        const float total = sum(w);
+        if (!(total > 0)) return std::nullopt;
+        const size_t chosen = choose(w, total, u);
+        link = node.link[chosen];
+        if (link & kLeaf) return Ball{node.center(chosen), std::sqrt(node.radius_squared[chosen])};
+    }
 }
 
 float LightTree::probability(Vec3 p, Vec3 n, int light, Factors factors) const {

@@ -49,6 +49,17 @@ class LightTree {
     /// Probability that `sample` returns this light.
     float probability(Vec3 p, Vec3 n, int light, Factors factors = {}) const;
 
+    /// A sphere around a light.
+    struct Ball {
+        Vec3 center;
+        float radius = 0;
+    };
+    /// Chooses a light for a piece of a ray, from its origin over `length` (finite, above 0) along
+    /// the unit direction, in proportion to its intensity times the integral of 1 / r^2 over the
+    /// piece; which way it shines does not count. `u` in [0, 1) becomes its place within what leads
+    /// to that light, and can be used again. Empty without lights.
+    std::optional<Ball> choose_beside(Vec3 origin, Vec3 direction, float length, float& u) const;
+
     /// A step from a node to one of its children.
     struct Step {
         uint32_t child = 0;     ///< index of the child's factor
@@ -86,6 +97,9 @@ class LightTree {
         /// Estimated irradiance by each child.
         template <Estimate kEstimate>
         Lanes importance(Vec3 p, Vec3 n) const;
+        /// Importance of each child for a piece of a ray.
+        Lanes importance_beside(Vec3 origin, Vec3 direction, float length) const;
+        Vec3 center(size_t i) const { return {center_x[i], center_y[i], center_z[i]}; }
     };
     static constexpr uint32_t kLeaf = 1u << 31;
     static constexpr uint64_t kNotInTree = ~uint64_t{0};

@@ -1,5 +1,6 @@
 #include "shading/medium.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace covtrace {
@@ -9,6 +10,34 @@ namespace {
 float pass(float coefficient, float distance) {
     return coefficient > 0 ? std::exp(-coefficient * distance) : 1.0f;
 }
+
+float sum(Rgb c) {
+    return c.r + c.g + c.b;
+}
+
+/// Part of what scatters at all that is placed by the angle at a light.
+constexpr float kMostByAngle = 0.5f;
+
+/// Distances along a ray that are even in the angle at a light.
+class EvenAngles {
+  public:
+    EvenAngles(const LightBeside& light, float length)
+        : along_(light.along),
+          away_(light.away),
+          length_(length),
+          first_(std::atan(-along_ / away_)),
+          span_(std::atan((length - along_) / away_) - first_) {}
+    bool is_empty() const { return !(span_ > 0); }
+    float sample(float u) const {
+        return std::clamp(along_ + away_ * std::tan(first_ + u * span_), 0.0f, length_);
+    }
+    float density(float distance) const {
+        return away_ / (span_ * (sqr(away_) + sqr(distance - along_)));
+    }
+
+  private:
+    float along_, away_, length_, first_, span_;
+};
 
 }  // namespace
 
@@ -34,25 +63,40 @@ Rgb emitted_along(const Medium& medium, float distance) {
     return sum;
 }
 
-MediumEvent sample_event(const Medium& medium, float length, Rgb throughput, Vec2 u) {
+MediumEvent sample_event(const Medium& medium, float length, Rgb throughput, Vec2 u,
+                         const std::optional<LightBeside>& light) {
     const Rgb through = transmittance(medium, length);
-    const float sum = throughput.r + throughput.g + throughput.b;
-    if (!medium.scatters() || !(sum > 0)) return {false, length, through};
+    const float all = sum(throughput);
+    if (!medium.scatters() || !(all > 0)) return {false, length, through};
 
-    const Rgb share = throughput * (1 / sum), extinction = medium.extinction(),
+    const Rgb share = throughput * (1 / all), extinction = medium.extinction(),
               albedo = medium.albedo();
+    // Find the part that is placed by the angle at the light
+    std::optional<EvenAngles> angles;
+    float by_angle = 0;
+    if (light && std::isfinite(length)) {
+        angles.emplace(*light, length);
+        const float nearest = std::clamp(light->along, 0.0f, length);
+        if (!angles->is_empty())
+            by_angle = kMostByAngle * light->share * sum(share * albedo * (Rgb(1) - through)) *
+                       sum(share * transmittance(medium, nearest));
+    }
+    const float by_distance = 1 - by_angle;
+    const auto scatter = [&](float distance) -> MediumEvent {
+        const Rgb value = medium.scattering * transmittance(medium, distance);
+        float density = by_distance * sum(share * value);
+        if (by_angle > 0) density += by_angle * angles->density(distance);
+        return {true, distance, density > 0 ? value * (1 / density) : Rgb(0)};
+    };
+    if (u.x < by_angle) return scatter(angles->sample(u.y));
+    // Draw the rest by a channel's exponential
+    float v = (u.x - by_angle) / by_distance;
     int channel = 0;
-    float v = u.x;
     while (channel < 2 && v >= share[channel]) v -= share[channel++];
     const bool tries = v < albedo[channel] * share[channel];  // rather than be absorbed
     const float distance = tries ? -std::log1p(-u.y) / extinction[channel] : length;
-    if (tries && distance < length) {
-        const Rgb value = medium.scattering * transmittance(medium, distance);
-        const float density = share.r * value.r + share.g * value.g + share.b * value.b;
-        return {true, distance, density > 0 ? value * (1 / density) : Rgb(0)};
-    }
-    float probability = 0;
-    for (int c = 0; c < 3; ++c) probability += share[c] * (1 - albedo[c] * (1 - through[c]));
+    if (tries && distance < length) return scatter(distance);
+    const float probability = by_distance * sum(share * (Rgb(1) - albedo * (Rgb(1) - through)));
     return {false, length, probability > 0 ? through * (1 / probability) : Rgb(0)};
 }
 

@@ -2,6 +2,8 @@
 /// light scatters.
 #pragma once
 
+#include <optional>
+
 #include "core/vec.h"
 
 namespace covtrace {
@@ -34,6 +36,14 @@ struct MediumEvent {
     Rgb weight{1};
 };
 
+/// A light beside a ray.
+struct LightBeside {
+    float along =
+        0;  ///< distance along the ray to where it is nearest, on either side of the origin
+    float away = 0;   ///< distance from there, above 0; of lights with extent at least its radius
+    float share = 0;  ///< of the light around that comes from such lights, in [0, 1]
+};
+
 /// Chooses between a place to scatter and the way through, over `length` (may be infinite).
 ///
 /// One of the channels, in proportion to `throughput`, draws the distance from its own exponential,
@@ -42,6 +52,14 @@ struct MediumEvent {
 /// combining sampling techniques for Monte Carlo rendering"). So it is unbiased for any colours,
 /// and throughput * weight stays below the sum of the throughput's channels. Media that don't
 /// scatter need no random numbers: weight = transmittance. `u` in [0, 1)^2.
-MediumEvent sample_event(const Medium& medium, float length, Rgb throughput, Vec2 u);
+///
+/// With a light beside the way, of finite length, a part of the places is even in the angle at the
+/// light (Kulla and Fajardo 2012, "Importance sampling techniques for path tracing in participating
+/// media"), so that light which falls off as 1 / r^2 has a bounded weight. The part is half of what
+/// scatters at all, times the light's share and the transmittance where it is nearest
+/// (docs/decisions/0142); the weight divides by the density of both ways together, and is at most
+/// twice as large where the ray goes through.
+MediumEvent sample_event(const Medium& medium, float length, Rgb throughput, Vec2 u,
+                         const std::optional<LightBeside>& light = std::nullopt);
 
 }  // namespace covtrace

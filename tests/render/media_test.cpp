@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "tests/render/fixtures.h"
 
 namespace covtrace {
@@ -135,6 +138,26 @@ Material "diffuse" "rgb reflectance" [ 0 0 0 ]
 )" + shape + "\nAttributeEnd";
         expect_channels(render_text(text, uniform(2048, 5)), expected, 1e-3);
     }
+}
+
+TEST(Media, ALampInFogIsSeenWithLittleNoise) {
+    // Rays pass the lamp within 1.7 units. Distances by the extinction alone rarely fall where it
+    // is near: the median of the pixels' standard errors, as their samples tell them, is 16 % then,
+    // and 11 % as it is.
+    const std::string text = looking_along_z(1, "fog") + R"(
+LightSource "point" "rgb I" [ 20 20 20 ] "point3 from" [ 0.1 0.2 2 ]
+AttributeBegin
+MediumInterface "fog" "fog"
+Material "diffuse" "rgb reflectance" [ 0 0 0 ]
+Shape "sphere" "float radius" 86
+AttributeEnd
+)";
+    const Image image = render_text(text, uniform(256, 7)).image;
+    std::vector<double> errors;
+    for (size_t i = 0; i < image.pixel_count(); ++i)
+        errors.push_back(std::sqrt(double(image.rgb(i, "variance.").r)) / double(image.rgb(i).r));
+    std::ranges::nth_element(errors, errors.begin() + std::ptrdiff_t(errors.size() / 2));
+    EXPECT_LT(errors[errors.size() / 2], 0.135);
 }
 
 /// A scene in which every point sees radiance 1 in all directions.

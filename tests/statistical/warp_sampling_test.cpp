@@ -21,7 +21,7 @@ namespace covtrace {
 namespace {
 
 constexpr int kSamples = 200000;
-constexpr size_t kTests = 3 + 1 + 1 + 6 + 3 + 8 + 4;
+constexpr size_t kTests = 3 + 1 + 1 + 6 + 3 + 8 + 6;
 
 void expect_follows(const std::vector<double>& observed, const std::vector<double>& expected,
                     const std::string& what) {
@@ -230,29 +230,52 @@ TEST(WarpSampling, PhaseFunctions) {
 }
 
 TEST(WarpSampling, DistancesInMedia) {
-    // Density of scattering at t: sum over the channels of share * sigma_s * exp(-sigma_t t); the
-    // last cell is the way through.
+    // Density of scattering at t: sum over the channels of share * sigma_s * exp(-sigma_t t), but
+    // for a part that is even in the angle at a light; the last cell is the way through.
     struct Case {
         Medium medium;
         float length;
         Rgb throughput;
+        std::optional<LightBeside> light = std::nullopt;
     };
-    const std::array<Case, 4> cases{
+    const std::array<Case, 6> cases{
         Case{{Rgb(0.0f), Rgb(1.5f), {}, 0}, 2, Rgb(1)},
         Case{{{0.2f, 1, 3}, {1, 1, 0.1f}, {}, 0}, 1.5f, {1, 0.4f, 2}},
         Case{{{0, 0.5f, 0}, {0, 2, 8}, {}, 0}, kInfinity, {1, 0.5f, 0.25f}},
-        Case{{{5, 0, 1}, {0.01f, 0, 20}, {}, 0}, 0.1f, {1, 0, 1}}};
+        Case{{{5, 0, 1}, {0.01f, 0, 20}, {}, 0}, 0.1f, {1, 0, 1}},
+        Case{{Rgb(0.0f), Rgb(1.5f), {}, 0}, 2, Rgb(1), LightBeside{0.7f, 0.05f, 1}},
+        Case{{{0.2f, 1, 3}, {1, 1, 0.1f}, {}, 0},
+             1.5f,
+             {1, 0.4f, 2},
+             LightBeside{-0.1f, 0.2f, 0.6f}}};
     for (const Case& c : cases) {
         constexpr int n = 20;
         const double end = std::isfinite(c.length) ? c.length : 4;
         const Rgb t = c.medium.extinction(), albedo = c.medium.albedo();
         const double sum = c.throughput.r + c.throughput.g + c.throughput.b;
-        const auto scattered_before = [&](double d) {
+        const auto by_distance_before = [&](double d) {
             double p = 0;
             for (int k = 0; k < 3; ++k)
                 if (t[k] > 0)
                     p += c.throughput[k] / sum * albedo[k] * -std::expm1(-double(t[k]) * d);
             return p;
+        };
+        double by_angle = 0;
+        if (c.light) {
+            const Rgb passes = transmittance(c.medium, std::clamp(c.light->along, 0.0f, c.length));
+            by_angle = 0.5 * c.light->share * by_distance_before(c.length);
+            by_angle *= (c.throughput.r * passes.r + c.throughput.g * passes.g +
+                         c.throughput.b * passes.b) /
+                        sum;
+        }
+        const auto scattered_before = [&](double d) {
+            const double p = (1 - by_angle) * by_distance_before(d);
+            if (!c.light) return p;
+            const auto angle = [&](double at) {
+                return std::atan((at - c.light->along) / c.light->away);
+            };
+            return p + by_angle * (angle(std::min(d, double(c.length))) - angle(0)) /
+                           (angle(c.length) - angle(0));
         };
         std::vector<double> observed(n + 2), expected(n + 2);
         for (int i = 0; i < n; ++i)
@@ -266,7 +289,8 @@ TEST(WarpSampling, DistancesInMedia) {
         std::array<double, 3> through{}, through2{}, scattered{}, scattered2{};
         Rng rng(hash_combine(9, uint64_t(&c - cases.data())));
         for (int i = 0; i < kSamples; ++i) {
-            const MediumEvent e = sample_event(c.medium, c.length, c.throughput, rng.next_2d());
+            const MediumEvent e =
+                sample_event(c.medium, c.length, c.throughput, rng.next_2d(), c.light);
             const size_t cell =
                 !e.scatters ? n + 1 : std::min<size_t>(n, size_t(e.distance / end * n));
             observed[cell] += 1;

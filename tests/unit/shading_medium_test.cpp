@@ -1,0 +1,55 @@
+/// Places where media scatter light of a lamp beside the ray.
+#include "shading/medium.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace covtrace {
+namespace {
+
+TEST(Medium, LightOfALampBesideARayHasABoundedWeight) {
+    // Light falls off as 1 / r^2, and a path through (t, r(t)) brings weight / r^2. Distances by
+    // extinction alone have a weight of about 1 there, and would bring 1 / away^2 = 10000.
+    const Medium medium{Rgb(0.02f), Rgb(0.08f), {}, 0};
+    constexpr float length = 10;
+    const LightBeside lamp{4, 0.01f, 1};
+    const auto fall_off = [&](double t) {
+        return 1 / (double(lamp.away) * lamp.away + (t - lamp.along) * (t - lamp.along));
+    };
+    constexpr int kSteps = 512;
+    double sum = 0, most = 0;
+    for (int i = 0; i < kSteps; ++i)
+        for (int j = 0; j < kSteps; ++j) {
+            const Vec2 u{(float(i) + 0.5f) / kSteps, (float(j) + 0.5f) / kSteps};
+            const MediumEvent e = sample_event(medium, length, Rgb(1), u, lamp);
+            if (!e.scatters) continue;
+            const double brought = double(e.weight.r) * fall_off(e.distance);
+            sum += brought / (kSteps * kSteps);
+            most = std::max(most, brought);
+        }
+    EXPECT_LT(most, 200);
+    // The mean is the integral over the way
+    double integral = 0;
+    constexpr int kPieces = 200000;
+    for (int i = 0; i < kPieces; ++i) {
+        const double t = length * (i + 0.5) / kPieces;
+        integral += 0.08 * std::exp(-0.1 * t) * fall_off(t) * length / kPieces;
+    }
+    EXPECT_NEAR(sum, integral, 0.005 * integral);
+}
+
+TEST(Medium, ALampThatIsNotSampledChangesNothing) {
+    const Medium medium{{0.1f, 0.2f, 0}, {0.4f, 0.1f, 0.3f}, {}, 0};
+    for (float u = 0.05f; u < 1; u += 0.1f) {
+        const MediumEvent alone = sample_event(medium, 3, {1, 0.5f, 0.2f}, {u, 1 - u}),
+                          beside = sample_event(medium, 3, {1, 0.5f, 0.2f}, {u, 1 - u},
+                                                LightBeside{1, 0.1f, 0});
+        EXPECT_EQ(alone.scatters, beside.scatters);
+        EXPECT_EQ(alone.distance, beside.distance);
+        EXPECT_EQ(alone.weight, beside.weight);
+    }
+}
+
+}  // namespace
+}  // namespace covtrace
