@@ -41,7 +41,7 @@ TEST(LightBeside, LightsAreChosenByWhatTheyBringToTheRay) {
     EXPECT_NEAR(share[0], 2.0 / 7, 2e-3);
     EXPECT_NEAR(share[1], 4.0 / 7, 2e-3);
     EXPECT_NEAR(share[2], 1.0 / 7, 2e-3);
-    // What is left of the number is even
+    // The place of the number within a lamp's part is even
     for (size_t k = 0; k < places.size(); ++k) EXPECT_NEAR(place[k], share[k] / 2, 2e-3);
 }
 
