@@ -18,25 +18,32 @@ float sum(Rgb c) {
 /// Part of what scatters at all that is placed by the angle at a light.
 constexpr float kMostByAngle = 0.5f;
 
-/// Distances along a ray that are even in the angle at a light.
+/// Distances along a ray that are even in the angle at a light. The angle is measured from the
+/// ray's origin on: as a difference of two from the nearest point it would be lost in roundings
+/// where a light far away lies in the direction of the ray.
 class EvenAngles {
   public:
     EvenAngles(const LightBeside& light, float length)
-        : along_(light.along),
-          away_(light.away),
+        : along_(double(light.along)),
+          away_(double(light.away)),
+          squared_(along_ * along_ + away_ * away_),
           length_(length),
-          first_(std::atan(-along_ / away_)),
-          span_(std::atan((length - along_) / away_) - first_) {}
+          span_(std::atan2(double(length) * away_, squared_ - along_ * double(length))) {}
     bool is_empty() const { return !(span_ > 0); }
     float sample(float u) const {
-        return std::clamp(along_ + away_ * std::tan(first_ + u * span_), 0.0f, length_);
+        const double angle = double(u) * span_, sine = std::sin(angle), cosine = std::cos(angle);
+        const double distance = sine * squared_ / (away_ * cosine + along_ * sine);
+        return std::clamp(float(distance), 0.0f, length_);
     }
     float density(float distance) const {
-        return away_ / (span_ * (sqr(away_) + sqr(distance - along_)));
+        const double from_nearest = double(distance) - along_;
+        return float(away_ / (span_ * (away_ * away_ + from_nearest * from_nearest)));
     }
 
   private:
-    float along_, away_, length_, first_, span_;
+    double along_, away_, squared_;  ///< the last one of the distance from the origin to the light
+    float length_;
+    double span_;
 };
 
 }  // namespace

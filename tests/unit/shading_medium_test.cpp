@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace covtrace {
 namespace {
@@ -37,6 +38,28 @@ TEST(Medium, LightOfALampBesideARayHasABoundedWeight) {
         integral += 0.08 * std::exp(-0.1 * t) * fall_off(t) * length / kPieces;
     }
     EXPECT_NEAR(sum, integral, 0.005 * integral);
+}
+
+TEST(Medium, ALampFarAwayInTheRaysDirectionKeepsTheWay) {
+    // From these lamps the way is seen under an angle of 1e-6 and less: the places are even on it,
+    // and their weights nearly the same.
+    const Medium medium{{}, Rgb(0.1f), {}, 0};
+    for (const float along : {-1000.0f, 2000.0f, -30000.0f, 1e6f}) {
+        constexpr int kSteps = 1000;
+        double scattered = 0, places = 0;
+        for (int i = 0; i < kSteps; ++i)
+            for (int j = 0; j < kSteps; ++j) {
+                const Vec2 u{(float(i) + 0.5f) / kSteps, (float(j) + 0.5f) / kSteps};
+                const MediumEvent e =
+                    sample_event(medium, 1, Rgb(1), u, LightBeside{along, 0.5f, 1});
+                if (!e.scatters) continue;
+                scattered += double(e.weight.r) / (kSteps * kSteps);
+                places += double(e.weight.r * e.distance) / (kSteps * kSteps);
+            }
+        const double all = 1 - std::exp(-0.1), mean = (all - 0.1 * std::exp(-0.1)) / 0.1;
+        EXPECT_NEAR(scattered, all, 0.005 * all) << along;
+        EXPECT_NEAR(places, mean, 0.01 * mean) << along;
+    }
 }
 
 TEST(Medium, ALampThatIsNotSampledChangesNothing) {
