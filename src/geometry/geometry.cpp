@@ -200,7 +200,7 @@ bool Geometry::Impl::meets_any(const Ray& ray, unsigned mask) const {
     rtcOccluded1(top.scene.get(), &context, &query);
     if (query.tfar < 0) return true;
     SurfaceHit hit;
-    return any_alpha && nearest_opaque(ray, kAlphaMask, hit);
+    return any_alpha && mask == kSolidMask && nearest_opaque(ray, kAlphaMask, hit);
 }
 
 Vec3 Geometry::offset_origin(const SurfaceHit& hit, Vec3 direction) {

@@ -79,7 +79,9 @@ class Geometry {
     /// Whether any surface that shadow rays see, but for interfaces, lies in (0, ray.t_max),
     /// whatever the ray's kind. Thread-safe.
     bool occluded(const Ray& ray) const;
-    /// Whether anything that `occluded` tells of but panes, or a mix, lies in (0, ray.t_max).
+    /// Whether anything that `occluded` tells of but panes, or a mix, lies in (0, ray.t_max), and
+    /// alpha lets nothing through: where it does, the way through panes and its density find out,
+    /// and a third draw would take light from both.
     bool blocked(const Ray& ray) const;
     /// Finds the nearest hit in (0, ray.t_max) of what scattered rays of any kind see, but panes.
     bool intersect_behind_panes(const Ray& ray, SurfaceHit& hit) const;

@@ -160,7 +160,8 @@ struct Geometry::Impl::Builder {
             g.any_pane = true;
         else if ((mask & kScatteredRays) != 0)
             mask |= kBehindPanesMask;
-        if (!g.placed[shape].is_pane && ((mask & kSolidMask) != 0 || is_mix(scene, material)))
+        if (!g.placed[shape].is_pane &&
+            ((mask & kSolidMask) != 0 || (is_mix(scene, material) && !may_let_pass)))
             mask |= kBlockingMask;
         g.any_interface = g.any_interface || may_pass;
         g.any_alpha = g.any_alpha || may_let_pass;

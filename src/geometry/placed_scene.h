@@ -87,7 +87,8 @@ struct Geometry::Impl {
     void fill_found(const EmbreeHit& found, const Ray& ray, SurfaceHit& hit) const;
     /// Does for a packet of rays at most what `nearest` does for one.
     void find_nearest(std::span<HitQuery> packet) const;
-    /// Whether any shape in `mask`, or in kAlphaMask where it is opaque, is in a ray's way.
+    /// Whether any shape in `mask`, or for kSolidMask in kAlphaMask where it is opaque, is in a
+    /// ray's way.
     bool meets_any(const Ray& ray, unsigned mask) const;
     /// Does so for many rays.
     void meet_any(std::span<OcclusionQuery> queries, unsigned mask) const;

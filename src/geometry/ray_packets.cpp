@@ -114,7 +114,7 @@ void Geometry::Impl::meet_any(std::span<OcclusionQuery> queries, unsigned mask) 
     }
     for_each_packet(
         queries, [this, mask](std::span<OcclusionQuery> packet) { meet_any_solid(packet, mask); });
-    if (any_alpha)
+    if (any_alpha && mask == kSolidMask)
         for (OcclusionQuery& q : queries)
             if (!q.occluded) q.occluded = meets_any(*q.ray, mask);
 }
