@@ -18,9 +18,10 @@ namespace {
 /// Most surfaces that a ray passes: one that is caught between coincident surfaces must end.
 constexpr int kMostLayers = 1000;
 
-/// A hash in [0, 1) of all bits of a ray's origin, direction and time.
+/// A hash in [0, 1) of all bits of a ray's origin, direction and time, and of its sample: origins
+/// alone are the same for many samples, where coordinates are rounded coarsely.
 float ray_hash(const Ray& ray) {
-    uint64_t h = std::bit_cast<uint32_t>(ray.time);
+    uint64_t h = hash_combine(ray.sample, std::bit_cast<uint32_t>(ray.time));
     for (const Vec3 v : {ray.origin, ray.direction})
         for (const float c : {v.x, v.y, v.z}) h = hash_combine(h, std::bit_cast<uint32_t>(c));
     return to_unit_float(static_cast<uint32_t>(h >> 32));
@@ -159,6 +160,7 @@ void Geometry::Impl::fill(const EmbreeHit& found, const Ray& ray, SurfaceHit& hi
 void Geometry::Impl::fill_found(const EmbreeHit& found, const Ray& ray, SurfaceHit& hit) const {
     hit.t = found.t;
     hit.time = ray.time;
+    hit.sample = ray.sample;
     hit.primitive = found.primitive;
     hit.barycentric = found.barycentric;
     const Vec3d near = Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t);

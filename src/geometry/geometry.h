@@ -69,8 +69,8 @@ class Geometry {
     /// Finds the nearest hit in (0, ray.t_max) of shapes that rays of its kind see; false where
     /// there is none. Thread-safe.
     ///
-    /// Where alpha is between 0 and 1, a hash of the ray decides whether it passes, so the same ray
-    /// always does the same.
+    /// Where alpha is between 0 and 1, a hash of the ray and its sample decides whether it passes,
+    /// so the same ray always does the same.
     bool intersect(const Ray& ray, SurfaceHit& hit) const;
     /// Finds the nearest hit of a camera ray, as `intersect` does, but without surfaces that hold
     /// the ray's origin: these are seen edge on, which is not at all. A camera may stand on the

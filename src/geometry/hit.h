@@ -16,6 +16,7 @@ struct Ray {
     float time = 0;
     float t_max = kInfinity;
     RayKind kind = RayKind::any;  ///< decides which shapes it meets
+    uint32_t sample = 0;          ///< tells the rays of a pixel's sample from those of others
 };
 
 /// The point where a ray meets a surface, all in world space at the ray's time.
@@ -30,6 +31,7 @@ struct SurfaceHit {
     Vec3 tangent;     ///< of shading: the mesh's own, else dpdu
     Vec2 uv;
     float time = 0;
+    uint32_t sample = 0;     ///< the ray's
     uint32_t shape = 0;      ///< index into Geometry::shapes()
     uint32_t primitive = 0;  ///< triangle or patch of the shape; 0 for spheres and disks
     uint32_t instance = 0;   ///< Embree instance, 0 where there is none: Geometry's own business

@@ -83,6 +83,7 @@ void PathTracer::add_direct(const Surface& surface, float u_select, Vec2 u, floa
     Ray shadow;
     shadow.origin = Geometry::offset_origin(hit, light->wi);
     shadow.time = hit.time;
+    shadow.sample = hit.sample;
     shadow.kind = chosen.kind;
     const MediumId medium = medium_beyond(surface.shape, hit, light->wi, medium_);
     if (keep_light(*light, {value.f * chosen.factor, value.pdf}, shadow, medium, vertex) && vertex)

@@ -48,6 +48,7 @@ bool PathTracer::scatter_in_medium(float distance) {
     SurfaceHit place;
     place.position = ray_.origin + ray_.direction * distance;
     place.time = ray_.time;
+    place.sample = ray_.sample;
     // Begin the vertex
     PathVertex* vertex = begin_vertex(place, medium_, wo);
     if (seen_clearly_) describe_vertex(place.position, medium.albedo(), {});
@@ -59,6 +60,7 @@ bool PathTracer::scatter_in_medium(float distance) {
     Ray shadow;
     shadow.origin = place.position;
     shadow.time = place.time;
+    shadow.sample = place.sample;
     shadow.kind = RayKind::volume;
     if (const auto light =
             scene_.lights.sample(place.position, {}, place.time, u_choice.x, u_light)) {

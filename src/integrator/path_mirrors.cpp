@@ -80,6 +80,7 @@ void PathTracer::add_mirrored_light(const Surface& surface, PathVertex* vertex) 
     ray.origin = Geometry::offset_origin(surface.hit, wi);
     ray.direction = wi;
     ray.time = surface.hit.time;
+    ray.sample = surface.hit.sample;
     ray.kind = RayKind::diffuse;
     MediumId medium = medium_beyond(surface.shape, surface.hit, wi, medium_);
     Rgb carried = beta_ * value.f;
@@ -97,6 +98,7 @@ void PathTracer::add_mirrored_light(const Surface& surface, PathVertex* vertex) 
     Ray shadow;
     shadow.origin = Geometry::offset_origin(hit, light->wi);
     shadow.time = ray.time;
+    shadow.sample = ray.sample;
     shadow.kind = RayKind::glossy;
     medium = medium_beyond(shape, hit, light->wi, medium);
     const float distance = aim(shadow, *light);

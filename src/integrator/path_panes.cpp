@@ -84,6 +84,7 @@ float PathTracer::weight_through_panes() {
     ray.origin = departure_.origin;
     ray.direction = departure_.direction;
     ray.time = ray_.time;
+    ray.sample = ray_.sample;
     return power_heuristic(departure_.pdf,
                            density_through_panes(scene_, departure_.place, ray, departure_.to_pane,
                                                  result_.rays.shadow));

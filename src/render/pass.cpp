@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/hash.h"
 #include "core/parallel.h"
 #include "frequency/replay.h"
 #include "integrator/path_batch.h"
@@ -108,9 +109,10 @@ CameraPath begin_path(const PassContext& context, int x, int y, uint32_t index) 
                                         : Sampler::CameraSample{sampler.film(), {}, 0};
     const PixelFilter::Sample position = context.scene.filter.sample(u.film);
     const Vec2 film{float(x) + 0.5f + position.offset.x, float(y) + 0.5f + position.offset.y};
-    return {film,    u.lens,
-            u.time,  context.scene.camera.generate_ray(film, u.lens, u.time),
-            sampler, position.weight};
+    CameraRay ray = context.scene.camera.generate_ray(film, u.lens, u.time);
+    ray.sample =
+        static_cast<uint32_t>(hash_combine(context.seed, uint64_t(x), uint64_t(y), index) >> 32);
+    return {film, u.lens, u.time, ray, sampler, position.weight};
 }
 
 /// Makes a sample for the film from a path.

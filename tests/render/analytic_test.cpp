@@ -87,6 +87,23 @@ Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indi
         1 / 3.14159265, 1e-4);
 }
 
+TEST(Analytic, HalfOfTheLightPassesAlphaFarFromTheOrigin) {
+    // Where coordinates are 0.001 apart, all samples of what is seen start in some hundred places.
+    const std::string text = R"(
+Integrator "path" "integer maxdepth" 1
+Film "rgb" "integer xresolution" 16 "integer yresolution" 16
+PixelFilter "box"
+LookAt 10000 10000 9996  10000 10000 10000  0 1 0
+Camera "perspective" "float fov" 0.15
+WorldBegin
+Translate 10000 10000 10000
+LightSource "distant" "rgb L" [ 2 2 2 ] "point3 from" [ 0 1 -1 ] "point3 to" [ 0 0 0 ]
+Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
+Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indices" [ 0 1 2 0 2 3 ]
+Shape "trianglemesh" "point3 P" [ -1 1 -2  1 1 -2  0 3 -2 ] "float alpha" 0.5)";
+    expect_mean(render_text(text, uniform(64)), 0.5 * 0.70710678 / 3.14159265);
+}
+
 TEST(Analytic, ACameraOnTheFloorDoesNotSeeTheFloor) {
     // The camera sees nothing but the sky, above and below; the floor is black.
     const std::string text = R"(

@@ -172,6 +172,23 @@ TEST(GeometryAlpha, PartialAlphaStopsItsShareOfRaysAndTheSameOnesEachTime) {
     }
 }
 
+// The same interval as above.
+TEST(GeometryAlpha, PartialAlphaIsDrawnForEachSample) {
+    Geometry g(pile(1));
+    g.set_alpha([](TextureId, Vec2, Vec3, const VertexPlace&) { return 0.5f; });
+    constexpr int kRays = 20000;
+    int stopped = 0;
+    for (int i = 0; i < kRays; ++i) {
+        Ray ray{{0.1f, 0.2f, -1}, {0, 0, 1}};
+        ray.sample = uint32_t(i);
+        SurfaceHit hit;
+        ASSERT_TRUE(g.intersect(ray, hit));
+        EXPECT_EQ(hit.sample, ray.sample);
+        stopped += hit.shape == 0;
+    }
+    EXPECT_NEAR(stopped, kRays / 2, 5 * std::sqrt(kRays / 4));
+}
+
 TEST(GeometryAlpha, CurvedAndInstancedShapesHaveItToo) {
     SceneDescription scene;
     scene.textures = {texture(0.5f)};
