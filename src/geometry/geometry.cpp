@@ -44,9 +44,8 @@ void place(SurfacePoint& point, const Affine& world_from_local, const Affine& lo
     point.error *= std::sqrt(std::max(
         {dot(map.row[0], map.row[0]), dot(map.row[1], map.row[1]), dot(map.row[2], map.row[2])}));
     point.position = map.point(point.position);
+    point.error += instance_error(map, local_from_world, point.position);
     point.ng = normalize(map.normal(point.ng));
-    point.error += kMostInstanceRoundings * instance_rounding(map, local_from_world, point.ng,
-                                                              point.position, point.position);
     point.ns = normalize(map.normal(point.ns));
     if (dot(point.ng, point.ns) < 0) point.ns = point.ns * -1.0;
     point.dpdu = map.vector(point.dpdu);

@@ -26,10 +26,19 @@ inline double instance_rounding(const Affine& world_from_local, const Affine& lo
     return kHalfUlp * dot(abs(world_from_local.transposed(normal)), local);
 }
 
-/// Roundings of instances that rays suffer at most (3.9 were seen of a million rays), and all but
-/// one of a thousand: points that move off by so many, and are rounded away from the surface, had
-/// no ray of 400,000 meet it, and a shade as near as eight steps of single precision hid all of
-/// 300,000 (docs/decisions/0141).
-inline constexpr double kMostInstanceRoundings = 4, kUsualInstanceRoundings = 2.5;
+/// Roundings of instances that all but one of a thousand rays suffer at most: points that move off
+/// by so many, and are rounded away from the surface, had no ray of 400,000 meet it, and a shade as
+/// near as eight steps of single precision hid all of 300,000 (docs/decisions/0141).
+inline constexpr double kUsualInstanceRoundings = 2.5;
+
+/// Bound on where float arithmetic may put a ray that starts at a hit and that Embree carries into
+/// the hit's instance, whichever way it goes: each coordinate suffers a few roundings of sums as
+/// large as these.
+inline double instance_error(const Affine& world_from_local, const Affine& local_from_world,
+                             Vec3d position) {
+    const Vec3d local =
+        local_from_world.absolute(abs(position) + abs(world_from_local.translation));
+    return 6 * kHalfUlp * length(world_from_local.absolute(local));
+}
 
 }  // namespace covtrace
