@@ -231,7 +231,7 @@ TEST_P(Shade, LetsNoLightOut) {
             ray.time = rng.next_float();
             const float u = rng.next_float();
             const auto light = scene.lights->sample(ray.origin, {}, ray.time, u, rng.next_2d());
-            // What is seen at a grazing angle is seen past a flat shade's border
+            // Flat shades let light at grazing angles pass their borders
             if (!light || !(std::abs(dot(light->normal, light->wi)) > 0.1f)) continue;
             if (!(aim(ray, *light) > 0)) continue;
             ++found;
