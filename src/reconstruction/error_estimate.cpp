@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "core/parallel.h"
 #include "core/vec.h"
@@ -50,17 +49,14 @@ Plane log_brightness(const Plane& bright) {
     return result;
 }
 
-/// A plane that is 1 where both halves have samples; none if that is nowhere, as with one sample
-/// per pixel.
-std::optional<Plane> known_by_both(const Halves& halves) {
+/// Weights of the pixels: 1 where both halves have samples. Pixels that one half has not seen count
+/// only where none around was seen by both: holes are filled, and the halves still differ.
+Plane known_by_both(const Halves& halves) {
+    constexpr float kFilled = 1e-4f;
     const Plane &a = halves[0].count, &b = halves[1].count;
     Plane known(a.width, a.height);
-    bool any = false;
-    for (size_t i = 0; i < known.size(); ++i) {
-        known[i] = a[i] > 0 && b[i] > 0 ? 1.0f : 0.0f;
-        any = any || known[i] > 0;
-    }
-    return any ? std::optional(known) : std::nullopt;
+    for (size_t i = 0; i < known.size(); ++i) known[i] = a[i] > 0 && b[i] > 0 ? 1.0f : kFilled;
+    return known;
 }
 
 }  // namespace
@@ -74,9 +70,7 @@ ErrorEstimate estimate_error(const Halves& halves, std::span<const Candidate> ca
     const Plane bright = luminance(brightness);
     const float noise =
         factors.noise + factors.noise_of_few / std::max(1.0f, samples_per_pixel(halves));
-    // Pixels that one half has not seen count only where no pixel was seen by both: holes are
-    // filled, and the halves still differ.
-    const Plane known = known_by_both(halves).value_or(Plane(w, h, 1));
+    const Plane known = known_by_both(halves);
     ErrorEstimate error{Plane(w, h), Plane(w, h)};
     parallel_for_rows(w, h, [&](int row) {
         for (size_t i = size_t(row) * size_t(w), end = i + size_t(w); i < end; ++i) {

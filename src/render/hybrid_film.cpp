@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "core/hash.h"
 #include "core/parallel.h"
@@ -129,15 +130,34 @@ bool has_more_than(uint32_t count, const Film& half) {
                        [count](const FilmPixel& p) { return p.count > count; });
 }
 
-/// Halves of the pixels of one, each with every second one of them.
-Halves dealt(HalfBuffer whole) {
-    Halves halves{whole, std::move(whole)};
-    for (int k = 0; k < 2; ++k) {
-        Plane& count = halves[size_t(k)].count;
-        for (int y = 0; y < count.height; ++y)
-            for (int x = (y + 1 - k) % 2; x < count.width; x += 2) count(x, y) = 0;
+/// Gives pixel i of one half, with its samples, to the other one, which has none there.
+void move_pixel(size_t i, HalfBuffer& from, HalfBuffer& to) {
+    to.count[i] = std::exchange(from.count[i], 0.0f);
+    for (size_t c = 0; c < 3; ++c) {
+        to.color[c][i] = from.color[c][i];
+        to.color_variance[c][i] = from.color_variance[c][i];
     }
-    return halves;
+    for (size_t f = 0; f < kFeatures; ++f) {
+        to.feature[f][i] = from.feature[f][i];
+        to.feature_variance[f][i] = from.feature_variance[f][i];
+    }
+}
+
+/// Gives the second half every second one of the pixels that the first one alone has, along rows
+/// and from row to row: like a checkerboard where those are all pixels, and some of them where they
+/// are a checkerboard themselves.
+void deal(Halves& halves) {
+    size_t rows = 0;  // rows with such pixels so far
+    for (int y = 0; y < halves[0].count.height; ++y) {
+        size_t turn = rows;
+        for (int x = 0; x < halves[0].count.width; ++x) {
+            if (halves[0].count(x, y) == 0 || halves[1].count(x, y) > 0) continue;
+            if (turn++ % 2 == 1)
+                move_pixel(size_t(y) * size_t(halves[0].count.width) + size_t(x), halves[0],
+                           halves[1]);
+        }
+        rows += turn > rows ? 1 : 0;
+    }
 }
 
 }  // namespace
@@ -147,7 +167,7 @@ Halves halves_of(std::span<const Film> film) {
     Halves halves{HalfBuffer(w, h), HalfBuffer(w, h)};
     parallel_for(2, [&](int64_t k) { fill(halves[size_t(k)], film[size_t(k)]); });
     const bool first_alone = !has_more_than(0, film[1]);
-    if (first_alone) halves = dealt(std::move(halves[0]));
+    deal(halves);
     if (!has_more_than(1, film[0]) || !(first_alone || has_more_than(1, film[1]))) {
         // A black hole would count as a difference.
         for (HalfBuffer& half : halves) fill_holes(half);

@@ -27,9 +27,9 @@ uint32_t place_in_sequence(uint32_t half, uint32_t index);
 /// Samples of a half's first block in the sequence of a pixel.
 inline constexpr uint32_t kFirstBlock = 2;
 
-/// The halves as the reconstruction reads them. Where the second one has no samples, as with one or
-/// two per pixel, both get the first one's pixels in turn, like a checkerboard. Where no pixel of a
-/// half has two samples, the variances come from the difference of the halves.
+/// The halves as the reconstruction reads them. Pixels that the first one alone has, as with one or
+/// two samples per pixel, are dealt to both in turn, like a checkerboard. Where no pixel of a half
+/// has two samples, the variances come from the difference of the halves.
 Halves halves_of(std::span<const Film> halves);
 
 }  // namespace covtrace

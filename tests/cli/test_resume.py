@@ -134,6 +134,15 @@ class MoreSamples(FilmTest):
                     self.assert_identical("whole.exr", "out.exr")
                     self.assertAlmostEqual(exr.read(self.folder / "out.exr").value("spp"), 64, delta=0.1)
 
+    def test_counts_within_the_pilot_are_those_of_one_call(self):
+        """The first rounds of hybrid are even: 1, 2 and 3 samples are its beginning, whatever comes later."""
+        self.run_render("sky", "hybrid", "--spp", "1", "--film", "steps.film")
+        for spp in ("2", "3", "16"):
+            with self.subTest(spp=spp):
+                self.run_render("sky", "hybrid", "--spp", spp, "--checkpoint", "steps.film", "--resume")
+                self.run_render("sky", "hybrid", "--spp", spp, output="whole.exr")
+                self.assert_identical("whole.exr", "out.exr")
+
     def test_any_other_count_is_reached_too(self):
         for method in METHODS:
             with self.subTest(method=method):

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "core/sampler.h"
@@ -55,6 +56,27 @@ TEST(HybridFilm, PixelsOfTheFirstHalfAloneAreDealtToBoth) {
             // The samples of a pixel tell its noise, not what it differs by from its neighbours
             EXPECT_NEAR(halves[owner].color_variance[0](x, y), 0.25f, 1e-5);
         }
+}
+
+TEST(HybridFilm, PixelsOfTheFirstHalfAreDealtWhateverTheyAre) {
+    // Every second pixel of an odd width has a sample, as with --spp 0.5, or all of the first half
+    // and few of the second, as with a little more than 2: neither half is left with few pixels.
+    const PixelBounds bounds{0, 0, kSize + 1, kSize};
+    const size_t pixels = size_t(kSize + 1) * kSize;
+    for (const bool all : {false, true}) {
+        std::vector<Film> films(2, Film(bounds, film_parts(Method::hybrid)));
+        for (size_t i = 0; i < pixels; i += all ? 1 : 2) films[0].add(i, grey_sample(0.8f));
+        if (all) films[1].add(100, grey_sample(0.8f));
+        double seen = 0;
+        for (const HalfBuffer& half : halves_of(films)) {
+            const auto& count = half.count.values;
+            const auto known =
+                std::count_if(count.begin(), count.end(), [](float c) { return c > 0; });
+            EXPECT_NEAR(double(known), (all ? 0.5 : 0.25) * double(pixels), 0.05 * double(pixels));
+            seen += double(known);
+        }
+        EXPECT_EQ(seen, all ? double(pixels) + 1 : double(pixels / 2));
+    }
 }
 
 TEST(HybridSeed, IsTheOneThatMeasurementsTakeForTheSameSamples) {

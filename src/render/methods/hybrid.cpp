@@ -97,6 +97,10 @@ class HybridRender {
         return counts;
     }
 
+    std::vector<std::vector<uint32_t>> pilot_counts() const {
+        return {share_between_halves(0, pilot()), share_between_halves(1, pilot())};
+    }
+
     /// Covariance paths of half k. They are samples, too.
     std::vector<uint32_t> paths_of(size_t k) const {
         return share_between_halves(k, s_.covariance_spp);
@@ -112,12 +116,14 @@ class HybridRender {
                 return true;
             }
             case Stage::pilot:
-                s_.plan = {share_between_halves(0, pilot()), share_between_halves(1, pilot())};
+                s_.plan = pilot_counts();
                 s_.target = pilot();
                 return true;
             case Stage::rounds:
                 break;
         }
+        // Go on with the pilot where a budget ended within it
+        if (s_.taken < pilot() && job_.begin_round(pilot(), pilot_counts())) return true;
         const bool first_here = !prediction_;
         predict();
         if (first_here && job_.options.seconds) reserve_time();
