@@ -12,6 +12,7 @@
 /// along the normal; light along wo takes the longer way, t = 1 - w + w k^(1 / cos), by the cosine
 /// inside the coat. All layers conserve energy: none takes less from what is below than it reflects
 /// itself.
+#include <algorithm>
 #include <cmath>
 
 #include "bsdf/coat_table.h"
@@ -71,7 +72,14 @@ float largest_albedo(const LayeredBsdf& b, Vec3 wo) {
     if (std::holds_alternative<DielectricBsdf>(b.base) ||
         std::holds_alternative<ThinDielectricBsdf>(b.base))
         return 1;
-    return max_component(albedo(base_of(b), wo));
+    const float by_direction = max_component(albedo(base_of(b), wo));
+    // A rough metal's facets face other angles, too, where its edge is less dark: at least the mean
+    // of Schlick's reflectance over the hemisphere
+    constexpr float kMeanOfFifthPower = 1 / 21.0f;
+    const auto* metal = std::get_if<ConductorBsdf>(&b.base);
+    if (!metal || !metal->schlick || metal->alpha_x == 0) return by_direction;
+    const auto& [normal, grazing, dip] = *metal->schlick;
+    return std::max(by_direction, max_component(normal + kMeanOfFifthPower * (grazing - normal)));
 }
 
 /// Quantities of wo's side that a pair's value and density share.

@@ -2,8 +2,11 @@
 /// held against Khronos's formulas in tests/cli/test_gltf_layers.py.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "bsdf/coat_table.h"
 #include "bsdf/models.h"
+#include "bsdf/schlick_metal.h"
 #include "bsdf/sheen.h"
 #include "core/frame.h"
 #include "core/warp.h"
@@ -106,6 +109,37 @@ TEST(LayeredBsdf, CoatsWithABorderLeaveWhatTheyReflectAndTint) {
                             0.006f)
                     << alpha << " " << c << " " << i;
         }
+}
+
+TEST(LayeredBsdf, MetalsAreSampledWhereTheirEdgeIsBlack) {
+    // The facets of rough metal face angles at which it reflects. At the black one itself nothing
+    // was drawn without a coat, and little with one.
+    const ConductorBsdf whole{Rgb(1), Rgb(0), 0.3f, 0.3f};
+    static const CoatTable border(1.5f, 0);
+    for (const float weight : {0.0f, 1.0f}) {
+        LayeredBsdf layers;
+        ConductorBsdf metal = whole;
+        metal.schlick = metal_of_edge(Rgb(0.9f), Rgb(0));
+        layers.base = metal;
+        layers.coat = {weight, 0, {0, 0, 1}, &border};
+        const Bsdf bsdf = layers;
+        const Vec3 wo = at_cos(1 / 7.0f);
+        constexpr int kSide = 40;
+        double drawn = 0, most = 0;
+        for (int i = 0; i < kSide; ++i)
+            for (int j = 0; j < kSide; ++j)
+                for (int k = 0; k < kSide; ++k) {
+                    const auto at = [](int n) { return (float(n) + 0.5f) / kSide; };
+                    const auto s = sample(bsdf, wo, at(k), {at(i), at(j)});
+                    if (!s || is_specular(s->lobe)) continue;
+                    drawn += double(s->weight.g) / (kSide * kSide * kSide);
+                    most = std::max(most, double(s->weight.g));
+                }
+        const double all = integrated(bsdf, wo).g;
+        EXPECT_GT(all, 0.2) << weight;
+        EXPECT_NEAR(drawn, all, 0.02 * all) << weight;
+        EXPECT_LT(most, 3) << weight;
+    }
 }
 
 TEST(LayeredBsdf, SmoothCoatMirrorsAboutItsOwnNormal) {
