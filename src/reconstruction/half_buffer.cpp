@@ -46,6 +46,15 @@ void fill_holes(HalfBuffer& half) {
     }
 }
 
+void replace_empty_half(Halves& halves) {
+    for (size_t k = 0; k < 2; ++k)
+        if (is_empty(halves[k])) {
+            const Plane none = halves[k].count;
+            halves[k] = halves[1 - k];
+            halves[k].count = none;  // without samples it judges nothing
+        }
+}
+
 void set_variance_from_difference(Halves& halves) {
     constexpr int kColorReach = 6;
     // Reach of the features' means is small: two samples that see the same surface by chance do not

@@ -32,6 +32,10 @@ bool is_empty(const HalfBuffer& half);
 /// its count stays 0.
 void fill_holes(HalfBuffer& half);
 
+/// Gives a half without any samples the pixels of the other one: an empty half, as a render that
+/// was interrupted at its start leaves it, is not black. Its count stays 0.
+void replace_empty_half(Halves& halves);
+
 /// Sets the variances of both halves to those that their difference suggests, box13((A - B)^2) / 2;
 /// of the features over 7 x 7 pixels. To be used where no pixel has two samples, so that their
 /// spread is unknown. Holes are to be filled before; pixels that neither half has seen say nothing.

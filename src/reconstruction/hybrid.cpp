@@ -67,17 +67,6 @@ Plane judged_pixels(const Halves& halves) {
     return all ? judged : gaussian_blur(judged, kAround);
 }
 
-/// Gives a half without any samples the pixels of the other one: an empty half, as a render that
-/// was interrupted at its start leaves it, is not black.
-void replace_empty_half(Halves& halves) {
-    for (size_t k = 0; k < 2; ++k)
-        if (is_empty(halves[k])) {
-            const Plane none = halves[k].count;
-            halves[k] = halves[1 - k];
-            halves[k].count = none;  // without samples it judges nothing
-        }
-}
-
 /// How few samples the halves have: 0 from 16 per pixel of both together on, below that linear in
 /// the variance of a pixel, 1 with 4 samples and 5 with a single one or less. Halves with noise of
 /// their own, as of other renderers, never count as few.

@@ -169,8 +169,9 @@ Halves halves_of(std::span<const Film> film) {
     const bool first_alone = !has_more_than(0, film[1]);
     deal(halves);
     if (!has_more_than(1, film[0]) || !(first_alone || has_more_than(1, film[1]))) {
-        // A black hole would count as a difference.
+        // A black hole would count as a difference, and so would an empty half
         for (HalfBuffer& half : halves) fill_holes(half);
+        replace_empty_half(halves);
         set_variance_from_difference(halves);
     }
     return halves;

@@ -128,7 +128,9 @@ class HybridRender {
         predict();
         if (first_here && job_.options.seconds) reserve_time();
         const double target = job_.plan_round(std::min(round_end(s_.taken), enough_samples()));
-        return target > s_.taken && plan_samples(target);
+        // The pilot may have given every pixel all that it is to have
+        const bool is_full = job_.options.max_spp && pilot() >= double(*job_.options.max_spp);
+        return target > s_.taken && !is_full && plan_samples(target);
     }
 
     /// Predicts the image's spectrum from the covariances, once.
