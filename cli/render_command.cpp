@@ -127,10 +127,11 @@ FoundDenoiser denoiser_of(const RenderArguments& a, bool is_first) {
 
 /// Builds a scene that the end of the process frees at once: taking millions of instances apart one
 /// by one takes seconds, after all that was asked for is done.
-RenderScene& kept_scene(SceneDescription description, const RenderArguments& a) {
+RenderScene& kept_scene(SceneDescription description, const RenderArguments& a,
+                        const Monitor& monitor) {
     static RenderScene* kept = nullptr;  // reachable, so that it does not count as a leak
-    kept =
-        new RenderScene(std::move(description), isa_name(a.isa), a.texture_bytes, a.options.guides);
+    kept = new RenderScene(std::move(description), isa_name(a.isa), a.texture_bytes,
+                           a.options.guides, [&monitor] { return monitor.cancelled(); });
     return *kept;
 }
 
@@ -222,7 +223,7 @@ int render_scene(RenderArguments a, const Invocation& invocation, const ThreadLi
     require_memory(a.max_memory, render_memory(description.film, a.options));
 
     // Build the scene
-    RenderScene& scene = kept_scene(std::move(description), a);
+    RenderScene& scene = kept_scene(std::move(description), a, monitor);
     const double built = monitor.elapsed();
     progress.clear();
     if (!a.quiet) tell_warnings(a, output, denoiser, scene);

@@ -145,7 +145,8 @@ Rendered render_description(SceneDescription description, RenderOptions options,
     });
     FilmKeeping keeping = films.keeping(true);
     const double begin = monitor.elapsed();
-    RenderScene scene(std::move(description), isa, texture_bytes, options.guides);
+    RenderScene scene(std::move(description), isa, texture_bytes, options.guides,
+                      [&monitor] { return monitor.cancelled(); });
     const double building = monitor.elapsed() - begin;
     RenderResult result = render(scene, options, monitor, std::move(keeping));
     films.finish();

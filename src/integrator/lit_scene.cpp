@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 
+#include "core/error.h"
 #include "integrator/displacement.h"
 #include "integrator/lamps.h"
 
@@ -74,6 +75,11 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
     if (!kinds_differ) mirrors = FlatMirrors(description, geometry);
     samples_by_mirrors = !mirrors.is_empty();
     unbounded_distance = 2 * radius_of_media(description, geometry.bounds());
+}
+
+void LitScene::throw_if_interrupted() const {
+    if (is_interrupted && is_interrupted())
+        throw Error(ErrorKind::interrupted, "interrupted before the scene was ready");
 }
 
 std::map<std::string, size_t> LitScene::memory() const {

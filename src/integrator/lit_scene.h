@@ -1,6 +1,7 @@
 /// The scene as a path sees it: geometry, materials, lights, media, camera, filter.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 
@@ -22,6 +23,9 @@ struct LitScene {
     /// for images that can't be read, Error(limit) where memory runs out.
     explicit LitScene(SceneDescription scene_description, const std::string& isa = {},
                       size_t texture_bytes = kNoTextureLimit);
+
+    /// Throws Error(interrupted) where `is_interrupted` says so.
+    void throw_if_interrupted() const;
 
     /// Bytes held, by use: "meshes", "shapes", "embree" (at its peak), "textures".
     std::map<std::string, size_t> memory() const;
@@ -50,6 +54,9 @@ struct LitScene {
     /// the scene's bounds, as far away as pbrt-v4 puts its infinite lights; for a camera in the
     /// medium, the radius of a sphere that holds camera and lights as well.
     float unbounded_distance = 0;
+    /// Whether nobody wants any more what is learnt from the scene before it is rendered; null:
+    /// always wanted. Any thread calls it.
+    std::function<bool()> is_interrupted;
 };
 
 }  // namespace covtrace

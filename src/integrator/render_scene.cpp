@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/error.h"
 #include "integrator/guides/specular_light_trial.h"
 #include "integrator/guides/training_places.h"
 #include "integrator/path.h"
@@ -13,13 +14,15 @@ namespace covtrace {
 namespace {
 
 /// Whether paths take so many rays, through thousands of interfaces say, that the thousands of them
-/// which guides learn from would cost more than a render. The answer is deterministic.
+/// which guides learn from would cost more than a render. The answer is deterministic. Throws
+/// Error(interrupted) where the scene is interrupted.
 bool are_paths_too_long(const LitScene& scene) {
     constexpr uint64_t kPaths = 16, kMostRays = 128;  // per path; sixty events have as many
     constexpr uint64_t kKey = 0x6c6f6e67;             // of their random numbers, "long"
     const CausticGuide no_guide;
     uint64_t rays = 0;
     for (uint64_t i = 0; i < kPaths && rays <= kPaths * kMostRays; ++i) {
+        scene.throw_if_interrupted();
         const TrainingPath path = training_path(scene, kKey, i);
         const PathResult found = trace_path(scene, no_guide, path.ray, path.sampler,
                                             scene.description.max_depth, nullptr);
@@ -31,14 +34,23 @@ bool are_paths_too_long(const LitScene& scene) {
 }  // namespace
 
 RenderScene::RenderScene(SceneDescription scene_description, const std::string& isa,
-                         size_t texture_bytes, Guides which)
+                         size_t texture_bytes, Guides which, std::function<bool()> interrupted)
     : LitScene(std::move(scene_description), isa, texture_bytes), guides(which) {
+    is_interrupted = std::move(interrupted);
     const auto untried = [](bool samples) {
         return samples ? GuideState::guides : GuideState::unused;
     };
     specular_.panes.state = untried(samples_through_panes);
     specular_.mirrors.state = untried(samples_by_mirrors);
-    if (guides == Guides::none || are_paths_too_long(*this)) return;
+    try {
+        if (guides != Guides::none && !are_paths_too_long(*this)) learn_guides();
+    } catch (const Error& e) {
+        if (e.kind() != ErrorKind::interrupted) throw;
+    }
+    is_interrupted = {};  // may refer to what does not live as long as the scene
+}
+
+void RenderScene::learn_guides() {
     const auto time = [this](const char* name, const auto& work) {
         const auto start = std::chrono::steady_clock::now();
         work();

@@ -1,6 +1,7 @@
 /// The scene that is rendered: all that a path may meet, and the guides that were learnt from it.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 
@@ -16,10 +17,12 @@ namespace covtrace {
 
 /// A scene and the guides that were learnt from it before anything is rendered.
 struct RenderScene : LitScene {
-    /// Builds the scene, and guides unless there are to be none. The other parameters, and errors,
-    /// are LitScene's.
+    /// Builds the scene, and guides unless there are to be none. `is_interrupted` may end their
+    /// learning early: it is LitScene's, and the guides that are not learnt then stay without
+    /// effect; it is not called after that. The other parameters, and errors, are LitScene's.
     explicit RenderScene(SceneDescription scene_description, const std::string& isa = {},
-                         size_t texture_bytes = kNoTextureLimit, Guides guides = Guides::automatic);
+                         size_t texture_bytes = kNoTextureLimit, Guides guides = Guides::automatic,
+                         std::function<bool()> is_interrupted = {});
 
     /// Bytes held, by use: what LitScene lists, and "guide".
     std::map<std::string, size_t> memory() const;
@@ -35,6 +38,8 @@ struct RenderScene : LitScene {
     PathGuide path_guide;
 
   private:
+    void learn_guides();
+
     SpecularLightOutcomes specular_;
     std::map<std::string, double> learning_seconds_;  ///< by guide
 };

@@ -2,7 +2,9 @@
 // right.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -134,6 +136,22 @@ TEST(LampGuide, LeavesAllPathsAloneWhereThereAreToBeNoGuides) {
         EXPECT_EQ(outcome.seconds, 0) << name;
     }
     EXPECT_TRUE(scene.lamp_guide.is_empty());
+}
+
+TEST(LampGuide, StopsLearningSoonWhereNobodyWantsIt) {
+    const auto asked = [](int64_t enough, GuideState expected) {
+        std::atomic<int64_t> times{0};
+        const RenderScene scene(scene_of(lamps_behind(12)), {}, kNoTextureLimit, Guides::automatic,
+                                [&] { return ++times > enough; });
+        EXPECT_EQ(scene.lamp_guide.outcome().state, expected);
+        EXPECT_FALSE(scene.is_interrupted);
+        return times.load();
+    };
+    const int64_t all = asked(std::numeric_limits<int64_t>::max(), GuideState::guides);
+    // At each path, by every thread once after the answer
+    for (const int64_t enough : {int64_t(0), int64_t(1000), all / 8})
+        EXPECT_LE(asked(enough, GuideState::unused), enough + 64);
+    EXPECT_GT(all, 10000);
 }
 
 TEST(LampGuide, IsTheSameForAnyNumberOfThreads) {

@@ -202,8 +202,10 @@ std::vector<CausticPhoton> trace_caustic_photons(const LitScene& scene, int64_t 
     std::vector<std::vector<CausticPhoton>> found(static_cast<size_t>(chunks));
     parallel_for(chunks, [&](int64_t chunk) {
         const int64_t end = std::min(count, (chunk + 1) * kPathsPerChunk);
-        for (int64_t i = chunk * kPathsPerChunk; i < end; ++i)
+        for (int64_t i = chunk * kPathsPerChunk; i < end; ++i) {
+            scene.throw_if_interrupted();
             Pilot(scene, static_cast<uint64_t>(first + i), found[static_cast<size_t>(chunk)]).run();
+        }
     });
     std::vector<CausticPhoton> all;
     for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());

@@ -107,6 +107,7 @@ PathLesson trace_lesson(const LitScene& scene, const CausticGuide& caustics, con
         PathRecord record;
         const int64_t end = std::min(count, (c + 1) * kPathsPerChunk);
         for (int64_t i = c * kPathsPerChunk; i < end; ++i) {
+            scene.throw_if_interrupted();
             const auto index = static_cast<uint64_t>(first + i);
             const TrainingPath path = training_path(scene, kLessonKey, index);
             const PathResult result = trace_path(scene, caustics, path.ray, path.sampler,

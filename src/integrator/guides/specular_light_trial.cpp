@@ -38,6 +38,7 @@ std::vector<TriedPath> trace(const LitScene& scene, int64_t count) {
     parallel_for((count + kPathsPerChunk - 1) / kPathsPerChunk, [&](int64_t chunk) {
         for (int64_t i = chunk * kPathsPerChunk; i < std::min(count, (chunk + 1) * kPathsPerChunk);
              ++i) {
+            scene.throw_if_interrupted();
             const TrainingPath path = training_path(scene, kTrialKey, static_cast<uint64_t>(i));
             const PathResult found =
                 trace_path(scene, no_guide, path.ray, path.sampler, depth, nullptr);

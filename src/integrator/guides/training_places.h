@@ -36,7 +36,8 @@ inline TrainingPath training_path(const LitScene& scene, uint64_t key, uint64_t 
 /// Traces `count` camera paths that no guide leads, the first of them number `first`, and calls
 /// `visit(vertex, path.rng, found)` for every vertex that scatters by other than specular lobes.
 /// `key` tells the random numbers of one kind of guide from another's. Returns all that the visits
-/// put into `found`, in the order of the paths: it is the same for any number of threads.
+/// put into `found`, in the order of the paths: it is the same for any number of threads. Throws
+/// Error(interrupted) where the scene is interrupted.
 template <typename Found, typename Visit>
 std::vector<Found> visit_places(const LitScene& scene, uint64_t key, int64_t first, int64_t count,
                                 const Visit& visit) {
@@ -50,6 +51,7 @@ std::vector<Found> visit_places(const LitScene& scene, uint64_t key, int64_t fir
         PathRecord record;
         const int64_t end = std::min(count, (chunk + 1) * kPathsPerChunk);
         for (int64_t i = chunk * kPathsPerChunk; i < end; ++i) {
+            scene.throw_if_interrupted();
             TrainingPath path = training_path(scene, key, static_cast<uint64_t>(first + i));
             trace_path(scene, none, path.ray, path.sampler, depth, &record);
             for (int k = 0; k < record.count; ++k) {
