@@ -112,12 +112,14 @@ std::array<float, N> sums_around(const Pyramid<N>& pyramid, int x, int y, const 
 constexpr float kLeastWeight = 1e-3f, kFourTimesAsWide = 16;
 constexpr int kAttempts = 6;
 
-}  // namespace
-
-FilteredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
-                     std::span<const uint32_t> count, const FilterField& field) {
-    // Sums of red, green, blue, the variance of the luminance, and whether a pixel has samples.
-    constexpr size_t kVariance = 3, kWeight = 4, kSums = 5;
+/// `gather`, with as many features as there are.
+template <size_t Features>
+FilteredImage gather_all(std::span<const Rgb> mean, std::span<const float> variance,
+                         std::span<const uint32_t> count, const FilterField& field,
+                         std::span<Plane, Features> features) {
+    // Sums of red, green, blue, the variance of the luminance, whether a pixel has samples, and the
+    // features.
+    constexpr size_t kVariance = 3, kWeight = 4, kFeatures = 5, kSums = kFeatures + Features;
     Level<kSums> base(field.width, field.height);
     for (int y = 0; y < base.height; ++y)
         for (int x = 0; x < base.width; ++x) {
@@ -126,8 +128,10 @@ FilteredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
             for (int c = 0; c < 3; ++c) base.sums[size_t(c)][at] = mean[i][c];
             base.sums[kVariance][at] = std::isfinite(variance[i]) ? variance[i] : 0.0f;
             base.sums[kWeight][at] = 1;
+            for (size_t k = 0; k < Features; ++k) base.sums[kFeatures + k][at] = features[k][i];
         }
     const Pyramid<kSums> pyramid = pyramid_over(std::move(base));
+    for (Plane& feature : features) feature = Plane(field.width, field.height);
     FilteredImage result{std::vector<Rgb>(mean.size()), std::vector<float>(mean.size()),
                          std::vector<float>(mean.size())};
     parallel_for_rows(field.width, field.height, [&](int y) {
@@ -141,11 +145,25 @@ FilteredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
                 result.color[i] = Rgb(sum[0], sum[1], sum[2]) / all;
                 result.variance[i] = sum[kVariance] / (all * all);
                 result.own_weight[i] = count[i] > 0 ? std::min(1.0f, 1 / all) : 0.0f;
+                for (size_t k = 0; k < Features; ++k) features[k][i] = sum[kFeatures + k] / all;
                 if (all > kLeastWeight) break;
             }
         }
     });
     return result;
+}
+
+}  // namespace
+
+FilteredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
+                     std::span<const uint32_t> count, const FilterField& field) {
+    return gather_all<0>(mean, variance, count, field, {});
+}
+
+FilteredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
+                     std::span<const uint32_t> count, const FilterField& field,
+                     std::span<Plane, kGatheredFeatures> features) {
+    return gather_all(mean, variance, count, field, features);
 }
 
 std::array<ColorPlanes, 2> gather(const Halves& halves, const FilterField& field) {

@@ -24,6 +24,15 @@ namespace covtrace {
 FilteredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
                      std::span<const uint32_t> count, const FilterField& field);
 
+/// Planes of features that are gathered beside the light.
+inline constexpr size_t kGatheredFeatures = 7;
+
+/// The same, and the same means of `features`, which take the place of the features: the weights,
+/// most of the work, are those of the light. Features are finite, and as large as the field.
+FilteredImage gather(std::span<const Rgb> mean, std::span<const float> variance,
+                     std::span<const uint32_t> count, const FilterField& field,
+                     std::span<Plane, kGatheredFeatures> features);
+
 /// Gathers the colours of both halves, which share the filters and so their weights.
 std::array<ColorPlanes, 2> gather(const Halves& halves, const FilterField& field);
 

@@ -127,6 +127,8 @@ ScaledSums sums_around(const Rows& rows, const FilterField& field, int x, int y)
             for (size_t k = 0; k < scales; ++k) {
                 const Float8 distance = narrowing[k] * square;
                 const Mask8 within = inside & (distance <= kCut);
+                // Narrow scales see few of the pixels that the widest one does
+                if (bits8(within) == 0) continue;
                 const Float8 h = within
                                      ? exp_of_negative(multiply_add(all8(-0.5f), distance, guided))
                                      : Float8{};

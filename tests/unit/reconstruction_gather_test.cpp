@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -51,6 +52,41 @@ TEST(Gather, ConstantImagesStayConstant) {
             run(std::vector<Rgb>(57 * 43, Rgb(0.7f)), uniform_field(57, 43, {s, 0.3f * s, s}))
                 .color;
         for (const Rgb& c : image) ASSERT_NEAR(c.g, 0.7f, 1e-5f);
+    }
+}
+
+TEST(Gather, FeaturesAreGatheredByTheWeightsOfTheLight) {
+    const int w = 40, h = 30;
+    const size_t n = size_t(w) * size_t(h);
+    std::mt19937 rng(11);
+    std::uniform_real_distribution<float> uniform;
+    FilterField field = uniform_field(w, h, {2, 0.5f, 3});
+    std::vector<uint32_t> count(n, 1);
+    std::vector<Rgb> light(n), feature(n);
+    std::array<Plane, kGatheredFeatures> planes;
+    planes.fill(Plane(w, h));
+    for (size_t i = 0; i < n; ++i) {
+        field.covariance[i] = (0.2f + 30 * uniform(rng)) * field.covariance[i];
+        if (uniform(rng) < 0.3f) count[i] = 0;
+        light[i] = Rgb(uniform(rng), uniform(rng), uniform(rng));
+        feature[i] = Rgb(uniform(rng), -uniform(rng), 10 * uniform(rng));
+        for (size_t c = 0; c < 3; ++c) planes[4 + c][i] = feature[i][int(c)];
+        planes[0][i] = light[i].g;
+    }
+    const std::vector<float> variance(n, 1.0f);
+    const FilteredImage alone = gather(light, variance, count, field),
+                        of_feature = gather(feature, variance, count, field),
+                        beside = gather(light, variance, count, field,
+                                        std::span<Plane, kGatheredFeatures>(planes));
+    for (size_t i = 0; i < n; ++i) {
+        EXPECT_EQ(beside.variance[i], alone.variance[i]);
+        EXPECT_EQ(beside.own_weight[i], alone.own_weight[i]);
+        EXPECT_NEAR(planes[0][i], alone.color[i].g, 1e-6f);
+        EXPECT_EQ(planes[1][i], 0);
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(beside.color[i][c], alone.color[i][c], 1e-6f);
+            EXPECT_NEAR(planes[size_t(4 + c)][i], of_feature.color[i][c], 1e-5f);
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 #include "render/methods/covariance_image.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -114,25 +115,35 @@ void add(const Parts& parts, const FilteredImage& in_view, FilteredImage& image)
     }
 }
 
-/// The features of what is seen first through the filters of the light, which have lens and shutter
-/// in them as these features do.
-FilterGuides guides_of(const Film& film, const Parts& parts, const FilterField& field) {
+/// Light through its filters, and the features of what is seen first through the same: these have
+/// lens and shutter in them, as the features do.
+struct LedLight {
+    FilteredImage light;
+    FilterGuides guides;
+};
+
+LedLight led_light(const Film& film, const Parts& parts, const FilterField& field) {
     const size_t n = film.pixels.size();
-    std::vector<Rgb> albedo(n), normal(n), distance(n);
+    std::array<Plane, kGatheredFeatures> features;
+    features.fill(Plane(field.width, field.height));
     for (size_t i = 0; i < n; ++i) {
         const FilmPixel& pixel = film.pixels[i];
-        albedo[i] = pixel.albedo;
-        normal[i] = {pixel.normal.x, pixel.normal.y, pixel.normal.z};
+        for (size_t c = 0; c < 3; ++c) {
+            features[c][i] = pixel.albedo[int(c)];
+            features[3 + c][i] = pixel.normal[int(c)];
+        }
         const bool hit = pixel.depth > 0 && std::isfinite(pixel.depth);
-        distance[i] = Rgb(std::log(hit ? pixel.depth : kFar));
+        features[6][i] = std::log(hit ? pixel.depth : kFar);
     }
-    const auto filtered = [&](const std::vector<Rgb>& feature) {
-        return gather(feature, parts.scattered.variance, parts.count, field).color;
-    };
-    FilterGuides guides{filtered(albedo), filtered(normal), std::vector<float>(n)};
-    distance = filtered(distance);
-    for (size_t i = 0; i < n; ++i) guides.log_distance[i] = distance[i].r;
-    return guides;
+    LedLight led;
+    led.light = gather(parts.scattered.mean, parts.scattered.variance, parts.count, field,
+                       std::span<Plane, kGatheredFeatures>(features));
+    led.guides = {std::vector<Rgb>(n), std::vector<Rgb>(n), std::move(features[6].values)};
+    for (size_t i = 0; i < n; ++i) {
+        led.guides.albedo[i] = {features[0][i], features[1][i], features[2][i]};
+        led.guides.normal[i] = {features[3][i], features[4][i], features[5][i]};
+    }
+    return led;
 }
 
 /// The candidate whose luminance errors are relative to: led, at twice the predicted width, light
@@ -175,10 +186,10 @@ FilteredImage gathered_image(const Parts& parts, const CovarianceFilters& filter
 
 /// The candidates' mixture that the samples ask for.
 FilteredImage judged_image(const Film& film, const Parts& parts, const CovarianceFilters& filters) {
-    std::vector<FilteredImage> candidates =
-        guided_gather(parts.scattered.mean, parts.scattered.variance, parts.count,
-                      filters.scattered, guides_of(film, parts, filters.scattered));
-    candidates.insert(candidates.begin(), through(parts.scattered, parts.count, filters.scattered));
+    LedLight led = led_light(film, parts, filters.scattered);
+    std::vector<FilteredImage> candidates = guided_gather(
+        parts.scattered.mean, parts.scattered.variance, parts.count, filters.scattered, led.guides);
+    candidates.insert(candidates.begin(), std::move(led.light));
     std::optional<FilteredImage> sharper;
     if (filters.has_in_view && film.mean_count() > kEnoughForSharper) {
         sharper = candidates.front();
