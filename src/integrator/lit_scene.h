@@ -54,7 +54,7 @@ struct LitScene {
     /// the scene's bounds, as far away as pbrt-v4 puts its infinite lights; for a camera in the
     /// medium, the radius of a sphere that holds camera and lights as well.
     float unbounded_distance = 0;
-    /// Whether nobody wants any more what is learnt from the scene before it is rendered; null:
+    /// Whether what is learnt from the scene before it is rendered is not wanted any more; null:
     /// always wanted. Any thread calls it.
     std::function<bool()> is_interrupted;
 };
