@@ -55,6 +55,9 @@ bool is_specular(const CoatedDiffuseBsdf&) {
 bool is_specular(const MeasuredBsdf&) {
     return false;
 }
+bool is_specular(const HairBsdf&) {
+    return false;
+}
 bool is_specular(const InterfaceBsdf&) {
     return true;
 }

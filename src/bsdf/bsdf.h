@@ -21,6 +21,8 @@ enum class LobeKind : uint8_t {
     sheen_reflection,  ///< as wide as a diffuse one, brightest at grazing angles
     glossy_reflection,
     glossy_transmission,
+    hair_reflection,  ///< of a strand, to the side of the frame that the light comes from
+    hair_transmission,
     specular_reflection,
     specular_transmission
 };
@@ -33,7 +35,7 @@ constexpr bool is_diffuse(LobeKind k) {
 }
 constexpr bool is_transmission(LobeKind k) {
     return k == LobeKind::diffuse_transmission || k == LobeKind::glossy_transmission ||
-           k == LobeKind::specular_transmission;
+           k == LobeKind::hair_transmission || k == LobeKind::specular_transmission;
 }
 
 struct BsdfSample {
@@ -50,7 +52,9 @@ struct BsdfSample {
 struct LobeShare {
     LobeKind kind{};
     Rgb value;  ///< this lobe's part of eval(wo, wi); for a sampled specular lobe its weight
-    /// GGX, along the local x and y, or a sheen's, both the same; 0 for diffuse and specular.
+    /// GGX, along the local x and y, or a sheen's, both the same; 0 for diffuse and specular. Of
+    /// hair the standard deviations, radians, of the angle to the cross section of the strand,
+    /// which lies along x, and of the angle about it; infinite where all of these are alike.
     float alpha_x = 0, alpha_y = 0;
     float eta = 1;  ///< index on wi's side over the index on wo's side
     /// Border that reflects a glossy lobe, or that covers a diffuse one: its index over that of
@@ -179,9 +183,24 @@ struct MeasuredBsdf {
     const MeasuredBrdf* brdf = nullptr;
 };
 
+/// A strand of hair along the local x, whichever surface stands for it; made by make_hair (hair.h).
+/// The arrays are of light that is reflected (R), that passes the strand (TT), that is reflected
+/// inside once (TRT), and of all other light together.
+struct HairBsdf {
+    static constexpr size_t kWays = 4;
+    Rgb absorption;     ///< in the strand, per its radius
+    float eta = 1.55f;  ///< >= 1
+    float offset = 0;   ///< h: place across the strand as seen along wo, in [-1, 1], towards wo x X
+    std::array<float, kWays> variance{};              ///< v, of the angle to the cross section
+    std::array<float, kWays> faintest{};              ///< exp(-2 / v)
+    std::array<float, kWays> sin_tilt{}, cos_tilt{};  ///< of the angle that scales turn light by
+    float scale = 0;  ///< s, of the logistic distribution of the angle about the strand
+    float tail = 0;   ///< share of that distribution beyond pi, on one side
+};
+
 using Bsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, CoatedDiffuseBsdf,
                           DiffuseTransmissionBsdf, CoatedConductorBsdf, ThinDielectricBsdf,
-                          InterfaceBsdf, MeasuredBsdf, UnlitBsdf, LayeredBsdf>;
+                          InterfaceBsdf, MeasuredBsdf, UnlitBsdf, LayeredBsdf, HairBsdf>;
 
 /// The value f(wo, wi) |cos(wi)|, without specular lobes.
 Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi);

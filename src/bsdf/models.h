@@ -84,6 +84,13 @@ std::optional<BsdfSample> sample(const MeasuredBsdf& b, Vec3 wo, float u_lobe, V
 LobeShares lobe_shares(const MeasuredBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
 Rgb albedo(const MeasuredBsdf& b, Vec3 wo);
 
+Rgb eval(const HairBsdf& b, Vec3 wo, Vec3 wi);
+float pdf(const HairBsdf& b, Vec3 wo, Vec3 wi);
+BsdfValue eval_and_pdf(const HairBsdf& b, Vec3 wo, Vec3 wi);
+std::optional<BsdfSample> sample(const HairBsdf& b, Vec3 wo, float u_lobe, Vec2 u);
+LobeShares lobe_shares(const HairBsdf& b, Vec3 wo, Vec3 wi, Rgb value);
+Rgb albedo(const HairBsdf& b, Vec3 wo);
+
 inline bool same_side(Vec3 wo, Vec3 wi) {
     return wo.z * wi.z > 0;
 }

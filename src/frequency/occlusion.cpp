@@ -38,6 +38,12 @@ double sharpest_window(const LobeShares& lobes) {
             case LobeKind::specular_reflection:
             case LobeKind::specular_transmission:
                 return kSharpWindow;
+            case LobeKind::hair_reflection:
+            case LobeKind::hair_transmission: {
+                const double narrower = std::min(lobe.alpha_x, lobe.alpha_y);
+                window = std::max(window, 1 / (cov::four_pi_sq<double> * narrower * narrower));
+                break;
+            }
             case LobeKind::glossy_reflection:
             case LobeKind::glossy_transmission: {
                 // Outgoing slopes are twice as wide as the half vector's.

@@ -7,6 +7,7 @@
 #include "frequency/fresnel_derivatives.h"
 #include "frequency/ggx_derivatives.h"
 #include "frequency/round_lobe.h"
+#include "frequency/strand_lobe.h"
 
 namespace covtrace {
 
@@ -205,6 +206,15 @@ void ScatterSum::add_through(const LightField& entered, bool even,
             return add_diffuse(entered, even, emitter, lobe, weight, rule);
         case LobeKind::sheen_reflection:
             return add_sheen(entered, even, lobe, weight, rule);
+        case LobeKind::hair_reflection:
+        case LobeKind::hair_transmission:
+            if (even)
+                weight_ += weight;  // the light stays even
+            else
+                add(cov::scatter<double>(entered, strand_pair(lobe, point_.shading.x, entered.frame,
+                                                              point_.leaving.z)),
+                    weight);
+            return;
         case LobeKind::glossy_reflection:
         case LobeKind::glossy_transmission:
             break;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "bsdf/coat_table.h"
+#include "bsdf/hair.h"
 #include "bsdf/multiple_scattering.h"
 #include "bsdf/sheen.h"
 #include "chi_square.h"
@@ -71,6 +72,14 @@ std::vector<Case> all_cases() {
          LayeredBsdf{tinted, {}, {0.8f, 0.2f, {0, 0, 1}, &border, {0.9f, 0.4f, 0}}}, 0.4f, 1},
         {"clear_on_velvet", LayeredBsdf{DiffuseBsdf{tan}, sheen, {1, 0.2f, aside}}, 0.2f, 1},
     };
+    for (const float beta : {0.3f, 0.6f, 1.0f})
+        for (const float offset : {0.0f, -0.8f}) {
+            HairBsdf hair = make_hair({.beta_m = beta, .beta_n = beta}, {0.1f, 0.3f, 1});
+            hair.offset = offset;
+            models.push_back({"hair_" + std::to_string(static_cast<int>(beta * 100)) +
+                                  (offset == 0 ? "_middle" : "_edge"),
+                              hair, 0, 1});
+        }
     for (float alpha : {0.02f, 0.1f, 0.3f, 1.0f}) {
         const std::string suffix = std::to_string(static_cast<int>(alpha * 100));
         models.push_back({"conductor_" + suffix, ConductorBsdf{eta, k, alpha, alpha}, alpha, 1});
