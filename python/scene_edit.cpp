@@ -148,12 +148,30 @@ struct MaterialSlots {
     }
     void operator()(InterfaceMaterial&) {}
     void operator()(MeasuredMaterial&) {}
+    void operator()(HairMaterial& m) {
+        texture("sigma_a", m.absorption, TextureUse::colour);
+        texture("reflectance", m.reflectance, TextureUse::share);
+        texture("eumelanin", m.eumelanin, TextureUse::number);
+        texture("pheomelanin", m.pheomelanin, TextureUse::number);
+        texture("beta_m", m.beta_m, TextureUse::share);
+        texture("beta_n", m.beta_n, TextureUse::share);
+        texture("alpha", m.alpha, TextureUse::number);
+        texture("eta", m.eta, TextureUse::number);
+    }
     void operator()(UnlitMaterial& m) { texture("colour", m.colour, TextureUse::colour); }
 };
 
-constexpr std::array<const char*, 10> kMaterialKinds{
-    "diffuse",         "conductor",      "dielectric", "coateddiffuse", "diffusetransmission",
-    "coatedconductor", "thindielectric", "interface",  "measured",      "unlit"};
+constexpr std::array<const char*, 11> kMaterialKinds{"diffuse",
+                                                     "conductor",
+                                                     "dielectric",
+                                                     "coateddiffuse",
+                                                     "diffusetransmission",
+                                                     "coatedconductor",
+                                                     "thindielectric",
+                                                     "interface",
+                                                     "measured",
+                                                     "unlit",
+                                                     "hair"};
 
 std::vector<Slot> slots_of(SceneDescription& scene, MaterialDescription& m) {
     std::vector<Slot> slots;

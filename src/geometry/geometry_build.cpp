@@ -54,7 +54,8 @@ std::vector<bool> may_be_interface(const SceneDescription& scene) {
 /// wherever it does.
 std::vector<bool> are_translucent(const SceneDescription& scene) {
     std::vector<bool> are = of_any_part(scene, [](const MaterialDescription& m) {
-        return std::holds_alternative<DiffuseTransmissionMaterial>(m.value);
+        return std::holds_alternative<DiffuseTransmissionMaterial>(m.value) ||
+               std::holds_alternative<HairMaterial>(m.value);
     });
     const std::vector<bool> clear = of_any_part(scene, [](const MaterialDescription& m) {
         return std::holds_alternative<DielectricMaterial>(m.value) ||
@@ -68,7 +69,7 @@ std::vector<bool> are_translucent(const SceneDescription& scene) {
 /// Whether rays pass a shape from within: a tube in the place of a ribbon with nothing in it, whose
 /// inside does not shine.
 bool is_left_freely(const ShapeDescription& shape, const std::vector<bool>& translucent) {
-    return shape.is_tube_for_ribbon && shape.material >= 0 &&
+    return shape.tube_sides > 0 && shape.material >= 0 &&
            translucent[static_cast<size_t>(shape.material)] && shape.inside == shape.outside &&
            shape.area_light < 0;
 }

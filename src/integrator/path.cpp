@@ -5,6 +5,7 @@
 #include "bsdf/models.h"
 #include "integrator/path_tracer.h"
 #include "shading/normal_map.h"
+#include "shading/strand.h"
 
 namespace covtrace {
 
@@ -14,6 +15,7 @@ bool transmits(const Bsdf& bsdf) {
     if (const auto* layered = std::get_if<LayeredBsdf>(&bsdf)) return transmits(base_of(*layered));
     return std::holds_alternative<DielectricBsdf>(bsdf) ||
            std::holds_alternative<DiffuseTransmissionBsdf>(bsdf) ||
+           std::holds_alternative<HairBsdf>(bsdf) ||
            std::holds_alternative<ThinDielectricBsdf>(bsdf);
 }
 
@@ -53,6 +55,7 @@ bool PathTracer::meet(bool found) {
     const MaterialId material =
         scene_.materials.at(shape.description.material, hit, scene_.textures);
     Bsdf bsdf = bsdf_at(hit, material);
+    place_on_strand(bsdf, hit, shape.description.tube_sides, -ray_.direction);
     if (const auto* unlit = std::get_if<UnlitBsdf>(&bsdf)) {
         if (is_seen(*unlit)) return see_unlit(*unlit, material);
     } else if (!std::holds_alternative<InterfaceBsdf>(bsdf)) {

@@ -53,7 +53,7 @@ struct Builder {
     CoatedConductorMaterial coated_conductor();
     DiffuseTransmissionMaterial diffuse_transmission();
     CoatedDiffuseMaterial subsurface();
-    DiffuseMaterial hair();
+    HairMaterial hair();
 };
 
 /// Texture of one of "eta" and "k": a texture or colour as it is, a spectrum as its means per
@@ -241,29 +241,33 @@ CoatedDiffuseMaterial Builder::subsurface() {
     return m;
 }
 
-DiffuseMaterial Builder::hair() {
-    warn("material \"hair\" is not supported; \"diffuse\" of the same colour takes its place");
-    DiffuseMaterial m;
+HairMaterial Builder::hair() {
+    HairMaterial m;
     // The first of several descriptions counts, as in pbrt: absorption, then the colour, then the
     // pigments.
-    const bool has_absorption = p.has("sigma_a");
-    if (!has_absorption) m.reflectance = textures.reflectance_or_none(p, "reflectance");
-    if (!has_absorption && m.reflectance < 0)
-        m.reflectance = textures.reflectance_or_none(p, "color");
-    if (m.reflectance < 0) {
-        // Absorption of the pigments and its relation to the colour of dense hair are from Chiang
-        // et al. 2016, "A Practical and Controllable Hair and Fur Model for Production Path
-        // Tracing", for azimuthal roughness 0.3.
-        const bool has_pigment = p.has("eumelanin") || p.has("pheomelanin");
-        const float eu = textures.mean(textures.grey(p, "eumelanin", has_pigment ? 0 : 1.3f)).r;
-        const float pheo = textures.mean(textures.grey(p, "pheomelanin", 0)).r;
-        const Rgb pigment = eu * Rgb{0.419f, 0.697f, 1.37f} + pheo * Rgb{0.187f, 0.4f, 1.05f};
-        const Rgb sigma = textures.mean(textures.unbounded(p, "sigma_a", pigment));
-        const auto colour = [](float s) { return std::exp(-5.89f * std::sqrt(std::max(0.0f, s))); };
-        m.reflectance =
-            textures.constant({colour(sigma.r), colour(sigma.g), colour(sigma.b)}, true);
+    std::string first;
+    for (const char* name : {"sigma_a", "reflectance", "color", "eumelanin", "pheomelanin"}) {
+        if (!p.has(name)) continue;
+        if (first.empty())
+            first = name;
+        else if (first != "eumelanin")
+            warn("material \"hair\" has " + in_quotes(first) + ", beside which " + in_quotes(name) +
+                 " is ignored");
     }
-    p.ignore_all();
+    if (first == "sigma_a") m.absorption = textures.unbounded(p, first, Rgb{});
+    if (first == "reflectance" || first == "color")
+        m.reflectance = textures.reflectance_or_none(p, first);
+    if (first == "eumelanin" || first == "pheomelanin") {
+        m.eumelanin = textures.grey_or_none(p, "eumelanin");
+        m.pheomelanin = textures.grey_or_none(p, "pheomelanin");
+    }
+    p.ignore({"sigma_a", "reflectance", "color", "eumelanin", "pheomelanin"});
+    m.beta_m = textures.grey_or_none(p, "beta_m");
+    m.beta_n = textures.grey_or_none(p, "beta_n");
+    m.alpha = textures.grey_or_none(p, "alpha");
+    m.eta = textures.grey_or_none(p, "eta");
+    // The parameter is ours, not pbrt's: "Coat" of Blender's Principled Hair.
+    m.coat = textures.grey_or_none(p, "haircoat");
     return m;
 }
 

@@ -16,7 +16,7 @@ constexpr size_t kStepsPerSegment = 5;
 /// Normals that are smooth over flat sides lose light, as some of what they scatter goes into the
 /// tube. Prisms that are turned at random about their curves send, in their mean, exactly as much
 /// light to each direction as round tubes do: hair, whose sides nobody sees, consists of them.
-constexpr size_t kSidesOfPrism = 5, kSidesOfRoundTube = 24;
+constexpr int kSidesOfPrism = 5, kSidesOfRoundTube = 24;
 constexpr float kSlender = 20;  // lengths of a curve by its width from which on it is like hair
 
 bool is_slender(const CurveDescription& curve) {
@@ -90,13 +90,17 @@ TriangleMesh cylinder_mesh(float radius, float z_min, float z_max, float phi_max
     return m;
 }
 
+int sides_of(const CurveDescription& curve) {
+    return is_slender(curve) ? kSidesOfPrism : kSidesOfRoundTube;
+}
+
 TriangleMesh curve_mesh(const CurveDescription& curve) {
     const auto degree = static_cast<size_t>(curve.degree);
     const size_t segments =
         curve.is_bspline ? curve.points.size() - degree : (curve.points.size() - 1) / degree;
     const size_t rings = segments * kStepsPerSegment + 1;
     const bool is_prism = is_slender(curve);
-    const size_t sides = is_prism ? kSidesOfPrism : kSidesOfRoundTube;
+    const auto sides = static_cast<size_t>(sides_of(curve));
     const float turn = turn_of(curve);
     // The widening makes a tube of flat sides as wide, in the mean over all directions, as a round
     // one.

@@ -18,8 +18,9 @@ struct CurveDescription {
     bool is_bspline = false;
     float width0 = 1, width1 = 1;  ///< diameters at both ends
 };
-/// An open tube along the curve; u runs along it, v around it. Slender ones have flat sides, turned
-/// by a hash of the curve, all others smooth normals.
+/// An open tube along the curve, of so many sides; u runs along it, v around it. Slender ones have
+/// flat sides, turned by a hash of the curve, all others smooth normals.
+int sides_of(const CurveDescription& curve);
 TriangleMesh curve_mesh(const CurveDescription& curve);
 
 }  // namespace covtrace

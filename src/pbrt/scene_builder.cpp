@@ -202,8 +202,8 @@ void SceneBuilder::shape(Entity entity) {
         }
     }
     s.reverse_orientation = is_inside_out(entity.type, s, state_.reverse_orientation);
-    s.is_tube_for_ribbon = entity.type == "curve";
     BuiltShape built = shapes_.build(entity);
+    s.tube_sides = built.tube_sides;
     pending.mesh_file = built.mesh_file;
     if (built.mesh_file) pending_.push_back(pending);
     for (ShapeGeometry& geometry : built.geometry) {

@@ -158,7 +158,7 @@ std::vector<ShapeGeometry> ShapeBuilder::cylinder(Entity& e) {
         cylinder_mesh(radius, std::min(z0, z1), std::max(z0, z1), sweep(e), 128))};
 }
 
-std::vector<ShapeGeometry> ShapeBuilder::curve(Entity& e) {
+BuiltShape ShapeBuilder::curve(Entity& e) {
     ParameterList& p = e.parameters;
     CurveDescription c;
     const float width = p.number("width", 1);
@@ -180,7 +180,18 @@ std::vector<ShapeGeometry> ShapeBuilder::curve(Entity& e) {
                           " control points don't make a curve of degree " + std::to_string(degree));
     context_.log.add(e.where, "shape \"curve\" is rendered as a thin tube");
     p.ignore({"N", "splitdepth"});
-    return {std::make_shared<const TriangleMesh>(curve_mesh(c))};
+    BuiltShape built;
+    built.geometry = {std::make_shared<const TriangleMesh>(curve_mesh(c))};
+    built.tube_sides = sides_of(c);
+    return built;
+}
+
+int ShapeBuilder::tube_sides(Entity& e) {
+    const int sides = e.parameters.integer("tubesides", 0);
+    if (sides != 0 && sides < 3)
+        e.refuse("tubesides", "parameter \"tubesides\" is " + std::to_string(sides) +
+                                  "; expected 3 or more sides, or 0 where there are no tubes");
+    return sides;
 }
 
 BuiltShape ShapeBuilder::build(Entity& e) {
@@ -188,8 +199,10 @@ BuiltShape ShapeBuilder::build(Entity& e) {
     std::vector<ShapeGeometry>& shapes = built.geometry;
     if (e.type == "plymesh") {
         built.mesh_file = mesh_file(e);
+        built.tube_sides = tube_sides(e);
     } else if (e.type == "trianglemesh") {
         shapes = triangle_mesh(e);
+        built.tube_sides = tube_sides(e);
     } else if (e.type == "sphere") {
         shapes = {sphere(e)};
     } else if (e.type == "disk") {
@@ -201,7 +214,7 @@ BuiltShape ShapeBuilder::build(Entity& e) {
     } else if (e.type == "cylinder") {
         shapes = cylinder(e);
     } else if (e.type == "curve") {
-        shapes = curve(e);
+        built = curve(e);
     } else {
         throw unknown_type_error(e.where, "shape", e.type,
                                  {"trianglemesh", "plymesh", "sphere", "disk", "bilinearmesh",

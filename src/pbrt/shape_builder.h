@@ -15,6 +15,7 @@ using ShapeGeometry = decltype(ShapeDescription::geometry);
 struct BuiltShape {
     std::vector<ShapeGeometry> geometry;
     std::optional<size_t> mesh_file;
+    int tube_sides = 0;  ///< ShapeDescription::tube_sides
 };
 
 /// Builds shapes as they are read; mesh files wait, so that they are read in parallel.
@@ -38,7 +39,9 @@ class ShapeBuilder {
     size_t mesh_file(Entity& e);
     std::vector<ShapeGeometry> subdivided_mesh(Entity& e);
     std::vector<ShapeGeometry> cylinder(Entity& e);
-    std::vector<ShapeGeometry> curve(Entity& e);
+    BuiltShape curve(Entity& e);
+    /// Sides of the tubes that a mesh consists of, as a parameter of ours says; 0: it does not.
+    static int tube_sides(Entity& e);
 
     BuildContext& context_;
     MeshFiles mesh_files_;

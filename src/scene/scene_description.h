@@ -108,6 +108,17 @@ struct BrdfTensor;  // brdf_tensor.h
 struct MeasuredMaterial {
     std::shared_ptr<const BrdfTensor> brdf;
 };
+/// A strand of hair along dp/du (bsdf/hair.h). Of the three descriptions of its pigment the first
+/// that is given counts: absorption, reflectance, concentrations.
+struct HairMaterial {
+    TextureId absorption = -1;                   ///< per radius of the strand
+    TextureId reflectance = -1;                  ///< of dense hair
+    TextureId eumelanin = -1, pheomelanin = -1;  ///< concentrations; none: 0, of both: 1.3 and 0
+    TextureId beta_m = -1, beta_n = -1;          ///< roughness along and about it; none: 0.3
+    TextureId alpha = -1;                        ///< tilt of the scales, degrees; none: 2
+    TextureId eta = -1;                          ///< none: 1.55
+    TextureId coat = -1;  ///< share by which light that does not enter spreads less; none: 0
+};
 /// A surface without lighting: where the camera sees it, straight or by perfect mirrors and clear
 /// glass, it has its colour whatever the light; all other light passes it as if it were not there.
 struct UnlitMaterial {
@@ -141,7 +152,7 @@ struct MaterialDescription {
     std::string name;
     std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, CoatedDiffuseMaterial,
                  DiffuseTransmissionMaterial, CoatedConductorMaterial, ThinDielectricMaterial,
-                 InterfaceMaterial, MeasuredMaterial, UnlitMaterial>
+                 InterfaceMaterial, MeasuredMaterial, UnlitMaterial, HairMaterial>
         value;
     SourceLocation where;
     std::optional<MaterialMix> mix = {};  ///< in place of `value`
@@ -255,9 +266,11 @@ struct ShapeDescription {
     /// Whether rays by which the camera sees, straight, in perfect mirrors and through clear glass,
     /// meet the shape's inside, too; else they pass it. All others meet both sides.
     bool is_seen_from_back = true;
-    /// Whether the shape is a tube in the place of a ribbon, at which light is scattered once, from
-    /// one side to the other: rays within it pass its wall where that is translucent.
-    bool is_tube_for_ribbon = false;
+    /// Sides of each of the tubes that the shape consists of, in the place of ribbons at which
+    /// light is scattered once, from one side to the other: rays within them pass their walls where
+    /// those are translucent. v runs around them from 0 to 1, all sides alike. 0: it is no such
+    /// shape.
+    int tube_sides = 0;
 };
 
 struct ObjectDescription {

@@ -3,6 +3,7 @@
 #include <bit>
 #include <utility>
 
+#include "bsdf/hair.h"
 #include "bsdf/multiple_scattering.h"
 #include "core/hash.h"
 #include "shading/material_inputs.h"
@@ -162,6 +163,30 @@ Bsdf make(const UnlitMaterial& m, const Values& v, const Tables&) {
     return UnlitBsdf{v.spectrum(m.colour, 1), m.two_sided};
 }
 
+/// Absorption in a strand, by the first description that is given.
+Rgb hair_absorption(const HairMaterial& m, const Values& v, float beta_n) {
+    const auto at_least_0 = [](float x) { return x > 0 ? x : 0.0f; };
+    if (m.absorption >= 0) {
+        const Rgb a = v.spectrum(m.absorption, 0);
+        return {at_least_0(a.r), at_least_0(a.g), at_least_0(a.b)};
+    }
+    if (m.reflectance >= 0) return absorption_of_reflectance(share(v.reflectance()), beta_n);
+    constexpr float kDefaultEumelanin = 1.3f;
+    if (m.eumelanin < 0 && m.pheomelanin < 0) return absorption_of_pigments(kDefaultEumelanin, 0);
+    return absorption_of_pigments(at_least_0(v.number(m.eumelanin, 0)),
+                                  at_least_0(v.number(m.pheomelanin, 0)));
+}
+
+Bsdf make(const HairMaterial& m, const Values& v, const Tables&) {
+    HairShape shape;
+    shape.beta_m = share(v.number(m.beta_m, shape.beta_m));
+    shape.beta_n = share(v.number(m.beta_n, shape.beta_n));
+    shape.alpha = v.number(m.alpha, shape.alpha);
+    shape.eta = v.number(m.eta, shape.eta);
+    shape.coat = share(v.number(m.coat, shape.coat));
+    return make_hair(shape, hair_absorption(m, v, shape.beta_n));
+}
+
 /// The middle of a texture, where parameters that may not vary are read.
 constexpr TexturePoint kMiddle{{0.5f, 0.5f}, {}, {}};
 
@@ -311,6 +336,8 @@ Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStor
     }
     if (auto* coated = std::get_if<CoatedConductorBsdf>(&found))
         coated->place = static_cast<uint32_t>(hash_of_position(hit, 0) >> 32);
+    else if (auto* hair = std::get_if<HairBsdf>(&found))
+        hair->offset = std::clamp(2 * hit.uv.y - 1, -1.0f, 1.0f);
     return found;
 }
 

@@ -45,6 +45,10 @@ bool is_constant(const TextureStore&, const InterfaceMaterial&) {
 bool is_constant(const TextureStore&, const MeasuredMaterial&) {
     return true;
 }
+bool is_constant(const TextureStore& t, const HairMaterial& m) {
+    return all_constant(t, {m.absorption, m.reflectance, m.eumelanin, m.pheomelanin, m.beta_m,
+                            m.beta_n, m.alpha, m.eta, m.coat});
+}
 bool is_constant(const TextureStore& t, const UnlitMaterial& m) {
     return all_constant(t, {m.colour});
 }
@@ -76,6 +80,9 @@ MaterialColours colours(const CoatedConductorMaterial& m) {
 }
 MaterialColours colours(const ThinDielectricMaterial& m) {
     return {{}, {m.transmittance, 1, Rgb(1)}};
+}
+MaterialColours colours(const HairMaterial& m) {
+    return {{m.reflectance, 1, Rgb(kDefaultReflectance)}, {}};
 }
 /// All other models give none.
 template <typename Model>

@@ -14,15 +14,17 @@ Sampler "zsobol" "integer pixelsamples" 64
 Integrator "path" "integer maxdepth" 60
 WorldBegin
 LightSource "infinite"
-Material "diffuse" "rgb reflectance" [1 1 1]
 """
+# Each gives back all light.
+WHITE = 'Material "diffuse" "rgb reflectance" [1 1 1]\n'
+HAIR = 'Material "hair" "rgb sigma_a" [0 0 0] "float beta_m" 0.2\n'
 
 
 class Curves(CliTest):
-    def brightness(self, width, count):
+    def brightness(self, width, count, material):
         """Means over the picture of so many curves of about unit length: of their light, and of how much they cover."""
         numbers = random.Random(3)
-        text = SCENE
+        text = SCENE + material
         for _ in range(count):
             points = [[numbers.uniform(-1, 1) for _ in range(3)]]
             for _ in range(3):
@@ -33,10 +35,15 @@ class Curves(CliTest):
         return sum(image.pixels["R"]) / len(image.pixels["R"]), sum(image.pixels["albedo.R"]) / len(image.pixels["R"])
 
     def test_hair_keeps_the_light(self):
-        mean, covered = self.brightness(0.02, 1500)
+        mean, covered = self.brightness(0.02, 1500, WHITE)
         self.assertGreater(covered, 0.5)
         # A standard error is 0.0005; what goes into the open ends does not all come back within 60 bounces.
         self.assertAlmostEqual(mean, 1, delta=0.006)
+        # Strands of hair have no inside; tubes with smooth normals are wide ones.
+        for width, count in ((0.02, 1500), (0.15, 100)):
+            mean, covered = self.brightness(width, count, HAIR)
+            self.assertGreater(covered, 0.5)
+            self.assertAlmostEqual(mean, 1, delta=0.006)
 
 
 if __name__ == "__main__":

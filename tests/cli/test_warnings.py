@@ -24,7 +24,6 @@ class Warnings(CliTest):
         sphere = '\nShape "sphere"'
         for directive, fragment in [
             ('Material "subsurface"' + sphere, "subsurface"),
-            ('Material "hair"' + sphere, "hair"),
             ('Material "measured" "string filename" "paint.bsdf"' + sphere, "measured"),
             (f'Shape "curve" {points}', "curve"),
             ('Shape "cylinder"', "cylinder"),

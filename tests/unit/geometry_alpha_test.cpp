@@ -88,7 +88,7 @@ TEST(GeometryAlpha, TubesForRibbonsAreLeftFreelyWhereTheyAreTranslucent) {
                 ShapeDescription tube =
                     mesh(two_walls(), AnimatedTransform(Transform::scale(mirrored, 1, 1)));
                 tube.reverse_orientation = is_reversed;
-                tube.is_tube_for_ribbon = true;
+                tube.tube_sides = 4;
                 tube.material = 2;
                 if (kind == Tube::filled) tube.inside = 0;
                 if (kind == Tube::shining) tube.area_light = 0;

@@ -155,7 +155,6 @@ TEST(SceneMaterials, OthersAreReplacedWithOneWarning) {
         EXPECT_EQ(made.scene.warnings.size(), 1u) << text << "\n" << warnings_of(made.scene);
     };
     check("\"subsurface\" \"string name\" \"Skin1\" \"float scale\" 4", CoatedDiffuseMaterial{});
-    check("\"hair\" \" float beta_n\" .3 \"float eumelanin\" 8", DiffuseMaterial{});
     check("\"measured\" \"string filename\" \"x.bsdf\"", CoatedDiffuseMaterial{});
 }
 
@@ -203,33 +202,6 @@ Shape "sphere"
     EXPECT_EQ(constant_as<ImageTexture>(scene, of(1).normal_map).encoding,
               ImageTexture::Encoding::linear);
     EXPECT_EQ(of(2).displacement, -1) << "a constant height turns no normal";
-}
-
-TEST(SceneMaterials, DarkHairIsDark) {
-    const auto reflectance = [](const std::string& text) {
-        const auto made = material_of(text);
-        return constant_value(made.scene,
-                              std::get<DiffuseMaterial>(made.material.value).reflectance);
-    };
-    const Rgb dark = reflectance("\"hair\" \"float eumelanin\" 8"),
-              fair = reflectance("\"hair\" \"float eumelanin\" .3");
-    EXPECT_LT(max_component(dark), 0.01f);
-    EXPECT_GT(fair.r, fair.g);
-    EXPECT_GT(fair.g, fair.b);
-    EXPECT_GT(fair.r, 0.05f);
-}
-
-TEST(SceneMaterials, OfSeveralColoursOfHairAbsorptionCounts) {
-    const auto reflectance = [](const std::string& text) {
-        const auto made = material_of(text);
-        return constant_value(made.scene,
-                              std::get<DiffuseMaterial>(made.material.value).reflectance);
-    };
-    const std::string absorption = "\"hair\" \"rgb sigma_a\" [ .1 .2 .4 ]";
-    expect_near(reflectance(absorption + " \"rgb reflectance\" [ 0 1 0 ] \"rgb color\" [ 0 1 0 ]"),
-                reflectance(absorption), 0);
-    expect_near(reflectance("\"hair\" \"rgb color\" [ 0 1 0 ] \"float eumelanin\" 8"), {0, 1, 0},
-                0);
 }
 
 TEST(SceneMaterials, SubsurfaceTakesTheNameThenCoefficientsThenReflectance) {

@@ -158,7 +158,16 @@ TEST(SceneShapes, CurvesBecomeTubesAroundThem) {
         "\"float width\" 0");
     expect_near(mesh_of(scene).positions.front(), {4, 1, 0}, 1e-5f);
     expect_near(mesh_of(scene).positions.back(), {1, 4, 1}, 1e-5f);
-    EXPECT_TRUE(scene.shapes.front().is_tube_for_ribbon) << "light is scattered by it once";
+    EXPECT_EQ(scene.shapes.front().tube_sides, 24) << "light is scattered by it once";
+}
+
+TEST(SceneShapes, MeshesMayBeTubes) {
+    const std::string triangle =
+        "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0  1 0 0  0 1 0 ] \"integer tubesides\" ";
+    EXPECT_EQ(read_world(triangle + "6").shapes.front().tube_sides, 6);
+    EXPECT_EQ(read_world(triangle + "0").shapes.front().tube_sides, 0);
+    EXPECT_THROW(read_world(triangle + "2"), Error);
+    EXPECT_THROW(read_world(triangle + "-3"), Error);
 }
 
 TEST(SceneShapes, SlenderCurvesAreTurnedPrisms) {

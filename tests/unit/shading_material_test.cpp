@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bsdf/fresnel.h"
+#include "bsdf/hair.h"
 
 namespace covtrace {
 namespace {
@@ -224,6 +225,43 @@ TEST_F(MaterialTest, WhatTheGapCantDoIsWarnedOf) {
     EXPECT_NE(materials_->warnings()[0].text.find("albedo"), std::string::npos);
     EXPECT_NE(materials_->warnings()[1].text.find("thickness"), std::string::npos);
     EXPECT_EQ(bsdf_at<CoatedDiffuseBsdf>(uneven_id).table->thickness(), 0.1f);
+}
+
+TEST_F(MaterialTest, HairTakesTheFirstDescriptionOfItsPigment) {
+    HairMaterial all, coloured, dyed, red;
+    all.absorption = constant({0.5f, -1, NAN});
+    all.reflectance = coloured.reflectance = constant({0.5f, 1, 0.1f});
+    all.eumelanin = coloured.eumelanin = dyed.eumelanin = constant(2);
+    all.pheomelanin = coloured.pheomelanin = dyed.pheomelanin = red.pheomelanin = constant(3);
+    coloured.beta_n = constant(0.6f);
+    const MaterialId all_id = add(all), coloured_id = add(coloured), dyed_id = add(dyed),
+                     red_id = add(red), plain_id = add(HairMaterial{});
+    build();
+    const auto absorption = [&](MaterialId id) { return bsdf_at<HairBsdf>(id).absorption; };
+    EXPECT_EQ(absorption(all_id), Rgb(0.5f, 0, 0));
+    EXPECT_EQ(absorption(coloured_id), absorption_of_reflectance({0.5f, 1, 0.1f}, 0.6f));
+    EXPECT_EQ(absorption(dyed_id), absorption_of_pigments(2, 3));
+    EXPECT_EQ(absorption(red_id), absorption_of_pigments(0, 3));
+    EXPECT_EQ(absorption(plain_id), absorption_of_pigments(1.3f, 0));
+}
+
+TEST_F(MaterialTest, HairHasPbrtsDefaultsAndItsPlaceByV) {
+    HairMaterial rough;
+    rough.beta_m = checks(constant(0.2f), constant(0.7f));
+    rough.coat = constant(0.5f);
+    const MaterialId plain_id = add(HairMaterial{}), rough_id = add(rough);
+    build();
+    const HairBsdf plain = bsdf_at<HairBsdf>(plain_id, {0.3f, 0.25f}),
+                   expected = make_hair({}, Rgb(0));
+    EXPECT_EQ(plain.offset, -0.5f);
+    EXPECT_EQ(plain.eta, 1.55f);
+    EXPECT_EQ(plain.variance, expected.variance);
+    EXPECT_EQ(plain.scale, expected.scale);
+    EXPECT_EQ(plain.sin_tilt, expected.sin_tilt);
+    const HairBsdf here = bsdf_at<HairBsdf>(rough_id, {1.5f, 0.5f});
+    EXPECT_EQ(here.variance, make_hair({.beta_m = 0.7f, .coat = 0.5f}, Rgb(0)).variance);
+    EXPECT_LT(here.variance[0], 4 * here.variance[1]) << "a coat narrows what is reflected";
+    EXPECT_EQ(here.offset, 0);
 }
 
 TEST_F(MaterialTest, DiffuseTransmissionIsScaledThenClamped) {

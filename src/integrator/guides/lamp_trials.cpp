@@ -4,6 +4,7 @@
 #include "integrator/guides/lamp_guide.h"
 #include "integrator/guides/training_places.h"
 #include "integrator/visibility.h"
+#include "shading/strand.h"
 
 namespace covtrace {
 
@@ -18,7 +19,10 @@ class TrialPlace {
         : scene_(scene),
           vertex_(vertex),
           bsdf_(scene.materials.bsdf(vertex.material, vertex.hit, scene.textures)),
-          normal_(face_forward(vertex.shading.z, vertex.wo)) {}
+          normal_(face_forward(vertex.shading.z, vertex.wo)) {
+        const PlacedShape& shape = scene.geometry.shapes()[vertex.hit.shape];
+        place_on_strand(bsdf_, vertex.hit, shape.description.tube_sides, vertex.wo);
+    }
 
     /// Tries a lamp and appends what became of it.
     void try_lamp(Rng& rng, std::vector<LampTrial>& found) {
@@ -77,7 +81,7 @@ class TrialPlace {
 
     const LitScene& scene_;
     const PathVertex& vertex_;
-    const Bsdf bsdf_;
+    Bsdf bsdf_;
     const Vec3 normal_;
     Lights::Trial trial_;
 };
