@@ -1,13 +1,14 @@
 """Shader node trees as pbrt-v4 materials; docs/guide/blender.md has the table."""
 
 import io
+import math
 
 import numpy as np
 
-from . import fibres
+from . import hair_pigment
 from .baked_images import BakedImages
 from .baking import Baker, Surface
-from .export_principled import WHITE, PrincipledExporter
+from .export_principled import PrincipledExporter
 from .export_sockets import Value
 from .export_textures import TextureFiles
 from .export_volumes import Media, coefficients
@@ -208,27 +209,31 @@ class MaterialExporter(PrincipledExporter):
                            self._plain(node.inputs["IOR"]), self._scattering(node) + self._normal_map(node))
 
     def _hair(self, node):
-        """Principled Hair as the matt wall of a tube, as bright as its strands."""
-        get, wall = node.inputs, fibres.Wall(self._plain(node.inputs["IOR"]))
-        self.warn(f"material '{self.name}': '{node.name}' is as bright as strands are, but without their highlights")
-        radial = self._plain(get["Roughness" if getattr(node, "model", "CHIANG") == "HUANG" else "Radial Roughness"])
-
-        def absorption_of(colour):
-            return fibres.absorption_of_colour(colour, radial)
-
+        """Principled Hair: pbrt's hair has the same model, Chiang's."""
+        get = node.inputs
+        is_huang = getattr(node, "model", "CHIANG") == "HUANG"
+        if is_huang:
+            self.warn(f"material '{self.name}': the model Huang of '{node.name}' is not supported; that of Chiang takes its place")
+        along = self._value(get["Roughness"], True)
+        about = along if is_huang else self._value(get["Radial Roughness"], True)
+        parameters = [self._number("beta_m", along), self._number("beta_n", about),
+                      f'"float alpha" {math.degrees(self._plain(get["Offset"])):.9g}', f'"float eta" {self._plain(get["IOR"]):.9g}']
+        if not is_huang and "Coat" in get:
+            parameters.append(self._number("haircoat", self._value(get["Coat"], True)))
         if node.parametrization == "COLOR":
-            colour, absorption, key = self._value(get["Color"]), absorption_of, (radial, wall.eta)
-        else:
-            if node.parametrization == "MELANIN":
-                found = fibres.absorption_of_pigments(self._plain(get["Melanin"]), self._plain(get["Melanin Redness"]))
-                tint = self._value(get["Tint"])
-                found = found + absorption_of(np.array(WHITE.constant if tint.image else tint.constant))
+            return self._make("hair", [*parameters, self._colour("color", self._value(get["Color"]))])
+        if node.parametrization == "MELANIN":
+            absorption = hair_pigment.absorption_of_pigments(self._plain(get["Melanin"]), self._plain(get["Melanin Redness"]))
+            tint = self._value(get["Tint"])
+            if tint.image:
+                self.warn(f"material '{self.name}': an image at 'Tint' of '{node.name}' is not supported and left out")
             else:
-                found = np.maximum(get["Absorption Coefficient"].default_value, 0)
-            colour, absorption, key = WHITE, lambda _: found, ""
-        return self._make("diffusetransmission", [
-            self._colour("reflectance", colour, lambda c: wall.reflectance(absorption(c)), ("sent back", key)),
-            self._colour("transmittance", colour, lambda c: wall.transmittance(absorption(c)), ("let pass", key))])
+                radial = self._plain(get["Roughness" if is_huang else "Radial Roughness"])
+                absorption = absorption + hair_pigment.absorption_of_colour(np.array(tint.constant), radial)
+            value = Value(tuple(absorption))
+        else:
+            value = self._value(get["Absorption Coefficient"])
+        return self._make("hair", [*parameters, self._index("sigma_a", value)])
 
     def _translucent(self, node):
         return self._make("diffusetransmission", ['"rgb reflectance" [0 0 0]',

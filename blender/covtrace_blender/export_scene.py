@@ -29,10 +29,11 @@ SURFACES = ("MESH", "CURVE", "SURFACE", "FONT", "META")
 
 
 class Part:
-    """A mesh in a file, with a Variant of its material. motion: its transforms when the shutter opens and closes, or None."""
+    """A mesh in a file, with a Variant of its material. motion: its transforms when the shutter opens and closes, or None.
+    tube_sides: sides of the tubes that it consists of; 0: it is no strands."""
 
-    def __init__(self, file, variant, motion):
-        self.file, self.variant, self.motion = file, variant, motion
+    def __init__(self, file, variant, motion, tube_sides):
+        self.file, self.variant, self.motion, self.tube_sides = file, variant, motion, tube_sides
 
 
 class SceneExporter:
@@ -251,11 +252,10 @@ class SceneExporter:
 
     def _strands_parts(self, obj, slot, strands):
         variants = self._variants(obj, slot, None)
-        wants_uvs = bool(self._uv_maps(variants))
-        if wants_uvs:
-            self.warn(f"object '{obj.name}': strands have no texture coordinates; their images are looked up at one place")
-        return [part for positions, normals, triangles in export_strands.meshes(strands, lambda *s: self.placements.across(obj, *s))
-                for part in self._parts(variants, positions, normals, np.zeros((len(positions), 2)) if wants_uvs else None, triangles)]
+        if self._uv_maps(variants):
+            self.warn(f"object '{obj.name}': strands have no texture coordinates; their images lie along and around them")
+        return [part for sides, *tubes in export_strands.meshes(strands, lambda *s: self.placements.across(obj, *s))
+                for part in self._parts(variants, *tubes, tube_sides=sides)]
 
     def _materials(self, obj):
         if self.layer.material_override is not None:
@@ -327,10 +327,10 @@ class SceneExporter:
             if obj.type == "MESH":
                 self.uv_ranges.add(obj.data, {m.name_full for m in self._materials(obj) if m})
 
-    def _parts(self, variants, positions, normals, uvs, triangles, motion=None):
+    def _parts(self, variants, positions, normals, uvs, triangles, motion=None, tube_sides=0):
         file = f"mesh{len(os.listdir(self.folder))}.ply"
         ply.write(os.path.join(self.folder, file), positions, normals, uvs, triangles)
-        return [Part(file, variant, motion) for variant in variants]
+        return [Part(file, variant, motion, tube_sides) for variant in variants]
 
     def _motions(self, obj, mesh):
         """(piece of each triangle, motion of each piece) of what changes its shape; (None, None) of what does not."""
@@ -369,5 +369,6 @@ class SceneExporter:
                     f'"rgb L" [{numbers(emission.radiance)}]'
                 self.out.write(f'AreaLightSource "diffuse" {scale}{image} "bool twosided" true\n')
             unseen = hidden | (set(RAYS) - set(part.variant.rays))
-            self.out.write(f'Shape "plymesh" "string filename" "{part.file}" {part.variant.alpha}{hidden_from(unseen)}\n'
+            tubes = f' "integer tubesides" {part.tube_sides}' if part.tube_sides else ""
+            self.out.write(f'Shape "plymesh" "string filename" "{part.file}" {part.variant.alpha}{hidden_from(unseen)}{tubes}\n'
                            "AttributeEnd\n")

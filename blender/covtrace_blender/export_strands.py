@@ -23,8 +23,8 @@ def _unit(v):
 
 
 def tubes(points, radii, is_flat):
-    """(positions, normals, triangles) of strands with equally many points: points (strands, n, 3), radii (strands, n). Flat ones
-    have None for normals."""
+    """(positions, normals, uvs, triangles) of strands with equally many points: points (strands, n, 3), radii (strands, n). u runs
+    along them, v around. Flat ones have None for normals."""
     strands, n, _ = points.shape
     count = FLAT_SIDES if is_flat else SMOOTH_SIDES
     along = _unit(np.gradient(points, axis=1))
@@ -36,27 +36,31 @@ def tubes(points, radii, is_flat):
         side = _unit(side - along[:, k] * (side * along[:, k]).sum(-1, keepdims=True))
         sides[:, k] = side
     others = np.cross(along, sides)
-    angles = 2 * math.pi / count * (np.arange(count) + TURN * np.arange(strands)[:, None])[:, None, :, None]
+    angles = 2 * math.pi / count * (np.arange(count + 1) + TURN * np.arange(strands)[:, None])[:, None, :, None]
     normals = np.cos(angles) * sides[:, :, None] + np.sin(angles) * others[:, :, None]
     # Seen from all sides they are as wide on average as the round ones.
     widened = math.pi / (count * math.sin(math.pi / count))
     positions = points[:, :, None] + widened * radii[:, :, None, None] * normals
-    corner = np.arange(strands * n * count).reshape(strands, n, count)
-    a, b = corner[:, :-1], np.roll(corner, -1, axis=2)[:, :-1]
-    c, d = corner[:, 1:], np.roll(corner, -1, axis=2)[:, 1:]
+    corner = np.arange(strands * n * (count + 1)).reshape(strands, n, count + 1)
+    a, b = corner[:, :-1, :-1], corner[:, :-1, 1:]
+    c, d = corner[:, 1:, :-1], corner[:, 1:, 1:]
+    uvs = np.empty((strands, n, count + 1, 2))
+    uvs[..., 0], uvs[..., 1] = np.linspace(0, 1, n)[:, None], np.linspace(0, 1, count + 1)
+    uvs = uvs.reshape(-1, 2)
     triangles = np.concatenate([np.stack((a, b, d), -1).reshape(-1, 3), np.stack((a, d, c), -1).reshape(-1, 3)])
     if is_flat:
-        return positions.reshape(-1, 3), None, triangles
+        return positions.reshape(-1, 3), None, uvs, triangles
     # Where the strand becomes thinner, its sides lean towards its end.
     steps = np.maximum(np.linalg.norm(np.diff(points, axis=1), axis=2), 1e-30)
     slopes = np.diff(radii, axis=1) / steps
     slopes = np.concatenate((slopes[:, :1], slopes), axis=1)
     normals = _unit(normals - slopes[:, :, None, None] * along[:, :, None])
-    return positions.reshape(-1, 3), normals.reshape(-1, 3), triangles
+    return positions.reshape(-1, 3), normals.reshape(-1, 3), uvs, triangles
 
 
 def meshes(groups, across):
-    """Yields (positions, normals or None, triangles) of the tubes of several [(points, radii)]: all with flat sides, and all others.
+    """Yields (sides, positions, normals or None, uvs, triangles) of the tubes of several [(points, radii)]: all with flat sides, and
+    all others.
 
     across(points, radii): pixels across which each strand is seen.
     """
@@ -66,11 +70,12 @@ def meshes(groups, across):
         for points, radii, are_flat in groups:
             chosen = are_flat == is_flat
             if chosen.any():
-                positions, normals, triangles = tubes(points[chosen], radii[chosen], is_flat)
-                found.append((positions, normals, triangles + first))
+                positions, normals, uvs, triangles = tubes(points[chosen], radii[chosen], is_flat)
+                found.append((positions, normals, uvs, triangles + first))
                 first += len(positions)
         if found:
-            yield tuple(None if part[0] is None else np.concatenate(part) for part in zip(*found))
+            yield (FLAT_SIDES if is_flat else SMOOTH_SIDES,
+                   *(None if part[0] is None else np.concatenate(part) for part in zip(*found)))
 
 
 def _radii(settings, n):
