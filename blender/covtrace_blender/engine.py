@@ -86,9 +86,11 @@ class CovtraceEngine(bpy.types.RenderEngine):
             with tempfile.TemporaryDirectory(prefix="covtrace-") as folder:
                 self._render(depsgraph, scene, folder)
         except (RuntimeError, OSError) as problem:
+            self._give_blank(depsgraph)
             self._fail(str(problem))
         except Exception as problem:  # a defect of the add-on: Blender would go on with a blank picture
             traceback.print_exc()
+            self._give_blank(depsgraph)
             self._fail(f"{type(problem).__name__}: {problem}")
 
     # -- viewport
@@ -108,6 +110,12 @@ class CovtraceEngine(bpy.types.RenderEngine):
             self.update_stats("", str(problem))
 
     # -- images
+
+    def _give_blank(self, depsgraph):
+        """Hands back a blank picture. Blender 5 crashes where it writes all layers of none."""
+        render = depsgraph.scene.render
+        size = (max(1, side * render.resolution_percentage // 100) for side in (render.resolution_x, render.resolution_y))
+        self.end_result(self.begin_result(0, 0, *size, layer=depsgraph.view_layer.name))
 
     def _fail(self, text):
         self.report({"ERROR"}, text)
@@ -151,7 +159,7 @@ class CovtraceEngine(bpy.types.RenderEngine):
         if os.path.exists(image):
             self._read(image, exporter.camera.region, scene.render.film_transparent, layer)
         elif code == 6:
-            return  # cancelled before there was anything to see
+            self._give_blank(depsgraph)  # cancelled before there was anything to see
         if code not in (0, 6):
             raise RuntimeError(f"covtrace: {self._last_error or f'it ended with exit code {code}'}")
 

@@ -43,6 +43,15 @@ class EngineTest(BlenderTest):
             engine.CovtraceEngine._is_stopped = is_stopped
         self.assertLess(time.time() - start, 15)
 
+    def test_a_render_that_ends_before_its_first_sample_is_blank(self):
+        """Blender 5 crashes where it writes the layers of an engine that hands back nothing."""
+        self.plane(material(**self.MATT))
+        with unittest.mock.patch.object(engine.CovtraceEngine, "_run", lambda self, command: 6):
+            for border in (False, True):
+                self.scene.render.use_border = border
+                self.scene.render.border_max_x = 0.5
+                self.assertEqual(max(render("COVTRACE", 1)["Combined.R"]), 0)
+
     def test_progress_is_a_line_a_second(self):
         self.plane(material(**self.MATT))
         self.background.inputs["Color"].default_value = (1, 1, 1, 1)
