@@ -53,7 +53,9 @@ LitScene::LitScene(SceneDescription scene_description, const std::string& isa, s
       textures(description, texture_bytes),
       geometry(displace(description, textures), isa),
       lights(stand_lamps(description, geometry), geometry, &textures),
-      materials(description, textures, IlluminantAdaptation(lights.total_power())),
+      materials(description, textures,
+                description.adapts_colours ? IlluminantAdaptation(lights.total_power())
+                                           : IlluminantAdaptation()),
       camera(description.camera, description.film.width, description.film.height),
       filter(description.filter) {
     geometry.set_alpha([this](TextureId id, Vec2 uv, Vec3 position, const VertexPlace& vertices) {

@@ -52,15 +52,18 @@ bool PathTracer::meet(bool found) {
         return pass(hit, shape);
     }
     if (sharp_so_far_ && is_unseen_back(shape, hit, ray_.direction)) return pass(hit, shape);
-    const MaterialId material =
+    const PlacedMaterial material =
         scene_.materials.at(shape.description.material, hit, scene_.textures);
-    Bsdf bsdf = bsdf_at(hit, material);
+    Bsdf bsdf = bsdf_at(hit, material.id);
     place_on_strand(bsdf, hit, shape.description.tube_sides, -ray_.direction);
     if (const auto* unlit = std::get_if<UnlitBsdf>(&bsdf)) {
-        if (is_seen(*unlit)) return see_unlit(*unlit, material);
+        if (is_seen(*unlit)) return see_unlit(*unlit, material.id);
     } else if (!std::holds_alternative<InterfaceBsdf>(bsdf)) {
         return meet_surface(hit, shape, material, bsdf);
+    } else if (shape.description.area_light >= 0) {
+        pass_emitter(hit, shape);  // a mix that shines lets light pass here
     }
+    weigh(material.weight);
     return pass(hit, shape);
 }
 
@@ -81,6 +84,11 @@ bool PathTracer::pass(const SurfaceHit& hit, const PlacedShape& shape) {
     medium_ = medium_beyond(shape, hit, ray_.direction, medium_);
     ray_.origin = Geometry::offset_origin(hit, ray_.direction);
     return ++passed_interfaces_ <= kMostInterfaces;
+}
+
+void PathTracer::weigh(float weight) {
+    beta_ *= weight;
+    colourless_beta_ *= weight;
 }
 
 void PathTracer::pass_emitter(const SurfaceHit& hit, const PlacedShape& shape) {
@@ -118,13 +126,15 @@ bool PathTracer::see_unlit(const UnlitBsdf& unlit, MaterialId material) {
     return false;
 }
 
-bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material,
-                              Bsdf& bsdf) {
+bool PathTracer::meet_surface(const SurfaceHit& hit, const PlacedShape& shape,
+                              PlacedMaterial placed, Bsdf& bsdf) {
     const Vec3 wo = -ray_.direction;
+    const MaterialId material = placed.id;
     // Add light that the surface emits
     PathVertex* vertex = begin_vertex(hit, -1, wo);
     if (vertex) vertex->material = material;
     add_emission(hit, wo, vertex);
+    weigh(placed.weight);
     if (auto* glass = std::get_if<DielectricBsdf>(&bsdf); glass && glass->dispersion)
         disperse(*glass);
     const Frame frame = frame_at(hit, shape, material);

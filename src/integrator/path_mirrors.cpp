@@ -44,10 +44,10 @@ bool PathTracer::find_mirror(int mirror, Ray ray, SurfaceHit& hit, MediumId& med
         if (!scene_.geometry.intersect(ray, hit)) return false;
         passes *= transmittance(scene_, medium, hit.t);
         if (scene_.mirrors.at(hit) == mirror) return true;
+        const float share = passed_share(scene_, hit);
+        if (!(share > 0)) return false;
+        passes *= share;
         const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
-        if (!shape.lets_light_pass && !scene_.materials.lets_light_pass(scene_.materials.at(
-                                          shape.description.material, hit, scene_.textures)))
-            return false;
         medium = medium_beyond(shape, hit, ray.direction, medium);
         ray.origin = Geometry::offset_origin(hit, ray.direction);
     }

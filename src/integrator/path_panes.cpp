@@ -15,13 +15,6 @@ std::optional<BsdfSample> refract(const Bsdf& pane, Vec3 wo) {
     return s && is_transmission(s->lobe) ? s : std::nullopt;
 }
 
-/// Whether all light passes the surface at a hit unchanged.
-bool passes(const LitScene& scene, const SurfaceHit& hit) {
-    const PlacedShape& shape = scene.geometry.shapes()[hit.shape];
-    return shape.lets_light_pass || scene.materials.lets_light_pass(scene.materials.at(
-                                        shape.description.material, hit, scene.textures));
-}
-
 }  // namespace
 
 float density_through_panes(const LitScene& scene, const LitPlace& place, Ray ray, float to_pane,
@@ -134,7 +127,8 @@ void PathTracer::follow_through_panes(const SampledLight& light) {
                 add(scene_.lights.environment(ray.origin, ray.direction, ray.kind));
             return;
         }
-        add(scene_.lights.emitted(hit, -ray.direction));
+        add(scene_.lights.emitted(hit, -ray.direction,
+                                  distance(light.place.position, hit.position)));
         // Go through it if it is a pane, or if it is not in the way
         const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
         if (shape.is_pane) {
@@ -148,8 +142,10 @@ void PathTracer::follow_through_panes(const SampledLight& light) {
             path_pdf *= s->pdf;
             ray.direction = normalize(frame.to_world(s->wi));
             ray.kind = RayKind::transmission;
-        } else if (!passes(scene_, hit)) {
-            return;
+        } else {
+            const float passes = passed_share(scene_, hit);
+            if (!(passes > 0)) return;
+            carried *= passes;
         }
         medium = medium_beyond(shape, hit, ray.direction, medium);
         ray.origin = Geometry::offset_origin(hit, ray.direction);

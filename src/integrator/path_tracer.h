@@ -119,12 +119,14 @@ class PathTracer {
     };
 
     // ---- path.cpp
-    bool meet_surface(const SurfaceHit& hit, const PlacedShape& shape, MaterialId material,
+    bool meet_surface(const SurfaceHit& hit, const PlacedShape& shape, PlacedMaterial placed,
                       Bsdf& bsdf);
     /// The BSDF where a ray hits a material, its textures filtered.
     Bsdf bsdf_at(const SurfaceHit& hit, MaterialId material) const;
     /// Goes on behind a surface that lets the path pass; returns false after too many of them.
     bool pass(const SurfaceHit& hit, const PlacedShape& shape);
+    /// Multiplies all light from behind the current hit by the weight of its material.
+    void weigh(float weight);
     /// Adds what an emitter that lets light pass sends along the ray.
     void pass_emitter(const SurfaceHit& hit, const PlacedShape& shape);
     /// Whether the path sees the colour of an unlit surface at the current hit; else it passes.

@@ -31,6 +31,14 @@ float aim(Ray& ray, const LightSample& light) {
     return kInfinity;
 }
 
+float passed_share(const LitScene& scene, const SurfaceHit& hit) {
+    const PlacedShape& shape = scene.geometry.shapes()[hit.shape];
+    if (shape.lets_light_pass) return 1;
+    const PlacedMaterial material =
+        scene.materials.at(shape.description.material, hit, scene.textures);
+    return scene.materials.lets_light_pass(material.id) ? material.weight : 0;
+}
+
 MediumId medium_beyond(const PlacedShape& shape, const SurfaceHit& hit, Vec3 w, MediumId current) {
     const ShapeDescription& d = shape.description;
     if (d.inside == d.outside) return current;
@@ -55,13 +63,13 @@ Rgb visibility(const LitScene& scene, Ray ray, float distance, MediumId medium, 
         ++rays;
         if (!(ray.t_max > 0) || !scene.geometry.intersect(ray, hit)) break;
         const PlacedShape& shape = scene.geometry.shapes()[hit.shape];
-        const MaterialId material =
+        const PlacedMaterial material =
             scene.materials.at(shape.description.material, hit, scene.textures);
-        if (!scene.materials.lets_light_pass(material)) {
-            if (material != shape.description.material) return Rgb(0);
+        if (!scene.materials.lets_light_pass(material.id)) {
+            if (material.id != shape.description.material) return Rgb(0);
             break;
         }
-        passes *= transmittance(scene, medium, hit.t);
+        passes *= material.weight * transmittance(scene, medium, hit.t);
         medium = medium_beyond(shape, hit, ray.direction, medium);
         distance -= go_on_behind(hit, end, ray);
     }
@@ -75,9 +83,7 @@ bool is_met(const LitScene& scene, Ray ray, uint64_t& rays) {
         ++rays;
         if (!(ray.t_max > 0) || !scene.geometry.intersect(ray, hit)) return false;
         const PlacedShape& shape = scene.geometry.shapes()[hit.shape];
-        if (!shape.lets_light_pass && !scene.materials.lets_light_pass(scene.materials.at(
-                                          shape.description.material, hit, scene.textures)))
-            return true;
+        if (!(passed_share(scene, hit) > 0)) return true;
         go_on_behind(hit, end, ray);
     }
     return true;

@@ -16,6 +16,9 @@ inline bool is_unseen_back(const PlacedShape& shape, const SurfaceHit& hit, Vec3
 /// `current`.
 MediumId medium_beyond(const PlacedShape& shape, const SurfaceHit& hit, Vec3 w, MediumId current);
 
+/// The factor on light that comes through the surface at a hit unscattered; 0 where none does.
+float passed_share(const LitScene& scene, const SurfaceHit& hit);
+
 /// Transmittance over a piece of a medium; infinite lengths count as the scene's
 /// `unbounded_distance`.
 Rgb transmittance(const LitScene& scene, MediumId medium, float distance);

@@ -53,7 +53,8 @@ bool is_hidden(const SceneDescription& scene, TextureId alpha) {
 
 void set_cone(AreaLight& area, const AreaLightDescription::Cone& cone,
               const ShapeDescription& shape) {
-    area.cone = SpotCone::from_degrees(cone.angle, cone.delta_angle);
+    area.cone = cone.is_grid ? SpotCone::grid(cone.angle)
+                             : SpotCone::from_degrees(cone.angle, cone.delta_angle);
     area.cone_variance = area.cone->variance();
     area.cone_axis = normalize(shape.object_to_world.start().vector({0, 0, 1}));
 }
@@ -115,6 +116,7 @@ Lights::Impl::Impl(const SceneDescription& scene, const Geometry& scene_geometry
             choice_factor *= std::max(alpha, kLeast);
         }
         if (light.cone) set_cone(area, *light.cone, shape);
+        if (light.soft_falloff) area.soft_radius = sphere_radius(area.emitter);
         if (!note_kinds(area.visible_to)) choice_factor = {};
         std::visit(
             [&](const auto& emitter) {
@@ -195,6 +197,7 @@ std::optional<LightSample> Lights::Impl::sample_area(int light, float probabilit
         if (area.alpha >= 0) s.radiance *= clamp01(textures->eval_float(area.alpha, at));
         if (is_black(s.radiance)) return std::nullopt;
     }
+    s.radiance *= softened(area, p, time);
     s.pdf = probability * point->pdf;
     s.light = light;
     s.position = off_surface(point->unrounded, point->normal, point->error, -point->wi);
@@ -301,10 +304,11 @@ size_t Lights::factor_count() const {
     return impl_->first_distant() > 1 ? impl_->tree.factor_count() : 0;
 }
 
-Rgb Lights::emitted(const SurfaceHit& hit, Vec3 wo) const {
+Rgb Lights::emitted(const SurfaceHit& hit, Vec3 wo, float distance) const {
     const AreaLight* area = impl_->area_light_of(hit);
     if (!area || !area->is_visible || (!area->two_sided && !(dot(hit.ng, wo) > 0))) return {};
-    return impl_->radiance_at(*area, {hit.uv, hit.position, {}, {}, hit.vertices()}, hit.ng, wo);
+    return impl_->softened(*area, hit.position + wo * distance, hit.time) *
+           impl_->radiance_at(*area, {hit.uv, hit.position, {}, {}, hit.vertices()}, hit.ng, wo);
 }
 
 float Lights::pdf(Vec3 p, Vec3 n, Vec3 wi, const SurfaceHit& hit,

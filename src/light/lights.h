@@ -128,8 +128,9 @@ class Lights {
     /// finite lights.
     size_t factor_count() const;
 
-    /// Radiance that the surface at `hit` emits towards `wo` (unit, away from the surface).
-    Rgb emitted(const SurfaceHit& hit, Vec3 wo) const;
+    /// Radiance that the surface at `hit` emits towards `wo` (unit, away from the surface), for
+    /// what is lit at a distance; infinite for what sees it.
+    Rgb emitted(const SurfaceHit& hit, Vec3 wo, float distance = kInfinity) const;
     /// Density per solid angle with which `sample(p, n)` finds the emitter point `hit` in the
     /// direction wi, with the probability of choosing the emitter; with factors, that of
     /// `finish_draw`.

@@ -2,6 +2,7 @@
 /// shape by shape, then point and spot lights, then distant ones, then infinite ones with extent.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct AreaLight {
     std::optional<SpotCone> cone;  ///< that the light stays within
     float cone_variance = 0;       ///< SpotCone::variance
     Vec3 cone_axis;                ///< unit
+    float soft_radius = 0;         ///< of a sphere with AreaLightDescription::soft_falloff; 0: none
     MaterialId layers = -1;        ///< material whose layers the light has to get through; -1: none
     Rgb mean_factor{1};            ///< mean of image and alpha together
     int first_light = 0;           ///< id of its first light
@@ -42,9 +44,23 @@ struct InfiniteShare {
     float even = 1;
 };
 
+/// The radius in world space of an emitter that is a sphere; 0 for others.
+inline float sphere_radius(const Emitter& emitter) {
+    const auto* ball = std::get_if<EmissiveQuadric>(&emitter);
+    return ball && ball->is_sphere() ? std::sqrt(ball->area(0) / (4 * kPi)) : 0.0f;
+}
+
 struct Lights::Impl {
     Impl(const SceneDescription& scene, const Geometry& geometry, const TextureStore* textures);
 
+    /// The share of a sphere's light that a disc that faces p gives there: the irradiances are
+    /// I / (d^2 + r^2) and I / d^2. 1 for lights without soft falloff, and as seen from afar.
+    float softened(const AreaLight& area, Vec3 p, float time) const {
+        if (!(area.soft_radius > 0)) return 1;
+        const Vec3 centre = geometry->world_from_object(area.shape, time).point({}).to_float();
+        const float d2 = length_squared(centre - p);
+        return std::isfinite(d2) ? d2 / (d2 + sqr(area.soft_radius)) : 1;
+    }
     /// Radiance of an area light at a place with the unit normal n, by its image, its cone and the
     /// layers above it, in a unit direction w away from it; alpha does not count.
     Rgb radiance_at(const AreaLight& area, const TexturePoint& at, Vec3 n, Vec3 w) const;

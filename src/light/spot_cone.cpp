@@ -16,6 +16,11 @@ float smoothstep(float x) {
     return x * x * (3 - 2 * x);
 }
 
+/// Tangent of the angle with a cosine > 0.
+float tangent(float cosine) {
+    return safe_sqrt(1 - sqr(cosine)) / cosine;
+}
+
 }  // namespace
 
 SpotCone SpotCone::from_degrees(float angle, float delta_angle) {
@@ -25,13 +30,27 @@ SpotCone SpotCone::from_degrees(float angle, float delta_angle) {
     return {std::cos(radians(inner)), std::cos(radians(outer))};
 }
 
+SpotCone SpotCone::grid(float angle) {
+    constexpr float kLeastCosine = 1e-6f;  // whose tangent is finite, and no light's
+    return {1, std::max(std::cos(radians(std::clamp(angle, 0.0f, 90.0f))), kLeastCosine), true};
+}
+
 float SpotCone::falloff(float cosine) const {
+    if (is_grid) {
+        if (cosine <= cos_outer) return 0;
+        return 1 - tangent(std::min(cosine, 1.0f)) / tangent(cos_outer);
+    }
     if (cosine >= cos_inner) return 1;
     if (cosine <= cos_outer) return 0;
     return smoothstep((cosine - cos_outer) / (cos_inner - cos_outer));
 }
 
 float SpotCone::solid_angle() const {
+    if (is_grid) {
+        // Integral of sin (1 - tan / tan(outer)) over the angle, in closed form
+        const double c = cos_outer, s = std::sqrt(1 - c * c);
+        return static_cast<float>(2 * M_PI * ((1 - c) - c / s * (std::log((1 + s) / c) - s)));
+    }
     // A smoothstep in the cosine lets half of its range through
     return 2 * kPi * ((1 - cos_inner) + (cos_inner - cos_outer) / 2);
 }

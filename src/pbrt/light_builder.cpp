@@ -64,6 +64,20 @@ void read_cone(ParameterList& p, const SourceLocation& where, float& angle, floa
                     "parameter \"conedeltaangle\" must be between 0 and twice coneangle");
 }
 
+/// Reads the angle of the grid before an area light, degrees.
+AreaLightDescription::Cone grid(ParameterList& p, const SourceLocation& where) {
+    const float angle = p.number("gridangle", 90);
+    if (!(angle > 0 && angle <= 90))
+        throw Error(ErrorKind::scene, p.where("gridangle", where),
+                    "parameter \"gridangle\" must be between 0 and 90 degrees");
+    for (const char* other : {"coneangle", "power"})
+        if (p.has(other))
+            throw Error(ErrorKind::scene, p.where(other, where),
+                        "an area light has both " + in_quotes(other) +
+                            " and \"gridangle\"; expected one of them");
+    return {angle, 0, true};
+}
+
 SpotLight spot_light(Entity& e, BuildContext& context) {
     ParameterList& p = e.parameters;
     SpotLight light;
@@ -196,6 +210,7 @@ AreaLightDescription build_area_light(Entity& e, BuildContext& context) {
     light.radiance = light_of(e, "L", context);
     light.two_sided = p.flag("twosided", false);
     light.lets_light_pass = p.flag("letslightpass", false);
+    light.soft_falloff = p.flag("softfalloff", false);
     light.power = target(e, "power", light.radiance, context);
     if (p.has("coneangle")) {
         if (light.power)
@@ -206,6 +221,7 @@ AreaLightDescription build_area_light(Entity& e, BuildContext& context) {
         light.cone = AreaLightDescription::Cone{};
         read_cone(p, e.where, light.cone->angle, light.cone->delta_angle);
     }
+    if (p.has("gridangle")) light.cone = grid(p, e.where);
     if (const std::string file = p.text("filename"); !file.empty()) {
         const SourceLocation where = p.where("filename", e.where);
         if (has_colour)

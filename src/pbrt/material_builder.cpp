@@ -8,7 +8,8 @@ namespace covtrace {
 
 namespace {
 constexpr int kDeepestMix = 256;
-}
+constexpr float kMostWeight = 1000;  // of a mix; more is no sum of surfaces, but noise alone
+}  // namespace
 
 MaterialBuilder::MaterialBuilder(BuildContext& context, TextureBuilder& textures)
     : context_(context), textures_(textures) {
@@ -90,6 +91,10 @@ MaterialId MaterialBuilder::build_mix(Declared& d) {
                     "a mix expects the names of two materials in \"string materials\"");
     MaterialMix mix;
     mix.amount = textures_.grey(p, "amount", 0.5f);
+    mix.weight = p.number("weight", 1);
+    if (!(mix.weight >= 0 && mix.weight <= kMostWeight))
+        d.entity.refuse("weight", "parameter \"weight\" of a mix must be between 0 and " +
+                                      std::to_string(static_cast<int>(kMostWeight)));
     p.warn_unused(context_.log, "material \"mix\"");
     for (size_t i = 0; i < 2; ++i) mix.materials[i] = find({parts[i], 0, where});
     const auto id = static_cast<MaterialId>(context_.scene.materials.size());

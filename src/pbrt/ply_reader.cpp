@@ -116,7 +116,7 @@ class NumberReader {
 
 /// Indices of the properties that are read among those of a vertex; -1 where one is missing.
 struct VertexLayout {
-    std::array<int, 3> position{-1, -1, -1}, normal{-1, -1, -1};
+    std::array<int, 3> position{-1, -1, -1}, normal{-1, -1, -1}, tangent{-1, -1, -1};
     std::array<int, 2> uv{-1, -1};
 
     explicit VertexLayout(const PlyElement& e) {
@@ -128,6 +128,7 @@ struct VertexLayout {
         };
         position = {index("x"), index("y"), index("z")};
         normal = {index("nx"), index("ny"), index("nz")};
+        tangent = {index("sx"), index("sy"), index("sz")};
         constexpr std::array<std::array<const char*, 2>, 4> pairs{
             {{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}}};
         for (const auto& [u, v] : pairs)
@@ -135,6 +136,7 @@ struct VertexLayout {
     }
     bool has_position() const { return *std::min_element(position.begin(), position.end()) >= 0; }
     bool has_normal() const { return *std::min_element(normal.begin(), normal.end()) >= 0; }
+    bool has_tangent() const { return *std::min_element(tangent.begin(), tangent.end()) >= 0; }
     bool has_uv() const { return uv[0] >= 0 && uv[1] >= 0; }
 };
 
@@ -211,6 +213,7 @@ class BodyReader {
         std::vector<NumberReader::Place> places(values.size());
         positions_.reserve(e.count);
         if (layout.has_normal()) normals_.reserve(e.count);
+        if (layout.has_tangent()) tangents_.reserve(e.count);
         if (layout.has_uv()) uvs_.reserve(e.count);
         const auto at = [&](int i) {
             return finite(values[static_cast<size_t>(i)], places[static_cast<size_t>(i)]);
@@ -236,6 +239,7 @@ class BodyReader {
             };
             positions_.push_back(triple(layout.position));
             if (layout.has_normal()) normals_.push_back(normal(layout.normal));
+            if (layout.has_tangent()) tangents_.push_back(triple(layout.tangent));
             if (layout.has_uv()) uvs_.push_back({at(layout.uv[0]), at(layout.uv[1])});
         }
     }
@@ -321,7 +325,7 @@ class BodyReader {
         }
         if (!triangles_.empty()) {
             TriangleMesh t{std::move(positions_), std::move(normals_), std::move(uvs_),
-                           std::move(triangles_)};
+                           std::move(triangles_), std::move(tangents_)};
             m.triangles = std::make_shared<const TriangleMesh>(std::move(t));
         }
         return m;
@@ -331,7 +335,7 @@ class BodyReader {
     const PlyHeader& header_;
     SourceLocation file_;
     WarningLog& log_;
-    std::vector<Vec3> positions_, normals_;
+    std::vector<Vec3> positions_, normals_, tangents_;
     std::vector<Vec2> uvs_;
     std::vector<std::array<uint32_t, 3>> triangles_;
     std::vector<std::array<uint32_t, 4>> quads_;

@@ -283,6 +283,7 @@ void build_integrator(Entity& e, BuildContext& context) {
     context.scene.renders_media =
         std::find(volumetric.begin(), volumetric.end(), e.type) != volumetric.end();
     context.scene.regularizes = p.flag("regularize", false);
+    context.scene.adapts_colours = !p.flag("channelbychannel", false);
     p.ignore({"lightsampler"});
     p.warn_unused(context.log, owner("integrator", e));
 }

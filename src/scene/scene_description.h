@@ -147,6 +147,7 @@ struct SheenLayer {
 struct MaterialMix {
     std::array<MaterialId, 2> materials{-1, -1};
     TextureId amount = -1;
+    float weight = 1;  ///< of all light that either part scatters or lets pass: sums have above 1
 };
 struct MaterialDescription {
     std::string name;
@@ -230,11 +231,16 @@ struct AreaLightDescription {
     /// Whether the shape is no surface but for its light: rays that meet it take up its light and
     /// go on, and it casts no shadow.
     bool lets_light_pass = false;
-    /// A cone about the z axis of the shape's space that light stays within as a SpotLight's.
+    /// A cone about the z axis of the shape's space that light stays within as a SpotLight's, or as
+    /// a grid of slats leaves it (SpotCone::is_grid).
     struct Cone {
         float angle = 30, delta_angle = 5;
+        bool is_grid = false;
     };
     std::optional<Cone> cone = {};
+    /// Whether places are lit by a sphere as by a disc of the same radius and radiance that faces
+    /// them, which is less light than a sphere's where the distance is not much more.
+    bool soft_falloff = false;
 };
 
 /// Moves the vertices of a mesh along their normals, after its triangles have been split.
@@ -351,6 +357,9 @@ struct SceneDescription {
     /// Whether sharp lobes beyond a path's first lobe that is not specular are widened, as with
     /// pbrt's "regularize".
     bool regularizes = false;
+    /// Whether reflectances are those of spectra under the scene's light (IlluminantAdaptation);
+    /// false: light and reflectance are multiplied channel by channel.
+    bool adapts_colours = true;
     std::optional<Vec3> up;  ///< axis of the world that points up, where the format or user says
     std::vector<TextureDescription> textures;
     std::vector<MaterialDescription> materials;

@@ -341,16 +341,18 @@ Bsdf MaterialStore::bsdf(MaterialId id, const SurfaceHit& hit, const TextureStor
     return found;
 }
 
-MaterialId MaterialStore::at(MaterialId id, const SurfaceHit& hit,
-                             const TextureStore& textures) const {
+PlacedMaterial MaterialStore::at(MaterialId id, const SurfaceHit& hit,
+                                 const TextureStore& textures) const {
+    float weight = 1;
     while (id >= 0 && description(id).mix) {
         const MaterialMix& mix = *description(id).mix;
+        weight *= mix.weight;
         const float amount =
             textures.eval_float(mix.amount, {hit.uv, hit.position, {}, hit.ng, hit.vertices()});
         const uint64_t h = hash_of_position(hit, static_cast<uint64_t>(id));
         id = mix.materials[to_unit_float(static_cast<uint32_t>(h >> 32)) < amount ? 1 : 0];
     }
-    return id;
+    return {id, weight};
 }
 
 bool MaterialStore::turns_frame(MaterialId id) const {

@@ -58,6 +58,13 @@ struct MaterialTextures {
 /// makes of them.
 enum class Lobes { as_given, regularized };
 
+/// The material that stands at a place, and the factor on all light that it scatters or lets pass
+/// there, but for what it emits.
+struct PlacedMaterial {
+    MaterialId id = -1;
+    float weight = 1;
+};
+
 /// All materials of a scene. Immutable and thread-safe after construction.
 class MaterialStore {
   public:
@@ -71,7 +78,7 @@ class MaterialStore {
     /// The material that stands at a place: for a mix, one of its two, chosen by a hash of the
     /// position, so that the same place always has the same one. The other functions take the
     /// result.
-    MaterialId at(MaterialId id, const SurfaceHit& hit, const TextureStore& textures) const;
+    PlacedMaterial at(MaterialId id, const SurfaceHit& hit, const TextureStore& textures) const;
     /// The BSDF at a hit, for directions in `shading_frame(hit)`. Material -1 is pbrt's default:
     /// diffuse, 0.5. Images are filtered over the footprint of a pixel that sees the place along
     /// `w` and is `width` wide there; 0: they are not filtered.

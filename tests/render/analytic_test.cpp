@@ -150,6 +150,65 @@ Shape "trianglemesh" "point3 P" [ -9 -9 1  9 -9 1  9 9 1  -9 9 1 ] "integer indi
     expect_mean(render_text(text, uniform(4)), std::exp(-1.0), 1e-3);
 }
 
+TEST(Analytic, SumsHaveTheLightOfBothParts) {
+    const std::string text = R"(
+Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+LookAt 0 0 -40  0 0 0  0 1 0
+Camera "perspective" "float fov" 1
+WorldBegin
+LightSource "infinite" "rgb L" [ 1 1 1 ]
+MakeNamedMaterial "matt" "string type" "diffuse" "rgb reflectance" [ 0.4 0.4 0.4 ]
+MakeNamedMaterial "none" "string type" "interface"
+Material "mix" "string materials" [ "matt" "none" ] "float weight" 2
+)";
+    const std::string pane =
+        R"(Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indices" [ 0 2 1 0 3 2 ])";
+    // Half of the places are matt and half let light pass, each with twice its light
+    expect_mean(render_text(text + pane, uniform(256)), 1.4, 0.02);
+    // Light is emitted everywhere
+    expect_mean(render_text(text + "AreaLightSource \"diffuse\" \"rgb L\" [ 0.3 0.3 0.3 ] " + pane,
+                            uniform(256)),
+                1.7, 0.02);
+}
+
+TEST(Analytic, ColoursMayMultiplyChannelByChannel) {
+    const auto blue_over_expected = [](const char* parameters) {
+        const std::string text =
+            std::string("Integrator \"path\" \"integer maxdepth\" 1 ") + parameters + R"(
+Film "rgb" "integer xresolution" 4 "integer yresolution" 4
+LookAt 0 0 4  0 0 0  0 1 0
+Camera "perspective" "float fov" 1
+WorldBegin
+LightSource "infinite" "rgb L" [ 1 0.6 0.25 ]
+Material "diffuse" "rgb reflectance" [ 0.5 0.2 0.1 ]
+Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indices" [ 0 1 2 0 2 3 ])";
+        return middle_mean(render_text(text, uniform(64)).image, "B") / 0.025;
+    };
+    EXPECT_NEAR(blue_over_expected("\"bool channelbychannel\" true"), 1, 1e-3);
+    EXPECT_LT(blue_over_expected(""), 0.97);
+}
+
+TEST(Analytic, LampsShineThroughSums) {
+    // The pane lets pass 0.75 of the lamp's light: half of the places 1.5 times
+    const std::string text = R"(
+Film "rgb" "integer xresolution" 4 "integer yresolution" 4
+LookAt 0 0 1  0 0 0  0 1 0
+Camera "perspective" "float fov" 1
+WorldBegin
+LightSource "point" "point3 from" [ 0 0 3 ] "rgb I" [ 9 9 9 ]
+Material "diffuse" "rgb reflectance" [ 1 1 1 ]
+Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  9 9 0  -9 9 0 ] "integer indices" [ 0 1 2 0 2 3 ]
+)";
+    const std::string pane = R"(
+MakeNamedMaterial "dark" "string type" "diffuse" "rgb reflectance" [ 0 0 0 ]
+MakeNamedMaterial "none" "string type" "interface"
+Material "mix" "string materials" [ "dark" "none" ] "float weight" 1.5
+Shape "trianglemesh" "point3 P" [ -9 -9 2  9 -9 2  9 9 2  -9 9 2 ] "integer indices" [ 0 1 2 0 2 3 ]
+)";
+    expect_mean(render_text(text, uniform(4)), 1 / M_PI, 1e-3);
+    expect_mean(render_text(text + pane, uniform(1024)), 0.75 / M_PI, 0.01);
+}
+
 TEST(Analytic, MethodsAgreeOnAnUntexturedFurnace) {
     const std::string text = kView + R"(LightSource "infinite" "rgb L" [ 0.5 0.5 0.5 ]
 Material "diffuse" "rgb reflectance" [ 1 1 1 ]

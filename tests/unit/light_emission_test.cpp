@@ -183,6 +183,51 @@ TEST(Emission, SpotsWithMoreFalloffThanConeShineWithinTheDifference) {
     EXPECT_EQ(at(21), 0);
 }
 
+TEST(Emission, GridsLeaveTheShareBetweenTheirSlats) {
+    const SpotCone grid = SpotCone::grid(50);
+    const float limit = std::tan(50 * kPi / 180);
+    double sum = 0;
+    constexpr int kSteps = 10000;
+    for (int i = 0; i < kSteps; ++i) {
+        const double angle = (i + 0.5) / kSteps * M_PI / 2;
+        const auto f = grid.falloff(static_cast<float>(std::cos(angle)));
+        // Near the axis the cosine of single precision tells the angle to 3e-4
+        EXPECT_NEAR(f, std::max(0.0, 1 - std::tan(angle) / double(limit)), 5e-4);
+        sum += 2 * M_PI * std::sin(angle) * double(f) * (M_PI / 2 / kSteps);
+    }
+    EXPECT_NEAR(grid.solid_angle(), sum, 1e-4);
+    EXPECT_NEAR(SpotCone::grid(90).falloff(0.5f), 1, 1e-5f);
+    EXPECT_NEAR(SpotCone::grid(90).solid_angle(), 2 * kPi, 1e-3f);
+}
+
+TEST(Emission, SoftFalloffIsThatOfADiscThatFacesThePlace) {
+    // A sphere's irradiance at a surface that faces its centre is pi L r^2 / d^2, a disc's pi L r^2
+    // / (d^2 + r^2).
+    LightScene s;
+    const size_t shape =
+        s.add(shape_of(Sphere{.radius = 0.5f}, AnimatedTransform(Transform::translate({1, 2, 3}))),
+              Rgb(2));
+    s.description.area_lights[0].soft_falloff = true;
+    s.build();
+    for (const float d : {0.6f, 1.0f, 5.0f}) {
+        const Vec3 p{1, 2, 3 - d};
+        double sum = 0;
+        Rng rng(1);
+        constexpr int kSamples = 20000;
+        for (int i = 0; i < kSamples; ++i)
+            if (const auto l = s.lights->sample(p, {}, 0, 0.5f, rng.next_2d()))
+                sum += double(l->radiance.r * l->wi.z / l->pdf);
+        EXPECT_NEAR(sum / kSamples, M_PI * 2 * 0.25 / (d * d + 0.25), 0.01) << d;
+        SurfaceHit hit;
+        hit.shape = static_cast<uint32_t>(shape);
+        hit.ng = {0, 0, -1};
+        hit.position = {1, 2, 2.5f};
+        EXPECT_NEAR(s.lights->emitted(hit, {0, 0, -1}, d - 0.5f).r, 2 * d * d / (d * d + 0.25f),
+                    1e-4f);
+        EXPECT_EQ(s.lights->emitted(hit, {0, 0, -1}).r, 2);
+    }
+}
+
 TEST(Emission, SpotsFallOffSmoothlyBetweenTheirCones) {
     LightScene s;
     s.add_light(SpotLight{.intensity = Rgb(1),

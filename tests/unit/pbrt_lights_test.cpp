@@ -96,6 +96,20 @@ TEST(SceneLights, AreaLightsMayHaveACone) {
     ASSERT_TRUE(cone.has_value());
     EXPECT_EQ(cone->angle, 40);
     EXPECT_EQ(cone->delta_angle, 12);
+    EXPECT_FALSE(cone->is_grid);
+    const auto grid = cone_of("\"float gridangle\" 25");
+    ASSERT_TRUE(grid.has_value());
+    EXPECT_EQ(grid->angle, 25);
+    EXPECT_TRUE(grid->is_grid);
+}
+
+TEST(SceneLights, SpheresMayHaveASoftFalloff) {
+    for (const bool is_soft : {false, true}) {
+        const auto scene =
+            read_world(std::string("AreaLightSource \"diffuse\" \"bool softfalloff\" ") +
+                       (is_soft ? "true" : "false") + "\nShape \"sphere\"");
+        EXPECT_EQ(scene.area_lights.at(0).soft_falloff, is_soft);
+    }
 }
 
 TEST(SceneLights, InfiniteLightsAreUniformOrAnImage) {
@@ -221,6 +235,11 @@ TEST(SceneLights, ErrorsNameThePlace) {
         {"AreaLightSource \"diffuse\" \"float coneangle\" 200", "between 0 and 180"},
         {"AreaLightSource \"diffuse\" \"float coneangle\" 20 \"float power\" 3",
          "both \"power\" and \"coneangle\""},
+        {"AreaLightSource \"diffuse\" \"float gridangle\" 91", "between 0 and 90"},
+        {"AreaLightSource \"diffuse\" \"float gridangle\" 20 \"float power\" 3",
+         "both \"power\" and \"gridangle\""},
+        {"AreaLightSource \"diffuse\" \"float gridangle\" 20 \"float coneangle\" 3",
+         "both \"coneangle\" and \"gridangle\""},
         {"LightSource \"spot\" \"float coneangle\" 0", "between 0 and 180"},
         {"LightSource \"spot\" \"float conedeltaangle\" 61", "between 0 and twice coneangle"},
         {"LightSource \"point\" \"float scale\" -1", "must not be negative"},

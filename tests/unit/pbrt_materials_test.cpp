@@ -249,6 +249,15 @@ TEST(SceneMaterials, MixesKeepBothParts) {
     EXPECT_EQ(constant_value(scene, m.mix->amount), Rgb(0.2f));
     EXPECT_EQ(scene.materials.at(static_cast<size_t>(m.mix->materials[0])).name, "a");
     EXPECT_EQ(scene.materials.at(static_cast<size_t>(m.mix->materials[1])).name, "b");
+    EXPECT_EQ(m.mix->weight, 1);
+    const auto weighted = [&](const char* weight) {
+        return two + "Material \"mix\" \"string materials\" [ \"a\" \"b\" ] \"float weight\" " +
+               weight + "\nShape \"sphere\"";
+    };
+    const auto sum = read_world(weighted("2"));
+    EXPECT_EQ(sum.materials.at(static_cast<size_t>(sum.shapes.at(0).material)).mix->weight, 2);
+    for (const char* wrong : {"-1", "1001"})
+        EXPECT_TRUE(contains(world_error(weighted(wrong)), "between 0 and 1000")) << wrong;
 }
 
 TEST(SceneMaterials, ReflectancesAreAtMostOne) {

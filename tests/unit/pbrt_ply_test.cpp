@@ -51,6 +51,17 @@ TEST(ScenePly, ReadsAsciiWithNormalsAndUv) {
     EXPECT_EQ(mesh.quads, nullptr);
 }
 
+TEST(ScenePly, TrianglesMayHaveTangents) {
+    const auto mesh = read(
+        header("ascii", 3,
+               std::string(kVertex) + "property float sx\nproperty float sy\nproperty float sz\n",
+               1) +
+        "0 0 0 1 0 0 1 0 0 0 1 0 0 1 0 0 0 1 3 0 1 2");
+    ASSERT_EQ(mesh.triangles->tangents.size(), 3u);
+    EXPECT_EQ(mesh.triangles->tangents[1], (Vec3{0, 1, 0}));
+    EXPECT_EQ(mesh.triangles->tangents[2], (Vec3{0, 0, 1}));
+}
+
 TEST(ScenePly, ANormalThatIsNoNumberIsNone) {
     const std::string layout =
         std::string(kVertex) + "property float nx\nproperty float ny\nproperty float nz\n";

@@ -86,7 +86,7 @@ class Pilot {
             distance += hit.t;
             const PlacedShape& shape = scene_.geometry.shapes()[hit.shape];
             const MaterialId material =
-                scene_.materials.at(shape.description.material, hit, scene_.textures);
+                scene_.materials.at(shape.description.material, hit, scene_.textures).id;
             bsdf = scene_.materials.bsdf(material, hit, scene_.textures);
             if (!shape.lets_light_pass && !scene_.materials.lets_light_pass(material) &&
                 !(sees && is_unseen_back(shape, hit, ray.direction)))
